@@ -1,1 +1,7 @@
 //! The mechanics.
+
+pub mod analysis;
+pub mod gear;
+pub mod grid;
+pub mod quadrature;
+pub mod run;
