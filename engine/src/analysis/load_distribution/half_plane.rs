@@ -1,12 +1,16 @@
 //! The gear body under a loaded tooth as an elastic half-plane: no bore, no neighboring tooth.
 //!
-//! A half-plane carries over the tooth's root, of width S, the moment F cos(alpha_m) u and the force of the tooth. Its displacement there, averaged so that the work is right, is
+//! A half-plane carries over the tooth's root, of width S, the moment F cos(α_m) u and the force of the tooth.
+//! Its displacement there, averaged so that the work is right, is
 //!
-//! delta = (F cos^2(alpha_m)/(E' b)) (c_1 (u/S)^2 + c_2 (u/S) + c_3 (1 + c_4 tan^2(alpha_m))),
+//! δ = (F cos²(α_m)/(E' b)) (c_1 (u/S)² + c_2 (u/S) + c_3 (1 + c_4 tan²(α_m))),
 //!
-//! with u and alpha_m of [`super::tooth_load`] and two sets of coefficients in use ([`FoundationForm`]). E' is E in plane stress and E/(1 - nu^2) in plane strain.
+//! with u and α_m of [`super::tooth_load`] and two sets of coefficients in use ([`FoundationForm`]). E' is E in
+//! plane stress and E/(1 - ν²) in plane strain.
 
-use super::material::{Material, PlaneState};
+use crate::analysis::PlaneState;
+
+use super::elastic_constants::ElasticConstants;
 use super::quantity::{NotPositive, positive};
 use super::tooth_load::ToothLoad;
 use std::f64::consts::PI;
@@ -14,18 +18,20 @@ use std::f64::consts::PI;
 /// Whose coefficients of the half-plane are used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FoundationForm {
-    /// Weber and Banaschek (1953): c_1 = 18/pi, c_2 = 2 (1 - nu'), c_3 = 4.8/pi, c_4 = 1/(2.4 (1 + nu')).
+    /// Weber and Banaschek (1953): c_1 = 18/π, c_2 = 2 (1 - ν'), c_3 = 4.8/π, c_4 = 1/(2.4 (1 + ν')).
     ///
-    /// nu' is nu in plane stress and nu/(1 - nu) in plane strain. In plane strain at nu = 0.3 the sum over E/(1 - nu^2) is the familiar 5.2 (u/S)^2 + u/S + 1.4 (1 + 0.294 tan^2).
-    /// c_1 is the mean rotation, weighted by the load, of a half-plane under a pressure that grows linearly across S.
+    /// ν' is ν in plane stress and ν/(1 - ν) in plane strain. In plane strain at ν = 0.3 the sum over
+    /// E/(1 - ν²) is the familiar 5.2 (u/S)² + u/S + 1.4 (1 + 0.294 tan²). c_1 is the mean rotation, weighted by the
+    /// load, of a half-plane under a pressure that grows linearly across S.
     WeberBanaschek,
-    /// O'Donnell's rotation, as Cornell and Ishikawa use it: c_1 = 5.306 = 16.67/pi, c_2 as Weber's, c_3 = 1.534, c_4 = 0.4167/(1 + nu) in both plane states.
+    /// O'Donnell's rotation, as Cornell and Ishikawa use it: c_1 = 5.306 = 16.67/π, c_2 as Weber's, c_3 = 1.534,
+    /// c_4 = 0.4167/(1 + ν) in both plane states.
     ///
     /// That c_4 does not follow the plane state is how the form is published; it changes the sum by about 0.1 %.
     ODonnell,
 }
 
-/// The compliance delta/F of a half-plane under `load`, in m/N along the load.
+/// The compliance δ/F of a half-plane under `load`, in m/N along the load.
 ///
 /// `root_width` is S, the tooth's width at the root, and `face_width` b, both in m.
 ///
@@ -37,7 +43,7 @@ pub fn compliance(
     load: &ToothLoad,
     root_width: f64,
     face_width: f64,
-    material: &Material,
+    material: &ElasticConstants,
     plane: PlaneState,
 ) -> Result<f64, NotPositive> {
     let u_s =
@@ -52,7 +58,7 @@ pub fn compliance(
 }
 
 /// c_1 to c_4 of the sum.
-fn coefficients(form: FoundationForm, material: &Material, plane: PlaneState) -> [f64; 4] {
+fn coefficients(form: FoundationForm, material: &ElasticConstants, plane: PlaneState) -> [f64; 4] {
     let nu = material.plane_poisson_ratio(plane);
     match form {
         FoundationForm::WeberBanaschek => [
@@ -80,13 +86,14 @@ mod tests {
         depth: 1.6e-3,
     };
 
-    fn steel() -> Material {
-        Material::new(210e9, 0.3).expect("steel is a material")
+    fn steel() -> ElasticConstants {
+        ElasticConstants::new(210e9, 0.3).expect("steel is a material")
     }
 
     #[test]
     fn weber_and_banascheks_own_numbers_come_out_in_plane_strain() {
-        // Printed for nu = 0.3 with E alone in the denominator: 5.2, 1, 1.4 and 0.294, each rounded to about 1 %; c_2 is 1.04.
+        // Printed for ν = 0.3 with E alone in the denominator: 5.2, 1, 1.4 and 0.294, each rounded to about 1 %; c_2
+        // is 1.04.
         let [c_1, c_2, c_3, c_4] =
             coefficients(FoundationForm::WeberBanaschek, &steel(), PlaneState::Strain);
         let over_e = 1.0 - 0.3_f64.powi(2);
@@ -105,10 +112,11 @@ mod tests {
 
     #[test]
     fn the_rotation_of_weber_and_banaschek_is_the_mean_under_a_linear_pressure() {
-        // On -1 < x < 1 (S = 2) the pressure p = (3/2) M x gives w = -(2/(pi E')) int p ln|x - xi|; the rotation is int p w / M. With ln|x - xi| = -ln 2 - sum (2/n) T_n(x) T_n(xi) it is
-        // (2/(pi E')) (9/4) sum (2/n) m_n^2 M, where m_n = int x T_n over the interval. c_1 M/(E' S^2) must be the same; 40,000 terms fall off as n^-4.
+        // On -1 < x < 1 (S = 2) the pressure p = (3/2) M x gives w = -(2/(π E')) ∫ p ln|x - ξ|; the rotation is
+        // ∫ p w / M. With ln|x - ξ| = -ln 2 - sum (2/n) T_n(x) T_n(ξ) it is (2/(π E')) (9/4) sum (2/n) m_n² M,
+        // where m_n = ∫ x T_n over the interval. c_1 M/(E' S²) must be the same; 20,000 terms fall off as n^-4.
         let moment_of_chebyshev = |n: f64| {
-            // int_0^pi cos(t) cos(n t) sin(t) dt = -2/(n^2 - 4) for odd n.
+            // ∫_0^π cos(t) cos(n t) sin(t) dt = -2/(n² - 4) for odd n.
             -2.0 / (n * n - 4.0)
         };
         let sum: f64 = (0..20_000)
@@ -126,7 +134,7 @@ mod tests {
 
     #[test]
     fn the_form_of_odonnell_is_the_published_sum_in_both_plane_states() {
-        // Written out as it is published, with nu and not nu'.
+        // Written out as it is published, with ν and not ν'.
         let (nu, u_s, tan) = (0.3_f64, 2.5 / 4.0, 0.33_f64.tan());
         let prefix = 0.33_f64.cos().powi(2) / (210e9 * 20e-3);
         let last = 1.534 * (1.0 + 0.4167 * tan * tan / (1.0 + nu));

@@ -1,15 +1,22 @@
-//! Two flanks pressed together along a line: half-width and pressure by Hertz, the approach of points at a depth by Weber.
+//! Two flanks pressed together along a line: half-width and pressure by Hertz, the approach of points at a depth by
+//! Weber.
 //!
-//! With the line load F/b, 1/R = 1/R_1 + 1/R_2 and 1/E* = 1/E'_1 + 1/E'_2 (E' = E in plane stress, E/(1 - nu^2) in plane strain):
+//! With the line load F/b, 1/R = 1/R_1 + 1/R_2 and 1/E* = 1/E'_1 + 1/E'_2 (E' = E in plane stress, E/(1 - ν²) in
+//! plane strain):
 //!
-//! - half-width a = sqrt(4 F R/(pi b E*)) and peak pressure p_0 = 2 F/(pi b a);
-//! - a point at the depth t under the middle of the contact comes nearer to it by delta = (2 F/(pi b E')) (ln(2 t/a) - nu'/2), nu' = nu in plane stress and nu/(1 - nu) in plane strain.
+//! - half-width a = sqrt(4 F R/(π b E*)) and peak pressure p_0 = 2 F/(π b a);
+//! - a point at the depth t under the middle of the contact comes nearer to it by
+//!   `δ = (2 F/(π b E')) (ln(2 t/a) - ν'/2)`, ν' = ν in plane stress and ν/(1 - ν) in plane strain.
 //!
-//! In two dimensions a half-plane sinks without bound, so the approach needs its depths: Weber measures them along the load, from the flank to the tooth's centerline
-//! ([`super::tooth_load::ToothLoad::depth`]). For bodies of one material the sum over both is Weber's form with ln(4 t_1 t_2/a^2). The expansion is for t much greater than a; since a
-//! grows with the root of F, the approach grows a little slower than F, and it is refused where it would begin to fall.
+//! In two dimensions a half-plane sinks without bound, so the approach needs its depths: Weber measures them along
+//! the load, from the flank to the tooth's centerline ([`super::tooth_load::ToothLoad::depth`]). For bodies of one
+//! material the sum over both is Weber's form with ln(4 t_1 t_2/a²). The expansion is for t much greater than a;
+//! since a grows with the root of F, the approach grows a little slower than F, and it is refused where it would
+//! begin to fall.
 
-use super::material::{Material, PlaneState};
+use crate::analysis::PlaneState;
+
+use super::elastic_constants::ElasticConstants;
 use super::quantity::{NotPositive, positive};
 use std::f64::consts::PI;
 
@@ -17,7 +24,7 @@ use std::f64::consts::PI;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactBody {
     /// What it is made of.
-    pub material: Material,
+    pub material: ElasticConstants,
     /// The radius of curvature of its convex flank, in m: for an involute, the roll length.
     pub curvature_radius: f64,
     /// The depth t from its flank to the point whose approach is asked for, in m.
@@ -73,7 +80,7 @@ impl LineContact {
 
     /// The pressure p_0 in the middle of the contact under `force` (N), in Pa; none without a pressing force.
     pub fn peak_pressure(&self, force: f64) -> f64 {
-        // p_0 = 2 F/(pi b a) with F written through a: no division by a half-width of zero.
+        // p_0 = 2 F/(π b a) with F written through a: no division by a half-width of zero.
         self.half_width(force) * self.contact_modulus() / (2.0 * self.relative_radius())
     }
 
@@ -91,7 +98,8 @@ impl LineContact {
         self.sum(a, |e, logarithm| 2.0 * line_load / (PI * e) * logarithm)
     }
 
-    /// The tangent compliance d(approach)/dF under `force` (N), in m/N; infinite without a pressing force, where the contact has no width.
+    /// The tangent compliance d(approach)/dF under `force` (N), in m/N; infinite without a pressing force, where the
+    /// contact has no width.
     ///
     /// # Errors
     ///
@@ -107,7 +115,7 @@ impl LineContact {
         })
     }
 
-    /// Adds `term`(E', ln(2 t/a) - nu'/2) over the bodies.
+    /// Adds `term`(E', ln(2 t/a) - ν'/2) over the bodies.
     fn sum(&self, half_width: f64, term: impl Fn(f64, f64) -> f64) -> Result<f64, ContactTooWide> {
         let mut sum = 0.0;
         for body in &self.bodies {
@@ -143,7 +151,7 @@ impl LineContact {
     }
 }
 
-/// The constant contact stiffness k = pi E' b/4 of many energy methods, in N/m, whatever the load.
+/// The constant contact stiffness k = π E' b/4 of many energy methods, in N/m, whatever the load.
 ///
 /// It is about three times too stiff beside Weber's approach; it is here to be compared with.
 ///
@@ -151,16 +159,18 @@ impl LineContact {
 ///
 /// [`NotPositive`] if `face_width` (m) is not a positive number.
 pub fn constant_stiffness(
-    material: &Material,
+    material: &ElasticConstants,
     face_width: f64,
     plane: PlaneState,
 ) -> Result<f64, NotPositive> {
     Ok(PI * material.plane_modulus(plane) * positive("the face width", face_width)? / 4.0)
 }
 
-/// Palmgren's approach of two steel bodies along a line, 3.84e-5 F^0.9/b^0.8 mm with F in N and b in mm; here in m from N and m.
+/// Palmgren's approach of two steel bodies along a line, 3.84e-5 F^0.9/b^0.8 mm with F in N and b in mm; here in m
+/// from N and m.
 ///
-/// Measured on rollers between plates, it holds more of the bodies than a flank has; it is here to be compared with. None without a pressing force.
+/// Measured on rollers between plates, it holds more of the bodies than a flank has; it is here to be compared with.
+/// None without a pressing force.
 ///
 /// # Errors
 ///
@@ -176,8 +186,8 @@ mod tests {
 
     const FACE_WIDTH: f64 = 20e-3;
 
-    fn steel() -> Material {
-        Material::new(210e9, 0.3).expect("steel is a material")
+    fn steel() -> ElasticConstants {
+        ElasticConstants::new(210e9, 0.3).expect("steel is a material")
     }
 
     /// A contact of two alike bodies whose relative radius is `relative_radius`.
@@ -200,7 +210,8 @@ mod tests {
 
     #[test]
     fn the_papers_pitch_points_have_the_contacts_worked_out_for_them() {
-        // Plane strain, E = 210 GPa, nu = 0.3, b = 20 mm: a (um), p_0 (MPa), Weber's approach (um) at the depths 1.672 and 2 mm, the constant stiffness and Palmgren (um).
+        // Plane strain, E = 210 GPa, ν = 0.3, b = 20 mm: a (um), p_0 (MPa), Weber's approach (um) at the depths
+        // 1.672 and 2 mm, the constant stiffness and Palmgren (um).
         for (force, radius, a, p_0, weber, constant, palmgren) in [
             (
                 2447.61,
@@ -248,7 +259,8 @@ mod tests {
 
     #[test]
     fn the_pitch_point_of_the_standard_pair_in_plane_stress() {
-        // Worked out beside the plane strain values: 115.0 um and 677 MPa. The radius has five digits, the pressure three.
+        // Worked out beside the plane strain values: 115.0 um and 677 MPa. The radius has five digits, the pressure
+        // three.
         let contact = contact(8.9094e-3, 1.672e-3, PlaneState::Stress);
         assert_printed(contact.half_width(2447.61) * 1e6, 115.0, 1);
         assert!((contact.peak_pressure(2447.61) * 1e-6 - 677.0).abs() < 1.0);
@@ -256,7 +268,7 @@ mod tests {
 
     #[test]
     fn the_pressure_carries_the_force() {
-        // A semi-ellipse of half-width a and height p_0 over the face: F = pi a p_0 b/2.
+        // A semi-ellipse of half-width a and height p_0 over the face: F = π a p_0 b/2.
         let contact = contact(8.9094e-3, 2e-3, PlaneState::Stress);
         let carried =
             PI / 2.0 * contact.half_width(1234.5) * contact.peak_pressure(1234.5) * FACE_WIDTH;
@@ -287,8 +299,9 @@ mod tests {
 
     #[test]
     fn the_approach_is_the_strain_under_an_elliptic_pressure_summed_down_to_the_depth() {
-        // The stresses on the axis under a Hertzian line load (Johnson): sigma_z = -p_0/sqrt(1 + s^2), sigma_x = -p_0((1 + 2 s^2)/sqrt(1 + s^2) - 2 s) with s = z/a. In plane stress the strain is
-        // (sigma_z - nu sigma_x)/E. Simpson's rule in sinh steps; the formula drops terms of (a/t)^2 = 1e-4 here.
+        // The stresses on the axis under a Hertzian line load (Johnson): σ_z = -p_0/sqrt(1 + s²), σ_x =
+        // -p_0((1 + 2 s²)/sqrt(1 + s²) - 2 s) with s = z/a. In plane stress the strain is (σ_z - ν σ_x)/E.
+        // Simpson's rule in sinh steps; the formula drops terms of (a/t)² = 1e-4 here.
         let (force, nu) = (100.0, 0.3);
         let contact = contact(9e-3, 2.3e-3, PlaneState::Stress);
         let (a, p_0) = (contact.half_width(force), contact.peak_pressure(force));

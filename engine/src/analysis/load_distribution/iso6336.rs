@@ -1,19 +1,23 @@
 //! The single stiffness and mesh stiffness of ISO 6336-1, method B: one number per pair of teeth.
 //!
-//! The standard fits a polynomial in 1/z and x to sums of the tooth, body and contact compliances of steel disc gears. In its symbols:
+//! The standard fits a polynomial in 1/z and x to sums of the tooth, body and contact compliances of steel disc
+//! gears. In its symbols:
 //!
-//! - q' = 0.04723 + 0.15551/z_n1 + 0.25791/z_n2 - 0.00635 x_1 - 0.11654 x_1/z_n1 - 0.00193 x_2 - 0.24188 x_2/z_n2 + 0.00529 x_1^2 + 0.00182 x_2^2, in mm um/N;
+//! - q' = 0.04723 + 0.15551/z_n1 + 0.25791/z_n2 − 0.00635 x_1 − 0.11654 x_1/z_n1 − 0.00193 x_2
+//!   − 0.24188 x_2/z_n2 + 0.00529 x_1² + 0.00182 x_2², in mm um/N;
 //! - c'_th = 1/q', the theoretical single stiffness;
-//! - c' = c'_th C_M C_R C_B cos(beta), the greatest stiffness of one pair of teeth, with C_M = 0.8 from measurements;
-//! - c_gamma_alpha = c' (0.75 epsilon_alpha + 0.25), the mean over the path of contact, and c_gamma_beta = 0.85 c_gamma_alpha.
+//! - c' = c'_th C_M C_R C_B cos(β), the greatest stiffness of one pair of teeth, with C_M = 0.8 from measurements;
+//! - c_γ_α = c' (0.75 ε_α + 0.25), the mean over the path of contact, and
+//!   c_γ_β = 0.85 c_γ_α.
 //!
-//! All stiffnesses are per unit of face width and for loads normal to the flank, in N/m^2 here: 1 N/(mm um) = 1e9 N/m^2. They hold for line loads of 100 N/mm and more;
-//! [`low_load_factor`] says what is left below that. Gear 1 of the standard is the pinion, the gear with fewer teeth. The helix angle is there because the worked example of
+//! All stiffnesses are per unit of face width and for loads normal to the flank, in N/m² here: 1 N/(mm um) = 1e9
+//! N/m². They hold for line loads of 100 N/mm and more; [`low_load_factor`] says what is left below that. Gear 1 of
+//! the standard is the pinion, the gear with fewer teeth. The helix angle is there because the worked example of
 //! ISO/TR 6336-30 is helical; a spur gear has 0.
 
 use super::quantity::{NotPositive, positive};
 
-/// One N/(mm um), in N/m^2.
+/// One N/(mm um), in N/m².
 const NEWTON_PER_MILLIMETER_MICROMETER: f64 = 1e9;
 /// C_M: what measured single stiffnesses reach of c'_th.
 const MEASURED_SHARE: f64 = 0.8;
@@ -21,7 +25,7 @@ const MEASURED_SHARE: f64 = 0.8;
 const CONSTANT_FROM_LINE_LOAD: f64 = 100e3;
 /// Young's modulus of the steel that the fit was made for, in Pa.
 const STEEL_YOUNG_MODULUS: f64 = 206e9;
-/// The contact ratio from which c_gamma_alpha holds for spur gears.
+/// The contact ratio from which c_γ_α holds for spur gears.
 const LEAST_CONTACT_RATIO: f64 = 1.2;
 
 /// One gear as the fit sees it.
@@ -38,7 +42,7 @@ pub struct IsoGear {
 pub struct BasicRack {
     /// The dedendum h_fP over the module.
     pub dedendum_factor: f64,
-    /// The normal pressure angle alpha_n, in rad.
+    /// The normal pressure angle α_n, in rad.
     pub pressure_angle: f64,
 }
 
@@ -107,7 +111,7 @@ impl IsoPair {
     ///
     /// # Errors
     ///
-    /// [`IsoError`] for a pair outside x_1 >= x_2 and -0.5 <= x_1 + x_2 <= 2, or for angles out of range.
+    /// [`IsoError`] for a pair outside x_1 ≥ x_2 and -0.5 ≤ x_1 + x_2 ≤ 2, or for angles out of range.
     pub fn new(
         gears: [IsoGear; 2],
         helix_angle: f64,
@@ -152,9 +156,9 @@ impl IsoPair {
         })
     }
 
-    /// The theoretical single stiffness c'_th = 1/q', in N/m^2.
+    /// The theoretical single stiffness c'_th = 1/q', in N/m².
     ///
-    /// For helical gears the tooth counts are those of the equivalent spur gears, z_n = z/(cos^2(beta_b) cos(beta)).
+    /// For helical gears the tooth counts are those of the equivalent spur gears, z_n = z/(cos²(β_b) cos(β)).
     pub fn theoretical_single_stiffness(&self) -> f64 {
         let to_equivalent = 1.0 / (self.base_helix_angle.cos().powi(2) * self.helix_angle.cos());
         let z_n1 = f64::from(self.pinion.tooth_count) * to_equivalent;
@@ -171,7 +175,7 @@ impl IsoPair {
         NEWTON_PER_MILLIMETER_MICROMETER / q
     }
 
-    /// The single stiffness c' = c'_th C_M C_R C_B cos(beta) of steel gears, in N/m^2.
+    /// The single stiffness c' = c'_th C_M C_R C_B cos(β) of steel gears, in N/m².
     ///
     /// Gears cut by two racks have the mean of their two [`BasicRack::factor`]s; ours are cut by one.
     ///
@@ -188,7 +192,7 @@ impl IsoPair {
 }
 
 impl BasicRack {
-    /// C_B = (1 + 0.5 (1.2 - h_fP/m_n)) (1 - 0.02 (20 - alpha_n in degrees)).
+    /// C_B = (1 + 0.5 (1.2 - h_fP/m_n)) (1 - 0.02 (20 - α_n in degrees)).
     ///
     /// # Errors
     ///
@@ -209,7 +213,7 @@ impl BasicRack {
 impl IsoBlank {
     /// C_R = 1 + ln(b_s/b) / (5 exp(s_R/(5 m_n))).
     ///
-    /// Outside 0.2 <= b_s/b <= 1.2 and below s_R/m_n = 1 the value at that bound holds.
+    /// Outside 0.2 ≤ b_s/b ≤ 1.2 and below s_R/m_n = 1 the value at that bound holds.
     ///
     /// # Errors
     ///
@@ -234,7 +238,8 @@ impl IsoBlank {
     }
 }
 
-/// What a single stiffness of steel gears is multiplied by for other materials: E/E_steel with E = 2 E_1 E_2/(E_1 + E_2) and E_steel = 206 GPa.
+/// What a single stiffness of steel gears is multiplied by for other materials: E/E_steel with E = 2 E_1 E_2/(E_1 +
+/// E_2) and E_steel = 206 GPa.
 ///
 /// # Errors
 ///
@@ -245,7 +250,8 @@ pub fn material_factor(young_moduli: [f64; 2]) -> Result<f64, IsoError> {
     Ok(2.0 / (1.0 / e_1 + 1.0 / e_2) / STEEL_YOUNG_MODULUS)
 }
 
-/// What is left of a single stiffness at a line load F K_A/b below 100 N/mm: ((F K_A/b)/(100 N/mm))^0.25, and 1 above.
+/// What is left of a single stiffness at a line load F K_A/b below 100 N/mm: ((F K_A/b)/(100 N/mm))^0.25, and 1
+/// above.
 ///
 /// `line_load` is in N/m; without load nothing is left.
 pub fn low_load_factor(line_load: f64) -> f64 {
@@ -254,7 +260,8 @@ pub fn low_load_factor(line_load: f64) -> f64 {
         .powf(0.25)
 }
 
-/// The mean mesh stiffness c_gamma_alpha = c' (0.75 epsilon_alpha + 0.25) over the path of contact, in the unit of `single_stiffness`.
+/// The mean mesh stiffness c_γ_α = c' (0.75 ε_α + 0.25) over the path of contact, in the unit of
+/// `single_stiffness`.
 ///
 /// # Errors
 ///
@@ -266,7 +273,7 @@ pub fn mean_mesh_stiffness(single_stiffness: f64, contact_ratio: f64) -> Result<
     Ok(single_stiffness * (0.75 * contact_ratio + 0.25))
 }
 
-/// The mesh stiffness for the load's distribution over the face, c_gamma_beta = 0.85 c_gamma_alpha.
+/// The mesh stiffness for the load's distribution over the face, c_γ_β = 0.85 c_γ_α.
 pub fn face_load_mesh_stiffness(mean_mesh_stiffness: f64) -> f64 {
     0.85 * mean_mesh_stiffness
 }
@@ -278,7 +285,7 @@ mod tests {
 
     const ALPHA: f64 = 20.0 * TAU / 360.0;
 
-    /// A value in N/m^2 against a print in N/(mm um), to half a unit of its last digit.
+    /// A value in N/m² against a print in N/(mm um), to half a unit of its last digit.
     fn assert_printed(value: f64, print: f64, decimals: i32) {
         let value = value / 1e9;
         assert!(
@@ -308,7 +315,8 @@ mod tests {
 
     #[test]
     fn the_worked_example_of_iso_tr_6336_30_comes_out_to_its_printed_digits() {
-        // Example 1: z 17/103, beta 15.8 degrees, x 0.145/0, rack D. Its epsilon_alpha is implied by its own c_gamma_alpha, 1.54909.
+        // Example 1: z 17/103, β 15.8 degrees, x 0.145/0, rack D. Its ε_α is implied by its own
+        // c_γ_α, 1.54909.
         let pair = IsoPair::new(
             [gear(17, 0.145), gear(103, 0.0)],
             15.8_f64.to_radians(),

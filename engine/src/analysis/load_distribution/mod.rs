@@ -1,7 +1,8 @@
-//! The classical route: contact on the theoretical line of contact, compliances from formulas (eqs. 4-5 of the paper).
+//! The classical route: contact on the theoretical line of contact, compliances from formulas (eqs. 4-5 of the
+//! paper).
 //!
-//! A loaded pair of teeth gives way in three places, and for each there is a closed form. Forces act along the line of action, so compliances (m/N) add up in series over
-//! the two gears:
+//! A loaded pair of teeth gives way in three places, and for each there is a closed form. Forces act along the line
+//! of action, so compliances (m/N) add up in series over the two gears:
 //!
 //! | what gives way | formula | module |
 //! | --- | --- | --- |
@@ -11,15 +12,17 @@
 //! | the flanks at the contact | Hertz, and Weber's approach of points at a depth | [`hertz`] |
 //! | all of it at once, per pair of teeth | ISO 6336-1, method B, single stiffness | [`iso6336`] |
 //!
-//! Reading order: [`material`] and [`tooth_load`] (where the load line meets the tooth, the one piece of geometry that all formulas share), then the table from top to bottom.
+//! Reading order: [`elastic_constants`] and [`tooth_load`] (where the load line meets the tooth, the one piece of
+//! geometry that all formulas share), then the table from top to bottom.
 //!
-//! What this route cannot see: holes (a body is a ring or a half-plane), and the body that neighboring pairs share - each pair carries a body of its own, so that the
-//! deflection of one tooth does not tilt the next. ISO's single stiffness knows neither position nor bore.
+//! What this route cannot see: holes (a body is a ring or a half-plane), and the body that neighboring pairs share -
+//! each pair carries a body of its own, so that the deflection of one tooth does not tilt the next. ISO's single
+//! stiffness knows neither position nor bore.
 
+pub mod elastic_constants;
 pub mod half_plane;
 pub mod hertz;
 pub mod iso6336;
-pub mod material;
 pub mod quantity;
 pub mod sainsot;
 pub mod tooth_load;
@@ -27,18 +30,19 @@ pub mod weber_banaschek;
 
 #[cfg(test)]
 mod tests {
+    use super::elastic_constants::ElasticConstants;
     use super::half_plane::{self, FoundationForm};
     use super::hertz::{ContactBody, LineContact};
     use super::iso6336::{IsoGear, IsoPair};
-    use super::material::{Material, PlaneState};
     use super::tooth_load::{InvoluteTooth, ToothLoad};
     use super::weber_banaschek;
+    use crate::analysis::PlaneState;
 
     #[test]
     fn the_sum_of_the_formulas_at_the_pitch_point_lies_near_the_single_stiffness_of_iso() {
         // ISO's q' is a fit to sums of this very kind. The tooth here runs down to the root circle as an
         // involute, without its fillet, and the load is one of many: 10 % allows for that.
-        let steel = Material::new(210e9, 0.3).expect("steel is a material");
+        let steel = ElasticConstants::new(210e9, 0.3).expect("steel is a material");
         let (z, m, alpha, b, force) = (50.0_f64, 2e-3, 20_f64.to_radians(), 20e-3, 6000.0);
         let r_b = 0.5 * m * z * alpha.cos();
         let tooth = InvoluteTooth::new(50, alpha, 0.0, r_b, 47.5e-3).expect("the tooth exists");

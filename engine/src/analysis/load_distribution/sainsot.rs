@@ -1,24 +1,29 @@
-//! The gear body under a loaded tooth, as Sainsot, Velex and Duverger have it (J. Mech. Des. 126, 2004): a ring whose bore is rigid and fixed.
+//! The gear body under a loaded tooth, as Sainsot, Velex and Duverger have it (J. Mech. Des. 126, 2004): a ring whose
+//! bore is rigid and fixed.
 //!
-//! Muskhelishvili's solution for a ring, loaded on its outer circle over the foot of one tooth by a force and a moment (linear normal, constant shear stress), gives
+//! Muskhelishvili's solution for a ring, loaded on its outer circle over the foot of one tooth by a force and a
+//! moment (linear normal, constant shear stress), gives
 //!
-//! delta_f = (F cos^2(alpha_m)/(E b)) (L (u/S_f)^2 + M (u/S_f) + P (1 + Q tan^2(alpha_m))),
+//! δ_f = (F cos²(α_m)/(E b)) (L (u/S_f)² + M (u/S_f) + P (1 + Q tan²(α_m))),
 //!
-//! where each of L, M, P and Q was fitted as A/theta_f^2 + B h^2 + C h/theta_f + D/theta_f + E h + F. In them
+//! where each of L, M, P and Q was fitted as A/θ_f² + B h² + C h/θ_f + D/θ_f + E h + F. In them
 //!
 //! - h = r_f/r_bore is the ratio of root radius to bore radius;
-//! - theta_f is half the angle that the tooth spans at the root circle, where its fillets end, and S_f = 2 r_f theta_f its width there;
-//! - u is the height above the root circle at which the load line crosses the tooth's centerline, and alpha_m the load's angle there ([`super::tooth_load`]).
+//! - θ_f is half the angle that the tooth spans at the root circle, where its fillets end, and
+//!   S_f = 2 r_f θ_f its width there;
+//! - u is the height above the root circle at which the load line crosses the tooth's centerline, and α_m the
+//!   load's angle there ([`super::tooth_load`]).
 //!
-//! delta_f is the displacement of the tooth's foot along the load. Poisson's ratio is inside the fit, so neither it nor the plane state is asked for. The fit was made for 1.4 <= h <= 7 and
-//! 0.01 <= theta_f <= 0.12; outside it [`GearBody::extrapolations`] says so and the value is given all the same.
+//! δ_f is the displacement of the tooth's foot along the load. Poisson's ratio is inside the fit, so neither it
+//! nor the plane state is asked for. The fit was made for 1.4 ≤ h ≤ 7 and 0.01 ≤ θ_f ≤ 0.12; outside it
+//! [`GearBody::extrapolations`] says so and the value is given all the same.
 
 use super::quantity::{NotPositive, positive};
 use super::tooth_load::ToothLoad;
 
 /// The range of h = r_f/r_bore that the fit was made for.
 const RADIUS_RATIOS: (f64, f64) = (1.4, 7.0);
-/// The range of theta_f that the fit was made for, in rad.
+/// The range of θ_f that the fit was made for, in rad.
 const ROOT_HALF_ANGLES: (f64, f64) = (0.01, 0.12);
 
 /// The fit of one of the functions L, M, P and Q.
@@ -108,7 +113,7 @@ pub enum GearBodyError {
         compliance: f64,
         /// The body's r_f/r_bore.
         radius_ratio: f64,
-        /// The body's theta_f, in rad.
+        /// The body's θ_f, in rad.
         root_half_angle: f64,
     },
 }
@@ -116,9 +121,9 @@ pub enum GearBodyError {
 /// A quantity that lies outside the range that the fit was made for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extrapolation {
-    /// `r_f/r_bore`, `theta_f`, or one of `L`, `M`, `P`, `Q`.
+    /// `r_f/r_bore`, `θ_f`, or one of `L`, `M`, `P`, `Q`.
     pub quantity: &'static str,
-    /// Its value (theta_f in rad, the others without unit).
+    /// Its value (θ_f in rad, the others without unit).
     pub value: f64,
     /// The lower end of the range.
     pub least: f64,
@@ -127,7 +132,8 @@ pub struct Extrapolation {
 }
 
 impl GearBody {
-    /// The ring between `bore_radius` and `root_radius` (m) whose teeth span `root_half_angle` (theta_f, rad) to each side at the root circle.
+    /// The ring between `bore_radius` and `root_radius` (m) whose teeth span `root_half_angle` (θ_f, rad) to each
+    /// side at the root circle.
     ///
     /// # Errors
     ///
@@ -166,7 +172,7 @@ impl GearBody {
         self.root_radius / self.bore_radius
     }
 
-    /// The width S_f = 2 r_f theta_f of the tooth at the root circle, in m.
+    /// The width S_f = 2 r_f θ_f of the tooth at the root circle, in m.
     pub fn root_width(&self) -> f64 {
         2.0 * self.root_radius * self.root_half_angle
     }
@@ -202,7 +208,8 @@ impl GearBody {
             .collect()
     }
 
-    /// The compliance delta_f/F of the body under `load`, in m/N along the load, for `face_width` (m) and `young_modulus` (Pa).
+    /// The compliance δ_f/F of the body under `load`, in m/N along the load, for `face_width` (m) and
+    /// `young_modulus` (Pa).
     ///
     /// # Errors
     ///
@@ -242,7 +249,7 @@ mod tests {
         GearBody::new(radius_ratio * 10e-3, 10e-3, root_half_angle).expect("the ring exists")
     }
 
-    /// theta_f of the published codes for 50 teeth, which the third vector was computed with; it prints as 0.0566165.
+    /// θ_f of the published codes for 50 teeth, which the third vector was computed with; it prints as 0.0566165.
     fn root_half_angle_of_the_vector() -> f64 {
         let alpha = 20_f64.to_radians();
         let rho = 0.25 / (1.0 - alpha.sin());
@@ -271,7 +278,8 @@ mod tests {
 
     #[test]
     fn the_compliance_is_the_printed_sum() {
-        // By hand with the printed coefficients of (3, 0.05): S_f = 3 mm, u = 3 mm, alpha_m = 45 degrees, so cos^2 = 1/2, tan^2 = 1, and E b = 4.2e9 N/m; six digits of L, M, P and Q.
+        // By hand with the printed coefficients of (3, 0.05): S_f = 3 mm, u = 3 mm, α_m = 45 degrees, so cos² =
+        // 1/2, tan² = 1, and E b = 4.2e9 N/m; six digits of L, M, P and Q.
         let load = ToothLoad {
             height: 3e-3,
             angle: FRAC_PI_2 / 2.0,
@@ -352,7 +360,7 @@ mod tests {
             GearBody::new(47.5e-3, 10e-3, f64::NAN),
             Err(GearBodyError::NotPositive(_))
         ));
-        // At theta_f = 0.001 rad the term A/theta_f^2 has taken over and P is about -450.
+        // At θ_f = 0.001 rad the term A/θ_f² has taken over and P is about -450.
         let load = ToothLoad {
             height: 1e-6,
             angle: 0.0,

@@ -1,14 +1,18 @@
 //! Where the line of a load meets the tooth: the geometry that the classical formulas share.
 //!
-//! Without friction the load lies on the flank's normal, and the normal of an involute touches the base circle. Seen from the tooth's centerline (radial, from the gear's
-//! center O) a load at roll length s (the distance of its flank point from the point of tangency, which is also the radius of curvature of the flank there) has
+//! Without friction the load lies on the flank's normal, and the normal of an involute touches the base circle. Seen
+//! from the tooth's centerline (radial, from the gear's center O) a load at roll length s (the distance of its flank
+//! point from the point of tangency, which is also the radius of curvature of the flank there) has
 //!
-//! - the load angle `alpha_m = s/r_b - psi_b`, between the load and the perpendicular to the centerline; positive when the load also presses the tooth toward the hub;
-//! - its crossing with the centerline at the radius `r_b/cos(alpha_m)`, thus at the height `u = r_b/cos(alpha_m) - r_f` above the root circle;
-//! - the depth `t = s - r_b tan(alpha_m)`, measured along the load from the flank to the centerline (Weber's t_1, t_2).
+//! - the load angle `α_m = s/r_b - ψ_b`, between the load and the perpendicular to the centerline; positive
+//!   when the load also presses the tooth toward the hub;
+//! - its crossing with the centerline at the radius `r_b/cos(α_m)`, thus at the height
+//!   `u = r_b/cos(α_m) - r_f` above the root circle;
+//! - the depth `t = s - r_b tan(α_m)`, measured along the load from the flank to the centerline (Weber's t_1,
+//!   t_2).
 //!
-//! Here psi_b is half the angle that the tooth spans at its base circle. The component across the tooth is F cos(alpha_m), the one along it F sin(alpha_m); the bending moment
-//! at a height y is F cos(alpha_m) (u - y).
+//! Here ψ_b is half the angle that the tooth spans at its base circle. The component across the tooth is
+//! F cos(α_m), the one along it F sin(α_m); the bending moment at a height y is F cos(α_m) (u - y).
 
 use super::quantity::{NotPositive, positive};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -26,7 +30,8 @@ pub struct InvoluteTooth {
 pub struct ToothLoad {
     /// The height u above the root circle at which the load line crosses the tooth's centerline, in m; positive.
     pub height: f64,
-    /// The angle alpha_m between the load and the perpendicular to the centerline, in rad; positive toward the hub, within a right angle.
+    /// The angle α_m between the load and the perpendicular to the centerline, in rad; positive toward the hub,
+    /// within a right angle.
     pub angle: f64,
     /// The distance t from the flank to the centerline along the load, in m; positive.
     pub depth: f64,
@@ -41,7 +46,7 @@ pub enum ToothLoadError {
     /// The angles given do not make a tooth.
     #[error("a tooth cannot span {base_half_angle} rad to each side at its base circle")]
     NoTooth {
-        /// The half-angle psi_b that came out, in rad.
+        /// The half-angle ψ_b that came out, in rad.
         base_half_angle: f64,
     },
     /// The flank point lies where both flanks have already met.
@@ -69,9 +74,10 @@ pub enum ToothLoadError {
 }
 
 impl InvoluteTooth {
-    /// The tooth of a gear with `tooth_count` teeth cut by a rack at `pressure_angle` with `profile_shift` (in modules), in m and rad.
+    /// The tooth of a gear with `tooth_count` teeth cut by a rack at `pressure_angle` with `profile_shift` (in
+    /// modules), in m and rad.
     ///
-    /// psi_b = pi/(2 z) + 2 x tan(alpha)/z + tan(alpha) - alpha.
+    /// ψ_b = π/(2 z) + 2 x tan(α)/z + tan(α) - α.
     ///
     /// # Errors
     ///
@@ -96,7 +102,7 @@ impl InvoluteTooth {
     ///
     /// # Errors
     ///
-    /// [`ToothLoadError`] if a radius is not positive or the half-angle lies outside (0, pi/2).
+    /// [`ToothLoadError`] if a radius is not positive or the half-angle lies outside (0, π/2).
     pub fn with_base_half_angle(
         base_half_angle: f64,
         base_radius: f64,
@@ -112,7 +118,7 @@ impl InvoluteTooth {
         })
     }
 
-    /// Half the angle that the involute flanks span at `radius`, psi = psi_b - inv(alpha_r), in rad.
+    /// Half the angle that the involute flanks span at `radius`, ψ = ψ_b - inv(α_r), in rad.
     ///
     /// Below the base circle there is no involute, and its value at the base circle is returned.
     pub fn half_angle_at(&self, radius: f64) -> f64 {
@@ -126,7 +132,8 @@ impl ToothLoad {
     ///
     /// # Errors
     ///
-    /// [`ToothLoadError`] if the roll length is not positive, lies beyond a pointed tip, or puts the load below the root circle.
+    /// [`ToothLoadError`] if the roll length is not positive, lies beyond a pointed tip, or puts the load below the
+    /// root circle.
     pub fn at_roll_length(tooth: &InvoluteTooth, roll_length: f64) -> Result<Self, ToothLoadError> {
         let &InvoluteTooth {
             base_radius: r_b,
@@ -136,7 +143,8 @@ impl ToothLoad {
         let s = positive("the roll length", roll_length)?;
 
         let alpha_m = s / r_b - psi_b;
-        // The depth decides: the flanks meet where it vanishes, long before the load line turns parallel to the centerline.
+        // The depth decides: the flanks meet where it vanishes, long before the load line turns parallel to the
+        // centerline.
         let t = if alpha_m < FRAC_PI_2 {
             s - r_b * alpha_m.tan()
         } else {
@@ -157,20 +165,22 @@ impl ToothLoad {
     }
 }
 
-/// The half-angle theta_f that a tooth spans at its root circle, when a rack with a rounded tip generates its fillet, in rad.
+/// The half-angle θ_f that a tooth spans at its root circle, when a rack with a rounded tip generates its fillet,
+/// in rad.
 ///
-/// The fillet reaches the root circle where the center of the rack's tip rounding passes the line of centers. From the middle of the rack's space that center is
-/// pi m/4 + (h_f - rho) tan(alpha) + rho/cos(alpha) away, and the reference circle rolls on the rack, so
+/// The fillet reaches the root circle where the center of the rack's tip rounding passes the line of centers. From
+/// the middle of the rack's space that center is π m/4 + (h_f - ρ) tan(α) + ρ/cos(α) away, and the
+/// reference circle rolls on the rack, so
 ///
-/// theta_f = (2/(m z)) (pi m/4 + (h_f - rho) tan(alpha) + rho/cos(alpha)),
+/// θ_f = (2/(m z)) (π m/4 + (h_f - ρ) tan(α) + ρ/cos(α)),
 ///
-/// whatever the profile shift. `dedendum` is the rack's h_f and `rack_tip_radius` its rho, both in m. (Some published codes have the addendum in place of h_f, which makes the angle
-/// about 6 % smaller for the usual rack.)
+/// whatever the profile shift. `dedendum` is the rack's h_f and `rack_tip_radius` its ρ, both in m. (Some published
+/// codes have the addendum in place of h_f, which makes the angle about 6 % smaller for the usual rack.)
 ///
 /// # Errors
 ///
-/// [`ToothLoadError::RackTipTooRound`] if the rounding is wider than the rack's tooth, which would give theta_f > pi/z; [`ToothLoadError::NotPositive`] for a length that is not positive (a sharp
-/// rack, rho = 0, is allowed).
+/// [`ToothLoadError::RackTipTooRound`] if the rounding is wider than the rack's tooth, which would give
+/// θ_f > π/z; [`ToothLoadError::NotPositive`] for a length that is not positive (a sharp rack, ρ = 0, is allowed).
 pub fn generated_root_half_angle(
     tooth_count: u32,
     module: f64,
@@ -212,7 +222,8 @@ mod tests {
 
     #[test]
     fn the_load_line_runs_from_the_flank_to_the_centerline_as_coordinates_say() {
-        // The flank point in coordinates (along and across the centerline), then t along the inward normal: it must end on the centerline at r_f + u. Only rounding is allowed for.
+        // The flank point in coordinates (along and across the centerline), then t along the inward normal: it must
+        // end on the centerline at r_f + u. Only rounding is allowed for.
         let tooth = tooth_of_50();
         for s in [13.3564e-3, 17.8187e-3, 22.2810e-3] {
             let load = ToothLoad::at_roll_length(&tooth, s).expect("the load lies on the flank");
@@ -261,7 +272,7 @@ mod tests {
 
     #[test]
     fn a_full_radius_on_the_rack_leaves_no_root_between_the_teeth() {
-        // With the full radius two fillets meet on the root circle, so the tooth spans its whole pitch, 2 pi/z.
+        // With the full radius two fillets meet on the root circle, so the tooth spans its whole pitch, 2 π/z.
         let (m, alpha, h_f) = (2e-3, 20_f64.to_radians(), 2.5e-3);
         let full = (PI * m / 4.0 - h_f * alpha.tan()) * alpha.cos() / (1.0 - alpha.sin());
         let theta_f =

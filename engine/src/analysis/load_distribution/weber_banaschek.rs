@@ -1,15 +1,20 @@
 //! The tooth as a cantilever of its true profile: Weber and Banaschek's integral (1953).
 //!
-//! With y from the root circle up the centerline, 2 x(y) the tooth's thickness there, y_p = u the height at which the load line crosses the centerline and alpha' = alpha_m the load's angle
-//! ([`super::tooth_load`]), a section carries the moment F cos(alpha') (y_p - y), the shear force F cos(alpha') and the axial force F sin(alpha'). Its second moment of area is b (2x)^3/12,
-//! its area b 2x. The load's work, F delta/2, is the energy of these three, so
+//! With y from the root circle up the centerline, 2 x(y) the tooth's thickness there, y_p = u the height at which the
+//! load line crosses the centerline and α' = α_m the load's angle ([`super::tooth_load`]), a section carries
+//! the moment F cos(α') (y_p - y), the shear force F cos(α') and the axial force F sin(α'). Its second
+//! moment of area is b (2x)³/12, its area b 2x. The load's work, F δ/2, is the energy of these three, so
 //!
-//! delta/F = (cos^2(alpha')/b) ( (12/E') int (y_p - y)^2/(2x)^3 dy + (1.2/G) int dy/(2x) + (tan^2(alpha')/E') int dy/(2x) ), from 0 to y_p.
+//! δ/F = (cos²(α')/b) ( (12/E') ∫ (y_p - y)²/(2x)³ dy + (1.2/G) ∫ dy/(2x) +
+//! (tan²(α')/E') ∫ dy/(2x) ), from 0 to y_p.
 //!
-//! The three terms are bending, shear and compression. 1.2 = 6/5 is the shear factor of a rectangle; 1.2/G = 2.4 (1 + nu)/E. E' is E in plane stress and E/(1 - nu^2) in plane strain,
-//! where the numbers for nu = 0.3 are Weber and Banaschek's 10.92, 3.1 and 0.91 = 3.1 x 0.294, all over E. The body under the tooth and the contact are not in it.
+//! The three terms are bending, shear and compression. 1.2 = 6/5 is the shear factor of a rectangle;
+//! 1.2/G = 2.4 (1 + ν)/E. E' is E in plane stress and E/(1 - ν²) in plane strain, where the numbers for ν = 0.3 are Weber and
+//! Banaschek's 10.92, 3.1 and 0.91 = 3.1 x 0.294, all over E. The body under the tooth and the contact are not in it.
 
-use super::material::{Material, PlaneState};
+use crate::analysis::PlaneState;
+
+use super::elastic_constants::ElasticConstants;
 use super::quantity::{NotPositive, positive};
 use super::tooth_load::ToothLoad;
 use std::f64::consts::PI;
@@ -50,16 +55,18 @@ pub enum ToothError {
 }
 
 impl ToothCompliance {
-    /// The compliance of the tooth, delta/F, in m/N.
+    /// The compliance of the tooth, δ/F, in m/N.
     pub fn total(&self) -> f64 {
         self.bending + self.shear + self.compression
     }
 }
 
-/// The compliance of a tooth under `load`, by integrating over its profile from the root circle to the height of the load.
+/// The compliance of a tooth under `load`, by integrating over its profile from the root circle to the height of the
+/// load.
 ///
-/// `half_thickness` is x(y): half the tooth's thickness across its centerline at the height y above the root circle, both in m, asked for on 0 < y < u only. It may start with a
-/// vertical tangent in y, as a fillet does that ends on the root circle, and may have kinks. `face_width` is b, in m.
+/// `half_thickness` is x(y): half the tooth's thickness across its centerline at the height y above the root circle, both in m,
+/// asked for on 0 < y < u only. It may start with a vertical tangent in y, as a fillet does that ends on the root
+/// circle, and may have kinks. `face_width` is b, in m.
 ///
 /// # Errors
 ///
@@ -68,7 +75,7 @@ pub fn tooth_compliance(
     half_thickness: impl Fn(f64) -> f64,
     load: &ToothLoad,
     face_width: f64,
-    material: &Material,
+    material: &ElasticConstants,
     plane: PlaneState,
 ) -> Result<ToothCompliance, ToothError> {
     let b = positive("the face width", face_width)?;
@@ -97,8 +104,9 @@ pub fn tooth_compliance(
 
 /// Heights between 0 and `y_p` with the weights of an integral over them.
 ///
-/// A fillet that is tangent to the root circle makes the thickness start like the root of y; with y = y_p tau^2 it is smooth in tau, so the panels are in tau. Several of them keep the
-/// error of a kink, where fillet and flank join, to that of one panel.
+/// A fillet that is tangent to the root circle makes the thickness start like the root of y; with y = y_p τ² it is
+/// smooth in τ, so the panels are in τ. Several of them keep the error of a kink, where fillet and flank join, to
+/// that of one panel.
 fn heights(y_p: f64) -> impl Iterator<Item = (f64, f64)> {
     (0..PANEL_COUNT).flat_map(move |panel| {
         let width = 1.0 / f64::from(PANEL_COUNT);
@@ -113,7 +121,8 @@ fn heights(y_p: f64) -> impl Iterator<Item = (f64, f64)> {
 static GAUSS: LazyLock<[(f64, f64); POINT_COUNT]> = LazyLock::new(|| {
     let n = POINT_COUNT as f64;
     std::array::from_fn(|k| {
-        // The usual first guess lies close enough for Newton's method to double its digits each time: six steps are more than it needs.
+        // The usual first guess lies close enough for Newton's method to double its digits each time: six steps are
+        // more than it needs.
         let mut x = (PI * (k as f64 + 0.75) / (n + 0.5)).cos();
         for _ in 0..6 {
             let (p, slope) = legendre(x);
@@ -145,8 +154,8 @@ mod tests {
         depth: 1.5e-3,
     };
 
-    fn steel() -> Material {
-        Material::new(210e9, 0.3).expect("steel is a material")
+    fn steel() -> ElasticConstants {
+        ElasticConstants::new(210e9, 0.3).expect("steel is a material")
     }
 
     fn compliance(
@@ -176,7 +185,8 @@ mod tests {
 
     #[test]
     fn a_parallel_tooth_is_timoshenkos_cantilever() {
-        // delta/F = cos^2 l^3/(3 E' I) + 1.2 cos^2 l/(G A) + sin^2 l/(E' A), with I = b t^3/12 and A = b t; rounding only.
+        // δ/F = cos² l³/(3 E' I) + 1.2 cos² l/(G A) + sin² l/(E' A), with I = b t³/12 and A = b t; rounding
+        // only.
         let (l, t, e, nu) = (3e-3_f64, 4e-3_f64, 210e9, 0.3);
         for (plane, e_plane) in [
             (PlaneState::Stress, e),
@@ -195,8 +205,8 @@ mod tests {
 
     #[test]
     fn a_tapered_tooth_is_the_wedge_integrated_by_hand() {
-        // Thickness t(y) = t_0 - k y, t_1 at the load. By hand: int dy/t = ln(t_0/t_1)/k and
-        // int (y_p - y)^2/t^3 dy = (ln(t_0/t_1) + 2 t_1 (1/t_0 - 1/t_1) - t_1^2 (1/t_0^2 - 1/t_1^2)/2)/k^3; rounding only.
+        // Thickness t(y) = t_0 - k y, t_1 at the load. By hand: ∫ dy/t = ln(t_0/t_1)/k and ∫ (y_p - y)²/t³ dy =
+        // (ln(t_0/t_1) + 2 t_1 (1/t_0 - 1/t_1) - t_1² (1/t_0² - 1/t_1²)/2)/k³; rounding only.
         let (l, t_0, t_1) = (3e-3, 5e-3_f64, 2e-3_f64);
         let k = (t_0 - t_1) / l;
         let of_force = (t_0 / t_1).ln() / k;
@@ -213,7 +223,8 @@ mod tests {
 
     #[test]
     fn a_fillet_that_ends_on_the_root_circle_costs_no_accuracy() {
-        // t = t_0 - 2 c sqrt(y) below the load starts with a vertical tangent. With r = sqrt(y): int dy/t = int 2 r dr/(t_0 - 2 c r) = -R/c + (t_0/(2 c^2)) ln(t_0/(t_0 - 2 c R)).
+        // t = t_0 - 2 c sqrt(y) below the load starts with a vertical tangent. With r = sqrt(y):
+        // ∫ dy/t = ∫ 2 r dr/(t_0 - 2 c r) = -R/c + (t_0/(2 c²)) ln(t_0/(t_0 - 2 c R)).
         let (t_0, c, r) = (5e-3_f64, 0.02_f64, 3e-3_f64.sqrt());
         let of_force = -r / c + t_0 / (2.0 * c * c) * (t_0 / (t_0 - 2.0 * c * r)).ln();
         let tooth = compliance(|y| 0.5 * t_0 - c * y.sqrt(), &LOAD, PlaneState::Stress);
@@ -243,7 +254,8 @@ mod tests {
 
     #[test]
     fn the_numbers_of_weber_and_banaschek_come_out_for_steel_in_plane_strain() {
-        // A tooth of unit thickness and height, loaded across: 10.92 int (1 - y)^2 = 3.64 and 3.12 (printed 3.1), over E b; along it, 0.91 tan^2 (printed 3.1 x 0.294).
+        // A tooth of unit thickness and height, loaded across: 10.92 ∫ (1 - y)² = 3.64 and 3.12 (printed 3.1),
+        // over E b; along it, 0.91 tan² (printed 3.1 x 0.294).
         let load = ToothLoad {
             height: 1.0,
             angle: PI / 4.0,

@@ -1,0 +1,5 @@
+//! Finite-element grids of tooth sectors and holed blanks.
+
+pub mod level;
+
+pub use level::GridLevel;
