@@ -2,6 +2,7 @@
 
 pub mod case;
 pub mod curve;
+pub mod load_distribution;
 pub mod spectrum;
 
 pub use case::{
