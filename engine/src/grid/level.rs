@@ -33,3 +33,14 @@ impl GridLevel {
         }
     }
 }
+
+impl GridLevel {
+    /// The level to compare with for an error estimate: the next finer one, or the next coarser of the finest.
+    pub fn neighbor(self) -> Self {
+        match self {
+            Self::Coarse => Self::Standard,
+            Self::Standard => Self::Fine,
+            Self::Fine => Self::Standard,
+        }
+    }
+}
