@@ -14,9 +14,6 @@ use crate::gear::{HolePattern, Member, SpurGear};
 use crate::grid::{BlankGrid, GridError, GridLevel, ToothGrid};
 use crate::run::{Run, Stopped};
 
-/// Orders on the interface circle, over R_w/(r_f − R_w): the field of the teeth falls by e⁻⁶·⁵ on its way to the circle.
-const ORDERS_PER_DEPTH: f64 = 6.5;
-
 /// Orders on the interface circle for each tooth, at most: beyond, the grids do not follow.
 const MOST_ORDERS_PER_TOOTH: usize = 8;
 
@@ -225,10 +222,17 @@ pub fn default_interface_radius(gear: &SpurGear) -> f64 {
     (r_f - gear.data().rack.module).max(f64::midpoint(r_f, inner))
 }
 
-fn harmonics(gear: &SpurGear, interface_radius: f64) -> Harmonics {
-    let orders = ORDERS_PER_DEPTH * interface_radius / (gear.root_radius() - interface_radius);
+/// The orders that the interface circle carries: on its way from the root circle the field of the teeth falls by
+/// e^(−n (r_f − R_w)/R_w), at the standard level to e⁻⁶·⁵ of it for the first order that is left out.
+fn harmonics(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Harmonics {
+    let decay = match level {
+        GridLevel::Coarse => 3.25,
+        GridLevel::Standard => 6.5,
+        GridLevel::Fine => 9.75,
+    };
+    let orders = decay * interface_radius / (gear.root_radius() - interface_radius);
     let z = gear.tooth_count() as usize;
-    Harmonics { largest: (orders.ceil() as usize).clamp(2 * z, MOST_ORDERS_PER_TOOTH * z) }
+    Harmonics { largest: (orders.ceil() as usize).clamp(z, MOST_ORDERS_PER_TOOTH * z) }
 }
 
 fn build_teeth(gear: &SpurGear, interface_radius: f64, level: GridLevel, run: &Run) -> Result<Teeth, BuildError> {
@@ -236,7 +240,7 @@ fn build_teeth(gear: &SpurGear, interface_radius: f64, level: GridLevel, run: &R
     run.check()?;
     let tooth = ToothSubstructure::new(gear, &grid)?;
     run.check()?;
-    let ring = TeethRing::new(&tooth, harmonics(gear, interface_radius))?;
+    let ring = TeethRing::new(&tooth, harmonics(gear, interface_radius, level))?;
     let (arc, side) = tooth.shared_nodes;
     let nodes = tooth.grid_nodes - side - 1;
     // Nodes of the interface circle belong to the teeth; the blank's follow them.
