@@ -3,7 +3,7 @@
 use meshwright_engine::gear::spur::{LEAST_LIGAMENT, LEAST_RIM, LEAST_TIP_THICKNESS};
 use meshwright_engine::gear::{
     Blank, GearData, GearError, HolePattern, Material, Rack, ReliefData, ReliefShape, ReliefStart,
-    SpurGear,
+    SpurGear, TipRelief,
 };
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
@@ -358,7 +358,19 @@ impl GearDocument {
     /// Makes the gear, or tells the first thing that prevents it.
     fn made(&self) -> Result<SpurGear, Fault> {
         self.check_proportions()?;
-        SpurGear::new(self.data()).map_err(|error| self.fault(&error))
+        let gear = SpurGear::new(self.data()).map_err(|error| self.fault(&error))?;
+        // A relief that begins and ends at the tip is a step, which no grid and no contact search can follow.
+        match gear.tip_relief().map(TipRelief::start_radius) {
+            Some(start) if start > gear.tip_radius() - self.least_relief() => {
+                Err(self.relief_fault(start, gear.form_radius(), gear.tip_radius()))
+            }
+            _ => Ok(gear),
+        }
+    }
+
+    /// The least radial length of a relief, in meters.
+    fn least_relief(&self) -> f64 {
+        0.01 * from_mm(self.module_mm)
     }
 
     /// Bounds that depend on the other fields, so that nothing degenerate reaches the grids.
@@ -384,13 +396,12 @@ impl GearDocument {
             f64::INFINITY,
             "5 % of the root radius and more",
         )?;
-        if let Some(holes) = &self.blank.holes {
-            let least_hole = 0.01 * holes.circle_radius_mm;
+        if self.blank.holes.is_some() {
             self.check_between(
                 Field::HoleRadius,
-                least_hole,
+                self.least_hole_mm(),
                 f64::INFINITY,
-                "1 % of the circle's radius and more",
+                "1 % of the root radius and more",
             )?;
         }
         Ok(())
@@ -407,6 +418,10 @@ impl GearDocument {
         };
         let detail = format!("{} mm is outside {said}.", plain(value));
         Err(Fault::new(field, Code::OutOfRange, detail, Some(bound)))
+    }
+
+    fn least_hole_mm(&self) -> f64 {
+        0.01 * self.root_radius_mm()
     }
 
     fn root_radius_mm(&self) -> f64 {
@@ -524,28 +539,32 @@ impl GearDocument {
     }
 
     fn relief_fault(&self, start_radius: f64, form_radius: f64, tip_radius: f64) -> Fault {
+        let highest = tip_radius - self.least_relief();
         let detail = format!(
-            "The relief starts at radius {} mm, outside the flank from {} mm to {} mm.",
+            "The relief starts at radius {} mm; on this flank it can start from {} mm to {} mm.",
             plain(to_mm(start_radius)),
             plain(to_mm(form_radius)),
-            plain(to_mm(tip_radius))
+            plain(to_mm(highest))
         );
         let r_b = from_mm(self.module_mm * f64::from(self.tooth_count) / 2.0)
             * self.pressure_angle_deg.to_radians().cos();
         let roll = |radius: f64| (radius.powi(2) - r_b.powi(2)).max(0.0).sqrt();
-        let too_high = start_radius >= tip_radius;
+        // The radius that is nearest, and on which side of it the flank is.
+        let (nearest, above) = if start_radius > highest {
+            (highest, Side::AtMost)
+        } else {
+            (form_radius, Side::AtLeast)
+        };
+        let below = match above {
+            Side::AtMost => Side::AtLeast,
+            Side::AtLeast => Side::AtMost,
+        };
         let way = self.tip_relief.as_ref().map(|relief| relief.start.way);
         let bound = match way {
-            Some(StartWay::RadialLength) => (to_mm(tip_radius - form_radius), Side::AtMost),
-            Some(StartWay::RollLengthFromTip) => {
-                (to_mm(roll(tip_radius) - roll(form_radius)), Side::AtMost)
-            }
-            Some(StartWay::Diameter) if too_high => (to_mm(2.0 * tip_radius), Side::AtMost),
-            Some(StartWay::Diameter) | None => (to_mm(2.0 * form_radius), Side::AtLeast),
-            Some(StartWay::RollAngle) if too_high => {
-                ((roll(tip_radius) / r_b).to_degrees(), Side::AtMost)
-            }
-            Some(StartWay::RollAngle) => ((roll(form_radius) / r_b).to_degrees(), Side::AtLeast),
+            Some(StartWay::RadialLength) => (to_mm(tip_radius - nearest), below),
+            Some(StartWay::RollLengthFromTip) => (to_mm(roll(tip_radius) - roll(nearest)), below),
+            Some(StartWay::Diameter) | None => (to_mm(2.0 * nearest), above),
+            Some(StartWay::RollAngle) => ((roll(nearest) / r_b).to_degrees(), above),
         };
         Fault::new(Field::ReliefStart, Code::ReliefTooLong, detail, Some(bound))
     }
@@ -565,9 +584,7 @@ impl GearDocument {
             )
         };
         let largest = rounded_inward(to_mm(largest_radius), Side::AtMost, 0);
-        if self.accepts(Field::HoleRadius, largest)
-            && largest >= 0.01 * self.value(Field::HoleCircle)
-        {
+        if self.accepts(Field::HoleRadius, largest) && largest >= self.least_hole_mm() {
             return Fault::new(
                 Field::HoleRadius,
                 code,

@@ -1,9 +1,9 @@
 //! The JSON documents of the interface as types, in the units of those who read them.
 //!
 //! Read in this order: [`problem`] (what goes wrong), [`submission`] with its parts [`pair`], [`gear`] and
-//! [`resolution`] (what is asked), [`results`] and [`tables`] (what is answered), [`job`] (its life), [`validation`],
-//! [`limits`] and [`examples`]; [`solve()`] leads from the one to the other. `units`, `quantity`, `tree` and `schema`
-//! carry them: conversions, the table of bounds, JSON with its places, and OpenAPI.
+//! [`resolution`] (what is asked), [`geometry`], [`warning`] and [`results`] (what is answered), [`solve`](mod@solve)
+//! (what leads from the one to the other) and [`examples`](mod@examples). `units`, `quantity`, `tree` and `schema` carry
+//! them: conversions, the table of bounds, JSON with its places, and OpenAPI.
 //!
 //! This is the only place where domain data meets serde, and where mm, um, degrees, GPa and MPa meet SI.
 
@@ -19,8 +19,15 @@ pub mod pair;
 pub mod resolution;
 pub mod submission;
 
+pub mod geometry;
+pub mod results;
+pub mod warning;
+
 pub mod examples;
+pub mod solve;
 
 pub use examples::{Example, examples};
 pub use problem::{Code, FieldError, Problem};
+pub use results::Results;
+pub use solve::{Limits, Validation, limits, solve, validate};
 pub use submission::{SOLVER_VERSION, Submission};

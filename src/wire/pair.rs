@@ -56,47 +56,41 @@ impl PairDocument {
                     None
                 }
             };
+        let mismatches = self.mismatches();
+        let matched = mismatches.is_empty();
+        mismatches
+            .into_iter()
+            .for_each(|mismatch| errors.push(mismatch));
         let driving = made(&self.driving, Member::Driving);
         let driven = made(&self.driven, Member::Driven);
         let (driving, driven) = (driving?, driven?);
+        if !matched {
+            return None;
+        }
         match GearPair::new(driving, driven, from_mm(self.center_distance_mm)) {
             Ok(pair) => Some(pair),
             Err(error) => {
-                errors.push(self.told(&driving, &driven, &error));
+                self.told(&driving, &driven, &error)
+                    .into_iter()
+                    .for_each(|told| errors.push(told));
                 None
             }
         }
     }
 
-    fn told(&self, driving: &SpurGear, driven: &SpurGear, error: &GearPairError) -> FieldError {
+    fn told(
+        &self,
+        driving: &SpurGear,
+        driven: &SpurGear,
+        error: &GearPairError,
+    ) -> Option<FieldError> {
         let mm = |value: f64| plain(to_mm(value));
         let a = plain(self.center_distance_mm);
         let nearest =
             |bound: f64, side: Side| nearest_distance(driving, driven, to_mm(bound), side);
         let (code, detail, nearest) = match *error {
-            GearPairError::ModuleMismatch { .. } => {
-                return FieldError::new(
-                    "/pair/driven/module_mm",
-                    Code::ModuleMismatch,
-                    format!(
-                        "The driven gear has module {} mm, the driving gear {} mm; gears that mesh have the same.",
-                        plain(self.driven.module_mm),
-                        plain(self.driving.module_mm)
-                    ),
-                )
-                .nearest(self.driving.module_mm);
-            }
-            GearPairError::PressureAngleMismatch { .. } => {
-                return FieldError::new(
-                    "/pair/driven/pressure_angle_deg",
-                    Code::PressureAngleMismatch,
-                    format!(
-                        "The driven gear has pressure angle {} deg, the driving gear {} deg; gears that mesh have the same.",
-                        plain(self.driven.pressure_angle_deg),
-                        plain(self.driving.pressure_angle_deg)
-                    ),
-                )
-                .nearest(self.driving.pressure_angle_deg);
+            GearPairError::ModuleMismatch { .. } | GearPairError::PressureAngleMismatch { .. } => {
+                return self.mismatches().into_iter().next();
             }
             GearPairError::TeethDoNotReach {
                 tip_radii, largest, ..
@@ -149,12 +143,45 @@ impl PairDocument {
             (Some(least), _) => format!("; it takes at least {} mm.", plain(least)),
             (None, _) => "; these two gears mesh at no center distance.".to_owned(),
         };
-        FieldError::new(
+        let error = FieldError::new(
             "/pair/center_distance_mm",
             code,
             format!("{detail}{advice}"),
-        )
-        .nearest(nearest)
+        );
+        Some(error.nearest(nearest))
+    }
+
+    /// What has to be the same in both gears and is not.
+    fn mismatches(&self) -> Vec<FieldError> {
+        let (driving, driven) = (&self.driving, &self.driven);
+        let mut errors = Vec::new();
+        if driving.module_mm != driven.module_mm {
+            let detail = format!(
+                "The driven gear has module {} mm, the driving gear {} mm; gears that mesh have the same.",
+                plain(driven.module_mm),
+                plain(driving.module_mm)
+            );
+            errors.push(
+                FieldError::new("/pair/driven/module_mm", Code::ModuleMismatch, detail)
+                    .nearest(driving.module_mm),
+            );
+        }
+        if driving.pressure_angle_deg != driven.pressure_angle_deg {
+            let detail = format!(
+                "The driven gear has pressure angle {} deg, the driving gear {} deg; gears that mesh have the same.",
+                plain(driven.pressure_angle_deg),
+                plain(driving.pressure_angle_deg)
+            );
+            errors.push(
+                FieldError::new(
+                    "/pair/driven/pressure_angle_deg",
+                    Code::PressureAngleMismatch,
+                    detail,
+                )
+                .nearest(driving.pressure_angle_deg),
+            );
+        }
+        errors
     }
 }
 

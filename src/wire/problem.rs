@@ -66,13 +66,16 @@ codes! {
     BoreTooLarge "bore-too-large" 422 "The bore is too large"
         "The bore leaves less than one module of material below the root circle. nearest is the largest bore radius, rounded down, that fits."
     ReliefTooLong "relief-too-long" 422 "The tip relief starts outside the flank"
-        "The relief has to start on the involute: above the form radius, where the fillet ends, and below the tip circle. nearest is the longest relief that does, said in the same way as the start was given."
+        "The relief has to start on the involute: above the form radius, where the fillet ends, and at least 0.01 modules below the tip circle. nearest is the start nearest to the one given, said in the same way."
     TorqueNotPositive "torque-not-positive" 422 "A torque is not positive"
         "The output torque loads the driven gear against the motion and must be positive. Reversed load is the mirrored pair."
     TooLarge "too-large" 422 "The work asked for is too large"
         "A submission may have at most 60 torques and 20,000 positions, counted as mesh periods times positions per mesh period times torques. The detail says how many were asked for and what would fit: fewer positions, fewer torques or a shorter span. /v1/limits tells the limits."
     NotConverged "not-converged" 422 "The contact did not converge"
         "The contact solver did not meet its tolerance at a position, which the detail names with the residual gap, or no flanks came near each other there. A larger gap tolerance, another penalty or the active set helps where the augmented Lagrangian was asked for."
+    DiscretizationFailed
+        "discretization-failed" 422 "A gear could not be divided into elements"
+        "The finite-element grid of a gear, or a factorization on it, failed; the detail says where. Proportions far from the usual do that: very thin ligaments, very small holes. Another grid level may help."
     TimeLimit "time-limit" 422 "The time limit was reached"
         "The work took longer than one job may. Fewer positions, fewer torques or a coarser grid take less time; /v1/validate estimates it."
     Stopped "stopped" 409 "The work was stopped"
@@ -115,6 +118,8 @@ codes! {
         "The body is larger than the limit that /v1/limits tells."
     RequestTimeout "request-timeout" 408 "The request took too long"
         "The request did not arrive, or was not answered, in time. It is safe to send it again with the same Idempotency-Key."
+    Unavailable "unavailable" 503 "The service is shutting down"
+        "The service is about to stop and takes no new work. Nothing was stored; send the request again after the time in Retry-After."
     InternalError "internal-error" 500 "The service failed"
         "Something went wrong that is not your doing. It has been logged under the request's identifier, which the operator can look up."
 }
@@ -176,7 +181,8 @@ pub struct Problem {
     pub errors: Vec<FieldError>,
     /// The request or job that met it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub instance: Option<String>,
+    #[schema(value_type = Option<String>)]
+    pub instance: Option<Box<str>>,
 }
 
 impl Problem {

@@ -206,7 +206,7 @@ pub(super) const RELIEF_RADIAL_LENGTH: Quantity = needed(
     "Radial length below the tip circle",
     "mm",
     (0.001, 225.0),
-    "The relief starts at the tip radius less this length.",
+    "The relief starts at the tip radius less this length. However the start is given, it is at least 0.01 modules below the tip circle.",
 );
 
 pub(super) const RELIEF_ROLL_LENGTH: Quantity = needed(
@@ -290,7 +290,7 @@ pub(super) const HOLE_RADIUS: Quantity = needed(
     "Radius of a hole",
     "mm",
     (0.05, 3_750.0),
-    "The radius r of each hole: at least 1 % of the circle's. At least 0.5 mm of material has to be left between holes, to the bore and to the root circle; below one module there is a warning.",
+    "The radius r of each hole: at least 1 % of the root radius. At least 0.5 mm of material has to be left between holes, to the bore and to the root circle; below one module there is a warning.",
 );
 
 pub(super) const HOLE_PHASE: Quantity = needed(

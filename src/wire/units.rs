@@ -1,6 +1,8 @@
 //! The reader's units at the edge: mm, um, degrees, GPa and MPa against SI, and numbers rounded for the wire.
 
-use serde::{Deserialize, Serialize, Serializer};
+use std::io;
+
+use serde_json::ser::{CompactFormatter, Formatter};
 
 /// Millimeters to meters. A division by a power of ten rounds once, so that 100.5 mm is the double nearest 0.1005 m.
 pub(super) fn from_mm(value: f64) -> f64 {
@@ -92,32 +94,32 @@ pub(super) fn rounded_inward(bound: f64, side: Side, steps: u32) -> f64 {
     }
 }
 
-/// A number that goes on the wire with `D` significant digits.
+/// Writes `document` with every number rounded to ten significant digits.
 ///
-/// Significant digits, not decimals, so that the small noise of a spectrum stays what it is. A number that is not
-/// finite has no place in JSON: it fails the serialization.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-pub struct Rounded<const D: usize>(pub f64);
-
-impl<const D: usize> Serialize for Rounded<D> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        if self.0.is_finite() {
-            serializer.serialize_f64(significant(self.0, D))
-        } else {
-            Err(serde::ser::Error::custom("a result is not finite"))
-        }
-    }
+/// Significant digits, not decimals, so that the small noise of a spectrum stays what it is; ten of them, so that what
+/// rounding adds to a spectrum stays a thousand times below 1e-9 of the mean.
+///
+/// # Errors
+///
+/// A number that is not finite has no place in JSON and fails; so does an absent value, which has to be left out.
+pub(super) fn rounded_json(document: &impl serde::Serialize) -> serde_json::Result<String> {
+    let mut text = Vec::new();
+    let mut serializer = serde_json::Serializer::with_formatter(&mut text, RoundingFormatter);
+    document.serialize(&mut serializer)?;
+    String::from_utf8(text).map_err(serde::ser::Error::custom)
 }
 
-impl<const D: usize> utoipa::PartialSchema for Rounded<D> {
-    fn schema() -> utoipa::openapi::RefOr<utoipa::openapi::schema::Schema> {
-        <f64 as utoipa::PartialSchema>::schema()
-    }
-}
+struct RoundingFormatter;
 
-impl<const D: usize> utoipa::ToSchema for Rounded<D> {
-    fn name() -> std::borrow::Cow<'static, str> {
-        "Number".into()
+impl Formatter for RoundingFormatter {
+    fn write_f64<W: io::Write + ?Sized>(&mut self, writer: &mut W, value: f64) -> io::Result<()> {
+        const DIGITS: usize = 10;
+        CompactFormatter.write_f64(writer, significant(value, DIGITS))
+    }
+
+    /// What is not finite is written as null, so a null here is a number that went wrong.
+    fn write_null<W: io::Write + ?Sized>(&mut self, _: &mut W) -> io::Result<()> {
+        Err(io::Error::other("a result is not finite"))
     }
 }
 
@@ -157,12 +159,11 @@ mod tests {
 
     #[test]
     fn rounding_keeps_significant_digits_of_the_smallest_numbers() {
-        assert_eq!(significant(1.234_567_891_23e-14, 9), 1.234_567_89e-14);
-        assert_eq!(significant(219_600_123.456, 9), 219_600_123.0);
-        assert_eq!(
-            serde_json::to_string(&Rounded::<9>(-0.0)).expect("finite"),
-            "0.0"
-        );
-        assert!(serde_json::to_string(&Rounded::<9>(f64::NAN)).is_err());
+        let text =
+            rounded_json(&[1.234_567_891_23e-14, 219_600_123.456_78, -0.0, 0.025]).expect("finite");
+        assert_eq!(text, "[1.234567891e-14,219600123.5,0.0,0.025]");
+        for wrong in [f64::NAN, f64::INFINITY] {
+            assert!(rounded_json(&[1.0, wrong]).is_err());
+        }
     }
 }
