@@ -10,8 +10,8 @@ use super::division::{Grading, reversed, uniform};
 use super::{Grid, GridError, GridLevel, checked};
 use crate::gear::{HolePattern, Vector, radial};
 
-/// The number of elements on the interface circle per tooth at the standard level.
-const ELEMENTS_PER_TOOTH: f64 = 4.0;
+/// The least number of elements on the interface circle per tooth at the standard level.
+pub const ELEMENTS_PER_TOOTH: f64 = 4.0;
 /// The depth of the first layer under the interface circle, in element lengths along it.
 const FIRST_LAYER: f64 = 0.5;
 /// The size along a spoke at the hole, in half widths of the hole.
@@ -49,7 +49,8 @@ pub struct BlankGrid {
 }
 
 impl BlankGrid {
-    /// Divides one sector of the ring between `bore_radius` and `interface_radius`, on which `tooth_count` teeth stand.
+    /// Divides one sector of the ring between `bore_radius` and `interface_radius`, on which `tooth_count` teeth stand,
+    /// with `elements_per_tooth` elements on the interface circle for each at the standard level.
     ///
     /// The phase of the holes is left to the caller.
     ///
@@ -62,6 +63,7 @@ impl BlankGrid {
         interface_radius: f64,
         holes: Option<&HolePattern>,
         tooth_count: u32,
+        elements_per_tooth: f64,
         level: GridLevel,
     ) -> Result<Self, GridError> {
         if !(bore_radius > 0.0 && bore_radius < interface_radius && interface_radius.is_finite()) {
@@ -74,7 +76,8 @@ impl BlankGrid {
         let ring = Ring {
             interface_radius,
             bore: (bore_radius / interface_radius).ln(),
-            arc_size: 2.0 * PI / (ELEMENTS_PER_TOOTH * f64::from(tooth_count)),
+            arc_size: 2.0 * PI / (elements_per_tooth * f64::from(tooth_count)),
+            elements_per_tooth,
             level,
         };
         let blank = match holes.filter(|holes| holes.count > 0) {
@@ -108,6 +111,8 @@ struct Ring {
     bore: f64,
     /// The element size on the interface circle.
     arc_size: f64,
+    /// As many of them stand under a tooth.
+    elements_per_tooth: f64,
     level: GridLevel,
 }
 
@@ -229,7 +234,7 @@ impl Ring {
             largest: LARGEST,
         };
         let rays = reversed(&layers.divide(layers.count_at(LAYERS, self.level)));
-        let arcs = uniform(self.level.count(ELEMENTS_PER_TOOTH));
+        let arcs = uniform(self.level.count(self.elements_per_tooth));
         let mut builder = GridBuilder::default();
         let frame = self.frame(
             &mut builder,
@@ -610,8 +615,15 @@ mod tests {
             radius: radius * 1e-3,
             phase: 0.0,
         };
-        BlankGrid::new(bore * 1e-3, interface * 1e-3, Some(&holes), teeth, level)
-            .unwrap_or_else(|error| panic!("{case:?} at {level:?}: {error}"))
+        BlankGrid::new(
+            bore * 1e-3,
+            interface * 1e-3,
+            Some(&holes),
+            teeth,
+            ELEMENTS_PER_TOOTH,
+            level,
+        )
+        .unwrap_or_else(|error| panic!("{case:?} at {level:?}: {error}"))
     }
 
     fn angle(grid: &BlankGrid, node: u32) -> f64 {
@@ -750,8 +762,15 @@ mod tests {
             (3e-3, 13.5e-3, 18),
             (43e-3, 45.5e-3, 50),
         ] {
-            let blank =
-                BlankGrid::new(bore, interface, None, teeth, GridLevel::Standard).expect("a ring");
+            let blank = BlankGrid::new(
+                bore,
+                interface,
+                None,
+                teeth,
+                ELEMENTS_PER_TOOTH,
+                GridLevel::Standard,
+            )
+            .expect("a ring");
             let area = PI * (interface * interface - bore * bore) / f64::from(teeth);
             assert_eq!((blank.sector_count, blank.arc_nodes.len()), (teeth, 9));
             // Four parabolas a pitch.
@@ -763,7 +782,14 @@ mod tests {
     #[test]
     fn rings_and_ligaments_without_width_are_refused() {
         let standard = |bore, interface, holes| {
-            BlankGrid::new(bore, interface, holes, 50, GridLevel::Standard)
+            BlankGrid::new(
+                bore,
+                interface,
+                holes,
+                50,
+                ELEMENTS_PER_TOOTH,
+                GridLevel::Standard,
+            )
         };
         assert!(matches!(
             standard(15e-3, 15e-3, None),
