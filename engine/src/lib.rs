@@ -1,1 +1,3 @@
 //! The mechanics.
+
+pub mod run;

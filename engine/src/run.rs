@@ -1,0 +1,58 @@
+//! The handle that a caller gives to long work.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+/// The caller asked the work to stop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the work was stopped")]
+pub struct Stopped;
+
+/// How far long work has come, and whether it should go on.
+///
+/// The engine knows neither job nor thread: it counts the positions that it has solved and asks, between
+/// factorizations and between positions, whether it has been told to stop.
+#[derive(Clone)]
+pub struct Run {
+    stop: Arc<AtomicBool>,
+    done: Arc<AtomicU64>,
+    total: Arc<AtomicU64>,
+    observer: Arc<dyn Fn(u64, u64) + Send + Sync>,
+}
+
+impl Run {
+    /// A handle that obeys `stop` and tells `observer` (positions done, positions in all) after each position.
+    pub fn new(stop: Arc<AtomicBool>, observer: impl Fn(u64, u64) + Send + Sync + 'static) -> Self {
+        Self { stop, done: Arc::default(), total: Arc::default(), observer: Arc::new(observer) }
+    }
+
+    /// A handle that nobody watches and nobody stops.
+    pub fn unattended() -> Self {
+        Self::new(Arc::default(), |_, _| {})
+    }
+
+    /// Announces `count` more positions of work.
+    pub fn expect(&self, count: u64) {
+        self.total.fetch_add(count, Ordering::Relaxed);
+    }
+
+    /// Reports `count` more positions as solved, and asks whether to go on.
+    ///
+    /// # Errors
+    ///
+    /// [`Stopped`] if the caller wants the work to end.
+    pub fn reached(&self, count: u64) -> Result<(), Stopped> {
+        let done = self.done.fetch_add(count, Ordering::Relaxed) + count;
+        (self.observer)(done, self.total.load(Ordering::Relaxed));
+        self.check()
+    }
+
+    /// Asks whether to go on.
+    ///
+    /// # Errors
+    ///
+    /// [`Stopped`] if the caller wants the work to end.
+    pub fn check(&self) -> Result<(), Stopped> {
+        if self.stop.load(Ordering::Relaxed) { Err(Stopped) } else { Ok(()) }
+    }
+}
