@@ -27,7 +27,13 @@ pub enum Status {
 
 impl Status {
     /// All states, in the order in which a job meets them.
-    pub const ALL: [Self; 5] = [Self::Accepted, Self::Running, Self::Successful, Self::Failed, Self::Dismissed];
+    pub const ALL: [Self; 5] = [
+        Self::Accepted,
+        Self::Running,
+        Self::Successful,
+        Self::Failed,
+        Self::Dismissed,
+    ];
 
     /// The word on the wire and in the database.
     pub fn as_str(self) -> &'static str {
@@ -119,19 +125,30 @@ impl FromRow<'_, SqliteRow> for Job {
             status: row.try_get("status")?,
             attempt,
             attempts_counted: attempt - returned,
-            progress: Progress { done: count(row, "positions_done")?, total: count(row, "positions_total")? },
+            progress: Progress {
+                done: count(row, "positions_done")?,
+                total: count(row, "positions_total")?,
+            },
             submitted_at: instant("submitted_at", row.try_get("submitted_at")?)?,
             started_at: optional_instant(row, "started_at")?,
             finished_at: optional_instant(row, "finished_at")?,
-            problem: row.try_get::<Option<String>, _>("problem")?.map(|text| json("problem", &text)).transpose()?,
+            problem: row
+                .try_get::<Option<String>, _>("problem")?
+                .map(|text| json("problem", &text))
+                .transpose()?,
             document: row.try_get("document")?,
             same_as: same_as.map(|id| uuid("same_as", &id)).transpose()?,
         })
     }
 }
 
-fn optional_instant(row: &SqliteRow, column: &'static str) -> Result<Option<Timestamp>, sqlx::Error> {
-    row.try_get::<Option<i64>, _>(column)?.map(|microseconds| instant(column, microseconds)).transpose()
+fn optional_instant(
+    row: &SqliteRow,
+    column: &'static str,
+) -> Result<Option<Timestamp>, sqlx::Error> {
+    row.try_get::<Option<i64>, _>(column)?
+        .map(|microseconds| instant(column, microseconds))
+        .transpose()
 }
 
 fn instant(column: &'static str, microseconds: i64) -> Result<Timestamp, sqlx::Error> {
@@ -139,10 +156,14 @@ fn instant(column: &'static str, microseconds: i64) -> Result<Timestamp, sqlx::E
 }
 
 fn uuid(column: &'static str, text: &str) -> Result<Uuid, sqlx::Error> {
-    text.parse().map_err(|error: uuid::Error| undecodable(column, error))
+    text.parse()
+        .map_err(|error: uuid::Error| undecodable(column, error))
 }
 
-fn json<T: serde::de::DeserializeOwned>(column: &'static str, text: &str) -> Result<T, sqlx::Error> {
+fn json<T: serde::de::DeserializeOwned>(
+    column: &'static str,
+    text: &str,
+) -> Result<T, sqlx::Error> {
     serde_json::from_str(text).map_err(|error| undecodable(column, error))
 }
 
@@ -150,8 +171,14 @@ fn count(row: &SqliteRow, column: &'static str) -> Result<u64, sqlx::Error> {
     u64::try_from(row.try_get::<i64, _>(column)?).map_err(|error| undecodable(column, error))
 }
 
-fn undecodable(column: &'static str, source: impl std::error::Error + Send + Sync + 'static) -> sqlx::Error {
-    sqlx::Error::ColumnDecode { index: column.to_owned(), source: Box::new(source) }
+fn undecodable(
+    column: &'static str,
+    source: impl std::error::Error + Send + Sync + 'static,
+) -> sqlx::Error {
+    sqlx::Error::ColumnDecode {
+        index: column.to_owned(),
+        source: Box::new(source),
+    }
 }
 
 #[cfg(test)]
@@ -161,7 +188,15 @@ mod tests {
     #[test]
     fn a_hundred_percent_means_that_every_position_is_solved() {
         let percent = |done, total| Progress { done, total }.percent();
-        assert_eq!((percent(0, 0), percent(199, 200), percent(200, 200), percent(3, 2)), (0, 99, 100, 100));
+        assert_eq!(
+            (
+                percent(0, 0),
+                percent(199, 200),
+                percent(200, 200),
+                percent(3, 2)
+            ),
+            (0, 99, 100, 100)
+        );
         assert_eq!(percent(u64::MAX - 1, u64::MAX), 99);
     }
 }

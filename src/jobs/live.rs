@@ -34,7 +34,10 @@ impl Running {
         Run::new(Arc::clone(&self.stop), move |done, total| {
             progress.send_if_modified(|now| {
                 // Threads report past each other; what is shown never goes back.
-                let next = Progress { done: done.max(now.done), total: if total == 0 { now.total } else { total } };
+                let next = Progress {
+                    done: done.max(now.done),
+                    total: if total == 0 { now.total } else { total },
+                };
                 std::mem::replace(now, next) != next
             });
         })
@@ -55,14 +58,25 @@ impl Running {
 
 impl Live {
     pub(super) fn new() -> Self {
-        Self { running: Mutex::default(), changes: broadcast::channel(1024).0, work: Notify::new() }
+        Self {
+            running: Mutex::default(),
+            changes: broadcast::channel(1024).0,
+            work: Notify::new(),
+        }
     }
 
     /// Enters an attempt; it leaves when the guard is dropped.
     pub(super) fn enter(self: &Arc<Self>, id: Uuid, progress: Progress) -> Entered {
-        let running = Running { stop: Arc::default(), progress: Arc::new(watch::channel(progress).0) };
+        let running = Running {
+            stop: Arc::default(),
+            progress: Arc::new(watch::channel(progress).0),
+        };
         self.lock().insert(id, running.clone());
-        Entered { live: Arc::clone(self), id, running }
+        Entered {
+            live: Arc::clone(self),
+            id,
+            running,
+        }
     }
 
     pub(super) fn running(&self, id: Uuid) -> Option<Running> {
@@ -80,7 +94,9 @@ impl Live {
     }
 
     fn lock(&self) -> MutexGuard<'_, HashMap<Uuid, Running>> {
-        self.running.lock().expect("nothing panics while it holds this lock")
+        self.running
+            .lock()
+            .expect("nothing panics while it holds this lock")
     }
 }
 
@@ -95,7 +111,10 @@ impl Drop for Entered {
     fn drop(&mut self) {
         let mut running = self.live.lock();
         // A later attempt at the same job may have taken the place.
-        if running.get(&self.id).is_some_and(|entry| Arc::ptr_eq(&entry.stop, &self.running.stop)) {
+        if running
+            .get(&self.id)
+            .is_some_and(|entry| Arc::ptr_eq(&entry.stop, &self.running.stop))
+        {
             running.remove(&self.id);
         }
     }
@@ -112,10 +131,16 @@ mod tests {
         let entered = live.enter(id, Progress { done: 0, total: 8 });
         let run = entered.running.run();
         run.reached(3).unwrap();
-        assert_eq!(live.running(id).unwrap().progress(), Progress { done: 3, total: 8 });
+        assert_eq!(
+            live.running(id).unwrap().progress(),
+            Progress { done: 3, total: 8 }
+        );
         run.expect(10);
         run.reached(1).unwrap();
-        assert_eq!(live.running(id).unwrap().progress(), Progress { done: 4, total: 10 });
+        assert_eq!(
+            live.running(id).unwrap().progress(),
+            Progress { done: 4, total: 10 }
+        );
         live.running(id).unwrap().stop();
         assert!(run.reached(1).is_err());
     }

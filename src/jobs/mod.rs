@@ -11,6 +11,6 @@ mod transitions;
 mod worker;
 
 pub use job::{Job, Progress, Status};
-pub use queue::{Clock, Filter, JobError, Jobs, Page, Rules, Submitted};
-pub use store::{Cursor, Store};
-pub use worker::{Pace, Solve, Workers};
+pub use queue::{Clock, JobError, Jobs, News, Page, Rules, Submitted};
+pub use store::{Cursor, Filter, OpenError, Store};
+pub use worker::{Pace, Solve, StartError, Workers};

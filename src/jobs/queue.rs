@@ -10,11 +10,9 @@ use uuid::Uuid;
 
 use super::job::{Job, Progress, Status};
 use super::live::Live;
-use super::store::{Cursor, Store};
+use super::store::{Cursor, Filter, Store};
 use super::transitions::{NewJob, Outcome};
 use crate::wire::Submission;
-
-pub use super::store::Filter;
 
 /// The time of day, given so that tests can set it.
 pub type Clock = Arc<dyn Fn() -> Timestamp + Send + Sync>;
@@ -108,8 +106,20 @@ impl Jobs {
     pub fn new(store: Store, rules: Rules, clock: Clock, stop: CancellationToken) -> Self {
         let live = Arc::new(Live::new());
         let (submissions, pending) = mpsc::channel(BATCH);
-        tokio::spawn(write_submissions(pending, store.clone(), Arc::clone(&live), rules, Arc::clone(&clock)));
-        Self { store, live, clock, submissions, stop }
+        tokio::spawn(write_submissions(
+            pending,
+            store.clone(),
+            Arc::clone(&live),
+            rules,
+            Arc::clone(&clock),
+        ));
+        Self {
+            store,
+            live,
+            clock,
+            submissions,
+            stop,
+        }
     }
 
     /// Queues a submission. The answer is given when it is on the disk.
@@ -135,10 +145,19 @@ impl Jobs {
             idempotency_key,
         };
         let (answer, outcome) = oneshot::channel();
-        self.submissions.send(Pending { job, answer }).await.map_err(|_| JobError::ShuttingDown)?;
+        self.submissions
+            .send(Pending { job, answer })
+            .await
+            .map_err(|_| JobError::ShuttingDown)?;
         match outcome.await.map_err(|_| JobError::ShuttingDown)?? {
-            Outcome::Queued(job) | Outcome::Known(job) => Ok(Submitted { job, repeated: false }),
-            Outcome::Repeated(job) => Ok(Submitted { job: self.with_live_progress(job), repeated: true }),
+            Outcome::Queued(job) | Outcome::Known(job) => Ok(Submitted {
+                job,
+                repeated: false,
+            }),
+            Outcome::Repeated(job) => Ok(Submitted {
+                job: self.with_live_progress(job),
+                repeated: true,
+            }),
             Outcome::KeyConflict => Err(JobError::KeyConflict),
             Outcome::QueueFull { waiting } => Err(JobError::QueueFull { waiting }),
         }
@@ -150,7 +169,11 @@ impl Jobs {
     ///
     /// [`JobError::NotFound`], [`JobError::Database`].
     pub async fn find(&self, client: &str, id: Uuid) -> Result<Job, JobError> {
-        let job = self.store.find(client, id).await?.ok_or(JobError::NotFound(id))?;
+        let job = self
+            .store
+            .find(client, id)
+            .await?
+            .ok_or(JobError::NotFound(id))?;
         Ok(self.with_live_progress(job))
     }
 
@@ -184,11 +207,24 @@ impl Jobs {
     /// [`JobError::Database`].
     pub async fn list(&self, client: &str, filter: &Filter, limit: u32) -> Result<Page, JobError> {
         // One more than asked for tells whether the list goes on.
-        let mut items = self.store.list(client, filter, limit.saturating_add(1)).await?;
+        let mut items = self
+            .store
+            .list(client, filter, limit.saturating_add(1))
+            .await?;
         let goes_on = items.len() > limit as usize;
         items.truncate(limit as usize);
-        let next = if goes_on { items.last().map(Cursor::behind) } else { None };
-        Ok(Page { items: items.into_iter().map(|job| self.with_live_progress(job)).collect(), next })
+        let next = if goes_on {
+            items.last().map(Cursor::behind)
+        } else {
+            None
+        };
+        Ok(Page {
+            items: items
+                .into_iter()
+                .map(|job| self.with_live_progress(job))
+                .collect(),
+            next,
+        })
     }
 
     /// The text of the results of a job that was found successful.
@@ -197,8 +233,13 @@ impl Jobs {
     ///
     /// [`JobError::NotFound`] if it has been deleted since, [`JobError::Database`].
     pub async fn document(&self, job: &Job) -> Result<String, JobError> {
-        let Some(hash) = &job.document else { return Err(JobError::Ended(job.status)) };
-        self.store.document(hash).await?.ok_or(JobError::NotFound(job.id))
+        let Some(hash) = &job.document else {
+            return Err(JobError::Ended(job.status));
+        };
+        self.store
+            .document(hash)
+            .await?
+            .ok_or(JobError::NotFound(job.id))
     }
 
     /// Ends a job that waits or runs. A job that was cancelled before stays so.
@@ -217,7 +258,11 @@ impl Jobs {
             return Ok(job);
         }
         let job = self.find(client, id).await?;
-        if job.status == Status::Dismissed { Ok(job) } else { Err(JobError::Ended(job.status)) }
+        if job.status == Status::Dismissed {
+            Ok(job)
+        } else {
+            Err(JobError::Ended(job.status))
+        }
     }
 
     /// Removes a job that does not run, and its results.
@@ -254,7 +299,11 @@ impl Jobs {
 
     /// What happens to a job from now on.
     pub fn news(&self, id: Uuid) -> News {
-        News { id, live: Arc::clone(&self.live), changes: self.live.changes() }
+        News {
+            id,
+            live: Arc::clone(&self.live),
+            changes: self.live.changes(),
+        }
     }
 
     /// Comes when the service shuts down.
@@ -324,10 +373,18 @@ async fn write_submissions(
 ) {
     let mut batch = Vec::with_capacity(BATCH);
     while pending.recv_many(&mut batch, BATCH).await > 0 {
-        let (jobs, answers): (Vec<_>, Vec<_>) = batch.drain(..).map(|Pending { job, answer }| (job, answer)).unzip();
-        let forget_before = clock().saturating_sub(KEY_LIFETIME).unwrap_or(Timestamp::MIN);
+        let (jobs, answers): (Vec<_>, Vec<_>) = batch
+            .drain(..)
+            .map(|Pending { job, answer }| (job, answer))
+            .unzip();
+        let forget_before = clock()
+            .saturating_sub(KEY_LIFETIME)
+            .unwrap_or(Timestamp::MIN);
         // A client that has gone no longer listens; its job stands all the same.
-        match store.submit(&jobs, rules.queue_limit, forget_before, SOLVER_VERSION).await {
+        match store
+            .submit(&jobs, rules.queue_limit, forget_before, SOLVER_VERSION)
+            .await
+        {
             Ok(outcomes) => {
                 live.work.notify_one();
                 for (answer, outcome) in answers.into_iter().zip(outcomes) {

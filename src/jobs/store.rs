@@ -51,12 +51,23 @@ impl Store {
             // A 202 is a promise: the commit is on the disk before it is given.
             .synchronous(SqliteSynchronous::Full)
             .busy_timeout(Duration::from_secs(10));
-        let pool = || SqlitePoolOptions::new().idle_timeout(None).max_lifetime(None);
+        let pool = || {
+            SqlitePoolOptions::new()
+                .idle_timeout(None)
+                .max_lifetime(None)
+        };
 
-        let writer = pool().max_connections(1).connect_with(options.clone()).await.map_err(OpenError::Connect)?;
+        let writer = pool()
+            .max_connections(1)
+            .connect_with(options.clone())
+            .await
+            .map_err(OpenError::Connect)?;
         MIGRATIONS.run(&writer).await.map_err(OpenError::Migrate)?;
-        let readers =
-            pool().max_connections(4).connect_with(options.read_only(true)).await.map_err(OpenError::Connect)?;
+        let readers = pool()
+            .max_connections(4)
+            .connect_with(options.read_only(true))
+            .await
+            .map_err(OpenError::Connect)?;
         Ok(Self { writer, readers })
     }
 
@@ -70,8 +81,17 @@ impl Store {
     }
 
     /// At most `limit` jobs of a client, newest first.
-    pub async fn list(&self, client: &str, filter: &Filter, limit: u32) -> Result<Vec<Job>, sqlx::Error> {
-        filter.query(client, limit).build_query_as().fetch_all(&self.readers).await
+    pub async fn list(
+        &self,
+        client: &str,
+        filter: &Filter,
+        limit: u32,
+    ) -> Result<Vec<Job>, sqlx::Error> {
+        filter
+            .query(client, limit)
+            .build_query_as()
+            .fetch_all(&self.readers)
+            .await
     }
 
     /// The text of a results document.
@@ -94,7 +114,11 @@ impl Store {
 
     /// Whether the database can be written: takes the write lock, and changes nothing.
     pub async fn check(&self) -> Result<(), sqlx::Error> {
-        self.writer.begin_with("begin immediate").await?.rollback().await
+        self.writer
+            .begin_with("begin immediate")
+            .await?
+            .rollback()
+            .await
     }
 
     /// Closes every connection.
@@ -129,7 +153,10 @@ impl Filter {
             query.push(")");
         }
         if let Some(tag) = &self.tag {
-            query.push(" and exists (select 1 from json_each(jobs.tags) where value = ").push_bind(tag.clone()).push(")");
+            query
+                .push(" and exists (select 1 from json_each(jobs.tags) where value = ")
+                .push_bind(tag.clone())
+                .push(")");
         }
         if let Some(ids) = &self.ids {
             let mut list = query.push(" and id in (").separated(", ");
@@ -139,10 +166,14 @@ impl Filter {
             query.push(")");
         }
         if let Some(Cursor { submitted_at, id }) = self.after {
-            query.push(" and (submitted_at, id) < (").push_bind(submitted_at.as_microsecond());
+            query
+                .push(" and (submitted_at, id) < (")
+                .push_bind(submitted_at.as_microsecond());
             query.push(", ").push_bind(id.to_string()).push(")");
         }
-        query.push(" order by submitted_at desc, id desc limit ").push_bind(limit);
+        query
+            .push(" order by submitted_at desc, id desc limit ")
+            .push_bind(limit);
         query
     }
 }
@@ -157,13 +188,21 @@ pub struct Cursor {
 impl Cursor {
     /// The place behind `job`.
     pub fn behind(job: &Job) -> Self {
-        Self { submitted_at: job.submitted_at, id: job.id }
+        Self {
+            submitted_at: job.submitted_at,
+            id: job.id,
+        }
     }
 }
 
 impl fmt::Display for Cursor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:x}-{}", self.submitted_at.as_microsecond(), self.id.simple())
+        write!(
+            f,
+            "{:x}-{}",
+            self.submitted_at.as_microsecond(),
+            self.id.simple()
+        )
     }
 }
 
@@ -191,9 +230,19 @@ mod tests {
 
     #[test]
     fn a_cursor_reads_what_it_writes_and_nothing_else() {
-        let cursor = Cursor { submitted_at: Timestamp::UNIX_EPOCH, id: Uuid::now_v7() };
+        let cursor = Cursor {
+            submitted_at: Timestamp::UNIX_EPOCH,
+            id: Uuid::now_v7(),
+        };
         assert_eq!(cursor.to_string().parse(), Ok(cursor));
-        for text in ["", "-", "0", "0-0", "zz-00000000000000000000000000000000", "7fffffffffffffff-0"] {
+        for text in [
+            "",
+            "-",
+            "0",
+            "0-0",
+            "zz-00000000000000000000000000000000",
+            "7fffffffffffffff-0",
+        ] {
             assert_eq!(text.parse::<Cursor>(), Err(NoCursor), "{text}");
         }
     }

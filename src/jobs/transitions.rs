@@ -87,7 +87,11 @@ impl Store {
     }
 
     /// Accepted -> running: the oldest job that waits, leased until `lease_until`.
-    pub(super) async fn claim(&self, now: Timestamp, lease_until: Timestamp) -> Result<Option<Job>, sqlx::Error> {
+    pub(super) async fn claim(
+        &self,
+        now: Timestamp,
+        lease_until: Timestamp,
+    ) -> Result<Option<Job>, sqlx::Error> {
         sqlx::query_as(
             "update jobs
              set status = 'running', attempt = attempt + 1, started_at = ?1, lease_until = ?2, positions_done = 0
@@ -129,13 +133,18 @@ impl Store {
         document: &str,
         solver_version: &str,
     ) -> Result<bool, sqlx::Error> {
-        let hash: String = Sha256::digest(document).iter().map(|byte| format!("{byte:02x}")).collect();
+        let hash: String = Sha256::digest(document)
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect();
         let mut transaction = self.writer.begin_with("begin immediate").await?;
-        sqlx::query("insert into documents (hash, body) values (?1, ?2) on conflict (hash) do nothing")
-            .bind(&hash)
-            .bind(document)
-            .execute(&mut *transaction)
-            .await?;
+        sqlx::query(
+            "insert into documents (hash, body) values (?1, ?2) on conflict (hash) do nothing",
+        )
+        .bind(&hash)
+        .bind(document)
+        .execute(&mut *transaction)
+        .await?;
         let updated = sqlx::query(
             "update jobs
              set status = 'successful', finished_at = ?3, lease_until = null, document = ?4, solver_version = ?5,
@@ -159,7 +168,12 @@ impl Store {
     }
 
     /// Running -> failed, with the problem document. False if the claim holds no more.
-    pub(super) async fn fail(&self, claim: Claim, now: Timestamp, problem: &str) -> Result<bool, sqlx::Error> {
+    pub(super) async fn fail(
+        &self,
+        claim: Claim,
+        now: Timestamp,
+        problem: &str,
+    ) -> Result<bool, sqlx::Error> {
         let updated = sqlx::query(
             "update jobs set status = 'failed', finished_at = ?3, lease_until = null, problem = ?4
              where id = ?1 and attempt = ?2 and status = 'running'",
@@ -219,11 +233,20 @@ impl Store {
         .fetch_all(&mut *transaction)
         .await?;
         transaction.commit().await?;
-        Ok(queued.iter().chain(&failed).filter_map(|id| id.parse().ok()).collect())
+        Ok(queued
+            .iter()
+            .chain(&failed)
+            .filter_map(|id| id.parse().ok())
+            .collect())
     }
 
     /// Accepted or running -> dismissed. Absent if the client has no such job in these states.
-    pub(super) async fn cancel(&self, client: &str, id: Uuid, now: Timestamp) -> Result<Option<Job>, sqlx::Error> {
+    pub(super) async fn cancel(
+        &self,
+        client: &str,
+        id: Uuid,
+        now: Timestamp,
+    ) -> Result<Option<Job>, sqlx::Error> {
         sqlx::query_as(
             "update jobs set status = 'dismissed', finished_at = ?3, lease_until = null
              where id = ?1 and client = ?2 and status in ('accepted', 'running')
@@ -266,7 +289,10 @@ async fn submit_one(
     queue_limit: u32,
     solver_version: &str,
 ) -> Result<Outcome, sqlx::Error> {
-    let body_hash: String = Sha256::digest(&new.submission).iter().map(|byte| format!("{byte:02x}")).collect();
+    let body_hash: String = Sha256::digest(&new.submission)
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect();
     if let Some(key) = &new.idempotency_key
         && let Some(outcome) = earlier_answer(connection, &new.client, key, &body_hash).await?
     {
@@ -276,9 +302,10 @@ async fn submit_one(
     let outcome = if let Some(job) = insert_known(connection, new, solver_version).await? {
         Outcome::Known(job)
     } else {
-        let waiting: i64 = sqlx::query_scalar("select count(*) from jobs where status = 'accepted'")
-            .fetch_one(&mut *connection)
-            .await?;
+        let waiting: i64 =
+            sqlx::query_scalar("select count(*) from jobs where status = 'accepted'")
+                .fetch_one(&mut *connection)
+                .await?;
         if waiting >= i64::from(queue_limit) {
             return Ok(Outcome::QueueFull { waiting });
         }
@@ -305,17 +332,23 @@ async fn earlier_answer(
     key: &str,
     body_hash: &str,
 ) -> Result<Option<Outcome>, sqlx::Error> {
-    let earlier: Option<(String, String)> =
-        sqlx::query_as("select body_hash, job from idempotency_keys where client = ?1 and key = ?2")
-            .bind(client)
-            .bind(key)
-            .fetch_optional(&mut *connection)
-            .await?;
-    let Some((earlier_hash, job)) = earlier else { return Ok(None) };
+    let earlier: Option<(String, String)> = sqlx::query_as(
+        "select body_hash, job from idempotency_keys where client = ?1 and key = ?2",
+    )
+    .bind(client)
+    .bind(key)
+    .fetch_optional(&mut *connection)
+    .await?;
+    let Some((earlier_hash, job)) = earlier else {
+        return Ok(None);
+    };
     if earlier_hash != body_hash {
         return Ok(Some(Outcome::KeyConflict));
     }
-    let job = sqlx::query_as("select * from jobs where id = ?1").bind(job).fetch_one(connection).await?;
+    let job = sqlx::query_as("select * from jobs where id = ?1")
+        .bind(job)
+        .fetch_one(connection)
+        .await?;
     Ok(Some(Outcome::Repeated(job)))
 }
 
@@ -336,7 +369,9 @@ async fn insert_known(
     .bind(solver_version)
     .fetch_optional(&mut *connection)
     .await?;
-    let Some((same_as, document, positions)) = earlier else { return Ok(None) };
+    let Some((same_as, document, positions)) = earlier else {
+        return Ok(None);
+    };
     sqlx::query_as(
         "insert into jobs (id, client, method, tags, submission, input_hash, status, positions_done, positions_total,
                            submitted_at, started_at, finished_at, document, solver_version, same_as)
@@ -359,7 +394,10 @@ async fn insert_known(
     .map(Some)
 }
 
-async fn insert_waiting(connection: &mut SqliteConnection, new: &NewJob) -> Result<Job, sqlx::Error> {
+async fn insert_waiting(
+    connection: &mut SqliteConnection,
+    new: &NewJob,
+) -> Result<Job, sqlx::Error> {
     sqlx::query_as(
         "insert into jobs (id, client, method, tags, submission, input_hash, status, positions_total, submitted_at)
          values (?1, ?2, ?3, ?4, ?5, ?6, 'accepted', ?7, ?8)
@@ -398,7 +436,10 @@ mod tests {
 
     async fn store() -> (Store, TempDir) {
         let folder = tempfile::tempdir().unwrap();
-        (Store::open(&folder.path().join("jobs.db")).await.unwrap(), folder)
+        (
+            Store::open(&folder.path().join("jobs.db")).await.unwrap(),
+            folder,
+        )
     }
 
     fn at(seconds: i64) -> Timestamp {
@@ -421,7 +462,11 @@ mod tests {
     }
 
     async fn submit(store: &Store, job: NewJob) -> Outcome {
-        store.submit(&[job], 10, at(0), VERSION).await.unwrap().remove(0)
+        store
+            .submit(&[job], 10, at(0), VERSION)
+            .await
+            .unwrap()
+            .remove(0)
     }
 
     async fn queued(store: &Store, second: i64, input: &str) -> Job {
@@ -432,8 +477,15 @@ mod tests {
     }
 
     async fn claim(store: &Store, second: i64) -> Claim {
-        let job = store.claim(at(second), at(second + 30)).await.unwrap().unwrap();
-        Claim { id: job.id, attempt: job.attempt }
+        let job = store
+            .claim(at(second), at(second + 30))
+            .await
+            .unwrap()
+            .unwrap();
+        Claim {
+            id: job.id,
+            attempt: job.attempt,
+        }
     }
 
     async fn find(store: &Store, id: Uuid) -> Job {
@@ -446,7 +498,10 @@ mod tests {
         let second = queued(&store, 2, "b").await;
         let first = queued(&store, 1, "a").await;
         let claimed = store.claim(at(10), at(40)).await.unwrap().unwrap();
-        assert_eq!((claimed.id, claimed.status, claimed.attempt), (first.id, Status::Running, 1));
+        assert_eq!(
+            (claimed.id, claimed.status, claimed.attempt),
+            (first.id, Status::Running, 1)
+        );
         assert_eq!(claimed.started_at, Some(at(10)));
         assert_eq!(claim(&store, 11).await.id, second.id);
         assert_eq!(store.claim(at(12), at(42)).await.unwrap(), None);
@@ -457,12 +512,38 @@ mod tests {
         let (store, _folder) = store().await;
         let job = queued(&store, 1, "a").await;
         let claim = claim(&store, 2).await;
-        assert!(store.report(claim, Progress { done: 50, total: 200 }, at(60)).await.unwrap());
-        assert_eq!(find(&store, job.id).await.progress, Progress { done: 50, total: 200 });
-        assert!(store.succeed(claim, at(5), "{ \"x\": 1.0e0 }", VERSION).await.unwrap());
+        assert!(
+            store
+                .report(
+                    claim,
+                    Progress {
+                        done: 50,
+                        total: 200
+                    },
+                    at(60)
+                )
+                .await
+                .unwrap()
+        );
+        assert_eq!(
+            find(&store, job.id).await.progress,
+            Progress {
+                done: 50,
+                total: 200
+            }
+        );
+        assert!(
+            store
+                .succeed(claim, at(5), "{ \"x\": 1.0e0 }", VERSION)
+                .await
+                .unwrap()
+        );
 
         let job = find(&store, job.id).await;
-        assert_eq!((job.status, job.progress.percent()), (Status::Successful, 100));
+        assert_eq!(
+            (job.status, job.progress.percent()),
+            (Status::Successful, 100)
+        );
         assert_eq!(job.wall_time().unwrap().as_secs(), 3);
         let document = store.document(&job.document.unwrap()).await.unwrap();
         assert_eq!(document.as_deref(), Some("{ \"x\": 1.0e0 }"));
@@ -473,17 +554,31 @@ mod tests {
         let (store, _folder) = store().await;
         let job = queued(&store, 1, "a").await;
         let lost = claim(&store, 2).await;
-        assert_eq!(store.recover(at(33), Lost::Expired, 3, "{}").await.unwrap(), [job.id]);
+        assert_eq!(
+            store.recover(at(33), Lost::Expired, 3, "{}").await.unwrap(),
+            [job.id]
+        );
         let held = claim(&store, 34).await;
         assert_eq!(held.attempt, 2);
 
-        assert!(!store.report(lost, Progress::default(), at(90)).await.unwrap());
+        assert!(
+            !store
+                .report(lost, Progress::default(), at(90))
+                .await
+                .unwrap()
+        );
         assert!(!store.succeed(lost, at(35), "{}", VERSION).await.unwrap());
         assert!(!store.fail(lost, at(35), "{}").await.unwrap());
         assert!(!store.release(lost).await.unwrap());
         assert_eq!(find(&store, job.id).await.status, Status::Running);
-        let documents: i64 = sqlx::query_scalar("select count(*) from documents").fetch_one(&store.writer).await.unwrap();
-        assert_eq!(documents, 0, "results that come too late leave nothing behind");
+        let documents: i64 = sqlx::query_scalar("select count(*) from documents")
+            .fetch_one(&store.writer)
+            .await
+            .unwrap();
+        assert_eq!(
+            documents, 0,
+            "results that come too late leave nothing behind"
+        );
 
         assert!(store.succeed(held, at(36), "{}", VERSION).await.unwrap());
     }
@@ -494,7 +589,13 @@ mod tests {
         let job = queued(&store, 1, "a").await;
         for attempt in 1..=3 {
             assert_eq!(claim(&store, 2).await.attempt, attempt);
-            assert_eq!(store.recover(at(3), Lost::All, 3, r#"{"code":"lost"}"#).await.unwrap(), [job.id]);
+            assert_eq!(
+                store
+                    .recover(at(3), Lost::All, 3, r#"{"code":"lost"}"#)
+                    .await
+                    .unwrap(),
+                [job.id]
+            );
         }
         let job = find(&store, job.id).await;
         assert_eq!((job.status, job.finished_at), (Status::Failed, Some(at(3))));
@@ -506,7 +607,13 @@ mod tests {
         let (store, _folder) = store().await;
         queued(&store, 1, "a").await;
         claim(&store, 2).await;
-        assert!(store.recover(at(31), Lost::Expired, 3, "{}").await.unwrap().is_empty());
+        assert!(
+            store
+                .recover(at(31), Lost::Expired, 3, "{}")
+                .await
+                .unwrap()
+                .is_empty()
+        );
     }
 
     #[tokio::test]
@@ -516,11 +623,19 @@ mod tests {
         let given_back = claim(&store, 2).await;
         assert!(store.release(given_back).await.unwrap());
         let waiting = find(&store, job.id).await;
-        assert_eq!((waiting.status, waiting.attempts_counted, waiting.started_at), (Status::Accepted, 0, None));
+        assert_eq!(
+            (waiting.status, waiting.attempts_counted, waiting.started_at),
+            (Status::Accepted, 0, None)
+        );
 
         let held = claim(&store, 3).await;
         assert_eq!(find(&store, job.id).await.attempts_counted, 1);
-        assert!(!store.succeed(given_back, at(4), "{}", VERSION).await.unwrap());
+        assert!(
+            !store
+                .succeed(given_back, at(4), "{}", VERSION)
+                .await
+                .unwrap()
+        );
         assert!(store.succeed(held, at(4), "{}", VERSION).await.unwrap());
     }
 
@@ -531,10 +646,23 @@ mod tests {
         let waiting = queued(&store, 2, "b").await;
         let claim = claim(&store, 3).await;
         for id in [running.id, waiting.id] {
-            assert_eq!(store.cancel(CLIENT, id, at(4)).await.unwrap().unwrap().status, Status::Dismissed);
+            assert_eq!(
+                store
+                    .cancel(CLIENT, id, at(4))
+                    .await
+                    .unwrap()
+                    .unwrap()
+                    .status,
+                Status::Dismissed
+            );
             assert_eq!(store.cancel(CLIENT, id, at(5)).await.unwrap(), None);
         }
-        assert!(!store.report(claim, Progress::default(), at(50)).await.unwrap());
+        assert!(
+            !store
+                .report(claim, Progress::default(), at(50))
+                .await
+                .unwrap()
+        );
         assert_eq!(store.claim(at(6), at(36)).await.unwrap(), None);
     }
 
@@ -542,11 +670,23 @@ mod tests {
     async fn equal_input_gets_the_results_at_once_even_after_the_first_job_is_deleted() {
         let (store, _folder) = store().await;
         let first = queued(&store, 1, "a").await;
-        assert!(store.succeed(claim(&store, 2).await, at(3), "{}", VERSION).await.unwrap());
+        assert!(
+            store
+                .succeed(claim(&store, 2).await, at(3), "{}", VERSION)
+                .await
+                .unwrap()
+        );
 
-        let Outcome::Known(second) = submit(&store, new(4, "a")).await else { panic!("computed twice") };
-        assert_eq!((second.status, second.same_as), (Status::Successful, Some(first.id)));
-        let Outcome::Known(third) = submit(&store, new(5, "a")).await else { panic!("computed twice") };
+        let Outcome::Known(second) = submit(&store, new(4, "a")).await else {
+            panic!("computed twice")
+        };
+        assert_eq!(
+            (second.status, second.same_as),
+            (Status::Successful, Some(first.id))
+        );
+        let Outcome::Known(third) = submit(&store, new(5, "a")).await else {
+            panic!("computed twice")
+        };
         assert_eq!(third.same_as, Some(first.id));
 
         assert!(store.delete(CLIENT, first.id).await.unwrap());
@@ -556,52 +696,101 @@ mod tests {
         assert!(store.document(&hash).await.unwrap().is_some());
         assert!(store.delete(CLIENT, second.id).await.unwrap());
         assert!(store.delete(CLIENT, third.id).await.unwrap());
-        assert_eq!(store.document(&hash).await.unwrap(), None, "the last job takes the document with it");
+        assert_eq!(
+            store.document(&hash).await.unwrap(),
+            None,
+            "the last job takes the document with it"
+        );
     }
 
     #[tokio::test]
     async fn another_client_or_another_version_computes_afresh() {
         let (store, _folder) = store().await;
         queued(&store, 1, "a").await;
-        assert!(store.succeed(claim(&store, 2).await, at(3), "{}", VERSION).await.unwrap());
+        assert!(
+            store
+                .succeed(claim(&store, 2).await, at(3), "{}", VERSION)
+                .await
+                .unwrap()
+        );
         let mut foreign = new(4, "a");
         foreign.client = "other".to_owned();
         assert!(matches!(submit(&store, foreign).await, Outcome::Queued(_)));
-        let upgraded = store.submit(&[new(5, "a")], 10, at(0), "2.0").await.unwrap();
+        let upgraded = store
+            .submit(&[new(5, "a")], 10, at(0), "2.0")
+            .await
+            .unwrap();
         assert!(matches!(upgraded[..], [Outcome::Queued(_)]));
     }
 
     #[tokio::test]
     async fn a_key_answers_with_the_same_job_for_a_day() {
         let (store, _folder) = store().await;
-        let keyed = |second, input| NewJob { idempotency_key: Some("k".to_owned()), ..new(second, input) };
-        let Outcome::Queued(job) = submit(&store, keyed(1, "a")).await else { panic!("not queued") };
-        assert_eq!(submit(&store, keyed(2, "a")).await, Outcome::Repeated(job.clone()));
+        let keyed = |second, input| NewJob {
+            idempotency_key: Some("k".to_owned()),
+            ..new(second, input)
+        };
+        let Outcome::Queued(job) = submit(&store, keyed(1, "a")).await else {
+            panic!("not queued")
+        };
+        assert_eq!(
+            submit(&store, keyed(2, "a")).await,
+            Outcome::Repeated(job.clone())
+        );
         assert_eq!(submit(&store, keyed(3, "b")).await, Outcome::KeyConflict);
 
         let day = 24 * 60 * 60;
-        let next = store.submit(&[keyed(day + 2, "b")], 10, at(2), VERSION).await.unwrap();
-        assert!(matches!(next[..], [Outcome::Queued(_)]), "the key of second 1 is forgotten: {next:?}");
+        let next = store
+            .submit(&[keyed(day + 2, "b")], 10, at(2), VERSION)
+            .await
+            .unwrap();
+        assert!(
+            matches!(next[..], [Outcome::Queued(_)]),
+            "the key of second 1 is forgotten: {next:?}"
+        );
     }
 
     #[tokio::test]
     async fn a_key_sees_the_submission_before_it_in_the_same_commit() {
         let (store, _folder) = store().await;
-        let keyed = |input| NewJob { idempotency_key: Some("k".to_owned()), ..new(1, input) };
-        let outcomes = store.submit(&[keyed("a"), keyed("a"), keyed("b")], 10, at(0), VERSION).await.unwrap();
-        assert!(matches!(outcomes[..], [Outcome::Queued(_), Outcome::Repeated(_), Outcome::KeyConflict]));
+        let keyed = |input| NewJob {
+            idempotency_key: Some("k".to_owned()),
+            ..new(1, input)
+        };
+        let outcomes = store
+            .submit(&[keyed("a"), keyed("a"), keyed("b")], 10, at(0), VERSION)
+            .await
+            .unwrap();
+        assert!(matches!(
+            outcomes[..],
+            [
+                Outcome::Queued(_),
+                Outcome::Repeated(_),
+                Outcome::KeyConflict
+            ]
+        ));
     }
 
     #[tokio::test]
     async fn a_full_queue_takes_no_more_but_still_knows_what_it_has_done() {
         let (store, _folder) = store().await;
         queued(&store, 1, "done").await;
-        assert!(store.succeed(claim(&store, 2).await, at(3), "{}", VERSION).await.unwrap());
+        assert!(
+            store
+                .succeed(claim(&store, 2).await, at(3), "{}", VERSION)
+                .await
+                .unwrap()
+        );
         let batch = [new(4, "a"), new(4, "b"), new(4, "c"), new(4, "done")];
         let outcomes = store.submit(&batch, 2, at(0), VERSION).await.unwrap();
         assert!(matches!(
             outcomes[..],
-            [Outcome::Queued(_), Outcome::Queued(_), Outcome::QueueFull { waiting: 2 }, Outcome::Known(_)]
+            [
+                Outcome::Queued(_),
+                Outcome::Queued(_),
+                Outcome::QueueFull { waiting: 2 },
+                Outcome::Known(_)
+            ]
         ));
     }
 
@@ -629,16 +818,38 @@ mod tests {
             jobs.iter().map(|job| job.id).collect::<Vec<_>>()
         };
         assert_eq!(list(Filter::default(), 2).await, [jobs[3].id, jobs[2].id]);
-        let behind = Filter { after: Some(Cursor::behind(&jobs[2])), ..Filter::default() };
+        let behind = Filter {
+            after: Some(Cursor::behind(&jobs[2])),
+            ..Filter::default()
+        };
         assert_eq!(list(behind, 9).await, [jobs[1].id, jobs[0].id]);
-        let tagged = Filter { tag: Some("input 1".to_owned()), ..Filter::default() };
+        let tagged = Filter {
+            tag: Some("input 1".to_owned()),
+            ..Filter::default()
+        };
         assert_eq!(list(tagged, 9).await, [jobs[1].id]);
-        let these = Filter { ids: Some(vec![jobs[0].id, Uuid::nil(), jobs[3].id]), ..Filter::default() };
+        let these = Filter {
+            ids: Some(vec![jobs[0].id, Uuid::nil(), jobs[3].id]),
+            ..Filter::default()
+        };
         assert_eq!(list(these, 9).await, [jobs[3].id, jobs[0].id]);
         claim(&store, 4).await;
-        let running = Filter { statuses: Some(vec![Status::Running, Status::Failed]), ..Filter::default() };
+        let running = Filter {
+            statuses: Some(vec![Status::Running, Status::Failed]),
+            ..Filter::default()
+        };
         assert_eq!(list(running, 9).await, [jobs[0].id]);
-        assert!(list(Filter { statuses: Some(vec![]), ..Filter::default() }, 9).await.is_empty());
+        assert!(
+            list(
+                Filter {
+                    statuses: Some(vec![]),
+                    ..Filter::default()
+                },
+                9
+            )
+            .await
+            .is_empty()
+        );
         assert_eq!(store.depth().await.unwrap(), (3, 1));
     }
 }

@@ -12,7 +12,7 @@ use meshwright_engine::run::Run;
 use rayon::ThreadPool;
 use tokio::sync::oneshot;
 use tokio::task::JoinSet;
-use tokio::time::{Instant, MissedTickBehavior, interval, sleep};
+use tokio::time::{Instant, MissedTickBehavior, interval_at, sleep};
 use tracing::{error, info, warn};
 
 use super::job::Job;
@@ -41,7 +41,12 @@ pub struct Pace {
 impl Pace {
     /// Leases of half a minute, three attempts, and a limit for each job.
     pub fn with_time_limit(time_limit: Duration) -> Self {
-        Self { lease: Duration::from_secs(30), heartbeat: Duration::from_secs(2), time_limit, attempts_limit: 3 }
+        Self {
+            lease: Duration::from_secs(30),
+            heartbeat: Duration::from_secs(2),
+            time_limit,
+            attempts_limit: 3,
+        }
     }
 }
 
@@ -67,14 +72,26 @@ impl Workers {
     /// # Errors
     ///
     /// When the threads cannot be started or the database fails.
-    pub async fn start(jobs: Jobs, solve: Solve, count: usize, pace: Pace) -> Result<Self, StartError> {
+    pub async fn start(
+        jobs: Jobs,
+        solve: Solve,
+        count: usize,
+        pace: Pace,
+    ) -> Result<Self, StartError> {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(count)
             .thread_name(|index| format!("engine-{index}"))
             .build()
             .map_err(StartError::Threads)?;
-        let shop = Arc::new(Shop { jobs, pool, solve, pace });
-        shop.recover(Lost::All).await.map_err(StartError::Database)?;
+        let shop = Arc::new(Shop {
+            jobs,
+            pool,
+            solve,
+            pace,
+        });
+        shop.recover(Lost::All)
+            .await
+            .map_err(StartError::Database)?;
 
         let alive = Arc::new(AtomicUsize::new(0));
         let mut tasks = JoinSet::new();
@@ -166,13 +183,20 @@ impl Shop {
 
     /// Has a claimed job computed, and watches over it: heartbeat, time limit, shutdown.
     async fn compute(&self, job: Job) {
-        let claim = Claim { id: job.id, attempt: job.attempt };
+        let claim = Claim {
+            id: job.id,
+            attempt: job.attempt,
+        };
         info!(job = %job.id, attempt = job.attempt, method = job.method, "job started");
         let entered = self.jobs.live.enter(job.id, job.progress);
         let running = &entered.running;
+        // A cancel that came after the claim and before the entry found nothing to stop; it shows in the row.
+        if !self.report(claim, running).await {
+            return;
+        }
         let mut outcome = self.launch(&job, running.run());
         let mut deadline = pin!(sleep(self.pace.time_limit));
-        let mut heartbeat = interval(self.pace.heartbeat);
+        let mut heartbeat = interval_at(Instant::now() + self.pace.heartbeat, self.pace.heartbeat);
         heartbeat.set_missed_tick_behavior(MissedTickBehavior::Delay);
         // False once the row says that this attempt is over: what the engine still gives is not asked for.
         let mut held = true;
@@ -213,7 +237,10 @@ impl Shop {
         let (sender, receiver) = oneshot::channel();
         let (solve, submission, id) = (Arc::clone(&self.solve), job.submission.clone(), job.id);
         self.pool.spawn(move || {
-            let work = || Submission::parse(submission.as_bytes()).and_then(|submission| solve(&submission, &run));
+            let work = || {
+                Submission::parse(submission.as_bytes())
+                    .and_then(|submission| solve(&submission, &run))
+            };
             let result = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
                 error!(job = %id, panic = message_of(&*panic), "the engine panicked");
                 Err(internal_problem())
@@ -228,18 +255,31 @@ impl Shop {
     async fn settle(&self, job: &Job, claim: Claim, result: Result<String, Problem>) {
         let now = self.now();
         let (status, written) = match result {
-            Ok(document) => ("successful", self.jobs.store.succeed(claim, now, &document, SOLVER_VERSION).await),
-            Err(problem) => ("failed", self.jobs.store.fail(claim, now, &text_of(&problem)).await),
+            Ok(document) => (
+                "successful",
+                self.jobs
+                    .store
+                    .succeed(claim, now, &document, SOLVER_VERSION)
+                    .await,
+            ),
+            Err(problem) => (
+                "failed",
+                self.jobs.store.fail(claim, now, &text_of(&problem)).await,
+            ),
         };
         match written {
             Ok(true) => {
-                let seconds = job.started_at.map_or(0.0, |start| start.duration_until(now).as_secs_f64());
+                let seconds = job
+                    .started_at
+                    .map_or(0.0, |start| start.duration_until(now).as_secs_f64());
                 metrics::counter!("meshwright_jobs_ended_total", "status" => status, "method" => job.method.clone())
                     .increment(1);
                 metrics::histogram!("meshwright_job_wall_time_seconds", "method" => job.method.clone()).record(seconds);
                 info!(job = %job.id, status, wall_time_seconds = seconds, "job ended");
             }
-            Ok(false) => info!(job = %job.id, attempt = claim.attempt, "the attempt was over before it ended"),
+            Ok(false) => {
+                info!(job = %job.id, attempt = claim.attempt, "the attempt was over before it ended")
+            }
             // The lease runs out, and the job runs again.
             Err(error) => error!(job = %job.id, error = %error, "the outcome cannot be written"),
         }
@@ -251,7 +291,9 @@ impl Shop {
         match self.jobs.store.release(claim).await {
             Ok(_) => info!(job = %claim.id, "job returned to the queue"),
             // The next process finds it running and recovers it.
-            Err(error) => error!(job = %claim.id, error = %error, "the job cannot be returned to the queue"),
+            Err(error) => {
+                error!(job = %claim.id, error = %error, "the job cannot be returned to the queue")
+            }
         }
         self.jobs.live.changed(claim.id);
     }
@@ -259,7 +301,12 @@ impl Shop {
     /// Reports progress and renews the lease. False if the claim holds no more.
     async fn report(&self, claim: Claim, running: &Running) -> bool {
         let lease_until = self.lease_from(self.now());
-        match self.jobs.store.report(claim, running.progress(), lease_until).await {
+        match self
+            .jobs
+            .store
+            .report(claim, running.progress(), lease_until)
+            .await
+        {
             Ok(held) => held,
             Err(error) => {
                 warn!(job = %claim.id, error = %error, "progress cannot be written");
@@ -271,7 +318,7 @@ impl Shop {
     /// Looks for leases that have run out until the stop.
     async fn watch_leases(&self) {
         let stop = self.jobs.stop();
-        let mut tick = tokio::time::interval_at(Instant::now() + self.pace.lease, self.pace.lease);
+        let mut tick = interval_at(Instant::now() + self.pace.lease, self.pace.lease);
         loop {
             tokio::select! {
                 _ = tick.tick() => {}
@@ -287,9 +334,15 @@ impl Shop {
         let limit = self.pace.attempts_limit;
         let problem = Problem::new(
             Code::AttemptsExhausted,
-            format!("The service ended {limit} times while it computed this job, so it is not tried again."),
+            format!(
+                "The service ended {limit} times while it computed this job, so it is not tried again."
+            ),
         );
-        let recovered = self.jobs.store.recover(self.now(), lost, limit, &text_of(&problem)).await?;
+        let recovered = self
+            .jobs
+            .store
+            .recover(self.now(), lost, limit, &text_of(&problem))
+            .await?;
         for id in recovered {
             warn!(job = %id, "recovered a job that had lost its worker");
             self.jobs.live.changed(id);
@@ -314,7 +367,10 @@ fn text_of(problem: &Problem) -> String {
 
 /// The cause stands in the log; clients learn that it was not their fault.
 fn internal_problem() -> Problem {
-    Problem::new(Code::InternalError, "The service failed while it computed this job. The failure has been logged.")
+    Problem::new(
+        Code::InternalError,
+        "The service failed while it computed this job. The failure has been logged.",
+    )
 }
 
 fn message_of(panic: &(dyn Any + Send)) -> &str {

@@ -32,7 +32,9 @@ impl Submission {
     /// A [`Problem`] that says what is wrong with it.
     pub fn parse(document: &[u8]) -> Result<Self, Problem> {
         serde_json::from_slice(document).map_err(|error| match error.classify() {
-            serde_json::error::Category::Data => Problem::new(Code::UnknownField, error.to_string()),
+            serde_json::error::Category::Data => {
+                Problem::new(Code::UnknownField, error.to_string())
+            }
             _ => Problem::new(Code::MalformedJson, error.to_string()),
         })
     }
@@ -44,8 +46,16 @@ impl Submission {
 
     /// The hash of what is computed.
     pub fn input_hash(&self) -> String {
-        let input = json!([self.method, self.pair, self.output_torques_n_m, self.resolution]);
-        Sha256::digest(input.to_string()).iter().map(|byte| format!("{byte:02x}")).collect()
+        let input = json!([
+            self.method,
+            self.pair,
+            self.output_torques_n_m,
+            self.resolution
+        ]);
+        Sha256::digest(input.to_string())
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect()
     }
 
     /// Positions times torques.
@@ -70,7 +80,10 @@ impl Submission {
 ///
 /// A [`Problem`] when it cannot be solved.
 pub fn solve(_: &Submission, _: &Run) -> Result<String, Problem> {
-    Err(Problem::new(Code::InternalError, "the engine is not here yet"))
+    Err(Problem::new(
+        Code::InternalError,
+        "the engine is not here yet",
+    ))
 }
 
 /// The answer of `/v1/validate`.
@@ -83,7 +96,8 @@ pub type Example = (&'static str, &'static str, Arc<str>);
 
 /// The examples.
 pub fn examples() -> Vec<Example> {
-    let text = json!({ "method": "flexible", "pair": {}, "output_torques_n_m": [115.0] }).to_string();
+    let text =
+        json!({ "method": "flexible", "pair": {}, "output_torques_n_m": [115.0] }).to_string();
     vec![("test-case-2", "Test case 2 of the paper.", text.into())]
 }
 
