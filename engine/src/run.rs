@@ -23,7 +23,12 @@ pub struct Run {
 impl Run {
     /// A handle that obeys `stop` and tells `observer` (positions done, positions in all) after each position.
     pub fn new(stop: Arc<AtomicBool>, observer: impl Fn(u64, u64) + Send + Sync + 'static) -> Self {
-        Self { stop, done: Arc::default(), total: Arc::default(), observer: Arc::new(observer) }
+        Self {
+            stop,
+            done: Arc::default(),
+            total: Arc::default(),
+            observer: Arc::new(observer),
+        }
     }
 
     /// A handle that nobody watches and nobody stops.
@@ -53,6 +58,10 @@ impl Run {
     ///
     /// [`Stopped`] if the caller wants the work to end.
     pub fn check(&self) -> Result<(), Stopped> {
-        if self.stop.load(Ordering::Relaxed) { Err(Stopped) } else { Ok(()) }
+        if self.stop.load(Ordering::Relaxed) {
+            Err(Stopped)
+        } else {
+            Ok(())
+        }
     }
 }

@@ -1,0 +1,141 @@
+//! What is asked: a pair, the torques and how to compute.
+
+use super::spectrum::RotationSpeed;
+use crate::gear::GearPair;
+use crate::grid::GridLevel;
+
+/// The method that turns a gear pair into curves (DESIGN section 3).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Method {
+    /// Both whole gears flexible: section 2 of the paper.
+    Flexible,
+    /// Rigid blanks plus fitted blank rotations: section 3 of the paper.
+    Decomposition,
+    /// Rigid blanks plus the exact first-order term of the holed blanks.
+    ProjectedDecomposition,
+    /// Closed-form compliances on the theoretical lines of contact: eqs. 4 and 5.
+    LoadDistribution,
+}
+
+/// The solver of the contact conditions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ContactSolver {
+    /// The exact active set.
+    ActiveSet,
+    /// The augmented Lagrangian of the paper, eq. 7.
+    AugmentedLagrangian {
+        /// The penalty stiffness κ of a contact cell in N/m.
+        penalty: f64,
+        /// The gap tolerance ε in meters.
+        gap_tolerance: f64,
+    },
+}
+
+/// How the tangent stiffness is obtained.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum StiffnessRule {
+    /// Exactly, with the active contacts known.
+    Tangent,
+    /// By a central difference in the torque, as the paper does.
+    TorqueStep {
+        /// The step to either side over the torque.
+        fraction: f64,
+    },
+}
+
+/// The tooth compliance of the load distribution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ToothFormula {
+    /// Bending, shear and compression of the true profile (Weber and Banaschek).
+    WeberBanaschek,
+    /// The single stiffness c'_th of ISO 6336-1, which contains body and local deformation.
+    Iso6336,
+}
+
+/// The gear-body compliance of the load distribution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum BodyFormula {
+    /// Sainsot, Velex and Duverger (2004).
+    Sainsot,
+    /// The half plane of Weber and Banaschek.
+    HalfPlane,
+    /// No body compliance.
+    Rigid,
+}
+
+/// The plane state of the local deformation in the load distribution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum PlaneState {
+    /// No stress across the face width.
+    Stress,
+    /// No strain across the face width.
+    Strain,
+}
+
+/// The formulas of the load distribution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Formulas {
+    /// The tooth's compliance.
+    pub tooth: ToothFormula,
+    /// The body's compliance.
+    pub body: BodyFormula,
+    /// The plane state.
+    pub plane_state: PlaneState,
+}
+
+/// How finely and by which rules a case is computed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Resolution {
+    /// Positions in one mesh period.
+    pub positions_per_mesh_period: u32,
+    /// Mesh periods computed; `None` for the true period.
+    pub span_mesh_periods: Option<u32>,
+    /// The grid level.
+    pub grid: GridLevel,
+    /// The contact solver.
+    pub contact_solver: ContactSolver,
+    /// The rule for the tangent stiffness.
+    pub stiffness: StiffnessRule,
+    /// Positions over one hole period in the decomposition.
+    pub blank_positions: u32,
+    /// The interface radius R_w of holed gears, in meters; `None` for the default of each gear.
+    pub interface_radius: Option<f64>,
+    /// The formulas of the load distribution.
+    pub formulas: Formulas,
+    /// Whether to add a second, finer run that tells the discretization error.
+    pub error_estimate: bool,
+}
+
+/// A pair under load, and how to compute it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Case {
+    /// The pair.
+    pub pair: GearPair,
+    /// The method.
+    pub method: Method,
+    /// Output torques T on the driven gear, in newton meters; positive.
+    pub output_torques: Vec<f64>,
+    /// How to compute.
+    pub resolution: Resolution,
+    /// The speed of the driving gear, if frequencies are wanted.
+    pub driving_speed: Option<RotationSpeed>,
+}
+
+impl Case {
+    /// The mesh periods that are computed.
+    pub fn span(&self) -> u32 {
+        self.resolution
+            .span_mesh_periods
+            .unwrap_or_else(|| self.pair.period())
+    }
+
+    /// Whether the span is a whole multiple of the true period, so that a spectrum exists.
+    pub fn covers_whole_periods(&self) -> bool {
+        self.span() % self.pair.period() == 0
+    }
+
+    /// The positions of one curve.
+    pub fn positions(&self) -> usize {
+        self.span() as usize * self.resolution.positions_per_mesh_period as usize
+    }
+}

@@ -1,0 +1,188 @@
+//! What comes out: curves over mesh position, and the evidence for them.
+
+use super::spectrum::Spectrum;
+use crate::gear::Member;
+
+/// Mean, rms of the fluctuation and peak-to-peak over one span.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Statistics {
+    /// The mean.
+    pub mean: f64,
+    /// The root mean square after the mean is removed.
+    pub rms: f64,
+    /// Largest less smallest value.
+    pub peak_to_peak: f64,
+}
+
+impl Statistics {
+    /// The statistics of equally spaced `values`; all zero for none.
+    pub fn of(values: &[f64]) -> Self {
+        let count = values.len().max(1) as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let rms = (values
+            .iter()
+            .map(|value| (value - mean).powi(2))
+            .sum::<f64>()
+            / count)
+            .sqrt();
+        let (low, high) = values
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| {
+                (low.min(v), high.max(v))
+            });
+        Self {
+            mean,
+            rms,
+            peak_to_peak: (high - low).max(0.0),
+        }
+    }
+}
+
+/// The share of the load that the tooth pairs at one offset carry, position by position.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadShare {
+    /// n − floor(η) of the pair that passes the pitch point at mesh position n.
+    pub pair_offset: i32,
+    /// w·p/F of that pair.
+    pub share: Vec<f64>,
+}
+
+/// One sample of a holed blank in the decomposition.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BlankSample {
+    /// The mesh position η.
+    pub mesh_position: f64,
+    /// R_b θ_gb in meters.
+    pub rotation: f64,
+}
+
+/// What the decomposition found for one holed blank: A + B cos(N θ + phase), eq. 13.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlankFit {
+    /// The gear.
+    pub member: Member,
+    /// The interface radius R_w.
+    pub interface_radius: f64,
+    /// A in meters.
+    pub mean: f64,
+    /// B ≥ 0 in meters.
+    pub amplitude: f64,
+    /// The phase in radians.
+    pub phase: f64,
+    /// The samples that were fitted.
+    pub samples: Vec<BlankSample>,
+}
+
+/// The parts that the decomposition adds up, eq. 15.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DecompositionParts {
+    /// δ_wh at each position of the curve, in meters.
+    pub rigid_blank_transmission_error: Vec<f64>,
+    /// One entry a holed gear.
+    pub blanks: Vec<BlankFit>,
+}
+
+/// The curves at one output torque. All lists run over the same positions, in SI units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    /// The output torque T in N m.
+    pub output_torque: f64,
+    /// The transmitted load F = T/r_b2 in N.
+    pub load: f64,
+    /// Mesh position η, in mesh periods.
+    pub mesh_position: Vec<f64>,
+    /// The static transmission error δ in meters, positive when load makes the driven gear lag.
+    pub transmission_error: Vec<f64>,
+    /// k = dF/dδ in N/m, eq. 3.
+    pub mesh_stiffness_tangent: Vec<f64>,
+    /// F/δ in N/m.
+    pub mesh_stiffness_secant: Vec<f64>,
+    /// The number of tooth pairs that carry load.
+    pub pairs_in_contact: Vec<u32>,
+    /// The largest contact pressure in Pa.
+    pub peak_contact_pressure: Vec<f64>,
+    /// The share of each pair that ever carries load, by rising offset.
+    pub load_shares: Vec<LoadShare>,
+    /// Of δ.
+    pub transmission_error_statistics: Statistics,
+    /// Of the tangent stiffness.
+    pub mesh_stiffness_tangent_statistics: Statistics,
+    /// The order spectrum, where the span is whole periods.
+    pub spectrum: Option<Spectrum>,
+    /// The parts of the decomposition, for that method.
+    pub decomposition: Option<DecompositionParts>,
+}
+
+/// What a finer run changes: the estimate of the discretization error, largest over the torques.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ErrorEstimate {
+    /// In the mean of δ, in meters.
+    pub mean: f64,
+    /// In the peak-to-peak of δ, in meters.
+    pub peak_to_peak: f64,
+    /// In the mean tangent stiffness, in N/m.
+    pub mean_stiffness: f64,
+}
+
+/// How well the equations that define the result are satisfied.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Evidence {
+    /// Unknowns of both gears before condensation; zero for formulas.
+    pub degrees_of_freedom: u64,
+    /// The largest |T_2 by cross product − T|/T.
+    pub equilibrium_residual: f64,
+    /// The largest |p_j g_j|/(F δ_max).
+    pub complementarity_residual: f64,
+    /// The largest penetration left, in meters.
+    pub largest_penetration: f64,
+    /// Iterations of the contact solver over all positions and torques.
+    pub contact_iterations: u64,
+    /// The discretization error, where it was asked for.
+    pub error_estimate: Option<ErrorEstimate>,
+}
+
+/// What a reader of the result should know beside the numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Warning {
+    /// The teeth fit without any backlash; only the loaded flanks are solved.
+    ZeroBacklash,
+    /// Material around the holes thinner than one module.
+    ThinLigament {
+        /// The gear.
+        member: Member,
+        /// The ligament in meters.
+        ligament: f64,
+    },
+    /// A tip corner carries load off the line of action.
+    TipCornerContact {
+        /// The gear whose tip touches.
+        member: Member,
+        /// The largest share of the load that such a contact carries.
+        largest_share: f64,
+    },
+    /// The span is not whole true periods: statistics are partial and there is no spectrum.
+    PartialSpan {
+        /// Mesh periods computed.
+        span: u32,
+        /// Mesh periods of the true period.
+        period: u32,
+    },
+    /// Formulas were used outside the range for which they were published.
+    FormulaRange {
+        /// The gear.
+        member: Member,
+    },
+    /// The method does not see holes that the drawing has.
+    HolesNotSeen,
+}
+
+/// The answer to a [`super::Case`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Analysis {
+    /// One curve a torque, in the order of the case.
+    pub curves: Vec<Curve>,
+    /// How good it is.
+    pub evidence: Evidence,
+    /// What a reader should know.
+    pub warnings: Vec<Warning>,
+}

@@ -1,0 +1,294 @@
+//! Substructures that several cases share: computed once, kept within a bound.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use super::AnalysisError;
+use crate::contact::flank::FlankTable;
+use crate::fem::FemError;
+use crate::fem::blank::BlankSubstructure;
+use crate::fem::body::Coupling;
+use crate::fem::cyclic::{Component, Harmonics};
+use crate::fem::tooth::{TeethRing, ToothSubstructure};
+use crate::gear::{HolePattern, Member, SpurGear};
+use crate::grid::{BlankGrid, GridError, GridLevel, ToothGrid};
+use crate::run::{Run, Stopped};
+
+/// Orders on the interface circle, over R_w/(r_f − R_w): the field of the teeth falls by e⁻⁶·⁵ on its way to the circle.
+const ORDERS_PER_DEPTH: f64 = 6.5;
+
+/// Orders on the interface circle for each tooth, at most: beyond, the grids do not follow.
+const MOST_ORDERS_PER_TOOTH: usize = 8;
+
+/// All teeth of a gear, down to the interface circle.
+#[derive(Debug)]
+pub struct Teeth {
+    /// The flank of each.
+    pub flank: Arc<FlankTable>,
+    /// Their ring.
+    pub ring: TeethRing,
+    /// Teeth with the interface circle held.
+    pub on_rigid_blank: Arc<Coupling>,
+    /// Unknowns before condensation.
+    pub degrees_of_freedom: u64,
+}
+
+/// A gear on its flexible blank.
+#[derive(Debug)]
+pub struct Gear {
+    /// How its loaded teeth move each other.
+    pub coupling: Arc<Coupling>,
+    /// For each tooth, what its unit modes add to y·u_t/(R_w y_0), where y answers a uniform tangential displacement of
+    /// the blank's interface circle: the rotation arm that the decomposition uses, in meters a newton.
+    pub rotation_gain: Vec<Vec<f64>>,
+    /// 1/y_0: the tangential compliance of the blank to a uniform traction, in m/N.
+    pub uniform_compliance: f64,
+    /// Unknowns before condensation.
+    pub degrees_of_freedom: u64,
+}
+
+/// Why a gear has no model.
+#[derive(Debug, Clone, thiserror::Error)]
+enum BuildError {
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    #[error(transparent)]
+    Fem(#[from] FemError),
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+}
+
+/// What a tooth, a blank or a gear depends on, bit by bit.
+type Key = Vec<u64>;
+
+#[derive(Debug, Clone)]
+enum Part {
+    Teeth(Arc<Teeth>),
+    Blank(Arc<BlankSubstructure>),
+    Gear(Arc<Gear>),
+}
+
+/// A bounded store of teeth, blanks and gears, shared between threads; cloning shares it.
+///
+/// Two threads that want the same new part at the same moment both compute it, and get the same bits.
+#[derive(Clone)]
+pub struct Library {
+    shelves: Arc<Mutex<Shelves>>,
+    capacity: usize,
+}
+
+#[derive(Default)]
+struct Shelves {
+    parts: HashMap<Key, (Part, u64)>,
+    bytes: usize,
+    clock: u64,
+}
+
+impl std::fmt::Debug for Library {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Library").field("capacity", &self.capacity).finish_non_exhaustive()
+    }
+}
+
+impl Default for Library {
+    /// A library of 256 MB.
+    fn default() -> Self {
+        Self::with_capacity(256 << 20)
+    }
+}
+
+impl Library {
+    /// A library that keeps at most `bytes` of substructures, the least recently used leaving first.
+    pub fn with_capacity(bytes: usize) -> Self {
+        Self { shelves: Arc::default(), capacity: bytes }
+    }
+
+    /// The teeth of `gear` down to `interface_radius`.
+    ///
+    /// # Errors
+    ///
+    /// [`AnalysisError::Discretization`], or [`AnalysisError::Stopped`].
+    pub fn teeth(&self, gear: &SpurGear, member: Member, interface_radius: f64, level: GridLevel, run: &Run) -> Result<Arc<Teeth>, AnalysisError> {
+        self.shared_teeth(gear, interface_radius, level, run).map_err(|error| error.of(member))
+    }
+
+    /// `gear` with its blank: its holes, its bore and its teeth.
+    ///
+    /// # Errors
+    ///
+    /// [`AnalysisError::Discretization`], or [`AnalysisError::Stopped`].
+    pub fn gear(&self, gear: &SpurGear, member: Member, interface_radius: f64, level: GridLevel, run: &Run) -> Result<Arc<Gear>, AnalysisError> {
+        self.shared_gear(gear, interface_radius, level, run).map_err(|error| error.of(member))
+    }
+
+    fn shared_teeth(&self, gear: &SpurGear, interface_radius: f64, level: GridLevel, run: &Run) -> Result<Arc<Teeth>, BuildError> {
+        let build = || build_teeth(gear, interface_radius, level, run).map(|teeth| Part::Teeth(Arc::new(teeth)));
+        match self.part(teeth_key(gear, interface_radius, level), run, build)? {
+            Part::Teeth(teeth) => Ok(teeth),
+            Part::Blank(_) | Part::Gear(_) => unreachable!("a key names one kind of part"),
+        }
+    }
+
+    fn shared_blank(&self, gear: &SpurGear, teeth: &Teeth, interface_radius: f64, level: GridLevel, run: &Run) -> Result<Arc<BlankSubstructure>, BuildError> {
+        let build = || build_blank(gear, teeth, interface_radius, level).map(|blank| Part::Blank(Arc::new(blank)));
+        match self.part(blank_key(gear, interface_radius, level), run, build)? {
+            Part::Blank(blank) => Ok(blank),
+            Part::Teeth(_) | Part::Gear(_) => unreachable!("a key names one kind of part"),
+        }
+    }
+
+    fn shared_gear(&self, gear: &SpurGear, interface_radius: f64, level: GridLevel, run: &Run) -> Result<Arc<Gear>, BuildError> {
+        let phase = gear.holes().map_or(0.0, |holes| holes.phase);
+        let mut key = teeth_key(gear, interface_radius, level);
+        key.extend(blank_key(gear, interface_radius, level));
+        key.push(phase.to_bits());
+        let build = || {
+            let teeth = self.shared_teeth(gear, interface_radius, level, run)?;
+            let blank = self.shared_blank(gear, &teeth, interface_radius, level, run)?;
+            run.check()?;
+            Ok(Part::Gear(Arc::new(join(&teeth, &blank, phase)?)))
+        };
+        match self.part(key, run, build)? {
+            Part::Gear(gear) => Ok(gear),
+            Part::Blank(_) | Part::Teeth(_) => unreachable!("a key names one kind of part"),
+        }
+    }
+
+    fn part(&self, key: Key, run: &Run, build: impl FnOnce() -> Result<Part, BuildError>) -> Result<Part, BuildError> {
+        run.check()?;
+        if let Some(part) = self.shelves().find(&key) {
+            return Ok(part);
+        }
+        let part = build()?;
+        self.shelves().keep(key, part.clone(), self.capacity);
+        Ok(part)
+    }
+
+    fn shelves(&self) -> MutexGuard<'_, Shelves> {
+        // The shelves hold only finished parts, so that a panic elsewhere leaves nothing half done in them.
+        self.shelves.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Shelves {
+    fn find(&mut self, key: &Key) -> Option<Part> {
+        self.clock += 1;
+        let (part, used) = self.parts.get_mut(key)?;
+        *used = self.clock;
+        Some(part.clone())
+    }
+
+    fn keep(&mut self, key: Key, part: Part, capacity: usize) {
+        self.clock += 1;
+        self.bytes += part.bytes();
+        if let Some((old, _)) = self.parts.insert(key, (part, self.clock)) {
+            self.bytes -= old.bytes();
+        }
+        while self.bytes > capacity {
+            let Some(oldest) = self.parts.iter().min_by_key(|(_, (_, used))| *used).map(|(key, _)| key.clone()) else { break };
+            if let Some((part, _)) = self.parts.remove(&oldest) {
+                self.bytes -= part.bytes();
+            }
+        }
+    }
+}
+
+impl Part {
+    /// About how much memory it holds.
+    fn bytes(&self) -> usize {
+        8 * match self {
+            Self::Teeth(teeth) => {
+                let (n, r) = (teeth.ring.harmonics.unknowns(), teeth.flank.mode_count());
+                n * n + n * r + 8 * teeth.ring.held_coupling.len() * r * r + teeth.flank.entries()
+            }
+            Self::Blank(blank) => blank.harmonics.unknowns().pow(2),
+            Self::Gear(gear) => gear.coupling.entries(),
+        }
+    }
+}
+
+impl BuildError {
+    fn of(self, member: Member) -> AnalysisError {
+        match self {
+            Self::Stopped(stopped) => AnalysisError::Stopped(stopped),
+            Self::Grid(error) => AnalysisError::Discretization { member, reason: error.to_string() },
+            Self::Fem(error) => AnalysisError::Discretization { member, reason: error.to_string() },
+        }
+    }
+}
+
+/// The interface radius R_w of `gear`: one module below the root circle, or halfway to the holes or the bore where they
+/// come closer.
+pub fn default_interface_radius(gear: &SpurGear) -> f64 {
+    let inner = gear.holes().map_or(gear.bore_radius(), HolePattern::outer_reach);
+    let r_f = gear.root_radius();
+    (r_f - gear.data().rack.module).max(f64::midpoint(r_f, inner))
+}
+
+fn harmonics(gear: &SpurGear, interface_radius: f64) -> Harmonics {
+    let orders = ORDERS_PER_DEPTH * interface_radius / (gear.root_radius() - interface_radius);
+    let z = gear.tooth_count() as usize;
+    Harmonics { largest: (orders.ceil() as usize).clamp(2 * z, MOST_ORDERS_PER_TOOTH * z) }
+}
+
+fn build_teeth(gear: &SpurGear, interface_radius: f64, level: GridLevel, run: &Run) -> Result<Teeth, BuildError> {
+    let grid = ToothGrid::new(gear, interface_radius, level)?;
+    run.check()?;
+    let tooth = ToothSubstructure::new(gear, &grid)?;
+    run.check()?;
+    let ring = TeethRing::new(&tooth, harmonics(gear, interface_radius))?;
+    let (arc, side) = tooth.shared_nodes;
+    let nodes = tooth.grid_nodes - side - 1;
+    // Nodes of the interface circle belong to the teeth; the blank's follow them.
+    let degrees_of_freedom = 2 * u64::from(gear.tooth_count()) * (nodes as u64);
+    debug_assert!(arc > 1, "an arc has two ends");
+    Ok(Teeth {
+        flank: Arc::new(FlankTable::new(&tooth, gear.material(), gear.face_width())),
+        on_rigid_blank: Arc::new(Coupling::on_rigid_blank(&ring)),
+        ring,
+        degrees_of_freedom,
+    })
+}
+
+fn build_blank(gear: &SpurGear, teeth: &Teeth, interface_radius: f64, level: GridLevel) -> Result<BlankSubstructure, BuildError> {
+    let grid = BlankGrid::new(gear.bore_radius(), interface_radius, gear.holes(), gear.tooth_count(), level)?;
+    Ok(BlankSubstructure::new(&grid, interface_radius, gear.material(), gear.face_width(), teeth.ring.harmonics)?)
+}
+
+fn join(teeth: &Teeth, blank: &BlankSubstructure, phase: f64) -> Result<Gear, BuildError> {
+    let (coupling, response) = Coupling::on_blank(&teeth.ring, blank, phase)?;
+    let answer = blank.uniform_answer(phase)?;
+    let y_0 = answer[blank.harmonics.cosine(0, Component::Tangential)];
+    let weights: Vec<f64> = answer.iter().map(|y| y / y_0).collect();
+    Ok(Gear {
+        coupling: Arc::new(coupling),
+        rotation_gain: response.functional(&weights),
+        uniform_compliance: 1.0 / y_0,
+        degrees_of_freedom: teeth.degrees_of_freedom + 2 * blank.grid_nodes as u64,
+    })
+}
+
+fn tooth_bits(gear: &SpurGear) -> Vec<u64> {
+    let data = gear.data();
+    let rack = &data.rack;
+    let material = &data.material;
+    let numbers = [
+        rack.module, rack.pressure_angle, rack.addendum, rack.dedendum, rack.tip_radius, data.profile_shift, data.face_width,
+        material.youngs_modulus, material.poisson_ratio,
+    ];
+    numbers.iter().map(|number| number.to_bits()).chain([u64::from(data.tooth_count)]).collect()
+}
+
+fn teeth_key(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Key {
+    let mut key = tooth_bits(gear);
+    key.extend([interface_radius.to_bits(), level as u64, 1]);
+    key
+}
+
+fn blank_key(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Key {
+    let mut key = tooth_bits(gear);
+    let holes = gear.holes().map_or([0.0; 3], |holes| [f64::from(holes.count), holes.circle_radius, holes.radius]);
+    key.extend([interface_radius, gear.bore_radius()].iter().chain(&holes).map(|number| number.to_bits()));
+    key.extend([level as u64, 2]);
+    key
+}

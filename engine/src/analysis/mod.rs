@@ -1,0 +1,245 @@
+//! From a pair to its curves: the methods, their results and spectra.
+//!
+//! Read in this order: [`case`] (what is asked), [`model`] (the contact of a pair at one position), [`flexible`],
+//! [`decomposition`] and [`load_distribution`] (the methods), [`curve`] and [`spectrum`] (what comes out), [`library`]
+//! (what cases share).
+
+pub mod case;
+pub mod curve;
+mod flexible;
+pub mod library;
+pub mod load_distribution;
+pub mod model;
+pub mod spectrum;
+
+pub use case::{BodyFormula, Case, ContactSolver, Formulas, Method, PlaneState, Resolution, StiffnessRule, ToothFormula};
+pub use curve::{Analysis, Curve, ErrorEstimate, Evidence, Statistics, Warning};
+pub use library::Library;
+
+use crate::contact::ContactError;
+use crate::gear::{GearPair, Member};
+use crate::grid::GridLevel;
+use crate::run::{Run, Stopped};
+use curve::{DecompositionParts, LoadShare};
+use flexible::Blanks;
+use spectrum::Spectrum;
+
+/// Backlash below this, in meters, counts as none.
+const NO_BACKLASH: f64 = 1e-9;
+
+/// Why a case could not be computed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AnalysisError {
+    /// The contact solver gave up at a position.
+    #[error("the contact did not converge at mesh position {mesh_position}: residual gap {residual} m after {iterations} iterations")]
+    NotConverged {
+        /// The mesh position η.
+        mesh_position: f64,
+        /// The gap left, in meters.
+        residual: f64,
+        /// The iterations spent.
+        iterations: u32,
+    },
+    /// The contact problem at a position could not be stated.
+    #[error("the contact at mesh position {mesh_position} failed")]
+    ContactFailed {
+        /// The mesh position η.
+        mesh_position: f64,
+        /// Why.
+        #[source]
+        error: ContactError,
+    },
+    /// No flanks come near each other at a position.
+    #[error("no flanks come near each other at mesh position {mesh_position}")]
+    NoContact {
+        /// The mesh position η.
+        mesh_position: f64,
+    },
+    /// A grid or a factorization failed.
+    #[error("the {member} gear cannot be discretized: {reason}")]
+    Discretization {
+        /// The gear.
+        member: Member,
+        /// What failed, with its numbers.
+        reason: String,
+    },
+    /// The caller stopped the work.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+}
+
+/// Computes `case`, taking from `library` what other cases have computed before.
+///
+/// # Errors
+///
+/// [`AnalysisError`] says which position failed and why, or that `run` was stopped.
+pub fn analyze(case: &Case, library: &Library, run: &Run) -> Result<Analysis, AnalysisError> {
+    // Threads work on different bodies and positions; inside one, faer is sequential.
+    faer::set_global_parallelism(faer::Par::Seq);
+    let level = case.resolution.grid;
+    let levels = if case.resolution.error_estimate { 2 } else { 1 };
+    run.expect(levels * expected_positions(case));
+    let mut analysis = analyze_at(case, level, library, run)?;
+    if case.resolution.error_estimate {
+        let other = analyze_at(case, level.neighbor(), library, run)?;
+        analysis.evidence.error_estimate = Some(difference(&analysis.curves, &other.curves));
+    }
+    Ok(analysis)
+}
+
+fn analyze_at(case: &Case, level: GridLevel, library: &Library, run: &Run) -> Result<Analysis, AnalysisError> {
+    match case.method {
+        Method::Flexible => flexible(case, level, library, run),
+        _ => Err(AnalysisError::Stopped(Stopped)),
+    }
+}
+
+/// Contact solutions that `case` needs at one grid level.
+fn expected_positions(case: &Case) -> u64 {
+    let torques = case.output_torques.len() as u64;
+    let solves = match case.resolution.stiffness {
+        StiffnessRule::Tangent => 1,
+        StiffnessRule::TorqueStep { .. } => 3,
+    };
+    torques * solves * case.positions() as u64
+}
+
+fn flexible(case: &Case, level: GridLevel, library: &Library, run: &Run) -> Result<Analysis, AnalysisError> {
+    let (model, degrees_of_freedom) = flexible::model(case, Blanks::Flexible, level, library, run)?;
+    let positions = mesh_positions(case);
+    let mut evidence = Evidence::new(degrees_of_freedom);
+    let mut warnings = warnings(case);
+    let mut curves = Vec::with_capacity(case.output_torques.len());
+    for &output_torque in &case.output_torques {
+        let load = case.pair.load(output_torque);
+        let (contacts, stiffness) = flexible::solved(case, &model, load, &positions, run)?;
+        flexible::gather(&mut evidence, &contacts, load);
+        flexible::warn_of_tips(&mut warnings, &contacts);
+        let parts = CurveParts {
+            transmission_error: contacts.iter().map(|contact| contact.transmission_error).collect(),
+            stiffness,
+            pairs_in_contact: contacts.iter().map(|contact| contact.loaded_pairs()).collect(),
+            peak_contact_pressure: contacts.iter().map(|contact| contact.peak_pressure).collect(),
+            load_shares: flexible::load_shares(&positions, &contacts),
+            decomposition: None,
+        };
+        curves.push(parts.into_curve(case, output_torque, positions.clone()));
+    }
+    Ok(Analysis { curves, evidence, warnings })
+}
+
+/// What a method finds at each position of one torque.
+struct CurveParts {
+    transmission_error: Vec<f64>,
+    stiffness: Vec<f64>,
+    pairs_in_contact: Vec<u32>,
+    peak_contact_pressure: Vec<f64>,
+    load_shares: Vec<LoadShare>,
+    decomposition: Option<DecompositionParts>,
+}
+
+impl CurveParts {
+    fn into_curve(self, case: &Case, output_torque: f64, mesh_position: Vec<f64>) -> Curve {
+        let load = case.pair.load(output_torque);
+        let spectrum = case
+            .covers_whole_periods()
+            .then(|| Spectrum::of(&case.pair, case.span(), &self.transmission_error, &self.stiffness, case.driving_speed));
+        Curve {
+            output_torque,
+            load,
+            mesh_position,
+            mesh_stiffness_secant: self.transmission_error.iter().map(|delta| load / delta).collect(),
+            transmission_error_statistics: Statistics::of(&self.transmission_error),
+            mesh_stiffness_tangent_statistics: Statistics::of(&self.stiffness),
+            transmission_error: self.transmission_error,
+            mesh_stiffness_tangent: self.stiffness,
+            pairs_in_contact: self.pairs_in_contact,
+            peak_contact_pressure: self.peak_contact_pressure,
+            load_shares: self.load_shares,
+            spectrum,
+            decomposition: self.decomposition,
+        }
+    }
+}
+
+/// The mesh positions of one curve: the span in equal steps from 0, its end excluded.
+fn mesh_positions(case: &Case) -> Vec<f64> {
+    let steps = f64::from(case.resolution.positions_per_mesh_period);
+    (0..case.positions()).map(|i| i as f64 / steps).collect()
+}
+
+/// Contact cells in one patch.
+fn cells_per_patch(level: GridLevel) -> usize {
+    match level {
+        GridLevel::Coarse => 24,
+        GridLevel::Standard => 40,
+        GridLevel::Fine => 80,
+    }
+}
+
+/// What a reader should know of a case before it is computed.
+pub fn warnings(case: &Case) -> Vec<Warning> {
+    let pair = &case.pair;
+    let mut warnings = Vec::new();
+    if pair.backlash() < NO_BACKLASH {
+        warnings.push(Warning::ZeroBacklash);
+    }
+    for member in [Member::Driving, Member::Driven] {
+        let gear = pair.gear(member);
+        if let Some(ligament) = gear.least_ligament().filter(|&ligament| ligament < gear.data().rack.module) {
+            warnings.push(Warning::ThinLigament { member, ligament });
+        }
+    }
+    if !case.covers_whole_periods() {
+        warnings.push(Warning::PartialSpan { span: case.span(), period: pair.period() });
+    }
+    if case.method == Method::LoadDistribution && has_holes(pair) {
+        warnings.push(Warning::HolesNotSeen);
+    }
+    warnings
+}
+
+fn has_holes(pair: &GearPair) -> bool {
+    pair.driving().holes().is_some() || pair.driven().holes().is_some()
+}
+
+impl Evidence {
+    fn new(degrees_of_freedom: u64) -> Self {
+        Self {
+            degrees_of_freedom,
+            equilibrium_residual: 0.0,
+            complementarity_residual: 0.0,
+            largest_penetration: 0.0,
+            contact_iterations: 0,
+            error_estimate: None,
+        }
+    }
+}
+
+/// The largest differences between the curves of two grid levels.
+fn difference(curves: &[Curve], others: &[Curve]) -> ErrorEstimate {
+    let largest = |value: fn(&Curve) -> f64| curves.iter().zip(others).map(|(a, b)| (value(a) - value(b)).abs()).fold(0.0, f64::max);
+    ErrorEstimate {
+        mean: largest(|curve| curve.transmission_error_statistics.mean),
+        peak_to_peak: largest(|curve| curve.transmission_error_statistics.peak_to_peak),
+        mean_stiffness: largest(|curve| curve.mesh_stiffness_tangent_statistics.mean),
+    }
+}
+
+/// What a case will cost, known before it is computed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// Unknowns of both gears before condensation.
+    pub degrees_of_freedom: u64,
+    /// Memory in bytes.
+    pub memory: u64,
+    /// Time on one core in seconds.
+    pub seconds: f64,
+    /// Positions times torques.
+    pub positions: u64,
+}
+
+/// Estimates what `case` will cost.
+pub fn estimate(case: &Case) -> Estimate {
+    Estimate { degrees_of_freedom: 0, memory: 0, seconds: 0.0, positions: (case.positions() * case.output_torques.len()) as u64 }
+}

@@ -1,0 +1,244 @@
+//! The compliance of one gear's loaded flanks, ready for contact cells of any size anywhere on them.
+//!
+//! The finite elements give the compliance between flank nodes. Between points nearer to each other than a few elements
+//! it is dominated by a logarithm that no grid resolves; what is left after the half plane's logarithm is taken off is
+//! smooth, on the scale of the tooth and of the distance to the tip corner. That smooth part R is tabulated on the flank
+//! nodes and interpolated; the logarithm is added in closed form for the cells at hand ([`super::half_plane`]).
+
+use faer::Mat;
+
+use super::half_plane::logarithm_factor;
+use crate::fem::tooth::ToothSubstructure;
+use crate::gear::Material;
+
+/// Nodes this near to each other (four elements) see the grid rather than the body in their compliance.
+const NEAR: usize = 8;
+
+/// The smooth compliance of the loaded flank of one tooth with its interface held, and its loading modes.
+#[derive(Debug, Clone)]
+pub struct FlankTable {
+    roll_lengths: Vec<f64>,
+    /// R on (normal, towards the tip) of each node.
+    smooth: Mat<f64>,
+    /// V on the same unknowns.
+    modes: Mat<f64>,
+    /// c = 2/(π E b).
+    logarithm_factor: f64,
+}
+
+/// A point on a flank in terms of the nodes around it: four nodes from `first`, their weights, and the components of the
+/// direction in which it is pressed.
+#[derive(Debug, Clone, Copy)]
+pub struct FlankPoint {
+    first: usize,
+    weights: [f64; 4],
+    direction: [f64; 2],
+}
+
+impl FlankTable {
+    /// Tabulates the flank of `tooth`.
+    pub fn new(tooth: &ToothSubstructure, material: &Material, thickness: f64) -> Self {
+        let factor = logarithm_factor(material.youngs_modulus, thickness);
+        let nodes = tooth.roll_lengths.len();
+        let mut smooth = tooth.fixed_compliance.clone();
+        for component in [0, 1] {
+            let mut part = Mat::from_fn(nodes, nodes, |i, j| {
+                let distance = (tooth.flank_points[i] - tooth.flank_points[j]).norm();
+                let logarithm = if i == j { 0.0 } else { factor * distance.ln() };
+                tooth.fixed_compliance[(2 * i + component, 2 * j + component)] + logarithm
+            });
+            bridge_diagonal(&mut part);
+            for j in 0..nodes {
+                for i in 0..nodes {
+                    smooth[(2 * i + component, 2 * j + component)] = part[(i, j)];
+                }
+            }
+        }
+        Self { roll_lengths: tooth.roll_lengths.clone(), smooth, modes: tooth.modes.clone(), logarithm_factor: factor }
+    }
+
+    /// The factor c = 2/(π E b) of the logarithm.
+    pub fn logarithm_factor(&self) -> f64 {
+        self.logarithm_factor
+    }
+
+    /// The number of table entries, for the books of a cache.
+    pub fn entries(&self) -> usize {
+        self.smooth.nrows() * (self.smooth.ncols() + self.modes.ncols())
+    }
+
+    /// The number r of loading modes.
+    pub fn mode_count(&self) -> usize {
+        self.modes.ncols()
+    }
+
+    /// The point at roll length `s`, pressed along `direction` (against the outward normal, against the way to the tip).
+    pub fn point(&self, s: f64, direction: [f64; 2]) -> FlankPoint {
+        let nodes = &self.roll_lengths;
+        let after = nodes.partition_point(|&node| node < s);
+        let first = after.saturating_sub(2).min(nodes.len() - 4);
+        let stencil = &nodes[first..first + 4];
+        let weights = std::array::from_fn(|i| {
+            (0..4).filter(|&j| j != i).map(|j| (s - stencil[j]) / (stencil[i] - stencil[j])).product()
+        });
+        FlankPoint { first, weights, direction }
+    }
+
+    /// The loads of the modes that forces `p` on `points` exert: Vᵀ p.
+    pub fn modal_loads(&self, points: &[FlankPoint], p: &[f64]) -> Vec<f64> {
+        let mut loads = vec![0.0; self.mode_count()];
+        for (point, force) in points.iter().zip(p) {
+            for (row, weight) in point.rows() {
+                for (mode, load) in loads.iter_mut().enumerate() {
+                    *load += force * weight * self.modes[(row, mode)];
+                }
+            }
+        }
+        loads
+    }
+
+    /// Adds to `h`, at (`row`, `col`), the compliance between the points of two patches of one gear, without the logarithm.
+    ///
+    /// `same_tooth` says whether the patches are on one tooth; `coupling` is X between their teeth, to be transposed if it
+    /// says so.
+    pub fn add_compliance(
+        &self,
+        h: &mut Mat<f64>,
+        (row, points): (usize, &[FlankPoint]),
+        (col, others): (usize, &[FlankPoint]),
+        same_tooth: bool,
+        (coupling, transposed): (&Mat<f64>, bool),
+    ) {
+        let (rows, cols) = (Range::of(points), Range::of(others));
+        let r = self.mode_count();
+        // M = R + V X Vᵀ on the nodes around both patches.
+        let mut half = Mat::<f64>::zeros(r, cols.len);
+        for j in 0..cols.len {
+            for k in 0..r {
+                let v = self.modes[(cols.start + j, k)];
+                for i in 0..r {
+                    half[(i, j)] += v * if transposed { coupling[(k, i)] } else { coupling[(i, k)] };
+                }
+            }
+        }
+        let mut around = Mat::<f64>::zeros(rows.len, cols.len);
+        for j in 0..cols.len {
+            for k in 0..r {
+                let x = half[(k, j)];
+                for i in 0..rows.len {
+                    around[(i, j)] += self.modes[(rows.start + i, k)] * x;
+                }
+            }
+            if same_tooth {
+                for i in 0..rows.len {
+                    around[(i, j)] += self.smooth[(rows.start + i, cols.start + j)];
+                }
+            }
+        }
+        let mut column = vec![0.0; rows.len];
+        for (j, other) in others.iter().enumerate() {
+            column.fill(0.0);
+            for (node, weight) in other.rows() {
+                for (i, value) in column.iter_mut().enumerate() {
+                    *value += weight * around[(i, node - cols.start)];
+                }
+            }
+            for (i, point) in points.iter().enumerate() {
+                h[(row + i, col + j)] += point.rows().into_iter().map(|(node, weight)| weight * column[node - rows.start]).sum::<f64>();
+            }
+        }
+    }
+}
+
+impl FlankPoint {
+    /// The unknowns around the point and their weights.
+    fn rows(&self) -> [(usize, f64); 8] {
+        std::array::from_fn(|i| {
+            let (node, component) = (i / 2, i % 2);
+            (2 * (self.first + node) + component, self.weights[node] * self.direction[component])
+        })
+    }
+}
+
+/// The unknowns around the points of a patch.
+struct Range {
+    start: usize,
+    len: usize,
+}
+
+impl Range {
+    fn of(points: &[FlankPoint]) -> Self {
+        let first = points.iter().map(|point| point.first).min().unwrap_or(0);
+        let last = points.iter().map(|point| point.first + 4).max().unwrap_or(first);
+        Self { start: 2 * first, len: 2 * (last - first) }
+    }
+}
+
+
+/// Replaces the entries of the symmetric table `a` near its diagonal by what its farther ones say.
+///
+/// Along each antidiagonal the smooth part is even in the distance d between the nodes: a + b d² + c d⁴ through the
+/// distances 8, 12 and 16 bridges the nearer ones. Near the ends of the flank fewer distances fit, and the last few nodes
+/// continue their neighbors in a straight line.
+fn bridge_diagonal(a: &mut Mat<f64>) {
+    let last = a.nrows() as i64 - 1;
+    let source = a.clone();
+    let near = NEAR as i64;
+    let bridged = |sum: i64, d: i64| -> Option<f64> {
+        let reach = sum.min(2 * last - sum);
+        // Distances along one antidiagonal share the parity of their sum.
+        let parity = sum % 2;
+        let nodes: Vec<i64> = [near + parity, near + 4 + parity, near + 8 + parity].into_iter().filter(|&n| n <= reach).collect();
+        if nodes.is_empty() {
+            return None;
+        }
+        let x = (d * d) as f64;
+        let mut value = 0.0;
+        for &n in &nodes {
+            let weight: f64 = nodes.iter().filter(|&&m| m != n).map(|&m| (x - (m * m) as f64) / ((n * n - m * m) as f64)).product();
+            value += weight * source[(((sum - n) / 2) as usize, ((sum + n) / 2) as usize)];
+        }
+        Some(value)
+    };
+    let mut set = |i: i64, j: i64, value: f64| {
+        a[(i as usize, j as usize)] = value;
+        a[(j as usize, i as usize)] = value;
+    };
+    // The sums nearest to either end for which the bridge has at least two distances; beyond, straight continuation.
+    let (first_sum, last_sum) = (near + 4, 2 * last - near - 4);
+    for d in 0..near {
+        for sum in (d..=2 * last - d).filter(|sum| (sum - d) % 2 == 0) {
+            let inside = sum.clamp(first_sum + (first_sum - d).rem_euclid(2), last_sum - (last_sum - d).rem_euclid(2));
+            let Some(mut value) = bridged(inside, d) else { continue };
+            if inside != sum {
+                let step = if sum < inside { 2 } else { -2 };
+                if let Some(next) = bridged(inside + step, d) {
+                    value += (value - next) * ((inside - sum) / step).abs() as f64;
+                }
+            }
+            set((sum - d) / 2, (sum + d) / 2, value);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_smooth_even_function_is_bridged_across_its_polluted_diagonal() {
+        let exact = |i: usize, j: usize| {
+            let (mean, d) = ((i + j) as f64 / 100.0, (i as f64 - j as f64) / 100.0);
+            2.0 + mean - 3.0 * mean * mean + d * d * (1.0 + mean) - d.powi(4)
+        };
+        let mut table = Mat::from_fn(60, 60, |i, j| if i.abs_diff(j) < NEAR { 99.0 } else { exact(i, j) });
+        bridge_diagonal(&mut table);
+        for i in 0..60_usize {
+            for j in 0..60_usize {
+                let inside = i + j >= 16 && i + j <= 118 - 16;
+                let tolerance = if inside { 1e-10 } else { 0.1 };
+                assert!((table[(i, j)] - exact(i, j)).abs() < tolerance, "({i}, {j}): {} {}", table[(i, j)], exact(i, j));
+            }
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! The blank between the rigid bore and the interface circle, as a substructure.
+
+use faer::Mat;
+
+use super::FemError;
+use super::condensation::condense;
+use super::cyclic::{Component, Harmonics, Sector};
+use super::dense::Cholesky;
+use super::tooth::in_polar_axes;
+use crate::gear::Material;
+use crate::grid::BlankGrid;
+
+/// A blank on its interface circle, its bore held.
+#[derive(Debug, Clone)]
+pub struct BlankSubstructure {
+    /// The interface radius R_w.
+    pub interface_radius: f64,
+    /// The harmonics of the interface circle.
+    pub harmonics: Harmonics,
+    /// The stiffness on them, with hole 0 at the angle 0.
+    pub stiffness: Mat<f64>,
+    /// Nodes of all sectors together, the shared sides counted once.
+    pub grid_nodes: usize,
+}
+
+impl BlankSubstructure {
+    /// Condenses the ring of sectors `grid`.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError`] if the grid is degenerate.
+    pub fn new(grid: &BlankGrid, interface_radius: f64, material: &Material, thickness: f64, harmonics: Harmonics) -> Result<Self, FemError> {
+        let (right, left) = &grid.side_nodes;
+        let kept: Vec<u32> = right.iter().chain(left).chain(&grid.arc_nodes).copied().collect();
+        let schur = condense("the blank", &grid.grid, material, thickness, &kept, &grid.bore_nodes)?;
+        let stiffness = in_polar_axes(&schur, kept.iter().map(|&node| grid.grid.nodes[node as usize]));
+        let count = grid.sector_count as usize;
+        let sector = Sector { count, stiffness, side_nodes: right.len(), arc_angles: grid.arc_angles.clone() };
+        let stiffness = sector.ring_stiffness(&harmonics)?;
+        // A sector repeats its right side as its left one, and the ends of both are nodes of the bore and of the arc.
+        let grid_nodes = count * (grid.grid.nodes.len() - left.len() - 2);
+        Ok(Self { interface_radius, harmonics, stiffness, grid_nodes })
+    }
+
+    /// The stiffness with hole 0 at the angle `phase`.
+    pub fn stiffness_at(&self, phase: f64) -> Mat<f64> {
+        if phase == 0.0 { self.stiffness.clone() } else { turned(&self.stiffness, &self.harmonics, phase) }
+    }
+
+    /// The tangential force pattern y on the interface circle that answers a uniform tangential displacement of it while it
+    /// is free of radial traction, with hole 0 at the angle 0: its entries multiply the tangential unknowns.
+    ///
+    /// Used by the decomposition, where only tangential displacements are imposed on the annulus.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError::NotPositiveDefinite`].
+    pub fn uniform_answer(&self, phase: f64) -> Result<Vec<f64>, FemError> {
+        let k = self.stiffness_at(phase);
+        let n = self.harmonics.unknowns();
+        let (radial, tangential): (Vec<usize>, Vec<usize>) = (0..n).partition(|i| i % 2 == 0);
+        let uniform = self.harmonics.cosine(0, Component::Tangential);
+        let factor = Cholesky::new(Mat::from_fn(radial.len(), radial.len(), |i, j| k[(radial[i], radial[j])]))
+            .ok_or(FemError::NotPositiveDefinite { part: "the blank's radial unknowns", unknowns: radial.len() })?;
+        let mut follow = Mat::from_fn(radial.len(), 1, |i, _| -k[(radial[i], uniform)]);
+        factor.solve_in_place(follow.as_mut());
+        let mut answer = vec![0.0; n];
+        for &t in &tangential {
+            answer[t] = k[(t, uniform)] + radial.iter().enumerate().map(|(i, &r)| k[(t, r)] * follow[(i, 0)]).sum::<f64>();
+        }
+        Ok(answer)
+    }
+}
+
+/// The stiffness `k` on `harmonics` of a body turned by `phase`: Rᵀ k R with R turning each pair (a_n, b_n) by −n `phase`.
+fn turned(k: &Mat<f64>, harmonics: &Harmonics, phase: f64) -> Mat<f64> {
+    let mut half = k.clone();
+    for _ in 0..2 {
+        turn_rows(&mut half, harmonics, phase);
+        half = half.transpose().to_owned();
+    }
+    half
+}
+
+fn turn_rows(a: &mut Mat<f64>, harmonics: &Harmonics, phase: f64) {
+    for n in 1..=harmonics.largest {
+        let (sin, cos) = (n as f64 * phase).sin_cos();
+        for component in [Component::Radial, Component::Tangential] {
+            let i = harmonics.cosine(n, component);
+            for j in 0..a.ncols() {
+                let (x, y) = (a[(i, j)], a[(i + 2, j)]);
+                a[(i, j)] = cos * x - sin * y;
+                a[(i + 2, j)] = sin * x + cos * y;
+            }
+        }
+    }
+}

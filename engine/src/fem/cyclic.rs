@@ -1,0 +1,177 @@
+//! A ring of equal sectors, condensed to the harmonics of its interface circle.
+//!
+//! On the interface circle of radius R_w the displacement is a trigonometric polynomial: in polar components
+//! u(θ) = Σ_n c_n e^{inθ}, |n| ≤ M. A ring of S equal sectors couples the orders n ≡ n' (mod S) only, so that each class
+//! is condensed on one sector. Teeth (S = Z) and holed blanks (S = N) meet in the same harmonics, whatever Z, N and the
+//! phase between them: rigid motions and linear fields are the orders 0, 1 and 2 and are exact.
+
+use faer::{Mat, c64};
+
+use super::FemError;
+use super::dense::Cholesky;
+
+/// The harmonics of orders −M … M on an interface circle, with real unknowns.
+///
+/// The unknowns are, for each component (radial, then tangential within an order): a_0, then a_n and b_n of
+/// a_n cos nθ + b_n sin nθ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Harmonics {
+    /// The largest order M.
+    pub largest: usize,
+}
+
+/// A component of a displacement or a force on the interface circle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Component {
+    /// Along e_r.
+    Radial,
+    /// Along e_t.
+    Tangential,
+}
+
+impl Harmonics {
+    /// The number 2 (2M + 1) of real unknowns.
+    pub fn unknowns(&self) -> usize {
+        2 * (2 * self.largest + 1)
+    }
+
+    /// Where the cosine of order `n` of a component stands; the sine, for n > 0, is two places later.
+    pub fn cosine(&self, n: usize, component: Component) -> usize {
+        let place = if n == 0 { 0 } else { 2 * (2 * n - 1) };
+        place + usize::from(component == Component::Tangential)
+    }
+
+    /// The orders n in −M … M with n ≡ `class` (mod `sectors`).
+    pub fn class(&self, class: usize, sectors: usize) -> Vec<i64> {
+        let (m, s) = (self.largest as i64, sectors as i64);
+        let first = -m + (class as i64 + m).rem_euclid(s);
+        (0..).map(|k| first + k * s).take_while(|&n| n <= m).collect()
+    }
+
+    /// Adds to `stiffness` the block `block` (components of order `n` by components of order `n_other`) of a Hermitian
+    /// form in the complex amplitudes c_n = (a_n − i b_n)/2.
+    fn add_block(&self, stiffness: &mut Mat<f64>, n: i64, n_other: i64, block: [[c64; 2]; 2]) {
+        let parts = |n: i64| -> [(usize, c64); 2] {
+            // The share of a_|n| and of b_|n| in c_n; order 0 has no sine.
+            let half = if n == 0 { 1.0 } else { 0.5 };
+            let sine = if n == 0 { 0.0 } else { -0.5 * n.signum() as f64 };
+            [(0, c64::new(half, 0.0)), (2, c64::new(0.0, sine))]
+        };
+        for (row_offset, row_share) in parts(n).into_iter().take(if n == 0 { 1 } else { 2 }) {
+            for (col_offset, col_share) in parts(n_other).into_iter().take(if n_other == 0 { 1 } else { 2 }) {
+                let row = self.cosine(n.unsigned_abs() as usize, Component::Radial) + row_offset;
+                let col = self.cosine(n_other.unsigned_abs() as usize, Component::Radial) + col_offset;
+                for (i, line) in block.iter().enumerate() {
+                    for (j, value) in line.iter().enumerate() {
+                        stiffness[(row + i, col + j)] += (row_share.conj() * value * col_share).re;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// One sector of a ring: its stiffness on the unknowns (right side, left side, arc) in polar components.
+#[derive(Debug, Clone)]
+pub struct Sector {
+    /// The number S of sectors in the ring.
+    pub count: usize,
+    /// The stiffness, in N/m.
+    pub stiffness: Mat<f64>,
+    /// The number of nodes on each side.
+    pub side_nodes: usize,
+    /// The angles of the nodes on the arc.
+    pub arc_angles: Vec<f64>,
+}
+
+/// The displacements of the sides of one class of a ring when its arc moves or its sides are loaded.
+pub struct ClassSolution {
+    /// The factor of the sides' stiffness with the phase of the class across a sector; `None` without side nodes.
+    pub sides: Option<Cholesky<c64>>,
+    /// The stiffness between sides and the harmonics of the class.
+    pub sides_to_harmonics: Mat<c64>,
+    /// The orders of the class.
+    pub orders: Vec<i64>,
+}
+
+impl Sector {
+    /// The phase factor e^{i class 2π/S} from the right side of a sector to its left side.
+    pub fn phase(&self, class: usize) -> c64 {
+        let (sin, cos) = (2.0 * std::f64::consts::PI * class as f64 / self.count as f64).sin_cos();
+        c64::new(cos, sin)
+    }
+
+    /// E: the polar displacements of the arc's nodes for unit amplitudes of `orders`; two columns an order.
+    pub fn arc_of_harmonics(&self, orders: &[i64]) -> Mat<c64> {
+        let mut e = Mat::<c64>::zeros(2 * self.arc_angles.len(), 2 * orders.len());
+        for (j, &n) in orders.iter().enumerate() {
+            for (i, &angle) in self.arc_angles.iter().enumerate() {
+                let (sin, cos) = (n as f64 * angle).sin_cos();
+                e[(2 * i, 2 * j)] = c64::new(cos, sin);
+                e[(2 * i + 1, 2 * j + 1)] = c64::new(cos, sin);
+            }
+        }
+        e
+    }
+
+    /// Condenses one class to its harmonics: returns the Hermitian stiffness of one sector and the way back to the sides.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError::NotPositiveDefinite`].
+    pub fn condense_class(&self, class: usize, harmonics: &Harmonics) -> Result<(Mat<c64>, ClassSolution), FemError> {
+        let orders = harmonics.class(class, self.count);
+        let ns = 2 * self.side_nodes;
+        let na = 2 * self.arc_angles.len();
+        let k = &self.stiffness;
+        let e = self.arc_of_harmonics(&orders);
+        // Displacements of (right, left) are (1, phase) times those of the right side.
+        let phase = self.phase(class);
+        let real = |i: usize, j: usize| c64::new(k[(i, j)], 0.0);
+        let arc = Mat::<c64>::from_fn(na, na, |i, j| real(2 * ns + i, 2 * ns + j));
+        let mut condensed = e.adjoint() * (&arc * &e);
+        let solution = if ns == 0 {
+            ClassSolution { sides: None, sides_to_harmonics: Mat::zeros(0, e.ncols()), orders }
+        } else {
+            let sides = Mat::<c64>::from_fn(ns, ns, |i, j| {
+                real(i, j) + real(ns + i, ns + j) + phase * real(i, ns + j) + phase.conj() * real(ns + i, j)
+            });
+            let sides_to_arc = Mat::<c64>::from_fn(ns, na, |i, j| real(i, 2 * ns + j) + phase.conj() * real(ns + i, 2 * ns + j));
+            let sides_to_harmonics = &sides_to_arc * &e;
+            let sides = Cholesky::new(sides).ok_or(FemError::NotPositiveDefinite { part: "a ring's sides", unknowns: ns })?;
+            let mut half = sides_to_harmonics.clone();
+            sides.half_solve_in_place(half.as_mut());
+            condensed -= half.adjoint() * &half;
+            ClassSolution { sides: Some(sides), sides_to_harmonics, orders }
+        };
+        Ok((condensed, solution))
+    }
+
+    /// The stiffness of the whole ring on the real unknowns of `harmonics`.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError::NotPositiveDefinite`].
+    pub fn ring_stiffness(&self, harmonics: &Harmonics) -> Result<Mat<f64>, FemError> {
+        let mut stiffness = Mat::zeros(harmonics.unknowns(), harmonics.unknowns());
+        // Classes c and S − c are each other's conjugates; both are visited only through their orders, so half suffice.
+        for class in 0..=self.count / 2 {
+            let (condensed, solution) = self.condense_class(class, harmonics)?;
+            self.add_class(&mut stiffness, harmonics, class, &condensed, &solution.orders);
+        }
+        Ok(stiffness)
+    }
+
+    /// Adds one condensed class, and its conjugate, to the ring's real stiffness.
+    pub fn add_class(&self, stiffness: &mut Mat<f64>, harmonics: &Harmonics, class: usize, condensed: &Mat<c64>, orders: &[i64]) {
+        let own_conjugate = (2 * class) % self.count == 0;
+        // The conjugate class has the orders −n and conjugate blocks; its real contribution equals this one's.
+        let weight = self.count as f64 * if own_conjugate { 1.0 } else { 2.0 };
+        for (i, &n) in orders.iter().enumerate() {
+            for (j, &n_other) in orders.iter().enumerate() {
+                let at = |a: usize, b: usize| condensed[(2 * i + a, 2 * j + b)] * weight;
+                harmonics.add_block(stiffness, n, n_other, [[at(0, 0), at(0, 1)], [at(1, 0), at(1, 1)]]);
+            }
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! Plane-stress finite elements and exact substructuring.
+//!
+//! Read in this order: [`element`] (one Q8), [`condensation`] (a grid's stiffness on the unknowns that are kept),
+//! [`cyclic`] (N equal sectors joined into a ring, on its harmonics), [`tooth`], [`blank`], and [`body`], which joins
+//! them into the compliance of a whole gear.
+
+pub mod blank;
+pub mod body;
+pub mod condensation;
+pub mod cyclic;
+pub mod dense;
+pub mod element;
+pub mod tooth;
+
+/// Why a substructure could not be condensed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FemError {
+    /// The stiffness of the grid is not positive definite.
+    #[error("the stiffness of {part} is not positive definite on {unknowns} unknowns")]
+    NotPositiveDefinite {
+        /// The part: tooth, blank, ring.
+        part: &'static str,
+        /// The number of unknowns.
+        unknowns: usize,
+    },
+    /// The problem is too large for this machine's indices or memory.
+    #[error("{part} with {unknowns} unknowns is too large to factorize")]
+    TooLarge {
+        /// The part.
+        part: &'static str,
+        /// The number of unknowns.
+        unknowns: usize,
+    },
+}

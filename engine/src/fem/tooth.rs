@@ -1,0 +1,249 @@
+//! One tooth as a substructure, and the ring of all teeth on their interface circle.
+
+use faer::{Mat, c64};
+
+use super::FemError;
+use super::condensation::{condense, mirror_lower};
+use super::cyclic::{Component, Harmonics, Sector};
+use super::dense::Cholesky;
+use crate::gear::{SpurGear, Vector, radial, tangential};
+use crate::grid::ToothGrid;
+
+/// Singular values of Ψ below this share of the largest carry nothing: H keeps nine digits.
+const MODE_TOLERANCE: f64 = 1e-11;
+
+/// One tooth sector, condensed to its interface and its loaded flank.
+///
+/// Flank unknowns are the displacements along the outward normal and towards the tip, node by node from the form point to
+/// the tip corner. All Z teeth of a gear share it.
+#[derive(Debug, Clone)]
+pub struct ToothSubstructure {
+    /// The compliance H_0 of the flank with the interface fixed, in m/N.
+    pub fixed_compliance: Mat<f64>,
+    /// V: how each loading mode of the interface shows at the flank; Ψ = V Q.
+    pub modes: Mat<f64>,
+    /// Roll length of each flank node, rising.
+    pub roll_lengths: Vec<f64>,
+    /// Place of each flank node.
+    pub flank_points: Vec<Vector>,
+    /// Nodes of the sector's grid.
+    pub grid_nodes: usize,
+    /// Nodes that the sector shares: its arc, and one of its sides.
+    pub shared_nodes: (usize, usize),
+    mode_forces: Mat<f64>,
+    sector: Sector,
+}
+
+impl ToothSubstructure {
+    /// Condenses `grid`, a sector of `gear`.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError`] if the grid is degenerate.
+    pub fn new(gear: &SpurGear, grid: &ToothGrid) -> Result<Self, FemError> {
+        let (right, left) = &grid.side_nodes;
+        let kept: Vec<u32> = grid.flank_nodes.iter().chain(right).chain(left).chain(&grid.arc_nodes).copied().collect();
+        let schur = condense("the tooth", &grid.grid, gear.material(), gear.face_width(), &kept, &[])?;
+
+        // Components: normal and towards the tip on the flank, polar elsewhere.
+        let flank = gear.flank();
+        let axes: Vec<[Vector; 2]> = grid
+            .flank_roll_lengths
+            .iter()
+            .map(|&s| [flank.normal(s), radial(flank.tangent_angle(s))])
+            .chain(kept[grid.flank_nodes.len()..].iter().map(|&node| {
+                let point = grid.grid.nodes[node as usize];
+                let angle = point.y.atan2(point.x);
+                [radial(angle), tangential(angle)]
+            }))
+            .collect();
+        let schur = in_axes(&schur, &axes);
+
+        let f = 2 * grid.flank_nodes.len();
+        let b = schur.nrows() - f;
+        let failure = FemError::NotPositiveDefinite { part: "the flank", unknowns: f };
+        let flank_factor = Cholesky::new(schur.submatrix(0, 0, f, f).to_owned()).ok_or(failure)?;
+        let mut fixed_compliance = Mat::<f64>::identity(f, f);
+        flank_factor.solve_in_place(fixed_compliance.as_mut());
+        symmetrize(&mut fixed_compliance);
+
+        // With a unit displacement of the interface the flank follows by Ψ = −S_ff⁻¹ S_fb.
+        let coupling = schur.submatrix(0, f, f, b);
+        let mut half = coupling.to_owned();
+        flank_factor.half_solve_in_place(half.as_mut());
+        let mut stiffness = schur.submatrix(f, f, b, b).to_owned();
+        stiffness -= half.transpose() * &half;
+        mirror_lower(&mut stiffness);
+        flank_factor.other_half_solve_in_place(half.as_mut());
+        let (modes, mode_forces) = compress(&(-half)).ok_or(FemError::NotPositiveDefinite { part: "the flank's modes", unknowns: b })?;
+
+        let sector = Sector { count: gear.tooth_count() as usize, stiffness, side_nodes: right.len(), arc_angles: grid.arc_angles.clone() };
+        Ok(Self {
+            fixed_compliance,
+            modes,
+            roll_lengths: grid.flank_roll_lengths.clone(),
+            flank_points: grid.flank_nodes.iter().map(|&node| grid.grid.nodes[node as usize]).collect(),
+            grid_nodes: grid.grid.nodes.len(),
+            shared_nodes: (grid.arc_nodes.len(), right.len()),
+            mode_forces,
+            sector,
+        })
+    }
+
+    /// The number r of loading modes.
+    pub fn mode_count(&self) -> usize {
+        self.modes.ncols()
+    }
+}
+
+/// The ring of all teeth of a gear, condensed to the harmonics of the interface circle.
+#[derive(Debug, Clone)]
+pub struct TeethRing {
+    /// The harmonics.
+    pub harmonics: Harmonics,
+    /// The stiffness of all teeth together on the harmonics.
+    pub stiffness: Mat<f64>,
+    /// The forces on the harmonics that the unit modes of tooth 0 exert; real unknowns by r.
+    pub tooth_forces: Mat<f64>,
+    /// X_d: the answer of tooth 0 to the modes of tooth d, with the interface circle held; d = 0 … Z − 1.
+    pub held_coupling: Vec<Mat<f64>>,
+}
+
+impl TeethRing {
+    /// Joins Z copies of `tooth`.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError::NotPositiveDefinite`].
+    pub fn new(tooth: &ToothSubstructure, harmonics: Harmonics) -> Result<Self, FemError> {
+        let sector = &tooth.sector;
+        let (z, r) = (sector.count, tooth.mode_count());
+        let ns = 2 * sector.side_nodes;
+        let forces = &tooth.mode_forces;
+        let mut stiffness = Mat::zeros(harmonics.unknowns(), harmonics.unknowns());
+        let mut tooth_forces = Mat::<f64>::zeros(harmonics.unknowns(), r);
+        let mut class_compliance = Vec::with_capacity(z / 2 + 1);
+        for class in 0..=z / 2 {
+            let (condensed, solution) = sector.condense_class(class, &harmonics)?;
+            sector.add_class(&mut stiffness, &harmonics, class, &condensed, &solution.orders);
+
+            // Work of the modes on the sides and on the arc, as amplitudes of this class.
+            let phase = sector.phase(class);
+            let mut on_sides = Mat::<c64>::from_fn(ns, r, |i, j| c64::new(forces[(i, j)], 0.0) + phase.conj() * forces[(ns + i, j)]);
+            let arc = Mat::<c64>::from_fn(2 * sector.arc_angles.len(), r, |i, j| c64::new(forces[(2 * ns + i, j)], 0.0));
+            let mut on_harmonics = sector.arc_of_harmonics(&solution.orders).adjoint() * arc;
+            let loads = on_sides.clone();
+            if let Some(sides) = &solution.sides {
+                sides.solve_in_place(on_sides.as_mut());
+                on_harmonics -= solution.sides_to_harmonics.adjoint() * &on_sides;
+            }
+            class_compliance.push(loads.adjoint() * &on_sides);
+            add_forces(&mut tooth_forces, &harmonics, &on_harmonics, &solution.orders);
+        }
+        let held_coupling = (0..z).map(|d| held_coupling(&class_compliance, z, d)).collect();
+        Ok(Self { harmonics, stiffness, tooth_forces, held_coupling })
+    }
+
+    /// The forces on the harmonics of the unit modes of the tooth at `angle`.
+    pub fn forces_of_tooth_at(&self, angle: f64) -> Mat<f64> {
+        let mut turned = self.tooth_forces.clone();
+        for n in 1..=self.harmonics.largest {
+            let (sin, cos) = (n as f64 * angle).sin_cos();
+            for component in [Component::Radial, Component::Tangential] {
+                let a = self.harmonics.cosine(n, component);
+                for j in 0..turned.ncols() {
+                    let (x, y) = (turned[(a, j)], turned[(a + 2, j)]);
+                    turned[(a, j)] = cos * x - sin * y;
+                    turned[(a + 2, j)] = sin * x + cos * y;
+                }
+            }
+        }
+        turned
+    }
+}
+
+/// Turns complex forces on the orders of one class, and their conjugates, into forces on a_n and b_n.
+fn add_forces(forces: &mut Mat<f64>, harmonics: &Harmonics, on_harmonics: &Mat<c64>, orders: &[i64]) {
+    for (i, &n) in orders.iter().enumerate() {
+        // Each order is visited once: its conjugate −n is either in the conjugate class or in this one.
+        let conjugate_here = n != 0 && orders.contains(&-n);
+        if conjugate_here && n < 0 {
+            continue;
+        }
+        let sign = n.signum() as f64;
+        for (c, component) in [Component::Radial, Component::Tangential].into_iter().enumerate() {
+            let a = harmonics.cosine(n.unsigned_abs() as usize, component);
+            for j in 0..forces.ncols() {
+                let force = on_harmonics[(2 * i + c, j)];
+                forces[(a, j)] += force.re;
+                if n != 0 {
+                    forces[(a + 2, j)] -= sign * force.im;
+                }
+            }
+        }
+    }
+}
+
+/// X_d = (1/Z) Σ_classes e^{−i class 2π d/Z} ĝᴴ K_s⁻¹ ĝ.
+fn held_coupling(class_compliance: &[Mat<c64>], z: usize, d: usize) -> Mat<f64> {
+    let r = class_compliance[0].nrows();
+    let mut sum = Mat::<f64>::zeros(r, r);
+    for (class, compliance) in class_compliance.iter().enumerate() {
+        let weight = if (2 * class) % z == 0 { 1.0 } else { 2.0 } / z as f64;
+        let (sin, cos) = (2.0 * std::f64::consts::PI * ((class * d) % z) as f64 / z as f64).sin_cos();
+        let turn = c64::new(cos, -sin);
+        for j in 0..r {
+            for i in 0..r {
+                sum[(i, j)] += weight * (turn * compliance[(i, j)]).re;
+            }
+        }
+    }
+    sum
+}
+
+/// The symmetric matrix `a`, given on (x, y) of each node, on the axes of each node.
+fn in_axes(a: &Mat<f64>, axes: &[[Vector; 2]]) -> Mat<f64> {
+    let n = axes.len();
+    let mut rotated = Mat::zeros(2 * n, 2 * n);
+    for j in 0..n {
+        for i in 0..n {
+            let block = nalgebra::Matrix2::new(a[(2 * i, 2 * j)], a[(2 * i, 2 * j + 1)], a[(2 * i + 1, 2 * j)], a[(2 * i + 1, 2 * j + 1)]);
+            for (c, left) in axes[i].iter().enumerate() {
+                for (d, right) in axes[j].iter().enumerate() {
+                    rotated[(2 * i + c, 2 * j + d)] = left.dot(&(block * right));
+                }
+            }
+        }
+    }
+    rotated
+}
+
+/// Splits Ψ into V Q with orthonormal rows of Q, which are the force patterns on the interface: (V, Qᵀ).
+fn compress(psi: &Mat<f64>) -> Option<(Mat<f64>, Mat<f64>)> {
+    let svd = psi.thin_svd().ok()?;
+    let (u, v, s) = (svd.U(), svd.V(), svd.S().column_vector());
+    let rank = (0..s.nrows()).take_while(|&i| s[i] > MODE_TOLERANCE * s[0]).count();
+    let modes = Mat::from_fn(u.nrows(), rank, |i, j| u[(i, j)] * s[j]);
+    Some((modes, v.subcols(0, rank).to_owned()))
+}
+
+fn symmetrize(a: &mut Mat<f64>) {
+    for j in 0..a.ncols() {
+        for i in 0..j {
+            let mean = f64::midpoint(a[(i, j)], a[(j, i)]);
+            a[(i, j)] = mean;
+            a[(j, i)] = mean;
+        }
+    }
+}
+
+/// Polar axes of a node at `point`.
+pub(super) fn polar_axes(point: Vector) -> [Vector; 2] {
+    let angle = point.y.atan2(point.x);
+    [radial(angle), tangential(angle)]
+}
+
+/// The symmetric matrix `a` on the polar axes of `points`.
+pub(super) fn in_polar_axes(a: &Mat<f64>, points: impl Iterator<Item = Vector>) -> Mat<f64> {
+    in_axes(a, &points.map(polar_axes).collect::<Vec<_>>())
+}

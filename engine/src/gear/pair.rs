@@ -1,0 +1,435 @@
+//! Two spur gears in engagement.
+
+use super::SpurGear;
+use super::involute::involute_function;
+
+/// One of the two gears of a pair.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Member {
+    /// Gear 1, which drives.
+    Driving,
+    /// Gear 2, which is driven.
+    Driven,
+}
+
+impl std::fmt::Display for Member {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Driving => "driving",
+            Self::Driven => "driven",
+        })
+    }
+}
+
+/// Why two gears cannot mesh. Lengths are in meters.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum GearPairError {
+    /// The modules differ.
+    #[error("the modules differ: {driving} m and {driven} m")]
+    ModuleMismatch {
+        /// Of the driving gear.
+        driving: f64,
+        /// Of the driven gear.
+        driven: f64,
+    },
+    /// The pressure angles differ.
+    #[error("the pressure angles differ: {driving} rad and {driven} rad")]
+    PressureAngleMismatch {
+        /// Of the driving gear.
+        driving: f64,
+        /// Of the driven gear.
+        driven: f64,
+    },
+    /// The tip circles do not overlap.
+    #[error(
+        "center distance {center_distance} m is more than the tip radii together ({tip_radii} m); at most {largest} m"
+    )]
+    TeethDoNotReach {
+        /// The center distance asked for.
+        center_distance: f64,
+        /// The sum of the tip radii.
+        tip_radii: f64,
+        /// The largest center distance at which the contact ratio is one.
+        largest: f64,
+    },
+    /// Between one pair of teeth and the next nothing carries the load.
+    #[error(
+        "the contact ratio {contact_ratio} is below one; a center distance of at most {largest} m"
+    )]
+    ContactRatioBelowOne {
+        /// The contact ratio at the distance asked for.
+        contact_ratio: f64,
+        /// The largest center distance at which it is one.
+        largest: f64,
+    },
+    /// The teeth are thicker than the spaces that they enter.
+    #[error(
+        "the normal backlash {backlash} m is negative; a center distance of at least {smallest} m"
+    )]
+    NegativeBacklash {
+        /// The normal backlash.
+        backlash: f64,
+        /// The smallest center distance without negative backlash.
+        smallest: f64,
+    },
+    /// A tip enters the fillet or the root of the other gear.
+    #[error(
+        "the tips of the other gear reach below the flanks of the {member} gear; a center distance of at least {smallest} m"
+    )]
+    Interference {
+        /// The gear whose fillet is hit.
+        member: Member,
+        /// The smallest center distance that avoids it.
+        smallest: f64,
+    },
+}
+
+/// Two spur gears at a center distance, the first driving the second.
+///
+/// A value of this type can mesh: the contact ratio is at least one, the backlash is not negative and no tip enters a
+/// fillet. Lengths are in meters, angles in radians.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GearPair {
+    driving: SpurGear,
+    driven: SpurGear,
+    center_distance: f64,
+}
+
+impl GearPair {
+    /// Sets `driving` and `driven` at the operating `center_distance`.
+    ///
+    /// # Errors
+    ///
+    /// [`GearPairError`] says why they cannot mesh there, and the nearest distance at which they can.
+    pub fn new(
+        driving: SpurGear,
+        driven: SpurGear,
+        center_distance: f64,
+    ) -> Result<Self, GearPairError> {
+        let (rack_1, rack_2) = (&driving.data().rack, &driven.data().rack);
+        if rack_1.module != rack_2.module {
+            return Err(GearPairError::ModuleMismatch {
+                driving: rack_1.module,
+                driven: rack_2.module,
+            });
+        }
+        if rack_1.pressure_angle != rack_2.pressure_angle {
+            return Err(GearPairError::PressureAngleMismatch {
+                driving: rack_1.pressure_angle,
+                driven: rack_2.pressure_angle,
+            });
+        }
+        let pair = Self {
+            driving,
+            driven,
+            center_distance,
+        };
+        pair.check()?;
+        Ok(pair)
+    }
+
+    fn check(&self) -> Result<(), GearPairError> {
+        let tip_radii = self.driving.tip_radius() + self.driven.tip_radius();
+        let center_distance = self.center_distance;
+        if center_distance >= tip_radii {
+            let largest = self.largest_center_distance();
+            return Err(GearPairError::TeethDoNotReach {
+                center_distance,
+                tip_radii,
+                largest,
+            });
+        }
+        // Below the base circles together there is no line of action; the backlash decides the nearest distance.
+        let base_radii = self.driving.base_radius() + self.driven.base_radius();
+        if center_distance <= base_radii || self.backlash() < -1e-12 {
+            let backlash = if center_distance <= base_radii {
+                f64::NEG_INFINITY
+            } else {
+                self.backlash()
+            };
+            let smallest =
+                self.least_center_distance(base_radii, tip_radii, |pair| pair.backlash() >= 0.0);
+            return Err(GearPairError::NegativeBacklash { backlash, smallest });
+        }
+        for member in [Member::Driving, Member::Driven] {
+            if !self.clears(member) {
+                let smallest = self
+                    .least_center_distance(center_distance, tip_radii, |pair| pair.clears(member));
+                return Err(GearPairError::Interference { member, smallest });
+            }
+        }
+        let contact_ratio = self.contact_ratio();
+        if contact_ratio < 1.0 {
+            return Err(GearPairError::ContactRatioBelowOne {
+                contact_ratio,
+                largest: self.largest_center_distance(),
+            });
+        }
+        Ok(())
+    }
+
+    /// Whether the other gear's tips stay on the flank of `member` and clear of its root.
+    fn clears(&self, member: Member) -> bool {
+        let (gear, other) = (self.gear(member), self.gear(member.other()));
+        let lowest = self.line_of_action() - other.tip_roll_length();
+        lowest >= gear.form_roll_length()
+            && self.center_distance - other.tip_radius() > gear.root_radius()
+    }
+
+    fn at(&self, center_distance: f64) -> Self {
+        Self {
+            center_distance,
+            ..*self
+        }
+    }
+
+    /// The center distance at which the contact ratio falls to one; it falls as the distance grows.
+    fn largest_center_distance(&self) -> f64 {
+        let low = self.driving.base_radius() + self.driven.base_radius();
+        let high = self.driving.tip_radius() + self.driven.tip_radius();
+        bisect(low, high, |a| self.at(a).contact_ratio() >= 1.0)
+    }
+
+    /// The smallest center distance in (`low`, `high`) from which `holds` holds.
+    fn least_center_distance(&self, low: f64, high: f64, holds: impl Fn(&Self) -> bool) -> f64 {
+        bisect(high, low, |a| holds(&self.at(a)))
+    }
+
+    /// The driving gear, gear 1.
+    pub fn driving(&self) -> &SpurGear {
+        &self.driving
+    }
+
+    /// The driven gear, gear 2.
+    pub fn driven(&self) -> &SpurGear {
+        &self.driven
+    }
+
+    /// The gear that is `member` of the pair.
+    pub fn gear(&self, member: Member) -> &SpurGear {
+        match member {
+            Member::Driving => &self.driving,
+            Member::Driven => &self.driven,
+        }
+    }
+
+    /// The operating center distance a.
+    pub fn center_distance(&self) -> f64 {
+        self.center_distance
+    }
+
+    /// The working pressure angle α_w: cos α_w = (r_b1 + r_b2)/a.
+    pub fn working_pressure_angle(&self) -> f64 {
+        ((self.driving.base_radius() + self.driven.base_radius()) / self.center_distance).acos()
+    }
+
+    /// The length a sin α_w of the line of action between the base circles, on which s_1 + s_2 is constant.
+    pub fn line_of_action(&self) -> f64 {
+        self.center_distance * self.working_pressure_angle().sin()
+    }
+
+    /// The base pitch p_b.
+    pub fn base_pitch(&self) -> f64 {
+        self.driving.base_pitch()
+    }
+
+    /// The working pitch radius r_w of `member`: r_b/cos α_w.
+    pub fn working_radius(&self, member: Member) -> f64 {
+        self.gear(member).base_radius() / self.working_pressure_angle().cos()
+    }
+
+    /// The roll length on the driving gear at the pitch point C, where the reference pair touches at mesh position 0.
+    pub fn pitch_roll_length(&self) -> f64 {
+        self.driving.base_radius() * self.working_pressure_angle().tan()
+    }
+
+    /// The roll lengths on the driving gear at the ends A and E of the path of contact.
+    pub fn path_of_contact(&self) -> (f64, f64) {
+        (
+            self.line_of_action() - self.driven.tip_roll_length(),
+            self.driving.tip_roll_length(),
+        )
+    }
+
+    /// The contact ratio ε_α: the length g_α of the path of contact over the base pitch p_b.
+    pub fn contact_ratio(&self) -> f64 {
+        let (s_a, s_e) = self.path_of_contact();
+        (s_e - s_a) / self.base_pitch()
+    }
+
+    /// The normal backlash j_bn, along the line of action.
+    pub fn backlash(&self) -> f64 {
+        let alpha_w = self.working_pressure_angle();
+        let thickness = |member| {
+            let half_angle =
+                self.gear(member).flank().base_half_angle() - involute_function(alpha_w);
+            2.0 * self.working_radius(member) * half_angle
+        };
+        let pitch = self.working_radius(Member::Driving) * self.driving.pitch_angle();
+        (pitch - thickness(Member::Driving) - thickness(Member::Driven)) * alpha_w.cos()
+    }
+
+    /// The number of mesh periods after which the contact repeats: lcm(Z1/gcd(Z1, N1), Z2/gcd(Z2, N2)), with the factor 1
+    /// for a gear without holes.
+    pub fn period(&self) -> u32 {
+        let share = |gear: &SpurGear| {
+            let z = gear.tooth_count();
+            gear.holes().map_or(1, |holes| z / gcd(z, holes.count))
+        };
+        let (p_1, p_2) = (share(&self.driving), share(&self.driven));
+        p_1 / gcd(p_1, p_2) * p_2
+    }
+
+    /// The face width on which the gears touch: the smaller of the two.
+    pub fn contact_width(&self) -> f64 {
+        self.driving.face_width().min(self.driven.face_width())
+    }
+
+    /// The transmitted load F = T/r_b2 of the output torque T (newton meters to newtons).
+    pub fn load(&self, output_torque: f64) -> f64 {
+        output_torque / self.driven.base_radius()
+    }
+}
+
+impl Member {
+    /// The other one.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Driving => Self::Driven,
+            Self::Driven => Self::Driving,
+        }
+    }
+}
+
+/// The last place, going from `good` towards `bad`, at which `holds` still holds.
+fn bisect(mut good: f64, mut bad: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..80 {
+        let middle = f64::midpoint(good, bad);
+        if holds(middle) {
+            good = middle
+        } else {
+            bad = middle
+        }
+    }
+    good
+}
+
+fn gcd(a: u32, b: u32) -> u32 {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gear::HolePattern;
+    use crate::gear::spur::tests::paper_gear;
+
+    fn gear(tooth_count: u32) -> SpurGear {
+        let mut data = paper_gear(tooth_count);
+        data.blank.bore_radius = 10e-3;
+        SpurGear::new(data).expect("a gear of the paper")
+    }
+
+    #[test]
+    fn contact_ratios_and_path_points_are_those_of_the_closed_form() {
+        // FIELD section 3.1: a in mm, α_w in degrees, g_α, ε_α, s_1 at A, C, E, j_bn in mm.
+        let table = [
+            (
+                50, 50, 100.5, 20.76902, 8.92462, 1.51155, 13.3564, 17.8187, 22.2810, 0.34836,
+            ),
+            (
+                29, 85, 114.0, 20.00000, 10.27160, 1.73969, 4.5060, 9.9186, 14.7776, 0.0,
+            ),
+            (
+                29, 85, 114.5, 20.67646, 8.83303, 1.49604, 5.9446, 10.2845, 14.7776, 0.34760,
+            ),
+        ];
+        for (z1, z2, a, alpha_w, g_alpha, ratio, s_a, s_c, s_e, backlash) in table {
+            let pair = GearPair::new(gear(z1), gear(z2), a * 1e-3).expect("meshes");
+            let near = |value: f64, printed: f64, half_digit: f64| {
+                assert!((value - printed).abs() <= half_digit, "{value} {printed}")
+            };
+            near(pair.working_pressure_angle().to_degrees(), alpha_w, 6e-6);
+            near(
+                pair.contact_ratio() * pair.base_pitch() * 1e3,
+                g_alpha,
+                6e-6,
+            );
+            near(pair.contact_ratio(), ratio, 6e-6);
+            near(pair.path_of_contact().0 * 1e3, s_a, 6e-5);
+            near(pair.pitch_roll_length() * 1e3, s_c, 6e-5);
+            near(pair.path_of_contact().1 * 1e3, s_e, 6e-5);
+            near(pair.backlash() * 1e3, backlash, 6e-6);
+        }
+    }
+
+    #[test]
+    fn the_distance_printed_for_case_3_leaves_the_teeth_apart() {
+        // Table 1 prints 118.5 mm, but the tip circles end at 31 mm + 87 mm; continuous meshing ends at 115.567 mm.
+        let Err(GearPairError::TeethDoNotReach {
+            tip_radii, largest, ..
+        }) = GearPair::new(gear(29), gear(85), 118.5e-3)
+        else {
+            panic!("the teeth do not reach")
+        };
+        assert!((tip_radii - 118e-3).abs() < 1e-15);
+        assert!((largest - 115.567e-3).abs() < 5e-7);
+        assert!(GearPair::new(gear(29), gear(85), largest).is_ok());
+        assert!(matches!(
+            GearPair::new(gear(29), gear(85), largest + 1e-6),
+            Err(GearPairError::ContactRatioBelowOne { .. })
+        ));
+    }
+
+    #[test]
+    fn teeth_too_thick_for_their_distance_are_refused_and_zero_backlash_is_not() {
+        let Err(GearPairError::NegativeBacklash { smallest, .. }) =
+            GearPair::new(gear(50), gear(50), 99.9e-3)
+        else {
+            panic!("jams")
+        };
+        assert!(
+            (smallest - 100e-3).abs() < 1e-9,
+            "the reference distance of unshifted gears has zero backlash"
+        );
+        assert!(GearPair::new(gear(50), gear(50), 100e-3).is_ok());
+        assert!(matches!(
+            GearPair::new(gear(50), gear(50), 80e-3),
+            Err(GearPairError::NegativeBacklash { .. })
+        ));
+    }
+
+    #[test]
+    fn a_tip_that_enters_a_fillet_is_refused() {
+        let mut long = paper_gear(50);
+        long.rack.addendum = 2.6e-3;
+        let long = SpurGear::new(long).expect("a long tooth");
+        let Err(GearPairError::Interference {
+            member: Member::Driving,
+            smallest,
+        }) = GearPair::new(gear(29), long, 114e-3 - 35e-3 + 1e-4)
+        else {
+            panic!("the long tips enter the fillets of the pinion")
+        };
+        assert!(GearPair::new(gear(29), long, smallest).is_ok());
+    }
+
+    #[test]
+    fn the_true_periods_of_the_three_test_cases_are_25_5_and_85() {
+        let holed = |z: u32, count| {
+            let mut data = paper_gear(z);
+            data.blank.holes = Some(HolePattern {
+                count,
+                circle_radius: 30e-3,
+                radius: 5e-3,
+                phase: 0.0,
+            });
+            SpurGear::new(data).expect("fits")
+        };
+        let period = |one, other, a| GearPair::new(one, other, a).expect("meshes").period();
+        assert_eq!(period(holed(50, 8), holed(50, 8), 100.5e-3), 25);
+        assert_eq!(period(gear(50), holed(50, 10), 100.5e-3), 5);
+        assert_eq!(period(gear(29), holed(85, 6), 114.5e-3), 85);
+        assert_eq!(period(gear(50), gear(50), 100.5e-3), 1);
+    }
+}

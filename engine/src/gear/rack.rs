@@ -1,0 +1,142 @@
+//! The basic rack and the trochoid fillet that it generates.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use super::{Vector, radial, tangential};
+
+/// The basic rack of a gear (ISO 53), with lengths in meters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rack {
+    /// The module m.
+    pub module: f64,
+    /// The pressure angle α.
+    pub pressure_angle: f64,
+    /// The addendum h_a of the rack.
+    pub addendum: f64,
+    /// The dedendum h_f of the rack.
+    pub dedendum: f64,
+    /// The radius ρ of the rack's tip rounding.
+    pub tip_radius: f64,
+}
+
+impl Rack {
+    /// Half the flat at the rack's tip, e = π m/4 − (h_f − ρ) tan α − ρ/cos α; negative if the roundings overlap.
+    pub fn half_tip_land(&self) -> f64 {
+        let Self {
+            module: m,
+            pressure_angle: alpha,
+            dedendum: h_f,
+            tip_radius: rho,
+            ..
+        } = *self;
+        PI * m / 4.0 - (h_f - rho) * alpha.tan() - rho / alpha.cos()
+    }
+
+    /// The largest tip rounding for which the tip land does not vanish.
+    pub fn largest_tip_radius(&self) -> f64 {
+        let (sin, cos) = self.pressure_angle.sin_cos();
+        (PI * self.module / 4.0 - self.dedendum * self.pressure_angle.tan()) * cos / (1.0 - sin)
+    }
+
+    /// The depth of the end of the rack's straight flank below its reference line, h_f − ρ (1 − sin α).
+    pub fn straight_depth(&self) -> f64 {
+        self.dedendum - self.tip_radius * (1.0 - self.pressure_angle.sin())
+    }
+}
+
+/// The fillet of tooth 0 on its loaded side: the envelope of the rack's tip rounding as the rack rolls on the
+/// reference circle.
+///
+/// The parameter γ is the angle of the contact normal to the reference circle's tangent: it runs from α, where the
+/// fillet meets the involute at the form radius, to π/2, where it meets the root circle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Trochoid {
+    reference_radius: f64,
+    space_angle: f64,
+    half_tip_land: f64,
+    center_depth: f64,
+    tip_radius: f64,
+    pressure_angle: f64,
+}
+
+impl Trochoid {
+    /// The fillet left by `rack`, shifted outward by `shift` (x m), on a gear of `tooth_count` teeth.
+    pub fn new(rack: &Rack, tooth_count: u32, shift: f64) -> Self {
+        Self {
+            reference_radius: rack.module * f64::from(tooth_count) / 2.0,
+            space_angle: PI / f64::from(tooth_count),
+            half_tip_land: rack.half_tip_land(),
+            center_depth: rack.dedendum - rack.tip_radius - shift,
+            tip_radius: rack.tip_radius,
+            pressure_angle: rack.pressure_angle,
+        }
+    }
+
+    /// The depth d of the rounding's center below the rolling line; the fillet exists only where it is positive.
+    pub fn center_depth(&self) -> f64 {
+        self.center_depth
+    }
+
+    /// The values of γ at the involute and at the root circle.
+    pub fn ends(&self) -> (f64, f64) {
+        (self.pressure_angle, FRAC_PI_2)
+    }
+
+    /// The point of the fillet at γ = `gamma`.
+    pub fn point(&self, gamma: f64) -> Vector {
+        let Self {
+            reference_radius: r,
+            space_angle,
+            half_tip_land: e,
+            center_depth: d,
+            tip_radius: rho,
+            ..
+        } = *self;
+        let (sin, cos) = gamma.sin_cos();
+        // The pitch point of the rolling stands at angle φ of the gear, the rounding's center a length l beside it.
+        let l = -d * cos / sin;
+        let phi = space_angle - (l + e) / r;
+        (r - d - rho * sin) * radial(phi) + (l - rho * cos) * tangential(phi)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gear::Involute;
+    use crate::gear::involute::involute_function;
+
+    #[test]
+    fn the_fillet_runs_from_the_involute_at_the_form_radius_to_the_root_circle() {
+        let rack = Rack {
+            module: 2e-3,
+            pressure_angle: 20_f64.to_radians(),
+            addendum: 2e-3,
+            dedendum: 2.5e-3,
+            tip_radius: 0.76e-3,
+        };
+        for (z, x) in [(50_u32, 0.0), (29, 0.3), (18, 0.0), (85, -0.2)] {
+            let shift = x * rack.module;
+            let fillet = Trochoid::new(&rack, z, shift);
+            let r = rack.module * f64::from(z) / 2.0;
+            let alpha = rack.pressure_angle;
+            let psi_b = PI / (2.0 * f64::from(z))
+                + 2.0 * x * alpha.tan() / f64::from(z)
+                + involute_function(alpha);
+            let flank = Involute::new(r * alpha.cos(), psi_b);
+            let s_form = r * alpha.sin() - (rack.straight_depth() - shift) / alpha.sin();
+            let (start, end) = fillet.ends();
+            assert!(
+                (fillet.point(start) - flank.point(s_form)).norm() < 1e-15,
+                "the curves meet"
+            );
+            let step = 1e-6;
+            let tangent = (fillet.point(start + step) - fillet.point(start)).normalize();
+            assert!(
+                tangent.dot(&flank.normal(s_form)).abs() < 1e-4,
+                "and share a tangent"
+            );
+            assert!((fillet.point(end).norm() - (r - rack.dedendum + shift)).abs() < 1e-15);
+        }
+    }
+}

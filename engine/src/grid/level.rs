@@ -1,0 +1,46 @@
+//! How fine the finite-element grids are.
+
+/// The public grid levels; each step halves every element.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum GridLevel {
+    /// Half as fine as standard: for first looks.
+    Coarse,
+    /// The level at which the published accuracy holds.
+    Standard,
+    /// Twice as fine as standard: for error estimates.
+    Fine,
+}
+
+impl GridLevel {
+    /// The count at this level of what the standard grid has about `standard` of.
+    ///
+    /// The standard count is made even, so that the levels are 1 : 2 : 4 exactly.
+    pub(super) fn count(self, standard: f64) -> usize {
+        let half = (standard / 2.0).round().max(1.0) as usize;
+        match self {
+            Self::Coarse => half,
+            Self::Standard => 2 * half,
+            Self::Fine => 4 * half,
+        }
+    }
+
+    /// The number of elements at this level in place of one of the standard level.
+    pub(super) fn refinement(self) -> f64 {
+        match self {
+            Self::Coarse => 0.5,
+            Self::Standard => 1.0,
+            Self::Fine => 2.0,
+        }
+    }
+}
+
+impl GridLevel {
+    /// The level to compare with for an error estimate: the next finer one, or the next coarser of the finest.
+    pub fn neighbor(self) -> Self {
+        match self {
+            Self::Coarse => Self::Standard,
+            Self::Standard => Self::Fine,
+            Self::Fine => Self::Standard,
+        }
+    }
+}

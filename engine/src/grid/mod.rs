@@ -1,0 +1,87 @@
+//! Finite-element grids of tooth sectors and holed blanks.
+//!
+//! Every grid is made of 8-node quadrilaterals in structured blocks. Read in this order: [`level`] (how fine), [`planar`]
+//! (what a grid is, and its quality), [`tooth`] and [`blank`] (the two sectors a gear is assembled from).
+
+pub mod blank;
+mod block;
+mod division;
+pub mod level;
+pub mod planar;
+pub mod tooth;
+
+pub use blank::BlankGrid;
+pub use level::GridLevel;
+pub use planar::{Grid, GridQuality};
+pub use tooth::ToothGrid;
+
+/// The smallest corner angle of a usable grid, in radians (15 degrees).
+pub const LEAST_ANGLE: f64 = std::f64::consts::PI / 12.0;
+
+/// Why a sector cannot be divided into elements. Lengths are in meters, angles in radians.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum GridError {
+    /// The interface circle does not run below the teeth.
+    #[error(
+        "the interface radius {interface_radius} m must lie between zero and the root radius {root_radius} m"
+    )]
+    InterfaceOutsideRim {
+        /// The interface radius asked for.
+        interface_radius: f64,
+        /// The root radius of the gear.
+        root_radius: f64,
+    },
+    /// The interface circle does not run outside the bore.
+    #[error(
+        "the interface radius {interface_radius} m must be larger than the bore radius {bore_radius} m"
+    )]
+    InterfaceInsideBore {
+        /// The interface radius asked for.
+        interface_radius: f64,
+        /// The bore radius.
+        bore_radius: f64,
+    },
+    /// A hole reaches its neighbor, the bore or the interface circle.
+    #[error(
+        "the holes leave {beside} m between them, {above} m below the interface circle and {below} m around the bore"
+    )]
+    NoLigament {
+        /// The material between neighboring holes.
+        beside: f64,
+        /// The material between a hole and the interface circle.
+        above: f64,
+        /// The material between a hole and the bore.
+        below: f64,
+    },
+    /// The sector is shaped such that some element is folded or too slender at a corner.
+    #[error(
+        "an element is distorted: least Jacobian ratio {smallest_jacobian}, corner angles from {smallest_angle} rad to {largest_angle} rad"
+    )]
+    Distorted {
+        /// The least ratio of Jacobian determinants within an element; not positive where one is folded.
+        smallest_jacobian: f64,
+        /// The smallest corner angle.
+        smallest_angle: f64,
+        /// The largest corner angle.
+        largest_angle: f64,
+    },
+}
+
+/// Passes a grid whose elements are all usable.
+fn checked(grid: Grid) -> Result<Grid, GridError> {
+    let GridQuality {
+        smallest_jacobian,
+        smallest_angle,
+        largest_angle,
+    } = grid.quality();
+    // Written so that a coordinate that is not a number is refused as well.
+    if smallest_jacobian > 0.0 && smallest_angle >= LEAST_ANGLE {
+        Ok(grid)
+    } else {
+        Err(GridError::Distorted {
+            smallest_jacobian,
+            smallest_angle,
+            largest_angle,
+        })
+    }
+}
