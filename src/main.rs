@@ -1,5 +1,6 @@
 //! The command line: reads the configuration, starts the parts, waits for the signal.
 
+use std::io::IsTerminal;
 use std::sync::Arc;
 
 use anyhow::Context;
@@ -40,6 +41,7 @@ async fn serve_until_signal(config: &Config) -> anyhow::Result<()> {
     tracing_subscriber::fmt()
         .with_env_filter(filter)
         .with_writer(std::io::stderr)
+        .with_ansi(std::io::stderr().is_terminal())
         .init();
 
     let service = serve(

@@ -41,7 +41,7 @@ fn render(problem: &Problem, mut headers: HeaderMap) -> Response {
 fn retry_after(code: Code) -> Option<&'static str> {
     match code {
         Code::ResultNotReady => Some("1"),
-        Code::QueueFull | Code::Unavailable => Some("5"),
+        Code::QueueFull => Some("5"),
         _ => None,
     }
 }
@@ -68,9 +68,11 @@ impl From<JobError> for Problem {
                 Code::JobFinished,
                 format!("The job is {} already.", status.as_str()),
             ),
-            JobError::ShuttingDown => {
-                Problem::new(Code::Unavailable, "The service is shutting down.")
-            }
+            // To the client it is the same: no job was taken, and the next process will take one.
+            JobError::ShuttingDown => Problem::new(
+                Code::QueueFull,
+                "The service is shutting down and takes no more jobs.",
+            ),
             JobError::Database(source) => {
                 error!(error = %source, "the database failed");
                 internal()

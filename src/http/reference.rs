@@ -35,9 +35,11 @@ pub(super) async fn validate(Document(document): Document) -> Result<Json<Value>
 #[derive(Serialize, ToSchema)]
 pub(super) struct Example {
     /// A short name.
-    name: String,
+    name: &'static str,
     /// What it shows.
-    description: String,
+    description: &'static str,
+    /// Whether it can be computed. One cannot, on purpose: it shows what a refusal looks like.
+    valid: bool,
     /// The submission, ready for `POST /v1/jobs`.
     #[schema(value_type = Object)]
     submission: Value,
@@ -58,18 +60,14 @@ pub(super) struct Examples {
     responses((status = 200, description = "The examples.", body = Examples)),
 )]
 pub(super) async fn examples() -> Json<Examples> {
-    let items = wire::examples()
-        .into_iter()
-        .filter_map(|(name, description, text)| {
-            let submission = serde_json::from_str(&text).ok()?;
-            Some(Example {
-                name: name.to_owned(),
-                description: description.to_owned(),
-                submission,
-            })
-        });
+    let view = |example: &wire::Example| Example {
+        name: example.name,
+        description: example.description,
+        valid: example.valid,
+        submission: serde_json::from_str(example.json).expect("a test reads every example"),
+    };
     Json(Examples {
-        items: items.collect(),
+        items: wire::examples().iter().map(view).collect(),
     })
 }
 

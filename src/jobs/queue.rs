@@ -12,13 +12,10 @@ use super::job::{Job, Progress, Status};
 use super::live::Live;
 use super::store::{Cursor, Filter, Store};
 use super::transitions::{NewJob, Outcome};
-use crate::wire::Submission;
+use crate::wire::{SOLVER_VERSION, Submission};
 
 /// The time of day, given so that tests can set it.
 pub type Clock = Arc<dyn Fn() -> Timestamp + Send + Sync>;
-
-/// The version that stands behind results: another one computes afresh.
-pub(super) const SOLVER_VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// So long a repeated request is recognized by its key.
 const KEY_LIFETIME: jiff::SignedDuration = jiff::SignedDuration::from_hours(24);

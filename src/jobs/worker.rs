@@ -17,9 +17,9 @@ use tracing::{error, info, warn};
 
 use super::job::Job;
 use super::live::Running;
-use super::queue::{Jobs, SOLVER_VERSION};
+use super::queue::Jobs;
 use super::transitions::{Claim, Lost};
-use crate::wire::{Code, Problem, Submission};
+use crate::wire::{Code, Problem, SOLVER_VERSION, Submission};
 
 /// The computation of a submission: long work that fills a core, reports to the run and obeys its stop. Gives the
 /// text of the results document.

@@ -2,8 +2,6 @@
 
 mod problem;
 
-use std::sync::Arc;
-
 use meshwright_engine::run::Run;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -91,15 +89,31 @@ pub fn validate(submission: &Submission) -> Value {
     json!({ "valid": true, "submission": submission })
 }
 
-/// An example: name, description, JSON text.
-pub type Example = (&'static str, &'static str, Arc<str>);
+/// An example.
+#[derive(Debug, Clone, Copy)]
+pub struct Example {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is.
+    pub description: &'static str,
+    /// Whether it can be computed.
+    pub valid: bool,
+    /// The document.
+    pub json: &'static str,
+}
 
 /// The examples.
-pub fn examples() -> Vec<Example> {
-    let text =
-        json!({ "method": "flexible", "pair": {}, "output_torques_n_m": [115.0] }).to_string();
-    vec![("test-case-2", "Test case 2 of the paper.", text.into())]
+pub fn examples() -> &'static [Example] {
+    &[Example {
+        name: "test-case-2",
+        description: "Test case 2 of the paper.",
+        valid: true,
+        json: r#"{ "method": "flexible", "pair": {}, "output_torques_n_m": [115.0] }"#,
+    }]
 }
+
+/// The version of the solver.
+pub const SOLVER_VERSION: &str = concat!("meshwright ", env!("CARGO_PKG_VERSION"));
 
 /// The limits.
 pub fn limits() -> Value {

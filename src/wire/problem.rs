@@ -77,7 +77,6 @@ codes! {
     JobDismissed "job-dismissed" 409 "The job was dismissed"
     AttemptsExhausted "attempts-exhausted" 500 "The job was lost too often"
     RequestTimeout "request-timeout" 408 "The request took too long"
-    Unavailable "unavailable" 503 "The service is shutting down"
     InternalError "internal-error" 500 "The service failed"
 }
 

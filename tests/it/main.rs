@@ -1,6 +1,9 @@
 //! The service over real sockets, with a real database and an engine that does as the test tells it.
 
-#![expect(clippy::unwrap_used, reason = "a test may end where its assumption does")]
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test may end where its assumption does"
+)]
 
 mod bench;
 
