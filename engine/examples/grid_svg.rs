@@ -2,6 +2,7 @@
 //! `-- blank BORE INTERFACE TEETH [COUNT CIRCLE RADIUS]`, with lengths in millimeters.
 
 use meshwright_engine::gear::{Blank, GearData, HolePattern, Material, Rack, SpurGear};
+use meshwright_engine::grid::blank::ELEMENTS_PER_TOOTH;
 use meshwright_engine::grid::{BlankGrid, Grid, GridLevel, ToothGrid};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -35,7 +36,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             };
             let (bore, interface, teeth) =
                 (number(1)? * 1e-3, number(2)? * 1e-3, number(3)? as u32);
-            BlankGrid::new(bore, interface, holes.as_ref(), teeth, level)?.grid
+            BlankGrid::new(
+                bore,
+                interface,
+                holes.as_ref(),
+                teeth,
+                ELEMENTS_PER_TOOTH,
+                level,
+            )?
+            .grid
         }
     };
     eprintln!(

@@ -34,7 +34,7 @@ pub struct Results {
 
 /// The curves at one output torque. All lists, those of the spectrum aside, run over the same positions.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-#[schema(title = "Curve")]
+#[schema(as = Curve, title = "Curve")]
 pub struct CurveDocument {
     /// The output torque on the driven gear, in N m.
     pub output_torque_n_m: f64,
@@ -70,7 +70,7 @@ pub struct CurveDocument {
 
 /// The share of the load that the pairs at one offset carry.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-#[schema(title = "Load share")]
+#[schema(as = LoadShare, title = "Load share")]
 pub struct LoadShareDocument {
     /// 0 for the pair that passed the pitch point last, 1 for the next, -1 for the one before.
     pub pair_offset: i32,
@@ -80,7 +80,7 @@ pub struct LoadShareDocument {
 
 /// Statistics over the span.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-#[schema(title = "Statistics")]
+#[schema(as = Statistics, title = "Statistics")]
 pub struct StatisticsDocument {
     /// Whether the span is less than whole true periods.
     pub partial: bool,
@@ -104,7 +104,7 @@ pub struct StatisticsValues {
 
 /// Single-sided amplitudes and phases: y = sum of A cos(2 pi k j/n + phase), no window; the mean is left out.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-#[schema(title = "Spectrum")]
+#[schema(as = Spectrum, title = "Spectrum")]
 pub struct SpectrumDocument {
     /// Orders per revolution of the driven gear.
     pub order: Vec<f64>,
@@ -125,7 +125,7 @@ pub struct SpectrumDocument {
 
 /// A line of the spectrum that has a name.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-#[schema(title = "Named order")]
+#[schema(as = NamedOrder, title = "Named order")]
 pub struct NamedOrderDocument {
     /// The order per revolution of the driven gear.
     pub order: f64,
@@ -144,7 +144,7 @@ pub struct NamedOrderDocument {
 
 /// What the decomposition adds up, eq. 15.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-#[schema(title = "Decomposition")]
+#[schema(as = Decomposition, title = "Decomposition")]
 pub struct DecompositionDocument {
     /// The transmission error with rigid blanks, in um, at each position of the curve.
     pub rigid_blank_transmission_error_um: Vec<f64>,
@@ -154,7 +154,7 @@ pub struct DecompositionDocument {
 
 /// What the decomposition found for one holed blank: mean + amplitude cos(N theta + phase), eq. 13.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-#[schema(title = "Blank fit")]
+#[schema(as = BlankFit, title = "Blank fit")]
 pub struct BlankFitDocument {
     /// The gear.
     pub gear: GearName,
@@ -172,7 +172,7 @@ pub struct BlankFitDocument {
 
 /// One sample of a holed blank.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-#[schema(title = "Blank sample")]
+#[schema(as = BlankSample, title = "Blank sample")]
 pub struct BlankSampleDocument {
     /// The mesh position, in mesh periods.
     pub mesh_position: f64,
@@ -182,7 +182,7 @@ pub struct BlankSampleDocument {
 
 /// How well the equations are satisfied, what they are, and what they leave out.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-#[schema(title = "Evidence")]
+#[schema(as = Evidence, title = "Evidence")]
 pub struct EvidenceDocument {
     /// The version of the solver.
     pub solver_version: &'static str,
@@ -224,7 +224,7 @@ pub struct Definition {
 
 /// What a second grid level changes, the largest over the torques.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-#[schema(title = "Error estimate")]
+#[schema(as = ErrorEstimate, title = "Error estimate")]
 pub struct ErrorEstimateDocument {
     /// In the mean transmission error, in um.
     pub transmission_error_mean_um: f64,

@@ -65,6 +65,10 @@ fn problem_of(error: &AnalysisError) -> Problem {
                 plain(*mesh_position)
             ),
         ),
+        AnalysisError::NoFormula { reason } => Problem::new(
+            Code::NoFormula,
+            format!("The load distribution has no formula for this pair: {reason}."),
+        ),
         AnalysisError::Discretization { member, reason } => Problem::new(
             Code::DiscretizationFailed,
             format!("The {member} gear could not be divided into elements: {reason}."),
@@ -93,7 +97,7 @@ pub struct Validation {
 
 /// What a computation will cost.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-#[schema(title = "Estimate")]
+#[schema(as = Estimate, title = "Estimate")]
 pub struct EstimateDocument {
     /// Unknowns of both gears before condensation.
     pub degrees_of_freedom: u64,

@@ -9,7 +9,7 @@ use super::units::{plain, to_mm};
 
 /// A warning: the result stands, but with something to know.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-#[schema(title = "Warning")]
+#[schema(as = Warning, title = "Warning")]
 pub struct WarningDocument {
     /// The stable code.
     pub code: WarningCode,

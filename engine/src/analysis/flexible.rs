@@ -28,27 +28,56 @@ pub(super) enum Blanks {
 /// The interface radius R_w of one gear of a case.
 pub(super) fn interface_radius(case: &Case, member: Member) -> f64 {
     let gear = case.pair.gear(member);
-    let asked = case.resolution.interface_radius.filter(|_| gear.holes().is_some());
+    let asked = case
+        .resolution
+        .interface_radius
+        .filter(|_| gear.holes().is_some());
     asked.unwrap_or_else(|| default_interface_radius(gear))
 }
 
 /// The model of `case`, and its unknowns before condensation.
-pub(super) fn model(case: &Case, blanks: Blanks, level: GridLevel, library: &Library, run: &Run) -> Result<(PairModel, u64), AnalysisError> {
+pub(super) fn model(
+    case: &Case,
+    blanks: Blanks,
+    level: GridLevel,
+    library: &Library,
+    run: &Run,
+) -> Result<(PairModel, u64), AnalysisError> {
     let build = |member: Member| -> Result<(GearModel, u64), AnalysisError> {
         let gear = case.pair.gear(member);
         let radius = interface_radius(case, member);
         let teeth = library.teeth(gear, member, radius, level, run)?;
-        let takes_part = gear.holes().is_none() || blanks == Blanks::Flexible || blanks == Blanks::OnlyHoledOf(member);
+        let takes_part = gear.holes().is_none()
+            || blanks == Blanks::Flexible
+            || blanks == Blanks::OnlyHoledOf(member);
         if takes_part {
             let whole = library.gear(gear, member, radius, level, run)?;
-            Ok((GearModel { flank: teeth.flank.clone(), coupling: whole.coupling.clone() }, whole.degrees_of_freedom))
+            Ok((
+                GearModel {
+                    flank: teeth.flank.clone(),
+                    coupling: whole.coupling.clone(),
+                },
+                whole.degrees_of_freedom,
+            ))
         } else {
-            Ok((GearModel { flank: teeth.flank.clone(), coupling: teeth.on_rigid_blank.clone() }, teeth.degrees_of_freedom))
+            Ok((
+                GearModel {
+                    flank: teeth.flank.clone(),
+                    coupling: teeth.on_rigid_blank.clone(),
+                },
+                teeth.degrees_of_freedom,
+            ))
         }
     };
     // Equal teeth are computed once, before both gears go on in parallel.
     let driving_radius = interface_radius(case, Member::Driving);
-    library.teeth(case.pair.driving(), Member::Driving, driving_radius, level, run)?;
+    library.teeth(
+        case.pair.driving(),
+        Member::Driving,
+        driving_radius,
+        level,
+        run,
+    )?;
     let (driving, driven) = rayon::join(|| build(Member::Driving), || build(Member::Driven));
     let ((driving, dof_1), (driven, dof_2)) = (driving?, driven?);
     let model = PairModel {
@@ -65,7 +94,12 @@ pub(super) fn model(case: &Case, blanks: Blanks, level: GridLevel, library: &Lib
 /// # Errors
 ///
 /// The first position that has no solution, or [`AnalysisError::Stopped`].
-pub(super) fn contacts(model: &PairModel, load: f64, positions: &[f64], run: &Run) -> Result<Vec<MeshContact>, AnalysisError> {
+pub(super) fn contacts(
+    model: &PairModel,
+    load: f64,
+    positions: &[f64],
+    run: &Run,
+) -> Result<Vec<MeshContact>, AnalysisError> {
     let chunks: Result<Vec<Vec<MeshContact>>, AnalysisError> = positions
         .par_chunks(CHUNK)
         .map(|chunk| {
@@ -73,7 +107,9 @@ pub(super) fn contacts(model: &PairModel, load: f64, positions: &[f64], run: &Ru
             chunk
                 .iter()
                 .map(|&eta| {
-                    let contact = model.contact(eta, load, &mut warm).map_err(|error| at_position(error, eta))?;
+                    let contact = model
+                        .contact(eta, load, &mut warm)
+                        .map_err(|error| at_position(error, eta))?;
                     run.reached(1)?;
                     Ok(contact)
                 })
@@ -86,23 +122,45 @@ pub(super) fn contacts(model: &PairModel, load: f64, positions: &[f64], run: &Ru
 fn at_position(error: PositionError, mesh_position: f64) -> AnalysisError {
     match error {
         PositionError::NoContact => AnalysisError::NoContact { mesh_position },
-        PositionError::Contact(crate::contact::ContactError::NotConverged { iterations, gap, .. }) => {
-            AnalysisError::NotConverged { mesh_position, residual: gap, iterations }
-        }
-        PositionError::Contact(error) => AnalysisError::ContactFailed { mesh_position, error },
+        PositionError::Contact(crate::contact::ContactError::NotConverged {
+            iterations,
+            gap,
+            ..
+        }) => AnalysisError::NotConverged {
+            mesh_position,
+            residual: gap,
+            iterations,
+        },
+        PositionError::Contact(error) => AnalysisError::ContactFailed {
+            mesh_position,
+            error,
+        },
     }
 }
 
 /// The solved positions of one torque: contacts and the tangent stiffness by the rule of the case.
-pub(super) fn solved(case: &Case, model: &PairModel, load: f64, positions: &[f64], run: &Run) -> Result<(Vec<MeshContact>, Vec<f64>), AnalysisError> {
+pub(super) fn solved(
+    case: &Case,
+    model: &PairModel,
+    load: f64,
+    positions: &[f64],
+    run: &Run,
+) -> Result<(Vec<MeshContact>, Vec<f64>), AnalysisError> {
     let contacts_at = |load| contacts(model, load, positions, run);
     let middle = contacts_at(load)?;
     let stiffness = match case.resolution.stiffness {
         StiffnessRule::Tangent => middle.iter().map(|contact| contact.stiffness).collect(),
         StiffnessRule::TorqueStep { fraction } => {
-            let (low, high) = (contacts_at(load * (1.0 - fraction))?, contacts_at(load * (1.0 + fraction))?);
+            let (low, high) = (
+                contacts_at(load * (1.0 - fraction))?,
+                contacts_at(load * (1.0 + fraction))?,
+            );
             let pairs = low.iter().zip(&high);
-            pairs.map(|(low, high)| 2.0 * fraction * load / (high.transmission_error - low.transmission_error)).collect()
+            pairs
+                .map(|(low, high)| {
+                    2.0 * fraction * load / (high.transmission_error - low.transmission_error)
+                })
+                .collect()
         }
     };
     Ok((middle, stiffness))
@@ -114,10 +172,16 @@ pub(super) fn load_shares(positions: &[f64], contacts: &[MeshContact]) -> Vec<Lo
     for (i, (eta, contact)) in positions.iter().zip(contacts).enumerate() {
         for pair in contact.pairs.iter().filter(|pair| pair.share > 0.0) {
             let pair_offset = (pair.pair - eta.floor() as i64) as i32;
-            let place = shares.iter().position(|share| share.pair_offset == pair_offset).unwrap_or_else(|| {
-                shares.push(LoadShare { pair_offset, share: vec![0.0; positions.len()] });
-                shares.len() - 1
-            });
+            let place = shares
+                .iter()
+                .position(|share| share.pair_offset == pair_offset)
+                .unwrap_or_else(|| {
+                    shares.push(LoadShare {
+                        pair_offset,
+                        share: vec![0.0; positions.len()],
+                    });
+                    shares.len() - 1
+                });
             shares[place].share[i] = pair.share;
         }
     }
@@ -127,10 +191,15 @@ pub(super) fn load_shares(positions: &[f64], contacts: &[MeshContact]) -> Vec<Lo
 
 /// Gathers the evidence of solved positions into `evidence`.
 pub(super) fn gather(evidence: &mut Evidence, contacts: &[MeshContact], load: f64) {
-    let largest = contacts.iter().map(|contact| contact.transmission_error.abs()).fold(f64::MIN_POSITIVE, f64::max);
+    let largest = contacts
+        .iter()
+        .map(|contact| contact.transmission_error.abs())
+        .fold(f64::MIN_POSITIVE, f64::max);
     for contact in contacts {
         evidence.equilibrium_residual = evidence.equilibrium_residual.max(contact.equilibrium);
-        evidence.complementarity_residual = evidence.complementarity_residual.max(contact.complementarity / (load * largest));
+        evidence.complementarity_residual = evidence
+            .complementarity_residual
+            .max(contact.complementarity / (load * largest));
         evidence.largest_penetration = evidence.largest_penetration.max(contact.penetration);
         evidence.contact_iterations += u64::from(contact.iterations);
     }
@@ -138,19 +207,29 @@ pub(super) fn gather(evidence: &mut Evidence, contacts: &[MeshContact], load: f6
 
 /// Warns of tips that touch off the path of contact.
 pub(super) fn warn_of_tips(warnings: &mut Vec<Warning>, contacts: &[MeshContact]) {
-    for member in [Member::Driving, Member::Driven] {
-        let shares = contacts.iter().flat_map(|contact| &contact.pairs).filter(|pair| pair.tip_corner == Some(member)).map(|pair| pair.share);
+    for member in Member::BOTH {
+        let shares = contacts
+            .iter()
+            .flat_map(|contact| &contact.pairs)
+            .filter(|pair| pair.tip_corner == Some(member))
+            .map(|pair| pair.share);
         let largest_share = shares.fold(0.0, f64::max);
         if largest_share == 0.0 {
             continue;
         }
         let known = warnings.iter_mut().find_map(|warning| match warning {
-            Warning::TipCornerContact { member: known, largest_share } if *known == member => Some(largest_share),
+            Warning::TipCornerContact {
+                member: known,
+                largest_share,
+            } if *known == member => Some(largest_share),
             _ => None,
         });
         match known {
             Some(known) => *known = known.max(largest_share),
-            None => warnings.push(Warning::TipCornerContact { member, largest_share }),
+            None => warnings.push(Warning::TipCornerContact {
+                member,
+                largest_share,
+            }),
         }
     }
 }

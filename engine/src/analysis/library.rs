@@ -8,9 +8,10 @@ use crate::contact::flank::FlankTable;
 use crate::fem::FemError;
 use crate::fem::blank::BlankSubstructure;
 use crate::fem::body::Coupling;
-use crate::fem::cyclic::{Component, Harmonics};
+use crate::fem::cyclic::Harmonics;
 use crate::fem::tooth::{TeethRing, ToothSubstructure};
 use crate::gear::{HolePattern, Member, SpurGear};
+use crate::grid::blank::ELEMENTS_PER_TOOTH;
 use crate::grid::{BlankGrid, GridError, GridLevel, ToothGrid};
 use crate::run::{Run, Stopped};
 
@@ -35,11 +36,6 @@ pub struct Teeth {
 pub struct Gear {
     /// How its loaded teeth move each other.
     pub coupling: Arc<Coupling>,
-    /// For each tooth, what its unit modes add to y·u_t/(R_w y_0), where y answers a uniform tangential displacement of
-    /// the blank's interface circle: the rotation arm that the decomposition uses, in meters a newton.
-    pub rotation_gain: Vec<Vec<f64>>,
-    /// 1/y_0: the tangential compliance of the blank to a uniform traction, in m/N.
-    pub uniform_compliance: f64,
     /// Unknowns before condensation.
     pub degrees_of_freedom: u64,
 }
@@ -83,7 +79,9 @@ struct Shelves {
 
 impl std::fmt::Debug for Library {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Library").field("capacity", &self.capacity).finish_non_exhaustive()
+        f.debug_struct("Library")
+            .field("capacity", &self.capacity)
+            .finish_non_exhaustive()
     }
 }
 
@@ -97,7 +95,10 @@ impl Default for Library {
 impl Library {
     /// A library that keeps at most `bytes` of substructures, the least recently used leaving first.
     pub fn with_capacity(bytes: usize) -> Self {
-        Self { shelves: Arc::default(), capacity: bytes }
+        Self {
+            shelves: Arc::default(),
+            capacity: bytes,
+        }
     }
 
     /// The teeth of `gear` down to `interface_radius`.
@@ -105,8 +106,16 @@ impl Library {
     /// # Errors
     ///
     /// [`AnalysisError::Discretization`], or [`AnalysisError::Stopped`].
-    pub fn teeth(&self, gear: &SpurGear, member: Member, interface_radius: f64, level: GridLevel, run: &Run) -> Result<Arc<Teeth>, AnalysisError> {
-        self.shared_teeth(gear, interface_radius, level, run).map_err(|error| error.of(member))
+    pub fn teeth(
+        &self,
+        gear: &SpurGear,
+        member: Member,
+        interface_radius: f64,
+        level: GridLevel,
+        run: &Run,
+    ) -> Result<Arc<Teeth>, AnalysisError> {
+        self.shared_teeth(gear, interface_radius, level, run)
+            .map_err(|error| error.of(member))
     }
 
     /// `gear` with its blank: its holes, its bore and its teeth.
@@ -114,27 +123,60 @@ impl Library {
     /// # Errors
     ///
     /// [`AnalysisError::Discretization`], or [`AnalysisError::Stopped`].
-    pub fn gear(&self, gear: &SpurGear, member: Member, interface_radius: f64, level: GridLevel, run: &Run) -> Result<Arc<Gear>, AnalysisError> {
-        self.shared_gear(gear, interface_radius, level, run).map_err(|error| error.of(member))
+    pub fn gear(
+        &self,
+        gear: &SpurGear,
+        member: Member,
+        interface_radius: f64,
+        level: GridLevel,
+        run: &Run,
+    ) -> Result<Arc<Gear>, AnalysisError> {
+        self.shared_gear(gear, interface_radius, level, run)
+            .map_err(|error| error.of(member))
     }
 
-    fn shared_teeth(&self, gear: &SpurGear, interface_radius: f64, level: GridLevel, run: &Run) -> Result<Arc<Teeth>, BuildError> {
-        let build = || build_teeth(gear, interface_radius, level, run).map(|teeth| Part::Teeth(Arc::new(teeth)));
+    fn shared_teeth(
+        &self,
+        gear: &SpurGear,
+        interface_radius: f64,
+        level: GridLevel,
+        run: &Run,
+    ) -> Result<Arc<Teeth>, BuildError> {
+        let build = || {
+            build_teeth(gear, interface_radius, level, run)
+                .map(|teeth| Part::Teeth(Arc::new(teeth)))
+        };
         match self.part(teeth_key(gear, interface_radius, level), run, build)? {
             Part::Teeth(teeth) => Ok(teeth),
             Part::Blank(_) | Part::Gear(_) => unreachable!("a key names one kind of part"),
         }
     }
 
-    fn shared_blank(&self, gear: &SpurGear, teeth: &Teeth, interface_radius: f64, level: GridLevel, run: &Run) -> Result<Arc<BlankSubstructure>, BuildError> {
-        let build = || build_blank(gear, teeth, interface_radius, level).map(|blank| Part::Blank(Arc::new(blank)));
+    fn shared_blank(
+        &self,
+        gear: &SpurGear,
+        teeth: &Teeth,
+        interface_radius: f64,
+        level: GridLevel,
+        run: &Run,
+    ) -> Result<Arc<BlankSubstructure>, BuildError> {
+        let build = || {
+            build_blank(gear, teeth, interface_radius, level)
+                .map(|blank| Part::Blank(Arc::new(blank)))
+        };
         match self.part(blank_key(gear, interface_radius, level), run, build)? {
             Part::Blank(blank) => Ok(blank),
             Part::Teeth(_) | Part::Gear(_) => unreachable!("a key names one kind of part"),
         }
     }
 
-    fn shared_gear(&self, gear: &SpurGear, interface_radius: f64, level: GridLevel, run: &Run) -> Result<Arc<Gear>, BuildError> {
+    fn shared_gear(
+        &self,
+        gear: &SpurGear,
+        interface_radius: f64,
+        level: GridLevel,
+        run: &Run,
+    ) -> Result<Arc<Gear>, BuildError> {
         let phase = gear.holes().map_or(0.0, |holes| holes.phase);
         let mut key = teeth_key(gear, interface_radius, level);
         key.extend(blank_key(gear, interface_radius, level));
@@ -151,7 +193,12 @@ impl Library {
         }
     }
 
-    fn part(&self, key: Key, run: &Run, build: impl FnOnce() -> Result<Part, BuildError>) -> Result<Part, BuildError> {
+    fn part(
+        &self,
+        key: Key,
+        run: &Run,
+        build: impl FnOnce() -> Result<Part, BuildError>,
+    ) -> Result<Part, BuildError> {
         run.check()?;
         if let Some(part) = self.shelves().find(&key) {
             return Ok(part);
@@ -182,7 +229,14 @@ impl Shelves {
             self.bytes -= old.bytes();
         }
         while self.bytes > capacity {
-            let Some(oldest) = self.parts.iter().min_by_key(|(_, (_, used))| *used).map(|(key, _)| key.clone()) else { break };
+            let Some(oldest) = self
+                .parts
+                .iter()
+                .min_by_key(|(_, (_, used))| *used)
+                .map(|(key, _)| key.clone())
+            else {
+                break;
+            };
             if let Some((part, _)) = self.parts.remove(&oldest) {
                 self.bytes -= part.bytes();
             }
@@ -208,8 +262,14 @@ impl BuildError {
     fn of(self, member: Member) -> AnalysisError {
         match self {
             Self::Stopped(stopped) => AnalysisError::Stopped(stopped),
-            Self::Grid(error) => AnalysisError::Discretization { member, reason: error.to_string() },
-            Self::Fem(error) => AnalysisError::Discretization { member, reason: error.to_string() },
+            Self::Grid(error) => AnalysisError::Discretization {
+                member,
+                reason: error.to_string(),
+            },
+            Self::Fem(error) => AnalysisError::Discretization {
+                member,
+                reason: error.to_string(),
+            },
         }
     }
 }
@@ -217,14 +277,16 @@ impl BuildError {
 /// The interface radius R_w of `gear`: one module below the root circle, or halfway to the holes or the bore where they
 /// come closer.
 pub fn default_interface_radius(gear: &SpurGear) -> f64 {
-    let inner = gear.holes().map_or(gear.bore_radius(), HolePattern::outer_reach);
+    let inner = gear
+        .holes()
+        .map_or(gear.bore_radius(), HolePattern::outer_reach);
     let r_f = gear.root_radius();
     (r_f - gear.data().rack.module).max(f64::midpoint(r_f, inner))
 }
 
 /// The orders that the interface circle carries: on its way from the root circle the field of the teeth falls by
 /// e^(−n (r_f − R_w)/R_w), at the standard level to e⁻⁶·⁵ of it for the first order that is left out.
-fn harmonics(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Harmonics {
+pub(super) fn harmonics(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Harmonics {
     let decay = match level {
         GridLevel::Coarse => 3.25,
         GridLevel::Standard => 6.5,
@@ -232,10 +294,17 @@ fn harmonics(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Harmon
     };
     let orders = decay * interface_radius / (gear.root_radius() - interface_radius);
     let z = gear.tooth_count() as usize;
-    Harmonics { largest: (orders.ceil() as usize).clamp(z, MOST_ORDERS_PER_TOOTH * z) }
+    Harmonics {
+        largest: (orders.ceil() as usize).clamp(z, MOST_ORDERS_PER_TOOTH * z),
+    }
 }
 
-fn build_teeth(gear: &SpurGear, interface_radius: f64, level: GridLevel, run: &Run) -> Result<Teeth, BuildError> {
+fn build_teeth(
+    gear: &SpurGear,
+    interface_radius: f64,
+    level: GridLevel,
+    run: &Run,
+) -> Result<Teeth, BuildError> {
     let grid = ToothGrid::new(gear, interface_radius, level)?;
     run.check()?;
     let tooth = ToothSubstructure::new(gear, &grid)?;
@@ -254,20 +323,45 @@ fn build_teeth(gear: &SpurGear, interface_radius: f64, level: GridLevel, run: &R
     })
 }
 
-fn build_blank(gear: &SpurGear, teeth: &Teeth, interface_radius: f64, level: GridLevel) -> Result<BlankSubstructure, BuildError> {
-    let grid = BlankGrid::new(gear.bore_radius(), interface_radius, gear.holes(), gear.tooth_count(), level)?;
-    Ok(BlankSubstructure::new(&grid, interface_radius, gear.material(), gear.face_width(), teeth.ring.harmonics)?)
+/// The grid of one sector of the blank of `gear`, fine enough on the interface circle for the orders that it carries.
+pub(super) fn blank_grid(
+    gear: &SpurGear,
+    interface_radius: f64,
+    level: GridLevel,
+) -> Result<BlankGrid, GridError> {
+    let orders = harmonics(gear, interface_radius, GridLevel::Standard).largest as f64;
+    // Five nodes, two and a half elements, for two wavelengths of the highest order.
+    let elements_per_tooth =
+        (1.25 * orders / f64::from(gear.tooth_count())).max(ELEMENTS_PER_TOOTH);
+    BlankGrid::new(
+        gear.bore_radius(),
+        interface_radius,
+        gear.holes(),
+        gear.tooth_count(),
+        elements_per_tooth,
+        level,
+    )
+}
+
+fn build_blank(
+    gear: &SpurGear,
+    teeth: &Teeth,
+    interface_radius: f64,
+    level: GridLevel,
+) -> Result<BlankSubstructure, BuildError> {
+    let grid = blank_grid(gear, interface_radius, level)?;
+    Ok(BlankSubstructure::new(
+        &grid,
+        interface_radius,
+        gear.material(),
+        gear.face_width(),
+        teeth.ring.harmonics,
+    )?)
 }
 
 fn join(teeth: &Teeth, blank: &BlankSubstructure, phase: f64) -> Result<Gear, BuildError> {
-    let (coupling, response) = Coupling::on_blank(&teeth.ring, blank, phase)?;
-    let answer = blank.uniform_answer(phase)?;
-    let y_0 = answer[blank.harmonics.cosine(0, Component::Tangential)];
-    let weights: Vec<f64> = answer.iter().map(|y| y / y_0).collect();
     Ok(Gear {
-        coupling: Arc::new(coupling),
-        rotation_gain: response.functional(&weights),
-        uniform_compliance: 1.0 / y_0,
+        coupling: Arc::new(Coupling::on_blank(&teeth.ring, blank, phase)?),
         degrees_of_freedom: teeth.degrees_of_freedom + 2 * blank.grid_nodes as u64,
     })
 }
@@ -277,10 +371,21 @@ fn tooth_bits(gear: &SpurGear) -> Vec<u64> {
     let rack = &data.rack;
     let material = &data.material;
     let numbers = [
-        rack.module, rack.pressure_angle, rack.addendum, rack.dedendum, rack.tip_radius, data.profile_shift, data.face_width,
-        material.youngs_modulus, material.poisson_ratio,
+        rack.module,
+        rack.pressure_angle,
+        rack.addendum,
+        rack.dedendum,
+        rack.tip_radius,
+        data.profile_shift,
+        data.face_width,
+        material.youngs_modulus,
+        material.poisson_ratio,
     ];
-    numbers.iter().map(|number| number.to_bits()).chain([u64::from(data.tooth_count)]).collect()
+    numbers
+        .iter()
+        .map(|number| number.to_bits())
+        .chain([u64::from(data.tooth_count)])
+        .collect()
 }
 
 fn teeth_key(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Key {
@@ -291,8 +396,15 @@ fn teeth_key(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Key {
 
 fn blank_key(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Key {
     let mut key = tooth_bits(gear);
-    let holes = gear.holes().map_or([0.0; 3], |holes| [f64::from(holes.count), holes.circle_radius, holes.radius]);
-    key.extend([interface_radius, gear.bore_radius()].iter().chain(&holes).map(|number| number.to_bits()));
+    let holes = gear.holes().map_or([0.0; 3], |holes| {
+        [f64::from(holes.count), holes.circle_radius, holes.radius]
+    });
+    key.extend(
+        [interface_radius, gear.bore_radius()]
+            .iter()
+            .chain(&holes)
+            .map(|number| number.to_bits()),
+    );
     key.extend([level as u64, 2]);
     key
 }

@@ -6,14 +6,20 @@
 
 pub mod case;
 pub mod curve;
+mod decomposition;
+mod estimate;
 mod flexible;
 pub mod library;
 pub mod load_distribution;
 pub mod model;
 pub mod spectrum;
 
-pub use case::{BodyFormula, Case, ContactSolver, Formulas, Method, PlaneState, Resolution, StiffnessRule, ToothFormula};
+pub use case::{
+    BodyFormula, Case, ContactSolver, Formulas, Method, PlaneState, Resolution, StiffnessRule,
+    ToothFormula,
+};
 pub use curve::{Analysis, Curve, ErrorEstimate, Evidence, Statistics, Warning};
+pub use estimate::{Estimate, estimate};
 pub use library::Library;
 
 use crate::contact::ContactError;
@@ -31,7 +37,9 @@ const NO_BACKLASH: f64 = 1e-9;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AnalysisError {
     /// The contact solver gave up at a position.
-    #[error("the contact did not converge at mesh position {mesh_position}: residual gap {residual} m after {iterations} iterations")]
+    #[error(
+        "the contact did not converge at mesh position {mesh_position}: residual gap {residual} m after {iterations} iterations"
+    )]
     NotConverged {
         /// The mesh position η.
         mesh_position: f64,
@@ -55,6 +63,12 @@ pub enum AnalysisError {
         /// The mesh position η.
         mesh_position: f64,
     },
+    /// A formula of the load distribution does not hold for a gear.
+    #[error("the load distribution has no formula for this pair: {reason}")]
+    NoFormula {
+        /// Which formula, and the number outside its range.
+        reason: String,
+    },
     /// A grid or a factorization failed.
     #[error("the {member} gear cannot be discretized: {reason}")]
     Discretization {
@@ -77,20 +91,28 @@ pub fn analyze(case: &Case, library: &Library, run: &Run) -> Result<Analysis, An
     // Threads work on different bodies and positions; inside one, faer is sequential.
     faer::set_global_parallelism(faer::Par::Seq);
     let level = case.resolution.grid;
-    let levels = if case.resolution.error_estimate { 2 } else { 1 };
-    run.expect(levels * expected_positions(case));
+    // Formulas have no grid to refine.
+    let with_estimate = case.resolution.error_estimate && case.method != Method::LoadDistribution;
+    run.expect(if with_estimate { 2 } else { 1 } * expected_positions(case));
     let mut analysis = analyze_at(case, level, library, run)?;
-    if case.resolution.error_estimate {
+    if with_estimate {
         let other = analyze_at(case, level.neighbor(), library, run)?;
         analysis.evidence.error_estimate = Some(difference(&analysis.curves, &other.curves));
     }
     Ok(analysis)
 }
 
-fn analyze_at(case: &Case, level: GridLevel, library: &Library, run: &Run) -> Result<Analysis, AnalysisError> {
+fn analyze_at(
+    case: &Case,
+    level: GridLevel,
+    library: &Library,
+    run: &Run,
+) -> Result<Analysis, AnalysisError> {
     match case.method {
         Method::Flexible => flexible(case, level, library, run),
-        _ => Err(AnalysisError::Stopped(Stopped)),
+        Method::Decomposition => decomposition::decompose(case, level, library, run),
+        Method::ProjectedDecomposition => decomposition::project(case, level, library, run),
+        Method::LoadDistribution => load_distribution::distribute(case, run),
     }
 }
 
@@ -101,10 +123,21 @@ fn expected_positions(case: &Case) -> u64 {
         StiffnessRule::Tangent => 1,
         StiffnessRule::TorqueStep { .. } => 3,
     };
-    torques * solves * case.positions() as u64
+    let per_period = u64::from(case.resolution.positions_per_mesh_period);
+    match case.method {
+        Method::Flexible => torques * solves * case.positions() as u64,
+        Method::Decomposition => decomposition::expected_positions(case),
+        Method::ProjectedDecomposition => torques * (solves + 1) * per_period,
+        Method::LoadDistribution => torques * per_period,
+    }
 }
 
-fn flexible(case: &Case, level: GridLevel, library: &Library, run: &Run) -> Result<Analysis, AnalysisError> {
+fn flexible(
+    case: &Case,
+    level: GridLevel,
+    library: &Library,
+    run: &Run,
+) -> Result<Analysis, AnalysisError> {
     let (model, degrees_of_freedom) = flexible::model(case, Blanks::Flexible, level, library, run)?;
     let positions = mesh_positions(case);
     let mut evidence = Evidence::new(degrees_of_freedom);
@@ -116,16 +149,29 @@ fn flexible(case: &Case, level: GridLevel, library: &Library, run: &Run) -> Resu
         flexible::gather(&mut evidence, &contacts, load);
         flexible::warn_of_tips(&mut warnings, &contacts);
         let parts = CurveParts {
-            transmission_error: contacts.iter().map(|contact| contact.transmission_error).collect(),
+            transmission_error: contacts
+                .iter()
+                .map(|contact| contact.transmission_error)
+                .collect(),
             stiffness,
-            pairs_in_contact: contacts.iter().map(|contact| contact.loaded_pairs()).collect(),
-            peak_contact_pressure: contacts.iter().map(|contact| contact.peak_pressure).collect(),
+            pairs_in_contact: contacts
+                .iter()
+                .map(|contact| contact.loaded_pairs())
+                .collect(),
+            peak_contact_pressure: contacts
+                .iter()
+                .map(|contact| contact.peak_pressure)
+                .collect(),
             load_shares: flexible::load_shares(&positions, &contacts),
             decomposition: None,
         };
         curves.push(parts.into_curve(case, output_torque, positions.clone()));
     }
-    Ok(Analysis { curves, evidence, warnings })
+    Ok(Analysis {
+        curves,
+        evidence,
+        warnings,
+    })
 }
 
 /// What a method finds at each position of one torque.
@@ -141,14 +187,24 @@ struct CurveParts {
 impl CurveParts {
     fn into_curve(self, case: &Case, output_torque: f64, mesh_position: Vec<f64>) -> Curve {
         let load = case.pair.load(output_torque);
-        let spectrum = case
-            .covers_whole_periods()
-            .then(|| Spectrum::of(&case.pair, case.span(), &self.transmission_error, &self.stiffness, case.driving_speed));
+        let spectrum = case.covers_whole_periods().then(|| {
+            Spectrum::of(
+                &case.pair,
+                case.span(),
+                &self.transmission_error,
+                &self.stiffness,
+                case.driving_speed,
+            )
+        });
         Curve {
             output_torque,
             load,
             mesh_position,
-            mesh_stiffness_secant: self.transmission_error.iter().map(|delta| load / delta).collect(),
+            mesh_stiffness_secant: self
+                .transmission_error
+                .iter()
+                .map(|delta| load / delta)
+                .collect(),
             transmission_error_statistics: Statistics::of(&self.transmission_error),
             mesh_stiffness_tangent_statistics: Statistics::of(&self.stiffness),
             transmission_error: self.transmission_error,
@@ -184,14 +240,20 @@ pub fn warnings(case: &Case) -> Vec<Warning> {
     if pair.backlash() < NO_BACKLASH {
         warnings.push(Warning::ZeroBacklash);
     }
-    for member in [Member::Driving, Member::Driven] {
+    for member in Member::BOTH {
         let gear = pair.gear(member);
-        if let Some(ligament) = gear.least_ligament().filter(|&ligament| ligament < gear.data().rack.module) {
+        if let Some(ligament) = gear
+            .least_ligament()
+            .filter(|&ligament| ligament < gear.data().rack.module)
+        {
             warnings.push(Warning::ThinLigament { member, ligament });
         }
     }
     if !case.covers_whole_periods() {
-        warnings.push(Warning::PartialSpan { span: case.span(), period: pair.period() });
+        warnings.push(Warning::PartialSpan {
+            span: case.span(),
+            period: pair.period(),
+        });
     }
     if case.method == Method::LoadDistribution && has_holes(pair) {
         warnings.push(Warning::HolesNotSeen);
@@ -218,28 +280,16 @@ impl Evidence {
 
 /// The largest differences between the curves of two grid levels.
 fn difference(curves: &[Curve], others: &[Curve]) -> ErrorEstimate {
-    let largest = |value: fn(&Curve) -> f64| curves.iter().zip(others).map(|(a, b)| (value(a) - value(b)).abs()).fold(0.0, f64::max);
+    let largest = |value: fn(&Curve) -> f64| {
+        curves
+            .iter()
+            .zip(others)
+            .map(|(a, b)| (value(a) - value(b)).abs())
+            .fold(0.0, f64::max)
+    };
     ErrorEstimate {
         mean: largest(|curve| curve.transmission_error_statistics.mean),
         peak_to_peak: largest(|curve| curve.transmission_error_statistics.peak_to_peak),
         mean_stiffness: largest(|curve| curve.mesh_stiffness_tangent_statistics.mean),
     }
-}
-
-/// What a case will cost, known before it is computed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Estimate {
-    /// Unknowns of both gears before condensation.
-    pub degrees_of_freedom: u64,
-    /// Memory in bytes.
-    pub memory: u64,
-    /// Time on one core in seconds.
-    pub seconds: f64,
-    /// Positions times torques.
-    pub positions: u64,
-}
-
-/// Estimates what `case` will cost.
-pub fn estimate(case: &Case) -> Estimate {
-    Estimate { degrees_of_freedom: 0, memory: 0, seconds: 0.0, positions: (case.positions() * case.output_torques.len()) as u64 }
 }

@@ -9,7 +9,8 @@ use crate::contact::flank::{FlankPoint, FlankTable};
 use crate::contact::half_plane::mean_logarithm;
 use crate::contact::patch::{Approach, Patch};
 use crate::contact::{
-    AugmentedLagrangian, ContactError, ContactProblem, ContactSolution, solve_active_set, solve_augmented_lagrangian,
+    AugmentedLagrangian, ContactError, ContactProblem, ContactSolution, solve_active_set,
+    solve_augmented_lagrangian,
 };
 use crate::fem::body::Coupling;
 use crate::gear::{GearPair, Member};
@@ -112,9 +113,15 @@ impl PairModel {
     /// # Errors
     ///
     /// [`PositionError`].
-    pub fn contact(&self, eta: f64, load: f64, warm: &mut WarmStart) -> Result<MeshContact, PositionError> {
+    pub fn contact(
+        &self,
+        eta: f64,
+        load: f64,
+        warm: &mut WarmStart,
+    ) -> Result<MeshContact, PositionError> {
         let reference = eta.floor() as i64;
-        let mut approaches: Vec<Approach> = (reference - PAIRS_AROUND..=reference + PAIRS_AROUND + 1)
+        let mut approaches: Vec<Approach> = (reference - PAIRS_AROUND
+            ..=reference + PAIRS_AROUND + 1)
             .filter_map(|n| Approach::of(&self.pair, eta, n))
             .collect();
         approaches.sort_by(|a, b| a.gap.total_cmp(&b.gap));
@@ -123,16 +130,29 @@ impl PairModel {
         let mut reach = warm.approach.map_or(first_gap, |approach| 1.2 * approach);
         let mut widening = 1.0;
         loop {
-            let near = approaches.iter().filter(|approach| approach.gap <= reach.max(first_gap));
-            let mut patches: Vec<Patch> =
-                near.map(|approach| approach.patch(&self.pair, load, self.logarithm_factors(), self.cells_per_patch, widening)).collect();
+            let near = approaches
+                .iter()
+                .filter(|approach| approach.gap <= reach.max(first_gap));
+            let mut patches: Vec<Patch> = near
+                .map(|approach| {
+                    approach.patch(
+                        &self.pair,
+                        load,
+                        self.logarithm_factors(),
+                        self.cells_per_patch,
+                        widening,
+                    )
+                })
+                .collect();
             patches.retain(|patch| !patch.cells.is_empty());
             patches.sort_by_key(|patch| patch.pair);
             if patches.is_empty() {
                 return Err(PositionError::NoContact);
             }
             let (solution, points) = self.solve(&patches, load, warm)?;
-            let missed = approaches.iter().any(|approach| approach.gap > reach.max(first_gap) && approach.gap < solution.approach * 1.1);
+            let missed = approaches.iter().any(|approach| {
+                approach.gap > reach.max(first_gap) && approach.gap < solution.approach * 1.1
+            });
             if missed {
                 reach = 1.2 * solution.approach;
                 continue;
@@ -147,21 +167,48 @@ impl PairModel {
     }
 
     fn logarithm_factors(&self) -> f64 {
-        self.gears.iter().map(|gear| gear.flank.logarithm_factor()).sum()
+        self.gears
+            .iter()
+            .map(|gear| gear.flank.logarithm_factor())
+            .sum()
     }
 
-    fn solve(&self, patches: &[Patch], load: f64, warm: &WarmStart) -> Result<(ContactSolution, [Vec<FlankPoint>; 2]), PositionError> {
+    fn solve(
+        &self,
+        patches: &[Patch],
+        load: f64,
+        warm: &WarmStart,
+    ) -> Result<(ContactSolution, [Vec<FlankPoint>; 2]), PositionError> {
         let points: [Vec<FlankPoint>; 2] = std::array::from_fn(|gear| {
             let cells = patches.iter().flat_map(|patch| &patch.cells);
-            cells.map(|cell| self.gears[gear].flank.point(cell.roll_lengths[gear], cell.directions[gear])).collect()
+            cells
+                .map(|cell| {
+                    self.gears[gear]
+                        .flank
+                        .point(cell.roll_lengths[gear], cell.directions[gear])
+                })
+                .collect()
         });
         let compliance = self.compliance(patches, &points);
         let cells = || patches.iter().flat_map(|patch| &patch.cells);
-        let problem = ContactProblem::new(compliance, cells().map(|cell| cell.gap).collect(), cells().map(|cell| cell.arm).collect())?;
+        let problem = ContactProblem::new(
+            compliance,
+            cells().map(|cell| cell.gap).collect(),
+            cells().map(|cell| cell.arm).collect(),
+        )?;
         let solution = match self.solver {
-            ContactSolver::ActiveSet => solve_active_set(&problem, load, warm.touching(patches).as_deref())?,
-            ContactSolver::AugmentedLagrangian { penalty, gap_tolerance } => {
-                let settings = AugmentedLagrangian { penalty, gap_tolerance, max_iterations: MULTIPLIER_UPDATES };
+            ContactSolver::ActiveSet => {
+                solve_active_set(&problem, load, warm.touching(patches).as_deref())?
+            }
+            ContactSolver::AugmentedLagrangian {
+                penalty,
+                gap_tolerance,
+            } => {
+                let settings = AugmentedLagrangian {
+                    penalty,
+                    gap_tolerance,
+                    max_iterations: MULTIPLIER_UPDATES,
+                };
                 solve_augmented_lagrangian(&problem, load, &settings)?
             }
         };
@@ -173,23 +220,31 @@ impl PairModel {
         let starts = starts(patches);
         let count = starts[patches.len()];
         let mut h = Mat::zeros(count, count);
-        for (member, gear, points) in [(Member::Driving, &self.gears[0], &points[0]), (Member::Driven, &self.gears[1], &points[1])] {
+        for (member, gear, points) in [
+            (Member::Driving, &self.gears[0], &points[0]),
+            (Member::Driven, &self.gears[1], &points[1]),
+        ] {
             for (a, patch) in patches.iter().enumerate() {
                 for (b, other) in patches.iter().enumerate().take(a + 1) {
-                    let Some(coupling) = gear.coupling.block(self.tooth(member, patch.pair), tooth_offset(member, other.pair - patch.pair))
-                    else {
+                    let Some(coupling) = gear.coupling.block(
+                        self.tooth(member, patch.pair),
+                        tooth_offset(member, other.pair - patch.pair),
+                    ) else {
                         continue;
                     };
                     let rows = (starts[a], &points[starts[a]..starts[a + 1]]);
                     let cols = (starts[b], &points[starts[b]..starts[b + 1]]);
-                    gear.flank.add_compliance(&mut h, rows, cols, a == b, coupling);
+                    gear.flank
+                        .add_compliance(&mut h, rows, cols, a == b, coupling);
                 }
             }
         }
         let factors = self.logarithm_factors();
         for (a, patch) in patches.iter().enumerate() {
             let width = patch.cell_width.ln();
-            let logarithms: Vec<f64> = (0..patch.cells.len()).map(|d| factors * (mean_logarithm(d) + width)).collect();
+            let logarithms: Vec<f64> = (0..patch.cells.len())
+                .map(|d| factors * (mean_logarithm(d) + width))
+                .collect();
             for j in starts[a]..starts[a + 1] {
                 for i in j..starts[a + 1] {
                     h[(i, j)] -= logarithms[i - j];
@@ -204,7 +259,13 @@ impl PairModel {
         h
     }
 
-    fn mesh_contact(&self, patches: &[Patch], points: &[Vec<FlankPoint>; 2], solution: &ContactSolution, load: f64) -> MeshContact {
+    fn mesh_contact(
+        &self,
+        patches: &[Patch],
+        points: &[Vec<FlankPoint>; 2],
+        solution: &ContactSolution,
+        load: f64,
+    ) -> MeshContact {
         let starts = starts(patches);
         let width = self.pair.contact_width();
         let mut peak_pressure = 0.0_f64;
@@ -213,10 +274,27 @@ impl PairModel {
             .enumerate()
             .map(|(a, patch)| {
                 let range = starts[a]..starts[a + 1];
-                let (p, q) = (&solution.forces[range.clone()], &solution.load_derivative[range.clone()]);
-                let share = patch.cells.iter().zip(p).map(|(cell, p)| cell.arm * p).sum::<f64>() / load;
-                peak_pressure = p.iter().fold(peak_pressure, |peak, p| peak.max(p / (patch.cell_width * width)));
-                let modal = |forces: &[f64]| std::array::from_fn(|g| self.gears[g].flank.modal_loads(&points[g][range.clone()], forces));
+                let (p, q) = (
+                    &solution.forces[range.clone()],
+                    &solution.load_derivative[range.clone()],
+                );
+                let share = patch
+                    .cells
+                    .iter()
+                    .zip(p)
+                    .map(|(cell, p)| cell.arm * p)
+                    .sum::<f64>()
+                    / load;
+                peak_pressure = p.iter().fold(peak_pressure, |peak, p| {
+                    peak.max(p / (patch.cell_width * width))
+                });
+                let modal = |forces: &[f64]| {
+                    std::array::from_fn(|g| {
+                        self.gears[g]
+                            .flank
+                            .modal_loads(&points[g][range.clone()], forces)
+                    })
+                };
                 PairContact {
                     pair: patch.pair,
                     share,
@@ -226,7 +304,12 @@ impl PairModel {
                 }
             })
             .collect();
-        let complementarity = solution.forces.iter().zip(&solution.gaps).map(|(p, g)| (p * g).abs()).fold(0.0, f64::max);
+        let complementarity = solution
+            .forces
+            .iter()
+            .zip(&solution.gaps)
+            .map(|(p, g)| (p * g).abs())
+            .fold(0.0, f64::max);
         MeshContact {
             transmission_error: solution.approach,
             stiffness: solution.stiffness,
@@ -266,14 +349,29 @@ fn starts(patches: &[Patch]) -> Vec<usize> {
 /// Whether contact reaches an end of a patch that is not an end of the flank.
 fn overflows(patches: &[Patch], active: &[bool]) -> bool {
     let starts = starts(patches);
-    patches.iter().enumerate().any(|(a, patch)| (active[starts[a]] && !patch.starts_at_form) || (active[starts[a + 1] - 1] && !patch.ends_at_tip))
+    patches.iter().enumerate().any(|(a, patch)| {
+        (active[starts[a]] && !patch.starts_at_form)
+            || (active[starts[a + 1] - 1] && !patch.ends_at_tip)
+    })
 }
 
 impl WarmStart {
     fn after(patches: &[Patch], solution: &ContactSolution) -> Self {
         let starts = starts(patches);
-        let active = patches.iter().enumerate().map(|(a, patch)| (patch.pair, solution.active[starts[a]..starts[a + 1]].to_vec())).collect();
-        Self { approach: Some(solution.approach), active }
+        let active = patches
+            .iter()
+            .enumerate()
+            .map(|(a, patch)| {
+                (
+                    patch.pair,
+                    solution.active[starts[a]..starts[a + 1]].to_vec(),
+                )
+            })
+            .collect();
+        Self {
+            approach: Some(solution.approach),
+            active,
+        }
     }
 
     /// The cells that touched before, in the numbering of `patches`; cells move with the contact, so that they mostly
@@ -281,8 +379,14 @@ impl WarmStart {
     fn touching(&self, patches: &[Patch]) -> Option<Vec<bool>> {
         self.approach?;
         let touching = patches.iter().flat_map(|patch| {
-            let before = self.active.iter().find(|(pair, active)| *pair == patch.pair && active.len() == patch.cells.len());
-            before.map_or_else(|| vec![false; patch.cells.len()], |(_, active)| active.clone())
+            let before = self
+                .active
+                .iter()
+                .find(|(pair, active)| *pair == patch.pair && active.len() == patch.cells.len());
+            before.map_or_else(
+                || vec![false; patch.cells.len()],
+                |(_, active)| active.clone(),
+            )
         });
         Some(touching.collect())
     }

@@ -1,6 +1,5 @@
 //! Order spectra: amplitudes per revolution of the driven gear.
 
-
 use realfft::RealFftPlanner;
 
 use crate::gear::GearPair;
@@ -49,15 +48,25 @@ const SIDEBANDS: (u32, u32) = (4, 2);
 
 impl Spectrum {
     /// The spectrum of one curve of `pair` over `span` mesh periods, which are whole true periods.
-    pub fn of(pair: &GearPair, span: u32, transmission_error: &[f64], stiffness: &[f64], speed: Option<RotationSpeed>) -> Self {
+    pub fn of(
+        pair: &GearPair,
+        span: u32,
+        transmission_error: &[f64],
+        stiffness: &[f64],
+        speed: Option<RotationSpeed>,
+    ) -> Self {
         let z_2 = f64::from(pair.driven().tooth_count());
         let (ste, k) = (harmonics(transmission_error), harmonics(stiffness));
-        let order: Vec<f64> = (1..=ste.len()).map(|bin| bin as f64 * z_2 / f64::from(span)).collect();
+        let order: Vec<f64> = (1..=ste.len())
+            .map(|bin| bin as f64 * z_2 / f64::from(span))
+            .collect();
         let named = named_orders(pair)
             .into_iter()
             .filter_map(|(order, label)| {
                 let bin = order * f64::from(span) / z_2;
-                let index = (bin.round() as usize).checked_sub(1).filter(|&index| index < ste.len())?;
+                let index = (bin.round() as usize)
+                    .checked_sub(1)
+                    .filter(|&index| index < ste.len())?;
                 ((bin - bin.round()).abs() < 1e-9).then(|| NamedOrder {
                     order,
                     label,
@@ -95,7 +104,9 @@ pub fn harmonics(values: &[f64]) -> Vec<(f64, f64)> {
     let mean = values.iter().sum::<f64>() / n as f64;
     let mut input: Vec<f64> = values.iter().map(|value| value - mean).collect();
     let mut output = transform.make_output_vec();
-    transform.process(&mut input, &mut output).expect("the planner made both buffers for this length");
+    transform
+        .process(&mut input, &mut output)
+        .expect("the planner made both buffers for this length");
     let line = |(bin, x): (usize, &realfft::num_complex::Complex<f64>)| {
         let factor = if 2 * bin == n { 1.0 } else { 2.0 };
         (factor * x.norm() / n as f64, x.arg())
@@ -106,7 +117,10 @@ pub fn harmonics(values: &[f64]) -> Vec<(f64, f64)> {
 /// Orders per revolution of the driven gear that have names, each once: the mesh and its multiples, the holes, and the
 /// sidebands that holes make about the mesh.
 fn named_orders(pair: &GearPair) -> Vec<(f64, String)> {
-    let (z_1, z_2) = (f64::from(pair.driving().tooth_count()), f64::from(pair.driven().tooth_count()));
+    let (z_1, z_2) = (
+        f64::from(pair.driving().tooth_count()),
+        f64::from(pair.driven().tooth_count()),
+    );
     let multiple = |k: u32| if k == 1 { String::new() } else { k.to_string() };
     let mut names: Vec<(f64, String)> = Vec::new();
     let mut add = |order: f64, label: String| {
@@ -154,31 +168,54 @@ mod tests {
     fn case_2() -> GearPair {
         let solid = SpurGear::new(paper_gear(50)).expect("a gear");
         let mut data = paper_gear(50);
-        data.blank.holes = Some(HolePattern { count: 10, circle_radius: 34e-3, radius: 7.5e-3, phase: 0.0 });
+        data.blank.holes = Some(HolePattern {
+            count: 10,
+            circle_radius: 34e-3,
+            radius: 7.5e-3,
+            phase: 0.0,
+        });
         GearPair::new(solid, SpurGear::new(data).expect("a gear"), 100.5e-3).expect("meshes")
     }
 
     #[test]
     fn cosines_come_back_with_their_amplitudes_and_phases() {
         let n = 200;
-        let wave = |j: usize, bin: f64, phase: f64| (2.0 * PI * bin * j as f64 / f64::from(n) + phase).cos();
-        let values: Vec<f64> = (0..n as usize).map(|j| 5.0 + 0.5 * wave(j, 1.0, 0.3) + 0.2 * wave(j, 5.0, -2.0) + 0.1 * wave(j, 100.0, 0.0)).collect();
+        let wave = |j: usize, bin: f64, phase: f64| {
+            (2.0 * PI * bin * j as f64 / f64::from(n) + phase).cos()
+        };
+        let values: Vec<f64> = (0..n as usize)
+            .map(|j| {
+                5.0 + 0.5 * wave(j, 1.0, 0.3) + 0.2 * wave(j, 5.0, -2.0) + 0.1 * wave(j, 100.0, 0.0)
+            })
+            .collect();
         let lines = harmonics(&values);
         assert_eq!(lines.len(), 100);
         for (bin, amplitude, phase) in [(1, 0.5, 0.3), (5, 0.2, -2.0), (100, 0.1, 0.0)] {
-            assert!((lines[bin - 1].0 - amplitude).abs() < 1e-14 && (lines[bin - 1].1 - phase).abs() < 1e-12);
+            assert!(
+                (lines[bin - 1].0 - amplitude).abs() < 1e-14
+                    && (lines[bin - 1].1 - phase).abs() < 1e-12
+            );
         }
     }
 
     #[test]
     fn orders_of_case_2_are_multiples_of_its_holes_and_carry_their_names() {
-        let values: Vec<f64> = (0..200).map(|j| (2.0 * PI * f64::from(j) / 200.0).cos() * 3.0 + (2.0 * PI * f64::from(j) / 40.0).cos()).collect();
+        let values: Vec<f64> = (0..200)
+            .map(|j| {
+                (2.0 * PI * f64::from(j) / 200.0).cos() * 3.0
+                    + (2.0 * PI * f64::from(j) / 40.0).cos()
+            })
+            .collect();
         let spectrum = Spectrum::of(&case_2(), 5, &values, &values, Some(RotationSpeed(10.0)));
         assert_eq!(spectrum.order[..2], [10.0, 20.0]);
         assert!((spectrum.line("H_N").expect("named").transmission_error - 3.0).abs() < 1e-13);
         assert!((spectrum.line("H_Z2").expect("named").transmission_error - 1.0).abs() < 1e-13);
         assert_eq!(spectrum.line("H_Z2-N").expect("named").order, 40.0);
         assert_eq!(spectrum.line("H_2Z2+2N").expect("named").order, 120.0);
-        assert_eq!(spectrum.frequency.expect("a speed was given")[4], 500.0, "the mesh frequency is Z1 times the speed");
+        assert_eq!(
+            spectrum.frequency.expect("a speed was given")[4],
+            500.0,
+            "the mesh frequency is Z1 times the speed"
+        );
     }
 }

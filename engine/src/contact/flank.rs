@@ -54,7 +54,12 @@ impl FlankTable {
                 }
             }
         }
-        Self { roll_lengths: tooth.roll_lengths.clone(), smooth, modes: tooth.modes.clone(), logarithm_factor: factor }
+        Self {
+            roll_lengths: tooth.roll_lengths.clone(),
+            smooth,
+            modes: tooth.modes.clone(),
+            logarithm_factor: factor,
+        }
     }
 
     /// The factor c = 2/(π E b) of the logarithm.
@@ -79,9 +84,16 @@ impl FlankTable {
         let first = after.saturating_sub(2).min(nodes.len() - 4);
         let stencil = &nodes[first..first + 4];
         let weights = std::array::from_fn(|i| {
-            (0..4).filter(|&j| j != i).map(|j| (s - stencil[j]) / (stencil[i] - stencil[j])).product()
+            (0..4)
+                .filter(|&j| j != i)
+                .map(|j| (s - stencil[j]) / (stencil[i] - stencil[j]))
+                .product()
         });
-        FlankPoint { first, weights, direction }
+        FlankPoint {
+            first,
+            weights,
+            direction,
+        }
     }
 
     /// The loads of the modes that forces `p` on `points` exert: Vᵀ p.
@@ -117,7 +129,11 @@ impl FlankTable {
             for k in 0..r {
                 let v = self.modes[(cols.start + j, k)];
                 for i in 0..r {
-                    half[(i, j)] += v * if transposed { coupling[(k, i)] } else { coupling[(i, k)] };
+                    half[(i, j)] += v * if transposed {
+                        coupling[(k, i)]
+                    } else {
+                        coupling[(i, k)]
+                    };
                 }
             }
         }
@@ -144,7 +160,11 @@ impl FlankTable {
                 }
             }
             for (i, point) in points.iter().enumerate() {
-                h[(row + i, col + j)] += point.rows().into_iter().map(|(node, weight)| weight * column[node - rows.start]).sum::<f64>();
+                h[(row + i, col + j)] += point
+                    .rows()
+                    .into_iter()
+                    .map(|(node, weight)| weight * column[node - rows.start])
+                    .sum::<f64>();
             }
         }
     }
@@ -155,7 +175,10 @@ impl FlankPoint {
     fn rows(&self) -> [(usize, f64); 8] {
         std::array::from_fn(|i| {
             let (node, component) = (i / 2, i % 2);
-            (2 * (self.first + node) + component, self.weights[node] * self.direction[component])
+            (
+                2 * (self.first + node) + component,
+                self.weights[node] * self.direction[component],
+            )
         })
     }
 }
@@ -169,11 +192,17 @@ struct Range {
 impl Range {
     fn of(points: &[FlankPoint]) -> Self {
         let first = points.iter().map(|point| point.first).min().unwrap_or(0);
-        let last = points.iter().map(|point| point.first + 4).max().unwrap_or(first);
-        Self { start: 2 * first, len: 2 * (last - first) }
+        let last = points
+            .iter()
+            .map(|point| point.first + 4)
+            .max()
+            .unwrap_or(first);
+        Self {
+            start: 2 * first,
+            len: 2 * (last - first),
+        }
     }
 }
-
 
 /// Replaces the entries of the symmetric table `a` near its diagonal by what its farther ones say.
 ///
@@ -188,14 +217,21 @@ fn bridge_diagonal(a: &mut Mat<f64>) {
         let reach = sum.min(2 * last - sum);
         // Distances along one antidiagonal share the parity of their sum.
         let parity = sum % 2;
-        let nodes: Vec<i64> = [near + parity, near + 4 + parity, near + 8 + parity].into_iter().filter(|&n| n <= reach).collect();
+        let nodes: Vec<i64> = [near + parity, near + 4 + parity, near + 8 + parity]
+            .into_iter()
+            .filter(|&n| n <= reach)
+            .collect();
         if nodes.is_empty() {
             return None;
         }
         let x = (d * d) as f64;
         let mut value = 0.0;
         for &n in &nodes {
-            let weight: f64 = nodes.iter().filter(|&&m| m != n).map(|&m| (x - (m * m) as f64) / ((n * n - m * m) as f64)).product();
+            let weight: f64 = nodes
+                .iter()
+                .filter(|&&m| m != n)
+                .map(|&m| (x - (m * m) as f64) / ((n * n - m * m) as f64))
+                .product();
             value += weight * source[(((sum - n) / 2) as usize, ((sum + n) / 2) as usize)];
         }
         Some(value)
@@ -208,8 +244,13 @@ fn bridge_diagonal(a: &mut Mat<f64>) {
     let (first_sum, last_sum) = (near + 4, 2 * last - near - 4);
     for d in 0..near {
         for sum in (d..=2 * last - d).filter(|sum| (sum - d) % 2 == 0) {
-            let inside = sum.clamp(first_sum + (first_sum - d).rem_euclid(2), last_sum - (last_sum - d).rem_euclid(2));
-            let Some(mut value) = bridged(inside, d) else { continue };
+            let inside = sum.clamp(
+                first_sum + (first_sum - d).rem_euclid(2),
+                last_sum - (last_sum - d).rem_euclid(2),
+            );
+            let Some(mut value) = bridged(inside, d) else {
+                continue;
+            };
             if inside != sum {
                 let step = if sum < inside { 2 } else { -2 };
                 if let Some(next) = bridged(inside + step, d) {
@@ -231,13 +272,24 @@ mod tests {
             let (mean, d) = ((i + j) as f64 / 100.0, (i as f64 - j as f64) / 100.0);
             2.0 + mean - 3.0 * mean * mean + d * d * (1.0 + mean) - d.powi(4)
         };
-        let mut table = Mat::from_fn(60, 60, |i, j| if i.abs_diff(j) < NEAR { 99.0 } else { exact(i, j) });
+        let mut table = Mat::from_fn(60, 60, |i, j| {
+            if i.abs_diff(j) < NEAR {
+                99.0
+            } else {
+                exact(i, j)
+            }
+        });
         bridge_diagonal(&mut table);
         for i in 0..60_usize {
             for j in 0..60_usize {
                 let inside = i + j >= 16 && i + j <= 118 - 16;
                 let tolerance = if inside { 1e-10 } else { 0.1 };
-                assert!((table[(i, j)] - exact(i, j)).abs() < tolerance, "({i}, {j}): {} {}", table[(i, j)], exact(i, j));
+                assert!(
+                    (table[(i, j)] - exact(i, j)).abs() < tolerance,
+                    "({i}, {j}): {} {}",
+                    table[(i, j)],
+                    exact(i, j)
+                );
             }
         }
     }

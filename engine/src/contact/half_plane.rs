@@ -4,10 +4,20 @@
 ///
 /// The second difference of Φ(z) = z²/2 ln|z| − 3z²/4, whose second derivative is the logarithm.
 pub fn mean_logarithm(distance: usize) -> f64 {
-    let phi = |z: f64| if z == 0.0 { 0.0 } else { z * z / 2.0 * z.abs().ln() - 0.75 * z * z };
+    let phi = |z: f64| {
+        if z == 0.0 {
+            0.0
+        } else {
+            z * z / 2.0 * z.abs().ln() - 0.75 * z * z
+        }
+    };
     let z = distance as f64;
     // Far away the second difference loses its digits; its series ln z − 1/(12 z²) does not.
-    if distance > 100 { z.ln() - 1.0 / (12.0 * z * z) } else { phi(z + 1.0) - 2.0 * phi(z) + phi(z - 1.0) }
+    if distance > 100 {
+        z.ln() - 1.0 / (12.0 * z * z)
+    } else {
+        phi(z + 1.0) - 2.0 * phi(z) + phi(z - 1.0)
+    }
 }
 
 /// The factor c = 2/(π E b) of the logarithm in the compliance of a half plane in plane stress: u = −c F ln|x| + constant.
@@ -35,10 +45,17 @@ mod tests {
             let sum: f64 = (0..n)
                 .flat_map(|i| (0..n).map(move |j| (i, j)))
                 .filter(|(i, j)| distance > 0 || i != j)
-                .map(|(i, j)| (distance as f64 + (f64::from(i) - f64::from(j)) / f64::from(n)).abs().ln())
+                .map(|(i, j)| {
+                    (distance as f64 + (f64::from(i) - f64::from(j)) / f64::from(n))
+                        .abs()
+                        .ln()
+                })
                 .sum();
             let mean = sum / f64::from(n * n);
-            assert!((mean - mean_logarithm(distance)).abs() < 0.02, "{distance}: the sum leaves out its diagonal");
+            assert!(
+                (mean - mean_logarithm(distance)).abs() < 0.02,
+                "{distance}: the sum leaves out its diagonal"
+            );
             if distance > 1 {
                 assert!((mean - mean_logarithm(distance)).abs() < 1e-6);
             }

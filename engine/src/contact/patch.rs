@@ -76,39 +76,45 @@ struct Sight {
     normal: Vector,
 }
 
-fn index(member: Member) -> usize {
-    match member {
-        Member::Driving => 0,
-        Member::Driven => 1,
-    }
-}
-
 impl Placement {
     fn new(pair: &GearPair, driving_roll: f64, driven_roll: f64) -> Self {
         let alpha_w = pair.working_pressure_angle();
-        let angle = |gear: &SpurGear, tangent: f64, s: f64| tangent - gear.flank().base_half_angle() + s / gear.base_radius();
+        let angle = |gear: &SpurGear, tangent: f64, s: f64| {
+            tangent - gear.flank().base_half_angle() + s / gear.base_radius()
+        };
         Self {
             centers: [Vector::zeros(), Vector::new(pair.center_distance(), 0.0)],
-            angles: [angle(pair.driving(), -alpha_w, driving_roll), angle(pair.driven(), PI - alpha_w, driven_roll)],
+            angles: [
+                angle(pair.driving(), -alpha_w, driving_roll),
+                angle(pair.driven(), PI - alpha_w, driven_roll),
+            ],
         }
     }
 
     /// The point of the flank of `gear` at roll length `s`, its outward normal and its way to the tip.
     fn point(&self, gear: &SpurGear, member: Member, s: f64) -> (Vector, Vector, Vector) {
-        let t = self.angles[index(member)] + gear.flank().tangent_angle(s);
+        let t = self.angles[member.index()] + gear.flank().tangent_angle(s);
         let (e_r, e_t) = (radial(t), tangential(t));
-        (self.centers[index(member)] + gear.base_radius() * e_r + s * e_t, e_t, e_r)
+        (
+            self.centers[member.index()] + gear.base_radius() * e_r + s * e_t,
+            e_t,
+            e_r,
+        )
     }
 
     /// The flank of `gear` as seen from `point`; `None` from inside its base circle.
     fn sight(&self, gear: &SpurGear, member: Member, point: Vector) -> Option<Sight> {
-        let d = point - self.centers[index(member)];
+        let d = point - self.centers[member.index()];
         let r_b = gear.base_radius();
         let from_tangent_point = (d.norm_squared() - r_b * r_b).max(0.0).sqrt();
         let t = d.y.atan2(d.x) - (from_tangent_point / r_b).atan();
-        let turn = self.angles[index(member)] + gear.flank().base_half_angle() - t;
+        let turn = self.angles[member.index()] + gear.flank().base_half_angle() - t;
         let roll_length = r_b * (turn - (turn / (2.0 * PI)).round() * 2.0 * PI);
-        (from_tangent_point > 0.0).then(|| Sight { roll_length, gap: from_tangent_point - roll_length, normal: tangential(t) })
+        (from_tangent_point > 0.0).then(|| Sight {
+            roll_length,
+            gap: from_tangent_point - roll_length,
+            normal: tangential(t),
+        })
     }
 }
 
@@ -118,34 +124,79 @@ impl Approach {
         let line = pair.line_of_action();
         let s_1 = pair.pitch_roll_length() + (eta - n as f64) * pair.base_pitch();
         let placement = Placement::new(pair, s_1, line - s_1);
-        let carrier = if s_1 < pair.pitch_roll_length() { Member::Driven } else { Member::Driving };
+        let carrier = if s_1 < pair.pitch_roll_length() {
+            Member::Driven
+        } else {
+            Member::Driving
+        };
         let gear = pair.gear(carrier);
-        let nominal = if carrier == Member::Driving { s_1 } else { line - s_1 };
-        let (low, high) = (gear.flank().arc_length(gear.form_roll_length()), gear.flank().arc_length(gear.tip_roll_length()));
-        let gap_at = |arc: f64| cell_gap(pair, &placement, carrier, arc).map_or(f64::INFINITY, |(gap, ..)| gap);
+        let nominal = if carrier == Member::Driving {
+            s_1
+        } else {
+            line - s_1
+        };
+        let (low, high) = (
+            gear.flank().arc_length(gear.form_roll_length()),
+            gear.flank().arc_length(gear.tip_roll_length()),
+        );
+        let gap_at = |arc: f64| {
+            cell_gap(pair, &placement, carrier, arc).map_or(f64::INFINITY, |(gap, ..)| gap)
+        };
         // The gap is a parabola about the nominal contact plus reliefs that grow towards either tip: it has one minimum.
         let arc = golden_minimum(low, high, 1e-4 * (high - low).min(1e-3), gap_at);
-        let arc = if gap_at(high) <= gap_at(arc) { high } else { arc };
+        let arc = if gap_at(high) <= gap_at(arc) {
+            high
+        } else {
+            arc
+        };
         let gap = gap_at(arc);
-        gap.is_finite().then_some(Self { pair: n, gap, placement, carrier, arc, off_path: nominal > gear.tip_roll_length() })
+        gap.is_finite().then_some(Self {
+            pair: n,
+            gap,
+            placement,
+            carrier,
+            arc,
+            off_path: nominal > gear.tip_roll_length(),
+        })
     }
 
     /// Lays `count` cells about the deepest point, wide enough for `load` and then by the factor `widening`.
     ///
     /// `factors` is the sum of both logarithm factors. Where the flank ends, the patch ends with it, so that its cells move
     /// with the contact and close up smoothly towards a corner.
-    pub fn patch(&self, pair: &GearPair, load: f64, factors: f64, count: usize, widening: f64) -> Patch {
+    pub fn patch(
+        &self,
+        pair: &GearPair,
+        load: f64,
+        factors: f64,
+        count: usize,
+        widening: f64,
+    ) -> Patch {
         let gear = pair.gear(self.carrier);
         let flank = gear.flank();
-        let (low, high) = (flank.arc_length(gear.form_roll_length()), flank.arc_length(gear.tip_roll_length()));
+        let (low, high) = (
+            flank.arc_length(gear.form_roll_length()),
+            flank.arc_length(gear.tip_roll_length()),
+        );
         let s = flank.roll_length_at_arc(self.arc);
         let other = (pair.line_of_action() - s).max(0.1 * s);
-        let (half_width, _) = half_plane::hertz(load, s * other / (s + other), factors, pair.contact_width());
+        let (half_width, _) =
+            half_plane::hertz(load, s * other / (s + other), factors, pair.contact_width());
         let reach = PATCH_HALF_WIDTH * widening * half_width;
         let (from, to) = ((self.arc - reach).max(low), (self.arc + reach).min(high));
         let cell_width = (to - from) / count as f64;
-        let cells = (0..count).filter_map(|i| self.cell(pair, from + (i as f64 + 0.5) * cell_width, cell_width)).collect();
-        Patch { pair: self.pair, carrier: self.carrier, cell_width, cells, starts_at_form: from <= low, ends_at_tip: to >= high, off_path: self.off_path }
+        let cells = (0..count)
+            .filter_map(|i| self.cell(pair, from + (i as f64 + 0.5) * cell_width, cell_width))
+            .collect();
+        Patch {
+            pair: self.pair,
+            carrier: self.carrier,
+            cell_width,
+            cells,
+            starts_at_form: from <= low,
+            ends_at_tip: to >= high,
+            off_path: self.off_path,
+        }
     }
 
     fn cell(&self, pair: &GearPair, arc: f64, width: f64) -> Option<Cell> {
@@ -160,19 +211,33 @@ impl Approach {
         }
         let (point, normal, to_tip) = self.placement.point(pair.gear(carrier), carrier, s);
         let mut roll_lengths = [0.0; 2];
-        roll_lengths[index(carrier)] = s;
-        roll_lengths[index(other)] = sight.roll_length;
+        roll_lengths[carrier.index()] = s;
+        roll_lengths[other.index()] = sight.roll_length;
         let mut directions = [[1.0, 0.0]; 2];
-        directions[index(carrier)] = [-sight.normal.dot(&normal), -sight.normal.dot(&to_tip)];
-        let force = if other == Member::Driving { sight.normal } else { -sight.normal };
+        directions[carrier.index()] = [-sight.normal.dot(&normal), -sight.normal.dot(&to_tip)];
+        let force = if other == Member::Driving {
+            sight.normal
+        } else {
+            -sight.normal
+        };
         let from_axis = point - self.placement.centers[1];
         let arm = -(from_axis.x * force.y - from_axis.y * force.x) / pair.driven().base_radius();
-        Some(Cell { roll_lengths, directions, gap: f64::midpoint(gap_0, gap_1), arm })
+        Some(Cell {
+            roll_lengths,
+            directions,
+            gap: f64::midpoint(gap_0, gap_1),
+            arm,
+        })
     }
 }
 
 /// The gap at `arc` on the carrier, reliefs included, what is seen there and the carrier's roll length.
-fn cell_gap(pair: &GearPair, placement: &Placement, carrier: Member, arc: f64) -> Option<(f64, Sight, f64)> {
+fn cell_gap(
+    pair: &GearPair,
+    placement: &Placement,
+    carrier: Member,
+    arc: f64,
+) -> Option<(f64, Sight, f64)> {
     let (gear, other) = (pair.gear(carrier), pair.gear(carrier.other()));
     let s = gear.flank().roll_length_at_arc(arc);
     let (point, ..) = placement.point(gear, carrier, s);
@@ -181,7 +246,8 @@ fn cell_gap(pair: &GearPair, placement: &Placement, carrier: Member, arc: f64) -
     if !(0.0..=other.tip_roll_length()).contains(&sight.roll_length) {
         return None;
     }
-    let relief = gear.relief_depth(gear.flank().radius(s)) + other.relief_depth(other.flank().radius(sight.roll_length));
+    let relief = gear.relief_depth(gear.flank().radius(s))
+        + other.relief_depth(other.flank().radius(sight.roll_length));
     Some((sight.gap + relief, sight, s))
 }
 
@@ -213,7 +279,11 @@ mod tests {
     fn pair(relief: bool) -> GearPair {
         let mut data = paper_gear(50);
         if relief {
-            data.tip_relief = Some(ReliefData { amount: 5e-6, shape: ReliefShape::Linear, start: ReliefStart::RadialLength(1.75e-3) });
+            data.tip_relief = Some(ReliefData {
+                amount: 5e-6,
+                shape: ReliefShape::Linear,
+                start: ReliefStart::RadialLength(1.75e-3),
+            });
         }
         let gear = SpurGear::new(data).expect("the standard gear");
         GearPair::new(gear, gear, 100.5e-3).expect("meshes")
@@ -228,22 +298,39 @@ mod tests {
             let patch = approach.patch(&pair, 2447.61, 3e-10, 40, 1.0);
             let s = pair.pitch_roll_length() + (eta - n as f64) * pair.base_pitch();
             for cell in &patch.cells {
-                assert!((cell.arm - 1.0).abs() < 1e-2, "cells beside the line of action are tilted by a/ρ: {}", cell.arm);
+                assert!(
+                    (cell.arm - 1.0).abs() < 1e-2,
+                    "cells beside the line of action are tilted by a/ρ: {}",
+                    cell.arm
+                );
             }
-            let nearest = patch.cells.iter().min_by(|a, b| a.gap.total_cmp(&b.gap)).expect("cells");
+            let nearest = patch
+                .cells
+                .iter()
+                .min_by(|a, b| a.gap.total_cmp(&b.gap))
+                .expect("cells");
             assert!((nearest.roll_lengths[0] - s).abs() < 0.02e-3);
-            assert!((nearest.roll_lengths[0] + nearest.roll_lengths[1] - pair.line_of_action()).abs() < 5e-6, "half a cell beside it");
+            assert!(
+                (nearest.roll_lengths[0] + nearest.roll_lengths[1] - pair.line_of_action()).abs()
+                    < 5e-6,
+                "half a cell beside it"
+            );
         }
     }
 
     #[test]
     fn the_gap_beside_the_contact_is_the_parabola_of_the_relative_curvature() {
         let pair = pair(false);
-        let patch = Approach::of(&pair, 0.2, 0).expect("near").patch(&pair, 2447.61, 3e-10, 41, 1.0);
+        let patch = Approach::of(&pair, 0.2, 0)
+            .expect("near")
+            .patch(&pair, 2447.61, 3e-10, 41, 1.0);
         let (center, end) = (patch.cells[20], patch.cells[36]);
         let x = 16.0 * patch.cell_width;
         let curvature = 1.0 / center.roll_lengths[0] + 1.0 / center.roll_lengths[1];
-        assert!(((end.gap - center.gap) / (x * x / 2.0 * curvature) - 1.0).abs() < 0.03, "third-order terms are x/ρ");
+        assert!(
+            ((end.gap - center.gap) / (x * x / 2.0 * curvature) - 1.0).abs() < 0.03,
+            "third-order terms are x/ρ"
+        );
     }
 
     #[test]
@@ -255,7 +342,11 @@ mod tests {
         for (eta, carrier) in [(before, Member::Driven), (after, Member::Driving)] {
             let approach = Approach::of(&pair, eta, 0).expect("near");
             assert_eq!(approach.carrier, carrier);
-            assert!(approach.off_path && approach.gap > 1e-6 && approach.gap < 1e-4, "{}", approach.gap);
+            assert!(
+                approach.off_path && approach.gap > 1e-6 && approach.gap < 1e-4,
+                "{}",
+                approach.gap
+            );
             let patch = approach.patch(&pair, 2447.61, 3e-10, 40, 1.0);
             assert!(patch.ends_at_tip);
             let last = patch.cells.last().expect("cells");
@@ -269,13 +360,21 @@ mod tests {
         let eta = 0.5;
         let gap = |pair: &GearPair| Approach::of(pair, eta, 0).expect("near").gap;
         let s = plain.pitch_roll_length() + eta * plain.base_pitch();
-        let depth = relieved.driving().relief_depth(relieved.driving().flank().radius(s));
+        let depth = relieved
+            .driving()
+            .relief_depth(relieved.driving().flank().radius(s));
         // A slope σ beside a parabola of radius ρ lowers its minimum by σ² ρ/2.
-        let (r_b, r) = (plain.driving().base_radius(), plain.driving().flank().radius(s));
+        let (r_b, r) = (
+            plain.driving().base_radius(),
+            plain.driving().flank().radius(s),
+        );
         let slope = 5e-6 / 1.75e-3 * r_b / r;
         let rho = s * (plain.line_of_action() - s) / plain.line_of_action();
         let expected = depth - slope * slope * rho / 2.0;
         let added = gap(&relieved) - gap(&plain);
-        assert!(depth > 2e-6 && (added - expected).abs() < 1e-9, "{added} {expected}");
+        assert!(
+            depth > 2e-6 && (added - expected).abs() < 1e-9,
+            "{added} {expected}"
+        );
     }
 }

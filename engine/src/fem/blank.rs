@@ -5,7 +5,6 @@ use faer::Mat;
 use super::FemError;
 use super::condensation::condense;
 use super::cyclic::{Component, Harmonics, Sector};
-use super::dense::Cholesky;
 use super::tooth::in_polar_axes;
 use crate::gear::Material;
 use crate::grid::BlankGrid;
@@ -29,46 +28,57 @@ impl BlankSubstructure {
     /// # Errors
     ///
     /// [`FemError`] if the grid is degenerate.
-    pub fn new(grid: &BlankGrid, interface_radius: f64, material: &Material, thickness: f64, harmonics: Harmonics) -> Result<Self, FemError> {
+    pub fn new(
+        grid: &BlankGrid,
+        interface_radius: f64,
+        material: &Material,
+        thickness: f64,
+        harmonics: Harmonics,
+    ) -> Result<Self, FemError> {
         let (right, left) = &grid.side_nodes;
-        let kept: Vec<u32> = right.iter().chain(left).chain(&grid.arc_nodes).copied().collect();
-        let schur = condense("the blank", &grid.grid, material, thickness, &kept, &grid.bore_nodes)?;
-        let stiffness = in_polar_axes(&schur, kept.iter().map(|&node| grid.grid.nodes[node as usize]));
+        let kept: Vec<u32> = right
+            .iter()
+            .chain(left)
+            .chain(&grid.arc_nodes)
+            .copied()
+            .collect();
+        let schur = condense(
+            "the blank",
+            &grid.grid,
+            material,
+            thickness,
+            &kept,
+            &grid.bore_nodes,
+        )?;
+        let stiffness = in_polar_axes(
+            &schur,
+            kept.iter().map(|&node| grid.grid.nodes[node as usize]),
+        );
         let count = grid.sector_count as usize;
-        let sector = Sector { count, stiffness, side_nodes: right.len(), arc_angles: grid.arc_angles.clone() };
+        let sector = Sector {
+            count,
+            stiffness,
+            side_nodes: right.len(),
+            arc_angles: grid.arc_angles.clone(),
+        };
         let stiffness = sector.ring_stiffness(&harmonics)?;
         // A sector repeats its right side as its left one, and the ends of both are nodes of the bore and of the arc.
         let grid_nodes = count * (grid.grid.nodes.len() - left.len() - 2);
-        Ok(Self { interface_radius, harmonics, stiffness, grid_nodes })
+        Ok(Self {
+            interface_radius,
+            harmonics,
+            stiffness,
+            grid_nodes,
+        })
     }
 
     /// The stiffness with hole 0 at the angle `phase`.
     pub fn stiffness_at(&self, phase: f64) -> Mat<f64> {
-        if phase == 0.0 { self.stiffness.clone() } else { turned(&self.stiffness, &self.harmonics, phase) }
-    }
-
-    /// The tangential force pattern y on the interface circle that answers a uniform tangential displacement of it while it
-    /// is free of radial traction, with hole 0 at the angle 0: its entries multiply the tangential unknowns.
-    ///
-    /// Used by the decomposition, where only tangential displacements are imposed on the annulus.
-    ///
-    /// # Errors
-    ///
-    /// [`FemError::NotPositiveDefinite`].
-    pub fn uniform_answer(&self, phase: f64) -> Result<Vec<f64>, FemError> {
-        let k = self.stiffness_at(phase);
-        let n = self.harmonics.unknowns();
-        let (radial, tangential): (Vec<usize>, Vec<usize>) = (0..n).partition(|i| i % 2 == 0);
-        let uniform = self.harmonics.cosine(0, Component::Tangential);
-        let factor = Cholesky::new(Mat::from_fn(radial.len(), radial.len(), |i, j| k[(radial[i], radial[j])]))
-            .ok_or(FemError::NotPositiveDefinite { part: "the blank's radial unknowns", unknowns: radial.len() })?;
-        let mut follow = Mat::from_fn(radial.len(), 1, |i, _| -k[(radial[i], uniform)]);
-        factor.solve_in_place(follow.as_mut());
-        let mut answer = vec![0.0; n];
-        for &t in &tangential {
-            answer[t] = k[(t, uniform)] + radial.iter().enumerate().map(|(i, &r)| k[(t, r)] * follow[(i, 0)]).sum::<f64>();
+        if phase == 0.0 {
+            self.stiffness.clone()
+        } else {
+            turned(&self.stiffness, &self.harmonics, phase)
         }
-        Ok(answer)
     }
 }
 

@@ -33,11 +33,19 @@ impl Coupling {
     /// # Errors
     ///
     /// [`FemError::NotPositiveDefinite`].
-    pub fn on_blank(teeth: &TeethRing, blank: &BlankSubstructure, phase: f64) -> Result<(Self, BlankResponse), FemError> {
+    pub fn on_blank(
+        teeth: &TeethRing,
+        blank: &BlankSubstructure,
+        phase: f64,
+    ) -> Result<Self, FemError> {
         let z = teeth.held_coupling.len();
         let unknowns = teeth.harmonics.unknowns();
-        let ring = Cholesky::new(&teeth.stiffness + blank.stiffness_at(phase))
-            .ok_or(FemError::NotPositiveDefinite { part: "the gear's interface", unknowns })?;
+        let ring = Cholesky::new(&teeth.stiffness + blank.stiffness_at(phase)).ok_or(
+            FemError::NotPositiveDefinite {
+                part: "the gear's interface",
+                unknowns,
+            },
+        )?;
         // With L⁻¹ F of every tooth, each block is one plain product.
         let halves: Vec<Mat<f64>> = (0..z)
             .map(|i| {
@@ -46,52 +54,74 @@ impl Coupling {
                 half
             })
             .collect();
-        let coupling = Self::new(teeth, |i, j, held| held + halves[i].transpose() * &halves[j]);
-        Ok((coupling, BlankResponse { ring, halves }))
+        Ok(Self::new(teeth, |i, j, held| {
+            held + halves[i].transpose() * &halves[j]
+        }))
     }
 
     fn new(teeth: &TeethRing, block: impl Fn(usize, usize, Mat<f64>) -> Mat<f64>) -> Self {
         let tooth_count = teeth.held_coupling.len();
         let blocks = (0..tooth_count)
             .flat_map(|i| (0..=FARTHEST_NEIGHBOR).map(move |d| (i, d)))
-            .map(|(i, d)| block(i, (i + d) % tooth_count, teeth.held_coupling[d % tooth_count].clone()))
+            .map(|(i, d)| {
+                block(
+                    i,
+                    (i + d) % tooth_count,
+                    teeth.held_coupling[d % tooth_count].clone(),
+                )
+            })
             .collect();
-        Self { tooth_count, blocks }
+        Self {
+            tooth_count,
+            blocks,
+        }
+    }
+
+    /// The coupling of a gear that is alike all around: each block the mean over the teeth.
+    pub fn round_average(&self) -> Self {
+        let (z, per_tooth) = (self.tooth_count, FARTHEST_NEIGHBOR + 1);
+        let means = (0..per_tooth).map(|d| {
+            let rows = self.blocks.iter().skip(d).step_by(per_tooth);
+            let sum = rows.fold(
+                Mat::zeros(self.blocks[d].nrows(), self.blocks[d].ncols()),
+                |sum, block| sum + block,
+            );
+            sum * faer::Scale(1.0 / z as f64)
+        });
+        let means: Vec<Mat<f64>> = means.collect();
+        Self {
+            tooth_count: z,
+            blocks: (0..z).flat_map(|_| means.iter().cloned()).collect(),
+        }
     }
 
     /// The number of entries of all blocks, for the books of a cache.
     pub fn entries(&self) -> usize {
-        self.blocks.iter().map(|block| block.nrows() * block.ncols()).sum()
+        self.blocks
+            .iter()
+            .map(|block| block.nrows() * block.ncols())
+            .sum()
     }
 
     /// X between tooth `i` and the tooth `offset` places counter-clockwise of it, and whether it is to be transposed.
     ///
     /// `None` if the teeth are farther apart than [`FARTHEST_NEIGHBOR`].
     pub fn block(&self, i: usize, offset: i64) -> Option<(&Mat<f64>, bool)> {
-        let distance = usize::try_from(offset.unsigned_abs()).ok().filter(|&d| d <= FARTHEST_NEIGHBOR)?;
-        let (first, transposed) = if offset >= 0 { (i, false) } else { ((i + self.tooth_count - distance % self.tooth_count) % self.tooth_count, true) };
-        Some((&self.blocks[first * (FARTHEST_NEIGHBOR + 1) + distance], transposed))
-    }
-}
-
-/// What the interface circle does under loads on the teeth.
-pub struct BlankResponse {
-    ring: Cholesky<f64>,
-    halves: Vec<Mat<f64>>,
-}
-
-impl BlankResponse {
-    /// For each tooth, what a linear functional `weights` of the interface displacement gains from its unit modes.
-    pub fn functional(&self, weights: &[f64]) -> Vec<Vec<f64>> {
-        let mut half = Mat::from_fn(weights.len(), 1, |i, _| weights[i]);
-        self.ring.half_solve_in_place(half.as_mut());
-        self.halves
-            .iter()
-            .map(|tooth| {
-                let gain = half.transpose() * tooth;
-                (0..gain.ncols()).map(|j| gain[(0, j)]).collect()
-            })
-            .collect()
+        let distance = usize::try_from(offset.unsigned_abs())
+            .ok()
+            .filter(|&d| d <= FARTHEST_NEIGHBOR)?;
+        let (first, transposed) = if offset >= 0 {
+            (i, false)
+        } else {
+            (
+                (i + self.tooth_count - distance % self.tooth_count) % self.tooth_count,
+                true,
+            )
+        };
+        Some((
+            &self.blocks[first * (FARTHEST_NEIGHBOR + 1) + distance],
+            transposed,
+        ))
     }
 }
 

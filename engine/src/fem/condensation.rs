@@ -9,7 +9,8 @@ use faer::perm::Perm;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::amd;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky, supernodal::SupernodalLltRef,
+    CholeskySymbolicParams, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
+    supernodal::SupernodalLltRef,
 };
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Accum, Mat, Par, Side};
@@ -20,7 +21,11 @@ use crate::gear::{Material, Vector};
 use crate::grid::Grid;
 
 /// The stiffness of every element of `grid`, of one material and thickness.
-pub fn element_stiffnesses(grid: &Grid, material: &Material, thickness: f64) -> Vec<ElementStiffness> {
+pub fn element_stiffnesses(
+    grid: &Grid,
+    material: &Material,
+    thickness: f64,
+) -> Vec<ElementStiffness> {
     grid.elements
         .iter()
         .map(|element| {
@@ -49,11 +54,19 @@ pub fn condense(
     let numbering = Numbering::new(grid.nodes.len(), kept, fixed);
     let (n, interior) = (numbering.unknowns(), numbering.interior());
     let mut triplets = Vec::with_capacity(grid.elements.len() * 136 + 2 * kept.len());
-    for (element, k) in grid.elements.iter().zip(element_stiffnesses(grid, material, thickness)) {
+    for (element, k) in grid
+        .elements
+        .iter()
+        .zip(element_stiffnesses(grid, material, thickness))
+    {
         for (b, &node_b) in element.iter().enumerate() {
-            let Some(col) = numbering.first(node_b) else { continue };
+            let Some(col) = numbering.first(node_b) else {
+                continue;
+            };
             for (a, &node_a) in element.iter().enumerate() {
-                let Some(row) = numbering.first(node_a) else { continue };
+                let Some(row) = numbering.first(node_a) else {
+                    continue;
+                };
                 for (c, d) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                     let (i, j) = (row + c, col + d);
                     if i >= j {
@@ -65,12 +78,17 @@ pub fn condense(
     }
     // Springs on the kept unknowns make a floating grid definite; they add to the Schur complement exactly and are taken
     // off again below.
-    let spring = if fixed.is_empty() { material.youngs_modulus * thickness } else { 0.0 };
+    let spring = if fixed.is_empty() {
+        material.youngs_modulus * thickness
+    } else {
+        0.0
+    };
     if spring > 0.0 {
         triplets.extend((interior..n).map(|i| Triplet::new(i as u32, i as u32, spring)));
     }
     let too_large = FemError::TooLarge { part, unknowns: n };
-    let stiffness = SparseColMat::<u32, f64>::try_new_from_triplets(n, n, &triplets).map_err(|_| too_large.clone())?;
+    let stiffness = SparseColMat::<u32, f64>::try_new_from_triplets(n, n, &triplets)
+        .map_err(|_| too_large.clone())?;
     drop(triplets);
     let mut schur = trailing_schur(&stiffness, interior).map_err(|error| match error {
         Failure::Size => too_large,
@@ -92,15 +110,34 @@ fn trailing_schur(a: &SparseColMat<u32, f64>, interior: usize) -> Result<Mat<f64
     let n = a.nrows();
     let kept = n - interior;
     let order = fill_reducing_order(a, interior).map_err(|()| Failure::Size)?;
-    let params = CholeskySymbolicParams { supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL, ..Default::default() };
-    let symbolic =
-        factorize_symbolic_cholesky(a.symbolic(), Side::Lower, SymmetricOrdering::Custom(order.as_ref()), params).map_err(|_| Failure::Size)?;
+    let params = CholeskySymbolicParams {
+        supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+        ..Default::default()
+    };
+    let symbolic = factorize_symbolic_cholesky(
+        a.symbolic(),
+        Side::Lower,
+        SymmetricOrdering::Custom(order.as_ref()),
+        params,
+    )
+    .map_err(|_| Failure::Size)?;
     let mut values = vec![0.0; symbolic.len_val()];
-    let mut memory = MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()));
+    let mut memory =
+        MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()));
     symbolic
-        .factorize_numeric_llt(&mut values, a.as_ref(), Side::Lower, Default::default(), Par::Seq, MemStack::new(&mut memory), Default::default())
+        .factorize_numeric_llt(
+            &mut values,
+            a.as_ref(),
+            Side::Lower,
+            Default::default(),
+            Par::Seq,
+            MemStack::new(&mut memory),
+            Default::default(),
+        )
         .map_err(|_| Failure::Indefinite)?;
-    let SymbolicCholeskyRaw::Supernodal(supernodes) = symbolic.raw() else { return Err(Failure::Size) };
+    let SymbolicCholeskyRaw::Supernodal(supernodes) = symbolic.raw() else {
+        return Err(Failure::Size);
+    };
     let factor = SupernodalLltRef::new(supernodes, &values);
 
     let mut l_22 = Mat::<f64>::zeros(kept, kept);
@@ -112,7 +149,9 @@ fn trailing_schur(a: &SparseColMat<u32, f64>, interior: usize) -> Result<Mat<f64
             break;
         }
         for c in 0..width {
-            let Some(col) = (start + c).checked_sub(interior) else { continue };
+            let Some(col) = (start + c).checked_sub(interior) else {
+                continue;
+            };
             for r in c..width {
                 l_22[(start + r - interior, col)] = block[(r, c)];
             }
@@ -148,14 +187,32 @@ fn fill_reducing_order(a: &SparseColMat<u32, f64>, interior: usize) -> Result<Pe
             }
         }
     }
-    let pattern = pattern.into_iter().map(|t| Triplet::new(t.row, t.col, 1.0_f64)).collect::<Vec<_>>();
-    let pattern = SparseColMat::<u32, f64>::try_new_from_triplets(interior, interior, &pattern).map_err(|_| ())?;
+    let pattern = pattern
+        .into_iter()
+        .map(|t| Triplet::new(t.row, t.col, 1.0_f64))
+        .collect::<Vec<_>>();
+    let pattern = SparseColMat::<u32, f64>::try_new_from_triplets(interior, interior, &pattern)
+        .map_err(|_| ())?;
     let (mut forward, mut inverse) = (vec![0_u32; interior], vec![0_u32; interior]);
-    let mut memory = MemBuffer::new(amd::order_maybe_unsorted_scratch::<u32>(interior, pattern.compute_nnz()));
-    amd::order_maybe_unsorted(&mut forward, &mut inverse, pattern.symbolic(), Default::default(), MemStack::new(&mut memory)).map_err(|_| ())?;
+    let mut memory = MemBuffer::new(amd::order_maybe_unsorted_scratch::<u32>(
+        interior,
+        pattern.compute_nnz(),
+    ));
+    amd::order_maybe_unsorted(
+        &mut forward,
+        &mut inverse,
+        pattern.symbolic(),
+        Default::default(),
+        MemStack::new(&mut memory),
+    )
+    .map_err(|_| ())?;
     forward.extend(interior as u32..n as u32);
     inverse.extend(interior as u32..n as u32);
-    Ok(Perm::new_checked(forward.into_boxed_slice(), inverse.into_boxed_slice(), n))
+    Ok(Perm::new_checked(
+        forward.into_boxed_slice(),
+        inverse.into_boxed_slice(),
+        n,
+    ))
 }
 
 /// Copies the lower triangle of `a` to its upper one.
@@ -192,7 +249,11 @@ impl Numbering {
             first[node as usize] = next;
             next += 2;
         }
-        Self { first, interior, unknowns: next as usize }
+        Self {
+            first,
+            interior,
+            unknowns: next as usize,
+        }
     }
 
     fn first(&self, node: u32) -> Option<usize> {

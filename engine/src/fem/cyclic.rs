@@ -45,7 +45,10 @@ impl Harmonics {
     pub fn class(&self, class: usize, sectors: usize) -> Vec<i64> {
         let (m, s) = (self.largest as i64, sectors as i64);
         let first = -m + (class as i64 + m).rem_euclid(s);
-        (0..).map(|k| first + k * s).take_while(|&n| n <= m).collect()
+        (0..)
+            .map(|k| first + k * s)
+            .take_while(|&n| n <= m)
+            .collect()
     }
 
     /// Adds to `stiffness` the block `block` (components of order `n` by components of order `n_other`) of a Hermitian
@@ -54,13 +57,22 @@ impl Harmonics {
         let parts = |n: i64| -> [(usize, c64); 2] {
             // The share of a_|n| and of b_|n| in c_n; order 0 has no sine.
             let half = if n == 0 { 1.0 } else { 0.5 };
-            let sine = if n == 0 { 0.0 } else { -0.5 * n.signum() as f64 };
+            let sine = if n == 0 {
+                0.0
+            } else {
+                -0.5 * n.signum() as f64
+            };
             [(0, c64::new(half, 0.0)), (2, c64::new(0.0, sine))]
         };
         for (row_offset, row_share) in parts(n).into_iter().take(if n == 0 { 1 } else { 2 }) {
-            for (col_offset, col_share) in parts(n_other).into_iter().take(if n_other == 0 { 1 } else { 2 }) {
+            for (col_offset, col_share) in
+                parts(n_other)
+                    .into_iter()
+                    .take(if n_other == 0 { 1 } else { 2 })
+            {
                 let row = self.cosine(n.unsigned_abs() as usize, Component::Radial) + row_offset;
-                let col = self.cosine(n_other.unsigned_abs() as usize, Component::Radial) + col_offset;
+                let col =
+                    self.cosine(n_other.unsigned_abs() as usize, Component::Radial) + col_offset;
                 for (i, line) in block.iter().enumerate() {
                     for (j, value) in line.iter().enumerate() {
                         stiffness[(row + i, col + j)] += (row_share.conj() * value * col_share).re;
@@ -119,7 +131,11 @@ impl Sector {
     /// # Errors
     ///
     /// [`FemError::NotPositiveDefinite`].
-    pub fn condense_class(&self, class: usize, harmonics: &Harmonics) -> Result<(Mat<c64>, ClassSolution), FemError> {
+    pub fn condense_class(
+        &self,
+        class: usize,
+        harmonics: &Harmonics,
+    ) -> Result<(Mat<c64>, ClassSolution), FemError> {
         let orders = harmonics.class(class, self.count);
         let ns = 2 * self.side_nodes;
         let na = 2 * self.arc_angles.len();
@@ -131,18 +147,34 @@ impl Sector {
         let arc = Mat::<c64>::from_fn(na, na, |i, j| real(2 * ns + i, 2 * ns + j));
         let mut condensed = e.adjoint() * (&arc * &e);
         let solution = if ns == 0 {
-            ClassSolution { sides: None, sides_to_harmonics: Mat::zeros(0, e.ncols()), orders }
+            ClassSolution {
+                sides: None,
+                sides_to_harmonics: Mat::zeros(0, e.ncols()),
+                orders,
+            }
         } else {
             let sides = Mat::<c64>::from_fn(ns, ns, |i, j| {
-                real(i, j) + real(ns + i, ns + j) + phase * real(i, ns + j) + phase.conj() * real(ns + i, j)
+                real(i, j)
+                    + real(ns + i, ns + j)
+                    + phase * real(i, ns + j)
+                    + phase.conj() * real(ns + i, j)
             });
-            let sides_to_arc = Mat::<c64>::from_fn(ns, na, |i, j| real(i, 2 * ns + j) + phase.conj() * real(ns + i, 2 * ns + j));
+            let sides_to_arc = Mat::<c64>::from_fn(ns, na, |i, j| {
+                real(i, 2 * ns + j) + phase.conj() * real(ns + i, 2 * ns + j)
+            });
             let sides_to_harmonics = &sides_to_arc * &e;
-            let sides = Cholesky::new(sides).ok_or(FemError::NotPositiveDefinite { part: "a ring's sides", unknowns: ns })?;
+            let sides = Cholesky::new(sides).ok_or(FemError::NotPositiveDefinite {
+                part: "a ring's sides",
+                unknowns: ns,
+            })?;
             let mut half = sides_to_harmonics.clone();
             sides.half_solve_in_place(half.as_mut());
             condensed -= half.adjoint() * &half;
-            ClassSolution { sides: Some(sides), sides_to_harmonics, orders }
+            ClassSolution {
+                sides: Some(sides),
+                sides_to_harmonics,
+                orders,
+            }
         };
         Ok((condensed, solution))
     }
@@ -157,20 +189,38 @@ impl Sector {
         // Classes c and S − c are each other's conjugates; both are visited only through their orders, so half suffice.
         for class in 0..=self.count / 2 {
             let (condensed, solution) = self.condense_class(class, harmonics)?;
-            self.add_class(&mut stiffness, harmonics, class, &condensed, &solution.orders);
+            self.add_class(
+                &mut stiffness,
+                harmonics,
+                class,
+                &condensed,
+                &solution.orders,
+            );
         }
         Ok(stiffness)
     }
 
     /// Adds one condensed class, and its conjugate, to the ring's real stiffness.
-    pub fn add_class(&self, stiffness: &mut Mat<f64>, harmonics: &Harmonics, class: usize, condensed: &Mat<c64>, orders: &[i64]) {
+    pub fn add_class(
+        &self,
+        stiffness: &mut Mat<f64>,
+        harmonics: &Harmonics,
+        class: usize,
+        condensed: &Mat<c64>,
+        orders: &[i64],
+    ) {
         let own_conjugate = (2 * class) % self.count == 0;
         // The conjugate class has the orders −n and conjugate blocks; its real contribution equals this one's.
         let weight = self.count as f64 * if own_conjugate { 1.0 } else { 2.0 };
         for (i, &n) in orders.iter().enumerate() {
             for (j, &n_other) in orders.iter().enumerate() {
                 let at = |a: usize, b: usize| condensed[(2 * i + a, 2 * j + b)] * weight;
-                harmonics.add_block(stiffness, n, n_other, [[at(0, 0), at(0, 1)], [at(1, 0), at(1, 1)]]);
+                harmonics.add_block(
+                    stiffness,
+                    n,
+                    n_other,
+                    [[at(0, 0), at(0, 1)], [at(1, 0), at(1, 1)]],
+                );
             }
         }
     }

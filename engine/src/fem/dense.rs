@@ -13,15 +13,30 @@ impl<T: ComplexField> Cholesky<T> {
     /// Factorizes `a`; `None` if it is not positive definite.
     pub fn new(mut a: Mat<T>) -> Option<Self> {
         let n = a.nrows();
-        let mut memory = MemBuffer::new(llt::factor::cholesky_in_place_scratch::<T>(n, Par::Seq, Default::default()));
-        llt::factor::cholesky_in_place(a.as_mut(), Default::default(), Par::Seq, MemStack::new(&mut memory), Default::default()).ok()?;
+        let mut memory = MemBuffer::new(llt::factor::cholesky_in_place_scratch::<T>(
+            n,
+            Par::Seq,
+            Default::default(),
+        ));
+        llt::factor::cholesky_in_place(
+            a.as_mut(),
+            Default::default(),
+            Par::Seq,
+            MemStack::new(&mut memory),
+            Default::default(),
+        )
+        .ok()?;
         Some(Self(a))
     }
 
     /// Overwrites `b` with A⁻¹ b.
     pub fn solve_in_place(&self, b: MatMut<'_, T>) {
         let columns = b.ncols();
-        let mut memory = MemBuffer::new(llt::solve::solve_in_place_scratch::<T>(self.0.nrows(), columns, Par::Seq));
+        let mut memory = MemBuffer::new(llt::solve::solve_in_place_scratch::<T>(
+            self.0.nrows(),
+            columns,
+            Par::Seq,
+        ));
         llt::solve::solve_in_place(self.0.as_ref(), b, Par::Seq, MemStack::new(&mut memory));
     }
 

@@ -9,14 +9,26 @@ use crate::quadrature::GAUSS_3;
 pub type ElementStiffness = SMatrix<f64, 16, 16>;
 
 /// The local coordinates (ξ, η) of the nodes: corners, then midsides.
-pub const NODES: [(f64, f64); 8] = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)];
+pub const NODES: [(f64, f64); 8] = [
+    (-1.0, -1.0),
+    (1.0, -1.0),
+    (1.0, 1.0),
+    (-1.0, 1.0),
+    (0.0, -1.0),
+    (1.0, 0.0),
+    (0.0, 1.0),
+    (-1.0, 0.0),
+];
 
 /// The derivatives (∂N/∂ξ, ∂N/∂η) of the eight shape functions at (ξ, η).
 pub fn shape_derivatives(xi: f64, eta: f64) -> [(f64, f64); 8] {
     let mut derivatives = [(0.0, 0.0); 8];
     for (derivative, (a, b)) in derivatives.iter_mut().zip(NODES) {
         *derivative = if a != 0.0 && b != 0.0 {
-            (a * (1.0 + b * eta) * (2.0 * a * xi + b * eta) / 4.0, b * (1.0 + a * xi) * (a * xi + 2.0 * b * eta) / 4.0)
+            (
+                a * (1.0 + b * eta) * (2.0 * a * xi + b * eta) / 4.0,
+                b * (1.0 + a * xi) * (a * xi + 2.0 * b * eta) / 4.0,
+            )
         } else if a == 0.0 {
             (-xi * (1.0 + b * eta), b * (1.0 - xi * xi) / 2.0)
         } else {
@@ -39,7 +51,10 @@ pub fn gradients(nodes: &[Vector; 8], xi: f64, eta: f64) -> ([(f64, f64); 8], f6
     let det = jacobian.determinant();
     let mut global = [(0.0, 0.0); 8];
     for (g, (dxi, deta)) in global.iter_mut().zip(local) {
-        *g = ((jacobian[(1, 1)] * dxi - jacobian[(0, 1)] * deta) / det, (jacobian[(0, 0)] * deta - jacobian[(1, 0)] * dxi) / det);
+        *g = (
+            (jacobian[(1, 1)] * dxi - jacobian[(0, 1)] * deta) / det,
+            (jacobian[(0, 0)] * deta - jacobian[(1, 0)] * dxi) / det,
+        );
     }
     (global, det)
 }
@@ -79,11 +94,20 @@ pub fn stiffness(nodes: &[Vector; 8], material: &Material, thickness: f64) -> El
 mod tests {
     use super::*;
 
-    const STEEL: Material = Material { youngs_modulus: 210e9, poisson_ratio: 0.3, density: 7850.0 };
+    const STEEL: Material = Material {
+        youngs_modulus: 210e9,
+        poisson_ratio: 0.3,
+        density: 7850.0,
+    };
 
     /// A distorted element with curved sides.
     fn distorted() -> [Vector; 8] {
-        let mut nodes = NODES.map(|(x, y)| Vector::new(1e-3 * (x + 0.2 * y + 0.1 * x * y), 1e-3 * (0.8 * y - 0.15 * x)));
+        let mut nodes = NODES.map(|(x, y)| {
+            Vector::new(
+                1e-3 * (x + 0.2 * y + 0.1 * x * y),
+                1e-3 * (0.8 * y - 0.15 * x),
+            )
+        });
         nodes[4] += Vector::new(0.02e-3, -0.05e-3);
         nodes[6] += Vector::new(0.01e-3, 0.04e-3);
         nodes
@@ -93,9 +117,18 @@ mod tests {
     fn a_rigid_motion_strains_nothing() {
         let nodes = distorted();
         let k = stiffness(&nodes, &STEEL, 20e-3);
-        for motion in [|_: Vector| Vector::new(1.0, 0.0), |_| Vector::new(0.0, 1.0), |p: Vector| Vector::new(-p.y, p.x) * 1e3] {
-            let u = SMatrix::<f64, 16, 1>::from_iterator(nodes.iter().flat_map(|&p| [motion(p).x, motion(p).y]));
-            assert!((k * u).amax() < 1e-11 * k.amax(), "forces of a rigid motion vanish to rounding");
+        for motion in [
+            |_: Vector| Vector::new(1.0, 0.0),
+            |_| Vector::new(0.0, 1.0),
+            |p: Vector| Vector::new(-p.y, p.x) * 1e3,
+        ] {
+            let u = SMatrix::<f64, 16, 1>::from_iterator(
+                nodes.iter().flat_map(|&p| [motion(p).x, motion(p).y]),
+            );
+            assert!(
+                (k * u).amax() < 1e-11 * k.amax(),
+                "forces of a rigid motion vanish to rounding"
+            );
         }
         assert!((k - k.transpose()).amax() == 0.0);
     }

@@ -42,8 +42,22 @@ impl ToothSubstructure {
     /// [`FemError`] if the grid is degenerate.
     pub fn new(gear: &SpurGear, grid: &ToothGrid) -> Result<Self, FemError> {
         let (right, left) = &grid.side_nodes;
-        let kept: Vec<u32> = grid.flank_nodes.iter().chain(right).chain(left).chain(&grid.arc_nodes).copied().collect();
-        let schur = condense("the tooth", &grid.grid, gear.material(), gear.face_width(), &kept, &[])?;
+        let kept: Vec<u32> = grid
+            .flank_nodes
+            .iter()
+            .chain(right)
+            .chain(left)
+            .chain(&grid.arc_nodes)
+            .copied()
+            .collect();
+        let schur = condense(
+            "the tooth",
+            &grid.grid,
+            gear.material(),
+            gear.face_width(),
+            &kept,
+            &[],
+        )?;
 
         // Components: normal and towards the tip on the flank, polar elsewhere.
         let flank = gear.flank();
@@ -61,7 +75,10 @@ impl ToothSubstructure {
 
         let f = 2 * grid.flank_nodes.len();
         let b = schur.nrows() - f;
-        let failure = FemError::NotPositiveDefinite { part: "the flank", unknowns: f };
+        let failure = FemError::NotPositiveDefinite {
+            part: "the flank",
+            unknowns: f,
+        };
         let flank_factor = Cholesky::new(schur.submatrix(0, 0, f, f).to_owned()).ok_or(failure)?;
         let mut fixed_compliance = Mat::<f64>::identity(f, f);
         flank_factor.solve_in_place(fixed_compliance.as_mut());
@@ -75,14 +92,26 @@ impl ToothSubstructure {
         stiffness -= half.transpose() * &half;
         mirror_lower(&mut stiffness);
         flank_factor.other_half_solve_in_place(half.as_mut());
-        let (modes, mode_forces) = compress(&(-half)).ok_or(FemError::NotPositiveDefinite { part: "the flank's modes", unknowns: b })?;
+        let (modes, mode_forces) = compress(&(-half)).ok_or(FemError::NotPositiveDefinite {
+            part: "the flank's modes",
+            unknowns: b,
+        })?;
 
-        let sector = Sector { count: gear.tooth_count() as usize, stiffness, side_nodes: right.len(), arc_angles: grid.arc_angles.clone() };
+        let sector = Sector {
+            count: gear.tooth_count() as usize,
+            stiffness,
+            side_nodes: right.len(),
+            arc_angles: grid.arc_angles.clone(),
+        };
         Ok(Self {
             fixed_compliance,
             modes,
             roll_lengths: grid.flank_roll_lengths.clone(),
-            flank_points: grid.flank_nodes.iter().map(|&node| grid.grid.nodes[node as usize]).collect(),
+            flank_points: grid
+                .flank_nodes
+                .iter()
+                .map(|&node| grid.grid.nodes[node as usize])
+                .collect(),
             grid_nodes: grid.grid.nodes.len(),
             shared_nodes: (grid.arc_nodes.len(), right.len()),
             mode_forces,
@@ -125,12 +154,22 @@ impl TeethRing {
         let mut class_compliance = Vec::with_capacity(z / 2 + 1);
         for class in 0..=z / 2 {
             let (condensed, solution) = sector.condense_class(class, &harmonics)?;
-            sector.add_class(&mut stiffness, &harmonics, class, &condensed, &solution.orders);
+            sector.add_class(
+                &mut stiffness,
+                &harmonics,
+                class,
+                &condensed,
+                &solution.orders,
+            );
 
             // Work of the modes on the sides and on the arc, as amplitudes of this class.
             let phase = sector.phase(class);
-            let mut on_sides = Mat::<c64>::from_fn(ns, r, |i, j| c64::new(forces[(i, j)], 0.0) + phase.conj() * forces[(ns + i, j)]);
-            let arc = Mat::<c64>::from_fn(2 * sector.arc_angles.len(), r, |i, j| c64::new(forces[(2 * ns + i, j)], 0.0));
+            let mut on_sides = Mat::<c64>::from_fn(ns, r, |i, j| {
+                c64::new(forces[(i, j)], 0.0) + phase.conj() * forces[(ns + i, j)]
+            });
+            let arc = Mat::<c64>::from_fn(2 * sector.arc_angles.len(), r, |i, j| {
+                c64::new(forces[(2 * ns + i, j)], 0.0)
+            });
             let mut on_harmonics = sector.arc_of_harmonics(&solution.orders).adjoint() * arc;
             let loads = on_sides.clone();
             if let Some(sides) = &solution.sides {
@@ -138,10 +177,22 @@ impl TeethRing {
                 on_harmonics -= solution.sides_to_harmonics.adjoint() * &on_sides;
             }
             class_compliance.push(loads.adjoint() * &on_sides);
-            add_forces(&mut tooth_forces, &harmonics, &on_harmonics, &solution.orders);
+            add_forces(
+                &mut tooth_forces,
+                &harmonics,
+                &on_harmonics,
+                &solution.orders,
+            );
         }
-        let held_coupling = (0..z).map(|d| held_coupling(&class_compliance, z, d)).collect();
-        Ok(Self { harmonics, stiffness, tooth_forces, held_coupling })
+        let held_coupling = (0..z)
+            .map(|d| held_coupling(&class_compliance, z, d))
+            .collect();
+        Ok(Self {
+            harmonics,
+            stiffness,
+            tooth_forces,
+            held_coupling,
+        })
     }
 
     /// The forces on the harmonics of the unit modes of the tooth at `angle`.
@@ -163,7 +214,12 @@ impl TeethRing {
 }
 
 /// Turns complex forces on the orders of one class, and their conjugates, into forces on a_n and b_n.
-fn add_forces(forces: &mut Mat<f64>, harmonics: &Harmonics, on_harmonics: &Mat<c64>, orders: &[i64]) {
+fn add_forces(
+    forces: &mut Mat<f64>,
+    harmonics: &Harmonics,
+    on_harmonics: &Mat<c64>,
+    orders: &[i64],
+) {
     for (i, &n) in orders.iter().enumerate() {
         // Each order is visited once: its conjugate −n is either in the conjugate class or in this one.
         let conjugate_here = n != 0 && orders.contains(&-n);
@@ -171,7 +227,10 @@ fn add_forces(forces: &mut Mat<f64>, harmonics: &Harmonics, on_harmonics: &Mat<c
             continue;
         }
         let sign = n.signum() as f64;
-        for (c, component) in [Component::Radial, Component::Tangential].into_iter().enumerate() {
+        for (c, component) in [Component::Radial, Component::Tangential]
+            .into_iter()
+            .enumerate()
+        {
             let a = harmonics.cosine(n.unsigned_abs() as usize, component);
             for j in 0..forces.ncols() {
                 let force = on_harmonics[(2 * i + c, j)];
@@ -190,7 +249,8 @@ fn held_coupling(class_compliance: &[Mat<c64>], z: usize, d: usize) -> Mat<f64> 
     let mut sum = Mat::<f64>::zeros(r, r);
     for (class, compliance) in class_compliance.iter().enumerate() {
         let weight = if (2 * class) % z == 0 { 1.0 } else { 2.0 } / z as f64;
-        let (sin, cos) = (2.0 * std::f64::consts::PI * ((class * d) % z) as f64 / z as f64).sin_cos();
+        let (sin, cos) =
+            (2.0 * std::f64::consts::PI * ((class * d) % z) as f64 / z as f64).sin_cos();
         let turn = c64::new(cos, -sin);
         for j in 0..r {
             for i in 0..r {
@@ -207,7 +267,12 @@ fn in_axes(a: &Mat<f64>, axes: &[[Vector; 2]]) -> Mat<f64> {
     let mut rotated = Mat::zeros(2 * n, 2 * n);
     for j in 0..n {
         for i in 0..n {
-            let block = nalgebra::Matrix2::new(a[(2 * i, 2 * j)], a[(2 * i, 2 * j + 1)], a[(2 * i + 1, 2 * j)], a[(2 * i + 1, 2 * j + 1)]);
+            let block = nalgebra::Matrix2::new(
+                a[(2 * i, 2 * j)],
+                a[(2 * i, 2 * j + 1)],
+                a[(2 * i + 1, 2 * j)],
+                a[(2 * i + 1, 2 * j + 1)],
+            );
             for (c, left) in axes[i].iter().enumerate() {
                 for (d, right) in axes[j].iter().enumerate() {
                     rotated[(2 * i + c, 2 * j + d)] = left.dot(&(block * right));
@@ -222,7 +287,9 @@ fn in_axes(a: &Mat<f64>, axes: &[[Vector; 2]]) -> Mat<f64> {
 fn compress(psi: &Mat<f64>) -> Option<(Mat<f64>, Mat<f64>)> {
     let svd = psi.thin_svd().ok()?;
     let (u, v, s) = (svd.U(), svd.V(), svd.S().column_vector());
-    let rank = (0..s.nrows()).take_while(|&i| s[i] > MODE_TOLERANCE * s[0]).count();
+    let rank = (0..s.nrows())
+        .take_while(|&i| s[i] > MODE_TOLERANCE * s[0])
+        .count();
     let modes = Mat::from_fn(u.nrows(), rank, |i, j| u[(i, j)] * s[j]);
     Some((modes, v.subcols(0, rank).to_owned()))
 }

@@ -151,7 +151,7 @@ impl GearPair {
                 self.least_center_distance(base_radii, tip_radii, |pair| pair.backlash() >= 0.0);
             return Err(GearPairError::NegativeBacklash { backlash, smallest });
         }
-        for member in [Member::Driving, Member::Driven] {
+        for member in Member::BOTH {
             if !self.clears(member) {
                 let smallest = self
                     .least_center_distance(center_distance, tip_radii, |pair| pair.clears(member));
@@ -292,6 +292,17 @@ impl GearPair {
 }
 
 impl Member {
+    /// Both, in the order in which pairs of values are kept.
+    pub const BOTH: [Self; 2] = [Self::Driving, Self::Driven];
+
+    /// The place of this gear in a pair of values: 0 driving, 1 driven.
+    pub fn index(self) -> usize {
+        match self {
+            Self::Driving => 0,
+            Self::Driven => 1,
+        }
+    }
+
     /// The other one.
     pub fn other(self) -> Self {
         match self {

@@ -10,18 +10,22 @@ use super::division::{Grading, reversed, uniform};
 use super::{Grid, GridError, GridLevel, checked};
 use crate::gear::{HolePattern, Vector, radial};
 
-/// The number of elements on the interface circle per tooth at the standard level.
-const ELEMENTS_PER_TOOTH: f64 = 4.0;
+/// The least number of elements on the interface circle per tooth at the standard level.
+pub const ELEMENTS_PER_TOOTH: f64 = 4.0;
 /// The depth of the first layer under the interface circle, in element lengths along it.
 const FIRST_LAYER: f64 = 0.5;
+/// The size along a spoke at the hole, in half widths of the hole.
+const SIZE_AT_HOLE: f64 = 0.25;
 /// The growth of sizes away from the interface circle and away from a hole.
 const GROWTH: f64 = 0.35;
+/// The largest size along the radius, as a part of the radius.
+const LARGEST: f64 = 0.12;
 /// The least number of layers between a hole and what is next to it, at the standard level.
-const LAYERS: usize = 4;
+const LAYERS: usize = 6;
 /// The least number of elements along each of the four arcs of a hole, at the standard level.
 const ELEMENTS_PER_ARC: f64 = 8.0;
 /// Where a hole's surroundings are narrower than this, in half widths of the hole, its box takes them in.
-const NARROW: f64 = 0.8;
+const NARROW: f64 = 0.7;
 
 /// The grid of one sector of a blank, in a frame whose x axis runs through the middle of the sector: through the center
 /// of the hole, if there is one.
@@ -45,7 +49,8 @@ pub struct BlankGrid {
 }
 
 impl BlankGrid {
-    /// Divides one sector of the ring between `bore_radius` and `interface_radius`, on which `tooth_count` teeth stand.
+    /// Divides one sector of the ring between `bore_radius` and `interface_radius`, on which `tooth_count` teeth stand,
+    /// with `elements_per_tooth` elements on the interface circle for each at the standard level.
     ///
     /// The phase of the holes is left to the caller.
     ///
@@ -58,9 +63,10 @@ impl BlankGrid {
         interface_radius: f64,
         holes: Option<&HolePattern>,
         tooth_count: u32,
+        elements_per_tooth: f64,
         level: GridLevel,
     ) -> Result<Self, GridError> {
-        if !(bore_radius > 0.0 && bore_radius < interface_radius) {
+        if !(bore_radius > 0.0 && bore_radius < interface_radius && interface_radius.is_finite()) {
             return Err(GridError::InterfaceInsideBore {
                 interface_radius,
                 bore_radius,
@@ -70,7 +76,8 @@ impl BlankGrid {
         let ring = Ring {
             interface_radius,
             bore: (bore_radius / interface_radius).ln(),
-            arc_size: 2.0 * PI / (ELEMENTS_PER_TOOTH * f64::from(tooth_count)),
+            arc_size: 2.0 * PI / (elements_per_tooth * f64::from(tooth_count)),
+            elements_per_tooth,
             level,
         };
         let blank = match holes.filter(|holes| holes.count > 0) {
@@ -104,6 +111,8 @@ struct Ring {
     bore: f64,
     /// The element size on the interface circle.
     arc_size: f64,
+    /// As many of them stand under a tooth.
+    elements_per_tooth: f64,
     level: GridLevel,
 }
 
@@ -222,10 +231,10 @@ impl Ring {
             first: FIRST_LAYER * self.arc_size,
             last: f64::INFINITY,
             growth: GROWTH,
-            largest: 2.5 * self.arc_size,
+            largest: LARGEST,
         };
         let rays = reversed(&layers.divide(layers.count_at(LAYERS, self.level)));
-        let arcs = uniform(self.level.count(ELEMENTS_PER_TOOTH));
+        let arcs = uniform(self.level.count(self.elements_per_tooth));
         let mut builder = GridBuilder::default();
         let frame = self.frame(
             &mut builder,
@@ -308,7 +317,7 @@ impl Ring {
             let phis = hole.arc(i, side.len());
             let points: Vec<_> = phis.iter().map(|phi| hole.point(*phi)).collect();
             let rim = builder.curve(spokes[i][0], spokes[next][0], &points);
-            builder.block(&spokes[i], side, &spokes[next], &rim);
+            builder.ruled(&spokes[i], side, &spokes[next], &rim);
             hole_nodes.extend(&rim[..rim.len() - 1]);
         }
         frame.blank(builder, self.interface_radius, holes.count, hole_nodes)
@@ -347,15 +356,6 @@ struct HolePlan {
     beside: Option<Vec<f64>>,
 }
 
-/// The distance from a hole to the side of its box where `gap` is free.
-fn margin(gap: f64, half: f64) -> f64 {
-    if gap <= NARROW * half {
-        gap
-    } else {
-        0.5 * gap.min(half)
-    }
-}
-
 impl Hole {
     fn new(ring: &Ring, holes: &HolePattern) -> Self {
         let (r, r_h) = (holes.circle_radius, holes.radius);
@@ -366,15 +366,26 @@ impl Hole {
             (holes.outer_reach() / ring.interface_radius).ln(),
         );
         let half = ((high - low) / 2.0, (r_h / r).asin());
-        let inner_gap = low - ring.bore;
-        let side_gap = half_pitch - half.1;
-        let extend = |gap: f64, half: f64| {
-            let margin = margin(gap, half);
-            (margin, margin == gap)
+        // Each gap with the half width of the hole beside it: to the bore, to the interface circle, to the side.
+        let gaps = [
+            (low - ring.bore, half.0),
+            (-high, half.0),
+            (half_pitch - half.1, half.1),
+        ];
+        let [to_bore, to_interface, to_side] = gaps.map(|(gap, half)| gap <= NARROW * half);
+        // Next to a narrow gap the box stays close around the hole, so that its corners are not far out of square. A hole
+        // that is small among the elements around it has a box of some of them.
+        let close = 0.4 * half.1;
+        let free = gaps
+            .iter()
+            .fold(f64::INFINITY, |least, (gap, _)| least.min(*gap));
+        let wide = if to_bore || to_interface || to_side {
+            close
+        } else {
+            close.max(0.5 * ELEMENTS_PER_ARC * 1.2 * ring.arc_size - half.1)
         };
-        let (below, to_bore) = extend(inner_gap, half.0);
-        let (above, to_interface) = extend(-high, half.0);
-        let (beside, to_side) = extend(side_gap, half.1);
+        let margin = |gap: f64| wide.min(0.5 * gap).min(0.5 * free.max(2.0 * close));
+        let [below, above, beside] = gaps.map(|(gap, _)| margin(gap));
         let mut hole = Self {
             interface_radius: ring.interface_radius,
             circle_radius: r,
@@ -441,8 +452,9 @@ impl Hole {
     fn opposite(&self, i: usize, count: usize, gap: f64) -> Vec<f64> {
         let phis = self.arc(i, 2 * count + 1);
         // Along the angle at the outer and inner sides, along the radius at the others.
-        let along = |p: Vector| if i % 2 == 0 { p.y } else { p.x };
-        let (nearest, half) = if i % 2 == 0 {
+        let along_angle = i.is_multiple_of(2);
+        let along = |p: Vector| if along_angle { p.y } else { p.x };
+        let (nearest, half) = if along_angle {
             (0.0, self.half.0)
         } else {
             (self.middle, self.half.1)
@@ -483,14 +495,22 @@ impl Hole {
         let (low, high) = (self.middle - self.half.0, self.middle + self.half.0);
         let (below, above, beside) = (low - inner, outer - high, beta - self.half.1);
 
-        let outer_standard = (2.0 * beta / size).max(ELEMENTS_PER_ARC);
+        // Where the division of the outer side is uneven, its largest element decides.
+        let even = (2.0 * beta / size).max(ELEMENTS_PER_ARC);
+        let largest = self
+            .opposite(0, even.ceil() as usize, above)
+            .windows(3)
+            .step_by(2)
+            .map(|f| 2.0 * beta * (f[2] - f[0]))
+            .fold(0.0, f64::max);
+        let outer_standard = even * (largest / (1.2 * size)).max(1.0);
         let outer_count = ring.level.count(outer_standard);
         let inner_count = ring
             .level
-            .count((outer_standard / 2.0).max(ELEMENTS_PER_ARC));
+            .count((outer_standard / 3.0).max(ELEMENTS_PER_ARC));
         let side_count = ring
             .level
-            .count(((outer - inner) / (1.6 * size)).max(ELEMENTS_PER_ARC));
+            .count(((outer - inner) / (2.0 * size)).max(ELEMENTS_PER_ARC));
 
         // Spokes: finer towards the interface circle where the box reaches it.
         let to_interface = outer == 0.0;
@@ -501,17 +521,22 @@ impl Hole {
             } else {
                 length
             },
-            last: f64::INFINITY,
+            last: (SIZE_AT_HOLE * self.half.1).min(length),
             growth: GROWTH,
             largest: length,
         };
-        let thick = below.max(beside).max(above) / (2.5 * size);
-        let layers = ring
-            .level
-            .count(spoke(above).count().max(thick).max(LAYERS as f64));
+        let away = |length: f64| Grading {
+            first: length,
+            ..spoke(length)
+        };
+        let thick = away(below).count().max(away(beside).count());
+        let standard_layers = spoke(above).count().max(thick).max(LAYERS as f64);
+        let layers = ring.level.count(standard_layers);
         let corner = Vector::new(outer, beta);
         let outer_length = (corner - self.point(self.splits[1])).norm();
-        let layer = |margin: f64| margin / layers as f64 * ring.level.refinement();
+        let inner_length = (Vector::new(inner, beta) - self.point(self.splits[2])).norm();
+        // The size of the layer next to the side of the box, at the standard level.
+        let layer = |margin: f64| away(margin).size(0.0) * away(margin).count() / standard_layers;
 
         let strip = |length: f64, first: f64, last: f64, largest: f64| {
             let sizes = Grading {
@@ -528,20 +553,262 @@ impl Hole {
             inner: self.opposite(2, inner_count, below),
             side: reversed(&self.opposite(1, side_count, beside)),
             outer_spoke: reversed(&spoke(outer_length).divide(layers)),
-            inner_spoke: uniform(layers),
+            inner_spoke: reversed(&away(inner_length).divide(layers)),
             below: (inner > ring.bore).then(|| {
-                let largest = 1.5 * 2.0 * beta / (outer_standard / 2.0).max(ELEMENTS_PER_ARC);
                 reversed(&strip(
                     inner - ring.bore,
                     layer(below),
                     f64::INFINITY,
-                    largest,
+                    LARGEST,
                 ))
             }),
             above: (outer < 0.0)
-                .then(|| reversed(&strip(-outer, FIRST_LAYER * size, layer(above), 1.5 * size))),
+                .then(|| reversed(&strip(-outer, FIRST_LAYER * size, layer(above), LARGEST))),
             beside: (beta < self.half_pitch)
                 .then(|| strip(self.half_pitch - beta, layer(beside), f64::INFINITY, size)),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LEVELS: [GridLevel; 3] = [GridLevel::Coarse, GridLevel::Standard, GridLevel::Fine];
+
+    /// Bore, holes (N, R, r), interface radius in millimeters, and teeth.
+    type Case = (f64, u32, f64, f64, f64, u32);
+
+    /// The gears of the paper and of the study, then few and many, large and small holes.
+    const CASES: [Case; 24] = [
+        (16.0, 8, 31.5, 10.0, 45.5, 50),
+        (16.0, 10, 34.0, 7.5, 45.5, 50),
+        (12.0, 6, 56.0, 17.5, 80.5, 85),
+        (15.0, 8, 34.0, 8.385, 45.5, 50),
+        (15.0, 6, 30.0, 9.683, 45.5, 50),
+        (15.0, 8, 27.0, 8.385, 45.5, 50),
+        (15.0, 10, 30.0, 7.5, 45.5, 50),
+        (15.0, 10, 34.0, 7.5, 45.5, 50),
+        (15.0, 6, 34.0, 9.683, 45.5, 50),
+        (10.0, 1, 28.0, 3.0, 45.5, 50),
+        (10.0, 1, 28.0, 17.0, 45.5, 50),
+        (5.0, 1, 25.0, 19.5, 45.5, 50),
+        (10.0, 2, 28.0, 2.0, 45.5, 50),
+        (10.0, 2, 28.0, 17.0, 45.5, 50),
+        (10.0, 3, 28.0, 1.0, 45.5, 50),
+        (10.0, 3, 28.0, 16.5, 45.5, 50),
+        (10.0, 12, 36.0, 9.0, 45.5, 50),
+        (15.0, 12, 40.0, 2.0, 45.5, 50),
+        (15.0, 20, 30.0, 2.0, 45.5, 50),
+        (15.0, 60, 40.0, 1.8, 45.5, 50),
+        (15.0, 60, 40.0, 0.5, 45.5, 300),
+        (5.0, 5, 9.5, 2.5, 13.5, 18),
+        (15.0, 4, 20.0, 4.75, 45.5, 50),
+        (15.0, 8, 36.0, 9.25, 45.5, 50),
+    ];
+
+    fn holed(case: Case, level: GridLevel) -> BlankGrid {
+        let (bore, count, circle, radius, interface, teeth) = case;
+        let holes = HolePattern {
+            count,
+            circle_radius: circle * 1e-3,
+            radius: radius * 1e-3,
+            phase: 0.0,
+        };
+        BlankGrid::new(
+            bore * 1e-3,
+            interface * 1e-3,
+            Some(&holes),
+            teeth,
+            ELEMENTS_PER_TOOTH,
+            level,
+        )
+        .unwrap_or_else(|error| panic!("{case:?} at {level:?}: {error}"))
+    }
+
+    fn angle(grid: &BlankGrid, node: u32) -> f64 {
+        let p = grid.grid.nodes[node as usize];
+        p.y.atan2(p.x)
+    }
+
+    #[test]
+    fn sectors_of_all_hole_patterns_keep_angles_above_twenty_five_degrees() {
+        for case in CASES {
+            for level in LEVELS {
+                let blank = holed(case, level);
+                let quality = blank.grid.quality();
+                assert!(
+                    quality.smallest_angle.to_degrees() > 25.0,
+                    "{case:?} {level:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn ligaments_down_to_a_fifth_of_a_millimeter_are_divided() {
+        for ligament in [0.2, 0.5, 1.0, 3.0] {
+            // Thin above, thin below, thin beside, and all at once, by the closed forms of `HolePattern`.
+            let beside = 30.0 * (PI / 8.0).sin() - ligament / 2.0;
+            let (above, below) = (34.0 + 8.0 + ligament, 34.0 - 8.0 - ligament);
+            for case in [
+                (15.0, 8, 34.0, 8.0, above, 50),
+                (below, 8, 34.0, 8.0, 45.5, 50),
+                (10.0, 8, 30.0, beside, 45.5, 50),
+                (
+                    30.0 - beside - ligament,
+                    8,
+                    30.0,
+                    beside,
+                    30.0 + beside + ligament,
+                    50,
+                ),
+                (5.0, 2, 25.0, 20.0 - ligament, 45.5, 50),
+                (5.0, 2, 25.0, 20.0 - ligament, 45.0, 50),
+            ] {
+                let quality = holed(case, GridLevel::Standard).grid.quality();
+                assert!(quality.smallest_angle.to_degrees() > 25.0);
+            }
+        }
+    }
+
+    #[test]
+    fn a_sector_has_the_area_of_its_ring_less_its_hole() {
+        for case in CASES {
+            let (bore, count, _, radius, interface, _) = case;
+            let ring = PI * (interface * interface - bore * bore) * 1e-6 / f64::from(count);
+            let area = ring - PI * radius * radius * 1e-6;
+            let error = |level| (holed(case, level).grid.area() / area - 1.0).abs();
+            // Parabolic sides miss an arc by the fourth power of its angle: 32 around the hole at the standard level, and
+            // sixteen times less at the fine one.
+            assert!(error(GridLevel::Standard) < 2e-5, "{case:?}");
+            assert!(error(GridLevel::Fine) < 2e-6, "{case:?}");
+        }
+    }
+
+    #[test]
+    fn each_level_halves_every_element() {
+        for case in CASES {
+            let [coarse, standard, fine] =
+                LEVELS.map(|level| holed(case, level).grid.elements.len());
+            assert_eq!((4 * coarse, 4 * standard), (standard, fine), "{case:?}");
+        }
+    }
+
+    #[test]
+    fn boundary_nodes_lie_on_their_circles_in_order_and_the_sides_are_alike() {
+        for case in CASES {
+            let (bore, count, circle, radius, interface, teeth) = case;
+            let blank = holed(case, GridLevel::Standard);
+            let half = PI / f64::from(count);
+            let point = |node: &u32| blank.grid.nodes[*node as usize];
+            assert_eq!(blank.sector_count, count);
+            for (nodes, r) in [(&blank.arc_nodes, interface), (&blank.bore_nodes, bore)] {
+                assert!(
+                    nodes
+                        .iter()
+                        .all(|n| (point(n).norm() - r * 1e-3).abs() < 1e-15)
+                );
+                assert!(nodes.len() % 2 == 1, "corner, midside, ..., corner");
+            }
+            let angles = &blank.arc_angles;
+            assert!(
+                (angles[0] + half).abs() < 1e-15 && (angles[angles.len() - 1] - half).abs() < 1e-15
+            );
+            let largest = angles
+                .windows(3)
+                .step_by(2)
+                .map(|a| a[2] - a[0])
+                .fold(0.0, f64::max);
+            // The brief of the coupling: at most a third of a pitch.
+            assert!(
+                largest < 2.0 * PI / (3.0 * f64::from(teeth)),
+                "{case:?}: {largest}"
+            );
+            for (node, angle_of) in blank.arc_nodes.iter().zip(angles) {
+                let turned = angle(&blank, *node) - angle_of;
+                assert!(turned.sin().abs() < 1e-14);
+            }
+            assert!(angles.windows(2).all(|a| a[0] < a[1]));
+            let (right, left) = &blank.side_nodes;
+            assert_eq!(right.len(), left.len());
+            assert!(
+                right
+                    .iter()
+                    .zip(left)
+                    .all(|(a, b)| point(a).norm() == point(b).norm() && a != b)
+            );
+            assert!(
+                right
+                    .windows(2)
+                    .all(|n| point(&n[0]).norm() < point(&n[1]).norm())
+            );
+            let center = Vector::new(circle * 1e-3, 0.0);
+            assert!(blank.hole_nodes.len() >= 64);
+            assert!(
+                blank
+                    .hole_nodes
+                    .iter()
+                    .all(|n| ((point(n) - center).norm() - radius * 1e-3).abs() < 1e-14)
+            );
+        }
+    }
+
+    #[test]
+    fn a_solid_blank_repeats_with_its_teeth() {
+        for (bore, interface, teeth) in [
+            (15e-3, 45.5e-3, 50),
+            (1e-3, 45.5e-3, 50),
+            (3e-3, 13.5e-3, 18),
+            (43e-3, 45.5e-3, 50),
+        ] {
+            let blank = BlankGrid::new(
+                bore,
+                interface,
+                None,
+                teeth,
+                ELEMENTS_PER_TOOTH,
+                GridLevel::Standard,
+            )
+            .expect("a ring");
+            let area = PI * (interface * interface - bore * bore) / f64::from(teeth);
+            assert_eq!((blank.sector_count, blank.arc_nodes.len()), (teeth, 9));
+            // Four parabolas a pitch.
+            assert!((blank.grid.area() / area - 1.0).abs() < 1e-6);
+            assert!(blank.hole_nodes.is_empty());
+        }
+    }
+
+    #[test]
+    fn rings_and_ligaments_without_width_are_refused() {
+        let standard = |bore, interface, holes| {
+            BlankGrid::new(
+                bore,
+                interface,
+                holes,
+                50,
+                ELEMENTS_PER_TOOTH,
+                GridLevel::Standard,
+            )
+        };
+        assert!(matches!(
+            standard(15e-3, 15e-3, None),
+            Err(GridError::InterfaceInsideBore { .. })
+        ));
+        assert!(matches!(
+            standard(f64::NAN, 15e-3, None),
+            Err(GridError::InterfaceInsideBore { .. })
+        ));
+        let holes = HolePattern {
+            count: 8,
+            circle_radius: 34e-3,
+            radius: 11.6e-3,
+            phase: 0.0,
+        };
+        let Err(GridError::NoLigament { above, .. }) = standard(15e-3, 45.5e-3, Some(&holes))
+        else {
+            panic!("the hole reaches 45.6 mm")
+        };
+        assert!((above + 0.1e-3).abs() < 1e-15);
     }
 }

@@ -68,6 +68,23 @@ impl GridBuilder {
         debug_assert_eq!((t.len() - 1, r.len() - 1), (m, n));
     }
 
+    /// A block between two straight edges, `bottom` and `top`: each inner node on the straight line from a node of `left`
+    /// to the opposite one of `right`.
+    ///
+    /// Where `left` and `right` come close to each other this keeps the lines between them, which an interpolation from
+    /// all four edges would shear if `bottom` and `top` are divided differently.
+    pub(super) fn ruled(&mut self, bottom: &[u32], right: &[u32], top: &[u32], left: &[u32]) {
+        let points =
+            |edge: &[u32]| -> Vec<Vector> { edge.iter().map(|n| self.point(*n)).collect() };
+        let (s_b, s_t) = (lengths(&points(bottom)), lengths(&points(top)));
+        let (l, r) = (points(left), points(right));
+        let last = (l.len() - 1) as f64;
+        self.fill(bottom, right, top, left, |i, j| {
+            let u = s_b[i] + (s_t[i] - s_b[i]) * j as f64 / last;
+            (1.0 - u) * l[j] + u * r[j]
+        });
+    }
+
     /// A block between four edges, with its inner nodes where `place` puts lattice point (i, j).
     pub(super) fn fill(
         &mut self,

@@ -67,7 +67,7 @@ impl Grading {
         loop {
             let next = self.advance(x, STEP);
             // A length that is not a number ends the loop as well.
-            if !(next < self.length) {
+            if next >= self.length || next.is_nan() || self.length.is_nan() {
                 return count + (self.length - x) / self.size(f64::midpoint(x, self.length));
             }
             (x, count) = (next, count + STEP);

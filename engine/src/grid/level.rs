@@ -23,15 +23,6 @@ impl GridLevel {
             Self::Fine => 4 * half,
         }
     }
-
-    /// The number of elements at this level in place of one of the standard level.
-    pub(super) fn refinement(self) -> f64 {
-        match self {
-            Self::Coarse => 0.5,
-            Self::Standard => 1.0,
-            Self::Fine => 2.0,
-        }
-    }
 }
 
 impl GridLevel {

@@ -45,7 +45,7 @@ impl Grid {
             // A negative largest determinant would turn the ratio positive again.
             let ratio = smallest / largest.abs();
             // Not `min`, which would pass over a ratio that is not a number.
-            if !(ratio >= quality.smallest_jacobian) {
+            if ratio < quality.smallest_jacobian || ratio.is_nan() {
                 quality.smallest_jacobian = ratio;
             }
             for (xi, eta) in CORNERS {

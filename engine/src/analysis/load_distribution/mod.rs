@@ -19,6 +19,7 @@
 //! each pair carries a body of its own, so that the deflection of one tooth does not tilt the next. ISO's single
 //! stiffness knows neither position nor bore.
 
+mod curve;
 pub mod elastic_constants;
 pub mod half_plane;
 pub mod hertz;
@@ -27,6 +28,8 @@ pub mod quantity;
 pub mod sainsot;
 pub mod tooth_load;
 pub mod weber_banaschek;
+
+pub(super) use curve::distribute;
 
 #[cfg(test)]
 mod tests {

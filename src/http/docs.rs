@@ -1,0 +1,63 @@
+//! The OpenAPI document and the page that shows it.
+
+use axum::Router;
+use axum::body::Bytes;
+use axum::http::header::CONTENT_TYPE;
+use axum::routing::get;
+use utoipa::OpenApi as _;
+use utoipa::openapi::{OpenApi, Server, ServerBuilder};
+use utoipa_swagger_ui::{Config, SwaggerUi};
+
+use super::router::{App, routes};
+
+/// What stands before the paths.
+#[derive(utoipa::OpenApi)]
+#[openapi(
+    info(
+        title = "Meshwright",
+        description = "Static transmission error and mesh stiffness of spur gear pairs, with tip relief and lightening holes.\n\nSubmit a job, look until it is `successful`, get its results. Units stand in the names of fields. Every error is a problem document (RFC 9457) with a stable `code`.",
+        license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0"),
+    ),
+    tags(
+        (name = "Jobs", description = "Computations, from submission to end."),
+        (name = "Results", description = "What was computed."),
+        (name = "Reference", description = "What can be known without a job."),
+        (name = "Operation", description = "For those who run the service."),
+    ),
+)]
+struct Introduction;
+
+pub(super) fn introduction() -> OpenApi {
+    Introduction::openapi()
+}
+
+/// The OpenAPI document of the service, as it is without a public address.
+pub fn openapi() -> OpenApi {
+    let mut openapi = routes().into_openapi();
+    openapi.servers = Some(vec![server("")]);
+    openapi
+}
+
+/// Where the service is.
+pub(super) fn server(public_url: &str) -> Server {
+    ServerBuilder::new()
+        .url(if public_url.is_empty() {
+            "/"
+        } else {
+            public_url
+        })
+        .build()
+}
+
+/// The document at /openapi.json and the page at /docs, which needs nothing from elsewhere.
+pub(super) fn routes_of_docs(openapi: &OpenApi) -> Router<App> {
+    let json = Bytes::from(openapi.to_json().expect("the document is plain data"));
+    // Relative to /docs/, so that the page also works behind a prefix; the usual validator is on another host.
+    let config = Config::new(["../openapi.json"]).validator_url("none");
+    Router::new()
+        .route(
+            "/openapi.json",
+            get(move || async move { ([(CONTENT_TYPE, "application/json")], json) }),
+        )
+        .merge(SwaggerUi::new("/docs").config(config))
+}

@@ -1,0 +1,96 @@
+//! The body of a request: a JSON document of bounded size.
+
+use std::time::Duration;
+
+use axum::body::{Body, Bytes};
+use axum::extract::{FromRequest, Request};
+use axum::http::HeaderMap;
+use axum::http::header::{CONTENT_ENCODING, CONTENT_TYPE};
+use futures_util::StreamExt;
+
+use crate::wire::{Code, Problem};
+
+/// A document may have so many bytes. The largest submission has a few thousand.
+pub(super) const LIMIT: usize = 1024 * 1024;
+
+/// So much more is read and thrown away, because a client that is still sending does not see the answer.
+const DRAINED: usize = 64 * LIMIT;
+
+/// The body is here within this time.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// The bytes of a request's JSON document.
+pub(super) struct Document(pub(super) Bytes);
+
+impl<S: Send + Sync> FromRequest<S> for Document {
+    type Rejection = Problem;
+
+    async fn from_request(request: Request, _: &S) -> Result<Self, Problem> {
+        let media_type = check_media_type(request.headers());
+        let body = tokio::time::timeout(PATIENCE, read(request.into_body()))
+            .await
+            .map_err(|_| {
+                Problem::new(
+                    Code::RequestTimeout,
+                    format!("The body was not here within {} s.", PATIENCE.as_secs()),
+                )
+            })?;
+        media_type?;
+        body.map(Self)
+    }
+}
+
+fn check_media_type(headers: &HeaderMap) -> Result<(), Problem> {
+    let refuse = |detail: String| Err(Problem::new(Code::UnsupportedMediaType, detail));
+    if headers
+        .get(CONTENT_ENCODING)
+        .is_some_and(|encoding| encoding != "identity")
+    {
+        return refuse("Send the body without a Content-Encoding.".to_owned());
+    }
+    let Some(given) = headers.get(CONTENT_TYPE) else {
+        return refuse("Send the body with Content-Type: application/json.".to_owned());
+    };
+    let essence = given
+        .to_str()
+        .unwrap_or_default()
+        .split(';')
+        .next()
+        .unwrap_or_default()
+        .trim()
+        .to_ascii_lowercase();
+    if essence == "application/json"
+        || (essence.starts_with("application/") && essence.ends_with("+json"))
+    {
+        return Ok(());
+    }
+    refuse(format!(
+        "Send the body with Content-Type: application/json, not {essence:?}."
+    ))
+}
+
+async fn read(body: Body) -> Result<Bytes, Problem> {
+    let (mut stream, mut bytes, mut length) = (body.into_data_stream(), Vec::new(), 0_usize);
+    while let Some(chunk) = stream.next().await {
+        let chunk = chunk.map_err(|_| {
+            Problem::new(
+                Code::MalformedJson,
+                "The body ended before it was complete.",
+            )
+        })?;
+        length = length.saturating_add(chunk.len());
+        if length > DRAINED {
+            break;
+        }
+        if length <= LIMIT {
+            bytes.extend_from_slice(&chunk);
+        }
+    }
+    if length > LIMIT {
+        return Err(Problem::new(
+            Code::PayloadTooLarge,
+            format!("The body has more than {LIMIT} bytes."),
+        ));
+    }
+    Ok(bytes.into())
+}

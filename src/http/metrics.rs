@@ -1,0 +1,93 @@
+//! Numbers for Prometheus.
+
+use std::sync::OnceLock;
+use std::time::Instant;
+
+use axum::extract::{MatchedPath, Request, State};
+use axum::http::header::CONTENT_TYPE;
+use axum::middleware::Next;
+use axum::response::{IntoResponse, Response};
+use metrics_exporter_prometheus::{Matcher, PrometheusBuilder, PrometheusHandle};
+
+use super::router::App;
+use crate::wire::Problem;
+
+/// The numbers of this process. One recorder serves all parts of it, as the `metrics` facade wants.
+fn recorder() -> &'static PrometheusHandle {
+    static RECORDER: OnceLock<PrometheusHandle> = OnceLock::new();
+    RECORDER.get_or_init(|| {
+        let requests = Matcher::Full("meshwright_http_request_duration_seconds".to_owned());
+        let jobs = Matcher::Full("meshwright_job_wall_time_seconds".to_owned());
+        let recorder = PrometheusBuilder::new()
+            .set_buckets_for_metric(requests, &[0.001, 0.005, 0.02, 0.1, 0.5, 2.0, 10.0, 60.0])
+            .and_then(|builder| {
+                builder
+                    .set_buckets_for_metric(jobs, &[0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 600.0])
+            })
+            .expect("the lists of buckets are not empty")
+            .build_recorder();
+        let handle = recorder.handle();
+        // Another recorder may have been set by who embeds the service; then it gets the numbers.
+        let _ = metrics::set_global_recorder(recorder);
+        metrics::describe_counter!("meshwright_http_requests_total", "Requests answered.");
+        metrics::describe_histogram!(
+            "meshwright_http_request_duration_seconds",
+            "Time until the head of an answer."
+        );
+        metrics::describe_counter!(
+            "meshwright_jobs_ended_total",
+            "Jobs that a worker brought to an end."
+        );
+        metrics::describe_histogram!(
+            "meshwright_job_wall_time_seconds",
+            "Time that a job was computed."
+        );
+        metrics::describe_gauge!("meshwright_jobs_waiting", "Jobs in the queue.");
+        metrics::describe_gauge!("meshwright_jobs_running", "Jobs that are being computed.");
+        handle
+    })
+}
+
+/// Counts a request and the time to the head of its answer.
+pub(super) async fn count(request: Request, next: Next) -> Response {
+    recorder();
+    let start = Instant::now();
+    let method = request.method().to_string();
+    // The pattern, not the address: an id in a label would make a series of its own.
+    let route = request
+        .extensions()
+        .get::<MatchedPath>()
+        .map_or("none", MatchedPath::as_str)
+        .to_owned();
+    let response = next.run(request).await;
+    let status = response.status().as_u16().to_string();
+    metrics::histogram!("meshwright_http_request_duration_seconds", "method" => method.clone(), "route" => route.clone())
+        .record(start.elapsed().as_secs_f64());
+    metrics::counter!("meshwright_http_requests_total", "method" => method, "route" => route, "status" => status)
+        .increment(1);
+    response
+}
+
+/// Get metrics
+///
+/// Numbers of requests and jobs in the Prometheus text format.
+#[utoipa::path(
+    get, path = "/metrics", tag = "Operation", operation_id = "metrics",
+    responses((status = 200, description = "The numbers.", body = String, content_type = "text/plain")),
+)]
+pub(super) async fn metrics(State(app): State<App>) -> Result<Response, Problem> {
+    let (waiting, running) = app.jobs.depth().await?;
+    metrics::gauge!("meshwright_jobs_waiting").set(gauge(waiting));
+    metrics::gauge!("meshwright_jobs_running").set(gauge(running));
+    recorder().run_upkeep();
+    Ok((
+        [(CONTENT_TYPE, "text/plain; version=0.0.4")],
+        recorder().render(),
+    )
+        .into_response())
+}
+
+/// Gauges are floating-point numbers, exact for any number of jobs that fits on a disk.
+fn gauge(count: i64) -> f64 {
+    count as f64
+}

@@ -1,0 +1,51 @@
+//! What a request says beside its body: path, query and headers.
+
+use axum::extract::{FromRequestParts, Query};
+use axum::http::request::Parts;
+use serde::de::DeserializeOwned;
+use uuid::Uuid;
+
+use crate::wire::{Code, Problem};
+
+/// The query of a request. An unknown parameter is refused, as an unknown field is.
+pub(super) struct Parameters<T>(pub(super) T);
+
+impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Problem> {
+        let Query(parameters) =
+            Query::try_from_uri(&parts.uri).map_err(|error| invalid(error.body_text()))?;
+        Ok(Self(parameters))
+    }
+}
+
+/// The word under which a client may repeat a submission.
+pub(super) struct IdempotencyKey(pub(super) Option<String>);
+
+impl<S: Sync> FromRequestParts<S> for IdempotencyKey {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Problem> {
+        let Some(key) = parts.headers.get("idempotency-key") else {
+            return Ok(Self(None));
+        };
+        match key.to_str() {
+            Ok(key) if (1..=255).contains(&key.len()) => Ok(Self(Some(key.to_owned()))),
+            _ => Err(invalid(
+                "Idempotency-Key has 1 to 255 visible ASCII characters.",
+            )),
+        }
+    }
+}
+
+/// The id in a path. What is no id names no job.
+pub(super) fn job_id(text: &str) -> Result<Uuid, Problem> {
+    text.parse()
+        .map_err(|_| Problem::new(Code::JobNotFound, "There is no job of this id."))
+}
+
+/// A parameter or header that is not understood.
+pub(super) fn invalid(detail: impl Into<String>) -> Problem {
+    Problem::new(Code::InvalidParameter, detail)
+}

@@ -1,0 +1,195 @@
+//! Errors on the wire: every one is a problem document (RFC 9457), whoever found it.
+
+use std::any::Any;
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::extract::{Request, State};
+use axum::http::header::{CONTENT_LENGTH, CONTENT_TYPE, HeaderValue, RETRY_AFTER};
+use axum::http::{HeaderMap, StatusCode};
+use axum::middleware::Next;
+use axum::response::{IntoResponse, Response};
+use tracing::error;
+
+use super::router::Edge;
+use crate::jobs::{JobError, Status};
+use crate::wire::{Code, Problem};
+
+const PROBLEM_JSON: HeaderValue = HeaderValue::from_static("application/problem+json");
+
+impl IntoResponse for Problem {
+    fn into_response(self) -> Response {
+        let mut response = render(&self, HeaderMap::new());
+        // `shape` finds it here and completes its links.
+        response.extensions_mut().insert(Arc::new(self));
+        response
+    }
+}
+
+fn render(problem: &Problem, mut headers: HeaderMap) -> Response {
+    headers.insert(CONTENT_TYPE, PROBLEM_JSON);
+    headers.remove(CONTENT_LENGTH);
+    if let Some(seconds) = retry_after(problem.code) {
+        headers.insert(RETRY_AFTER, HeaderValue::from_static(seconds));
+    }
+    let status = StatusCode::from_u16(problem.status).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
+    let body = serde_json::to_vec(problem).expect("a problem is plain data");
+    (status, headers, body).into_response()
+}
+
+/// After so many seconds it is worth asking again.
+fn retry_after(code: Code) -> Option<&'static str> {
+    match code {
+        Code::ResultNotReady => Some("1"),
+        Code::QueueFull => Some("5"),
+        _ => None,
+    }
+}
+
+impl From<JobError> for Problem {
+    fn from(error: JobError) -> Self {
+        match &error {
+            JobError::QueueFull { .. } => Problem::new(
+                Code::QueueFull,
+                format!("{}. Try again later.", sentence(&error)),
+            ),
+            JobError::KeyConflict => Problem::new(
+                Code::IdempotencyConflict,
+                "The Idempotency-Key was used for another submission within the last day. Use a new key.",
+            ),
+            JobError::NotFound(_) => {
+                Problem::new(Code::JobNotFound, format!("{}.", sentence(&error)))
+            }
+            JobError::Running => Problem::new(
+                Code::JobRunning,
+                "The job is running; cancel it before it is deleted.",
+            ),
+            JobError::Ended(status) => Problem::new(
+                Code::JobFinished,
+                format!("The job is {} already.", status.as_str()),
+            ),
+            // To the client it is the same: no job was taken, and the next process will take one.
+            JobError::ShuttingDown => Problem::new(
+                Code::QueueFull,
+                "The service is shutting down and takes no more jobs.",
+            ),
+            JobError::Database(source) => {
+                error!(error = %source, "the database failed");
+                internal()
+            }
+        }
+    }
+}
+
+fn sentence(error: &JobError) -> String {
+    let text = error.to_string();
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| {
+        first.to_uppercase().chain(letters).collect()
+    })
+}
+
+/// Why a job has no results.
+pub(super) fn of_missing_results(
+    status: Status,
+    job_problem: Option<&serde_json::Value>,
+) -> Problem {
+    match status {
+        Status::Failed => {
+            let part = |name| {
+                job_problem
+                    .and_then(|problem| problem.get(name))
+                    .and_then(serde_json::Value::as_str)
+            };
+            let (code, detail) = (
+                part("code").unwrap_or("unknown"),
+                part("detail").unwrap_or_default(),
+            );
+            Problem::new(
+                Code::JobFailed,
+                format!("The job failed and has no results ({code}). {detail}"),
+            )
+        }
+        Status::Dismissed => Problem::new(
+            Code::JobDismissed,
+            "The job was cancelled and has no results.",
+        ),
+        Status::Accepted | Status::Running | Status::Successful => Problem::new(
+            Code::ResultNotReady,
+            format!(
+                "The job is {}; its results come at its end.",
+                status.as_str()
+            ),
+        ),
+    }
+}
+
+/// The answer to a request that took too long.
+pub(super) fn too_slow(limit: Duration) -> Response {
+    Problem::new(
+        Code::RequestTimeout,
+        format!("The request was not over within {} s.", limit.as_secs()),
+    )
+    .into_response()
+}
+
+/// The answer when a handler panics: a fault of ours that ends this request only.
+pub(super) fn of_panic(panic: Box<dyn Any + Send>) -> Response {
+    let message = panic
+        .downcast_ref::<&str>()
+        .copied()
+        .or_else(|| panic.downcast_ref::<String>().map(String::as_str))
+        .unwrap_or("no message");
+    error!(panic = message, "a handler panicked");
+    internal().into_response()
+}
+
+fn internal() -> Problem {
+    Problem::new(
+        Code::InternalError,
+        "The service failed. The failure has been logged.",
+    )
+}
+
+/// Gives every error the form of a problem document, and its link the public address.
+pub(super) async fn shape(State(edge): State<Arc<Edge>>, request: Request, next: Next) -> Response {
+    let response = next.run(request).await;
+    let found = response.extensions().get::<Arc<Problem>>().cloned();
+    let error = response.status().is_client_error() || response.status().is_server_error();
+    let problem = match found {
+        Some(_) if edge.public_url.is_empty() => return response,
+        Some(problem) => (*problem).clone(),
+        // The framework's own refusals, and those of the documentation pages.
+        None if error && response.extensions().get::<Plain>().is_none() => {
+            of_status(response.status())
+        }
+        None => return response,
+    };
+    let (parts, _) = response.into_parts();
+    let type_ = format!("{}{}", edge.public_url, problem.type_);
+    render(&Problem { type_, ..problem }, parts.headers)
+}
+
+/// Marks an answer that is no error although its status is one, as a health check's.
+#[derive(Clone, Copy)]
+pub(super) struct Plain;
+
+fn of_status(status: StatusCode) -> Problem {
+    match status {
+        StatusCode::NOT_FOUND => Problem::new(Code::NotFound, "There is nothing at this address."),
+        StatusCode::METHOD_NOT_ALLOWED => Problem::new(
+            Code::MethodNotAllowed,
+            "The resource does not take this method.",
+        ),
+        StatusCode::PAYLOAD_TOO_LARGE => {
+            Problem::new(Code::PayloadTooLarge, "The body is too large.")
+        }
+        StatusCode::UNSUPPORTED_MEDIA_TYPE => {
+            Problem::new(Code::UnsupportedMediaType, "The body is not JSON.")
+        }
+        status if status.is_client_error() => {
+            Problem::new(Code::InvalidParameter, "The request is not understood.")
+        }
+        _ => internal(),
+    }
+}

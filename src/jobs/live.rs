@@ -1,0 +1,159 @@
+//! What of a job lives in memory only: the progress and the stop of the running ones, and news for those who wait.
+
+use std::collections::HashMap;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard};
+
+use meshwright_engine::run::Run;
+use tokio::sync::{Notify, broadcast, watch};
+use uuid::Uuid;
+
+use super::job::Progress;
+
+/// The jobs that this process runs, and the bell for every change of state.
+#[derive(Debug)]
+pub(super) struct Live {
+    // A mutex of the standard library: it is never held across an await.
+    running: Mutex<HashMap<Uuid, Running>>,
+    changes: broadcast::Sender<Uuid>,
+    /// Rung when a job begins to wait. A worker that finds one rings again, so that one ring wakes as many as needed.
+    pub(super) work: Notify,
+}
+
+/// One attempt at one job, seen from outside of it.
+#[derive(Debug, Clone)]
+pub(super) struct Running {
+    stop: Arc<AtomicBool>,
+    progress: Arc<watch::Sender<Progress>>,
+}
+
+impl Running {
+    /// The handle for the engine's work.
+    pub(super) fn run(&self) -> Run {
+        let progress = Arc::clone(&self.progress);
+        Run::new(Arc::clone(&self.stop), move |done, total| {
+            progress.send_if_modified(|now| {
+                // Threads report past each other; what is shown never goes back.
+                let next = Progress {
+                    done: done.max(now.done),
+                    total: if total == 0 { now.total } else { total },
+                };
+                std::mem::replace(now, next) != next
+            });
+        })
+    }
+
+    pub(super) fn stop(&self) {
+        self.stop.store(true, Ordering::Relaxed);
+    }
+
+    pub(super) fn progress(&self) -> Progress {
+        *self.progress.borrow()
+    }
+
+    pub(super) fn watch(&self) -> watch::Receiver<Progress> {
+        self.progress.subscribe()
+    }
+}
+
+impl Live {
+    pub(super) fn new() -> Self {
+        Self {
+            running: Mutex::default(),
+            changes: broadcast::channel(1024).0,
+            work: Notify::new(),
+        }
+    }
+
+    /// Enters an attempt; it leaves when the guard is dropped.
+    pub(super) fn enter(self: &Arc<Self>, id: Uuid, progress: Progress) -> Entered {
+        let running = Running {
+            stop: Arc::default(),
+            progress: Arc::new(watch::channel(progress).0),
+        };
+        self.lock().insert(id, running.clone());
+        Entered {
+            live: Arc::clone(self),
+            id,
+            running,
+        }
+    }
+
+    pub(super) fn running(&self, id: Uuid) -> Option<Running> {
+        self.lock().get(&id).cloned()
+    }
+
+    /// Tells those who wait that the state of a job has changed.
+    pub(super) fn changed(&self, id: Uuid) {
+        // No receiver is no error: nobody waits.
+        let _ = self.changes.send(id);
+    }
+
+    pub(super) fn changes(&self) -> broadcast::Receiver<Uuid> {
+        self.changes.subscribe()
+    }
+
+    fn lock(&self) -> MutexGuard<'_, HashMap<Uuid, Running>> {
+        self.running
+            .lock()
+            .expect("nothing panics while it holds this lock")
+    }
+}
+
+/// The guard of an attempt that is listed as running.
+pub(super) struct Entered {
+    live: Arc<Live>,
+    id: Uuid,
+    pub(super) running: Running,
+}
+
+impl Drop for Entered {
+    fn drop(&mut self) {
+        let mut running = self.live.lock();
+        // A later attempt at the same job may have taken the place.
+        if running
+            .get(&self.id)
+            .is_some_and(|entry| Arc::ptr_eq(&entry.stop, &self.running.stop))
+        {
+            running.remove(&self.id);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn progress_never_goes_back_and_a_stop_reaches_the_work() {
+        let live = Arc::new(Live::new());
+        let id = Uuid::now_v7();
+        let entered = live.enter(id, Progress { done: 0, total: 8 });
+        let run = entered.running.run();
+        run.reached(3).unwrap();
+        assert_eq!(
+            live.running(id).unwrap().progress(),
+            Progress { done: 3, total: 8 }
+        );
+        run.expect(10);
+        run.reached(1).unwrap();
+        assert_eq!(
+            live.running(id).unwrap().progress(),
+            Progress { done: 4, total: 10 }
+        );
+        live.running(id).unwrap().stop();
+        assert!(run.reached(1).is_err());
+    }
+
+    #[test]
+    fn an_attempt_that_ends_late_leaves_the_next_one_listed() {
+        let live = Arc::new(Live::new());
+        let id = Uuid::now_v7();
+        let first = live.enter(id, Progress::default());
+        let second = live.enter(id, Progress::default());
+        drop(first);
+        assert!(live.running(id).is_some());
+        drop(second);
+        assert!(live.running(id).is_none());
+    }
+}

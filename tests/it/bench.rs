@@ -1,0 +1,277 @@
+//! The test bench: a service on a free port, a client, and an engine whose work the test steers.
+
+use std::sync::{Arc, mpsc as blocking};
+use std::time::Duration;
+
+use meshwright::config::Config;
+use meshwright::jobs::Solve;
+use meshwright::serve::{Service, serve};
+use meshwright::wire::{Code, Problem};
+use meshwright_engine::run::Run;
+use reqwest::{Client, RequestBuilder, Response, StatusCode};
+use serde_json::{Value, json};
+use tempfile::TempDir;
+use tokio::sync::mpsc;
+
+/// Nothing here takes long; what does not come in this time does not come.
+pub(crate) const PATIENCE: Duration = Duration::from_secs(20);
+
+/// Results as an engine might give them, with a text that no serializer would write.
+pub(crate) const RESULTS: &str = r#"{ "method": "flexible",  "curves": [
+  { "output_torque_n_m": 115.0, "mesh_position": [0.0, 0.5], "driving_angle_deg": [0.0, 3.6], "driven_angle_deg": [0.0, 3.6],
+    "transmission_error_um": [13.79, 14.0], "mesh_stiffness_tangent_n_per_m": [2.2e8, 2.1e8],
+    "mesh_stiffness_secant_n_per_m": [1.8e8, 1.7e8],
+    "spectrum": { "order": [10], "transmission_error_um": [0.1], "named": [ { "order": 10, "label": "H_N" } ] } },
+  { "output_torque_n_m": 20.0, "mesh_position": [0.0, 0.5], "transmission_error_um": [5.0, 6.0] } ] }"#;
+
+/// A service and a client of it.
+pub(crate) struct Bench {
+    pub(crate) config: Config,
+    solve: Solve,
+    service: Option<Service>,
+    pub(crate) base: String,
+    pub(crate) client: Client,
+    _folder: TempDir,
+}
+
+/// The work that the engine was given, one computation after the other.
+pub(crate) struct Engine(mpsc::UnboundedReceiver<Work>);
+
+/// One computation, which waits for what the test tells it.
+pub(crate) struct Work {
+    run: Run,
+    orders: blocking::Sender<Order>,
+    pub(crate) ended: tokio::sync::oneshot::Receiver<()>,
+}
+
+enum Order {
+    Reach(u64),
+    Finish(Result<String, Problem>),
+    Panic,
+}
+
+impl Bench {
+    /// A service with one worker whose engine gives [`RESULTS`] at once.
+    pub(crate) async fn quick() -> Self {
+        Self::start(|_| {}, Arc::new(|_, _| Ok(RESULTS.to_owned()))).await
+    }
+
+    /// A service with one worker whose engine waits for orders.
+    pub(crate) async fn steered() -> (Self, Engine) {
+        Self::steered_with(|_| {}).await
+    }
+
+    pub(crate) async fn steered_with(adjust: impl FnOnce(&mut Config)) -> (Self, Engine) {
+        let (engine, solve) = Engine::new();
+        (Self::start(adjust, solve).await, engine)
+    }
+
+    pub(crate) async fn start(adjust: impl FnOnce(&mut Config), solve: Solve) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let mut config = Config {
+            listen: "127.0.0.1:0".parse().unwrap(),
+            database: folder.path().join("meshwright.db"),
+            workers: Some(1.try_into().unwrap()),
+            cors_origin: Vec::new(),
+            public_url: None,
+            queue_limit: 100,
+            time_limit_seconds: 600,
+        };
+        adjust(&mut config);
+        let client = Client::builder().timeout(PATIENCE).build().unwrap();
+        let mut bench = Self {
+            config,
+            solve,
+            service: None,
+            base: String::new(),
+            client,
+            _folder: folder,
+        };
+        bench.start_again().await;
+        bench
+    }
+
+    /// Starts a service on the same database.
+    pub(crate) async fn start_again(&mut self) {
+        let service = self.another().await.unwrap();
+        self.base = format!("http://{}", service.address());
+        self.service = Some(service);
+    }
+
+    /// A second service on the same database.
+    pub(crate) async fn another(&self) -> anyhow::Result<Service> {
+        serve(
+            &self.config,
+            Arc::clone(&self.solve),
+            Arc::new(jiff::Timestamp::now),
+        )
+        .await
+    }
+
+    /// Ends the service as a crash would.
+    pub(crate) async fn kill(&mut self) {
+        self.service.take().unwrap().kill().await;
+    }
+
+    /// Ends the service in order.
+    pub(crate) async fn shut_down(&mut self) {
+        self.service.take().unwrap().shut_down().await;
+    }
+
+    pub(crate) fn url(&self, path: &str) -> String {
+        format!("{}{path}", self.base)
+    }
+
+    pub(crate) fn get(&self, path: &str) -> RequestBuilder {
+        self.client.get(self.url(path))
+    }
+
+    pub(crate) fn post(&self, path: &str, document: &Value) -> RequestBuilder {
+        self.client.post(self.url(path)).json(document)
+    }
+
+    /// Submits a job and gives its address.
+    pub(crate) async fn submit(&self, document: &Value) -> String {
+        let response = self.post("/v1/jobs", document).send().await.unwrap();
+        assert_eq!(response.status(), StatusCode::ACCEPTED);
+        response.headers()["location"].to_str().unwrap().to_owned()
+    }
+
+    /// The job at an address.
+    pub(crate) async fn job(&self, path: &str) -> Value {
+        let response = self.get(path).send().await.unwrap();
+        assert_eq!(response.status(), StatusCode::OK);
+        response.json().await.unwrap()
+    }
+
+    /// The job at an address when it has ended.
+    pub(crate) async fn ended(&self, path: &str) -> Value {
+        let job: Value = self
+            .get(path)
+            .header("prefer", "wait=15")
+            .send()
+            .await
+            .unwrap()
+            .json()
+            .await
+            .unwrap();
+        assert!(
+            ["successful", "failed", "dismissed"].contains(&job["status"].as_str().unwrap()),
+            "{job}"
+        );
+        job
+    }
+}
+
+impl Engine {
+    fn new() -> (Self, Solve) {
+        let (begun, works) = mpsc::unbounded_channel();
+        let solve = move |_: &_, run: &Run| {
+            let (orders, to_do) = blocking::channel();
+            let (end, ended) = tokio::sync::oneshot::channel::<()>();
+            let _end_when_dropped = end;
+            // A test that is over takes no more work.
+            let _ = begun.send(Work {
+                run: run.clone(),
+                orders,
+                ended,
+            });
+            obey(&to_do, run)
+        };
+        (Self(works), Arc::new(solve))
+    }
+
+    /// The next computation that begins.
+    pub(crate) async fn next(&mut self) -> Work {
+        tokio::time::timeout(PATIENCE, self.0.recv())
+            .await
+            .expect("the engine is given work")
+            .unwrap()
+    }
+
+    /// Whether no computation has begun.
+    pub(crate) fn is_idle(&mut self) -> bool {
+        self.0.try_recv().is_err()
+    }
+}
+
+fn obey(to_do: &blocking::Receiver<Order>, run: &Run) -> Result<String, Problem> {
+    let stopped = || Problem::new(Code::InternalError, "stopped");
+    loop {
+        run.check().map_err(|_| stopped())?;
+        // The engine's promise: a stop is obeyed within 100 ms.
+        match to_do.recv_timeout(Duration::from_millis(2)) {
+            Ok(Order::Reach(count)) => run.reached(count).map_err(|_| stopped())?,
+            Ok(Order::Finish(result)) => return result,
+            Ok(Order::Panic) => panic!("as the test ordered"),
+            Err(blocking::RecvTimeoutError::Timeout) => {}
+            Err(blocking::RecvTimeoutError::Disconnected) => return Err(stopped()),
+        }
+    }
+}
+
+impl Work {
+    pub(crate) fn reach(&self, count: u64) {
+        self.orders.send(Order::Reach(count)).unwrap();
+    }
+
+    pub(crate) fn finish(self) {
+        self.orders
+            .send(Order::Finish(Ok(RESULTS.to_owned())))
+            .unwrap();
+    }
+
+    pub(crate) fn fail(self, problem: Problem) {
+        self.orders.send(Order::Finish(Err(problem))).unwrap();
+    }
+
+    pub(crate) fn panic(self) {
+        self.orders.send(Order::Panic).unwrap();
+    }
+
+    /// Comes back when the computation has obeyed a stop.
+    pub(crate) async fn stopped(self) {
+        tokio::time::timeout(PATIENCE, self.ended)
+            .await
+            .expect("the work ends")
+            .unwrap_err();
+        assert!(self.run.check().is_err());
+    }
+}
+
+/// A submission: test case 2 of the paper, at one output torque.
+pub(crate) fn submission(torque: f64) -> Value {
+    let gear = json!({
+        "tooth_count": 50, "module_mm": 2.0, "face_width_mm": 20.0,
+        "tip_relief": { "amount_um": 5.0, "shape": "linear", "start": { "radial_length_mm": 1.75 } },
+        "blank": { "bore_radius_mm": 16.0 },
+    });
+    let mut driven = gear.clone();
+    driven["blank"]["holes"] = json!({ "count": 10, "circle_radius_mm": 34.0, "radius_mm": 7.5 });
+    json!({
+        "method": "flexible",
+        "pair": { "center_distance_mm": 100.5, "driving": gear, "driven": driven },
+        "output_torques_n_m": [torque],
+    })
+}
+
+/// The problem document of a response, which must be one, of a status and code.
+pub(crate) async fn problem(response: Response, status: u16, code: &str) -> Value {
+    let found = response.status().as_u16();
+    assert_eq!(
+        response.headers()["content-type"],
+        "application/problem+json"
+    );
+    let problem: Value = response.json().await.unwrap();
+    assert_eq!(
+        (found, problem["status"].as_u64(), problem["code"].as_str()),
+        (status, Some(status.into()), Some(code)),
+        "{problem}"
+    );
+    assert_eq!(
+        problem["type"],
+        format!("/problems/{}", code.replace('_', "-"))
+    );
+    assert!(!problem["detail"].as_str().unwrap().is_empty());
+    problem
+}

@@ -1,0 +1,319 @@
+//! How the service looks from outside: links, headers, documentation, health.
+
+use meshwright::wire::Code;
+use reqwest::{Method, StatusCode};
+use serde_json::Value;
+
+use crate::bench::{Bench, RESULTS, submission};
+
+#[tokio::test]
+async fn every_link_bears_the_public_address() {
+    let public = "https://gears.example/mesh";
+    let (bench, mut engine) =
+        Bench::steered_with(|config| config.public_url = Some(public.to_owned())).await;
+    let response = bench
+        .post("/v1/jobs", &submission(1.0))
+        .send()
+        .await
+        .unwrap();
+    let location = response.headers()["location"].to_str().unwrap().to_owned();
+    let path = location.strip_prefix(public).unwrap();
+    let job: Value = response.json().await.unwrap();
+    for link in ["self", "results", "events", "cancel"] {
+        assert!(
+            job["links"][link]
+                .as_str()
+                .unwrap()
+                .starts_with(&format!("{public}/v1/jobs/"))
+        );
+    }
+    let work = engine.next().await;
+    let problem: Value = bench
+        .get(&format!("{path}/results"))
+        .send()
+        .await
+        .unwrap()
+        .json()
+        .await
+        .unwrap();
+    assert_eq!(
+        problem["type"],
+        format!("{public}/problems/result-not-ready")
+    );
+    let nowhere: Value = bench
+        .get("/nowhere")
+        .send()
+        .await
+        .unwrap()
+        .json()
+        .await
+        .unwrap();
+    assert_eq!(nowhere["type"], format!("{public}/problems/not-found"));
+
+    work.fail(meshwright::wire::Problem::new(Code::TimeLimit, "late"));
+    assert_eq!(
+        bench.ended(path).await["problem"]["type"],
+        format!("{public}/problems/time-limit")
+    );
+    let openapi: Value = bench
+        .get("/openapi.json")
+        .send()
+        .await
+        .unwrap()
+        .json()
+        .await
+        .unwrap();
+    assert_eq!(openapi["servers"][0]["url"], public);
+}
+
+#[tokio::test]
+async fn pages_of_the_given_origins_may_call() {
+    let origin = "https://portal.example";
+    let (bench, _engine) =
+        Bench::steered_with(|config| config.cors_origin = vec![origin.parse().unwrap()]).await;
+    let ask = async |origin: &str| {
+        let preflight = bench.client.request(Method::OPTIONS, bench.url("/v1/jobs"));
+        let preflight = preflight
+            .header("origin", origin)
+            .header("access-control-request-method", "POST");
+        preflight
+            .header("access-control-request-headers", "idempotency-key,prefer")
+            .send()
+            .await
+            .unwrap()
+    };
+    let answer = ask(origin).await;
+    assert_eq!(answer.status(), StatusCode::OK);
+    assert_eq!(answer.headers()["access-control-allow-origin"], origin);
+    assert!(
+        answer.headers()["access-control-allow-headers"]
+            .to_str()
+            .unwrap()
+            .contains("idempotency-key")
+    );
+    assert!(
+        !ask("https://other.example")
+            .await
+            .headers()
+            .contains_key("access-control-allow-origin")
+    );
+
+    let refused = bench
+        .get("/v1/jobs/1")
+        .header("origin", origin)
+        .send()
+        .await
+        .unwrap();
+    assert_eq!(
+        refused.headers()["access-control-allow-origin"],
+        origin,
+        "a page may read why it was refused"
+    );
+    assert!(
+        refused.headers()["access-control-expose-headers"]
+            .to_str()
+            .unwrap()
+            .contains("location")
+    );
+}
+
+#[tokio::test]
+async fn answers_bear_the_request_id_and_are_packed_for_who_asks() {
+    let bench = Bench::quick().await;
+    let response = bench
+        .get("/health/live")
+        .header("x-request-id", "portal-7")
+        .send()
+        .await
+        .unwrap();
+    assert_eq!(response.headers()["x-request-id"], "portal-7");
+    let response = bench.get("/nowhere").send().await.unwrap();
+    assert_eq!(response.headers()["x-request-id"].len(), 36);
+
+    let path = bench.submit(&submission(1.0)).await;
+    bench.ended(&path).await;
+    let results = bench
+        .get(&format!("{path}/results"))
+        .header("accept-encoding", "gzip")
+        .send()
+        .await
+        .unwrap();
+    assert_eq!(results.headers()["content-encoding"], "gzip");
+    assert!(results.bytes().await.unwrap().len() < RESULTS.len());
+}
+
+#[tokio::test]
+async fn every_problem_has_its_page() {
+    let bench = Bench::quick().await;
+    let index = bench
+        .get("/problems")
+        .send()
+        .await
+        .unwrap()
+        .text()
+        .await
+        .unwrap();
+    for code in Code::ALL {
+        let page = bench
+            .get(&format!("/problems/{}", code.slug()))
+            .send()
+            .await
+            .unwrap();
+        assert_eq!(page.status(), StatusCode::OK);
+        assert!(page.text().await.unwrap().contains(code.explanation()));
+        assert!(index.contains(code.slug()));
+    }
+}
+
+#[tokio::test]
+async fn the_documentation_needs_nothing_from_elsewhere() {
+    let bench = Bench::quick().await;
+    let page = bench.get("/docs/").send().await.unwrap();
+    assert_eq!(page.status(), StatusCode::OK);
+    assert!(!page.text().await.unwrap().contains("://"));
+    let script = bench
+        .get("/docs/swagger-initializer.js")
+        .send()
+        .await
+        .unwrap()
+        .text()
+        .await
+        .unwrap();
+    assert!(
+        script.contains("../openapi.json") && script.contains("\"validatorUrl\": \"none\""),
+        "{script}"
+    );
+
+    let openapi: Value = bench
+        .get("/openapi.json")
+        .send()
+        .await
+        .unwrap()
+        .json()
+        .await
+        .unwrap();
+    for path in [
+        "/v1/jobs",
+        "/v1/jobs/{id}",
+        "/v1/jobs/{id}/results",
+        "/v1/jobs/{id}/results/{table}",
+        "/v1/jobs/{id}/events",
+        "/v1/jobs/{id}/cancel",
+        "/v1/validate",
+        "/v1/examples",
+        "/v1/limits",
+        "/problems/{slug}",
+        "/health/live",
+        "/health/ready",
+        "/metrics",
+    ] {
+        let methods = openapi["paths"][path]
+            .as_object()
+            .unwrap_or_else(|| panic!("{path} is not described"));
+        for operation in methods.values() {
+            for (status, response) in operation["responses"].as_object().unwrap() {
+                assert!(
+                    !response["description"]
+                        .as_str()
+                        .unwrap_or_default()
+                        .is_empty(),
+                    "{path} {status}"
+                );
+            }
+        }
+    }
+}
+
+#[tokio::test]
+async fn the_service_tells_its_health_and_numbers() {
+    let bench = Bench::quick().await;
+    assert_eq!(
+        bench
+            .get("/health/live")
+            .send()
+            .await
+            .unwrap()
+            .text()
+            .await
+            .unwrap(),
+        "alive"
+    );
+    let ready = bench.get("/health/ready").send().await.unwrap();
+    assert_eq!(ready.status(), StatusCode::OK);
+    assert_eq!(ready.json::<Value>().await.unwrap()["workers"], 1);
+
+    let path = bench.submit(&submission(1.0)).await;
+    bench.ended(&path).await;
+    let numbers = bench
+        .get("/metrics")
+        .send()
+        .await
+        .unwrap()
+        .text()
+        .await
+        .unwrap();
+    for name in [
+        "meshwright_jobs_waiting",
+        "meshwright_jobs_running",
+        "meshwright_http_request_duration_seconds_bucket",
+    ] {
+        assert!(numbers.contains(name), "{name}");
+    }
+    assert!(
+        numbers.contains("meshwright_jobs_ended_total{status=\"successful\",method=\"flexible\"}"),
+        "{numbers}"
+    );
+    assert!(
+        numbers.contains("route=\"/v1/jobs/{id}\""),
+        "ids make no series of their own"
+    );
+}
+
+#[tokio::test]
+async fn what_can_be_known_without_a_job_is_told() {
+    let bench = Bench::quick().await;
+    let examples: Value = bench
+        .get("/v1/examples")
+        .send()
+        .await
+        .unwrap()
+        .json()
+        .await
+        .unwrap();
+    for example in examples["items"].as_array().unwrap() {
+        assert!(
+            example["name"].is_string()
+                && example["description"].is_string()
+                && example["submission"].is_object()
+        );
+    }
+    assert!(
+        bench
+            .get("/v1/limits")
+            .send()
+            .await
+            .unwrap()
+            .json::<Value>()
+            .await
+            .unwrap()
+            .is_object()
+    );
+    let valid: Value = bench
+        .post("/v1/validate", &submission(115.0))
+        .send()
+        .await
+        .unwrap()
+        .json()
+        .await
+        .unwrap();
+    assert_eq!(valid["valid"], true);
+    let list: Value = bench
+        .get("/v1/jobs")
+        .send()
+        .await
+        .unwrap()
+        .json()
+        .await
+        .unwrap();
+    assert_eq!(list["items"].as_array().unwrap().len(), 0);
+}

@@ -1,0 +1,283 @@
+//! A job from submission to end, and the ways to end it early.
+
+use meshwright::wire::{Code, Problem};
+use reqwest::StatusCode;
+use serde_json::Value;
+
+use crate::bench::{Bench, RESULTS, problem, submission};
+
+#[tokio::test]
+async fn a_job_goes_from_submission_over_progress_to_the_very_text_of_its_results() {
+    let (bench, mut engine) = Bench::steered().await;
+    let response = bench
+        .post("/v1/jobs", &submission(115.0))
+        .send()
+        .await
+        .unwrap();
+    assert_eq!(response.status(), StatusCode::ACCEPTED);
+    assert!(response.headers().contains_key("retry-after"));
+    let path = response.headers()["location"].to_str().unwrap().to_owned();
+    let accepted: Value = response.json().await.unwrap();
+    assert_eq!(
+        path,
+        format!("/v1/jobs/{}", accepted["id"].as_str().unwrap())
+    );
+    assert_eq!(
+        (accepted["status"].as_str(), accepted["method"].as_str()),
+        (Some("accepted"), Some("flexible"))
+    );
+    assert_eq!(accepted["progress_percent"], 0);
+    assert!(accepted["started_at"].is_null() && accepted["finished_at"].is_null());
+    assert!(accepted["submitted_at"].as_str().unwrap().ends_with('Z'));
+    assert_eq!(accepted["links"]["results"], format!("{path}/results"));
+
+    let work = engine.next().await;
+    let not_ready = bench.get(&format!("{path}/results")).send().await.unwrap();
+    assert!(not_ready.headers().contains_key("retry-after"));
+    problem(not_ready, 404, "result_not_ready").await;
+
+    let running = bench.job(&path).await;
+    assert_eq!(
+        (running["status"].as_str(), running["attempt"].as_u64()),
+        (Some("running"), Some(1))
+    );
+    assert_eq!(
+        running["submission"]["pair"]["driven"]["blank"]["holes"]["count"],
+        10
+    );
+
+    work.finish();
+    let ended = bench.ended(&path).await;
+    assert_eq!(
+        (ended["status"].as_str(), ended["progress_percent"].as_u64()),
+        (Some("successful"), Some(100))
+    );
+    assert!(ended["wall_time_seconds"].as_f64().unwrap() >= 0.0);
+
+    let results = bench.get(&format!("{path}/results")).send().await.unwrap();
+    assert_eq!(results.status(), StatusCode::OK);
+    assert_eq!(results.text().await.unwrap(), RESULTS);
+}
+
+#[tokio::test]
+async fn what_has_not_changed_is_not_sent_again() {
+    let bench = Bench::quick().await;
+    let path = bench.submit(&submission(115.0)).await;
+    bench.ended(&path).await;
+    for path in [
+        path.clone(),
+        format!("{path}/results"),
+        format!("{path}/results/ste.csv"),
+    ] {
+        let first = bench.get(&path).send().await.unwrap();
+        let tag = first.headers()["etag"].clone();
+        assert!(tag.to_str().unwrap().starts_with('"'), "a strong tag");
+        let again = bench
+            .get(&path)
+            .header("if-none-match", &tag)
+            .send()
+            .await
+            .unwrap();
+        assert_eq!(
+            (again.status(), &again.headers()["etag"]),
+            (StatusCode::NOT_MODIFIED, &tag)
+        );
+        let other = bench
+            .get(&path)
+            .header("if-none-match", "\"other\"")
+            .send()
+            .await
+            .unwrap();
+        assert_eq!(other.status(), StatusCode::OK);
+    }
+}
+
+#[tokio::test]
+async fn a_failed_job_carries_its_problem_and_has_no_results() {
+    let (bench, mut engine) = Bench::steered().await;
+    let path = bench.submit(&submission(115.0)).await;
+    engine
+        .next()
+        .await
+        .fail(Problem::new(Code::TimeLimit, "position 7"));
+    let job = bench.ended(&path).await;
+    assert_eq!(
+        (job["status"].as_str(), job["problem"]["code"].as_str()),
+        (Some("failed"), Some("time_limit"))
+    );
+    assert_eq!(job["problem"]["detail"], "position 7");
+    let results = problem(
+        bench.get(&format!("{path}/results")).send().await.unwrap(),
+        409,
+        "job_failed",
+    )
+    .await;
+    assert!(results["detail"].as_str().unwrap().contains("position 7"));
+}
+
+#[tokio::test]
+async fn a_panic_of_the_engine_fails_its_job_only() {
+    let (bench, mut engine) = Bench::steered().await;
+    let (first, second) = (
+        bench.submit(&submission(1.0)).await,
+        bench.submit(&submission(2.0)).await,
+    );
+    engine.next().await.panic();
+    let job = bench.ended(&first).await;
+    assert_eq!(job["problem"]["code"], "internal_error");
+    assert!(
+        !job.to_string().contains("as the test ordered"),
+        "what is inside stays inside"
+    );
+    engine.next().await.finish();
+    assert_eq!(bench.ended(&second).await["status"], "successful");
+}
+
+#[tokio::test]
+async fn a_waiting_job_that_is_cancelled_is_never_computed() {
+    let (bench, mut engine) = Bench::steered().await;
+    let first = bench.submit(&submission(1.0)).await;
+    let work = engine.next().await;
+    let second = bench.submit(&submission(2.0)).await;
+    let third = bench.submit(&submission(3.0)).await;
+    let response = bench
+        .client
+        .post(bench.url(&format!("{second}/cancel")))
+        .send()
+        .await
+        .unwrap();
+    assert_eq!(response.status(), StatusCode::ACCEPTED);
+    let dismissed: Value = response.json().await.unwrap();
+    assert_eq!(dismissed["status"], "dismissed");
+    assert!(dismissed["links"].get("cancel").is_none());
+
+    work.finish();
+    engine.next().await.finish();
+    assert_eq!(bench.ended(&first).await["status"], "successful");
+    assert_eq!(bench.ended(&third).await["status"], "successful");
+    assert!(engine.is_idle());
+    problem(
+        bench
+            .get(&format!("{second}/results"))
+            .send()
+            .await
+            .unwrap(),
+        409,
+        "job_dismissed",
+    )
+    .await;
+}
+
+#[tokio::test]
+async fn a_running_job_that_is_cancelled_stops_and_frees_its_worker() {
+    let (bench, mut engine) = Bench::steered().await;
+    let (first, second) = (
+        bench.submit(&submission(1.0)).await,
+        bench.submit(&submission(2.0)).await,
+    );
+    let work = engine.next().await;
+    for _ in 0..2 {
+        let response = bench
+            .client
+            .post(bench.url(&format!("{first}/cancel")))
+            .send()
+            .await
+            .unwrap();
+        assert_eq!(
+            response.status(),
+            StatusCode::ACCEPTED,
+            "cancelling again changes nothing"
+        );
+    }
+    work.stopped().await;
+    assert_eq!(bench.job(&first).await["status"], "dismissed");
+    engine.next().await.finish();
+    assert_eq!(bench.ended(&second).await["status"], "successful");
+
+    let response = bench
+        .client
+        .post(bench.url(&format!("{second}/cancel")))
+        .send()
+        .await
+        .unwrap();
+    problem(response, 409, "job_finished").await;
+}
+
+#[tokio::test]
+async fn a_job_is_deleted_unless_it_runs() {
+    let (bench, mut engine) = Bench::steered().await;
+    let path = bench.submit(&submission(1.0)).await;
+    let work = engine.next().await;
+    let delete = async || bench.client.delete(bench.url(&path)).send().await.unwrap();
+    problem(delete().await, 409, "job_running").await;
+    work.finish();
+    bench.ended(&path).await;
+    assert_eq!(delete().await.status(), StatusCode::NO_CONTENT);
+    problem(delete().await, 404, "job_not_found").await;
+    for path in [
+        path.clone(),
+        format!("{path}/results"),
+        format!("{path}/events"),
+    ] {
+        problem(bench.get(&path).send().await.unwrap(), 404, "job_not_found").await;
+    }
+}
+
+#[tokio::test]
+async fn who_prefers_to_wait_gets_the_results_in_the_answer() {
+    let (bench, mut engine) = Bench::steered().await;
+    let document = submission(115.0);
+    let waiting = bench
+        .post("/v1/jobs", &document)
+        .header("prefer", "respond-async, wait=15")
+        .send();
+    let (response, ()) = tokio::join!(waiting, async { engine.next().await.finish() });
+    let response = response.unwrap();
+    assert_eq!(response.status(), StatusCode::OK);
+    assert_eq!(response.headers()["preference-applied"], "wait=15");
+    let path = response.headers()["location"].to_str().unwrap().to_owned();
+    assert_eq!(
+        response.headers()["content-location"],
+        format!("{path}/results")
+    );
+    assert_eq!(response.text().await.unwrap(), RESULTS);
+}
+
+#[tokio::test]
+async fn who_waits_in_vain_gets_the_job() {
+    let (bench, mut engine) = Bench::steered().await;
+    let response = bench
+        .post("/v1/jobs", &submission(1.0))
+        .header("prefer", "wait=0")
+        .send()
+        .await
+        .unwrap();
+    assert_eq!(response.status(), StatusCode::ACCEPTED);
+    let path = response.headers()["location"].to_str().unwrap().to_owned();
+    let work = engine.next().await;
+    let response = bench
+        .get(&path)
+        .header("prefer", "wait=0")
+        .send()
+        .await
+        .unwrap();
+    assert_eq!(response.json::<Value>().await.unwrap()["status"], "running");
+    work.finish();
+    bench.ended(&path).await;
+}
+
+#[tokio::test]
+async fn two_workers_compute_two_jobs_at_the_same_time() {
+    let (bench, mut engine) =
+        Bench::steered_with(|config| config.workers = Some(2.try_into().unwrap())).await;
+    let paths = [
+        bench.submit(&submission(1.0)).await,
+        bench.submit(&submission(2.0)).await,
+    ];
+    // Both have begun before either has ended.
+    let works = [engine.next().await, engine.next().await];
+    works.into_iter().for_each(|work| work.finish());
+    for path in paths {
+        assert_eq!(bench.ended(&path).await["status"], "successful");
+    }
+}

@@ -1,0 +1,18 @@
+//! The service over real sockets, with a real database and an engine that does as the test tells it.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test may end where its assumption does"
+)]
+
+mod bench;
+
+mod edge;
+mod events;
+mod life;
+mod lists;
+mod recovery;
+mod refusals;
+mod repeats;
+mod tables;
+mod time;

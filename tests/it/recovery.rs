@@ -1,0 +1,92 @@
+//! The service ends in mid-job, in order or not, and starts again on the same database.
+
+use crate::bench::{Bench, submission};
+
+#[tokio::test]
+async fn a_job_whose_process_died_runs_again() {
+    let (mut bench, mut engine) = Bench::steered().await;
+    let running = bench.submit(&submission(1.0)).await;
+    let lost = engine.next().await;
+    lost.reach(50);
+    let waiting = bench.submit(&submission(2.0)).await;
+    bench.kill().await;
+
+    bench.start_again().await;
+    let work = engine.next().await;
+    let job = bench.job(&running).await;
+    assert_eq!(
+        (job["status"].as_str(), job["attempt"].as_u64()),
+        (Some("running"), Some(2))
+    );
+    // The first attempt ends after all; nobody asks for it any more.
+    lost.finish();
+    assert_eq!(bench.job(&running).await["status"], "running");
+
+    work.finish();
+    engine.next().await.finish();
+    for path in [running, waiting] {
+        assert_eq!(bench.ended(&path).await["status"], "successful");
+    }
+}
+
+#[tokio::test]
+async fn a_job_that_loses_its_process_three_times_fails() {
+    let (mut bench, mut engine) = Bench::steered().await;
+    let path = bench.submit(&submission(1.0)).await;
+    for attempt in 1..=3 {
+        let _work = engine.next().await;
+        assert_eq!(bench.job(&path).await["attempt"], attempt);
+        bench.kill().await;
+        bench.start_again().await;
+    }
+    let job = bench.job(&path).await;
+    assert_eq!(
+        (job["status"].as_str(), job["problem"]["code"].as_str()),
+        (Some("failed"), Some("attempts_exhausted"))
+    );
+    assert!(engine.is_idle());
+}
+
+#[tokio::test]
+async fn a_shutdown_returns_the_job_to_the_queue_without_counting_the_attempt() {
+    let (mut bench, mut engine) = Bench::steered().await;
+    let path = bench.submit(&submission(1.0)).await;
+    for _ in 0..4 {
+        let work = engine.next().await;
+        bench.shut_down().await;
+        work.stopped().await;
+        bench.start_again().await;
+    }
+    let work = engine.next().await;
+    assert_eq!(bench.job(&path).await["attempt"], 1);
+    work.finish();
+    assert_eq!(bench.ended(&path).await["status"], "successful");
+}
+
+#[tokio::test]
+async fn jobs_and_results_outlive_the_process() {
+    let mut bench = Bench::quick().await;
+    let path = bench.submit(&submission(1.0)).await;
+    let before = bench.ended(&path).await;
+    bench.shut_down().await;
+    bench.start_again().await;
+    assert_eq!(bench.job(&path).await, before);
+    assert_eq!(
+        bench
+            .get(&format!("{path}/results"))
+            .send()
+            .await
+            .unwrap()
+            .status(),
+        200
+    );
+}
+
+#[tokio::test]
+async fn a_database_is_served_by_one_process_only() {
+    let mut bench = Bench::quick().await;
+    let refusal = bench.another().await.err().unwrap();
+    assert!(refusal.to_string().contains("another process"), "{refusal}");
+    bench.shut_down().await;
+    bench.another().await.unwrap().shut_down().await;
+}

@@ -1,0 +1,205 @@
+//! Requests that cannot be met: each gets a problem document, and none leaves anything behind.
+
+use reqwest::{Method, Response, StatusCode};
+use serde_json::Value;
+
+use crate::bench::{Bench, problem, submission};
+
+async fn send(bench: &Bench, body: impl Into<reqwest::Body>) -> Response {
+    bench
+        .client
+        .post(bench.url("/v1/jobs"))
+        .header("content-type", "application/json")
+        .body(body)
+        .send()
+        .await
+        .unwrap()
+}
+
+#[tokio::test]
+async fn bad_bodies_are_refused_and_leave_nothing_behind() {
+    let bench = Bench::quick().await;
+    let good = submission(115.0).to_string();
+    let nested = format!(
+        "{{\"method\":{}{}}}",
+        "[".repeat(100_000),
+        "]".repeat(100_000)
+    );
+    let bodies: Vec<Vec<u8>> = vec![
+        b"".to_vec(),
+        b"{".to_vec(),
+        b"null".to_vec(),
+        b"[]".to_vec(),
+        b"\"text\"".to_vec(),
+        b"{}".to_vec(),
+        b"\xff\xfe".to_vec(),
+        nested.into_bytes(),
+        good.replacen('{', "{\"colour\":\"red\",", 1).into_bytes(),
+        good.replacen('{', "{\"method\":\"flexible\",", 1)
+            .into_bytes(),
+        good.replace("115.0", "\"much\"").into_bytes(),
+        good.replace("115.0", "NaN").into_bytes(),
+        good.replace("115.0", "1e999").into_bytes(),
+        format!("{good}{good}").into_bytes(),
+    ];
+    for body in bodies {
+        let shown = String::from_utf8_lossy(&body[..body.len().min(80)]).into_owned();
+        for path in ["/v1/jobs", "/v1/validate"] {
+            let request = bench
+                .client
+                .post(bench.url(path))
+                .header("content-type", "application/json");
+            let response = request.body(body.clone()).send().await.unwrap();
+            let status = response.status();
+            assert!(matches!(status.as_u16(), 400 | 422), "{shown}: {status}");
+            assert_eq!(
+                response.headers()["content-type"],
+                "application/problem+json",
+                "{shown}"
+            );
+        }
+    }
+    let list: Value = bench
+        .get("/v1/jobs")
+        .send()
+        .await
+        .unwrap()
+        .json()
+        .await
+        .unwrap();
+    assert_eq!(list["items"].as_array().unwrap().len(), 0);
+}
+
+#[tokio::test]
+async fn a_body_of_ten_megabytes_is_too_large() {
+    let bench = Bench::quick().await;
+    problem(
+        send(&bench, vec![b' '; 10_000_000]).await,
+        413,
+        "payload_too_large",
+    )
+    .await;
+    // Sent in chunks, its length is not known beforehand.
+    let chunks =
+        futures_util::stream::iter((0..100).map(|_| Ok::<_, std::io::Error>(vec![b' '; 100_000])));
+    problem(
+        send(&bench, reqwest::Body::wrap_stream(chunks)).await,
+        413,
+        "payload_too_large",
+    )
+    .await;
+    let mut padded = " ".repeat(900_000);
+    padded.push_str(&submission(115.0).to_string());
+    assert_eq!(send(&bench, padded).await.status(), StatusCode::ACCEPTED);
+}
+
+#[tokio::test]
+async fn only_json_is_read() {
+    let bench = Bench::quick().await;
+    let text = submission(115.0).to_string();
+    for media_type in [
+        None,
+        Some("text/plain"),
+        Some("application/x-www-form-urlencoded"),
+        Some("application/jsonp"),
+    ] {
+        let mut request = bench.client.post(bench.url("/v1/jobs")).body(text.clone());
+        if let Some(media_type) = media_type {
+            request = request.header("content-type", media_type);
+        }
+        problem(request.send().await.unwrap(), 415, "unsupported_media_type").await;
+    }
+    let packed = bench
+        .client
+        .post(bench.url("/v1/jobs"))
+        .header("content-type", "application/json");
+    let packed = packed
+        .header("content-encoding", "gzip")
+        .body(text.clone())
+        .send()
+        .await
+        .unwrap();
+    problem(packed, 415, "unsupported_media_type").await;
+    let request = bench
+        .client
+        .post(bench.url("/v1/jobs"))
+        .header("content-type", "application/json; charset=utf-8");
+    assert_eq!(
+        request.body(text).send().await.unwrap().status(),
+        StatusCode::ACCEPTED
+    );
+}
+
+#[tokio::test]
+async fn what_is_not_there_is_said_so() {
+    let bench = Bench::quick().await;
+    for path in [
+        "/nowhere",
+        "/v1",
+        "/v1/jobs/",
+        "/docs/nothing",
+        "/problems/nothing",
+        "/v1/jobs/%ff",
+    ] {
+        let response = bench.get(path).send().await.unwrap();
+        assert!(matches!(response.status().as_u16(), 400 | 404), "{path}");
+        assert_eq!(
+            response.headers()["content-type"],
+            "application/problem+json",
+            "{path}"
+        );
+    }
+    for path in [
+        "/v1/jobs/1",
+        "/v1/jobs/00000000-0000-0000-0000-000000000000",
+    ] {
+        problem(bench.get(path).send().await.unwrap(), 404, "job_not_found").await;
+        problem(
+            bench.client.delete(bench.url(path)).send().await.unwrap(),
+            404,
+            "job_not_found",
+        )
+        .await;
+        for part in ["results", "events", "results/ste.csv"] {
+            problem(
+                bench.get(&format!("{path}/{part}")).send().await.unwrap(),
+                404,
+                "job_not_found",
+            )
+            .await;
+        }
+        let cancel = bench
+            .client
+            .post(bench.url(&format!("{path}/cancel")))
+            .send()
+            .await
+            .unwrap();
+        problem(cancel, 404, "job_not_found").await;
+    }
+}
+
+#[tokio::test]
+async fn a_method_that_is_not_taken_is_told_which_are() {
+    let bench = Bench::quick().await;
+    for (method, path, allowed) in [
+        (Method::PUT, "/v1/jobs", "GET,HEAD,POST"),
+        (Method::GET, "/v1/validate", "POST"),
+        (Method::POST, "/v1/jobs/1/results", "GET,HEAD"),
+    ] {
+        let response = bench
+            .client
+            .request(method, bench.url(path))
+            .send()
+            .await
+            .unwrap();
+        let mut methods: Vec<_> = response.headers()["allow"]
+            .to_str()
+            .unwrap()
+            .split(',')
+            .map(str::to_owned)
+            .collect();
+        methods.sort();
+        assert_eq!(methods.join(","), allowed);
+        problem(response, 405, "method_not_allowed").await;
+    }
+}

@@ -1,0 +1,84 @@
+//! Parts of the results as tables.
+
+use reqwest::StatusCode;
+use serde_json::Value;
+
+use crate::bench::{Bench, problem, submission};
+
+#[tokio::test]
+async fn curves_and_spectra_come_as_csv_and_json() {
+    let bench = Bench::quick().await;
+    let path = bench.submit(&submission(115.0)).await;
+    bench.ended(&path).await;
+    let get = async |table: &str| {
+        bench
+            .get(&format!("{path}/results/{table}"))
+            .send()
+            .await
+            .unwrap()
+    };
+
+    let csv = get("ste.csv?torque=115").await;
+    assert_eq!(csv.headers()["content-type"], "text/csv; charset=utf-8");
+    let text = csv.text().await.unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(
+        lines[0],
+        "output_torque_n_m,mesh_position,driving_angle_deg,driven_angle_deg,transmission_error_um"
+    );
+    assert_eq!(
+        lines[1..],
+        ["115.0,0.0,0.0,0.0,13.79", "115.0,0.5,3.6,3.6,14.0"]
+    );
+    assert_eq!(
+        get("ste.csv").await.text().await.unwrap().lines().count(),
+        5,
+        "both torques"
+    );
+
+    let json: Value = get("mesh-stiffness.json").await.json().await.unwrap();
+    assert_eq!(
+        json["curves"][0]["mesh_stiffness_tangent_n_per_m"][0],
+        2.2e8
+    );
+    assert_eq!(json["curves"][0]["output_torque_n_m"], 115.0);
+    let spectrum: Value = get("spectrum.json?torque=115.0")
+        .await
+        .json()
+        .await
+        .unwrap();
+    assert_eq!(spectrum["curves"][0]["named"][0]["label"], "H_N");
+
+    problem(get("ste.csv?torque=116").await, 404, "not_found").await;
+    problem(get("spectrum.csv?torque=20").await, 404, "not_found").await;
+    problem(get("ste.xml").await, 404, "not_found").await;
+    problem(get("ste.csv?torque=much").await, 400, "invalid_parameter").await;
+}
+
+#[tokio::test]
+async fn a_table_of_a_job_that_has_not_ended_is_not_ready() {
+    let (bench, mut engine) = Bench::steered().await;
+    let path = bench.submit(&submission(115.0)).await;
+    let work = engine.next().await;
+    problem(
+        bench
+            .get(&format!("{path}/results/ste.csv"))
+            .send()
+            .await
+            .unwrap(),
+        404,
+        "result_not_ready",
+    )
+    .await;
+    work.finish();
+    bench.ended(&path).await;
+    assert_eq!(
+        bench
+            .get(&format!("{path}/results/ste.csv"))
+            .send()
+            .await
+            .unwrap()
+            .status(),
+        StatusCode::OK
+    );
+}
