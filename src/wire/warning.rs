@@ -2,7 +2,7 @@
 
 use meshwright_engine::analysis::Warning;
 use meshwright_engine::gear::Member;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::units::{plain, to_mm};
@@ -46,7 +46,7 @@ pub enum WarningCode {
 }
 
 /// One of the two gears.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(title = "Gear name")]
 pub enum GearName {
