@@ -116,6 +116,21 @@ fn analyze_at(
     }
 }
 
+/// The model behind the flexible method for `case`, to be asked position by position.
+///
+/// # Errors
+///
+/// [`AnalysisError::Discretization`], or [`AnalysisError::Stopped`].
+pub fn pair_model(
+    case: &Case,
+    library: &Library,
+    run: &Run,
+) -> Result<model::PairModel, AnalysisError> {
+    faer::set_global_parallelism(faer::Par::Seq);
+    flexible::model(case, Blanks::Flexible, case.resolution.grid, library, run)
+        .map(|(model, _)| model)
+}
+
 /// Contact solutions that `case` needs at one grid level.
 fn expected_positions(case: &Case) -> u64 {
     let torques = case.output_torques.len() as u64;
