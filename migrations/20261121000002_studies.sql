@@ -9,6 +9,8 @@ create table studies (
     document text not null,
     -- SHA-256 of it; another one under the same idempotency key is a conflict.
     body_hash text not null,
+    -- The gear whose mass and holes the table tells.
+    gear text not null check (gear in ('driving', 'driven')),
     -- Number of designs.
     total integer not null,
     -- Designs that have their row: the first so many. The others follow in chunks, also after a restart.

@@ -65,7 +65,7 @@ impl From<JobError> for Problem {
             }
             JobError::StudyRunning => Problem::new(
                 Code::JobRunning,
-                "The study has not ended; cancel it before it is deleted. What was running when it was cancelled ends within a fraction of a second.",
+                "The study has not ended; cancel it before it is deleted.",
             ),
             JobError::StudyEnded(status) => Problem::new(
                 Code::JobFinished,
@@ -155,7 +155,7 @@ pub(super) fn of_panic(panic: Box<dyn Any + Send>) -> Response {
     internal().into_response()
 }
 
-fn internal() -> Problem {
+pub(super) fn internal() -> Problem {
     Problem::new(
         Code::InternalError,
         "The service failed. The failure has been logged.",

@@ -59,6 +59,7 @@ impl Jobs {
                 .map(|byte| format!("{byte:02x}"))
                 .collect(),
             document,
+            gear: study.gear(),
             total: study.total() as u64,
             submitted_at: now,
             idempotency_key,

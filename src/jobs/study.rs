@@ -6,6 +6,7 @@ use sqlx::{FromRow, Row};
 use uuid::Uuid;
 
 use super::job::{Status, count, instant, optional_instant, uuid};
+use crate::wire::warning::GearName;
 
 /// A study and how far it has come. Where it stands follows from where its jobs stand.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +15,8 @@ pub struct StudyRecord {
     pub id: Uuid,
     /// The study as it was sent, JSON.
     pub document: String,
+    /// The gear whose mass and holes the table tells.
+    pub gear: GearName,
     /// Number of designs.
     pub total: u64,
     /// Designs that have their row.
@@ -82,6 +85,9 @@ impl FromRow<'_, SqliteRow> for StudyRecord {
         Ok(Self {
             id: uuid("id", &row.try_get::<String, _>("id")?)?,
             document: row.try_get("document")?,
+            gear: row
+                .try_get::<String, _>("gear")
+                .map(|word| GearName::of_word(&word).unwrap_or(GearName::Driven))?,
             total: count(row, "total")?,
             expanded: count(row, "expanded")?,
             without_job: count(row, "without_job")?,
@@ -106,6 +112,7 @@ mod tests {
         let study = StudyRecord {
             id: Uuid::nil(),
             document: String::new(),
+            gear: GearName::Driven,
             total: 4,
             expanded: 4,
             without_job: 1,

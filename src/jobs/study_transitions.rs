@@ -9,6 +9,7 @@ use super::job::Status;
 use super::store::{Cursor, Store};
 use super::study::StudyRecord;
 use super::transitions::{NewJob, column, forget_document, insert_known, insert_waiting};
+use crate::wire::warning::GearName;
 
 /// So many jobs of studies may wait; further studies are refused.
 pub(super) const MOST_WAITING_DESIGNS: i64 = 50_000;
@@ -23,6 +24,7 @@ pub(super) struct NewStudy {
     pub(super) client: String,
     pub(super) document: String,
     pub(super) body_hash: String,
+    pub(super) gear: GearName,
     pub(super) total: u64,
     pub(super) submitted_at: Timestamp,
     /// The word under which the client may ask again and get this study.
@@ -64,7 +66,7 @@ pub(super) struct StoredRow {
 }
 
 /// A study with the counts of its jobs, each from an index.
-const SELECT: &str = "select id, document, total, expanded, submitted_at, cancelled_at,
+const SELECT: &str = "select id, document, gear, total, expanded, submitted_at, cancelled_at,
     (select count(*) from study_rows where study = studies.id and job is null) as without_job,
     (select count(*) from jobs where study = studies.id and status = 'accepted') as accepted,
     (select count(*) from jobs where study = studies.id and status = 'running') as running,
@@ -116,13 +118,14 @@ impl Store {
             return Ok(StudyOutcome::QueueFull { waiting });
         }
         sqlx::query(
-            "insert into studies (id, client, document, body_hash, total, expanded, submitted_at, idempotency_key)
-             values (?1, ?2, ?3, ?4, ?5, 0, ?6, ?7)",
+            "insert into studies (id, client, document, body_hash, gear, total, expanded, submitted_at, idempotency_key)
+             values (?1, ?2, ?3, ?4, ?5, ?6, 0, ?7, ?8)",
         )
         .bind(study.id.to_string())
         .bind(&study.client)
         .bind(&study.document)
         .bind(&study.body_hash)
+        .bind(study.gear.word())
         .bind(column(study.total))
         .bind(study.submitted_at.as_microsecond())
         .bind(&study.idempotency_key)

@@ -2,7 +2,7 @@
 
 use meshwright_engine::analysis::Warning;
 use meshwright_engine::gear::Member;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::units::{plain, to_mm};
@@ -46,7 +46,7 @@ pub enum WarningCode {
 }
 
 /// One of the two gears.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(title = "Gear name")]
 pub enum GearName {
@@ -54,6 +54,23 @@ pub enum GearName {
     Driving,
     /// Gear 2, which is driven.
     Driven,
+}
+
+impl GearName {
+    /// Its word on the wire.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Driving => "driving",
+            Self::Driven => "driven",
+        }
+    }
+
+    /// The gear that a word names.
+    pub fn of_word(word: &str) -> Option<Self> {
+        [Self::Driving, Self::Driven]
+            .into_iter()
+            .find(|gear| gear.word() == word)
+    }
 }
 
 impl From<Member> for GearName {

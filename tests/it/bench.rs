@@ -6,7 +6,7 @@ use std::time::Duration;
 use meshwright::config::Config;
 use meshwright::jobs::Solve;
 use meshwright::serve::{Service, serve};
-use meshwright::wire::{Code, Problem};
+use meshwright::wire::{Code, Problem, Submission};
 use meshwright_engine::run::Run;
 use reqwest::{Client, RequestBuilder, Response, StatusCode};
 use serde_json::{Value, json};
@@ -39,6 +39,8 @@ pub(crate) struct Engine(mpsc::UnboundedReceiver<Work>);
 
 /// One computation, which waits for what the test tells it.
 pub(crate) struct Work {
+    /// What is to be computed.
+    pub(crate) submission: Value,
     run: Run,
     orders: blocking::Sender<Order>,
     pub(crate) ended: tokio::sync::oneshot::Receiver<()>,
@@ -166,12 +168,13 @@ impl Bench {
 impl Engine {
     fn new() -> (Self, Solve) {
         let (begun, works) = mpsc::unbounded_channel();
-        let solve = move |_: &_, run: &Run| {
+        let solve = move |submission: &Submission, run: &Run| {
             let (orders, to_do) = blocking::channel();
             let (end, ended) = tokio::sync::oneshot::channel::<()>();
             let _end_when_dropped = end;
             // A test that is over takes no more work.
             let _ = begun.send(Work {
+                submission: serde_json::to_value(submission).unwrap(),
                 run: run.clone(),
                 orders,
                 ended,
