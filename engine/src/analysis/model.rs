@@ -143,12 +143,7 @@ impl PairModel {
     /// # Errors
     ///
     /// [`PositionError`].
-    pub fn touch(
-        &self,
-        eta: f64,
-        load: f64,
-        warm: &mut WarmStart,
-    ) -> Result<Touch, PositionError> {
+    pub fn touch(&self, eta: f64, load: f64, warm: &mut WarmStart) -> Result<Touch, PositionError> {
         let reference = eta.floor() as i64;
         let mut approaches: Vec<Approach> = (reference - PAIRS_AROUND
             ..=reference + PAIRS_AROUND + 1)

@@ -111,7 +111,10 @@ fn compare(file: &str, pair: GearPair, positions_per_mesh_period: u32, span: u32
                 .position(|t| *t == torque)
                 .expect("a listed torque");
             let (now, then): (&Curve, &Curve) = (&curves[place], &curves[torques.len() + place]);
-            assert!((now.mesh_position[i] - eta).abs() < 1e-12, "the grid of positions meets {eta}");
+            assert!(
+                (now.mesh_position[i] - eta).abs() < 1e-12,
+                "the grid of positions meets {eta}"
+            );
             let (delta, stepped) = (now.transmission_error[i], then.transmission_error[i]);
             let micro = |key: &str| solution[key].as_f64().expect("a number");
             compared.push(Compared {
@@ -143,27 +146,43 @@ fn violations(pair: &GearPair, compared: &[Compared]) -> Vec<String> {
     torques.dedup();
     for torque in torques {
         let curve: Vec<&Compared> = compared.iter().filter(|c| c.torque == torque).collect();
-        let mean = |side: usize| curve.iter().map(|c| c.delta[side]).sum::<f64>() / curve.len() as f64;
+        let mean =
+            |side: usize| curve.iter().map(|c| c.delta[side]).sum::<f64>() / curve.len() as f64;
         let means = [mean(0), mean(1)];
-        let (low, high) = curve.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), c| {
-            (low.min(c.delta[1]), high.max(c.delta[1]))
-        });
+        let (low, high) = curve
+            .iter()
+            .fold((f64::INFINITY, 0.0_f64), |(low, high), c| {
+                (low.min(c.delta[1]), high.max(c.delta[1]))
+            });
         let fluctuation_bound = (FLUCTUATION.0 * (high - low)).max(FLUCTUATION.1);
         for c in curve {
             let outside = c.outside(pair);
-            let place = format!("T {torque}, eta {}{}", c.eta, if outside { ", outside A-E" } else { "" });
+            let place = format!(
+                "T {torque}, eta {}{}",
+                c.eta,
+                if outside { ", outside A-E" } else { "" }
+            );
             let [ours, theirs] = c.delta;
             let level = ours / theirs - 1.0;
             let fluctuation = (ours - means[0]) - (theirs - means[1]);
             let stiffness = c.stiffness[0] / c.stiffness[1] - 1.0;
             println!(
                 "{place}: delta {:.4} um ({:+.3} %), fluctuation {:+.1} nm, k {:.2} for {:.2} N/um ({:+.2} %), pairs {:?}, shares {:.4?} {:.4?}",
-                ours * 1e6, level * 100.0, fluctuation * 1e9, c.stiffness[0] * 1e-6, c.stiffness[1] * 1e-6,
-                stiffness * 100.0, c.pair_counts, c.loaded[0], c.loaded[1],
+                ours * 1e6,
+                level * 100.0,
+                fluctuation * 1e9,
+                c.stiffness[0] * 1e-6,
+                c.stiffness[1] * 1e-6,
+                stiffness * 100.0,
+                c.pair_counts,
+                c.loaded[0],
+                c.loaded[1],
             );
             let mut hold = |what: &str, value: f64, bound: f64| {
                 if !(value.abs() <= bound) {
-                    violations.push(format!("{place}: {what} off by {value:.3e}, more than {bound:.3e}"));
+                    violations.push(format!(
+                        "{place}: {what} off by {value:.3e}, more than {bound:.3e}"
+                    ));
                 }
             };
             hold("delta", level, if outside { LEVEL.1 } else { LEVEL.0 });
@@ -172,7 +191,8 @@ fn violations(pair: &GearPair, compared: &[Compared]) -> Vec<String> {
             }
             if c.pair_counts[0] == c.pair_counts[1] {
                 if outside {
-                    let stepped = |side: usize| c.delta[side] + (STEP - 1.0) * c.load / c.stiffness[side];
+                    let stepped =
+                        |side: usize| c.delta[side] + (STEP - 1.0) * c.load / c.stiffness[side];
                     hold("delta at 1.02 T", stepped(0) / stepped(1) - 1.0, LEVEL.0);
                 } else {
                     hold("k", stiffness, STIFFNESS);

@@ -28,7 +28,12 @@ fn at(pair: GearPair, torques: &[f64], level: GridLevel) -> Vec<Curve> {
 /// Amplitudes of the first three harmonics of the mesh.
 fn mesh_harmonics(curve: &Curve) -> [f64; 3] {
     let spectrum = curve.spectrum.as_ref().expect("whole periods");
-    ["H_Z2", "H_2Z2", "H_3Z2"].map(|label| spectrum.line(label).expect("a named line").transmission_error)
+    ["H_Z2", "H_2Z2", "H_3Z2"].map(|label| {
+        spectrum
+            .line(label)
+            .expect("a named line")
+            .transmission_error
+    })
 }
 
 /// Prints what a step of the level changes, and holds it to the bounds if `bounded`.
@@ -38,7 +43,11 @@ fn compare(name: &str, now: &Curve, finer: &Curve, bounded: bool) {
     let peak_to_peak = change(|curve| curve.transmission_error_statistics.peak_to_peak);
     let stiffness = change(|curve| curve.mesh_stiffness_tangent_statistics.mean);
     let (harmonics, finer_harmonics) = (mesh_harmonics(now), mesh_harmonics(finer));
-    let relative: Vec<f64> = harmonics.iter().zip(finer_harmonics).map(|(a, b)| a / b - 1.0).collect();
+    let relative: Vec<f64> = harmonics
+        .iter()
+        .zip(finer_harmonics)
+        .map(|(a, b)| a / b - 1.0)
+        .collect();
     println!(
         "{name}: mean {mean:+.2e}, p-p {peak_to_peak:+.2e}, mean k {stiffness:+.2e}, H_kZ2 {relative:+.4?} of {finer_harmonics:?} m"
     );
@@ -48,18 +57,35 @@ fn compare(name: &str, now: &Curve, finer: &Curve, bounded: bool) {
         assert!(stiffness.abs() < MEAN_STIFFNESS, "{name}");
         let largest = finer_harmonics.iter().copied().fold(0.0, f64::max);
         for (a, b) in harmonics.into_iter().zip(finer_harmonics) {
-            let against = if b > SMALL_HARMONIC * largest { b } else { largest };
-            assert!((a - b).abs() < MESH_HARMONIC * against, "{name}: {a} to {b} m of {largest} m");
+            let against = if b > SMALL_HARMONIC * largest {
+                b
+            } else {
+                largest
+            };
+            assert!(
+                (a - b).abs() < MESH_HARMONIC * against,
+                "{name}: {a} to {b} m of {largest} m"
+            );
         }
     }
 }
 
 fn check(name: &str, pair: GearPair, torques: &[f64]) {
-    let [coarse, standard, fine] =
-        [GridLevel::Coarse, GridLevel::Standard, GridLevel::Fine].map(|level| at(pair, torques, level));
+    let [coarse, standard, fine] = [GridLevel::Coarse, GridLevel::Standard, GridLevel::Fine]
+        .map(|level| at(pair, torques, level));
     for (i, torque) in torques.iter().enumerate() {
-        compare(&format!("{name}, T {torque}, coarse to standard"), &coarse[i], &standard[i], false);
-        compare(&format!("{name}, T {torque}, standard to fine"), &standard[i], &fine[i], true);
+        compare(
+            &format!("{name}, T {torque}, coarse to standard"),
+            &coarse[i],
+            &standard[i],
+            false,
+        );
+        compare(
+            &format!("{name}, T {torque}, standard to fine"),
+            &standard[i],
+            &fine[i],
+            true,
+        );
     }
 }
 
@@ -92,7 +118,11 @@ fn ripple(values: &[f64]) -> f64 {
     let place = |i: usize| 2.0 * i as f64 / (n - 1) as f64 - 1.0;
     let powers = DMatrix::from_fn(n, 5, |i, power| place(i).powi(power as i32));
     let y = DVector::from_column_slice(values);
-    let fit = powers.clone().svd(true, true).solve(&y, 1e-14).expect("both sides were asked for");
+    let fit = powers
+        .clone()
+        .svd(true, true)
+        .solve(&y, 1e-14)
+        .expect("both sides were asked for");
     (powers * fit - y).amax()
 }
 
@@ -115,7 +145,11 @@ fn plateaus_of_the_curves_have_no_ripple() {
         let stiffness = of(&curve.mesh_stiffness_tangent);
         let mean = stiffness.iter().sum::<f64>() / stiffness.len() as f64;
         let k = ripple(&stiffness) / mean;
-        println!("{name}, T {torque}: ripple {:.3} nm and {:.4} % of k", delta * 1e9, k * 100.0);
+        println!(
+            "{name}, T {torque}: ripple {:.3} nm and {:.4} % of k",
+            delta * 1e9,
+            k * 100.0
+        );
         assert!(delta < 5e-9);
         assert!(k < 5e-3);
     }

@@ -18,7 +18,11 @@ fn differences(ours: &Statistics, table: &Value, unit: f64) -> [Option<f64>; 3] 
         (ours.rms, "rms"),
         (ours.peak_to_peak, "peak_to_peak"),
     ]
-    .map(|(ours, key)| table[key].as_f64().map(|theirs| ours / (theirs * unit) - 1.0))
+    .map(|(ours, key)| {
+        table[key]
+            .as_f64()
+            .map(|theirs| ours / (theirs * unit) - 1.0)
+    })
 }
 
 fn check(number: u32, mean_bound: f64, fluctuation_bound: f64) {
@@ -35,13 +39,26 @@ fn check(number: u32, mean_bound: f64, fluctuation_bound: f64) {
     let stiffness_unit = if number == 3 { 1.0 / CASE_3_LOAD } else { 1.0 };
     let flexible = &entry["flexible"];
     let rows = [
-        ("delta", &curve.transmission_error_statistics, &flexible["ste_um"], 1e-6),
-        ("k", &curve.mesh_stiffness_tangent_statistics, &flexible["k_n_per_m"], stiffness_unit),
+        (
+            "delta",
+            &curve.transmission_error_statistics,
+            &flexible["ste_um"],
+            1e-6,
+        ),
+        (
+            "k",
+            &curve.mesh_stiffness_tangent_statistics,
+            &flexible["k_n_per_m"],
+            stiffness_unit,
+        ),
     ];
     for (name, ours, theirs, unit) in rows {
         let [mean, rms, peak_to_peak] = differences(ours, theirs, unit);
         println!("case {number}, {name}: {ours:?}: {mean:+.4?} {rms:+.4?} {peak_to_peak:+.4?}");
-        assert!(mean.expect("a mean").abs() < mean_bound, "mean of {name}: {mean:?}");
+        assert!(
+            mean.expect("a mean").abs() < mean_bound,
+            "mean of {name}: {mean:?}"
+        );
         for difference in [rms, peak_to_peak].into_iter().flatten() {
             assert!(difference.abs() < fluctuation_bound, "{name}: {difference}");
         }

@@ -21,7 +21,11 @@ const OFFSETS: [i64; 5] = [-2, -1, 0, 1, 2];
 
 fn small(holes: bool) -> SpurGear {
     let data = gear(18, 6e-3);
-    let data = if holes { holed(data, 3, 10.5e-3, 2e-3, 0.21) } else { data };
+    let data = if holes {
+        holed(data, 3, 10.5e-3, 2e-3, 0.21)
+    } else {
+        data
+    };
     SpurGear::new(data).expect("a small gear")
 }
 
@@ -31,7 +35,15 @@ fn tooth_grid(gear: &SpurGear, level: GridLevel) -> ToothGrid {
 
 fn blank_grid(gear: &SpurGear, level: GridLevel) -> BlankGrid {
     let r_w = default_interface_radius(gear);
-    BlankGrid::new(gear.bore_radius(), r_w, gear.holes(), gear.tooth_count(), 6.0, level).expect("a blank")
+    BlankGrid::new(
+        gear.bore_radius(),
+        r_w,
+        gear.holes(),
+        gear.tooth_count(),
+        6.0,
+        level,
+    )
+    .expect("a blank")
 }
 
 /// The axes of the flank unknowns of `tooth`: the outward normal and the way to the tip.
@@ -43,7 +55,10 @@ fn flank_axes(gear: &SpurGear, tooth: usize, s: f64) -> [Vector; 2] {
 /// Flank unknowns that are loaded: near the form point, in the middle, and near the tip.
 fn loaded_unknowns(nodes: usize) -> Vec<usize> {
     let places = [2, nodes / 2, nodes - 3];
-    places.into_iter().flat_map(|node| [2 * node, 2 * node + 1]).collect()
+    places
+        .into_iter()
+        .flat_map(|node| [2 * node, 2 * node + 1])
+        .collect()
 }
 
 /// What unit loads do to the flanks of neighboring teeth: for each loaded tooth and offset, all flank unknowns by the loaded
@@ -64,7 +79,8 @@ fn answers_of_whole(
     for loaded in LOADED_TEETH {
         for unknown in &unknowns {
             let mut forces = vec![Vector::zeros(); whole.assembly.nodes.len()];
-            forces[node(loaded, unknown / 2) as usize] = flank_axes(gear, loaded, roll[unknown / 2])[unknown % 2];
+            forces[node(loaded, unknown / 2) as usize] =
+                flank_axes(gear, loaded, roll[unknown / 2])[unknown % 2];
             loads.push(forces);
         }
     }
@@ -73,22 +89,32 @@ fn answers_of_whole(
     for (place, loaded) in LOADED_TEETH.into_iter().enumerate() {
         for offset in OFFSETS {
             let other = (loaded as i64 + offset).rem_euclid(z as i64) as usize;
-            answers.push(Mat::from_fn(2 * roll.len(), unknowns.len(), |row, column| {
-                let u = displacements[place * unknowns.len() + column][node(other, row / 2) as usize];
-                u.dot(&flank_axes(gear, other, roll[row / 2])[row % 2])
-            }));
+            answers.push(Mat::from_fn(
+                2 * roll.len(),
+                unknowns.len(),
+                |row, column| {
+                    let u = displacements[place * unknowns.len() + column]
+                        [node(other, row / 2) as usize];
+                    u.dot(&flank_axes(gear, other, roll[row / 2])[row % 2])
+                },
+            ));
         }
     }
     answers
 }
 
 /// Answers of the substructures: H_ij = δ_ij H_0 + V X_ij Vᵀ.
-fn answers_of_substructures(gear: &SpurGear, tooth: &ToothGrid, blank: &BlankGrid, harmonics: Harmonics) -> Answers {
+fn answers_of_substructures(
+    gear: &SpurGear,
+    tooth: &ToothGrid,
+    blank: &BlankGrid,
+    harmonics: Harmonics,
+) -> Answers {
     let substructure = ToothSubstructure::new(gear, tooth).expect("a tooth");
     let ring = TeethRing::new(&substructure, harmonics).expect("a ring of teeth");
     let r_w = default_interface_radius(gear);
-    let blank =
-        BlankSubstructure::new(blank, r_w, gear.material(), gear.face_width(), harmonics).expect("a blank");
+    let blank = BlankSubstructure::new(blank, r_w, gear.material(), gear.face_width(), harmonics)
+        .expect("a blank");
     let phase = gear.holes().map_or(0.0, |holes| holes.phase);
     let coupling = Coupling::on_blank(&ring, &blank, phase).expect("a gear");
     let unknowns = loaded_unknowns(substructure.roll_lengths.len());
@@ -99,7 +125,11 @@ fn answers_of_substructures(gear: &SpurGear, tooth: &ToothGrid, blank: &BlankGri
         for offset in OFFSETS {
             let (x, transposed) = coupling.block(loaded, offset).expect("near");
             // X runs from the loaded tooth to the other one; the answer of the other one is its transpose.
-            let x = if transposed { x.to_owned() } else { x.transpose().to_owned() };
+            let x = if transposed {
+                x.to_owned()
+            } else {
+                x.transpose().to_owned()
+            };
             let mut h = v * (x * v_loaded.transpose());
             if offset == 0 {
                 h += Mat::from_fn(v.nrows(), unknowns.len(), |i, j| {
@@ -115,23 +145,37 @@ fn answers_of_substructures(gear: &SpurGear, tooth: &ToothGrid, blank: &BlankGri
 /// The largest difference over the largest compliance.
 fn difference(one: &Answers, other: &Answers) -> f64 {
     let largest = |m: &Mat<f64>| {
-        (0..m.ncols()).flat_map(|j| m.col_as_slice(j)).fold(0.0_f64, |largest, value| largest.max(value.abs()))
+        (0..m.ncols())
+            .flat_map(|j| m.col_as_slice(j))
+            .fold(0.0_f64, |largest, value| largest.max(value.abs()))
     };
     let scale = other.iter().map(&largest).fold(0.0, f64::max);
-    one.iter().zip(other).map(|(a, b)| largest(&(a - b))).fold(0.0, f64::max) / scale
+    one.iter()
+        .zip(other)
+        .map(|(a, b)| largest(&(a - b)))
+        .fold(0.0, f64::max)
+        / scale
 }
 
 #[test]
 fn a_condensed_gear_answers_as_the_whole_gear_does() {
     let gear = small(true);
-    let (tooth, blank) = (tooth_grid(&gear, GridLevel::Coarse), blank_grid(&gear, GridLevel::Coarse));
+    let (tooth, blank) = (
+        tooth_grid(&gear, GridLevel::Coarse),
+        blank_grid(&gear, GridLevel::Coarse),
+    );
     let harmonics = Harmonics { largest: 40 };
     let condensed = answers_of_substructures(&gear, &tooth, &blank, harmonics);
     let properties = (gear.material(), gear.face_width());
     let whole = WholeGear::new(tooth, 18, &blank, 0.21, harmonics.largest, properties);
-    let answers = answers_of_whole(&gear, &whole.whole, &whole.tooth, &|tooth, i| whole.flank_node(tooth, i));
+    let answers = answers_of_whole(&gear, &whole.whole, &whole.tooth, &|tooth, i| {
+        whole.flank_node(tooth, i)
+    });
     let difference = difference(&condensed, &answers);
-    println!("{} unknowns: {difference:.2e} of the largest compliance", whole.whole.unknowns());
+    println!(
+        "{} unknowns: {difference:.2e} of the largest compliance",
+        whole.whole.unknowns()
+    );
     // Condensation is exact; what is left is rounding, and modes below 1e-11 of the largest.
     assert!(difference < 1e-9);
 }
@@ -157,7 +201,10 @@ impl Conforming {
         // Rows of nodes from the interface circle inward; the eight-node element has no node at its center.
         let columns = tooth.arc_angles.len();
         let rows = 2 * layers + 1;
-        let mut blank = Grid { nodes: Vec::new(), elements: Vec::new() };
+        let mut blank = Grid {
+            nodes: Vec::new(),
+            elements: Vec::new(),
+        };
         let mut at = vec![u32::MAX; rows * columns];
         for row in 0..rows {
             let r = r_w * (r_0 / r_w).powf(row as f64 / (rows - 1) as f64);
@@ -170,30 +217,61 @@ impl Conforming {
             for column in (0..columns - 1).step_by(2) {
                 let n = |i: usize, j: usize| at[(row + i) * columns + column + j];
                 // Counter-clockwise: outward is up, growing angles run to the left as seen from there.
-                blank.elements.push([n(2, 0), n(0, 0), n(0, 2), n(2, 2), n(1, 0), n(0, 1), n(1, 2), n(2, 1)]);
+                blank.elements.push([
+                    n(2, 0),
+                    n(0, 0),
+                    n(0, 2),
+                    n(2, 2),
+                    n(1, 0),
+                    n(0, 1),
+                    n(1, 2),
+                    n(2, 1),
+                ]);
             }
         }
         let row_of = |row: usize| at[row * columns..(row + 1) * columns].to_vec();
         let (blank_arc, blank_bore) = (row_of(0), row_of(rows - 1));
-        let side = |column: usize| -> Vec<u32> { (0..rows).rev().map(|row| at[row * columns + column]).collect() };
+        let side = |column: usize| -> Vec<u32> {
+            (0..rows)
+                .rev()
+                .map(|row| at[row * columns + column])
+                .collect()
+        };
         let blank_sides = (side(0), side(columns - 1));
 
         let mut one = Assembly::default();
         one.add(&tooth.grid, 0.0, &HashMap::new());
-        let shared: HashMap<u32, u32> = blank_arc.iter().copied().zip(tooth.arc_nodes.iter().copied()).collect();
+        let shared: HashMap<u32, u32> = blank_arc
+            .iter()
+            .copied()
+            .zip(tooth.arc_nodes.iter().copied())
+            .collect();
         for (own, theirs) in &shared {
             let apart = blank.nodes[*own as usize] - tooth.grid.nodes[*theirs as usize];
             assert!(apart.norm() < 1e-12, "shared nodes lie in one place");
         }
         let numbers = one.add(&blank, 0.0, &shared);
         let joined = |blank: &[u32], tooth: &[u32]| -> Vec<u32> {
-            blank.iter().map(|node| numbers[*node as usize]).chain(tooth[1..].iter().copied()).collect()
+            blank
+                .iter()
+                .map(|node| numbers[*node as usize])
+                .chain(tooth[1..].iter().copied())
+                .collect()
         };
         let (tooth_right, tooth_left) = whole_tooth_sides(tooth);
         Self {
-            sides: (joined(&blank_sides.0, &tooth_right), joined(&blank_sides.1, &tooth_left)),
-            bore: blank_bore.iter().map(|node| numbers[*node as usize]).collect(),
-            grid: Grid { nodes: one.nodes, elements: one.elements },
+            sides: (
+                joined(&blank_sides.0, &tooth_right),
+                joined(&blank_sides.1, &tooth_left),
+            ),
+            bore: blank_bore
+                .iter()
+                .map(|node| numbers[*node as usize])
+                .collect(),
+            grid: Grid {
+                nodes: one.nodes,
+                elements: one.elements,
+            },
             blank,
             blank_arc,
             blank_bore,
@@ -201,8 +279,16 @@ impl Conforming {
         }
     }
 
-    fn hold_all(assembly: &mut Assembly, copies: &[Vec<u32>], nodes: &[u32], hold: fn(Vector) -> Hold) {
-        let all: Vec<u32> = copies.iter().flat_map(|copy| nodes.iter().map(|node| copy[*node as usize])).collect();
+    fn hold_all(
+        assembly: &mut Assembly,
+        copies: &[Vec<u32>],
+        nodes: &[u32],
+        hold: fn(Vector) -> Hold,
+    ) {
+        let all: Vec<u32> = copies
+            .iter()
+            .flat_map(|copy| nodes.iter().map(|node| copy[*node as usize]))
+            .collect();
         assembly.hold(all, hold);
     }
 
@@ -211,14 +297,23 @@ impl Conforming {
         let mut assembly = Assembly::default();
         let z = gear.tooth_count() as usize;
         let copies = assembly.add_ring(&self.grid, (&self.sides.0, &self.sides.1), z, 0.0);
-        Self::hold_all(&mut assembly, &copies, &self.bore, |_| Hold::At(Vector::zeros()));
+        Self::hold_all(&mut assembly, &copies, &self.bore, |_| {
+            Hold::At(Vector::zeros())
+        });
         let whole = Whole::new(assembly, gear.material(), gear.face_width(), 0);
         // The tooth came first, so that its nodes keep their numbers.
-        answers_of_whole(gear, &whole, tooth, &|i, node| copies[i][tooth.flank_nodes[node] as usize])
+        answers_of_whole(gear, &whole, tooth, &|i, node| {
+            copies[i][tooth.flank_nodes[node] as usize]
+        })
     }
 
     /// Answers with the same blocks on either side of a circle that moves by harmonics up to `largest_order`.
-    fn answers_by_harmonics(&self, gear: &SpurGear, tooth: &ToothGrid, largest_order: usize) -> Answers {
+    fn answers_by_harmonics(
+        &self,
+        gear: &SpurGear,
+        tooth: &ToothGrid,
+        largest_order: usize,
+    ) -> Answers {
         let mut assembly = Assembly::default();
         let z = gear.tooth_count() as usize;
         let (right, left) = whole_tooth_sides(tooth);
@@ -227,9 +322,13 @@ impl Conforming {
         let blanks = assembly.add_ring(&self.blank, (right, left), z, 0.0);
         Self::hold_all(&mut assembly, &teeth, &tooth.arc_nodes, on_circle);
         Self::hold_all(&mut assembly, &blanks, &self.blank_arc, on_circle);
-        Self::hold_all(&mut assembly, &blanks, &self.blank_bore, |_| Hold::At(Vector::zeros()));
+        Self::hold_all(&mut assembly, &blanks, &self.blank_bore, |_| {
+            Hold::At(Vector::zeros())
+        });
         let whole = Whole::new(assembly, gear.material(), gear.face_width(), largest_order);
-        answers_of_whole(gear, &whole, tooth, &|i, node| teeth[i][tooth.flank_nodes[node] as usize])
+        answers_of_whole(gear, &whole, tooth, &|i, node| {
+            teeth[i][tooth.flank_nodes[node] as usize]
+        })
     }
 }
 
@@ -238,7 +337,11 @@ fn harmonics_on_the_interface_circle_do_what_shared_nodes_do() {
     let gear = small(false);
     for level in [GridLevel::Coarse, GridLevel::Standard] {
         let tooth = tooth_grid(&gear, level);
-        let conforming = Conforming::new(&gear, &tooth, if level == GridLevel::Coarse { 8 } else { 16 });
+        let conforming = Conforming::new(
+            &gear,
+            &tooth,
+            if level == GridLevel::Coarse { 8 } else { 16 },
+        );
         let exact = conforming.answers(&gear, &tooth);
         let r_w = default_interface_radius(&gear);
         let shipped = library()
@@ -248,15 +351,29 @@ fn harmonics_on_the_interface_circle_do_what_shared_nodes_do() {
             .harmonics
             .largest;
         let grown = shipped * 3 / 2;
-        let of = |largest: usize| difference(&conforming.answers_by_harmonics(&gear, &tooth, largest), &exact);
+        let of = |largest: usize| {
+            difference(
+                &conforming.answers_by_harmonics(&gear, &tooth, largest),
+                &exact,
+            )
+        };
         let (with_shipped, with_grown) = (of(shipped), of(grown));
         // The blank's own grid, as the engine lays it, instead of the continued arcs.
-        let own = answers_of_substructures(&gear, &tooth, &blank_grid(&gear, level), Harmonics { largest: shipped });
+        let own = answers_of_substructures(
+            &gear,
+            &tooth,
+            &blank_grid(&gear, level),
+            Harmonics { largest: shipped },
+        );
         let with_own = difference(&own, &exact);
         println!(
             "{level:?}: {shipped} orders {with_shipped:.2e}, {grown} orders {with_grown:.2e}, own blank grid {with_own:.2e}"
         );
-        let bound = if level == GridLevel::Coarse { 2e-3 } else { 5e-4 };
+        let bound = if level == GridLevel::Coarse {
+            2e-3
+        } else {
+            5e-4
+        };
         assert!(with_shipped < bound && with_own < bound);
         assert!(with_grown < with_shipped, "more orders come nearer");
     }

@@ -82,7 +82,11 @@ impl Assembly {
     }
 
     /// Holds the nodes `nodes` as `hold` says, by their place.
-    pub(crate) fn hold(&mut self, nodes: impl IntoIterator<Item = u32>, hold: impl Fn(Vector) -> Hold) {
+    pub(crate) fn hold(
+        &mut self,
+        nodes: impl IntoIterator<Item = u32>,
+        hold: impl Fn(Vector) -> Hold,
+    ) {
         for node in nodes {
             self.holds[node as usize] = hold(self.nodes[node as usize]);
         }
@@ -97,7 +101,8 @@ pub(crate) fn on_circle(point: Vector) -> Hold {
 /// The sides of a blank sector with the ends that lie on the bore and on the interface circle.
 pub(crate) fn whole_sides(grid: &BlankGrid) -> (Vec<u32>, Vec<u32>) {
     let ends = |arc: &[u32]| (arc[0], arc[arc.len() - 1]);
-    let ((bore_right, bore_left), (arc_right, arc_left)) = (ends(&grid.bore_nodes), ends(&grid.arc_nodes));
+    let ((bore_right, bore_left), (arc_right, arc_left)) =
+        (ends(&grid.bore_nodes), ends(&grid.arc_nodes));
     let side = |bore, side: &[u32], arc| [&[bore][..], side, &[arc][..]].concat();
     (
         side(bore_right, &grid.side_nodes.0, arc_right),
@@ -128,7 +133,12 @@ pub(crate) struct Whole {
 }
 
 impl Whole {
-    pub(crate) fn new(assembly: Assembly, material: &Material, thickness: f64, largest_order: usize) -> Self {
+    pub(crate) fn new(
+        assembly: Assembly,
+        material: &Material,
+        thickness: f64,
+        largest_order: usize,
+    ) -> Self {
         let mut first = vec![None; assembly.nodes.len()];
         let mut free = 0_u32;
         for (place, hold) in first.iter_mut().zip(&assembly.holds) {
@@ -138,8 +148,15 @@ impl Whole {
             }
         }
         let free = free as usize;
-        let circle = assembly.holds.iter().any(|hold| matches!(hold, Hold::OnCircle(_)));
-        let amplitudes = if circle { 2 * (2 * largest_order + 1) } else { 0 };
+        let circle = assembly
+            .holds
+            .iter()
+            .any(|hold| matches!(hold, Hold::OnCircle(_)));
+        let amplitudes = if circle {
+            2 * (2 * largest_order + 1)
+        } else {
+            0
+        };
         let stiffnesses: Vec<_> = assembly
             .elements
             .iter()
@@ -161,19 +178,30 @@ impl Whole {
                 }
             }
             for (a, &node_a) in nodes.iter().enumerate() {
-                let Some(row) = first[node_a as usize] else { continue };
+                let Some(row) = first[node_a as usize] else {
+                    continue;
+                };
                 for (b, &node_b) in nodes.iter().enumerate() {
-                    let Some(col) = first[node_b as usize] else { continue };
+                    let Some(col) = first[node_b as usize] else {
+                        continue;
+                    };
                     for (c, d) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                         let (i, j) = (row + c, col + d);
                         if i >= j {
-                            triplets.push(Triplet::new(i, j, k[(2 * a + c as usize, 2 * b + d as usize)]));
+                            triplets.push(Triplet::new(
+                                i,
+                                j,
+                                k[(2 * a + c as usize, 2 * b + d as usize)],
+                            ));
                         }
                     }
                 }
                 for c in 0..2 {
                     for q in 0..if rows.is_empty() { 0 } else { amplitudes } {
-                        let value: f64 = rows.iter().map(|(local, on)| k[(2 * a + c, *local)] * on[q]).sum();
+                        let value: f64 = rows
+                            .iter()
+                            .map(|(local, on)| k[(2 * a + c, *local)] * on[q])
+                            .sum();
                         triplets.push(Triplet::new((free + q) as u32, row + c as u32, value));
                     }
                 }
@@ -191,13 +219,27 @@ impl Whole {
         }
         for q in 0..amplitudes {
             for p in q..amplitudes {
-                triplets.push(Triplet::new((free + p) as u32, (free + q) as u32, on_amplitudes[(p, q)]));
+                triplets.push(Triplet::new(
+                    (free + p) as u32,
+                    (free + q) as u32,
+                    on_amplitudes[(p, q)],
+                ));
             }
         }
         let n = free + amplitudes;
-        let stiffness = SparseColMat::<u32, f64>::try_new_from_triplets(n, n, &triplets).expect("within the indices");
-        let factor = stiffness.sp_cholesky(Side::Lower).expect("a held body is stiff");
-        Self { assembly, stiffnesses, largest_order, first, free, factor }
+        let stiffness = SparseColMat::<u32, f64>::try_new_from_triplets(n, n, &triplets)
+            .expect("within the indices");
+        let factor = stiffness
+            .sp_cholesky(Side::Lower)
+            .expect("a held body is stiff");
+        Self {
+            assembly,
+            stiffnesses,
+            largest_order,
+            first,
+            free,
+            factor,
+        }
     }
 
     /// The number of unknowns.
@@ -206,8 +248,16 @@ impl Whole {
     }
 
     fn amplitudes(&self) -> usize {
-        let circle = self.assembly.holds.iter().any(|hold| matches!(hold, Hold::OnCircle(_)));
-        if circle { 2 * (2 * self.largest_order + 1) } else { 0 }
+        let circle = self
+            .assembly
+            .holds
+            .iter()
+            .any(|hold| matches!(hold, Hold::OnCircle(_)));
+        if circle {
+            2 * (2 * self.largest_order + 1)
+        } else {
+            0
+        }
     }
 
     /// The displacement of every node under each column of nodal forces, with held nodes where they are held.
@@ -216,7 +266,13 @@ impl Whole {
             .assembly
             .holds
             .iter()
-            .map(|hold| if let Hold::At(u) = hold { *u } else { Vector::zeros() })
+            .map(|hold| {
+                if let Hold::At(u) = hold {
+                    *u
+                } else {
+                    Vector::zeros()
+                }
+            })
             .collect();
         let of_held = self.nodal_forces(&held);
         let mut right = Mat::<f64>::zeros(self.unknowns(), forces.len());
@@ -225,7 +281,9 @@ impl Whole {
             self.gather(&net, right.col_as_slice_mut(column));
         }
         let solved = self.factor.solve(&right);
-        (0..forces.len()).map(|column| self.scatter(&solved.col_as_slice(column)[..])).collect()
+        (0..forces.len())
+            .map(|column| self.scatter(&solved.col_as_slice(column)[..]))
+            .collect()
     }
 
     /// Nodal forces as forces on the unknowns.
@@ -259,7 +317,9 @@ impl Whole {
                         .map(|on| on.iter().zip(amplitudes).map(|(on, a)| on * a).sum::<f64>());
                     Vector::new(x, y)
                 }
-                (Hold::Free, Some(place)) => Vector::new(unknowns[place as usize], unknowns[place as usize + 1]),
+                (Hold::Free, Some(place)) => {
+                    Vector::new(unknowns[place as usize], unknowns[place as usize + 1])
+                }
                 (Hold::Free, None) => unreachable!("a free node has its place"),
             })
             .collect()
@@ -324,9 +384,17 @@ impl WholeGear {
         let (right, left) = whole_tooth_sides(&tooth);
         let teeth = assembly.add_ring(&tooth.grid, (&right, &left), tooth_count, 0.0);
         let (right, left) = whole_sides(blank);
-        let sectors = assembly.add_ring(&blank.grid, (&right, &left), blank.sector_count as usize, phase);
+        let sectors = assembly.add_ring(
+            &blank.grid,
+            (&right, &left),
+            blank.sector_count as usize,
+            phase,
+        );
         let all = |copies: &[Vec<u32>], nodes: &[u32]| -> Vec<u32> {
-            copies.iter().flat_map(|copy| nodes.iter().map(|node| copy[*node as usize])).collect()
+            copies
+                .iter()
+                .flat_map(|copy| nodes.iter().map(|node| copy[*node as usize]))
+                .collect()
         };
         assembly.hold(all(&teeth, &tooth.arc_nodes), on_circle);
         assembly.hold(all(&sectors, &blank.arc_nodes), on_circle);
@@ -335,7 +403,12 @@ impl WholeGear {
         bore.dedup();
         assembly.hold(bore.iter().copied(), |_| Hold::At(Vector::zeros()));
         let whole = Whole::new(assembly, material, thickness, largest_order);
-        Self { whole, teeth, tooth, bore }
+        Self {
+            whole,
+            teeth,
+            tooth,
+            bore,
+        }
     }
 
     /// The node of flank node `i` of tooth `tooth`.
