@@ -1,14 +1,10 @@
-//! The command line: reads the configuration, starts the parts, waits for the signal.
+//! The command line.
 
-use std::io::IsTerminal;
-use std::sync::Arc;
+mod commands;
 
-use anyhow::Context;
+use std::process::ExitCode;
+
 use clap::{Parser, Subcommand};
-use meshwright::config::Config;
-use meshwright::serve::serve;
-use meshwright::wire;
-use tracing_subscriber::EnvFilter;
 
 /// Static transmission error and mesh stiffness of spur gears with lightening holes.
 #[derive(Parser)]
@@ -21,59 +17,17 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     /// Serve jobs over HTTP.
-    Serve(Config),
+    Serve(commands::serve::Serve),
+    /// Compute one submission.
+    Solve(commands::solve::Solve),
+    /// Ask a running service whether it is ready; exit code 1 if not.
+    Health(commands::health::Health),
 }
 
-fn main() -> anyhow::Result<()> {
-    let arguments = Arguments::parse();
-    match arguments.command {
-        Command::Serve(config) => {
-            let runtime =
-                tokio::runtime::Runtime::new().context("the runtime cannot be started")?;
-            runtime.block_on(serve_until_signal(&config))
-        }
+fn main() -> anyhow::Result<ExitCode> {
+    match Arguments::parse().command {
+        Command::Serve(serve) => serve.run(),
+        Command::Solve(solve) => solve.run(),
+        Command::Health(health) => health.run(),
     }
-}
-
-async fn serve_until_signal(config: &Config) -> anyhow::Result<()> {
-    let filter =
-        EnvFilter::try_from_env("MESHWRIGHT_LOG").unwrap_or_else(|_| EnvFilter::new("info"));
-    tracing_subscriber::fmt()
-        .with_env_filter(filter)
-        .with_writer(std::io::stderr)
-        .with_ansi(std::io::stderr().is_terminal())
-        .init();
-
-    let service = serve(
-        config,
-        Arc::new(wire::solve),
-        Arc::new(jiff::Timestamp::now),
-    )
-    .await?;
-    println!(
-        "Meshwright serves http://{}; its documentation is at /docs.",
-        service.address()
-    );
-    signal().await?;
-    // A second signal does not wait for the end of the first.
-    tokio::select! {
-        () = service.shut_down() => Ok(()),
-        second = signal() => second,
-    }
-}
-
-/// Comes with ctrl-c, or when the system asks the process to end.
-async fn signal() -> anyhow::Result<()> {
-    let interrupt = tokio::signal::ctrl_c();
-    #[cfg(unix)]
-    {
-        use tokio::signal::unix::{SignalKind, signal};
-        let mut terminate = signal(SignalKind::terminate()).context("cannot listen for signals")?;
-        tokio::select! {
-            result = interrupt => result.context("cannot listen for signals"),
-            _ = terminate.recv() => Ok(()),
-        }
-    }
-    #[cfg(not(unix))]
-    interrupt.await.context("cannot listen for signals")
 }

@@ -1,4 +1,37 @@
-//! The mechanics.
+//! The mechanics of Meshwright: static transmission error and mesh stiffness of spur gears whose blanks have holes.
+//!
+//! Pure functions of SI quantities: no clock, file, document or server. The source is Benaicha et al., "A decomposition
+//! method for the fast computation of the transmission error of gears with holes" (2021, hal-03230238); equation numbers
+//! are the paper's.
+//!
+//! # The theory on a page
+//!
+//! Gear 1 drives, gear 2 is driven. The driving hub is held, the driven hub carries the torque T and turns back by
+//! δ/R_b2: δ is the *static transmission error* (eq. 1), positive when load makes the driven gear lag, zero when rigid
+//! unmodified involutes just touch. F = T/R_b2 is the transmitted load and k = dF/dδ the *mesh stiffness* (eq. 3).
+//! The mesh position η counts mesh periods; at η = 0 tooth 0 of both gears touch at the pitch point.
+//!
+//! 1. **Geometry** ([`gear`]). An involute point at roll length s stands at r_b e_r(t) + s e_t(t), t = ψ_b − s/r_b. Gaps
+//!    between flanks follow in closed form: the normal of an involute through any point is a tangent of its base circle
+//!    ([`contact::patch`]).
+//! 2. **Substructures** ([`grid`], [`fem`]). One tooth sector is condensed exactly to its loaded flank and its interface:
+//!    H_0 is the flank's compliance with the interface held, Ψ its answer to the interface ([`fem::tooth`]). The blank
+//!    between bore and R_w is condensed by one hole sector ([`fem::blank`]). Both meet on the circle R_w in trigonometric
+//!    polynomials, whatever Z, N and the phase of the holes ([`fem::cyclic`]).
+//! 3. **Whole gears** ([`fem::body`]). C = (S_blank + S_teeth)⁻¹ on that circle, and between the flanks of teeth i and j
+//!    H_ij = δ_ij H_0 + Ψ_i C_ij Ψ_jᵀ, for every tooth on its own.
+//! 4. **Contact** ([`contact`]). At each position: minimize ½ pᵀHp + g_0ᵀp subject to wᵀp = F, p ≥ 0 (eqs. 4 to 6); δ is
+//!    the multiplier of the load. H on the contact cells is the smooth part of the finite-element compliance, interpolated,
+//!    plus the half plane's logarithm in closed form ([`contact::flank`], [`contact::half_plane`]), so that cells of a few
+//!    micrometers move with the contact over elements of a tenth of a millimeter. Two solvers share nothing but H, g_0
+//!    and w: an exact active set and the augmented Lagrangian of eq. 7.
+//! 5. **Methods** ([`analysis`]). Flexible (section 2 of the paper), decomposition (section 3, eqs. 9 to 15), projected
+//!    decomposition (ours), and the classical load distribution (eqs. 4 and 5) from closed-form compliances
+//!    ([`analysis::load_distribution`]).
+//!
+//! *Mesh* always means gear teeth in engagement; finite elements live on a [`grid::Grid`].
+//!
+//! The arrow: analysis → contact → fem → grid → gear.
 
 pub mod analysis;
 pub mod contact;

@@ -131,7 +131,7 @@ impl Case {
 
     /// Whether the span is a whole multiple of the true period, so that a spectrum exists.
     pub fn covers_whole_periods(&self) -> bool {
-        self.span() % self.pair.period() == 0
+        self.span().is_multiple_of(self.pair.period())
     }
 
     /// The positions of one curve.

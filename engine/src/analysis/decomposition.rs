@@ -346,3 +346,86 @@ fn repeated_contacts(case: &Case, contacts: &[MeshContact]) -> CurveParts {
         decomposition: None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::model::WarmStart;
+    use crate::analysis::{
+        BodyFormula, ContactSolver, Formulas, Method, PlaneState, Resolution, ToothFormula,
+    };
+    use crate::gear::spur::tests::paper_gear;
+    use crate::gear::{GearPair, HolePattern, SpurGear};
+
+    /// Holes in both gears, without relief, on coarse grids.
+    fn holed_pair() -> Case {
+        let mut data = paper_gear(50);
+        data.blank.holes = Some(HolePattern {
+            count: 8,
+            circle_radius: 34e-3,
+            radius: 8e-3,
+            phase: 0.02,
+        });
+        let gear = SpurGear::new(data).expect("a gear that can be made");
+        Case {
+            pair: GearPair::new(gear, gear, 100.5e-3).expect("a pair that meshes"),
+            method: Method::ProjectedDecomposition,
+            output_torques: vec![115.0],
+            resolution: Resolution {
+                positions_per_mesh_period: 8,
+                span_mesh_periods: None,
+                grid: GridLevel::Coarse,
+                contact_solver: ContactSolver::ActiveSet,
+                stiffness: StiffnessRule::Tangent,
+                blank_positions: 16,
+                interface_radius: None,
+                formulas: Formulas {
+                    tooth: ToothFormula::WeberBanaschek,
+                    body: BodyFormula::Sainsot,
+                    plane_state: PlaneState::Stress,
+                },
+                error_estimate: false,
+            },
+            driving_speed: None,
+        }
+    }
+
+    #[test]
+    fn the_projected_term_is_the_derivative_of_the_transmission_error_to_the_holes() {
+        // δ(H_0 + e ΔH) at e = ±1e-4: the central difference leaves its cubic term, and the changes of the active set.
+        let case = holed_pair();
+        let (whole, _) = flexible::model(
+            &case,
+            Blanks::Flexible,
+            GridLevel::Coarse,
+            &Library::default(),
+            &Run::unattended(),
+        )
+        .expect("a model");
+        let round = round_average(&whole, &case);
+        let load = case.pair.load(115.0);
+        let mixed = |share: f64| {
+            let mut model = round.clone();
+            for (gear, other) in model.gears.iter_mut().zip(&whole.gears) {
+                gear.coupling = Arc::new(gear.coupling.mixed(&other.coupling, share));
+            }
+            model
+        };
+        let step = 1e-4;
+        let (below, above) = (mixed(-step), mixed(step));
+        for eta in [0.05, 0.3, 0.55, 0.9] {
+            let at = |model: &PairModel| {
+                model
+                    .contact(eta, load, &mut WarmStart::default())
+                    .expect("a contact")
+            };
+            let (delta, _) = added_compliance(&round, &whole, &at(&round), 0);
+            let difference =
+                (at(&above).transmission_error - at(&below).transmission_error) / (2.0 * step);
+            assert!(
+                (delta - difference).abs() < 1e-5 * difference.abs().max(1e-7),
+                "{eta}: {delta} {difference}"
+            );
+        }
+    }
+}

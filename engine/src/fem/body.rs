@@ -95,6 +95,17 @@ impl Coupling {
         }
     }
 
+    /// This coupling and a `share` of the way to `other`.
+    #[cfg(test)]
+    pub(crate) fn mixed(&self, other: &Self, share: f64) -> Self {
+        let blocks = self.blocks.iter().zip(&other.blocks);
+        let mix = |(a, b): (&Mat<f64>, &Mat<f64>)| a + faer::Scale(share) * (b - a);
+        Self {
+            tooth_count: self.tooth_count,
+            blocks: blocks.map(mix).collect(),
+        }
+    }
+
     /// The number of entries of all blocks, for the books of a cache.
     pub fn entries(&self) -> usize {
         self.blocks

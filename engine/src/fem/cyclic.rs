@@ -209,7 +209,7 @@ impl Sector {
         condensed: &Mat<c64>,
         orders: &[i64],
     ) {
-        let own_conjugate = (2 * class) % self.count == 0;
+        let own_conjugate = (2 * class).is_multiple_of(self.count);
         // The conjugate class has the orders −n and conjugate blocks; its real contribution equals this one's.
         let weight = self.count as f64 * if own_conjugate { 1.0 } else { 2.0 };
         for (i, &n) in orders.iter().enumerate() {

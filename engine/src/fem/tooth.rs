@@ -248,7 +248,11 @@ fn held_coupling(class_compliance: &[Mat<c64>], z: usize, d: usize) -> Mat<f64> 
     let r = class_compliance[0].nrows();
     let mut sum = Mat::<f64>::zeros(r, r);
     for (class, compliance) in class_compliance.iter().enumerate() {
-        let weight = if (2 * class) % z == 0 { 1.0 } else { 2.0 } / z as f64;
+        let weight = if (2 * class).is_multiple_of(z) {
+            1.0
+        } else {
+            2.0
+        } / z as f64;
         let (sin, cos) =
             (2.0 * std::f64::consts::PI * ((class * d) % z) as f64 / z as f64).sin_cos();
         let turn = c64::new(cos, -sin);

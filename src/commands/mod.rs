@@ -1,0 +1,7 @@
+//! The commands of the command line.
+
+mod chart;
+mod demo;
+pub(crate) mod health;
+pub(crate) mod serve;
+pub(crate) mod solve;
