@@ -161,7 +161,7 @@ impl Library {
         run: &Run,
     ) -> Result<Arc<BlankSubstructure>, BuildError> {
         let build = || {
-            build_blank(gear, teeth, interface_radius, level)
+            build_blank(gear, teeth, interface_radius, level, run)
                 .map(|blank| Part::Blank(Arc::new(blank)))
         };
         match self.part(blank_key(gear, interface_radius, level), run, build)? {
@@ -185,7 +185,7 @@ impl Library {
             let teeth = self.shared_teeth(gear, interface_radius, level, run)?;
             let blank = self.shared_blank(gear, &teeth, interface_radius, level, run)?;
             run.check()?;
-            Ok(Part::Gear(Arc::new(join(&teeth, &blank, phase)?)))
+            Ok(Part::Gear(Arc::new(join(&teeth, &blank, phase, run)?)))
         };
         match self.part(key, run, build)? {
             Part::Gear(gear) => Ok(gear),
@@ -261,7 +261,9 @@ impl Part {
 impl BuildError {
     fn of(self, member: Member) -> AnalysisError {
         match self {
-            Self::Stopped(stopped) => AnalysisError::Stopped(stopped),
+            Self::Stopped(stopped) | Self::Fem(FemError::Stopped(stopped)) => {
+                AnalysisError::Stopped(stopped)
+            }
             Self::Grid(error) => AnalysisError::Discretization {
                 member,
                 reason: error.to_string(),
@@ -309,7 +311,7 @@ fn build_teeth(
     run.check()?;
     let tooth = ToothSubstructure::new(gear, &grid)?;
     run.check()?;
-    let ring = TeethRing::new(&tooth, harmonics(gear, interface_radius, level))?;
+    let ring = TeethRing::new(&tooth, harmonics(gear, interface_radius, level), run)?;
     let (arc, side) = tooth.shared_nodes;
     let nodes = tooth.grid_nodes - side - 1;
     // Nodes of the interface circle belong to the teeth; the blank's follow them.
@@ -348,6 +350,7 @@ fn build_blank(
     teeth: &Teeth,
     interface_radius: f64,
     level: GridLevel,
+    run: &Run,
 ) -> Result<BlankSubstructure, BuildError> {
     let grid = blank_grid(gear, interface_radius, level)?;
     Ok(BlankSubstructure::new(
@@ -356,12 +359,18 @@ fn build_blank(
         gear.material(),
         gear.face_width(),
         teeth.ring.harmonics,
+        run,
     )?)
 }
 
-fn join(teeth: &Teeth, blank: &BlankSubstructure, phase: f64) -> Result<Gear, BuildError> {
+fn join(
+    teeth: &Teeth,
+    blank: &BlankSubstructure,
+    phase: f64,
+    run: &Run,
+) -> Result<Gear, BuildError> {
     Ok(Gear {
-        coupling: Arc::new(Coupling::on_blank(&teeth.ring, blank, phase)?),
+        coupling: Arc::new(Coupling::on_blank(&teeth.ring, blank, phase, run)?),
         degrees_of_freedom: teeth.degrees_of_freedom + 2 * blank.grid_nodes as u64,
     })
 }
