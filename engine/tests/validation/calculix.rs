@@ -179,7 +179,7 @@ fn violations(pair: &GearPair, compared: &[Compared]) -> Vec<String> {
                 c.loaded[1],
             );
             let mut hold = |what: &str, value: f64, bound: f64| {
-                if !(value.abs() <= bound) {
+                if value.is_nan() || value.abs() > bound {
                     violations.push(format!(
                         "{place}: {what} off by {value:.3e}, more than {bound:.3e}"
                     ));

@@ -198,7 +198,7 @@ fn check_on_whole_gears(case: &Case, positions: &[f64], gap_bound: f64) {
         // Each body is in equilibrium, and its bore carries off the moment of its flanks.
         for side in &sides {
             assert!(
-                side.residual < 1e-9 * load,
+                side.residual < 1e-8 * load,
                 "residual {} N of {load} N",
                 side.residual
             );
@@ -224,9 +224,7 @@ fn check_on_whole_gears(case: &Case, positions: &[f64], gap_bound: f64) {
         );
         // Sides of elements are parabolas, not involutes.
         assert!((t_2 / torque - 1.0).abs() < 2e-5);
-        // Beside the line of action a force is tilted by its distance over the radius of curvature; that is even in
-        // the distance but for the pressure's own asymmetry.
-        assert!((t_1 / t_2 / ratio - 1.0).abs() < if on_path { 1e-4 } else { 2e-2 });
+        assert!((t_1 / t_2 / ratio - 1.0).abs() < ratio_bound(pair, on_path));
 
         // Gaps from the displacements of the whole gears: closed where cells press, open elsewhere. The half plane's
         // logarithm is not in these displacements; they have what the elements make of the same pressure.
@@ -251,6 +249,20 @@ fn check_on_whole_gears(case: &Case, positions: &[f64], gap_bound: f64) {
     }
 }
 
+/// How far T_1/T_2 may be from r_b1/r_b2.
+///
+/// Forces beside the line of action are tangent to one base circle only; their arms about the other axis differ by their
+/// distance x from that line over r_b. Without relief x is even over the contact but for terms of the second order in the
+/// half-width over the radius of curvature, largest on the smallest gears (3e-4 on 18 teeth). A relief of slope σ shifts
+/// the contact by σ ρ: 2.9e-3 of 9 mm over 47 mm. A tip corner stands a part of a millimeter beside the line.
+fn ratio_bound(pair: &GearPair, on_path: bool) -> f64 {
+    match (on_path, pair.driving().tip_relief()) {
+        (false, _) => 2e-2,
+        (true, Some(_)) => 2e-3,
+        (true, None) => 5e-4,
+    }
+}
+
 /// The share of the load that each patch carries.
 fn shares(touch: &Touch, load: f64) -> Vec<f64> {
     let mut cells = touch.problem.arms().iter().zip(&touch.solution.forces);
@@ -272,7 +284,7 @@ fn shares(touch: &Touch, load: f64) -> Vec<f64> {
 fn forces_of_a_small_pair_balance_on_whole_gears_and_close_their_gaps() {
     let mut case = case(small_pair(), &[20.0]);
     case.resolution.grid = GridLevel::Standard;
-    check_on_whole_gears(&case, &[0.0, 0.2, 0.45, 3.7], 0.05);
+    check_on_whole_gears(&case, &[0.0, 0.2, 0.45, 3.7], 0.04);
 }
 
 #[test]
@@ -282,14 +294,16 @@ fn forces_of_the_papers_cases_balance_on_whole_gears_and_close_their_gaps() {
         let mut case = case(pair, &[torque]);
         case.resolution.grid = GridLevel::Coarse;
         println!("case {number}");
-        check_on_whole_gears(&case, &[0.0, 0.45, 2.2], 0.05);
+        check_on_whole_gears(&case, &[0.0, 0.45, 2.2], 0.04);
     }
 }
 
 #[test]
 fn moments_about_both_axes_are_in_the_ratio_of_the_base_radii_and_the_compliance_is_positive() {
-    for number in 1..=3 {
-        let (pair, torque) = paper_case(number);
+    let cases = (1..=3).map(|number| (format!("case {number}"), paper_case(number)));
+    for (name, (pair, torque)) in
+        cases.chain([("no relief".to_owned(), (standard_pair(false), 115.0))])
+    {
         let case = case(pair, &[torque]);
         let load = pair.load(torque);
         let model = pair_model(&case, library(), &Run::unattended()).expect("a model");
@@ -307,7 +321,7 @@ fn moments_about_both_axes_are_in_the_ratio_of_the_base_radii_and_the_compliance
             let (t_1, t_2) = (moment(Member::Driving), moment(Member::Driven));
             let ratio = pair.driving().base_radius() / pair.driven().base_radius();
             println!(
-                "case {number}, eta {eta}: {:+.1e} {:+.1e}",
+                "{name}, eta {eta}: {:+.1e} {:+.1e}",
                 t_2.abs() / torque - 1.0,
                 t_1 / t_2 / ratio - 1.0
             );
@@ -320,7 +334,7 @@ fn moments_about_both_axes_are_in_the_ratio_of_the_base_radii_and_the_compliance
                 .all(|(patch, share)| {
                     share == 0.0 || beyond_path(&pair, roll_length(&pair, eta, patch.pair)) == 0.0
                 });
-            assert!((t_1 / t_2 / ratio - 1.0).abs() < if on_path { 1e-4 } else { 2e-2 });
+            assert!((t_1 / t_2 / ratio - 1.0).abs() < ratio_bound(&pair, on_path));
 
             let h = touch.problem.compliance();
             let dense = DMatrix::from_fn(h.nrows(), h.ncols(), |i, j| h[(i, j)]);

@@ -262,7 +262,7 @@ fn contact_is_as_wide_as_the_narrower_gear() {
     let of = |widths: [f64; 2], torque: f64| {
         let [one, other] = widths.map(|width| GearData {
             face_width: width,
-            ..relieved(gear(50, 15e-3))
+            ..gear(50, 15e-3)
         });
         solve(&case(meshed(one, other, 100.5e-3), &[torque]))
             .curves
@@ -276,14 +276,45 @@ fn contact_is_as_wide_as_the_narrower_gear() {
     {
         assert!((a / b - 1.0).abs() < 1e-9);
     }
-    // A wider partner is stiffer, and leaves the pressure where it is but for the share that its pairs take.
+    // A wider partner is stiffer, but not twice.
     let wider = of([10e-3, 20e-3], 57.5);
     assert!(wider.transmission_error_statistics.mean < half.transmission_error_statistics.mean);
     assert!(
-        wider.transmission_error_statistics.mean > whole.transmission_error_statistics.mean / 2.0
+        wider.transmission_error_statistics.mean > half.transmission_error_statistics.mean / 2.0
     );
+    // Hertz: each body's own thickness enters its logarithm, so that c_1 + c_2 falls from 2 to 3/2 and a with its root.
     let pressure = wider.peak_contact_pressure[0] / half.peak_contact_pressure[0];
-    // Hertz with c_1 + c_2 instead of 2 c_1 would give sqrt(4/3): each body's own thickness enters its logarithm.
-    println!("pressure {pressure:.4}");
-    assert!((0.95..1.2).contains(&pressure));
+    assert!(
+        (pressure / (4.0_f64 / 3.0).sqrt() - 1.0).abs() < 0.01,
+        "{pressure}"
+    );
+}
+
+#[test]
+#[ignore]
+fn parts() {
+    use meshwright_engine::analysis::library::default_interface_radius;
+    use meshwright_engine::gear::Member;
+    use meshwright_engine::fem::{tooth::*, blank::*, body::*};
+    use meshwright_engine::grid::*;
+    let big = SpurGear::new(gear(300, 60e-3)).unwrap();
+    let three = *paper_case(3).0.driven();
+    for (name, g, level, ept) in [("300 std", big, GridLevel::Standard, 4.0), ("300 coarse", big, GridLevel::Coarse, 4.0), ("case3 fine", three, GridLevel::Fine, 4.0), ("case3 std", three, GridLevel::Standard, 4.0)] {
+        let r_w = default_interface_radius(&g);
+        let lib = Library::default();
+        let h = lib.teeth(&g, Member::Driving, r_w, level, &Run::unattended()).unwrap().ring.harmonics;
+        let t = Instant::now();
+        let grid = ToothGrid::new(&g, r_w, level).unwrap();
+        let tooth = ToothSubstructure::new(&g, &grid).unwrap();
+        let a = t.elapsed(); let t = Instant::now();
+        let ring = TeethRing::new(&tooth, h).unwrap();
+        let b = t.elapsed(); let t = Instant::now();
+        let _rigid = Coupling::on_rigid_blank(&ring);
+        let b2 = t.elapsed(); let t = Instant::now();
+        let bg = BlankGrid::new(g.bore_radius(), r_w, g.holes(), g.tooth_count(), ept, level).unwrap();
+        let blank = BlankSubstructure::new(&bg, r_w, g.material(), g.face_width(), h).unwrap();
+        let c = t.elapsed(); let t = Instant::now();
+        let _k = Coupling::on_blank(&ring, &blank, 0.0).unwrap();
+        println!("{name}: {} unknowns, {} modes; tooth {a:?}, ring {b:?}, rigid {b2:?}, blank {c:?}, on_blank {:?}", h.unknowns(), tooth.mode_count(), t.elapsed());
+    }
 }

@@ -282,7 +282,7 @@ impl Whole {
         }
         let solved = self.factor.solve(&right);
         (0..forces.len())
-            .map(|column| self.scatter(&solved.col_as_slice(column)[..]))
+            .map(|column| self.scatter(solved.col_as_slice(column)))
             .collect()
     }
 
