@@ -185,7 +185,7 @@ impl Library {
             let teeth = self.shared_teeth(gear, interface_radius, level, run)?;
             let blank = self.shared_blank(gear, &teeth, interface_radius, level, run)?;
             run.check()?;
-            Ok(Part::Gear(Arc::new(join(&teeth, &blank, phase)?)))
+            Ok(Part::Gear(Arc::new(join(&teeth, &blank, phase, run)?)))
         };
         match self.part(key, run, build)? {
             Part::Gear(gear) => Ok(gear),
@@ -261,7 +261,9 @@ impl Part {
 impl BuildError {
     fn of(self, member: Member) -> AnalysisError {
         match self {
-            Self::Stopped(stopped) => AnalysisError::Stopped(stopped),
+            Self::Stopped(stopped) | Self::Fem(FemError::Stopped(stopped)) => {
+                AnalysisError::Stopped(stopped)
+            }
             Self::Grid(error) => AnalysisError::Discretization {
                 member,
                 reason: error.to_string(),
@@ -359,9 +361,14 @@ fn build_blank(
     )?)
 }
 
-fn join(teeth: &Teeth, blank: &BlankSubstructure, phase: f64) -> Result<Gear, BuildError> {
+fn join(
+    teeth: &Teeth,
+    blank: &BlankSubstructure,
+    phase: f64,
+    run: &Run,
+) -> Result<Gear, BuildError> {
     Ok(Gear {
-        coupling: Arc::new(Coupling::on_blank(&teeth.ring, blank, phase)?),
+        coupling: Arc::new(Coupling::on_blank(&teeth.ring, blank, phase, run)?),
         degrees_of_freedom: teeth.degrees_of_freedom + 2 * blank.grid_nodes as u64,
     })
 }

@@ -1,14 +1,22 @@
 //! A whole gear: its ring of teeth on its blank.
 
+use std::collections::VecDeque;
+use std::ops::Range;
+
 use faer::Mat;
 
 use super::FemError;
 use super::blank::BlankSubstructure;
 use super::dense::Cholesky;
 use super::tooth::TeethRing;
+use crate::run::Run;
 
 /// How far apart, in teeth, two loaded teeth of one gear may stand.
 pub const FARTHEST_NEIGHBOR: usize = 4;
+
+/// Teeth whose forces go through the ring's factor together: the wider the block, the less often the factor is read, and
+/// the longer a stop waits. At least [`FARTHEST_NEIGHBOR`].
+const TEETH_AT_ONCE: usize = 4;
 
 /// How the loaded teeth of one gear move each other: the blocks X_ij of H_ij = δ_ij H_0 + V X_ij Vᵀ.
 ///
@@ -23,7 +31,16 @@ pub struct Coupling {
 impl Coupling {
     /// Teeth on a rigid blank: the interface circle is held (paper: wh).
     pub fn on_rigid_blank(teeth: &TeethRing) -> Self {
-        Self::new(teeth, |_, _, held| held)
+        let tooth_count = teeth.held_coupling.len();
+        let per_tooth = 0..=FARTHEST_NEIGHBOR;
+        let blocks = (0..tooth_count)
+            .flat_map(|_| per_tooth.clone())
+            .map(|d| teeth.held_coupling[d % tooth_count].clone())
+            .collect();
+        Self {
+            tooth_count,
+            blocks,
+        }
     }
 
     /// Teeth on a flexible blank whose hole 0 stands at the angle `phase`.
@@ -32,11 +49,12 @@ impl Coupling {
     ///
     /// # Errors
     ///
-    /// [`FemError::NotPositiveDefinite`].
+    /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`]: on hundreds of teeth this is the longest part of a run.
     pub fn on_blank(
         teeth: &TeethRing,
         blank: &BlankSubstructure,
         phase: f64,
+        run: &Run,
     ) -> Result<Self, FemError> {
         let z = teeth.held_coupling.len();
         let unknowns = teeth.harmonics.unknowns();
@@ -46,35 +64,33 @@ impl Coupling {
                 unknowns,
             },
         )?;
-        // With L⁻¹ F of every tooth, each block is one plain product.
-        let halves: Vec<Mat<f64>> = (0..z)
-            .map(|i| {
-                let mut half = teeth.forces_of_tooth_at(tooth_angle(i, z));
-                ring.half_solve_in_place(half.as_mut());
-                half
-            })
-            .collect();
-        Ok(Self::new(teeth, |i, j, held| {
-            held + halves[i].transpose() * &halves[j]
-        }))
-    }
-
-    fn new(teeth: &TeethRing, block: impl Fn(usize, usize, Mat<f64>) -> Mat<f64>) -> Self {
-        let tooth_count = teeth.held_coupling.len();
-        let blocks = (0..tooth_count)
-            .flat_map(|i| (0..=FARTHEST_NEIGHBOR).map(move |d| (i, d)))
-            .map(|(i, d)| {
-                block(
-                    i,
-                    (i + d) % tooth_count,
-                    teeth.held_coupling[d % tooth_count].clone(),
-                )
-            })
-            .collect();
-        Self {
-            tooth_count,
-            blocks,
+        // With L⁻¹ F of every tooth, each block is one plain product. Only neighbors meet in one, so that only they are
+        // kept, and the first ones, which are the last ones' neighbors.
+        let mut coupling = Self::on_rigid_blank(teeth);
+        let mut halves: VecDeque<Mat<f64>> = VecDeque::new();
+        let mut first: Vec<Mat<f64>> = Vec::new();
+        for j in 0..z + FARTHEST_NEIGHBOR {
+            if j < z && j % TEETH_AT_ONCE == 0 {
+                run.check()?;
+                let batch = j..(j + TEETH_AT_ONCE).min(z);
+                halves.extend(half_solved(&ring, teeth, batch));
+                if j == 0 {
+                    first.extend(halves.iter().take(FARTHEST_NEIGHBOR).cloned());
+                }
+            } else if j >= z {
+                halves.push_back(first[(j - z) % first.len()].clone());
+            }
+            // The front is tooth j − FARTHEST_NEIGHBOR, or the first one.
+            let back = j.min(FARTHEST_NEIGHBOR);
+            for d in (0..=back).filter(|d| j - d < z) {
+                let block = halves[back - d].transpose() * &halves[back];
+                coupling.blocks[(j - d) * (FARTHEST_NEIGHBOR + 1) + d] += block;
+            }
+            if back == FARTHEST_NEIGHBOR {
+                halves.pop_front();
+            }
         }
+        Ok(coupling)
     }
 
     /// The coupling of a gear that is alike all around: each block the mean over the teeth.
@@ -134,6 +150,20 @@ impl Coupling {
             transposed,
         ))
     }
+}
+
+/// L⁻¹ F of each tooth of `batch`.
+fn half_solved(ring: &Cholesky<f64>, teeth: &TeethRing, batch: Range<usize>) -> Vec<Mat<f64>> {
+    let z = teeth.held_coupling.len();
+    let (n, r) = (teeth.tooth_forces.nrows(), teeth.tooth_forces.ncols());
+    let mut together = Mat::zeros(n, batch.len() * r);
+    for (place, i) in batch.clone().enumerate() {
+        let forces = teeth.forces_of_tooth_at(tooth_angle(i, z));
+        together.subcols_mut(place * r, r).copy_from(&forces);
+    }
+    ring.half_solve_in_place(together.as_mut());
+    let own = |place: usize| together.subcols(place * r, r).to_owned();
+    (0..batch.len()).map(own).collect()
 }
 
 /// The angle of tooth `i` of `z` in the gear's frame.

@@ -293,9 +293,7 @@ mod tests {
                 }
                 *place = nodes.len() as u32;
                 let (x, y) = (i as f64, j as f64);
-                nodes.push(
-                    1e-3 * Vector::new(x + 0.1 * y * y + 0.05 * x * y, 0.9 * y - 0.1 * x),
-                );
+                nodes.push(1e-3 * Vector::new(x + 0.1 * y * y + 0.05 * x * y, 0.9 * y - 0.1 * x));
             }
         }
         let element = |i: usize, j: usize| {

@@ -289,32 +289,3 @@ fn contact_is_as_wide_as_the_narrower_gear() {
         "{pressure}"
     );
 }
-
-#[test]
-#[ignore]
-fn parts() {
-    use meshwright_engine::analysis::library::default_interface_radius;
-    use meshwright_engine::gear::Member;
-    use meshwright_engine::fem::{tooth::*, blank::*, body::*};
-    use meshwright_engine::grid::*;
-    let big = SpurGear::new(gear(300, 60e-3)).unwrap();
-    let three = *paper_case(3).0.driven();
-    for (name, g, level, ept) in [("300 std", big, GridLevel::Standard, 4.0), ("300 coarse", big, GridLevel::Coarse, 4.0), ("case3 fine", three, GridLevel::Fine, 4.0), ("case3 std", three, GridLevel::Standard, 4.0)] {
-        let r_w = default_interface_radius(&g);
-        let lib = Library::default();
-        let h = lib.teeth(&g, Member::Driving, r_w, level, &Run::unattended()).unwrap().ring.harmonics;
-        let t = Instant::now();
-        let grid = ToothGrid::new(&g, r_w, level).unwrap();
-        let tooth = ToothSubstructure::new(&g, &grid).unwrap();
-        let a = t.elapsed(); let t = Instant::now();
-        let ring = TeethRing::new(&tooth, h).unwrap();
-        let b = t.elapsed(); let t = Instant::now();
-        let _rigid = Coupling::on_rigid_blank(&ring);
-        let b2 = t.elapsed(); let t = Instant::now();
-        let bg = BlankGrid::new(g.bore_radius(), r_w, g.holes(), g.tooth_count(), ept, level).unwrap();
-        let blank = BlankSubstructure::new(&bg, r_w, g.material(), g.face_width(), h).unwrap();
-        let c = t.elapsed(); let t = Instant::now();
-        let _k = Coupling::on_blank(&ring, &blank, 0.0).unwrap();
-        println!("{name}: {} unknowns, {} modes; tooth {a:?}, ring {b:?}, rigid {b2:?}, blank {c:?}, on_blank {:?}", h.unknowns(), tooth.mode_count(), t.elapsed());
-    }
-}

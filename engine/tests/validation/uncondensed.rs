@@ -116,7 +116,7 @@ fn answers_of_substructures(
     let blank = BlankSubstructure::new(blank, r_w, gear.material(), gear.face_width(), harmonics)
         .expect("a blank");
     let phase = gear.holes().map_or(0.0, |holes| holes.phase);
-    let coupling = Coupling::on_blank(&ring, &blank, phase).expect("a gear");
+    let coupling = Coupling::on_blank(&ring, &blank, phase, &Run::unattended()).expect("a gear");
     let unknowns = loaded_unknowns(substructure.roll_lengths.len());
     let v = &substructure.modes;
     let v_loaded = Mat::from_fn(unknowns.len(), v.ncols(), |i, j| v[(unknowns[i], j)]);
