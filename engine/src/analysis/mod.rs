@@ -12,6 +12,7 @@ mod flexible;
 pub mod library;
 pub mod load_distribution;
 pub mod model;
+mod shelf;
 pub mod spectrum;
 
 pub use case::{

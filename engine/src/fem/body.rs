@@ -1,8 +1,5 @@
 //! A whole gear: its ring of teeth on its blank.
 
-use std::collections::VecDeque;
-use std::ops::Range;
-
 use faer::Mat;
 
 use super::FemError;
@@ -13,10 +10,6 @@ use crate::run::Run;
 
 /// How far apart, in teeth, two loaded teeth of one gear may stand.
 pub const FARTHEST_NEIGHBOR: usize = 4;
-
-/// Teeth whose forces go through the ring's factor together: the wider the block, the less often the factor is read, and
-/// the longer a stop waits. At least [`FARTHEST_NEIGHBOR`].
-const TEETH_AT_ONCE: usize = 4;
 
 /// How the loaded teeth of one gear move each other: the blocks X_ij of H_ij = δ_ij H_0 + V X_ij Vᵀ.
 ///
@@ -32,14 +25,11 @@ impl Coupling {
     /// Teeth on a rigid blank: the interface circle is held (paper: wh).
     pub fn on_rigid_blank(teeth: &TeethRing) -> Self {
         let tooth_count = teeth.held_coupling.len();
-        let per_tooth = 0..=FARTHEST_NEIGHBOR;
-        let blocks = (0..tooth_count)
-            .flat_map(|_| per_tooth.clone())
-            .map(|d| teeth.held_coupling[d % tooth_count].clone())
-            .collect();
+        let of_tooth =
+            (0..=FARTHEST_NEIGHBOR).map(|d| teeth.held_coupling[d % tooth_count].clone());
         Self {
             tooth_count,
-            blocks,
+            blocks: (0..tooth_count).flat_map(|_| of_tooth.clone()).collect(),
         }
     }
 
@@ -49,7 +39,7 @@ impl Coupling {
     ///
     /// # Errors
     ///
-    /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`]: on hundreds of teeth this is the longest part of a run.
+    /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`].
     pub fn on_blank(
         teeth: &TeethRing,
         blank: &BlankSubstructure,
@@ -58,39 +48,39 @@ impl Coupling {
     ) -> Result<Self, FemError> {
         let z = teeth.held_coupling.len();
         let unknowns = teeth.harmonics.unknowns();
-        let ring = Cholesky::new(&teeth.stiffness + blank.stiffness_at(phase)).ok_or(
-            FemError::NotPositiveDefinite {
-                part: "the gear's interface",
-                unknowns,
-            },
-        )?;
-        // With L⁻¹ F of every tooth, each block is one plain product. Only neighbors meet in one, so that only they are
-        // kept, and the first ones, which are the last ones' neighbors.
-        let mut coupling = Self::on_rigid_blank(teeth);
-        let mut halves: VecDeque<Mat<f64>> = VecDeque::new();
-        let mut first: Vec<Mat<f64>> = Vec::new();
-        for j in 0..z + FARTHEST_NEIGHBOR {
-            if j < z && j % TEETH_AT_ONCE == 0 {
-                run.check()?;
-                let batch = j..(j + TEETH_AT_ONCE).min(z);
-                halves.extend(half_solved(&ring, teeth, batch));
-                if j == 0 {
-                    first.extend(halves.iter().take(FARTHEST_NEIGHBOR).cloned());
+        let total = &teeth.stiffness + blank.stiffness_at(phase);
+        let ring = Cholesky::new_watched(total, run)?.ok_or(FemError::NotPositiveDefinite {
+            part: "the gear's interface",
+            unknowns,
+        })?;
+        // With L⁻¹ F of both teeth, a block is one plain product. Only neighbors are needed at a time, and the first few
+        // once more at the end, where the circle closes.
+        let mut halves: Vec<Option<Mat<f64>>> = vec![None; z];
+        let mut blocks = Vec::with_capacity(z * (FARTHEST_NEIGHBOR + 1));
+        for i in 0..z {
+            run.check()?;
+            for d in 0..=FARTHEST_NEIGHBOR {
+                let j = (i + d) % z;
+                for tooth in [i, j] {
+                    if halves[tooth].is_none() {
+                        let mut half = teeth.forces_of_tooth_at(tooth_angle(tooth, z));
+                        ring.half_solve_in_place(half.as_mut());
+                        halves[tooth] = Some(half);
+                    }
                 }
-            } else if j >= z {
-                halves.push_back(first[(j - z) % first.len()].clone());
+                let (Some(one), Some(other)) = (&halves[i], &halves[j]) else {
+                    unreachable!("both halves were just made")
+                };
+                blocks.push(&teeth.held_coupling[d % z] + one.transpose() * other);
             }
-            // The front is tooth j − FARTHEST_NEIGHBOR, or the first one.
-            let back = j.min(FARTHEST_NEIGHBOR);
-            for d in (0..=back).filter(|d| j - d < z) {
-                let block = halves[back - d].transpose() * &halves[back];
-                coupling.blocks[(j - d) * (FARTHEST_NEIGHBOR + 1) + d] += block;
-            }
-            if back == FARTHEST_NEIGHBOR {
-                halves.pop_front();
+            if i >= FARTHEST_NEIGHBOR {
+                halves[i] = None;
             }
         }
-        Ok(coupling)
+        Ok(Self {
+            tooth_count: z,
+            blocks,
+        })
     }
 
     /// The coupling of a gear that is alike all around: each block the mean over the teeth.
@@ -150,20 +140,6 @@ impl Coupling {
             transposed,
         ))
     }
-}
-
-/// L⁻¹ F of each tooth of `batch`.
-fn half_solved(ring: &Cholesky<f64>, teeth: &TeethRing, batch: Range<usize>) -> Vec<Mat<f64>> {
-    let z = teeth.held_coupling.len();
-    let (n, r) = (teeth.tooth_forces.nrows(), teeth.tooth_forces.ncols());
-    let mut together = Mat::zeros(n, batch.len() * r);
-    for (place, i) in batch.clone().enumerate() {
-        let forces = teeth.forces_of_tooth_at(tooth_angle(i, z));
-        together.subcols_mut(place * r, r).copy_from(&forces);
-    }
-    ring.half_solve_in_place(together.as_mut());
-    let own = |place: usize| together.subcols(place * r, r).to_owned();
-    (0..batch.len()).map(own).collect()
 }
 
 /// The angle of tooth `i` of `z` in the gear's frame.

@@ -9,6 +9,7 @@ use faer::{Mat, c64};
 
 use super::FemError;
 use super::dense::Cholesky;
+use crate::run::Run;
 
 /// The harmonics of orders −M … M on an interface circle, with real unknowns.
 ///
@@ -184,10 +185,11 @@ impl Sector {
     /// # Errors
     ///
     /// [`FemError::NotPositiveDefinite`].
-    pub fn ring_stiffness(&self, harmonics: &Harmonics) -> Result<Mat<f64>, FemError> {
+    pub fn ring_stiffness(&self, harmonics: &Harmonics, run: &Run) -> Result<Mat<f64>, FemError> {
         let mut stiffness = Mat::zeros(harmonics.unknowns(), harmonics.unknowns());
         // Classes c and S − c are each other's conjugates; both are visited only through their orders, so half suffice.
         for class in 0..=self.count / 2 {
+            run.check()?;
             let (condensed, solution) = self.condense_class(class, harmonics)?;
             self.add_class(
                 &mut stiffness,
@@ -304,7 +306,9 @@ pub(super) mod tests {
             (4, 0, 3),
         ] {
             let (sector, harmonics) = (sector(count, side_nodes), Harmonics { largest });
-            let ring = sector.ring_stiffness(&harmonics).expect("definite");
+            let ring = sector
+                .ring_stiffness(&harmonics, &Run::unattended())
+                .expect("definite");
             let whole = assembled(&sector, &harmonics);
             let sides = 2 * side_nodes * count;
             let nq = harmonics.unknowns();

@@ -25,6 +25,9 @@ pub enum FemError {
         /// The number of unknowns.
         unknowns: usize,
     },
+    /// The caller stopped the work.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
     /// The problem is too large for this machine's indices or memory.
     #[error("{part} with {unknowns} unknowns is too large to factorize")]
     TooLarge {
@@ -33,7 +36,4 @@ pub enum FemError {
         /// The number of unknowns.
         unknowns: usize,
     },
-    /// The caller stopped the work.
-    #[error(transparent)]
-    Stopped(#[from] Stopped),
 }

@@ -8,6 +8,7 @@ use super::cyclic::{Component, Harmonics, Sector};
 use super::dense::Cholesky;
 use crate::gear::{SpurGear, Vector, radial, tangential};
 use crate::grid::ToothGrid;
+use crate::run::Run;
 
 /// Singular values of Ψ below this share of the largest carry nothing: H keeps nine digits.
 const MODE_TOLERANCE: f64 = 1e-11;
@@ -143,8 +144,12 @@ impl TeethRing {
     ///
     /// # Errors
     ///
-    /// [`FemError::NotPositiveDefinite`].
-    pub fn new(tooth: &ToothSubstructure, harmonics: Harmonics) -> Result<Self, FemError> {
+    /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`].
+    pub fn new(
+        tooth: &ToothSubstructure,
+        harmonics: Harmonics,
+        run: &Run,
+    ) -> Result<Self, FemError> {
         let sector = &tooth.sector;
         let (z, r) = (sector.count, tooth.mode_count());
         let ns = 2 * sector.side_nodes;
@@ -153,6 +158,7 @@ impl TeethRing {
         let mut tooth_forces = Mat::<f64>::zeros(harmonics.unknowns(), r);
         let mut class_compliance = Vec::with_capacity(z / 2 + 1);
         for class in 0..=z / 2 {
+            run.check()?;
             let (condensed, solution) = sector.condense_class(class, &harmonics)?;
             sector.add_class(
                 &mut stiffness,
@@ -348,7 +354,7 @@ mod tests {
         for (count, side_nodes, largest) in [(1, 2, 3), (3, 2, 7), (4, 1, 2), (4, 3, 9), (5, 2, 11)]
         {
             let (tooth, harmonics) = (tooth(count, side_nodes), Harmonics { largest });
-            let ring = TeethRing::new(&tooth, harmonics).expect("definite");
+            let ring = TeethRing::new(&tooth, harmonics, &Run::unattended()).expect("definite");
             let ns = 2 * side_nodes;
             let (sides, nq) = (ns * count, harmonics.unknowns());
             let whole = assembled(&tooth.sector, &harmonics);

@@ -26,9 +26,15 @@ fn an_annulus_under_uniform_tangential_traction_turns_by_its_closed_form() {
         );
         for level in [GridLevel::Coarse, GridLevel::Standard] {
             let grid = BlankGrid::new(r_i, r_o, None, 50, 4.0, level).expect("a ring");
-            let blank =
-                BlankSubstructure::new(&grid, r_o, &STEEL, width, Harmonics { largest: 60 })
-                    .expect("a stiff ring");
+            let blank = BlankSubstructure::new(
+                &grid,
+                r_o,
+                &STEEL,
+                width,
+                Harmonics { largest: 60 },
+                &Run::unattended(),
+            )
+            .expect("a stiff ring");
             // A uniform traction T/(2π r_o² b) does the work T/r_o a_0 on the uniform tangential displacement a_0.
             let uniform = blank.harmonics.cosine(0, Component::Tangential);
             let theta = torque / r_o / blank.stiffness[(uniform, uniform)] / r_o;

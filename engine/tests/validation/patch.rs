@@ -11,6 +11,7 @@ use meshwright_engine::fem::cyclic::{Component, Harmonics};
 use meshwright_engine::fem::tooth::{TeethRing, ToothSubstructure};
 use meshwright_engine::gear::{SpurGear, Vector, radial};
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
+use meshwright_engine::run::Run;
 
 use crate::support::{STEEL, gear, holed};
 use crate::whole::{Assembly, Hold, Whole, WholeGear, on_circle, whole_sides};
@@ -38,7 +39,7 @@ fn a_rigid_motion_of_the_interface_circle_costs_nothing_and_carries_the_flanks()
         let harmonics = Harmonics {
             largest: 2 * z as usize,
         };
-        let ring = TeethRing::new(&tooth, harmonics).expect("teeth");
+        let ring = TeethRing::new(&tooth, harmonics, &Run::unattended()).expect("teeth");
         let n = harmonics.unknowns();
         let stiffest = (0..n).map(|i| ring.stiffness[(i, i)]).fold(0.0, f64::max);
         for (x, y, turn) in [

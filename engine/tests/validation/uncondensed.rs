@@ -111,10 +111,18 @@ fn answers_of_substructures(
     harmonics: Harmonics,
 ) -> Answers {
     let substructure = ToothSubstructure::new(gear, tooth).expect("a tooth");
-    let ring = TeethRing::new(&substructure, harmonics).expect("a ring of teeth");
+    let ring =
+        TeethRing::new(&substructure, harmonics, &Run::unattended()).expect("a ring of teeth");
     let r_w = default_interface_radius(gear);
-    let blank = BlankSubstructure::new(blank, r_w, gear.material(), gear.face_width(), harmonics)
-        .expect("a blank");
+    let blank = BlankSubstructure::new(
+        blank,
+        r_w,
+        gear.material(),
+        gear.face_width(),
+        harmonics,
+        &Run::unattended(),
+    )
+    .expect("a blank");
     let phase = gear.holes().map_or(0.0, |holes| holes.phase);
     let coupling = Coupling::on_blank(&ring, &blank, phase, &Run::unattended()).expect("a gear");
     let unknowns = loaded_unknowns(substructure.roll_lengths.len());
