@@ -20,6 +20,8 @@ enum Command {
     Serve(commands::serve::Serve),
     /// Compute one submission.
     Solve(commands::solve::Solve),
+    /// Compute a study: many variants of one submission, and their table.
+    Study(commands::study::Study),
     /// Ask a running service whether it is ready; exit code 1 if not.
     Health(commands::health::Health),
 }
@@ -28,6 +30,7 @@ fn main() -> anyhow::Result<ExitCode> {
     match Arguments::parse().command {
         Command::Serve(serve) => serve.run(),
         Command::Solve(solve) => solve.run(),
+        Command::Study(study) => study.run(),
         Command::Health(health) => health.run(),
     }
 }

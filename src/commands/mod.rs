@@ -5,3 +5,4 @@ mod demo;
 pub(crate) mod health;
 pub(crate) mod serve;
 pub(crate) mod solve;
+pub(crate) mod study;
