@@ -1,14 +1,22 @@
 //! The command line: reads the configuration, starts the parts, waits for the signal.
 
+mod commands;
+
 use std::io::IsTerminal;
+use std::process::ExitCode;
 use std::sync::Arc;
 
 use anyhow::Context;
 use clap::{Parser, Subcommand};
 use meshwright::config::Config;
 use meshwright::serve::serve;
-use meshwright::wire;
+use meshwright::wire::{self, Submission};
+use meshwright_engine::analysis::Library;
+use meshwright_engine::run::Run;
 use tracing_subscriber::EnvFilter;
+
+/// What the substructures that jobs share may take.
+const LIBRARY_BYTES: usize = 256 << 20;
 
 /// Static transmission error and mesh stiffness of spur gears with lightening holes.
 #[derive(Parser)]
@@ -22,16 +30,19 @@ struct Arguments {
 enum Command {
     /// Serve jobs over HTTP.
     Serve(Config),
+    /// Compute one submission.
+    Solve(commands::solve::Solve),
 }
 
-fn main() -> anyhow::Result<()> {
-    let arguments = Arguments::parse();
-    match arguments.command {
+fn main() -> anyhow::Result<ExitCode> {
+    match Arguments::parse().command {
         Command::Serve(config) => {
             let runtime =
                 tokio::runtime::Runtime::new().context("the runtime cannot be started")?;
-            runtime.block_on(serve_until_signal(&config))
+            runtime.block_on(serve_until_signal(&config))?;
+            Ok(ExitCode::SUCCESS)
         }
+        Command::Solve(solve) => solve.run(),
     }
 }
 
@@ -44,9 +55,11 @@ async fn serve_until_signal(config: &Config) -> anyhow::Result<()> {
         .with_ansi(std::io::stderr().is_terminal())
         .init();
 
+    // Jobs share the teeth and blanks that they have in common.
+    let library = Library::with_capacity(LIBRARY_BYTES);
     let service = serve(
         config,
-        Arc::new(wire::solve),
+        Arc::new(move |submission: &Submission, run: &Run| wire::solve(submission, &library, run)),
         Arc::new(jiff::Timestamp::now),
     )
     .await?;

@@ -1,14 +1,12 @@
 //! What a client can know without a job: whether a submission would do, examples, and limits.
 
 use axum::Json;
-use axum::http::header::CONTENT_TYPE;
-use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::document::Document;
-use crate::wire::{self, Problem, Submission};
+use crate::wire::{self, Limits, Problem, Submission, Validation};
 
 /// Check a submission
 ///
@@ -16,9 +14,9 @@ use crate::wire::{self, Problem, Submission};
 /// estimate of size and time; or with the problem that a job would meet. Made to be called on every edit of a form.
 #[utoipa::path(
     post, path = "/v1/validate", tag = "Reference", operation_id = "validate",
-    request_body(content = serde_json::Value, content_type = "application/json", description = "The submission."),
+    request_body(content = Submission, content_type = "application/json", description = "The submission."),
     responses(
-        (status = 200, description = "The submission can be computed.", body = serde_json::Value),
+        (status = 200, description = "The submission can be computed.", body = Validation),
         (status = 400, description = "The body is no JSON.", body = Problem, content_type = "application/problem+json"),
         (status = 408, description = "The body came too slowly.", body = Problem, content_type = "application/problem+json"),
         (status = 413, description = "The body has more than 1 MiB.", body = Problem, content_type = "application/problem+json"),
@@ -26,7 +24,7 @@ use crate::wire::{self, Problem, Submission};
         (status = 422, description = "The submission cannot be computed; `errors` says which field is why.", body = Problem, content_type = "application/problem+json"),
     ),
 )]
-pub(super) async fn validate(Document(document): Document) -> Result<Json<Value>, Problem> {
+pub(super) async fn validate(Document(document): Document) -> Result<Json<Validation>, Problem> {
     let submission = Submission::parse(&document)?;
     Ok(Json(wire::validate(&submission)))
 }
@@ -76,12 +74,8 @@ pub(super) async fn examples() -> Json<Examples> {
 /// The bounds that submissions must keep.
 #[utoipa::path(
     get, path = "/v1/limits", tag = "Reference", operation_id = "get_limits",
-    responses((status = 200, description = "The limits.", body = serde_json::Value)),
+    responses((status = 200, description = "The limits.", body = Limits)),
 )]
-pub(super) async fn limits() -> Response {
-    (
-        [(CONTENT_TYPE, "application/json")],
-        wire::limits().to_string(),
-    )
-        .into_response()
+pub(super) async fn limits() -> Json<Limits> {
+    Json(wire::limits())
 }

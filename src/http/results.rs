@@ -23,7 +23,7 @@ use crate::wire::Problem;
         ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
     ),
     responses(
-        (status = 200, description = "The results.", body = serde_json::Value, headers(
+        (status = 200, description = "The results.", body = crate::wire::Results, headers(
             ("ETag" = String, description = "Stands for these results."),
         )),
         (status = 304, description = "The client has these results."),

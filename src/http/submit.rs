@@ -21,7 +21,7 @@ use crate::wire::{Problem, Submission};
 /// disk by then. A submission equal to one whose job is successful gets a new job that is successful at once.
 #[utoipa::path(
     post, path = "/v1/jobs", tag = "Jobs", operation_id = "submit_job",
-    request_body(content = serde_json::Value, content_type = "application/json", description = "The submission."),
+    request_body(content = Submission, content_type = "application/json", description = "The submission."),
     params(
         ("Idempotency-Key" = Option<String>, Header, description = "A word of the client's choice, 1 to 255 characters, kept for a day: the same key and submission get the same job, however often they are sent."),
         ("Prefer" = Option<String>, Header, description = "`wait=N`: answer with the results if the job ends within N seconds (60 at most)."),

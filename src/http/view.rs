@@ -49,7 +49,7 @@ pub(super) struct JobView<'a> {
     links: Links,
     /// The submission with every default filled in. Absent in lists.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(value_type = Option<Object>)]
+    #[schema(value_type = Option<crate::wire::Submission>)]
     submission: Option<Value>,
 }
 

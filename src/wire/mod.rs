@@ -1,121 +1,33 @@
-//! A stand-in for the wire documents, until the real ones replace this folder: every name here is theirs.
+//! The JSON documents of the interface as types, in the units of those who read them.
+//!
+//! Read in this order: [`problem`] (what goes wrong), [`submission`] with its parts [`pair`], [`gear`] and
+//! [`resolution`] (what is asked), [`geometry`], [`warning`] and [`results`] (what is answered), [`solve`](mod@solve)
+//! (what leads from the one to the other) and [`examples`](mod@examples). `units`, `quantity`, `tree` and `schema` carry
+//! them: conversions, the table of bounds, JSON with its places, and OpenAPI.
+//!
+//! This is the only place where domain data meets serde, and where mm, um, degrees, GPa and MPa meet SI.
 
-mod problem;
+mod quantity;
+mod schema;
+mod tree;
+mod units;
 
-use meshwright_engine::run::Run;
-use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
-use sha2::{Digest, Sha256};
+pub mod problem;
 
+pub mod gear;
+pub mod pair;
+pub mod resolution;
+pub mod submission;
+
+pub mod geometry;
+pub mod results;
+pub mod warning;
+
+pub mod examples;
+pub mod solve;
+
+pub use examples::{Example, examples};
 pub use problem::{Code, FieldError, Problem};
-
-/// A submission.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Submission {
-    method: String,
-    pair: Value,
-    output_torques_n_m: Vec<f64>,
-    #[serde(default)]
-    resolution: Value,
-    #[serde(default)]
-    tags: Vec<String>,
-}
-
-impl Submission {
-    /// Reads a submission.
-    ///
-    /// # Errors
-    ///
-    /// A [`Problem`] that says what is wrong with it.
-    pub fn parse(document: &[u8]) -> Result<Self, Problem> {
-        serde_json::from_slice(document).map_err(|error| match error.classify() {
-            serde_json::error::Category::Data => {
-                Problem::new(Code::UnknownField, error.to_string())
-            }
-            _ => Problem::new(Code::MalformedJson, error.to_string()),
-        })
-    }
-
-    /// The document with every default filled in.
-    pub fn canonical_json(&self) -> String {
-        serde_json::to_string(self).expect("a submission is plain data")
-    }
-
-    /// The hash of what is computed.
-    pub fn input_hash(&self) -> String {
-        let input = json!([
-            self.method,
-            self.pair,
-            self.output_torques_n_m,
-            self.resolution
-        ]);
-        Sha256::digest(input.to_string())
-            .iter()
-            .map(|byte| format!("{byte:02x}"))
-            .collect()
-    }
-
-    /// Positions times torques.
-    pub fn positions_total(&self) -> u64 {
-        200 * self.output_torques_n_m.len() as u64
-    }
-
-    /// The method's name.
-    pub fn method(&self) -> &str {
-        &self.method
-    }
-
-    /// The tags.
-    pub fn tags(&self) -> &[String] {
-        &self.tags
-    }
-}
-
-/// Solves a submission.
-///
-/// # Errors
-///
-/// A [`Problem`] when it cannot be solved.
-pub fn solve(_: &Submission, _: &Run) -> Result<String, Problem> {
-    Err(Problem::new(
-        Code::InternalError,
-        "the engine is not here yet",
-    ))
-}
-
-/// The answer of `/v1/validate`.
-pub fn validate(submission: &Submission) -> Value {
-    json!({ "valid": true, "submission": submission })
-}
-
-/// An example.
-#[derive(Debug, Clone, Copy)]
-pub struct Example {
-    /// Its name.
-    pub name: &'static str,
-    /// What it is.
-    pub description: &'static str,
-    /// Whether it can be computed.
-    pub valid: bool,
-    /// The document.
-    pub json: &'static str,
-}
-
-/// The examples.
-pub fn examples() -> &'static [Example] {
-    &[Example {
-        name: "test-case-2",
-        description: "Test case 2 of the paper.",
-        valid: true,
-        json: r#"{ "method": "flexible", "pair": {}, "output_torques_n_m": [115.0] }"#,
-    }]
-}
-
-/// The version of the solver.
-pub const SOLVER_VERSION: &str = concat!("meshwright ", env!("CARGO_PKG_VERSION"));
-
-/// The limits.
-pub fn limits() -> Value {
-    json!({ "positions": 20_000 })
-}
+pub use results::Results;
+pub use solve::{Limits, Validation, limits, solve, validate};
+pub use submission::{SOLVER_VERSION, Submission};

@@ -1,87 +1,194 @@
-//! A stand-in for the problem documents (RFC 9457).
+//! What went wrong, as RFC 9457 problem documents with stable codes.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// A problem document.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-pub struct Problem {
-    /// Where the problem is explained.
-    #[serde(rename = "type")]
-    pub type_: String,
-    /// What kind of problem it is.
-    pub title: String,
-    /// The HTTP status.
-    pub status: u16,
-    /// What is wrong this time.
-    pub detail: String,
-    /// The stable code.
-    pub code: Code,
-    /// What is wrong with which field.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub errors: Vec<FieldError>,
-}
-
-/// What is wrong with one field.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-pub struct FieldError {
-    /// JSON pointer.
-    pub pointer: String,
-    /// The stable code.
-    pub code: Code,
-    /// What is wrong.
-    pub detail: String,
-    /// The nearest value that would do.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub nearest: Option<f64>,
-}
-
 macro_rules! codes {
-    ($($name:ident $slug:literal $status:literal $title:literal)*) => {
-        /// The stable codes.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
+    ($($name:ident $slug:literal $status:literal $title:literal $explanation:literal)*) => {
+        /// The stable code of a problem.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
         #[serde(rename_all = "snake_case")]
+        #[schema(title = "Code")]
         pub enum Code { $(#[doc = $title] $name,)* }
 
         impl Code {
-            /// All codes.
+            /// Every code.
             pub const ALL: &[Code] = &[$(Code::$name,)*];
-            /// The last part of the problem's type.
+
+            /// The last part of the problem's type: the code with hyphens.
             pub fn slug(self) -> &'static str { match self { $(Code::$name => $slug,)* } }
-            /// The HTTP status.
+
+            /// The HTTP status that it answers with.
             pub fn status(self) -> u16 { match self { $(Code::$name => $status,)* } }
+
             /// What kind of problem it is.
             pub fn title(self) -> &'static str { match self { $(Code::$name => $title,)* } }
-            /// A paragraph of explanation.
-            pub fn explanation(self) -> &'static str { self.title() }
+
+            /// A paragraph on what it means and what to do.
+            pub fn explanation(self) -> &'static str { match self { $(Code::$name => $explanation,)* } }
         }
     };
 }
 
 codes! {
-    MalformedJson "malformed-json" 400 "The body is not JSON"
+    MalformedJson "malformed-json" 400 "The body is not well-formed JSON"
+        "The body could not be read as one JSON document: a syntax error, text after its end, nesting deeper than 128 levels, a number beyond double precision, or one key twice in one object. The detail names the place. Send one JSON object, UTF-8."
+    MissingField "missing-field" 422 "A needed field is missing"
+        "A field without a default is absent. A submission needs method, pair.center_distance_mm, output_torques_n_m and for each gear tooth_count, module_mm, face_width_mm and blank.bore_radius_mm; everything else has a default."
+    WrongType "wrong-type" 422 "A field has the wrong type"
+        "The field is there, but is not the kind of value that is read here: a number in quotes, a fraction where a count is wanted, null where a value is needed, or a word that is not among the choices. The detail says what is expected."
     UnknownField "unknown-field" 422 "A field is not known"
-    TimeLimit "time-limit" 422 "The job took longer than its limit"
-    ResultNotReady "result-not-ready" 404 "The result is not ready yet"
+        "The document has a field that is not read. It is refused rather than passed over, because a misspelled optional field would silently be computed with its default. The detail names the nearest known field."
+    OutOfRange "out-of-range" 422 "A value is out of range"
+        "The value is outside the bounds that the schema at /openapi.json states for the field, or outside those that the other fields leave for it. nearest is the closest value that is accepted."
+    TeethDoNotReach "teeth-do-not-reach" 422 "The teeth do not reach each other"
+        "The center distance is not less than the two tip radii together, so no tooth ever touches another. Table 1 of Benaicha et al. (2021) prints such a distance for test case 3: 118.5 mm, where the tip radii sum to 118.0 mm; 114.5 mm is what its other numbers agree with. nearest is the largest distance, rounded down, at which one pair always carries the load."
+    ContactRatioBelowOne "contact-ratio-below-one" 422 "The contact ratio is below one"
+        "The teeth reach each other, but the path of contact is shorter than the base pitch: between one pair and the next nothing would carry the load. nearest is the largest center distance, rounded down, at which the contact ratio is at least one."
+    NegativeBacklash "negative-backlash" 422 "The backlash is negative"
+        "At this center distance the teeth are thicker than the spaces that they enter. nearest is the smallest distance, rounded up, without negative backlash; less profile shift helps as well. Zero backlash is accepted with a warning."
+    Interference "interference" 422 "A tip enters a fillet"
+        "The tips of one gear reach below the involute flank of the other, into its fillet or root, where the motion would not be conjugate. nearest is the smallest center distance, rounded up, that avoids it; a shorter addendum helps as well."
+    Undercut "undercut" 422 "The flank is undercut"
+        "The generating rack cuts into the involute near the base circle. nearest is the smallest profile shift coefficient, rounded up, that avoids it; more teeth or a larger pressure angle help as well."
+    PointedTip "pointed-tip" 422 "The teeth are pointed"
+        "The two flanks of a tooth meet, or leave less than 0.05 modules between them, at the tip circle. nearest is the largest addendum, rounded down, that leaves enough; less profile shift helps as well."
+    ModuleMismatch "module-mismatch" 422 "The modules differ"
+        "Gears that mesh have the same module. nearest is the module of the driving gear."
+    PressureAngleMismatch "pressure-angle-mismatch" 422 "The pressure angles differ"
+        "Gears that mesh have the same pressure angle of their basic rack. nearest is the pressure angle of the driving gear."
+    HolesOverlap "holes-overlap" 422 "The holes overlap"
+        "Neighboring holes leave less than 0.5 mm of material between them. nearest is the largest hole radius, rounded down, that fits; fewer holes or a larger circle help as well."
+    HolesBreachRim "holes-breach-rim" 422 "The holes breach the rim"
+        "The holes leave less than 0.5 mm of material below the root circle. nearest is the largest hole radius, rounded down, that fits, or the circle radius if no radius would do."
+    HolesBreachBore "holes-breach-bore" 422 "The holes breach the bore"
+        "The holes leave less than 0.5 mm of material around the bore. nearest is the largest hole radius, rounded down, that fits, or the circle radius if no radius would do."
+    BoreTooLarge "bore-too-large" 422 "The bore is too large"
+        "The bore leaves less than one module of material below the root circle. nearest is the largest bore radius, rounded down, that fits."
+    ReliefTooLong "relief-too-long" 422 "The tip relief starts outside the flank"
+        "The relief has to start on the involute: above the form radius, where the fillet ends, and at least 0.01 modules below the tip circle. nearest is the start nearest to the one given, said in the same way."
+    TorqueNotPositive "torque-not-positive" 422 "A torque is not positive"
+        "The output torque loads the driven gear against the motion and must be positive. Reversed load is the mirrored pair."
+    TooLarge "too-large" 422 "The work asked for is too large"
+        "A submission may have at most 60 torques and 20,000 positions, counted as mesh periods times positions per mesh period times torques. The detail says how many were asked for and what would fit: fewer positions, fewer torques or a shorter span. /v1/limits tells the limits."
+    NotConverged "not-converged" 422 "The contact did not converge"
+        "The contact solver did not meet its tolerance at a position, which the detail names with the residual gap, or no flanks came near each other there. A larger gap tolerance, another penalty or the active set helps where the augmented Lagrangian was asked for."
+    NoFormula "no-formula" 422 "A formula does not hold for this pair"
+        "The load distribution takes its compliances from published formulas, and one of them does not hold for this pair; the detail says which and why. Another choice under resolution.load_distribution may hold, and the flexible method knows no such bounds."
+    DiscretizationFailed
+        "discretization-failed" 422 "A gear could not be divided into elements"
+        "The finite-element grid of a gear, or a factorization on it, failed; the detail says where. Proportions far from the usual do that: very thin ligaments, very small holes. Another grid level may help."
+    TimeLimit "time-limit" 422 "The time limit was reached"
+        "The work took longer than one job may. Fewer positions, fewer torques or a coarser grid take less time; /v1/validate estimates it."
+    Stopped "stopped" 409 "The work was stopped"
+        "The work was told to stop before it was done, and there is no result."
+    ResultNotReady "result-not-ready" 404 "The result is not ready"
+        "The job is waiting or running. Ask again after the time in Retry-After, or follow its events."
     JobNotFound "job-not-found" 404 "There is no such job"
+        "No job of yours has this identifier; it may have been deleted."
+    StudyNotFound "study-not-found" 404 "There is no such study"
+        "No study of yours has this identifier; it may have been deleted."
     NotFound "not-found" 404 "There is nothing here"
-    MethodNotAllowed "method-not-allowed" 405 "This resource does not take that method"
-    UnsupportedMediaType "unsupported-media-type" 415 "The body is not of a type that is read here"
-    QueueFull "queue-full" 503 "The queue is full"
-    PayloadTooLarge "payload-too-large" 413 "The body is too large"
-    IdempotencyConflict "idempotency-conflict" 422 "The idempotency key was used for another submission"
-    InvalidParameter "invalid-parameter" 400 "A query parameter or header is not understood"
-    JobRunning "job-running" 409 "The job is running"
+        "The address, or what the query asks for at it, does not exist. /openapi.json lists what does."
+    MethodNotAllowed "method-not-allowed" 405 "The method is not allowed here"
+        "The address exists, but does not take this HTTP method. The Allow header lists those that it takes."
+    UnsupportedMediaType "unsupported-media-type" 415 "The media type is not supported"
+        "Bodies are read as application/json only."
+    InvalidParameter "invalid-parameter" 400 "A parameter or header is not understood"
+        "A query parameter, a path part or a header has a value that cannot be read. The detail names it and says what is expected."
+    Unauthorized "unauthorized" 401 "Who asks is not known"
+        "This service asks for a key, and the request has none or one that is not known. Send it as Authorization: Bearer KEY."
+    Forbidden "forbidden" 403 "This is not allowed to you"
+        "The key is known, but may not do this."
+    JobRunning "job-running" 409 "The job has not ended"
+        "A job can be deleted only after it has ended. Cancel it first."
     JobFinished "job-finished" 409 "The job has ended"
+        "A job that has ended can no longer be cancelled."
     JobFailed "job-failed" 409 "The job failed"
+        "The job ended without a result; its problem says why."
     JobDismissed "job-dismissed" 409 "The job was dismissed"
+        "The job was cancelled and has no result."
     AttemptsExhausted "attempts-exhausted" 500 "The job was lost too often"
+        "The service stopped three times while it worked on this job, and does not try again. Submit it anew, and tell the operator."
+    IdempotencyConflict "idempotency-conflict" 422 "The idempotency key belongs to another submission"
+        "The Idempotency-Key was sent before with a different body. Use a new key for a new submission."
+    QueueFull "queue-full" 503 "The queue is full"
+        "More jobs are waiting than the service accepts. Nothing was stored; send the request again after the time in Retry-After."
+    RateLimited "rate-limited" 429 "Too many requests"
+        "More requests came from you than the service accepts. Send the request again after the time in Retry-After."
+    PayloadTooLarge "payload-too-large" 413 "The body is too large"
+        "The body is larger than the limit that /v1/limits tells."
     RequestTimeout "request-timeout" 408 "The request took too long"
+        "The request did not arrive, or was not answered, in time. It is safe to send it again with the same Idempotency-Key."
+    Unavailable "unavailable" 503 "The service is shutting down"
+        "The service is about to stop and takes no new work. Nothing was stored; send the request again after the time in Retry-After."
     InternalError "internal-error" 500 "The service failed"
+        "Something went wrong that is not your doing. It has been logged under the request's identifier, which the operator can look up."
+}
+
+/// What is wrong with one field of a document.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(title = "Field error")]
+pub struct FieldError {
+    /// Where the field is: a JSON pointer (RFC 6901) into the submitted document.
+    #[schema(example = "/pair/center_distance_mm")]
+    pub pointer: String,
+    /// The stable code.
+    pub code: Code,
+    /// What is wrong, with the numbers, in the field's own unit.
+    pub detail: String,
+    /// The nearest value that is accepted, in the field's own unit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(example = 115.56)]
+    pub nearest: Option<f64>,
+}
+
+impl FieldError {
+    /// An error of the field at `pointer`.
+    pub fn new(pointer: impl Into<String>, code: Code, detail: impl Into<String>) -> Self {
+        Self {
+            pointer: pointer.into(),
+            code,
+            detail: detail.into(),
+            nearest: None,
+        }
+    }
+
+    /// The same, with the nearest value that is accepted.
+    pub fn nearest(mut self, nearest: impl Into<Option<f64>>) -> Self {
+        self.nearest = nearest.into();
+        self
+    }
+}
+
+/// A problem document (RFC 9457), served as `application/problem+json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(title = "Problem")]
+pub struct Problem {
+    /// Where the kind of problem is explained.
+    #[serde(rename = "type")]
+    #[schema(example = "/problems/teeth-do-not-reach")]
+    pub type_: String,
+    /// What kind of problem it is.
+    pub title: String,
+    /// The HTTP status.
+    #[schema(minimum = 400, maximum = 599)]
+    pub status: u16,
+    /// What is wrong this time.
+    pub detail: String,
+    /// The stable code.
+    pub code: Code,
+    /// What is wrong with which field of the input.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub errors: Vec<FieldError>,
+    /// The request or job that met it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<String>)]
+    pub instance: Option<Box<str>>,
 }
 
 impl Problem {
-    /// A problem of a kind, with what is wrong this time.
+    /// A problem of the kind `code`, with what is wrong this time.
     pub fn new(code: Code, detail: impl Into<String>) -> Self {
         Self {
             type_: format!("/problems/{}", code.slug()),
@@ -90,6 +197,70 @@ impl Problem {
             detail: detail.into(),
             code,
             errors: Vec::new(),
+            instance: None,
         }
+    }
+
+    /// The problem of a document whose fields have `errors`; its kind is that of the first of them.
+    pub fn of_fields(errors: Vec<FieldError>) -> Self {
+        let (code, detail) = match errors.as_slice() {
+            [] => (Code::InternalError, String::new()),
+            [only] => (only.code, only.detail.clone()),
+            [first, ..] => (
+                first.code,
+                format!(
+                    "{} fields are wrong; the first: {}",
+                    errors.len(),
+                    first.detail
+                ),
+            ),
+        };
+        Self {
+            errors,
+            ..Self::new(code, detail)
+        }
+    }
+
+    /// The document as JSON.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string(self).expect("a problem is strings and finite numbers")
+    }
+}
+
+impl std::fmt::Display for Problem {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: {}", self.title, self.detail)
+    }
+}
+
+impl std::error::Error for Problem {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_slug_is_the_code_with_hyphens_and_every_code_is_explained() {
+        for &code in Code::ALL {
+            let name = serde_json::to_value(code).expect("a word");
+            assert_eq!(
+                name.as_str().expect("a word").replace('_', "-"),
+                code.slug()
+            );
+            assert!((400..600).contains(&code.status()));
+            assert!(code.explanation().len() > code.title().len());
+        }
+    }
+
+    #[test]
+    fn a_problem_survives_the_wire() {
+        let error = FieldError::new("/a", Code::OutOfRange, "too far").nearest(115.56);
+        let problem = Problem::of_fields(vec![error]);
+        let json = problem.to_json();
+        assert!(json.contains(r#""nearest":115.56"#), "{json}");
+        assert_eq!(
+            serde_json::from_str::<Problem>(&json).expect("reads back"),
+            problem
+        );
     }
 }

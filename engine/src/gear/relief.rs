@@ -29,7 +29,11 @@ impl ReliefStart {
     pub fn radius(self, flank: &Involute, tip_radius: f64) -> f64 {
         match self {
             Self::RadialLength(length) => tip_radius - length,
-            Self::RollLengthFromTip(length) => flank.radius(flank.roll_length(tip_radius) - length),
+            // A length past the base circle leaves the flank: no radius, rather than the mirrored point's.
+            Self::RollLengthFromTip(length) => match flank.roll_length(tip_radius) - length {
+                s if s < 0.0 => 0.0,
+                s => flank.radius(s),
+            },
             Self::Diameter(diameter) => diameter / 2.0,
             Self::RollAngle(angle) => flank.radius(flank.base_radius() * angle),
         }
@@ -80,6 +84,16 @@ impl TipRelief {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_roll_length_past_the_base_circle_starts_nowhere_on_the_flank() {
+        let flank = Involute::new(46.984_631_039_295_42e-3, 0.0463);
+        let length = flank.roll_length(52e-3) + 20e-3;
+        assert_eq!(
+            ReliefStart::RollLengthFromTip(length).radius(&flank, 52e-3),
+            0.0
+        );
+    }
 
     #[test]
     fn the_four_ways_to_give_a_start_agree() {

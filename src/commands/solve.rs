@@ -1,0 +1,225 @@
+//! `meshwright solve`: one submission from a file, computed here and now.
+
+use std::fs;
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use anyhow::Context;
+use indicatif::{ProgressBar, ProgressStyle};
+use meshwright::wire::results::{CurveDocument, Results};
+use meshwright::wire::{Problem, Submission, solve::results};
+use meshwright_engine::analysis::Library;
+use meshwright_engine::run::Run;
+
+/// What the substructures of one submission may take; it is never reached by one pair.
+const LIBRARY_BYTES: usize = 512 << 20;
+
+/// The exit code for a submission that cannot be computed.
+const EXIT_PROBLEM: u8 = 2;
+
+/// Compute one submission.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Solve {
+    /// The submission; - reads standard input.
+    submission: PathBuf,
+    /// Where to write the results document; - writes standard output. Without it, only the table is printed.
+    #[arg(long, short)]
+    output: Option<PathBuf>,
+}
+
+impl Solve {
+    /// Runs the command.
+    ///
+    /// # Errors
+    ///
+    /// If a file cannot be read or written. A problem with the submission is printed, and is exit code 2.
+    pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
+        let document = self.read()?;
+        let started = Instant::now();
+        let results = match Submission::parse(&document).and_then(|submission| compute(&submission))
+        {
+            Ok(results) => results,
+            Err(problem) => {
+                eprint!("{}", told(&problem));
+                return Ok(ExitCode::from(EXIT_PROBLEM));
+            }
+        };
+        let table = table(&results, started.elapsed());
+        match &self.output {
+            Some(path) => {
+                let json = results.to_json()?;
+                self.write(path, &json)?;
+                // Standard output may be the document; the table must not end up in it.
+                if is_dash(path) {
+                    eprint!("{table}")
+                } else {
+                    print!("{table}")
+                }
+            }
+            None => print!("{table}"),
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+
+    fn read(&self) -> anyhow::Result<Vec<u8>> {
+        if is_dash(&self.submission) {
+            let mut document = Vec::new();
+            std::io::stdin()
+                .read_to_end(&mut document)
+                .context("standard input cannot be read")?;
+            Ok(document)
+        } else {
+            fs::read(&self.submission)
+                .with_context(|| format!("{} cannot be read", self.submission.display()))
+        }
+    }
+
+    fn write(&self, path: &Path, json: &str) -> anyhow::Result<()> {
+        if is_dash(path) {
+            writeln!(std::io::stdout(), "{json}").context("standard output cannot be written")
+        } else {
+            fs::write(path, format!("{json}\n"))
+                .with_context(|| format!("{} cannot be written", path.display()))
+        }
+    }
+}
+
+fn is_dash(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Computes `submission` behind a progress bar, which hides itself where there is no terminal.
+fn compute(submission: &Submission) -> Result<Results, Problem> {
+    let bar = ProgressBar::new(submission.positions_total());
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} positions, {elapsed}") {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(100));
+    let watched = bar.clone();
+    let run = Run::new(Arc::default(), move |done, total| {
+        watched.set_length(total);
+        watched.set_position(done);
+    });
+    let results = results(submission, &Library::with_capacity(LIBRARY_BYTES), &run);
+    bar.finish_and_clear();
+    results
+}
+
+/// A problem as a person reads it.
+fn told(problem: &Problem) -> String {
+    let mut text = format!("{} ({}).\n", problem.title, code_word(problem));
+    if problem.errors.is_empty() {
+        text.push_str(&format!("  {}\n", problem.detail));
+    }
+    for error in &problem.errors {
+        text.push_str(&format!("  {}\n    {}\n", error.pointer, error.detail));
+        if let Some(nearest) = error.nearest {
+            text.push_str(&format!("    nearest: {nearest}\n"));
+        }
+    }
+    text
+}
+
+fn code_word(problem: &Problem) -> String {
+    problem.code.slug().replace('-', "_")
+}
+
+/// The statistics of every torque, the hole and mesh lines, warnings and the time.
+fn table(results: &Results, elapsed: Duration) -> String {
+    const LINES: [&str; 4] = ["H_N", "H_N1", "H_N2", "H_Z2"];
+    let lines: Vec<&str> = LINES
+        .into_iter()
+        .filter(|label| {
+            results
+                .curves
+                .iter()
+                .any(|curve| amplitude(curve, label).is_some())
+        })
+        .collect();
+    let mut text = format!(
+        "{:>10}  {:>27}  {:>32}{}\n",
+        "torque",
+        "transmission error in um",
+        "tangent stiffness in N/m",
+        if lines.is_empty() {
+            ""
+        } else {
+            "  lines in um"
+        }
+    );
+    text.push_str(&format!(
+        "{:>10}  {:>9}{:>9}{:>9}  {:>12}{:>10}{:>10}",
+        "N m", "mean", "rms", "p-p", "mean", "rms", "p-p"
+    ));
+    for label in &lines {
+        text.push_str(&format!("  {label:>8}"));
+    }
+    text.push('\n');
+    for curve in &results.curves {
+        let (ste, k) = (
+            &curve.statistics.transmission_error_um,
+            &curve.statistics.mesh_stiffness_tangent_n_per_m,
+        );
+        text.push_str(&format!(
+            "{:>10}  {:>9.3}{:>9.3}{:>9.3}  {:>12.4e}{:>10.2e}{:>10.2e}",
+            curve.output_torque_n_m,
+            ste.mean,
+            ste.rms,
+            ste.peak_to_peak,
+            k.mean,
+            k.rms,
+            k.peak_to_peak
+        ));
+        for label in &lines {
+            text.push_str(
+                &amplitude(curve, label)
+                    .map_or_else(|| format!("  {:>8}", "-"), |a| format!("  {a:>8.4}")),
+            );
+        }
+        text.push('\n');
+    }
+    for warning in &results.warnings {
+        text.push_str(&format!("Warning: {}\n", warning.detail));
+    }
+    text.push_str(&format!(
+        "{} over {} positions in {:.2} s, {} degrees of freedom.\n",
+        results.method,
+        results
+            .curves
+            .iter()
+            .map(|curve| curve.mesh_position.len())
+            .sum::<usize>(),
+        elapsed.as_secs_f64(),
+        results.evidence.degrees_of_freedom
+    ));
+    text
+}
+
+fn amplitude(curve: &CurveDocument, label: &str) -> Option<f64> {
+    let named = &curve.spectrum.as_ref()?.named;
+    named
+        .iter()
+        .find(|line| line.label == label)
+        .map(|line| line.transmission_error_um)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_problem_is_told_with_its_place_and_the_nearest_value() {
+        let bad = include_str!("../../api/examples/bad-case-3-as-printed.json");
+        let text = told(&Submission::parse(bad.as_bytes()).expect_err("the teeth do not reach"));
+        for part in [
+            "teeth_do_not_reach",
+            "/pair/center_distance_mm",
+            "nearest: 115.56",
+        ] {
+            assert!(text.contains(part), "{text}");
+        }
+    }
+}

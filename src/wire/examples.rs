@@ -1,0 +1,114 @@
+//! Submissions to start from: the paper's test cases and the designs of its study.
+
+/// A submission that ships with the service.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Example {
+    /// Its name, which is also its file's under `api/examples`.
+    pub name: &'static str,
+    /// What it is.
+    pub description: &'static str,
+    /// Whether it can be computed; one cannot, on purpose.
+    pub valid: bool,
+    /// The document.
+    pub json: &'static str,
+}
+
+macro_rules! examples {
+    ($($name:literal $valid:literal $description:literal)*) => {
+        &[$(Example {
+            name: $name,
+            description: $description,
+            valid: $valid,
+            json: include_str!(concat!("../../api/examples/", $name, ".json")),
+        },)*]
+    };
+}
+
+const EXAMPLES: &[Example] = examples! {
+    "test-case-1" true "Test case 1 of the paper: 50/50 teeth, eight holes in both gears, 115 N m. The true period is 25 mesh periods."
+    "test-case-2" true "Test case 2 of the paper: 50/50 teeth, ten holes in the driven gear, 115 N m. The true period is 5 mesh periods."
+    "test-case-3" true "Test case 3 of the paper: 29/85 teeth, six holes in the driven gear, 160 N m, at 114.5 mm. The true period is 85 mesh periods."
+    "standard-pair" true "The standard pair of the paper's study: 50/50 teeth, no holes, 115 and 20 N m."
+    "design-8r34" true "Design 8R34 of the study: eight holes at 34 mm, a quarter of the blank removed."
+    "design-10r34" true "Design 10R34 of the study: ten holes at 34 mm, a quarter of the blank removed."
+    "design-6r30" true "Design 6R30 of the study: six holes at 30 mm, a quarter of the blank removed."
+    "design-8r30" true "Design 8R30 of the study: eight holes at 30 mm, a quarter of the blank removed."
+    "design-8r27" true "Design 8R27 of the study: eight holes at 27 mm, a quarter of the blank removed."
+    "bad-case-3-as-printed" false "Test case 3 with the center distance that the paper prints, 118.5 mm: its teeth do not reach each other, and it is refused."
+};
+
+/// Every example.
+pub fn examples() -> &'static [Example] {
+    EXAMPLES
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::{Code, Submission};
+
+    #[test]
+    fn every_example_is_what_it_says() {
+        for example in examples() {
+            let read = Submission::parse(example.json.as_bytes());
+            assert_eq!(read.is_ok(), example.valid, "{}: {read:?}", example.name);
+        }
+    }
+
+    #[test]
+    fn the_true_periods_are_those_of_the_paper_s_cases() {
+        // DESIGN section 1: 25, 5 and 85; at 40 positions.
+        for (name, positions) in [
+            ("test-case-1", 1000),
+            ("test-case-2", 200),
+            ("test-case-3", 3400),
+        ] {
+            let example = examples()
+                .iter()
+                .find(|example| example.name == name)
+                .expect("ships");
+            let submission = Submission::parse(example.json.as_bytes()).expect("valid");
+            assert_eq!(submission.positions_total(), positions);
+        }
+    }
+
+    #[test]
+    fn the_designs_of_the_study_remove_a_quarter_of_the_blank() {
+        // DESIGN section 4: 25 % of the area between bore and mean of tip and root circle; radii given to a micrometer.
+        for example in examples()
+            .iter()
+            .filter(|example| example.name.starts_with("design-"))
+        {
+            let submission = Submission::parse(example.json.as_bytes()).expect("valid");
+            let driven = submission.case().pair.driven();
+            assert!(
+                (driven.removed_fraction() - 0.25).abs() < 5e-5,
+                "{}",
+                example.name
+            );
+            assert_eq!(submission.case().output_torques, [115.0, 20.0]);
+        }
+    }
+
+    #[test]
+    fn case_3_as_printed_is_refused_with_the_nearest_distance_that_works() {
+        let bad = examples()
+            .iter()
+            .find(|example| !example.valid)
+            .expect("ships");
+        let problem = Submission::parse(bad.json.as_bytes()).expect_err("the teeth do not reach");
+        assert_eq!((problem.code, problem.status), (Code::TeethDoNotReach, 422));
+        let [error] = problem.errors.as_slice() else {
+            panic!("one error: {problem:?}")
+        };
+        assert_eq!(error.pointer, "/pair/center_distance_mm");
+        assert_eq!(
+            error.nearest,
+            Some(115.56),
+            "API.md prints 115.56; the contact ratio is one at 115.567"
+        );
+        assert!(error.detail.contains("118 mm"), "{}", error.detail);
+        let cured = bad.json.replace("118.5", "115.56");
+        assert!(Submission::parse(cured.as_bytes()).is_ok());
+    }
+}

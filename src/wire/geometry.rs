@@ -1,0 +1,232 @@
+//! The pair as its drawing makes it: what follows from the submission without any load.
+
+use meshwright_engine::analysis::Case;
+use meshwright_engine::gear::{GearPair, Member};
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use super::units::to_mm;
+
+/// The derived geometry of a pair.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[schema(title = "Pair geometry")]
+pub struct PairGeometry {
+    /// The operating center distance a, in mm.
+    pub center_distance_mm: f64,
+    /// The working pressure angle, in degrees: its cosine is the base radii together over the center distance.
+    pub working_pressure_angle_deg: f64,
+    /// The contact ratio: the length of the path of contact over the base pitch.
+    pub contact_ratio: f64,
+    /// The base pitch, in mm.
+    pub base_pitch_mm: f64,
+    /// The number of mesh periods after which the contact repeats.
+    pub period_mesh_periods: u32,
+    /// The normal backlash, along the line of action, in mm.
+    pub backlash_mm: f64,
+    /// The face width on which the gears touch, in mm: the smaller of the two.
+    pub contact_width_mm: f64,
+    /// The path of contact along the theoretical line of action.
+    pub path_of_contact: PathOfContact,
+    /// Gear 1, which drives.
+    pub driving: GearGeometry,
+    /// Gear 2, which is driven.
+    pub driven: GearGeometry,
+}
+
+/// The path of contact along the theoretical line of action, from the first touch of a pair of teeth to the last.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[schema(title = "Path of contact")]
+pub struct PathOfContact {
+    /// Its length, in mm.
+    pub length_mm: f64,
+    /// A: a pair comes into contact, at the tip of the driven tooth.
+    pub a: PathPoint,
+    /// B: the pair before it leaves contact, one base pitch before E.
+    pub b: PathPoint,
+    /// C: the pitch point.
+    pub c: PathPoint,
+    /// D: the next pair comes into contact, one base pitch after A.
+    pub d: PathPoint,
+    /// E: the pair leaves contact, at the tip of the driving tooth.
+    pub e: PathPoint,
+}
+
+/// A point of the path of contact.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[schema(title = "Point of the path of contact")]
+pub struct PathPoint {
+    /// The mesh position of the reference pair there, in mesh periods; zero at the pitch point.
+    pub mesh_position: f64,
+    /// The roll length on the driving flank, in mm.
+    pub driving_roll_length_mm: f64,
+    /// The roll length on the driven flank, in mm.
+    pub driven_roll_length_mm: f64,
+}
+
+/// The derived geometry of a gear.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[schema(title = "Gear geometry")]
+pub struct GearGeometry {
+    /// The reference radius, in mm.
+    pub reference_radius_mm: f64,
+    /// The base radius, in mm.
+    pub base_radius_mm: f64,
+    /// The tip radius, in mm.
+    pub tip_radius_mm: f64,
+    /// The root radius, in mm.
+    pub root_radius_mm: f64,
+    /// The form radius, in mm, where the involute ends and the fillet begins.
+    pub form_radius_mm: f64,
+    /// The working pitch radius, in mm.
+    pub working_pitch_radius_mm: f64,
+    /// The thickness of a tooth along its tip circle, in mm.
+    pub tip_thickness_mm: f64,
+    /// The radius at which the tip relief starts, in mm; absent without relief.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub relief_start_radius_mm: Option<f64>,
+    /// The least material around the holes, in mm; absent without holes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub least_ligament_mm: Option<f64>,
+    /// The mass of the true profile, in kg.
+    pub mass_kg: f64,
+    /// The share of the blank that the holes remove, in percent. The blank is the ring between the bore and the mean of
+    /// tip and root circle.
+    pub mass_removed_percent: f64,
+    /// The polar moment of inertia of the true profile, in kg m2.
+    pub polar_inertia_kg_m2: f64,
+}
+
+/// The frequencies of eq. 2 at the speed given.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[schema(title = "Frequencies")]
+pub struct Frequencies {
+    /// f_m: the mesh frequency, in Hz.
+    pub mesh_hz: f64,
+    /// f_1: the rotation of the driving gear, in Hz.
+    pub driving_hz: f64,
+    /// f_2: the rotation of the driven gear, in Hz.
+    pub driven_hz: f64,
+    /// f_0: the true period of the contact, in Hz.
+    pub period_hz: f64,
+}
+
+impl PairGeometry {
+    /// What follows for `pair`.
+    pub fn of(pair: &GearPair) -> Self {
+        Self {
+            center_distance_mm: to_mm(pair.center_distance()),
+            working_pressure_angle_deg: pair.working_pressure_angle().to_degrees(),
+            contact_ratio: pair.contact_ratio(),
+            base_pitch_mm: to_mm(pair.base_pitch()),
+            period_mesh_periods: pair.period(),
+            backlash_mm: to_mm(pair.backlash()),
+            contact_width_mm: to_mm(pair.contact_width()),
+            path_of_contact: PathOfContact::of(pair),
+            driving: GearGeometry::of(pair, Member::Driving),
+            driven: GearGeometry::of(pair, Member::Driven),
+        }
+    }
+}
+
+impl PathOfContact {
+    fn of(pair: &GearPair) -> Self {
+        let (s_a, s_e) = pair.path_of_contact();
+        let (s_c, p_b) = (pair.pitch_roll_length(), pair.base_pitch());
+        let point = |s: f64| PathPoint {
+            mesh_position: (s - s_c) / p_b,
+            driving_roll_length_mm: to_mm(s),
+            driven_roll_length_mm: to_mm(pair.line_of_action() - s),
+        };
+        Self {
+            length_mm: to_mm(s_e - s_a),
+            a: point(s_a),
+            b: point(s_e - p_b),
+            c: point(s_c),
+            d: point(s_a + p_b),
+            e: point(s_e),
+        }
+    }
+}
+
+impl GearGeometry {
+    fn of(pair: &GearPair, member: Member) -> Self {
+        let gear = pair.gear(member);
+        Self {
+            reference_radius_mm: to_mm(gear.reference_radius()),
+            base_radius_mm: to_mm(gear.base_radius()),
+            tip_radius_mm: to_mm(gear.tip_radius()),
+            root_radius_mm: to_mm(gear.root_radius()),
+            form_radius_mm: to_mm(gear.form_radius()),
+            working_pitch_radius_mm: to_mm(pair.working_radius(member)),
+            tip_thickness_mm: to_mm(gear.tip_thickness()),
+            relief_start_radius_mm: gear.tip_relief().map(|relief| to_mm(relief.start_radius())),
+            least_ligament_mm: gear.least_ligament().map(to_mm),
+            mass_kg: gear.mass(),
+            mass_removed_percent: 100.0 * gear.removed_fraction(),
+            polar_inertia_kg_m2: gear.polar_inertia(),
+        }
+    }
+}
+
+impl Frequencies {
+    /// Those of `case`, if it has a speed.
+    pub fn of(case: &Case) -> Option<Self> {
+        let driving_hz = case.driving_speed?.0;
+        let mesh_hz = driving_hz * f64::from(case.pair.driving().tooth_count());
+        Some(Self {
+            mesh_hz,
+            driving_hz,
+            driven_hz: mesh_hz / f64::from(case.pair.driven().tooth_count()),
+            period_hz: mesh_hz / f64::from(case.pair.period()),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::{Submission, examples};
+
+    fn geometry(name: &str) -> PairGeometry {
+        let example = examples()
+            .iter()
+            .find(|example| example.name == name)
+            .expect("ships");
+        PairGeometry::of(
+            &Submission::parse(example.json.as_bytes())
+                .expect("valid")
+                .case()
+                .pair,
+        )
+    }
+
+    #[test]
+    fn the_standard_pair_has_the_geometry_of_its_closed_form() {
+        // FIELD section 3.1: alpha_w 20.76902 deg, epsilon 1.51155, s_A, s_C, s_E 13.3564, 17.8187, 22.2810, j 0.34836 mm.
+        let pair = geometry("standard-pair");
+        for (value, printed, half_digit) in [
+            (pair.working_pressure_angle_deg, 20.769_02, 6e-6),
+            (pair.contact_ratio, 1.511_55, 6e-6),
+            (pair.backlash_mm, 0.348_36, 6e-6),
+            (pair.path_of_contact.a.driving_roll_length_mm, 13.3564, 6e-5),
+            (pair.path_of_contact.c.driving_roll_length_mm, 17.8187, 6e-5),
+            (pair.path_of_contact.e.driving_roll_length_mm, 22.2810, 6e-5),
+            (pair.driving.tip_radius_mm, 52.0, 1e-12),
+            (pair.driving.root_radius_mm, 47.5, 1e-12),
+            (pair.driving.working_pitch_radius_mm, 50.25, 1e-12),
+        ] {
+            assert!((value - printed).abs() <= half_digit, "{value} {printed}");
+        }
+        assert_eq!(pair.driving.least_ligament_mm, None);
+    }
+
+    #[test]
+    fn the_least_ligament_of_case_1_is_the_one_between_its_holes() {
+        // 2 R sin(pi/8) - 2 r = 63 x 0.382683 - 20 = 4.1090 mm; 6 mm to the root circle, 5.5 mm to the bore.
+        let ligament = geometry("test-case-1")
+            .driven
+            .least_ligament_mm
+            .expect("holes");
+        assert!((ligament - 4.109_06).abs() < 1e-5, "{ligament}");
+    }
+}

@@ -1,0 +1,174 @@
+//! From a submission to its results, or to what it would come to.
+
+use meshwright_engine::analysis::{self, AnalysisError, Library};
+use meshwright_engine::run::Run;
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use super::geometry::PairGeometry;
+use super::problem::{Code, Problem};
+use super::quantity::{self, MOST_POSITIONS, MOST_TAGS, MOST_TORQUES};
+use super::results::Results;
+use super::submission::{SOLVER_VERSION, Submission};
+use super::units::{plain, to_um};
+use super::warning::WarningDocument;
+
+/// Computes `submission` and writes its results document.
+///
+/// # Errors
+///
+/// A [`Problem`]: `not_converged`, `discretization_failed`, or `stopped` where `run` was told to stop.
+pub fn solve(submission: &Submission, library: &Library, run: &Run) -> Result<String, Problem> {
+    results(submission, library, run)?.to_json()
+}
+
+/// Computes `submission`.
+///
+/// # Errors
+///
+/// As for [`solve`].
+pub fn results(submission: &Submission, library: &Library, run: &Run) -> Result<Results, Problem> {
+    match analysis::analyze(submission.case(), library, run) {
+        Ok(analysis) => Ok(Results::new(submission, &analysis)),
+        Err(error) => Err(problem_of(&error)),
+    }
+}
+
+fn problem_of(error: &AnalysisError) -> Problem {
+    match error {
+        AnalysisError::NotConverged {
+            mesh_position,
+            residual,
+            iterations,
+        } => Problem::new(
+            Code::NotConverged,
+            format!(
+                "The contact did not converge at mesh position {}: a gap of {} um was left after {iterations} iterations.",
+                plain(*mesh_position),
+                plain(to_um(*residual))
+            ),
+        ),
+        AnalysisError::ContactFailed {
+            mesh_position,
+            error,
+        } => Problem::new(
+            Code::NotConverged,
+            format!(
+                "The contact at mesh position {} could not be solved: {error}.",
+                plain(*mesh_position)
+            ),
+        ),
+        AnalysisError::NoContact { mesh_position } => Problem::new(
+            Code::NotConverged,
+            format!(
+                "No flanks come near each other at mesh position {}.",
+                plain(*mesh_position)
+            ),
+        ),
+        AnalysisError::NoFormula { reason } => Problem::new(
+            Code::NoFormula,
+            format!("The load distribution has no formula for this pair: {reason}."),
+        ),
+        AnalysisError::Discretization { member, reason } => Problem::new(
+            Code::DiscretizationFailed,
+            format!("The {member} gear could not be divided into elements: {reason}."),
+        ),
+        AnalysisError::Stopped(_) => {
+            Problem::new(Code::Stopped, "The work was stopped before it was done.")
+        }
+    }
+}
+
+/// The answer to a submission that would be accepted.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+#[schema(title = "Validation")]
+pub struct Validation {
+    /// True; a submission that is not valid is answered with its problem.
+    pub valid: bool,
+    /// The submission with every default filled in.
+    pub submission: Submission,
+    /// The derived geometry, as in the results.
+    pub pair: PairGeometry,
+    /// What to know beside the numbers, as far as it is known before the computation.
+    pub warnings: Vec<WarningDocument>,
+    /// What the computation will cost.
+    pub estimate: EstimateDocument,
+}
+
+/// What a computation will cost.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[schema(as = Estimate, title = "Estimate")]
+pub struct EstimateDocument {
+    /// Unknowns of both gears before condensation.
+    pub degrees_of_freedom: u64,
+    /// Memory, in MB.
+    pub memory_mb: u64,
+    /// Time on one core, in seconds.
+    pub seconds: f64,
+    /// Positions times torques.
+    pub positions: u64,
+}
+
+/// What `submission` would be computed as, and what that would cost.
+pub fn validate(submission: &Submission) -> Validation {
+    let case = submission.case();
+    let estimate = analysis::estimate(case);
+    Validation {
+        valid: true,
+        submission: submission.clone(),
+        pair: PairGeometry::of(&case.pair),
+        warnings: analysis::warnings(case)
+            .iter()
+            .map(WarningDocument::of)
+            .collect(),
+        estimate: EstimateDocument {
+            degrees_of_freedom: estimate.degrees_of_freedom,
+            memory_mb: estimate.memory.div_ceil(1_000_000),
+            seconds: estimate.seconds,
+            positions: estimate.positions,
+        },
+    }
+}
+
+/// The limits of a submission. Those of the service stand beside them.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[schema(title = "Limits of a submission")]
+pub struct Limits {
+    /// The version of the solver.
+    pub solver_version: &'static str,
+    /// The most output torques.
+    pub torques: usize,
+    /// The most positions times torques.
+    pub positions: u64,
+    /// The most positions in a mesh period.
+    pub positions_per_mesh_period: u32,
+    /// The most holes in a gear.
+    pub holes: u32,
+    /// The fewest and the most teeth.
+    pub tooth_count: [u32; 2],
+    /// The smallest and the largest module, in mm.
+    pub module_mm: [f64; 2],
+    /// The most tags.
+    pub tags: usize,
+    /// The most characters of a tag.
+    pub tag_length: usize,
+    /// The least material around a hole, in mm.
+    pub least_ligament_mm: f64,
+}
+
+/// The limits that every submission keeps.
+pub fn limits() -> Limits {
+    let counts = |(least, most): (f64, f64)| [least as u32, most as u32];
+    Limits {
+        solver_version: SOLVER_VERSION,
+        torques: MOST_TORQUES,
+        positions: MOST_POSITIONS,
+        positions_per_mesh_period: counts(quantity::POSITIONS.bounds)[1],
+        holes: counts(quantity::HOLE_COUNT.bounds)[1],
+        tooth_count: counts(quantity::TOOTH_COUNT.bounds),
+        module_mm: quantity::MODULE.bounds.into(),
+        tags: MOST_TAGS.0,
+        tag_length: MOST_TAGS.1,
+        least_ligament_mm: super::units::to_mm(meshwright_engine::gear::spur::LEAST_LIGAMENT),
+    }
+}

@@ -1,0 +1,169 @@
+//! The reader's units at the edge: mm, um, degrees, GPa and MPa against SI, and numbers rounded for the wire.
+
+use std::io;
+
+use serde_json::ser::{CompactFormatter, Formatter};
+
+/// Millimeters to meters. A division by a power of ten rounds once, so that 100.5 mm is the double nearest 0.1005 m.
+pub(super) fn from_mm(value: f64) -> f64 {
+    value / 1e3
+}
+
+/// Micrometers to meters.
+pub(super) fn from_um(value: f64) -> f64 {
+    value / 1e6
+}
+
+/// Gigapascals to pascals.
+pub(super) fn from_gpa(value: f64) -> f64 {
+    value * 1e9
+}
+
+/// Meters to millimeters.
+pub(super) fn to_mm(value: f64) -> f64 {
+    value * 1e3
+}
+
+/// Meters to micrometers.
+pub(super) fn to_um(value: f64) -> f64 {
+    value * 1e6
+}
+
+/// Pascals to megapascals.
+pub(super) fn to_mpa(value: f64) -> f64 {
+    value / 1e6
+}
+
+/// `value` rounded to `digits` significant decimal digits; a negative zero loses its sign.
+pub(super) fn significant(value: f64, digits: usize) -> f64 {
+    if value == 0.0 || !value.is_finite() {
+        return value + 0.0;
+    }
+    format!("{value:.*e}", digits.max(1) - 1)
+        .parse()
+        .unwrap_or(value)
+}
+
+/// A number as people write it in a sentence: at most seven significant digits.
+pub(super) fn plain(value: f64) -> String {
+    let value = significant(value, 7);
+    if value != 0.0 && !(1e-4..1e9).contains(&value.abs()) {
+        format!("{value:e}")
+    } else {
+        format!("{value}")
+    }
+}
+
+/// The side on which a bound is kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    /// Values up to the bound work.
+    AtMost,
+    /// Values from the bound on work.
+    AtLeast,
+}
+
+/// The value of five significant digits next to `bound` on its working side, `steps` units of the last digit further in.
+pub(super) fn rounded_inward(bound: f64, side: Side, steps: u32) -> f64 {
+    if bound == 0.0 || !bound.is_finite() {
+        return bound;
+    }
+    let unit_exponent = bound.abs().log10().floor() as i32 - 4;
+    let in_units = if unit_exponent < 0 {
+        bound * 10_f64.powi(-unit_exponent)
+    } else {
+        bound / 10_f64.powi(unit_exponent)
+    };
+    // A bound that is a round number but for the last bits of its computation is taken as that number.
+    let whole = if (in_units - in_units.round()).abs() < 1e-6 {
+        in_units.round()
+    } else {
+        match side {
+            Side::AtMost => in_units.floor(),
+            Side::AtLeast => in_units.ceil(),
+        }
+    };
+    let whole = match side {
+        Side::AtMost => whole - f64::from(steps),
+        Side::AtLeast => whole + f64::from(steps),
+    };
+    if unit_exponent < 0 {
+        whole / 10_f64.powi(-unit_exponent)
+    } else {
+        whole * 10_f64.powi(unit_exponent)
+    }
+}
+
+/// Writes `document` with every number rounded to ten significant digits.
+///
+/// Significant digits, not decimals, so that the small noise of a spectrum stays what it is; ten of them, so that what
+/// rounding adds to a spectrum stays a thousand times below 1e-9 of the mean.
+///
+/// # Errors
+///
+/// A number that is not finite has no place in JSON and fails; so does an absent value, which has to be left out.
+pub(super) fn rounded_json(document: &impl serde::Serialize) -> serde_json::Result<String> {
+    let mut text = Vec::new();
+    let mut serializer = serde_json::Serializer::with_formatter(&mut text, RoundingFormatter);
+    document.serialize(&mut serializer)?;
+    String::from_utf8(text).map_err(serde::ser::Error::custom)
+}
+
+struct RoundingFormatter;
+
+impl Formatter for RoundingFormatter {
+    fn write_f64<W: io::Write + ?Sized>(&mut self, writer: &mut W, value: f64) -> io::Result<()> {
+        const DIGITS: usize = 10;
+        CompactFormatter.write_f64(writer, significant(value, DIGITS))
+    }
+
+    /// What is not finite is written as null, so a null here is a number that went wrong.
+    fn write_null<W: io::Write + ?Sized>(&mut self, _: &mut W) -> io::Result<()> {
+        Err(io::Error::other("a result is not finite"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_in_mm_become_the_nearest_double_in_meters() {
+        for (mm, m) in [
+            (100.5, 0.1005),
+            (1.75, 0.00175),
+            (47.5, 0.0475),
+            (0.76, 0.76e-3),
+        ] {
+            assert_eq!(from_mm(mm), m);
+        }
+        assert_eq!(from_um(5.0), 5e-6);
+        assert_eq!(to_mpa(677e6), 677.0);
+        assert_eq!(from_gpa(210.0), 210e9);
+        assert!(
+            (to_um(from_um(11.78)) - 11.78).abs() < 1e-12,
+            "up to the last bits"
+        );
+    }
+
+    #[test]
+    fn bounds_are_rounded_to_the_side_that_works() {
+        // Largest center distance of 29/85: 115.567 mm (DESIGN section 5); API.md prints 115.56.
+        assert_eq!(rounded_inward(115.567_123, Side::AtMost, 0), 115.56);
+        assert_eq!(rounded_inward(115.567_123, Side::AtMost, 1), 115.55);
+        assert_eq!(rounded_inward(0.298_123_4, Side::AtLeast, 0), 0.298_13);
+        assert_eq!(rounded_inward(99.999_999_999_999, Side::AtLeast, 0), 100.0);
+        assert_eq!(rounded_inward(-0.298_123_4, Side::AtLeast, 0), -0.298_12);
+        assert_eq!(rounded_inward(1_234_567.0, Side::AtMost, 0), 1_234_500.0);
+    }
+
+    #[test]
+    fn rounding_keeps_significant_digits_of_the_smallest_numbers() {
+        let text =
+            rounded_json(&[1.234_567_891_23e-14, 219_600_123.456_78, -0.0, 0.025]).expect("finite");
+        assert_eq!(text, "[1.234567891e-14,219600123.5,0.0,0.025]");
+        for wrong in [f64::NAN, f64::INFINITY] {
+            assert!(rounded_json(&[1.0, wrong]).is_err());
+        }
+    }
+}
