@@ -32,6 +32,8 @@ enum Command {
     Serve(Config),
     /// Compute one submission.
     Solve(commands::solve::Solve),
+    /// Recompute the paper's tables, figures and study.
+    Reproduce(commands::reproduce::Reproduce),
 }
 
 fn main() -> anyhow::Result<ExitCode> {
@@ -43,6 +45,10 @@ fn main() -> anyhow::Result<ExitCode> {
             Ok(ExitCode::SUCCESS)
         }
         Command::Solve(solve) => solve.run(),
+        Command::Reproduce(reproduce) => {
+            reproduce.run()?;
+            Ok(ExitCode::SUCCESS)
+        }
     }
 }
 
