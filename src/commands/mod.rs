@@ -1,5 +1,9 @@
 //! The commands of the command line.
 
+mod chart;
+mod demo;
+pub(crate) mod health;
 pub(crate) mod plot;
 pub(crate) mod reproduce;
+pub(crate) mod serve;
 pub(crate) mod solve;

@@ -29,7 +29,7 @@ impl Choice for Method {
         (
             "projected_decomposition",
             Self::ProjectedDecomposition,
-            "rigid blanks plus the exact first-order term of the holed blanks",
+            "the contact of blanks that are alike all around, plus the exact first-order term of what the holes change around them",
         ),
         (
             "load_distribution",

@@ -469,9 +469,9 @@ fn does_not_see(method: Method) -> Vec<&'static str> {
             "sidebands of the holes about the mesh orders in the transmission error: each blank's rotation is fitted by its mean and one harmonic",
             "what the holes change in the load sharing between pairs",
         ],
-        Method::ProjectedDecomposition => {
-            &["what the holes change in the load sharing between pairs, beyond first order"]
-        }
+        Method::ProjectedDecomposition => &[
+            "what the fluctuation of the holed blanks changes in the load sharing between pairs, beyond first order",
+        ],
         Method::LoadDistribution => &[
             "holes: the bodies are solid",
             "contact off the theoretical line of action, at tip corners",

@@ -7,10 +7,12 @@
 
 mod bench;
 
+mod contract;
 mod edge;
 mod events;
 mod life;
 mod lists;
+mod real;
 mod recovery;
 mod refusals;
 mod repeats;

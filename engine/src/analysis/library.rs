@@ -1,9 +1,9 @@
 //! Substructures that several cases share: computed once, kept within a bound.
 
-use std::collections::HashMap;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 
 use super::AnalysisError;
+use super::shelf::Shelf;
 use crate::contact::flank::FlankTable;
 use crate::fem::FemError;
 use crate::fem::blank::BlankSubstructure;
@@ -54,35 +54,15 @@ enum BuildError {
 /// What a tooth, a blank or a gear depends on, bit by bit.
 type Key = Vec<u64>;
 
-#[derive(Debug, Clone)]
-enum Part {
-    Teeth(Arc<Teeth>),
-    Blank(Arc<BlankSubstructure>),
-    Gear(Arc<Gear>),
-}
-
 /// A bounded store of teeth, blanks and gears, shared between threads; cloning shares it.
-///
-/// Two threads that want the same new part at the same moment both compute it, and get the same bits.
-#[derive(Clone)]
-pub struct Library {
-    shelves: Arc<Mutex<Shelves>>,
-    capacity: usize,
-}
+#[derive(Debug, Clone)]
+pub struct Library(Arc<Shelves>);
 
-#[derive(Default)]
+#[derive(Debug)]
 struct Shelves {
-    parts: HashMap<Key, (Part, u64)>,
-    bytes: usize,
-    clock: u64,
-}
-
-impl std::fmt::Debug for Library {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Library")
-            .field("capacity", &self.capacity)
-            .finish_non_exhaustive()
-    }
+    teeth: Shelf<Key, Teeth>,
+    blanks: Shelf<Key, BlankSubstructure>,
+    gears: Shelf<Key, Gear>,
 }
 
 impl Default for Library {
@@ -93,12 +73,13 @@ impl Default for Library {
 }
 
 impl Library {
-    /// A library that keeps at most `bytes` of substructures, the least recently used leaving first.
+    /// A library that keeps at most `bytes` of substructures, of each kind the least recently used leaving first.
     pub fn with_capacity(bytes: usize) -> Self {
-        Self {
-            shelves: Arc::default(),
-            capacity: bytes,
-        }
+        Self(Arc::new(Shelves {
+            teeth: Shelf::new(bytes / 2),
+            blanks: Shelf::new(bytes / 4),
+            gears: Shelf::new(bytes / 4),
+        }))
     }
 
     /// The teeth of `gear` down to `interface_radius`.
@@ -142,32 +123,12 @@ impl Library {
         level: GridLevel,
         run: &Run,
     ) -> Result<Arc<Teeth>, BuildError> {
-        let build = || {
-            build_teeth(gear, interface_radius, level, run)
-                .map(|teeth| Part::Teeth(Arc::new(teeth)))
-        };
-        match self.part(teeth_key(gear, interface_radius, level), run, build)? {
-            Part::Teeth(teeth) => Ok(teeth),
-            Part::Blank(_) | Part::Gear(_) => unreachable!("a key names one kind of part"),
-        }
-    }
-
-    fn shared_blank(
-        &self,
-        gear: &SpurGear,
-        teeth: &Teeth,
-        interface_radius: f64,
-        level: GridLevel,
-        run: &Run,
-    ) -> Result<Arc<BlankSubstructure>, BuildError> {
-        let build = || {
-            build_blank(gear, teeth, interface_radius, level)
-                .map(|blank| Part::Blank(Arc::new(blank)))
-        };
-        match self.part(blank_key(gear, interface_radius, level), run, build)? {
-            Part::Blank(blank) => Ok(blank),
-            Part::Teeth(_) | Part::Gear(_) => unreachable!("a key names one kind of part"),
-        }
+        run.check()?;
+        self.0.teeth.part(
+            teeth_key(gear, interface_radius, level),
+            Teeth::bytes,
+            || build_teeth(gear, interface_radius, level, run),
+        )
     }
 
     fn shared_gear(
@@ -181,87 +142,40 @@ impl Library {
         let mut key = teeth_key(gear, interface_radius, level);
         key.extend(blank_key(gear, interface_radius, level));
         key.push(phase.to_bits());
-        let build = || {
+        self.0.gears.part(key, Gear::bytes, || {
             let teeth = self.shared_teeth(gear, interface_radius, level, run)?;
-            let blank = self.shared_blank(gear, &teeth, interface_radius, level, run)?;
-            run.check()?;
-            Ok(Part::Gear(Arc::new(join(&teeth, &blank, phase)?)))
-        };
-        match self.part(key, run, build)? {
-            Part::Gear(gear) => Ok(gear),
-            Part::Blank(_) | Part::Teeth(_) => unreachable!("a key names one kind of part"),
-        }
-    }
-
-    fn part(
-        &self,
-        key: Key,
-        run: &Run,
-        build: impl FnOnce() -> Result<Part, BuildError>,
-    ) -> Result<Part, BuildError> {
-        run.check()?;
-        if let Some(part) = self.shelves().find(&key) {
-            return Ok(part);
-        }
-        let part = build()?;
-        self.shelves().keep(key, part.clone(), self.capacity);
-        Ok(part)
-    }
-
-    fn shelves(&self) -> MutexGuard<'_, Shelves> {
-        // The shelves hold only finished parts, so that a panic elsewhere leaves nothing half done in them.
-        self.shelves.lock().unwrap_or_else(PoisonError::into_inner)
+            let blank = self.0.blanks.part(
+                blank_key(gear, interface_radius, level),
+                |blank| size_of::<f64>() * blank.harmonics.unknowns().pow(2),
+                || build_blank(gear, &teeth, interface_radius, level, run),
+            )?;
+            join(&teeth, &blank, phase, run)
+        })
     }
 }
 
-impl Shelves {
-    fn find(&mut self, key: &Key) -> Option<Part> {
-        self.clock += 1;
-        let (part, used) = self.parts.get_mut(key)?;
-        *used = self.clock;
-        Some(part.clone())
-    }
-
-    fn keep(&mut self, key: Key, part: Part, capacity: usize) {
-        self.clock += 1;
-        self.bytes += part.bytes();
-        if let Some((old, _)) = self.parts.insert(key, (part, self.clock)) {
-            self.bytes -= old.bytes();
-        }
-        while self.bytes > capacity {
-            let Some(oldest) = self
-                .parts
-                .iter()
-                .min_by_key(|(_, (_, used))| *used)
-                .map(|(key, _)| key.clone())
-            else {
-                break;
-            };
-            if let Some((part, _)) = self.parts.remove(&oldest) {
-                self.bytes -= part.bytes();
-            }
-        }
+impl Teeth {
+    /// About how much memory they hold.
+    fn bytes(&self) -> usize {
+        let (n, r) = (self.ring.harmonics.unknowns(), self.flank.mode_count());
+        let couplings = self.ring.held_coupling.len() * r * r + self.on_rigid_blank.entries();
+        size_of::<f64>() * (n * n + n * r + couplings + self.flank.entries())
     }
 }
 
-impl Part {
+impl Gear {
     /// About how much memory it holds.
     fn bytes(&self) -> usize {
-        8 * match self {
-            Self::Teeth(teeth) => {
-                let (n, r) = (teeth.ring.harmonics.unknowns(), teeth.flank.mode_count());
-                n * n + n * r + 8 * teeth.ring.held_coupling.len() * r * r + teeth.flank.entries()
-            }
-            Self::Blank(blank) => blank.harmonics.unknowns().pow(2),
-            Self::Gear(gear) => gear.coupling.entries(),
-        }
+        size_of::<f64>() * self.coupling.entries()
     }
 }
 
 impl BuildError {
     fn of(self, member: Member) -> AnalysisError {
         match self {
-            Self::Stopped(stopped) => AnalysisError::Stopped(stopped),
+            Self::Stopped(stopped) | Self::Fem(FemError::Stopped(stopped)) => {
+                AnalysisError::Stopped(stopped)
+            }
             Self::Grid(error) => AnalysisError::Discretization {
                 member,
                 reason: error.to_string(),
@@ -309,7 +223,7 @@ fn build_teeth(
     run.check()?;
     let tooth = ToothSubstructure::new(gear, &grid)?;
     run.check()?;
-    let ring = TeethRing::new(&tooth, harmonics(gear, interface_radius, level))?;
+    let ring = TeethRing::new(&tooth, harmonics(gear, interface_radius, level), run)?;
     let (arc, side) = tooth.shared_nodes;
     let nodes = tooth.grid_nodes - side - 1;
     // Nodes of the interface circle belong to the teeth; the blank's follow them.
@@ -348,6 +262,7 @@ fn build_blank(
     teeth: &Teeth,
     interface_radius: f64,
     level: GridLevel,
+    run: &Run,
 ) -> Result<BlankSubstructure, BuildError> {
     let grid = blank_grid(gear, interface_radius, level)?;
     Ok(BlankSubstructure::new(
@@ -356,12 +271,18 @@ fn build_blank(
         gear.material(),
         gear.face_width(),
         teeth.ring.harmonics,
+        run,
     )?)
 }
 
-fn join(teeth: &Teeth, blank: &BlankSubstructure, phase: f64) -> Result<Gear, BuildError> {
+fn join(
+    teeth: &Teeth,
+    blank: &BlankSubstructure,
+    phase: f64,
+    run: &Run,
+) -> Result<Gear, BuildError> {
     Ok(Gear {
-        coupling: Arc::new(Coupling::on_blank(&teeth.ring, blank, phase)?),
+        coupling: Arc::new(Coupling::on_blank(&teeth.ring, blank, phase, run)?),
         degrees_of_freedom: teeth.degrees_of_freedom + 2 * blank.grid_nodes as u64,
     })
 }
@@ -390,7 +311,7 @@ fn tooth_bits(gear: &SpurGear) -> Vec<u64> {
 
 fn teeth_key(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Key {
     let mut key = tooth_bits(gear);
-    key.extend([interface_radius.to_bits(), level as u64, 1]);
+    key.extend([interface_radius.to_bits(), level as u64]);
     key
 }
 
@@ -405,6 +326,6 @@ fn blank_key(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Key {
             .chain(&holes)
             .map(|number| number.to_bits()),
     );
-    key.extend([level as u64, 2]);
+    key.push(level as u64);
     key
 }

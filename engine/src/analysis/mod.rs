@@ -12,6 +12,7 @@ mod flexible;
 pub mod library;
 pub mod load_distribution;
 pub mod model;
+mod shelf;
 pub mod spectrum;
 
 pub use case::{
@@ -114,6 +115,21 @@ fn analyze_at(
         Method::ProjectedDecomposition => decomposition::project(case, level, library, run),
         Method::LoadDistribution => load_distribution::distribute(case, run),
     }
+}
+
+/// The model behind the flexible method for `case`, to be asked position by position.
+///
+/// # Errors
+///
+/// [`AnalysisError::Discretization`], or [`AnalysisError::Stopped`].
+pub fn pair_model(
+    case: &Case,
+    library: &Library,
+    run: &Run,
+) -> Result<model::PairModel, AnalysisError> {
+    faer::set_global_parallelism(faer::Par::Seq);
+    flexible::model(case, Blanks::Flexible, case.resolution.grid, library, run)
+        .map(|(model, _)| model)
 }
 
 /// Contact solutions that `case` needs at one grid level.

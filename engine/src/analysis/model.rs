@@ -107,8 +107,23 @@ impl MeshContact {
     }
 }
 
+/// The contact of the whole mesh cell by cell: where the cells lie, the problem stated on them and its solution.
+///
+/// Cells are numbered patch after patch.
+#[derive(Debug, Clone)]
+pub struct Touch {
+    /// The patches of the pairs that come near, by n.
+    pub patches: Vec<Patch>,
+    /// Compliance, gaps and arms of the cells.
+    pub problem: ContactProblem,
+    /// Forces, gaps and approach.
+    pub solution: ContactSolution,
+    /// The cells on the flank tables of both gears.
+    points: [Vec<FlankPoint>; 2],
+}
+
 impl PairModel {
-    /// The contact at mesh position `eta` under `load`.
+    /// The contact at mesh position `eta` under `load`, summed up pair by pair.
     ///
     /// # Errors
     ///
@@ -119,6 +134,16 @@ impl PairModel {
         load: f64,
         warm: &mut WarmStart,
     ) -> Result<MeshContact, PositionError> {
+        self.touch(eta, load, warm)
+            .map(|touch| self.mesh_contact(&touch, load))
+    }
+
+    /// The contact at mesh position `eta` under `load`, cell by cell.
+    ///
+    /// # Errors
+    ///
+    /// [`PositionError`].
+    pub fn touch(&self, eta: f64, load: f64, warm: &mut WarmStart) -> Result<Touch, PositionError> {
         let reference = eta.floor() as i64;
         let mut approaches: Vec<Approach> = (reference - PAIRS_AROUND
             ..=reference + PAIRS_AROUND + 1)
@@ -149,7 +174,8 @@ impl PairModel {
             if patches.is_empty() {
                 return Err(PositionError::NoContact);
             }
-            let (solution, points) = self.solve(&patches, load, warm)?;
+            let touch = self.solve(patches, load, warm)?;
+            let (patches, solution) = (&touch.patches, &touch.solution);
             let missed = approaches.iter().any(|approach| {
                 approach.gap > reach.max(first_gap) && approach.gap < solution.approach * 1.1
             });
@@ -157,12 +183,12 @@ impl PairModel {
                 reach = 1.2 * solution.approach;
                 continue;
             }
-            if widening < LARGEST_WIDENING && overflows(&patches, &solution.active) {
+            if widening < LARGEST_WIDENING && overflows(patches, &solution.active) {
                 widening *= 1.5;
                 continue;
             }
-            *warm = WarmStart::after(&patches, &solution);
-            return Ok(self.mesh_contact(&patches, &points, &solution, load));
+            *warm = WarmStart::after(patches, solution);
+            return Ok(touch);
         }
     }
 
@@ -175,10 +201,10 @@ impl PairModel {
 
     fn solve(
         &self,
-        patches: &[Patch],
+        patches: Vec<Patch>,
         load: f64,
         warm: &WarmStart,
-    ) -> Result<(ContactSolution, [Vec<FlankPoint>; 2]), PositionError> {
+    ) -> Result<Touch, PositionError> {
         let points: [Vec<FlankPoint>; 2] = std::array::from_fn(|gear| {
             let cells = patches.iter().flat_map(|patch| &patch.cells);
             cells
@@ -189,7 +215,7 @@ impl PairModel {
                 })
                 .collect()
         });
-        let compliance = self.compliance(patches, &points);
+        let compliance = self.compliance(&patches, &points);
         let cells = || patches.iter().flat_map(|patch| &patch.cells);
         let problem = ContactProblem::new(
             compliance,
@@ -198,7 +224,7 @@ impl PairModel {
         )?;
         let solution = match self.solver {
             ContactSolver::ActiveSet => {
-                solve_active_set(&problem, load, warm.touching(patches).as_deref())?
+                solve_active_set(&problem, load, warm.touching(&patches).as_deref())?
             }
             ContactSolver::AugmentedLagrangian {
                 penalty,
@@ -212,7 +238,12 @@ impl PairModel {
                 solve_augmented_lagrangian(&problem, load, &settings)?
             }
         };
-        Ok((solution, points))
+        Ok(Touch {
+            patches,
+            problem,
+            solution,
+            points,
+        })
     }
 
     /// H of both gears on the cells of `patches`.
@@ -259,13 +290,13 @@ impl PairModel {
         h
     }
 
-    fn mesh_contact(
-        &self,
-        patches: &[Patch],
-        points: &[Vec<FlankPoint>; 2],
-        solution: &ContactSolution,
-        load: f64,
-    ) -> MeshContact {
+    fn mesh_contact(&self, touch: &Touch, load: f64) -> MeshContact {
+        let Touch {
+            patches,
+            solution,
+            points,
+            ..
+        } = touch;
         let starts = starts(patches);
         let width = self.pair.contact_width();
         let mut peak_pressure = 0.0_f64;

@@ -8,6 +8,7 @@ use super::cyclic::{Component, Harmonics, Sector};
 use super::tooth::in_polar_axes;
 use crate::gear::Material;
 use crate::grid::BlankGrid;
+use crate::run::Run;
 
 /// A blank on its interface circle, its bore held.
 #[derive(Debug, Clone)]
@@ -27,13 +28,14 @@ impl BlankSubstructure {
     ///
     /// # Errors
     ///
-    /// [`FemError`] if the grid is degenerate.
+    /// [`FemError`] if the grid is degenerate or the work is stopped.
     pub fn new(
         grid: &BlankGrid,
         interface_radius: f64,
         material: &Material,
         thickness: f64,
         harmonics: Harmonics,
+        run: &Run,
     ) -> Result<Self, FemError> {
         let (right, left) = &grid.side_nodes;
         let kept: Vec<u32> = right
@@ -61,7 +63,7 @@ impl BlankSubstructure {
             side_nodes: right.len(),
             arc_angles: grid.arc_angles.clone(),
         };
-        let stiffness = sector.ring_stiffness(&harmonics)?;
+        let stiffness = sector.ring_stiffness(&harmonics, run)?;
         // A sector repeats its right side as its left one, and the ends of both are nodes of the bore and of the arc.
         let grid_nodes = count * (grid.grid.nodes.len() - left.len() - 2);
         Ok(Self {

@@ -6,6 +6,7 @@ use super::FemError;
 use super::blank::BlankSubstructure;
 use super::dense::Cholesky;
 use super::tooth::TeethRing;
+use crate::run::Run;
 
 /// How far apart, in teeth, two loaded teeth of one gear may stand.
 pub const FARTHEST_NEIGHBOR: usize = 4;
@@ -23,7 +24,13 @@ pub struct Coupling {
 impl Coupling {
     /// Teeth on a rigid blank: the interface circle is held (paper: wh).
     pub fn on_rigid_blank(teeth: &TeethRing) -> Self {
-        Self::new(teeth, |_, _, held| held)
+        let tooth_count = teeth.held_coupling.len();
+        let of_tooth =
+            (0..=FARTHEST_NEIGHBOR).map(|d| teeth.held_coupling[d % tooth_count].clone());
+        Self {
+            tooth_count,
+            blocks: (0..tooth_count).flat_map(|_| of_tooth.clone()).collect(),
+        }
     }
 
     /// Teeth on a flexible blank whose hole 0 stands at the angle `phase`.
@@ -32,49 +39,48 @@ impl Coupling {
     ///
     /// # Errors
     ///
-    /// [`FemError::NotPositiveDefinite`].
+    /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`].
     pub fn on_blank(
         teeth: &TeethRing,
         blank: &BlankSubstructure,
         phase: f64,
+        run: &Run,
     ) -> Result<Self, FemError> {
         let z = teeth.held_coupling.len();
         let unknowns = teeth.harmonics.unknowns();
-        let ring = Cholesky::new(&teeth.stiffness + blank.stiffness_at(phase)).ok_or(
-            FemError::NotPositiveDefinite {
-                part: "the gear's interface",
-                unknowns,
-            },
-        )?;
-        // With L⁻¹ F of every tooth, each block is one plain product.
-        let halves: Vec<Mat<f64>> = (0..z)
-            .map(|i| {
-                let mut half = teeth.forces_of_tooth_at(tooth_angle(i, z));
-                ring.half_solve_in_place(half.as_mut());
-                half
-            })
-            .collect();
-        Ok(Self::new(teeth, |i, j, held| {
-            held + halves[i].transpose() * &halves[j]
-        }))
-    }
-
-    fn new(teeth: &TeethRing, block: impl Fn(usize, usize, Mat<f64>) -> Mat<f64>) -> Self {
-        let tooth_count = teeth.held_coupling.len();
-        let blocks = (0..tooth_count)
-            .flat_map(|i| (0..=FARTHEST_NEIGHBOR).map(move |d| (i, d)))
-            .map(|(i, d)| {
-                block(
-                    i,
-                    (i + d) % tooth_count,
-                    teeth.held_coupling[d % tooth_count].clone(),
-                )
-            })
-            .collect();
-        Self {
-            tooth_count,
-            blocks,
+        let total = &teeth.stiffness + blank.stiffness_at(phase);
+        let ring = Cholesky::new_watched(total, run)?.ok_or(FemError::NotPositiveDefinite {
+            part: "the gear's interface",
+            unknowns,
+        })?;
+        // With L⁻¹ F of both teeth, a block is one plain product. Only neighbors are needed at a time, and the first few
+        // once more at the end, where the circle closes.
+        let mut halves: Vec<Option<Mat<f64>>> = vec![None; z];
+        let mut blocks = Vec::with_capacity(z * (FARTHEST_NEIGHBOR + 1));
+        for i in 0..z {
+            run.check()?;
+            for d in 0..=FARTHEST_NEIGHBOR {
+                let j = (i + d) % z;
+                for tooth in [i, j] {
+                    if halves[tooth].is_none() {
+                        let mut half = teeth.forces_of_tooth_at(tooth_angle(tooth, z));
+                        ring.half_solve_in_place(half.as_mut());
+                        halves[tooth] = Some(half);
+                    }
+                }
+                let (Some(one), Some(other)) = (&halves[i], &halves[j]) else {
+                    unreachable!("both halves were just made")
+                };
+                blocks.push(&teeth.held_coupling[d % z] + one.transpose() * other);
+            }
+            if i >= FARTHEST_NEIGHBOR {
+                halves[i] = None;
+            }
         }
+        Ok(Self {
+            tooth_count: z,
+            blocks,
+        })
     }
 
     /// The coupling of a gear that is alike all around: each block the mean over the teeth.

@@ -269,3 +269,142 @@ impl Numbering {
         self.unknowns
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+
+    const STEEL: Material = Material {
+        youngs_modulus: 210e9,
+        poisson_ratio: 0.3,
+        density: 7850.0,
+    };
+
+    /// Four distorted elements around one corner: nodes on the lattice of corners and midsides.
+    fn patch() -> Grid {
+        let mut number = [[u32::MAX; 5]; 5];
+        let mut nodes = Vec::new();
+        for (j, row) in number.iter_mut().enumerate() {
+            for (i, place) in row.iter_mut().enumerate() {
+                if i % 2 == 1 && j % 2 == 1 {
+                    continue;
+                }
+                *place = nodes.len() as u32;
+                let (x, y) = (i as f64, j as f64);
+                nodes.push(1e-3 * Vector::new(x + 0.1 * y * y + 0.05 * x * y, 0.9 * y - 0.1 * x));
+            }
+        }
+        let element = |i: usize, j: usize| {
+            [
+                (0, 0),
+                (2, 0),
+                (2, 2),
+                (0, 2),
+                (1, 0),
+                (2, 1),
+                (1, 2),
+                (0, 1),
+            ]
+            .map(|(a, b)| number[j + b][i + a])
+        };
+        Grid {
+            nodes,
+            elements: vec![element(0, 0), element(2, 0), element(0, 2), element(2, 2)],
+        }
+    }
+
+    /// K_bb − K_bi K_ii⁻¹ K_ib with dense matrices, all unknowns of `kept` against all that are neither kept nor fixed.
+    fn dense_schur(grid: &Grid, kept: &[u32], fixed: &[u32]) -> DMatrix<f64> {
+        let n = 2 * grid.nodes.len();
+        let mut k = DMatrix::<f64>::zeros(n, n);
+        for (element, stiffness) in grid
+            .elements
+            .iter()
+            .zip(element_stiffnesses(grid, &STEEL, 20e-3))
+        {
+            let place = |local: usize| 2 * element[local / 2] as usize + local % 2;
+            for i in 0..16 {
+                for j in 0..16 {
+                    k[(place(i), place(j))] += stiffness[(i, j)];
+                }
+            }
+        }
+        let unknowns = |nodes: &[u32]| -> Vec<usize> {
+            nodes
+                .iter()
+                .flat_map(|node| [2 * *node as usize, 2 * *node as usize + 1])
+                .collect()
+        };
+        let inner: Vec<u32> = (0..grid.nodes.len() as u32)
+            .filter(|node| !kept.contains(node) && !fixed.contains(node))
+            .collect();
+        let (b, i) = (unknowns(kept), unknowns(&inner));
+        let part = |rows: &[usize], cols: &[usize]| k.select_rows(rows).select_columns(cols);
+        let solved = part(&i, &i)
+            .lu()
+            .solve(&part(&i, &b))
+            .expect("what is inside is held by its boundary");
+        part(&b, &b) - part(&b, &i) * solved
+    }
+
+    fn assert_alike(schur: &Mat<f64>, dense: &DMatrix<f64>) {
+        assert_eq!(
+            (schur.nrows(), schur.ncols()),
+            (dense.nrows(), dense.ncols())
+        );
+        for i in 0..dense.nrows() {
+            for j in 0..dense.ncols() {
+                // Roundings of an elimination of a few dozen unknowns.
+                assert!((schur[(i, j)] - dense[(i, j)]).abs() < 1e-12 * dense.amax());
+            }
+        }
+    }
+
+    #[test]
+    fn the_trailing_factor_is_the_schur_complement_of_a_floating_grid() {
+        let grid = patch();
+        let kept = [20, 0, 7, 4, 12];
+        let schur = condense("a patch", &grid, &STEEL, 20e-3, &kept, &[]).expect("a sound grid");
+        assert_alike(&schur, &dense_schur(&grid, &kept, &[]));
+        // It floats: a translation and a rotation of the kept nodes cost nothing.
+        let scale = schur[(0, 0)];
+        for i in 0..schur.nrows() {
+            let along_x: f64 = (0..kept.len()).map(|k| schur[(i, 2 * k)]).sum();
+            let turning: f64 = kept
+                .iter()
+                .enumerate()
+                .map(|(k, node)| {
+                    let p = 1e3 * grid.nodes[*node as usize];
+                    -p.y * schur[(i, 2 * k)] + p.x * schur[(i, 2 * k + 1)]
+                })
+                .sum();
+            assert!(along_x.abs() < 1e-11 * scale && turning.abs() < 1e-10 * scale);
+        }
+    }
+
+    #[test]
+    fn the_trailing_factor_is_the_schur_complement_of_a_held_grid() {
+        let grid = patch();
+        let (kept, fixed) = ([18, 20, 3], [0, 1, 2]);
+        let schur = condense("a patch", &grid, &STEEL, 20e-3, &kept, &fixed).expect("a sound grid");
+        assert_alike(&schur, &dense_schur(&grid, &kept, &fixed));
+    }
+
+    #[test]
+    fn a_grid_turned_inside_out_is_refused() {
+        let mut grid = patch();
+        for element in &mut grid.elements {
+            *element = [0, 3, 2, 1, 7, 6, 5, 4].map(|place: usize| element[place]);
+        }
+        let error = condense("a patch", &grid, &STEEL, 20e-3, &[0, 4], &[]).expect_err("a refusal");
+        assert!(matches!(
+            error,
+            FemError::NotPositiveDefinite {
+                part: "a patch",
+                ..
+            }
+        ));
+    }
+}

@@ -9,6 +9,7 @@ use faer::{Mat, c64};
 
 use super::FemError;
 use super::dense::Cholesky;
+use crate::run::Run;
 
 /// The harmonics of orders −M … M on an interface circle, with real unknowns.
 ///
@@ -184,10 +185,11 @@ impl Sector {
     /// # Errors
     ///
     /// [`FemError::NotPositiveDefinite`].
-    pub fn ring_stiffness(&self, harmonics: &Harmonics) -> Result<Mat<f64>, FemError> {
+    pub fn ring_stiffness(&self, harmonics: &Harmonics, run: &Run) -> Result<Mat<f64>, FemError> {
         let mut stiffness = Mat::zeros(harmonics.unknowns(), harmonics.unknowns());
         // Classes c and S − c are each other's conjugates; both are visited only through their orders, so half suffice.
         for class in 0..=self.count / 2 {
+            run.check()?;
             let (condensed, solution) = self.condense_class(class, harmonics)?;
             self.add_class(
                 &mut stiffness,
@@ -223,5 +225,119 @@ impl Sector {
                 );
             }
         }
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+
+    /// A sector of `count` with any symmetric positive definite stiffness: nothing below depends on where it comes from.
+    pub(in crate::fem) fn sector(count: usize, side_nodes: usize) -> Sector {
+        let pitch = 2.0 * std::f64::consts::PI / count as f64;
+        let arc_angles = [-0.5, -0.3, 0.1, 0.5].map(|part| part * pitch).to_vec();
+        let n = 4 * side_nodes + 2 * arc_angles.len();
+        let factor = DMatrix::from_fn(n, n, |i, j| (1.0 + (i * n + j * j) as f64).sin());
+        let dense = &factor * factor.transpose() + DMatrix::identity(n, n);
+        Sector {
+            count,
+            stiffness: Mat::from_fn(n, n, |i, j| dense[(i, j)]),
+            side_nodes,
+            arc_angles,
+        }
+    }
+
+    /// The stiffness of the whole ring, sector by sector, on its sides and then on the real amplitudes of its arcs.
+    ///
+    /// The unknowns of side i are shared by sector i − 1, on its left, and sector i, on its right.
+    pub(in crate::fem) fn assembled(sector: &Sector, harmonics: &Harmonics) -> DMatrix<f64> {
+        let (ns, s) = (2 * sector.side_nodes, sector.count);
+        let (na, nq) = (2 * sector.arc_angles.len(), harmonics.unknowns());
+        let n = s * ns + nq;
+        let mut ring = DMatrix::<f64>::zeros(n, n);
+        for i in 0..s {
+            let mut place = DMatrix::<f64>::zeros(2 * ns + na, n);
+            for c in 0..ns {
+                place[(c, i * ns + c)] += 1.0;
+                place[(ns + c, (i + 1) % s * ns + c)] += 1.0;
+            }
+            place
+                .view_mut((2 * ns, s * ns), (na, nq))
+                .copy_from(&arc(sector, harmonics, i));
+            let k = DMatrix::from_fn(2 * ns + na, 2 * ns + na, |a, b| sector.stiffness[(a, b)]);
+            ring += place.transpose() * k * &place;
+        }
+        ring
+    }
+
+    /// The polar displacements of the arc of sector `i` for unit amplitudes: a_n cos nθ + b_n sin nθ as documented.
+    pub(in crate::fem) fn arc(sector: &Sector, harmonics: &Harmonics, i: usize) -> DMatrix<f64> {
+        let mut arc = DMatrix::zeros(2 * sector.arc_angles.len(), harmonics.unknowns());
+        for (node, angle) in sector.arc_angles.iter().enumerate() {
+            let angle = angle + 2.0 * std::f64::consts::PI * i as f64 / sector.count as f64;
+            for n in 0..=harmonics.largest {
+                for (c, component) in [Component::Radial, Component::Tangential]
+                    .into_iter()
+                    .enumerate()
+                {
+                    let cosine = harmonics.cosine(n, component);
+                    arc[(2 * node + c, cosine)] = (n as f64 * angle).cos();
+                    if n > 0 {
+                        arc[(2 * node + c, cosine + 2)] = (n as f64 * angle).sin();
+                    }
+                }
+            }
+        }
+        arc
+    }
+
+    #[test]
+    fn a_ring_by_its_classes_is_the_ring_assembled_sector_by_sector() {
+        // One sector that closes on itself, odd and even counts, more orders than sectors, and sectors without side nodes.
+        for (count, side_nodes, largest) in [
+            (1, 2, 3),
+            (2, 2, 3),
+            (3, 2, 7),
+            (4, 1, 2),
+            (4, 3, 9),
+            (5, 2, 11),
+            (4, 0, 3),
+        ] {
+            let (sector, harmonics) = (sector(count, side_nodes), Harmonics { largest });
+            let ring = sector
+                .ring_stiffness(&harmonics, &Run::unattended())
+                .expect("definite");
+            let whole = assembled(&sector, &harmonics);
+            let sides = 2 * side_nodes * count;
+            let nq = harmonics.unknowns();
+            let mut expected = whole.view((sides, sides), (nq, nq)).clone_owned();
+            if sides > 0 {
+                let coupling = whole.view((0, sides), (sides, nq)).clone_owned();
+                let held = whole.view((0, 0), (sides, sides)).clone_owned();
+                let solved = held.cholesky().expect("definite").solve(&coupling);
+                expected -= coupling.transpose() * solved;
+            }
+            for i in 0..nq {
+                for j in 0..nq {
+                    // Roundings.
+                    let apart = (ring[(i, j)] - expected[(i, j)]).abs();
+                    assert!(
+                        apart < 1e-11 * expected.amax(),
+                        "{count} sectors, ({i}, {j}): {apart}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn classes_share_out_all_orders_each_once() {
+        let harmonics = Harmonics { largest: 11 };
+        let mut orders: Vec<i64> = (0..4).flat_map(|class| harmonics.class(class, 4)).collect();
+        orders.sort_unstable();
+        assert_eq!(orders, (-11..=11).collect::<Vec<i64>>());
+        assert_eq!(harmonics.class(1, 4), [-11, -7, -3, 1, 5, 9]);
     }
 }

@@ -2,9 +2,16 @@
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve;
 use faer::traits::ComplexField;
-use faer::{Mat, MatMut, Par};
+use faer::{Accum, Mat, MatMut, Par};
+
+use crate::run::{Run, Stopped};
+
+/// Columns that a watched factorization does between two looks at its run: a few hundredths of a second for the largest
+/// gears.
+const PANEL: usize = 256;
 
 /// The lower Cholesky factor of a Hermitian positive definite matrix, of which the lower triangle is read.
 pub struct Cholesky<T: ComplexField>(Mat<T>);
@@ -48,5 +55,93 @@ impl<T: ComplexField> Cholesky<T> {
     /// Overwrites `b` with L⁻ᴴ b.
     pub fn other_half_solve_in_place(&self, b: MatMut<'_, T>) {
         triangular_solve::solve_upper_triangular_in_place(self.0.adjoint(), b, Par::Seq);
+    }
+}
+
+impl Cholesky<f64> {
+    /// As [`Cholesky::new`], for matrices that take long: asks `run` after each panel of columns.
+    ///
+    /// # Errors
+    ///
+    /// [`Stopped`].
+    pub fn new_watched(mut a: Mat<f64>, run: &Run) -> Result<Option<Self>, Stopped> {
+        let n = a.nrows();
+        for start in (0..n).step_by(PANEL) {
+            run.check()?;
+            let width = PANEL.min(n - start);
+            let rest = n - start - width;
+            let diagonal = a.submatrix(start, start, width, width).to_owned();
+            let Some(factor) = Self::new(diagonal) else {
+                return Ok(None);
+            };
+            a.submatrix_mut(start, start, width, width)
+                .copy_from(&factor.0);
+            // L_21 = A_21 L_11^-T, and the rest loses L_21 L_21^T.
+            let mut below = a
+                .submatrix(start + width, start, rest, width)
+                .transpose()
+                .to_owned();
+            factor.half_solve_in_place(below.as_mut());
+            a.submatrix_mut(start + width, start, rest, width)
+                .copy_from(below.transpose());
+            triangular::matmul(
+                a.submatrix_mut(start + width, start + width, rest, rest),
+                BlockStructure::TriangularLower,
+                Accum::Add,
+                below.transpose(),
+                BlockStructure::Rectangular,
+                &below,
+                BlockStructure::Rectangular,
+                -1.0,
+                Par::Seq,
+            );
+        }
+        Ok(Some(Self(a)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn panels_give_the_factor_of_the_whole() {
+        let n = 2 * PANEL + 37;
+        let a = Mat::from_fn(n, n, |i, j| {
+            if i == j {
+                3.0
+            } else {
+                1.0 / (1.0 + i.abs_diff(j) as f64).powi(2)
+            }
+        });
+        let whole = Cholesky::new(a.clone()).expect("diagonally dominant");
+        let panels = Cholesky::new_watched(a.clone(), &Run::unattended())
+            .expect("nobody stops it")
+            .expect("definite");
+        let b = Mat::from_fn(n, 2, |i, j| (i as f64 + j as f64).sin());
+        let (mut x, mut y) = (b.clone(), b.clone());
+        whole.solve_in_place(x.as_mut());
+        panels.solve_in_place(y.as_mut());
+        assert!((&x - &y).norm_max() < 1e-13 * x.norm_max());
+        assert!((&a * &y - &b).norm_max() < 1e-12);
+    }
+
+    #[test]
+    fn an_indefinite_matrix_is_found_in_any_panel() {
+        let n = PANEL + 5;
+        let a = Mat::from_fn(n, n, |i, j| {
+            if i != j {
+                0.0
+            } else if i == n - 1 {
+                -1.0
+            } else {
+                1.0
+            }
+        });
+        assert!(
+            Cholesky::new_watched(a, &Run::unattended())
+                .expect("nobody stops it")
+                .is_none()
+        );
     }
 }

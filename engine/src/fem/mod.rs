@@ -12,6 +12,8 @@ pub mod dense;
 pub mod element;
 pub mod tooth;
 
+use crate::run::Stopped;
+
 /// Why a substructure could not be condensed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FemError {
@@ -23,6 +25,9 @@ pub enum FemError {
         /// The number of unknowns.
         unknowns: usize,
     },
+    /// The caller stopped the work.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
     /// The problem is too large for this machine's indices or memory.
     #[error("{part} with {unknowns} unknowns is too large to factorize")]
     TooLarge {

@@ -8,6 +8,7 @@ use super::cyclic::{Component, Harmonics, Sector};
 use super::dense::Cholesky;
 use crate::gear::{SpurGear, Vector, radial, tangential};
 use crate::grid::ToothGrid;
+use crate::run::Run;
 
 /// Singular values of Ψ below this share of the largest carry nothing: H keeps nine digits.
 const MODE_TOLERANCE: f64 = 1e-11;
@@ -143,8 +144,12 @@ impl TeethRing {
     ///
     /// # Errors
     ///
-    /// [`FemError::NotPositiveDefinite`].
-    pub fn new(tooth: &ToothSubstructure, harmonics: Harmonics) -> Result<Self, FemError> {
+    /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`].
+    pub fn new(
+        tooth: &ToothSubstructure,
+        harmonics: Harmonics,
+        run: &Run,
+    ) -> Result<Self, FemError> {
         let sector = &tooth.sector;
         let (z, r) = (sector.count, tooth.mode_count());
         let ns = 2 * sector.side_nodes;
@@ -153,6 +158,7 @@ impl TeethRing {
         let mut tooth_forces = Mat::<f64>::zeros(harmonics.unknowns(), r);
         let mut class_compliance = Vec::with_capacity(z / 2 + 1);
         for class in 0..=z / 2 {
+            run.check()?;
             let (condensed, solution) = sector.condense_class(class, &harmonics)?;
             sector.add_class(
                 &mut stiffness,
@@ -317,4 +323,86 @@ pub(super) fn polar_axes(point: Vector) -> [Vector; 2] {
 /// The symmetric matrix `a` on the polar axes of `points`.
 pub(super) fn in_polar_axes(a: &Mat<f64>, points: impl Iterator<Item = Vector>) -> Mat<f64> {
     in_axes(a, &points.map(polar_axes).collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::fem::cyclic::tests::{arc, assembled, sector};
+
+    /// A tooth of which only what makes the ring is filled in: a sector, and two loading modes on all its unknowns.
+    fn tooth(count: usize, side_nodes: usize) -> ToothSubstructure {
+        let sector = sector(count, side_nodes);
+        let n = sector.stiffness.nrows();
+        ToothSubstructure {
+            fixed_compliance: Mat::zeros(0, 0),
+            modes: Mat::zeros(0, 2),
+            roll_lengths: Vec::new(),
+            flank_points: Vec::new(),
+            grid_nodes: 0,
+            shared_nodes: (0, 0),
+            mode_forces: Mat::from_fn(n, 2, |i, j| (2.0 + (3 * i + 7 * j) as f64).cos()),
+            sector,
+        }
+    }
+
+    #[test]
+    fn forces_of_teeth_reach_the_harmonics_and_each_other_as_in_the_ring_assembled_sector_by_sector()
+     {
+        for (count, side_nodes, largest) in [(1, 2, 3), (3, 2, 7), (4, 1, 2), (4, 3, 9), (5, 2, 11)]
+        {
+            let (tooth, harmonics) = (tooth(count, side_nodes), Harmonics { largest });
+            let ring = TeethRing::new(&tooth, harmonics, &Run::unattended()).expect("definite");
+            let ns = 2 * side_nodes;
+            let (sides, nq) = (ns * count, harmonics.unknowns());
+            let whole = assembled(&tooth.sector, &harmonics);
+            let held = whole
+                .view((0, 0), (sides, sides))
+                .clone_owned()
+                .cholesky()
+                .expect("definite");
+            let coupling = whole.view((0, sides), (sides, nq)).clone_owned();
+            let forces = DMatrix::from_fn(tooth.mode_forces.nrows(), 2, |i, j| {
+                tooth.mode_forces[(i, j)]
+            });
+            let on_sides = |tooth: usize| {
+                let mut loads = DMatrix::<f64>::zeros(sides, 2);
+                for j in 0..2 {
+                    for c in 0..ns {
+                        loads[(tooth * ns + c, j)] += forces[(c, j)];
+                        loads[((tooth + 1) % count * ns + c, j)] += forces[(ns + c, j)];
+                    }
+                }
+                loads
+            };
+            for i in 0..count {
+                // F = f_q − K_qs K_ss⁻¹ f_s, and X_d = f_s(0)ᵀ K_ss⁻¹ f_s(d).
+                let solved = held.solve(&on_sides(i));
+                let on_arc = forces.rows(2 * ns, forces.nrows() - 2 * ns);
+                let expected = arc(&tooth.sector, &harmonics, i).transpose() * on_arc
+                    - coupling.transpose() * &solved;
+                let angle = 2.0 * std::f64::consts::PI * i as f64 / count as f64;
+                let reached = ring.forces_of_tooth_at(angle);
+                for q in 0..nq {
+                    for j in 0..2 {
+                        let apart = (reached[(q, j)] - expected[(q, j)]).abs();
+                        assert!(
+                            apart < 1e-10 * expected.amax(),
+                            "{count} sectors, tooth {i}, ({q}, {j}): {apart}"
+                        );
+                    }
+                }
+                let answer = on_sides(0).transpose() * &solved;
+                for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                    let apart = (ring.held_coupling[i][(a, b)] - answer[(a, b)]).abs();
+                    assert!(
+                        apart < 1e-10 * answer.amax(),
+                        "{count} sectors, neighbor {i}: {apart}"
+                    );
+                }
+            }
+        }
+    }
 }

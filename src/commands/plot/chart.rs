@@ -11,7 +11,12 @@ const TOLERANCE: f64 = 0.15;
 
 /// The room for ticks and labels below and beside a chart, in pixels.
 const BELOW: u32 = 40;
-const BESIDE: u32 = 62;
+const BESIDE: u32 = 58;
+
+/// The margins of a chart in pixels: above it, with its title, to its left and to its right.
+const ABOVE: u32 = 25;
+const LEFT: u32 = 8;
+const RIGHT: u32 = 18;
 
 /// How a series is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,11 +92,12 @@ type Context<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>
 
 impl Chart {
     pub(super) fn draw(&self, area: &Area<'_>, size: (u32, u32)) -> anyhow::Result<()> {
-        let middle = f64::from(BESIDE);
-        write(area, &self.title, (middle, 9.0), 12.0, (HPos::Left, true))?;
+        let start = f64::from(LEFT + BESIDE);
+        write(area, &self.title, (start, 13.0), 12.0, (HPos::Left, true))?;
         let mut context = ChartBuilder::on(area)
-            .margin_top(units(19))
-            .margin_right(units(16))
+            .margin_top(units(ABOVE))
+            .margin_left(units(LEFT))
+            .margin_right(units(RIGHT))
             .x_label_area_size(units(BELOW))
             .y_label_area_size(units(BESIDE))
             .build_cartesian_2d(self.x.clone(), self.y.clone())?;
@@ -110,8 +116,8 @@ impl Chart {
             self.draw_mark(&mut context, mark)?;
         }
         let frame = (
-            f64::from(size.0 - BESIDE - 16),
-            f64::from(size.1 - BELOW - 19),
+            f64::from(size.0 - LEFT - BESIDE - RIGHT),
+            f64::from(size.1 - BELOW - ABOVE),
         );
         for series in &self.series {
             self.draw_series(&mut context, series, frame)?;

@@ -25,6 +25,9 @@ pub struct InvoluteTooth {
     root_radius: f64,
 }
 
+/// The least height of a load over the root radius: a load below it bends the tooth by nothing that counts.
+const LEAST_HEIGHT: f64 = 1e-6;
+
 /// Where a load acts on a tooth, as the formulas want it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ToothLoad {
@@ -54,12 +57,6 @@ pub enum ToothLoadError {
     BeyondPointedTip {
         /// The roll length asked for, in m.
         roll_length: f64,
-    },
-    /// The load line crosses the centerline below the root circle, where no tooth is left to bend.
-    #[error("the load line crosses the tooth's centerline {below} m below the root circle")]
-    BelowRoot {
-        /// How far below, in m.
-        below: f64,
     },
     /// The rack's rounded tip is wider than the rack's tooth.
     #[error(
@@ -132,8 +129,7 @@ impl ToothLoad {
     ///
     /// # Errors
     ///
-    /// [`ToothLoadError`] if the roll length is not positive, lies beyond a pointed tip, or puts the load below the
-    /// root circle.
+    /// [`ToothLoadError`] if the roll length is not positive or lies beyond a pointed tip.
     pub fn at_roll_length(tooth: &InvoluteTooth, roll_length: f64) -> Result<Self, ToothLoadError> {
         let &InvoluteTooth {
             base_radius: r_b,
@@ -154,11 +150,10 @@ impl ToothLoad {
             return Err(ToothLoadError::BeyondPointedTip { roll_length });
         }
         let u = r_b / alpha_m.cos() - r_f;
-        if u <= 0.0 {
-            return Err(ToothLoadError::BelowRoot { below: -u });
-        }
         Ok(Self {
-            height: u,
+            // On large gears the line of a load near the root crosses the centerline below the root circle: there is no
+            // tooth left to bend, and the formulas want a positive height.
+            height: u.max(LEAST_HEIGHT * r_f),
             angle: alpha_m,
             depth: t,
         })
@@ -252,10 +247,9 @@ mod tests {
             ToothLoad::at_roll_length(&tooth, 1.0),
             Err(ToothLoadError::BeyondPointedTip { .. })
         ));
-        assert!(matches!(
-            ToothLoad::at_roll_length(&tooth, 3e-3),
-            Err(ToothLoadError::BelowRoot { .. })
-        ));
+        let low = ToothLoad::at_roll_length(&tooth, 3e-3)
+            .expect("a load below the root circle bends nothing");
+        assert!(low.height < 1e-6);
         assert!(matches!(
             ToothLoad::at_roll_length(&tooth, f64::NAN),
             Err(ToothLoadError::NotPositive(_))

@@ -1,0 +1,120 @@
+//! A bounded store that forgets what was not used for longest.
+
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Parts by key, shared between threads; their sizes together stay within a bound.
+///
+/// Two threads that want the same new part at the same moment both compute it, and get the same bits.
+#[derive(Debug)]
+pub(super) struct Shelf<K, T> {
+    books: Mutex<Books<K, T>>,
+    capacity: usize,
+}
+
+#[derive(Debug)]
+struct Books<K, T> {
+    /// Each part with its size and when it was last used.
+    parts: HashMap<K, (Arc<T>, usize, u64)>,
+    bytes: usize,
+    clock: u64,
+}
+
+impl<K: Eq + Hash + Clone, T> Shelf<K, T> {
+    /// A shelf for `capacity` bytes.
+    pub(super) fn new(capacity: usize) -> Self {
+        let books = Books {
+            parts: HashMap::new(),
+            bytes: 0,
+            clock: 0,
+        };
+        Self {
+            books: Mutex::new(books),
+            capacity,
+        }
+    }
+
+    /// The part of `key`, built if it is not there; `bytes` tells the size of a new one.
+    pub(super) fn part<E>(
+        &self,
+        key: K,
+        bytes: impl FnOnce(&T) -> usize,
+        build: impl FnOnce() -> Result<T, E>,
+    ) -> Result<Arc<T>, E> {
+        if let Some(part) = self.books().find(&key) {
+            return Ok(part);
+        }
+        let part = Arc::new(build()?);
+        let size = bytes(&part);
+        self.books().keep(key, part.clone(), size, self.capacity);
+        Ok(part)
+    }
+
+    fn books(&self) -> MutexGuard<'_, Books<K, T>> {
+        // The books hold only finished parts, so that a panic elsewhere leaves nothing half done in them.
+        self.books.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl<K: Eq + Hash + Clone, T> Books<K, T> {
+    fn find(&mut self, key: &K) -> Option<Arc<T>> {
+        self.clock += 1;
+        let (part, _, used) = self.parts.get_mut(key)?;
+        *used = self.clock;
+        Some(part.clone())
+    }
+
+    fn keep(&mut self, key: K, part: Arc<T>, size: usize, capacity: usize) {
+        self.clock += 1;
+        self.bytes += size;
+        if let Some((_, size, _)) = self.parts.insert(key, (part, size, self.clock)) {
+            self.bytes -= size;
+        }
+        while self.bytes > capacity {
+            let oldest = self.parts.iter().min_by_key(|(_, (_, _, used))| *used);
+            let Some(key) = oldest.map(|(key, _)| key.clone()) else {
+                break;
+            };
+            if let Some((_, size, _)) = self.parts.remove(&key) {
+                self.bytes -= size;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn built(shelf: &Shelf<u32, u32>, key: u32) -> bool {
+        let mut built = false;
+        let build = || {
+            built = true;
+            Ok::<_, ()>(key)
+        };
+        assert_eq!(shelf.part(key, |_| 10, build).as_deref(), Ok(&key));
+        built
+    }
+
+    #[test]
+    fn what_was_not_used_for_longest_goes_first() {
+        let shelf = Shelf::new(20);
+        assert!(built(&shelf, 1) && built(&shelf, 2) && !built(&shelf, 1));
+        assert!(built(&shelf, 3), "the third makes the shelf too full");
+        assert!(!built(&shelf, 1) && built(&shelf, 2), "2 had to go");
+    }
+
+    #[test]
+    fn a_part_that_is_too_large_is_given_but_not_kept() {
+        let shelf = Shelf::new(5);
+        assert!(built(&shelf, 1) && built(&shelf, 1));
+    }
+
+    #[test]
+    fn a_failure_is_not_kept() {
+        let shelf = Shelf::<u32, u32>::new(100);
+        assert_eq!(shelf.part(1, |_| 10, || Err("no")), Err("no"));
+        assert!(built(&shelf, 1));
+    }
+}

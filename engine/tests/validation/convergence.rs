@@ -1,0 +1,156 @@
+//! What halving every element and every contact cell changes, through the public grid levels, and how smooth the curves
+//! are between positions.
+
+use meshwright_engine::analysis::Curve;
+use meshwright_engine::gear::GearPair;
+use meshwright_engine::grid::GridLevel;
+use nalgebra::{DMatrix, DVector};
+
+use crate::support::{case, paper_case, solve, standard_pair};
+
+/// Bounds between the standard and the fine level (DESIGN section 5).
+const MEAN: f64 = 1e-3;
+const PEAK_TO_PEAK: f64 = 1e-2;
+const MEAN_STIFFNESS: f64 = 5e-3;
+const MESH_HARMONIC: f64 = 1e-2;
+/// The part of the largest mesh harmonic below which a harmonic is held to the bound as a part of the largest one instead of
+/// its own. Where the contact of a tip corner sets in, the levels differ by 3 nm at single positions; that is 0.7 nm in
+/// each harmonic, and 3 % of the second one of cases 1 and 2, which at 38 and 24 nm nearly cancels beside the 317 and 270 nm
+/// of the first. (Standard pair: 2.7 nm beside 231 nm.)
+const SMALL_HARMONIC: f64 = 0.2;
+
+fn at(pair: GearPair, torques: &[f64], level: GridLevel) -> Vec<Curve> {
+    let mut case = case(pair, torques);
+    case.resolution.grid = level;
+    solve(&case).curves
+}
+
+/// Amplitudes of the first three harmonics of the mesh.
+fn mesh_harmonics(curve: &Curve) -> [f64; 3] {
+    let spectrum = curve.spectrum.as_ref().expect("whole periods");
+    ["H_Z2", "H_2Z2", "H_3Z2"].map(|label| {
+        spectrum
+            .line(label)
+            .expect("a named line")
+            .transmission_error
+    })
+}
+
+/// Prints what a step of the level changes, and holds it to the bounds if `bounded`.
+fn compare(name: &str, now: &Curve, finer: &Curve, bounded: bool) {
+    let change = |value: fn(&Curve) -> f64| value(now) / value(finer) - 1.0;
+    let mean = change(|curve| curve.transmission_error_statistics.mean);
+    let peak_to_peak = change(|curve| curve.transmission_error_statistics.peak_to_peak);
+    let stiffness = change(|curve| curve.mesh_stiffness_tangent_statistics.mean);
+    let (harmonics, finer_harmonics) = (mesh_harmonics(now), mesh_harmonics(finer));
+    let relative: Vec<f64> = harmonics
+        .iter()
+        .zip(finer_harmonics)
+        .map(|(a, b)| a / b - 1.0)
+        .collect();
+    println!(
+        "{name}: mean {mean:+.2e}, p-p {peak_to_peak:+.2e}, mean k {stiffness:+.2e}, H_kZ2 {relative:+.4?} of {finer_harmonics:?} m"
+    );
+    if bounded {
+        assert!(mean.abs() < MEAN, "{name}");
+        assert!(peak_to_peak.abs() < PEAK_TO_PEAK, "{name}");
+        assert!(stiffness.abs() < MEAN_STIFFNESS, "{name}");
+        let largest = finer_harmonics.iter().copied().fold(0.0, f64::max);
+        for (a, b) in harmonics.into_iter().zip(finer_harmonics) {
+            let against = if b > SMALL_HARMONIC * largest {
+                b
+            } else {
+                largest
+            };
+            assert!(
+                (a - b).abs() < MESH_HARMONIC * against,
+                "{name}: {a} to {b} m of {largest} m"
+            );
+        }
+    }
+}
+
+fn check(name: &str, pair: GearPair, torques: &[f64]) {
+    let [coarse, standard, fine] = [GridLevel::Coarse, GridLevel::Standard, GridLevel::Fine]
+        .map(|level| at(pair, torques, level));
+    for (i, torque) in torques.iter().enumerate() {
+        compare(
+            &format!("{name}, T {torque}, coarse to standard"),
+            &coarse[i],
+            &standard[i],
+            false,
+        );
+        compare(
+            &format!("{name}, T {torque}, standard to fine"),
+            &standard[i],
+            &fine[i],
+            true,
+        );
+    }
+}
+
+#[test]
+fn halving_every_element_moves_the_curves_of_case_1_by_less_than_promised() {
+    let (pair, torque) = paper_case(1);
+    check("case 1", pair, &[torque]);
+}
+
+#[test]
+fn halving_every_element_moves_the_curves_of_case_2_by_less_than_promised() {
+    let (pair, torque) = paper_case(2);
+    check("case 2", pair, &[torque]);
+}
+
+#[test]
+fn halving_every_element_moves_the_curves_of_case_3_by_less_than_promised() {
+    let (pair, torque) = paper_case(3);
+    check("case 3", pair, &[torque]);
+}
+
+#[test]
+fn halving_every_element_moves_the_curves_of_the_standard_pair_by_less_than_promised() {
+    check("standard pair", standard_pair(true), &[115.0, 20.0]);
+}
+
+/// The largest difference of `values` from their best fourth-order polynomial.
+fn ripple(values: &[f64]) -> f64 {
+    let n = values.len();
+    let place = |i: usize| 2.0 * i as f64 / (n - 1) as f64 - 1.0;
+    let powers = DMatrix::from_fn(n, 5, |i, power| place(i).powi(power as i32));
+    let y = DVector::from_column_slice(values);
+    let fit = powers
+        .clone()
+        .svd(true, true)
+        .solve(&y, 1e-14)
+        .expect("both sides were asked for");
+    (powers * fit - y).amax()
+}
+
+#[test]
+fn plateaus_of_the_curves_have_no_ripple() {
+    // Where the number of pairs does not change, away from tip corners, the curves are smooth; 200 positions a period
+    // see what moves with the cells and the elements.
+    for (name, relief, torque, from, to) in [
+        ("with relief", true, 115.0, 0.30, 0.70),
+        ("with relief", true, 20.0, 0.05, 0.35),
+        ("without relief", false, 115.0, 0.30, 0.70),
+    ] {
+        let mut case = case(standard_pair(relief), &[torque]);
+        case.resolution.positions_per_mesh_period = 200;
+        let curve = &solve(&case).curves[0];
+        let plateau = (0..200).filter(|i| (from..=to).contains(&curve.mesh_position[*i]));
+        let plateau: Vec<usize> = plateau.collect();
+        let of = |values: &[f64]| plateau.iter().map(|i| values[*i]).collect::<Vec<f64>>();
+        let delta = ripple(&of(&curve.transmission_error));
+        let stiffness = of(&curve.mesh_stiffness_tangent);
+        let mean = stiffness.iter().sum::<f64>() / stiffness.len() as f64;
+        let k = ripple(&stiffness) / mean;
+        println!(
+            "{name}, T {torque}: ripple {:.3} nm and {:.4} % of k",
+            delta * 1e9,
+            k * 100.0
+        );
+        assert!(delta < 5e-9);
+        assert!(k < 5e-3);
+    }
+}

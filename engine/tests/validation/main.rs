@@ -1,0 +1,16 @@
+//! What the mechanics must show: agreement with an independent solver, with the paper, with closed forms and with itself.
+//!
+//! Read in this order: [`calculix`] and [`paper`] (other people's numbers), [`closed_forms`], [`convergence`] (of grid,
+//! cells and positions), [`patch`] and [`uncondensed`] (the substructures and their coupling), [`invariants`] and
+//! [`robustness`]. [`support`] makes the gears, [`whole`] assembles a gear without any condensation.
+
+mod calculix;
+mod closed_forms;
+mod convergence;
+mod invariants;
+mod paper;
+mod patch;
+mod robustness;
+mod support;
+mod uncondensed;
+mod whole;

@@ -1,0 +1,143 @@
+//! The contract that is committed is the one that is served, and the parts know each other in one direction only.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn the_committed_openapi_document_is_the_generated_one() {
+    let path = root().join("api/openapi.json");
+    let generated = meshwright::http::openapi().to_pretty_json().unwrap() + "\n";
+    // Writing it anew is one command: MESHWRIGHT_WRITE_OPENAPI=1 ./test contract
+    if std::env::var_os("MESHWRIGHT_WRITE_OPENAPI").is_some() {
+        fs::write(&path, &generated).unwrap();
+    }
+    let committed = fs::read_to_string(&path).unwrap_or_default();
+    assert!(
+        committed == generated,
+        "api/openapi.json is stale: run MESHWRIGHT_WRITE_OPENAPI=1 ./test contract"
+    );
+}
+
+#[test]
+fn every_field_of_a_submission_tells_a_form_its_title_and_its_kind() {
+    let document: serde_json::Value =
+        serde_json::from_str(&meshwright::http::openapi().to_json().unwrap()).unwrap();
+    let schemas = &document["components"]["schemas"];
+    let mut seen = 0;
+    for schema in [
+        "Submission",
+        "Pair",
+        "Gear",
+        "Blank",
+        "Holes",
+        "Material",
+        "TipRelief",
+        "Resolution",
+    ] {
+        let Some(properties) = schemas[schema]["properties"].as_object() else {
+            continue;
+        };
+        for (name, field) in properties {
+            seen += 1;
+            let described = field["title"].is_string()
+                || field["description"].is_string()
+                || field["$ref"].is_string();
+            assert!(
+                described,
+                "{schema}.{name} has neither title nor description"
+            );
+            if field["type"] == "number" || field["type"] == "integer" {
+                for key in ["minimum", "maximum"] {
+                    let bounded = field[key].is_number()
+                        || field[format!("exclusive{}{}", &key[..1].to_uppercase(), &key[1..])]
+                            .is_number();
+                    assert!(bounded, "{schema}.{name} has no {key}");
+                }
+            }
+        }
+    }
+    assert!(seen > 25, "the schemas of a submission have {seen} fields");
+}
+
+/// The arrow of ARCHITECTURE.md: http -> jobs -> wire -> engine.
+#[test]
+fn each_part_knows_only_the_parts_below_it() {
+    let forbidden: [(&str, &[&str]); 3] = [
+        (
+            "src/wire",
+            &[
+                "crate::jobs",
+                "crate::http",
+                "crate::serve",
+                "axum",
+                "sqlx",
+                "tokio",
+            ],
+        ),
+        ("src/jobs", &["crate::http", "crate::serve", "axum"]),
+        (
+            "engine/src",
+            &[
+                "serde",
+                "tokio",
+                "axum",
+                "sqlx",
+                "std::fs",
+                "std::net",
+                "std::time",
+            ],
+        ),
+    ];
+    for (folder, names) in forbidden {
+        for file in rust_files(&root().join(folder)) {
+            let text = fs::read_to_string(&file).unwrap();
+            for line in text
+                .lines()
+                .filter(|line| !line.trim_start().starts_with("//"))
+            {
+                let line = line.trim_start();
+                for name in names {
+                    let used = line.starts_with("use ") && line.contains(name)
+                        || line.contains(&format!("{name}::"));
+                    assert!(!used, "{} knows {name}: {line}", file.display());
+                }
+            }
+        }
+    }
+}
+
+/// Inside the engine: analysis -> contact -> fem -> grid -> gear.
+#[test]
+fn the_mechanics_build_on_each_other_in_one_direction() {
+    let layers = ["gear", "grid", "fem", "contact", "analysis"];
+    for (level, layer) in layers.iter().enumerate() {
+        for file in rust_files(&root().join("engine/src").join(layer)) {
+            let text = fs::read_to_string(&file).unwrap();
+            let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+            for above in &layers[level + 1..] {
+                let used = code.lines().any(|line| {
+                    !line.trim_start().starts_with("//")
+                        && line.contains(&format!("crate::{above}"))
+                });
+                assert!(!used, "{} knows {above}", file.display());
+            }
+        }
+    }
+}
+
+fn rust_files(folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            files.extend(rust_files(&path));
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            files.push(path);
+        }
+    }
+    files
+}
