@@ -33,7 +33,7 @@ pub(super) fn rotations(computed: &Computed) -> anyhow::Result<Illustration> {
                 .map(|sample| (sample.rotation - fitted(fit, gear, sample.mesh_position)).abs())
                 .fold(0.0, f64::max);
             residuals.push(format!(
-                "{place}: A {:.3}, B {:.3}, residual {:.3} µm",
+                "{place} {:.3}, {:.3} and {:.3}",
                 fit.mean * 1e6,
                 fit.amplitude * 1e6,
                 residual * 1e6
@@ -42,9 +42,11 @@ pub(super) fn rotations(computed: &Computed) -> anyhow::Result<Illustration> {
         }
     }
     let caption = format!(
-        "δ_gb = R_b θ_gb of eqs. 13 and 14 at the 16 positions of one hole period, and A + B cos(Nθ + phase) through them. \
-         {}. The paper's Fig. 3 has the shape without numbers. What the cosine misses are the next harmonics of the hole \
-         pattern, and that a sample stands where one pair or where two pairs carry the load.",
+        "δ_gb = R_b θ_gb of eqs. 13 and 14 at the 16 positions of one hole period, and A + B cos(Nθ + phase) through them. A, B \
+         and the largest residual in µm: {}. The paper's Fig. 3 has the shape without numbers and without scatter. The \
+         scatter is mostly the mesh's own: a sample stands where one pair or where two pairs carry the load, and the blank \
+         gives way differently under them. The fit averages this away, which is what H_Z2 lacks in Figs. 6 and 7; the next \
+         harmonics of the hole pattern go with it.",
         residuals.join("; ")
     );
     Illustration::new("fig-03-blank-rotation.svg", caption, &figure)
