@@ -20,6 +20,8 @@ enum Command {
     Serve(commands::serve::Serve),
     /// Compute one submission.
     Solve(commands::solve::Solve),
+    /// Compute a study: many variants of one submission, and their table.
+    Study(commands::study::Study),
     /// Ask a running service whether it is ready; exit code 1 if not.
     Health(commands::health::Health),
     /// Recompute the paper's tables, figures and study.
@@ -30,6 +32,7 @@ fn main() -> anyhow::Result<ExitCode> {
     match Arguments::parse().command {
         Command::Serve(serve) => serve.run(),
         Command::Solve(solve) => solve.run(),
+        Command::Study(study) => study.run(),
         Command::Health(health) => health.run(),
         Command::Reproduce(reproduce) => {
             reproduce.run()?;

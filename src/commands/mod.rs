@@ -7,3 +7,4 @@ pub(crate) mod plot;
 pub(crate) mod reproduce;
 pub(crate) mod serve;
 pub(crate) mod solve;
+pub(crate) mod study;

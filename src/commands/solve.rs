@@ -18,7 +18,7 @@ use meshwright_engine::run::Run;
 const LIBRARY_BYTES: usize = 512 << 20;
 
 /// The exit code for a submission that cannot be computed.
-const EXIT_PROBLEM: u8 = 2;
+pub(super) const EXIT_PROBLEM: u8 = 2;
 
 /// Compute one submission.
 #[derive(Debug, clap::Args)]
@@ -37,7 +37,7 @@ impl Solve {
     ///
     /// If a file cannot be read or written. A problem with the submission is printed, and is exit code 2.
     pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
-        let document = self.read()?;
+        let document = read(&self.submission)?;
         let started = Instant::now();
         let results = match Submission::parse(&document).and_then(|submission| compute(&submission))
         {
@@ -64,19 +64,6 @@ impl Solve {
         Ok(ExitCode::SUCCESS)
     }
 
-    fn read(&self) -> anyhow::Result<Vec<u8>> {
-        if is_dash(&self.submission) {
-            let mut document = Vec::new();
-            std::io::stdin()
-                .read_to_end(&mut document)
-                .context("standard input cannot be read")?;
-            Ok(document)
-        } else {
-            fs::read(&self.submission)
-                .with_context(|| format!("{} cannot be read", self.submission.display()))
-        }
-    }
-
     fn write(&self, path: &Path, json: &str) -> anyhow::Result<()> {
         if is_dash(path) {
             writeln!(std::io::stdout(), "{json}").context("standard output cannot be written")
@@ -84,6 +71,19 @@ impl Solve {
             fs::write(path, format!("{json}\n"))
                 .with_context(|| format!("{} cannot be written", path.display()))
         }
+    }
+}
+
+/// The document at `path`, or from standard input.
+pub(super) fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
+    if is_dash(path) {
+        let mut document = Vec::new();
+        std::io::stdin()
+            .read_to_end(&mut document)
+            .context("standard input cannot be read")?;
+        Ok(document)
+    } else {
+        fs::read(path).with_context(|| format!("{} cannot be read", path.display()))
     }
 }
 
@@ -109,7 +109,7 @@ fn compute(submission: &Submission) -> Result<Results, Problem> {
 }
 
 /// A problem as a person reads it.
-fn told(problem: &Problem) -> String {
+pub(super) fn told(problem: &Problem) -> String {
     let mut text = format!("{} ({}).\n", problem.title, code_word(problem));
     if problem.errors.is_empty() {
         text.push_str(&format!("  {}\n", problem.detail));

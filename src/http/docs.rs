@@ -21,6 +21,7 @@ use super::router::{App, routes};
     tags(
         (name = "Jobs", description = "Computations, from submission to end."),
         (name = "Results", description = "What was computed."),
+        (name = "Studies", description = "Many variants of a submission at once, and their table."),
         (name = "Reference", description = "What can be known without a job."),
         (name = "Operation", description = "For those who run the service."),
     ),

@@ -10,24 +10,21 @@ use futures_util::StreamExt;
 
 use crate::wire::{Code, Problem};
 
-/// A document may have so many bytes. The largest submission has a few thousand.
-pub(super) const LIMIT: usize = 1024 * 1024;
-
-/// So much more is read and thrown away, because a client that is still sending does not see the answer.
-const DRAINED: usize = 64 * LIMIT;
+/// So many times the limit is read and thrown away, because a client that is still sending does not see the answer.
+const DRAINED: usize = 64;
 
 /// The body is here within this time.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// The bytes of a request's JSON document.
-pub(super) struct Document(pub(super) Bytes);
+/// The bytes of a request's JSON document, so many MiB at most. The largest submission has a few thousand bytes.
+pub(super) struct Document<const MIB: usize = 1>(pub(super) Bytes);
 
-impl<S: Send + Sync> FromRequest<S> for Document {
+impl<const MIB: usize, S: Send + Sync> FromRequest<S> for Document<MIB> {
     type Rejection = Problem;
 
     async fn from_request(request: Request, _: &S) -> Result<Self, Problem> {
         let media_type = check_media_type(request.headers());
-        let body = tokio::time::timeout(PATIENCE, read(request.into_body()))
+        let body = tokio::time::timeout(PATIENCE, read(request.into_body(), MIB * 1024 * 1024))
             .await
             .map_err(|_| {
                 Problem::new(
@@ -69,7 +66,7 @@ fn check_media_type(headers: &HeaderMap) -> Result<(), Problem> {
     ))
 }
 
-async fn read(body: Body) -> Result<Bytes, Problem> {
+async fn read(body: Body, limit: usize) -> Result<Bytes, Problem> {
     let (mut stream, mut bytes, mut length) = (body.into_data_stream(), Vec::new(), 0_usize);
     while let Some(chunk) = stream.next().await {
         let chunk = chunk.map_err(|_| {
@@ -79,17 +76,17 @@ async fn read(body: Body) -> Result<Bytes, Problem> {
             )
         })?;
         length = length.saturating_add(chunk.len());
-        if length > DRAINED {
+        if length > DRAINED * limit {
             break;
         }
-        if length <= LIMIT {
+        if length <= limit {
             bytes.extend_from_slice(&chunk);
         }
     }
-    if length > LIMIT {
+    if length > limit {
         return Err(Problem::new(
             Code::PayloadTooLarge,
-            format!("The body has more than {LIMIT} bytes."),
+            format!("The body has more than {limit} bytes, the limit here."),
         ));
     }
     Ok(bytes.into())

@@ -15,7 +15,7 @@ use super::parameters::{Parameters, invalid, job_id};
 use super::prefer::Wait;
 use super::router::App;
 use super::view::{JobView, ListView};
-use crate::jobs::{Filter, Status};
+use crate::jobs::{Filter, Membership, Status};
 use crate::wire::Problem;
 
 /// A list has so many jobs unless it is told.
@@ -35,6 +35,8 @@ pub(super) struct ListParameters {
     tag: Option<String>,
     /// Jobs of these ids, separated by commas; those that do not exist are left out. 200 at most.
     ids: Option<String>,
+    /// Jobs of the study of this id; `none` for jobs that belong to no study.
+    study: Option<String>,
     /// So many jobs at most.
     #[param(minimum = 1, maximum = 200, default = 50)]
     limit: Option<u32>,
@@ -87,6 +89,7 @@ impl ListParameters {
                 .transpose()?,
             tag: self.tag.clone(),
             ids,
+            study: self.study.as_deref().map(membership).transpose()?,
             after: self
                 .cursor
                 .as_ref()
@@ -106,6 +109,7 @@ impl ListParameters {
             ("status", self.status.as_deref()),
             ("tag", self.tag.as_deref()),
             ("ids", self.ids.as_deref()),
+            ("study", self.study.as_deref()),
             (
                 "limit",
                 self.limit.map(|limit| limit.to_string()).as_deref(),
@@ -115,6 +119,15 @@ impl ListParameters {
         query.insert_str(0, &format!("{public_url}/v1/jobs?"));
         query
     }
+}
+
+fn membership(word: &str) -> Result<Membership, Problem> {
+    if word == "none" {
+        return Ok(Membership::Alone);
+    }
+    let id = word.parse();
+    id.map(Membership::Of)
+        .map_err(|_| invalid(format!("study: {word:?} is neither an id nor none.")))
 }
 
 fn words(list: &str) -> impl Iterator<Item = &str> {

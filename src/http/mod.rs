@@ -18,6 +18,7 @@ mod problem_pages;
 mod reference;
 mod results;
 mod router;
+mod studies;
 mod submit;
 mod tables;
 mod view;

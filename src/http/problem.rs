@@ -60,6 +60,17 @@ impl From<JobError> for Problem {
             JobError::NotFound(_) => {
                 Problem::new(Code::JobNotFound, format!("{}.", sentence(&error)))
             }
+            JobError::StudyNotFound(_) => {
+                Problem::new(Code::StudyNotFound, format!("{}.", sentence(&error)))
+            }
+            JobError::StudyRunning => Problem::new(
+                Code::JobRunning,
+                "The study has not ended; cancel it before it is deleted.",
+            ),
+            JobError::StudyEnded(status) => Problem::new(
+                Code::JobFinished,
+                format!("The study is {} already.", status.as_str()),
+            ),
             JobError::Running => Problem::new(
                 Code::JobRunning,
                 "The job is running; cancel it before it is deleted.",
@@ -144,7 +155,7 @@ pub(super) fn of_panic(panic: Box<dyn Any + Send>) -> Response {
     internal().into_response()
 }
 
-fn internal() -> Problem {
+pub(super) fn internal() -> Problem {
     Problem::new(
         Code::InternalError,
         "The service failed. The failure has been logged.",

@@ -24,7 +24,8 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::{
-    docs, events, health, jobs, metrics, problem, problem_pages, reference, results, submit, tables,
+    docs, events, health, jobs, metrics, problem, problem_pages, reference, results, studies,
+    submit, tables,
 };
 use crate::jobs::Jobs;
 use crate::wire::{Code, Problem};
@@ -93,6 +94,12 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(results::results))
         .routes(routes!(tables::table))
         .routes(routes!(events::events))
+        .routes(routes!(studies::submit, studies::list))
+        .routes(routes!(studies::show, studies::delete))
+        .routes(routes!(studies::results))
+        .routes(routes!(studies::results_csv))
+        .routes(routes!(studies::events))
+        .routes(routes!(studies::cancel))
         .routes(routes!(reference::validate))
         .routes(routes!(reference::examples))
         .routes(routes!(reference::limits))

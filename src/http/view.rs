@@ -69,6 +69,9 @@ pub(super) struct Links {
     /// The earlier job whose results this one was given.
     #[serde(skip_serializing_if = "Option::is_none")]
     same_as: Option<String>,
+    /// The study that it computes a design of.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    study: Option<String>,
 }
 
 /// Some jobs, newest first.
@@ -130,6 +133,7 @@ impl Links {
             events: format!("{self_}/events"),
             cancel: (!job.status.has_ended()).then(|| format!("{self_}/cancel")),
             same_as: job.same_as.map(|id| edge.job(id)),
+            study: job.study.map(|id| edge.study(id)),
             self_,
         }
     }
@@ -143,7 +147,7 @@ impl Edge {
 }
 
 /// A stored problem knows no address; its link gets one when it is served.
-fn with_public_type(mut problem: Value, edge: &Edge) -> Value {
+pub(super) fn with_public_type(mut problem: Value, edge: &Edge) -> Value {
     if let Some(Value::String(type_)) = problem.get_mut("type") {
         type_.insert_str(0, &edge.public_url);
     }

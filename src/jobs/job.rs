@@ -102,6 +102,8 @@ pub struct Job {
     pub document: Option<String>,
     /// The earlier job whose results this one was given.
     pub same_as: Option<Uuid>,
+    /// The study that it computes a design of.
+    pub study: Option<Uuid>,
 }
 
 impl Job {
@@ -116,6 +118,7 @@ impl FromRow<'_, SqliteRow> for Job {
         let attempt: i64 = row.try_get("attempt")?;
         let returned: i64 = row.try_get("returned")?;
         let same_as: Option<String> = row.try_get("same_as")?;
+        let study: Option<String> = row.try_get("study")?;
         Ok(Self {
             id: uuid("id", &row.try_get::<String, _>("id")?)?,
             client: row.try_get("client")?,
@@ -138,11 +141,12 @@ impl FromRow<'_, SqliteRow> for Job {
                 .transpose()?,
             document: row.try_get("document")?,
             same_as: same_as.map(|id| uuid("same_as", &id)).transpose()?,
+            study: study.map(|id| uuid("study", &id)).transpose()?,
         })
     }
 }
 
-fn optional_instant(
+pub(super) fn optional_instant(
     row: &SqliteRow,
     column: &'static str,
 ) -> Result<Option<Timestamp>, sqlx::Error> {
@@ -151,11 +155,11 @@ fn optional_instant(
         .transpose()
 }
 
-fn instant(column: &'static str, microseconds: i64) -> Result<Timestamp, sqlx::Error> {
+pub(super) fn instant(column: &'static str, microseconds: i64) -> Result<Timestamp, sqlx::Error> {
     Timestamp::from_microsecond(microseconds).map_err(|error| undecodable(column, error))
 }
 
-fn uuid(column: &'static str, text: &str) -> Result<Uuid, sqlx::Error> {
+pub(super) fn uuid(column: &'static str, text: &str) -> Result<Uuid, sqlx::Error> {
     text.parse()
         .map_err(|error: uuid::Error| undecodable(column, error))
 }
@@ -167,7 +171,7 @@ fn json<T: serde::de::DeserializeOwned>(
     serde_json::from_str(text).map_err(|error| undecodable(column, error))
 }
 
-fn count(row: &SqliteRow, column: &'static str) -> Result<u64, sqlx::Error> {
+pub(super) fn count(row: &SqliteRow, column: &'static str) -> Result<u64, sqlx::Error> {
     u64::try_from(row.try_get::<i64, _>(column)?).map_err(|error| undecodable(column, error))
 }
 

@@ -8,7 +8,7 @@ use meshwright_engine::run::Run;
 use tokio::sync::{Notify, broadcast, watch};
 use uuid::Uuid;
 
-use super::job::Progress;
+use super::job::{Job, Progress};
 
 /// The jobs that this process runs, and the bell for every change of state.
 #[derive(Debug)]
@@ -87,6 +87,14 @@ impl Live {
     pub(super) fn changed(&self, id: Uuid) {
         // No receiver is no error: nobody waits.
         let _ = self.changes.send(id);
+    }
+
+    /// The same, of a job and of the study that it belongs to.
+    pub(super) fn changed_job(&self, job: &Job) {
+        self.changed(job.id);
+        if let Some(study) = job.study {
+            self.changed(study);
+        }
     }
 
     pub(super) fn changes(&self) -> broadcast::Receiver<Uuid> {

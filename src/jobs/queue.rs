@@ -18,7 +18,7 @@ use crate::wire::{SOLVER_VERSION, Submission};
 pub type Clock = Arc<dyn Fn() -> Timestamp + Send + Sync>;
 
 /// So long a repeated request is recognized by its key.
-const KEY_LIFETIME: jiff::SignedDuration = jiff::SignedDuration::from_hours(24);
+pub(super) const KEY_LIFETIME: jiff::SignedDuration = jiff::SignedDuration::from_hours(24);
 
 /// So many submissions share one commit at most.
 const BATCH: usize = 64;
@@ -26,7 +26,7 @@ const BATCH: usize = 64;
 /// What the queue allows.
 #[derive(Debug, Clone, Copy)]
 pub struct Rules {
-    /// So many jobs may wait.
+    /// So many jobs may wait, those of studies aside.
     pub queue_limit: u32,
 }
 
@@ -45,6 +45,15 @@ pub enum JobError {
     /// The client has no such job.
     #[error("there is no job {0}")]
     NotFound(Uuid),
+    /// The client has no such study.
+    #[error("there is no study {0}")]
+    StudyNotFound(Uuid),
+    /// The study is to be deleted, but has not ended.
+    #[error("the study has not ended")]
+    StudyRunning,
+    /// The study is to be cancelled, but has ended.
+    #[error("the study is {}", .0.as_str())]
+    StudyEnded(Status),
     /// The job runs.
     #[error("the job is running")]
     Running,
@@ -140,6 +149,7 @@ impl Jobs {
             positions_total: submission.positions_total(),
             submitted_at: (self.clock)(),
             idempotency_key,
+            study: None,
         };
         let (answer, outcome) = oneshot::channel();
         self.submissions

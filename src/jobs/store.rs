@@ -22,7 +22,7 @@ static MIGRATIONS: Migrator = sqlx::migrate!();
 #[derive(Debug, Clone)]
 pub struct Store {
     pub(super) writer: SqlitePool,
-    readers: SqlitePool,
+    pub(super) readers: SqlitePool,
 }
 
 /// Why a database could not be opened.
@@ -137,8 +137,19 @@ pub struct Filter {
     pub tag: Option<String>,
     /// These only.
     pub ids: Option<Vec<Uuid>>,
+    /// Those that compute designs of this study, or those that stand alone.
+    pub study: Option<Membership>,
     /// Those that stand behind this place in the list.
     pub after: Option<Cursor>,
+}
+
+/// Whether a job belongs to a study.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Membership {
+    /// It belongs to this one.
+    Of(Uuid),
+    /// It stands alone.
+    Alone,
 }
 
 impl Filter {
@@ -165,6 +176,15 @@ impl Filter {
             }
             query.push(")");
         }
+        match self.study {
+            Some(Membership::Of(study)) => {
+                query.push(" and study = ").push_bind(study.to_string());
+            }
+            Some(Membership::Alone) => {
+                query.push(" and study is null");
+            }
+            None => {}
+        }
         if let Some(Cursor { submitted_at, id }) = self.after {
             query
                 .push(" and (submitted_at, id) < (")
@@ -178,11 +198,11 @@ impl Filter {
     }
 }
 
-/// A place in the list of jobs: behind the job that it names. Clients take it for an opaque word.
+/// A place in a list of jobs or studies: behind the one that it names. Clients take it for an opaque word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Cursor {
-    submitted_at: Timestamp,
-    id: Uuid,
+    pub(super) submitted_at: Timestamp,
+    pub(super) id: Uuid,
 }
 
 impl Cursor {

@@ -30,6 +30,8 @@ pub(super) struct NewJob {
     pub(super) submitted_at: Timestamp,
     /// The word under which the client may ask again and get this job.
     pub(super) idempotency_key: Option<String>,
+    /// The study that it computes a design of.
+    pub(super) study: Option<Uuid>,
 }
 
 /// What came of a submission.
@@ -53,6 +55,18 @@ pub(super) struct Claim {
     pub(super) id: Uuid,
     pub(super) attempt: i64,
 }
+
+/// What a worker finds in the queue.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Claimed {
+    /// The job to compute.
+    pub(super) job: Option<Job>,
+    /// Jobs that were next, but have been given the results of an equal one.
+    pub(super) given: Vec<Job>,
+}
+
+/// So many jobs are given results in one commit at most.
+const MOST_GIVEN: usize = 100;
 
 /// Which running jobs have lost their worker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,22 +100,45 @@ impl Store {
         Ok(outcomes)
     }
 
-    /// Accepted -> running: the oldest job that waits, leased until `lease_until`.
+    /// Accepted -> running: the job whose turn it is, leased until `lease_until`. Jobs that stand alone come before those
+    /// of studies, older before younger. Equal work is done once: a job whose equal is running is passed over, and one
+    /// whose equal has become successful since it was submitted is given its results, accepted -> successful.
     pub(super) async fn claim(
         &self,
         now: Timestamp,
         lease_until: Timestamp,
-    ) -> Result<Option<Job>, sqlx::Error> {
-        sqlx::query_as(
-            "update jobs
-             set status = 'running', attempt = attempt + 1, started_at = ?1, lease_until = ?2, positions_done = 0
-             where id = (select id from jobs where status = 'accepted' order by submitted_at, id limit 1)
-             returning *",
-        )
-        .bind(now.as_microsecond())
-        .bind(lease_until.as_microsecond())
-        .fetch_optional(&self.writer)
-        .await
+        solver_version: &str,
+    ) -> Result<Claimed, sqlx::Error> {
+        let mut transaction = self.writer.begin_with("begin immediate").await?;
+        let mut claimed = Claimed::default();
+        while claimed.given.len() < MOST_GIVEN {
+            let next: Option<(String, String, String)> = sqlx::query_as(
+                "select id, client, input_hash from jobs as waiting
+                 where status = 'accepted'
+                   and not exists (select 1 from jobs as equal
+                                   where equal.status = 'running' and equal.client = waiting.client
+                                     and equal.input_hash = waiting.input_hash)
+                 order by priority, submitted_at, id limit 1",
+            )
+            .fetch_optional(&mut *transaction)
+            .await?;
+            let Some((id, client, input_hash)) = next else {
+                break;
+            };
+            match find_known(&mut transaction, &client, &input_hash, solver_version).await? {
+                Some(known) => {
+                    let job = give(&mut transaction, &id, &known, now, solver_version).await?;
+                    claimed.given.push(job);
+                }
+                None => {
+                    let job = start(&mut transaction, &id, now, lease_until).await?;
+                    claimed.job = Some(job);
+                    break;
+                }
+            }
+        }
+        transaction.commit().await?;
+        Ok(claimed)
     }
 
     /// Running -> running: how far the job has come, and a longer lease. False if the claim holds no more.
@@ -125,12 +162,13 @@ impl Store {
         Ok(updated.rows_affected() == 1)
     }
 
-    /// Running -> successful, with the results document. False if the claim holds no more; then nothing is kept.
+    /// Running -> successful, with the results document and what the tables of studies show of it. False if the claim holds no more; then nothing is kept.
     pub(super) async fn succeed(
         &self,
         claim: Claim,
         now: Timestamp,
         document: &str,
+        summary: Option<&str>,
         solver_version: &str,
     ) -> Result<bool, sqlx::Error> {
         let hash: String = Sha256::digest(document)
@@ -145,6 +183,15 @@ impl Store {
         .bind(document)
         .execute(&mut *transaction)
         .await?;
+        if let Some(summary) = summary {
+            sqlx::query(
+                "insert into summaries (document, body) values (?1, ?2) on conflict (document) do nothing",
+            )
+            .bind(&hash)
+            .bind(summary)
+            .execute(&mut *transaction)
+            .await?;
+        }
         let updated = sqlx::query(
             "update jobs
              set status = 'successful', finished_at = ?3, lease_until = null, document = ?4, solver_version = ?5,
@@ -271,16 +318,25 @@ impl Store {
         .fetch_optional(&mut *transaction)
         .await?;
         if let Some(Some(hash)) = &deleted {
-            sqlx::query(
-                "delete from documents where hash = ?1 and not exists (select 1 from jobs where document = ?1)",
-            )
-            .bind(hash)
-            .execute(&mut *transaction)
-            .await?;
+            forget_document(&mut transaction, hash).await?;
         }
         transaction.commit().await?;
         Ok(deleted.is_some())
     }
+}
+
+/// Removes a document unless a job needs it.
+pub(super) async fn forget_document(
+    connection: &mut SqliteConnection,
+    hash: &str,
+) -> Result<(), sqlx::Error> {
+    sqlx::query(
+        "delete from documents where hash = ?1 and not exists (select 1 from jobs where document = ?1)",
+    )
+    .bind(hash)
+    .execute(connection)
+    .await?;
+    Ok(())
 }
 
 async fn submit_one(
@@ -302,10 +358,11 @@ async fn submit_one(
     let outcome = if let Some(job) = insert_known(connection, new, solver_version).await? {
         Outcome::Known(job)
     } else {
-        let waiting: i64 =
-            sqlx::query_scalar("select count(*) from jobs where status = 'accepted'")
-                .fetch_one(&mut *connection)
-                .await?;
+        let waiting: i64 = sqlx::query_scalar(
+            "select count(*) from jobs where status = 'accepted' and priority = 0",
+        )
+        .fetch_one(&mut *connection)
+        .await?;
         if waiting >= i64::from(queue_limit) {
             return Ok(Outcome::QueueFull { waiting });
         }
@@ -352,30 +409,52 @@ async fn earlier_answer(
     Ok(Some(Outcome::Repeated(job)))
 }
 
-/// A job that is successful at once, if the client has had the same input computed by this version.
-async fn insert_known(
+/// Finished work that an equal submission can be answered with.
+struct Known {
+    job: String,
+    document: String,
+    positions: i64,
+}
+
+/// What the client has had computed of the same input by this version.
+async fn find_known(
     connection: &mut SqliteConnection,
-    new: &NewJob,
+    client: &str,
+    input_hash: &str,
     solver_version: &str,
-) -> Result<Option<Job>, sqlx::Error> {
+) -> Result<Option<Known>, sqlx::Error> {
     // The one that was computed comes before those that were given its results.
     let earlier: Option<(String, String, i64)> = sqlx::query_as(
         "select id, document, positions_total from jobs
          where client = ?1 and input_hash = ?2 and solver_version = ?3 and status = 'successful'
          order by same_as is not null, submitted_at, id limit 1",
     )
-    .bind(&new.client)
-    .bind(&new.input_hash)
+    .bind(client)
+    .bind(input_hash)
     .bind(solver_version)
-    .fetch_optional(&mut *connection)
+    .fetch_optional(connection)
     .await?;
-    let Some((same_as, document, positions)) = earlier else {
+    Ok(earlier.map(|(job, document, positions)| Known {
+        job,
+        document,
+        positions,
+    }))
+}
+
+/// A job that is successful at once, if the client has had the same input computed by this version.
+pub(super) async fn insert_known(
+    connection: &mut SqliteConnection,
+    new: &NewJob,
+    solver_version: &str,
+) -> Result<Option<Job>, sqlx::Error> {
+    let known = find_known(connection, &new.client, &new.input_hash, solver_version).await?;
+    let Some(known) = known else {
         return Ok(None);
     };
     sqlx::query_as(
         "insert into jobs (id, client, method, tags, submission, input_hash, status, positions_done, positions_total,
-                           submitted_at, started_at, finished_at, document, solver_version, same_as)
-         values (?1, ?2, ?3, ?4, ?5, ?6, 'successful', ?7, ?7, ?8, ?8, ?8, ?9, ?10, ?11)
+                           submitted_at, started_at, finished_at, document, solver_version, same_as, study, priority)
+         values (?1, ?2, ?3, ?4, ?5, ?6, 'successful', ?7, ?7, ?8, ?8, ?8, ?9, ?10, ?11, ?12, ?13)
          returning *",
     )
     .bind(new.id.to_string())
@@ -384,23 +463,26 @@ async fn insert_known(
     .bind(tags(new))
     .bind(&new.submission)
     .bind(&new.input_hash)
-    .bind(positions)
+    .bind(known.positions)
     .bind(new.submitted_at.as_microsecond())
-    .bind(document)
+    .bind(known.document)
     .bind(solver_version)
-    .bind(same_as)
+    .bind(known.job)
+    .bind(new.study.map(|study| study.to_string()))
+    .bind(priority(new))
     .fetch_one(connection)
     .await
     .map(Some)
 }
 
-async fn insert_waiting(
+pub(super) async fn insert_waiting(
     connection: &mut SqliteConnection,
     new: &NewJob,
 ) -> Result<Job, sqlx::Error> {
     sqlx::query_as(
-        "insert into jobs (id, client, method, tags, submission, input_hash, status, positions_total, submitted_at)
-         values (?1, ?2, ?3, ?4, ?5, ?6, 'accepted', ?7, ?8)
+        "insert into jobs (id, client, method, tags, submission, input_hash, status, positions_total, submitted_at,
+                           study, priority)
+         values (?1, ?2, ?3, ?4, ?5, ?6, 'accepted', ?7, ?8, ?9, ?10)
          returning *",
     )
     .bind(new.id.to_string())
@@ -411,8 +493,60 @@ async fn insert_waiting(
     .bind(&new.input_hash)
     .bind(column(new.positions_total))
     .bind(new.submitted_at.as_microsecond())
+    .bind(new.study.map(|study| study.to_string()))
+    .bind(priority(new))
     .fetch_one(connection)
     .await
+}
+
+/// Accepted -> successful, with the results of an equal job.
+async fn give(
+    connection: &mut SqliteConnection,
+    id: &str,
+    known: &Known,
+    now: Timestamp,
+    solver_version: &str,
+) -> Result<Job, sqlx::Error> {
+    sqlx::query_as(
+        "update jobs
+         set status = 'successful', started_at = ?2, finished_at = ?2, document = ?3, solver_version = ?4, same_as = ?5,
+             positions_done = ?6, positions_total = ?6
+         where id = ?1 and status = 'accepted'
+         returning *",
+    )
+    .bind(id)
+    .bind(now.as_microsecond())
+    .bind(&known.document)
+    .bind(solver_version)
+    .bind(&known.job)
+    .bind(known.positions)
+    .fetch_one(connection)
+    .await
+}
+
+/// Accepted -> running.
+async fn start(
+    connection: &mut SqliteConnection,
+    id: &str,
+    now: Timestamp,
+    lease_until: Timestamp,
+) -> Result<Job, sqlx::Error> {
+    sqlx::query_as(
+        "update jobs
+         set status = 'running', attempt = attempt + 1, started_at = ?2, lease_until = ?3, positions_done = 0
+         where id = ?1 and status = 'accepted'
+         returning *",
+    )
+    .bind(id)
+    .bind(now.as_microsecond())
+    .bind(lease_until.as_microsecond())
+    .fetch_one(connection)
+    .await
+}
+
+/// Jobs that stand alone are served before those of studies.
+fn priority(new: &NewJob) -> i64 {
+    i64::from(new.study.is_some())
 }
 
 fn tags(new: &NewJob) -> String {
@@ -420,7 +554,7 @@ fn tags(new: &NewJob) -> String {
 }
 
 /// SQLite counts in 64 bits with a sign. A count beyond that is only shown, so the nearest will do.
-fn column(count: u64) -> i64 {
+pub(super) fn column(count: u64) -> i64 {
     i64::try_from(count).unwrap_or(i64::MAX)
 }
 
@@ -458,6 +592,7 @@ mod tests {
             positions_total: 200,
             submitted_at: at(second),
             idempotency_key: None,
+            study: None,
         }
     }
 
@@ -476,12 +611,16 @@ mod tests {
         }
     }
 
-    async fn claim(store: &Store, second: i64) -> Claim {
-        let job = store
-            .claim(at(second), at(second + 30))
+    async fn next(store: &Store, second: i64) -> Option<Job> {
+        let claimed = store
+            .claim(at(second), at(second + 30), VERSION)
             .await
-            .unwrap()
             .unwrap();
+        claimed.job
+    }
+
+    async fn claim(store: &Store, second: i64) -> Claim {
+        let job = next(store, second).await.unwrap();
         Claim {
             id: job.id,
             attempt: job.attempt,
@@ -497,14 +636,14 @@ mod tests {
         let (store, _folder) = store().await;
         let second = queued(&store, 2, "b").await;
         let first = queued(&store, 1, "a").await;
-        let claimed = store.claim(at(10), at(40)).await.unwrap().unwrap();
+        let claimed = next(&store, 10).await.unwrap();
         assert_eq!(
             (claimed.id, claimed.status, claimed.attempt),
             (first.id, Status::Running, 1)
         );
         assert_eq!(claimed.started_at, Some(at(10)));
         assert_eq!(claim(&store, 11).await.id, second.id);
-        assert_eq!(store.claim(at(12), at(42)).await.unwrap(), None);
+        assert_eq!(next(&store, 12).await, None);
     }
 
     #[tokio::test]
@@ -534,7 +673,7 @@ mod tests {
         );
         assert!(
             store
-                .succeed(claim, at(5), "{ \"x\": 1.0e0 }", VERSION)
+                .succeed(claim, at(5), "{ \"x\": 1.0e0 }", None, VERSION)
                 .await
                 .unwrap()
         );
@@ -567,7 +706,12 @@ mod tests {
                 .await
                 .unwrap()
         );
-        assert!(!store.succeed(lost, at(35), "{}", VERSION).await.unwrap());
+        assert!(
+            !store
+                .succeed(lost, at(35), "{}", None, VERSION)
+                .await
+                .unwrap()
+        );
         assert!(!store.fail(lost, at(35), "{}").await.unwrap());
         assert!(!store.release(lost).await.unwrap());
         assert_eq!(find(&store, job.id).await.status, Status::Running);
@@ -580,7 +724,12 @@ mod tests {
             "results that come too late leave nothing behind"
         );
 
-        assert!(store.succeed(held, at(36), "{}", VERSION).await.unwrap());
+        assert!(
+            store
+                .succeed(held, at(36), "{}", None, VERSION)
+                .await
+                .unwrap()
+        );
     }
 
     #[tokio::test]
@@ -632,11 +781,16 @@ mod tests {
         assert_eq!(find(&store, job.id).await.attempts_counted, 1);
         assert!(
             !store
-                .succeed(given_back, at(4), "{}", VERSION)
+                .succeed(given_back, at(4), "{}", None, VERSION)
                 .await
                 .unwrap()
         );
-        assert!(store.succeed(held, at(4), "{}", VERSION).await.unwrap());
+        assert!(
+            store
+                .succeed(held, at(4), "{}", None, VERSION)
+                .await
+                .unwrap()
+        );
     }
 
     #[tokio::test]
@@ -663,7 +817,7 @@ mod tests {
                 .await
                 .unwrap()
         );
-        assert_eq!(store.claim(at(6), at(36)).await.unwrap(), None);
+        assert_eq!(next(&store, 6).await, None);
     }
 
     #[tokio::test]
@@ -672,7 +826,7 @@ mod tests {
         let first = queued(&store, 1, "a").await;
         assert!(
             store
-                .succeed(claim(&store, 2).await, at(3), "{}", VERSION)
+                .succeed(claim(&store, 2).await, at(3), "{}", None, VERSION)
                 .await
                 .unwrap()
         );
@@ -709,7 +863,7 @@ mod tests {
         queued(&store, 1, "a").await;
         assert!(
             store
-                .succeed(claim(&store, 2).await, at(3), "{}", VERSION)
+                .succeed(claim(&store, 2).await, at(3), "{}", None, VERSION)
                 .await
                 .unwrap()
         );
@@ -777,7 +931,7 @@ mod tests {
         queued(&store, 1, "done").await;
         assert!(
             store
-                .succeed(claim(&store, 2).await, at(3), "{}", VERSION)
+                .succeed(claim(&store, 2).await, at(3), "{}", None, VERSION)
                 .await
                 .unwrap()
         );

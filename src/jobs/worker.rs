@@ -18,12 +18,18 @@ use tracing::{error, info, warn};
 use super::job::Job;
 use super::live::Running;
 use super::queue::Jobs;
-use super::transitions::{Claim, Lost};
-use crate::wire::{Code, Problem, SOLVER_VERSION, Submission};
+use super::transitions::{Claim, Claimed, Lost};
+use crate::wire::{Code, Problem, SOLVER_VERSION, Submission, Summary};
 
 /// The computation of a submission: long work that fills a core, reports to the run and obeys its stop. Gives the
 /// text of the results document.
 pub type Solve = Arc<dyn Fn(&Submission, &Run) -> Result<String, Problem> + Send + Sync>;
+
+/// What a computation leaves: the results document, and what the tables of studies show of it.
+struct Solved {
+    document: String,
+    summary: Option<String>,
+}
 
 /// How the workers keep time.
 #[derive(Debug, Clone, Copy)]
@@ -92,6 +98,10 @@ impl Workers {
         shop.recover(Lost::All)
             .await
             .map_err(StartError::Database)?;
+        shop.jobs
+            .resume_studies()
+            .await
+            .map_err(StartError::Database)?;
 
         let alive = Arc::new(AtomicUsize::new(0));
         let mut tasks = JoinSet::new();
@@ -155,16 +165,25 @@ impl Shop {
         let stop = self.jobs.stop();
         while !stop.is_cancelled() {
             match self.claim().await {
-                Ok(Some(job)) => {
-                    // Where one job waited there may be another for the next worker.
-                    self.jobs.live.work.notify_one();
-                    self.jobs.live.changed(job.id);
-                    self.compute(job).await;
+                Ok(Claimed { job, given }) => {
+                    let found = job.is_some() || !given.is_empty();
+                    for job in given {
+                        info!(job = %job.id, "job given the results of an equal one");
+                        self.jobs.live.changed_job(&job);
+                    }
+                    if let Some(job) = job {
+                        // Where one job waited there may be another for the next worker.
+                        self.jobs.live.work.notify_one();
+                        self.jobs.live.changed_job(&job);
+                        self.compute(job).await;
+                    }
+                    if !found {
+                        tokio::select! {
+                            () = self.jobs.live.work.notified() => {}
+                            () = stop.cancelled() => {}
+                        }
+                    }
                 }
-                Ok(None) => tokio::select! {
-                    () = self.jobs.live.work.notified() => {}
-                    () = stop.cancelled() => {}
-                },
                 Err(error) => {
                     error!(error = %error, "no job can be claimed");
                     tokio::select! {
@@ -176,9 +195,12 @@ impl Shop {
         }
     }
 
-    async fn claim(&self) -> Result<Option<Job>, sqlx::Error> {
+    async fn claim(&self) -> Result<Claimed, sqlx::Error> {
         let now = self.now();
-        self.jobs.store.claim(now, self.lease_from(now)).await
+        self.jobs
+            .store
+            .claim(now, self.lease_from(now), SOLVER_VERSION)
+            .await
     }
 
     /// Has a claimed job computed, and watches over it: heartbeat, time limit, shutdown.
@@ -233,13 +255,17 @@ impl Shop {
 
     /// Starts the computation on the pool: it fills a core for long, so it must not sit on a thread that answers
     /// requests. A panic in it is the engine's fault and ends this job only.
-    fn launch(&self, job: &Job, run: Run) -> oneshot::Receiver<Result<String, Problem>> {
+    fn launch(&self, job: &Job, run: Run) -> oneshot::Receiver<Result<Solved, Problem>> {
         let (sender, receiver) = oneshot::channel();
         let (solve, submission, id) = (Arc::clone(&self.solve), job.submission.clone(), job.id);
         self.pool.spawn(move || {
             let work = || {
-                Submission::parse(submission.as_bytes())
-                    .and_then(|submission| solve(&submission, &run))
+                let submission = Submission::parse(submission.as_bytes())?;
+                let document = solve(&submission, &run)?;
+                let summary = Summary::of_document(&document).map(|summary| {
+                    serde_json::to_string(&summary).expect("a summary is plain data")
+                });
+                Ok(Solved { document, summary })
             };
             let result = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
                 error!(job = %id, panic = message_of(&*panic), "the engine panicked");
@@ -252,14 +278,14 @@ impl Shop {
     }
 
     /// Writes down what came of an attempt.
-    async fn settle(&self, job: &Job, claim: Claim, result: Result<String, Problem>) {
+    async fn settle(&self, job: &Job, claim: Claim, result: Result<Solved, Problem>) {
         let now = self.now();
         let (status, written) = match result {
-            Ok(document) => (
+            Ok(Solved { document, summary }) => (
                 "successful",
                 self.jobs
                     .store
-                    .succeed(claim, now, &document, SOLVER_VERSION)
+                    .succeed(claim, now, &document, summary.as_deref(), SOLVER_VERSION)
                     .await,
             ),
             Err(problem) => (
@@ -283,7 +309,7 @@ impl Shop {
             // The lease runs out, and the job runs again.
             Err(error) => error!(job = %job.id, error = %error, "the outcome cannot be written"),
         }
-        self.jobs.live.changed(job.id);
+        self.jobs.live.changed_job(job);
     }
 
     /// Gives a job back to the queue.

@@ -37,6 +37,9 @@ const EXAMPLES: &[Example] = examples! {
     "bad-case-3-as-printed" false "Test case 3 with the center distance that the paper prints, 118.5 mm: its teeth do not reach each other, and it is refused."
 };
 
+/// The study of the paper's section 5: the standard pair and five patterns of holes that remove a quarter of the blank.
+pub const STUDY_SECTION_5: &str = include_str!("../../api/examples/study-section-5.json");
+
 /// Every example.
 pub fn examples() -> &'static [Example] {
     EXAMPLES

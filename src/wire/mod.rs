@@ -2,11 +2,13 @@
 //!
 //! Read in this order: [`problem`] (what goes wrong), [`submission`] with its parts [`pair`], [`gear`] and
 //! [`resolution`] (what is asked), [`geometry`], [`warning`] and [`results`] (what is answered), [`solve`](mod@solve)
-//! (what leads from the one to the other) and [`examples`](mod@examples). `units`, `quantity`, `tree` and `schema` carry
-//! them: conversions, the table of bounds, JSON with its places, and OpenAPI.
+//! (what leads from the one to the other) and [`examples`](mod@examples); then [`study`] and [`study_table`], many
+//! submissions at once. `units`, `quantity`, `tree`, `schema` and
+//! `pointer` carry them: conversions, the table of bounds, JSON with its places, OpenAPI, and places in a submission.
 //!
 //! This is the only place where domain data meets serde, and where mm, um, degrees, GPa and MPa meet SI.
 
+mod pointer;
 mod quantity;
 mod schema;
 mod tree;
@@ -26,8 +28,13 @@ pub mod warning;
 pub mod examples;
 pub mod solve;
 
+pub mod study;
+pub mod study_table;
+
 pub use examples::{Example, examples};
 pub use problem::{Code, FieldError, Problem};
 pub use results::Results;
 pub use solve::{Limits, Validation, limits, solve, validate};
+pub use study::{Design, Study};
+pub use study_table::{RowState, StudyResults, Summary};
 pub use submission::{SOLVER_VERSION, Submission};

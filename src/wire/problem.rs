@@ -82,6 +82,8 @@ codes! {
         "The work took longer than one job may. Fewer positions, fewer torques or a coarser grid take less time; /v1/validate estimates it."
     Stopped "stopped" 409 "The work was stopped"
         "The work was told to stop before it was done, and there is no result."
+    NoDesignComputed "no-design-computed" 422 "No design could be computed"
+        "The study came to its end without any results: none of its designs could be built or computed. Each row of its table has its own problem."
     ResultNotReady "result-not-ready" 404 "The result is not ready"
         "The job is waiting or running. Ask again after the time in Retry-After, or follow its events."
     JobNotFound "job-not-found" 404 "There is no such job"

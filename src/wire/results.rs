@@ -3,7 +3,7 @@
 use meshwright_engine::analysis::curve::{BlankFit, DecompositionParts, ErrorEstimate};
 use meshwright_engine::analysis::spectrum::Spectrum;
 use meshwright_engine::analysis::{Analysis, Case, Curve, Method, Statistics};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
@@ -79,7 +79,7 @@ pub struct LoadShareDocument {
 }
 
 /// Statistics over the span.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = Statistics, title = "Statistics")]
 pub struct StatisticsDocument {
     /// Whether the span is less than whole true periods.
@@ -91,7 +91,7 @@ pub struct StatisticsDocument {
 }
 
 /// Mean, fluctuation and range of a curve, in its unit.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(title = "Statistics of a curve")]
 pub struct StatisticsValues {
     /// The mean.

@@ -152,6 +152,8 @@ pub struct Limits {
     pub tags: usize,
     /// The most characters of a tag.
     pub tag_length: usize,
+    /// The most designs of a study.
+    pub designs: usize,
     /// The least material around a hole, in mm.
     pub least_ligament_mm: f64,
 }
@@ -169,6 +171,7 @@ pub fn limits() -> Limits {
         module_mm: quantity::MODULE.bounds.into(),
         tags: MOST_TAGS.0,
         tag_length: MOST_TAGS.1,
+        designs: super::study::MOST_DESIGNS,
         least_ligament_mm: super::units::to_mm(meshwright_engine::gear::spur::LEAST_LIGAMENT),
     }
 }

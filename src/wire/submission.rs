@@ -106,6 +106,23 @@ impl Submission {
         }
     }
 
+    /// The fields of a submission that are unknown or of the wrong type. What is missing, out of bounds or does not go
+    /// together is not looked for.
+    pub(super) fn misread_fields(document: &[u8]) -> Vec<FieldError> {
+        let errors = Errors::default();
+        match Node::parse(document) {
+            Ok(node) => {
+                if let Some(reader) = ObjectReader::new(&node, String::new(), &errors) {
+                    Document::read(reader);
+                }
+            }
+            Err(problem) => return problem.errors,
+        }
+        let mut errors = errors.into_problem().errors;
+        errors.retain(|error| matches!(error.code, Code::UnknownField | Code::WrongType));
+        errors
+    }
+
     fn read(node: &Node, errors: &Errors) -> Option<Self> {
         let mut document = Document::read(ObjectReader::new(node, String::new(), errors)?)?;
         if errors.count() > 0 {

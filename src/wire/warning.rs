@@ -56,6 +56,23 @@ pub enum GearName {
     Driven,
 }
 
+impl GearName {
+    /// Its word on the wire.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Driving => "driving",
+            Self::Driven => "driven",
+        }
+    }
+
+    /// The gear that a word names.
+    pub fn of_word(word: &str) -> Option<Self> {
+        [Self::Driving, Self::Driven]
+            .into_iter()
+            .find(|gear| gear.word() == word)
+    }
+}
+
 impl From<Member> for GearName {
     fn from(member: Member) -> Self {
         match member {

@@ -6,7 +6,7 @@ use std::time::Duration;
 use meshwright::config::Config;
 use meshwright::jobs::Solve;
 use meshwright::serve::{Service, serve};
-use meshwright::wire::{Code, Problem};
+use meshwright::wire::{Code, Problem, Submission};
 use meshwright_engine::run::Run;
 use reqwest::{Client, RequestBuilder, Response, StatusCode};
 use serde_json::{Value, json};
@@ -21,7 +21,7 @@ pub(crate) const RESULTS: &str = r#"{ "method": "flexible",  "curves": [
   { "output_torque_n_m": 115.0, "mesh_position": [0.0, 0.5], "driving_angle_deg": [0.0, 3.6], "driven_angle_deg": [0.0, 3.6],
     "transmission_error_um": [13.79, 14.0], "mesh_stiffness_tangent_n_per_m": [2.2e8, 2.1e8],
     "mesh_stiffness_secant_n_per_m": [1.8e8, 1.7e8],
-    "spectrum": { "order": [10], "transmission_error_um": [0.1], "named": [ { "order": 10, "label": "H_N" } ] } },
+    "spectrum": { "order": [10], "transmission_error_um": [0.1], "named": [ { "order": 10, "label": "H_N", "transmission_error_um": 0.1 } ] } },
   { "output_torque_n_m": 20.0, "mesh_position": [0.0, 0.5], "transmission_error_um": [5.0, 6.0] } ] }"#;
 
 /// A service and a client of it.
@@ -39,6 +39,8 @@ pub(crate) struct Engine(mpsc::UnboundedReceiver<Work>);
 
 /// One computation, which waits for what the test tells it.
 pub(crate) struct Work {
+    /// What is to be computed.
+    pub(crate) submission: Value,
     run: Run,
     orders: blocking::Sender<Order>,
     pub(crate) ended: tokio::sync::oneshot::Receiver<()>,
@@ -166,12 +168,13 @@ impl Bench {
 impl Engine {
     fn new() -> (Self, Solve) {
         let (begun, works) = mpsc::unbounded_channel();
-        let solve = move |_: &_, run: &Run| {
+        let solve = move |submission: &Submission, run: &Run| {
             let (orders, to_do) = blocking::channel();
             let (end, ended) = tokio::sync::oneshot::channel::<()>();
             let _end_when_dropped = end;
             // A test that is over takes no more work.
             let _ = begun.send(Work {
+                submission: serde_json::to_value(submission).unwrap(),
                 run: run.clone(),
                 orders,
                 ended,

@@ -16,5 +16,7 @@ mod real;
 mod recovery;
 mod refusals;
 mod repeats;
+mod sigkill;
+mod studies;
 mod tables;
 mod time;

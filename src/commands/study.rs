@@ -1,0 +1,384 @@
+//! `meshwright study`: a study from a file, computed here and now.
+
+use std::collections::HashMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use anyhow::Context;
+use indicatif::{ProgressBar, ProgressStyle};
+use meshwright::wire::study_table::{TableRow, csv, table};
+use meshwright::wire::{
+    Code, Design, Problem, RowState, Study as StudyDocument, StudyResults, Summary, solve,
+};
+use meshwright_engine::analysis::Library;
+use meshwright_engine::run::Run;
+use rayon::prelude::*;
+
+use super::solve::{EXIT_PROBLEM, read, told};
+
+/// What the substructures that designs share may take.
+const LIBRARY_BYTES: usize = 256 << 20;
+
+/// A printed table has so many designs at most; of more, only the best are printed.
+const MOST_PRINTED: usize = 40;
+
+/// Compute a study: many variants of one submission, and their table.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Study {
+    /// The study; - reads standard input.
+    study: PathBuf,
+    /// Where to write table.json, table.csv and each result; the folder is made if it is absent. Without it, only a
+    /// short table is printed.
+    #[arg(long, short, value_name = "DIR")]
+    output: Option<PathBuf>,
+}
+
+/// What of a design's results the table shows, or why there are none.
+type Outcome = Result<Summary, Problem>;
+
+impl Study {
+    /// Runs the command.
+    ///
+    /// # Errors
+    ///
+    /// If a file cannot be read or written. A study that is refused, or none of whose designs can be computed, is exit
+    /// code 2.
+    pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
+        let document = read(&self.study)?;
+        let study = match StudyDocument::parse(&document) {
+            Ok(study) => study,
+            Err(problem) => {
+                eprint!("{}", told(&problem));
+                return Ok(ExitCode::from(EXIT_PROBLEM));
+            }
+        };
+        let folder = self.output.as_deref().map(ResultFolder::make).transpose()?;
+
+        let started = Instant::now();
+        let rows = compute(&study, folder.as_ref())?;
+        let elapsed = started.elapsed();
+
+        let results = results(&study, rows);
+        if let Some(folder) = &folder {
+            let json = serde_json::to_string_pretty(&results).context("the table is no JSON")?;
+            folder.write("table.json", &format!("{json}\n"))?;
+            folder.write("table.csv", &csv(&results.rows))?;
+        }
+        print!("{}", short_table(&results, elapsed));
+        if let Some(problem) = &results.problem {
+            eprintln!("{}", problem["detail"].as_str().unwrap_or_default());
+            return Ok(ExitCode::from(EXIT_PROBLEM));
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// Computes every design on all cores, equal ones once, and writes each result as it comes.
+fn compute(study: &StudyDocument, folder: Option<&ResultFolder>) -> anyhow::Result<Vec<RowState>> {
+    let total = study.total();
+    let designs: Vec<Design> = (0..total)
+        .into_par_iter()
+        .filter_map(|row| study.design(row))
+        .collect();
+    // Rows by what they compute; the first of equals computes for all.
+    let mut equals: HashMap<String, Vec<usize>> = HashMap::new();
+    for (row, design) in designs.iter().enumerate() {
+        if let Ok(submission) = &design.submission {
+            equals.entry(submission.input_hash()).or_default().push(row);
+        }
+    }
+    let mut work: Vec<Vec<usize>> = equals.into_values().collect();
+    // In the order of the study, in which neighbors share most.
+    work.sort_unstable();
+
+    let bar = progress_bar(total);
+    bar.inc((total - work.iter().map(Vec::len).sum::<usize>()) as u64);
+    let library = Library::with_capacity(LIBRARY_BYTES);
+    let solved: Vec<(&Vec<usize>, Outcome)> = work
+        .par_iter()
+        .map(|rows| {
+            let document = designs[rows[0]]
+                .submission
+                .as_ref()
+                .map_err(Problem::clone)
+                .and_then(|submission| solve(submission, &library, &Run::unattended()));
+            if let (Some(folder), Ok(document)) = (folder, &document) {
+                for &row in rows {
+                    folder.write_result(row, &designs[row].label, document)?;
+                }
+            }
+            bar.inc(rows.len() as u64);
+            // Documents go to the disk; in memory thousands of them would be too many.
+            let summary =
+                document.map(|document| Summary::of_document(&document).unwrap_or_default());
+            Ok((rows, summary))
+        })
+        .collect::<anyhow::Result<_>>()?;
+    bar.finish_and_clear();
+
+    let mut outcomes: Vec<Option<Outcome>> = vec![None; total];
+    for (rows, outcome) in solved {
+        for &row in rows {
+            outcomes[row] = Some(outcome.clone());
+        }
+    }
+    Ok(designs
+        .into_iter()
+        .zip(outcomes)
+        .map(|(design, outcome)| row_state(design, outcome))
+        .collect())
+}
+
+fn row_state(design: Design, outcome: Option<Outcome>) -> RowState {
+    let (summary, problem) = match (design.submission, outcome) {
+        (Ok(_), Some(Ok(summary))) => (Some(summary), None),
+        (Ok(_), Some(Err(problem))) | (Err(problem), _) => (None, Some(problem)),
+        (Ok(_), None) => (
+            None,
+            Some(Problem::new(
+                Code::InternalError,
+                "The design was not computed.",
+            )),
+        ),
+    };
+    RowState {
+        label: design.label,
+        changes: design.changes,
+        job: None,
+        status: if summary.is_some() {
+            "successful"
+        } else {
+            "failed"
+        },
+        summary,
+        problem: problem.map(|problem| {
+            serde_json::to_value(problem).expect("a problem is strings and finite numbers")
+        }),
+    }
+}
+
+fn results(study: &StudyDocument, states: Vec<RowState>) -> StudyResults {
+    let rows = table(study.gear(), states);
+    let failed = rows.iter().all(|row| row.status == "failed");
+    let problem = failed.then(|| {
+        let detail = format!(
+            "None of the {} designs could be computed; each row of the table has its problem.",
+            rows.len()
+        );
+        serde_json::to_value(Problem::new(Code::NoDesignComputed, detail))
+            .expect("a problem is strings")
+    });
+    StudyResults {
+        id: None,
+        status: if failed { "failed" } else { "successful" },
+        done: rows.len() as u64,
+        total: rows.len() as u64,
+        gear: study.gear(),
+        problem,
+        rows,
+    }
+}
+
+fn progress_bar(total: usize) -> ProgressBar {
+    let bar = ProgressBar::new(total as u64);
+    if let Ok(style) =
+        ProgressStyle::with_template("{bar:40} {pos}/{len} designs, {elapsed}, {eta} to go")
+    {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(100));
+    bar
+}
+
+/// Where results are written.
+struct ResultFolder(PathBuf);
+
+impl ResultFolder {
+    fn make(path: &Path) -> anyhow::Result<Self> {
+        let results = path.join("results");
+        fs::create_dir_all(&results)
+            .with_context(|| format!("{} cannot be made", results.display()))?;
+        Ok(Self(path.to_owned()))
+    }
+
+    fn write(&self, name: &str, text: &str) -> anyhow::Result<()> {
+        let path = self.0.join(name);
+        fs::write(&path, text).with_context(|| format!("{} cannot be written", path.display()))
+    }
+
+    /// Writes a results document under the number of its row, from 1, and as much of its label as a file name bears.
+    fn write_result(&self, row: usize, label: &str, document: &str) -> anyhow::Result<()> {
+        let plain = |c: char| {
+            if c.is_ascii_alphanumeric() || ".-=".contains(c) {
+                c
+            } else {
+                '_'
+            }
+        };
+        let label: String = label.chars().map(plain).take(60).collect();
+        self.write(&format!("results/{:05}-{label}.json", row + 1), document)
+    }
+}
+
+/// A line for each design and torque, or for the best designs of a large study, and what could not be computed.
+fn short_table(results: &StudyResults, elapsed: Duration) -> String {
+    let computed: Vec<&TableRow> = results
+        .rows
+        .iter()
+        .filter(|row| !row.curves.is_empty())
+        .collect();
+    let all = computed.len() <= MOST_PRINTED;
+    let shown: Vec<&TableRow> = computed
+        .iter()
+        .copied()
+        .filter(|row| all || row.pareto)
+        .take(MOST_PRINTED)
+        .collect();
+    let width = shown
+        .iter()
+        .map(|row| row.label.chars().count())
+        .max()
+        .unwrap_or(0)
+        .clamp(6, 60);
+    let mut text = format!(
+        "{:width$}  {:>8} {:>8} {:>8} {:>8} {:>8} {:>10} {:>8} {:>8}  best\n{:width$}  {:>8} {:>8} {:>8} {:>8} {:>8} {:>10} {:>8} {:>8}\n",
+        "design",
+        "mass",
+        "torque",
+        "STE",
+        "rms",
+        "p-p",
+        "stiffness",
+        "H_N",
+        "H_Z2",
+        "",
+        "kg",
+        "N m",
+        "um",
+        "um",
+        "um",
+        "N/m",
+        "um",
+        "um",
+    );
+    let number = |value: Option<f64>, decimals: usize| {
+        value.map_or_else(|| "-".to_owned(), |value| format!("{value:.decimals$}"))
+    };
+    for row in &shown {
+        for (i, curve) in row.curves.iter().enumerate() {
+            let (label, mass, mark) = if i == 0 {
+                (
+                    &*row.label,
+                    number(row.mass_kg, 4),
+                    if row.pareto { "*" } else { "" },
+                )
+            } else {
+                ("", String::new(), "")
+            };
+            let ste = curve.statistics.as_ref().map(|s| &s.transmission_error_um);
+            let k = curve
+                .statistics
+                .as_ref()
+                .map(|s| &s.mesh_stiffness_tangent_n_per_m);
+            let line = format!(
+                "{label:width$}  {mass:>8} {:>8} {:>8} {:>8} {:>8} {:>10} {:>8} {:>8}  {mark}",
+                curve.output_torque_n_m,
+                number(ste.map(|s| s.mean), 3),
+                number(ste.map(|s| s.rms), 3),
+                number(ste.map(|s| s.peak_to_peak), 3),
+                k.map_or_else(|| "-".to_owned(), |k| format!("{:.3e}", k.mean)),
+                number(curve.hole_order_um, 4),
+                number(curve.mesh_order_um, 4),
+            );
+            text.push_str(line.trim_end());
+            text.push('\n');
+        }
+    }
+    if !all {
+        text.push_str(&format!(
+            "{} of {} designs are shown: those that no other one beats in mass, peak-to-peak and stiffness at once.\n",
+            shown.len(),
+            computed.len()
+        ));
+    }
+    let failed: Vec<&TableRow> = results
+        .rows
+        .iter()
+        .filter(|row| row.problem.is_some())
+        .collect();
+    for row in failed.iter().take(MOST_PRINTED) {
+        let detail = row
+            .problem
+            .as_ref()
+            .and_then(|problem| problem["detail"].as_str());
+        text.push_str(&format!("{}: {}\n", row.label, detail.unwrap_or_default()));
+    }
+    let seconds = elapsed.as_secs_f64();
+    text.push_str(&format!(
+        "{} of {} designs computed in {seconds:.2} s, {:.1} a second.\n",
+        computed.len(),
+        results.total,
+        computed.len() as f64 / seconds.max(1e-9),
+    ));
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    fn study() -> StudyDocument {
+        let mut study: Value =
+            serde_json::from_str(meshwright::wire::examples::STUDY_SECTION_5).unwrap();
+        // The formulas do not see holes, but they are quick.
+        study["base"]["method"] = json!("load_distribution");
+        let designs = study["designs"].as_array_mut().unwrap();
+        designs.push(json!({ "label": "8R34 again", "changes": designs[1]["changes"] }));
+        designs.push(json!({ "label": "14R34", "changes": {
+            "/pair/driven/blank/holes": { "count": 14, "circle_radius_mm": 45 } } }));
+        StudyDocument::parse(study.to_string().as_bytes()).unwrap()
+    }
+
+    #[test]
+    fn a_study_leaves_its_table_and_every_result() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out");
+        let results = results(
+            &study(),
+            compute(&study(), Some(&ResultFolder::make(&path).unwrap())).unwrap(),
+        );
+        let labels: Vec<&str> = results.rows.iter().map(|row| &*row.label).collect();
+        assert_eq!(
+            labels,
+            [
+                "standard",
+                "8R34",
+                "10R34",
+                "6R30",
+                "8R30",
+                "8R27",
+                "8R34 again",
+                "14R34"
+            ]
+        );
+        assert_eq!(results.rows[1].curves, results.rows[6].curves);
+        assert_eq!(results.rows[7].status, "failed");
+        assert_eq!(
+            results.rows[7].problem.as_ref().unwrap()["code"],
+            "holes_breach_rim"
+        );
+        let files = fs::read_dir(path.join("results")).unwrap().count();
+        assert_eq!(files, 7);
+        assert!(path.join("results/00002-8R34.json").exists());
+
+        let text = short_table(&results, Duration::from_secs(2));
+        assert!(
+            text.contains("7 of 8 designs computed in 2.00 s, 3.5 a second."),
+            "{text}"
+        );
+        assert!(text.contains("14R34: "), "{text}");
+    }
+}

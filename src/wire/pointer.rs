@@ -1,0 +1,278 @@
+//! JSON pointers (RFC 6901) into a submission: whether they name a field that there is, and how a value gets there.
+
+use std::sync::LazyLock;
+
+use serde_json::{Map, Value, json};
+use utoipa::{PartialSchema, ToSchema};
+
+use super::problem::Code;
+use super::submission::Submission;
+
+/// A place in a submission.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Pointer {
+    text: String,
+    steps: Vec<String>,
+}
+
+/// A pointer's step as it is written: the key with `~` and `/` escaped.
+pub(super) fn escaped(key: &str) -> String {
+    key.replace('~', "~0").replace('/', "~1")
+}
+
+impl Pointer {
+    /// Reads a pointer.
+    ///
+    /// # Errors
+    ///
+    /// The code and a sentence, when the text is no pointer or names the whole document.
+    pub(super) fn parse(text: &str) -> Result<Self, (Code, String)> {
+        const LONGEST: usize = 300;
+        let refuse = |what: &str| {
+            let detail = format!(
+                "A JSON pointer such as /pair/driven/blank/holes/count is expected; this {what}."
+            );
+            Err((Code::UnknownField, detail))
+        };
+        if text.len() > LONGEST {
+            return refuse("is longer than any");
+        }
+        let Some(steps) = text.strip_prefix('/') else {
+            return refuse(if text.is_empty() {
+                "names the whole submission"
+            } else {
+                "does not begin with /"
+            });
+        };
+        let unescaped = |step: &str| {
+            let rest = step.replace("~0", "").replace("~1", "");
+            (!rest.contains('~')).then(|| step.replace("~1", "/").replace("~0", "~"))
+        };
+        match steps.split('/').map(unescaped).collect::<Option<Vec<_>>>() {
+            Some(steps) => Ok(Self {
+                text: text.to_owned(),
+                steps,
+            }),
+            None => refuse("has a ~ that is neither ~0 nor ~1"),
+        }
+    }
+
+    /// The pointer as it was written.
+    pub(super) fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The number of its steps.
+    pub(super) fn len(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// Its last steps.
+    pub(super) fn last(&self, count: usize) -> &[String] {
+        &self.steps[self.steps.len().saturating_sub(count)..]
+    }
+
+    /// Whether its first steps are these.
+    pub(super) fn starts_with(&self, steps: &[&str]) -> bool {
+        self.steps.len() >= steps.len() && self.steps.iter().zip(steps).all(|(a, b)| a == b)
+    }
+
+    /// Whether it names what `pointer` names, or something that contains it.
+    pub(super) fn covers(&self, pointer: &str) -> bool {
+        pointer
+            .strip_prefix(self.text.as_str())
+            .is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+    }
+
+    /// Whether the schema of a submission has a field at this place.
+    ///
+    /// # Errors
+    ///
+    /// The code and a sentence that says which step is unknown and what would be known there.
+    pub(super) fn check_named(&self) -> Result<(), (Code, String)> {
+        let mut here = vec![&SCHEMA.root];
+        for (i, step) in self.steps.iter().enumerate() {
+            let schemas = SCHEMA.alternatives(&here);
+            let next: Vec<&Value> = schemas
+                .iter()
+                .filter_map(|schema| child(schema, step))
+                .collect();
+            if next.is_empty() {
+                let place = format!("/{}", self.steps[..i].join("/"));
+                let known: Vec<&str> = schemas
+                    .iter()
+                    .filter_map(|schema| schema["properties"].as_object())
+                    .flat_map(Map::keys)
+                    .map(String::as_str)
+                    .collect();
+                let known = if known.is_empty() {
+                    "nothing".to_owned()
+                } else {
+                    known.join(", ")
+                };
+                let detail = format!(
+                    "{} names no field of a submission; at {place} there is {known}.",
+                    self.text
+                );
+                return Err((Code::UnknownField, detail));
+            }
+            here = next;
+        }
+        Ok(())
+    }
+
+    /// Puts `value` at this place of `document`. Objects on the way that are absent or null are made. False if something
+    /// on the way is no object, or a list without this place.
+    pub(super) fn put(&self, document: &mut Value, value: Value) -> bool {
+        let mut here = document;
+        for step in &self.steps {
+            if here.is_null() {
+                *here = json!({});
+            }
+            here = match here {
+                Value::Object(fields) => fields.entry(step.as_str()).or_insert(Value::Null),
+                Value::Array(items) => {
+                    match step.parse::<usize>().ok().and_then(|i| items.get_mut(i)) {
+                        Some(item) => item,
+                        None => return false,
+                    }
+                }
+                _ => return false,
+            };
+        }
+        *here = value;
+        true
+    }
+}
+
+/// The schema of a submission, with those that it refers to.
+struct Schema {
+    root: Value,
+    named: Map<String, Value>,
+}
+
+static SCHEMA: LazyLock<Schema> = LazyLock::new(|| {
+    let plain = |schema| serde_json::to_value(schema).expect("a schema is plain data");
+    let mut named = Vec::new();
+    Submission::schemas(&mut named);
+    Schema {
+        root: plain(Submission::schema()),
+        named: named
+            .into_iter()
+            .map(|(name, schema)| (name, plain(schema)))
+            .collect(),
+    }
+});
+
+impl Schema {
+    /// The schemas behind references and alternatives.
+    fn alternatives<'a>(&'a self, schemas: &[&'a Value]) -> Vec<&'a Value> {
+        let mut found = Vec::new();
+        let mut open: Vec<&Value> = schemas.to_vec();
+        while let Some(schema) = open.pop() {
+            if let Some(name) = schema["$ref"].as_str() {
+                let name = name.rsplit('/').next().unwrap_or_default();
+                open.extend(self.named.get(name));
+                continue;
+            }
+            for key in ["oneOf", "anyOf", "allOf"] {
+                open.extend(schema[key].as_array().into_iter().flatten());
+            }
+            found.push(schema);
+        }
+        found
+    }
+}
+
+/// What a schema says of the field or item `step`.
+fn child<'a>(schema: &'a Value, step: &str) -> Option<&'a Value> {
+    let property = schema["properties"]
+        .as_object()
+        .and_then(|properties| properties.get(step));
+    let is_index = !step.is_empty()
+        && step.len() < 6
+        && step.bytes().all(|byte| byte.is_ascii_digit())
+        && (step == "0" || !step.starts_with('0'));
+    let item = || schema.get("items").filter(|_| is_index);
+    property.or_else(item)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn named(text: &str) -> bool {
+        Pointer::parse(text).is_ok_and(|pointer| pointer.check_named().is_ok())
+    }
+
+    #[test]
+    fn a_pointer_names_fields_objects_and_items_of_a_submission() {
+        for text in [
+            "/method",
+            "/pair",
+            "/pair/driven/blank/holes",
+            "/pair/driven/blank/holes/count",
+            "/pair/driving/tip_relief/start/radial_length_mm",
+            "/output_torques_n_m",
+            "/output_torques_n_m/0",
+            "/resolution/grid",
+            "/resolution/contact_solver/augmented_lagrangian/penalty_n_per_m",
+            "/tags",
+        ] {
+            assert!(named(text), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_pointer_that_names_nothing_is_refused_with_what_is_there() {
+        for text in [
+            "",
+            "method",
+            "/",
+            "/methods",
+            "/pair/driven/blank/hole/count",
+            "/pair/driven/blank/holes/count/0",
+            "/output_torques_n_m/first",
+            "/output_torques_n_m/00",
+            "/pair/~2",
+        ] {
+            assert!(!named(text), "{text}");
+        }
+        let pointer = Pointer::parse("/pair/driven/blank/hole/count").unwrap();
+        let (code, detail) = pointer.check_named().unwrap_err();
+        assert_eq!(code, Code::UnknownField);
+        assert!(detail.contains("bore_radius_mm, holes"), "{detail}");
+    }
+
+    #[test]
+    fn a_value_is_put_where_it_belongs_and_absent_objects_are_made() {
+        let mut document = json!({ "pair": { "driven": { "blank": { "holes": null } } }, "output_torques_n_m": [1] });
+        let put = |document: &mut Value, text: &str, value: Value| {
+            Pointer::parse(text).unwrap().put(document, value)
+        };
+        assert!(put(
+            &mut document,
+            "/pair/driven/blank/holes/count",
+            json!(8)
+        ));
+        assert!(put(&mut document, "/output_torques_n_m/0", json!(2)));
+        assert!(!put(&mut document, "/output_torques_n_m/1", json!(2)));
+        assert!(!put(&mut document, "/output_torques_n_m/0/x", json!(2)));
+        assert_eq!(
+            document,
+            json!({ "pair": { "driven": { "blank": { "holes": { "count": 8 } } } }, "output_torques_n_m": [2] })
+        );
+    }
+
+    #[test]
+    fn a_pointer_covers_itself_and_what_is_below_it_only() {
+        let holes = Pointer::parse("/pair/driven/blank/holes").unwrap();
+        assert!(
+            holes.covers("/pair/driven/blank/holes")
+                && holes.covers("/pair/driven/blank/holes/count")
+        );
+        assert!(
+            !holes.covers("/pair/driven/blank") && !holes.covers("/pair/driven/blank/holes_mm")
+        );
+    }
+}
