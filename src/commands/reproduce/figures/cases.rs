@@ -283,12 +283,8 @@ fn caption(test_case: &TestCase) -> anyhow::Result<String> {
         pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) * 1e6
     };
     let only = match test_case.number {
-        1 => {
-            " The contact repeats after 25 mesh periods, half a revolution: the paper's second half is its first."
-        }
-        2 => {
-            " The contact repeats after 5 mesh periods: the paper's revolution holds it ten times."
-        }
+        1 => " The contact repeats after 25 mesh periods, half a revolution.",
+        2 => " The contact repeats after 5 mesh periods, a tenth of a revolution.",
         _ => {
             " Drawn for 160 N m, not the 115 of the paper's caption, and with the stiffness axis of the paper divided by \
              85/29; the spectra reach two decades lower than the paper's."
