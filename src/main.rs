@@ -24,6 +24,8 @@ enum Command {
     Study(commands::study::Study),
     /// Ask a running service whether it is ready; exit code 1 if not.
     Health(commands::health::Health),
+    /// Recompute the paper's tables, figures and study.
+    Reproduce(commands::reproduce::Reproduce),
 }
 
 fn main() -> anyhow::Result<ExitCode> {
@@ -32,5 +34,9 @@ fn main() -> anyhow::Result<ExitCode> {
         Command::Solve(solve) => solve.run(),
         Command::Study(study) => study.run(),
         Command::Health(health) => health.run(),
+        Command::Reproduce(reproduce) => {
+            reproduce.run()?;
+            Ok(ExitCode::SUCCESS)
+        }
     }
 }

@@ -3,6 +3,8 @@
 mod chart;
 mod demo;
 pub(crate) mod health;
+pub(crate) mod plot;
+pub(crate) mod reproduce;
 pub(crate) mod serve;
 pub(crate) mod solve;
 pub(crate) mod study;
