@@ -141,6 +141,18 @@ impl Store {
         Ok(claimed)
     }
 
+    /// Whether a claim holds: the job runs, and nobody has claimed it since.
+    pub(super) async fn holds(&self, claim: Claim) -> Result<bool, sqlx::Error> {
+        let found: Option<i64> = sqlx::query_scalar(
+            "select 1 from jobs where id = ?1 and attempt = ?2 and status = 'running'",
+        )
+        .bind(claim.id.to_string())
+        .bind(claim.attempt)
+        .fetch_optional(&self.readers)
+        .await?;
+        Ok(found.is_some())
+    }
+
     /// Running -> running: how far the job has come, and a longer lease. False if the claim holds no more.
     pub(super) async fn report(
         &self,
