@@ -29,7 +29,7 @@ pub struct Config {
     )]
     pub database: PathBuf,
 
-    /// Jobs computed at the same time, and threads of the engine [default: one for each core].
+    /// Jobs computed at the same time; each may use every core [default: one for each core].
     #[arg(long, env = "MESHWRIGHT_WORKERS", value_name = "NUMBER")]
     pub workers: Option<NonZeroUsize>,
 

@@ -6,9 +6,9 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use meshwright_engine::analysis::{Case, Library, Method, analyze};
 use meshwright_engine::run::Run;
 
-#[path = "../tests/paper_cases/mod.rs"]
-mod paper_cases;
-use paper_cases::{case_1, case_2, case_3, study_design};
+#[path = "../tests/cases/mod.rs"]
+mod cases;
+use cases::{study_design, test_case};
 
 fn solve(case: &Case, library: &Library) {
     black_box(
@@ -24,7 +24,7 @@ fn jobs(criterion: &mut Criterion) {
         (Method::Decomposition, "decomposition"),
         (Method::ProjectedDecomposition, "projected"),
     ];
-    for (case, number) in [(case_1(), 1), (case_2(), 2), (case_3(), 3)] {
+    for (case, number) in [(test_case(1), 1), (test_case(2), 2), (test_case(3), 3)] {
         for (method, name) in methods {
             let case = Case {
                 method,
@@ -40,7 +40,7 @@ fn jobs(criterion: &mut Criterion) {
         |bencher| {
             let case = Case {
                 method: Method::ProjectedDecomposition,
-                ..case_2()
+                ..test_case(2)
             };
             let solid = Case {
                 method: Method::Flexible,

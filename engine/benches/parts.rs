@@ -10,12 +10,12 @@ use meshwright_engine::gear::Member;
 use meshwright_engine::grid::{GridLevel, ToothGrid};
 use meshwright_engine::run::Run;
 
-#[path = "../tests/paper_cases/mod.rs"]
-mod paper_cases;
-use paper_cases::case_3;
+#[path = "../tests/cases/mod.rs"]
+mod cases;
+use cases::test_case;
 
 fn parts(criterion: &mut Criterion) {
-    let case = case_3();
+    let case = test_case(3);
     let gear = case.pair.driven();
     let radius = default_interface_radius(gear);
     let run = Run::unattended();

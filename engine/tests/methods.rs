@@ -1,10 +1,10 @@
 //! The methods against each other and against what the paper says of them.
 
-mod paper_cases;
+mod cases;
 
+use cases::{study_design, test_case};
 use meshwright_engine::analysis::{Analysis, Case, Curve, Library, Method, Warning, analyze};
 use meshwright_engine::run::Run;
-use paper_cases::{case_1, case_2, case_3, study_design};
 
 fn solve(case: &Case, method: Method) -> Analysis {
     let case = Case {
@@ -49,7 +49,7 @@ fn amplitude(curve: &Curve, label: &str) -> f64 {
 #[test]
 fn decomposition_and_projection_follow_the_flexible_method_on_the_three_test_cases() {
     // The paper's own decomposition is up to 0.5 % off in the mean, 12 % in rms, 8.4 % in p-p and 5 % in mean stiffness.
-    for (number, case) in [(1, case_1()), (2, case_2()), (3, case_3())] {
+    for (number, case) in [(1, test_case(1)), (2, test_case(2)), (3, test_case(3))] {
         let flexible = curve(&case, Method::Flexible);
         let decomposed = differences(&curve(&case, Method::Decomposition), &flexible);
         for (difference, bound) in decomposed.into_iter().zip([0.015, 0.16, 0.16, 0.05]) {
@@ -91,7 +91,7 @@ fn without_holes_decomposition_and_projection_are_the_flexible_method() {
 fn sidebands_appear_where_the_paper_says() {
     // Over a revolution of gear 2: lines of case 2 stand on multiples of 10 only; the fitted decomposition has H_50 ± 10 in
     // k, by its torque step, and not in δ.
-    let mut case = case_2();
+    let mut case = test_case(2);
     case.resolution.span_mesh_periods = Some(50);
     for method in [
         Method::Flexible,
@@ -132,7 +132,7 @@ fn sidebands_appear_where_the_paper_says() {
 
 #[test]
 fn two_equal_hole_patterns_make_one_family_of_lines() {
-    let curve = curve(&case_1(), Method::Flexible);
+    let curve = curve(&test_case(1), Method::Flexible);
     let spectrum = curve.spectrum.expect("whole periods");
     assert_eq!(spectrum.line("H_N").map(|line| line.order), Some(8.0));
     assert!(spectrum.line("H_N1").is_none() && spectrum.line("H_N2").is_none());

@@ -1,4 +1,4 @@
-//! The workers: each claims a job, has it computed on the pool, and writes down what came of it.
+//! The workers: each claims a job, has it computed on its threads, and writes down what came of it.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -65,7 +65,6 @@ pub struct Workers {
 /// What every worker has in common.
 struct Shop {
     jobs: Jobs,
-    pool: ThreadPool,
     solve: Solve,
     pace: Pace,
 }
@@ -84,17 +83,7 @@ impl Workers {
         count: usize,
         pace: Pace,
     ) -> Result<Self, StartError> {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(count)
-            .thread_name(|index| format!("engine-{index}"))
-            .build()
-            .map_err(StartError::Threads)?;
-        let shop = Arc::new(Shop {
-            jobs,
-            pool,
-            solve,
-            pace,
-        });
+        let shop = Arc::new(Shop { jobs, solve, pace });
         shop.recover(Lost::All)
             .await
             .map_err(StartError::Database)?;
@@ -105,12 +94,13 @@ impl Workers {
 
         let alive = Arc::new(AtomicUsize::new(0));
         let mut tasks = JoinSet::new();
-        for _ in 0..count {
+        for worker in 0..count {
             let alive = Alive::new(&alive);
             let shop = Arc::clone(&shop);
+            let threads = engine_threads(worker).map_err(StartError::Threads)?;
             tasks.spawn(async move {
                 let _alive = alive;
-                shop.work().await;
+                shop.work(&threads).await;
             });
         }
         tasks.spawn(async move { shop.watch_leases().await });
@@ -144,6 +134,16 @@ pub enum StartError {
     Database(#[source] sqlx::Error),
 }
 
+/// The threads of one worker, as many as there are cores: a single job fills the machine.
+///
+/// Workers do not share them. In a pool that several jobs share, a thread that waits for a part of its job may take up
+/// another whole job, and the first one ends only when that one does.
+fn engine_threads(worker: usize) -> Result<ThreadPool, rayon::ThreadPoolBuildError> {
+    rayon::ThreadPoolBuilder::new()
+        .thread_name(move |index| format!("engine-{worker}-{index}"))
+        .build()
+}
+
 struct Alive(Arc<AtomicUsize>);
 
 impl Alive {
@@ -161,7 +161,7 @@ impl Drop for Alive {
 
 impl Shop {
     /// One worker: job after job until the stop.
-    async fn work(&self) {
+    async fn work(&self, threads: &ThreadPool) {
         let stop = self.jobs.stop();
         while !stop.is_cancelled() {
             match self.claim().await {
@@ -175,7 +175,7 @@ impl Shop {
                         // Where one job waited there may be another for the next worker.
                         self.jobs.live.work.notify_one();
                         self.jobs.live.changed_job(&job);
-                        self.compute(job).await;
+                        self.compute(job, threads).await;
                     }
                     if !found {
                         tokio::select! {
@@ -204,7 +204,7 @@ impl Shop {
     }
 
     /// Has a claimed job computed, and watches over it: heartbeat, time limit, shutdown.
-    async fn compute(&self, job: Job) {
+    async fn compute(&self, job: Job, threads: &ThreadPool) {
         let claim = Claim {
             id: job.id,
             attempt: job.attempt,
@@ -216,7 +216,7 @@ impl Shop {
         if !self.report(claim, running).await {
             return;
         }
-        let mut outcome = self.launch(&job, running.run());
+        let mut outcome = self.launch(&job, running.run(), threads);
         let mut deadline = pin!(sleep(self.pace.time_limit));
         let mut heartbeat = interval_at(Instant::now() + self.pace.heartbeat, self.pace.heartbeat);
         heartbeat.set_missed_tick_behavior(MissedTickBehavior::Delay);
@@ -253,12 +253,17 @@ impl Shop {
         }
     }
 
-    /// Starts the computation on the pool: it fills a core for long, so it must not sit on a thread that answers
+    /// Starts the computation on the worker's own threads: it is long, so it must not sit on a thread that answers
     /// requests. A panic in it is the engine's fault and ends this job only.
-    fn launch(&self, job: &Job, run: Run) -> oneshot::Receiver<Result<Solved, Problem>> {
+    fn launch(
+        &self,
+        job: &Job,
+        run: Run,
+        threads: &ThreadPool,
+    ) -> oneshot::Receiver<Result<Solved, Problem>> {
         let (sender, receiver) = oneshot::channel();
         let (solve, submission, id) = (Arc::clone(&self.solve), job.submission.clone(), job.id);
-        self.pool.spawn(move || {
+        threads.spawn(move || {
             let work = || {
                 let submission = Submission::parse(submission.as_bytes())?;
                 let document = solve(&submission, &run)?;

@@ -1,0 +1,145 @@
+//! Gears, pairs and cases of the paper, with what it leaves open as DESIGN section 4 settles it.
+
+#![allow(dead_code, reason = "each test and benchmark uses some of these")]
+
+use meshwright_engine::analysis::{
+    BodyFormula, Case, ContactSolver, Formulas, Method, PlaneState, Resolution, StiffnessRule,
+    ToothFormula,
+};
+use meshwright_engine::gear::{
+    Blank, GearData, GearPair, HolePattern, Material, Rack, ReliefData, ReliefShape, ReliefStart,
+    SpurGear,
+};
+use meshwright_engine::grid::GridLevel;
+
+/// Steel, as everywhere in DESIGN section 4.
+pub(crate) const STEEL: Material = Material {
+    youngs_modulus: 210e9,
+    poisson_ratio: 0.3,
+    density: 7850.0,
+};
+
+/// The gears of the paper and of CalculiX but for their tooth counts and blanks: m 2 mm, α 20°, b 20 mm.
+pub(crate) fn gear(tooth_count: u32, bore_radius: f64) -> GearData {
+    GearData {
+        tooth_count,
+        rack: Rack {
+            module: 2e-3,
+            pressure_angle: 20_f64.to_radians(),
+            addendum: 2e-3,
+            dedendum: 2.5e-3,
+            tip_radius: 0.76e-3,
+        },
+        profile_shift: 0.0,
+        face_width: 20e-3,
+        tip_relief: None,
+        material: STEEL,
+        blank: Blank {
+            bore_radius,
+            holes: None,
+        },
+    }
+}
+
+/// The relief of the paper: 5 µm, linear, from 1.75 mm below the tip circle.
+pub(crate) fn relieved(data: GearData) -> GearData {
+    GearData {
+        tip_relief: Some(ReliefData {
+            amount: 5e-6,
+            shape: ReliefShape::Linear,
+            start: ReliefStart::RadialLength(1.75e-3),
+        }),
+        ..data
+    }
+}
+
+/// `data` with holes.
+pub(crate) fn holed(
+    mut data: GearData,
+    count: u32,
+    circle_radius: f64,
+    radius: f64,
+    phase: f64,
+) -> GearData {
+    data.blank.holes = Some(HolePattern {
+        count,
+        circle_radius,
+        radius,
+        phase,
+    });
+    data
+}
+
+/// The pair of two drawings.
+pub(crate) fn pair(driving: GearData, driven: GearData, center_distance: f64) -> GearPair {
+    let gear = |data| SpurGear::new(data).expect("the drawing of a test can be made");
+    GearPair::new(gear(driving), gear(driven), center_distance).expect("the pair of a test meshes")
+}
+
+/// The standard pair: 50/50 at 100.5 mm with a bore of 15 mm, with or without the relief of the paper.
+pub(crate) fn standard_pair(with_relief: bool) -> GearPair {
+    let data = gear(50, 15e-3);
+    let data = if with_relief { relieved(data) } else { data };
+    pair(data, data, 100.5e-3)
+}
+
+/// Test case `number` of the paper with the values of DESIGN section 4, and its output torque.
+pub(crate) fn paper_case(number: u32) -> (GearPair, f64) {
+    let blank = |z, bore| relieved(gear(z, bore));
+    match number {
+        1 => {
+            let data = holed(blank(50, 16e-3), 8, 31.5e-3, 10e-3, 0.0);
+            (pair(data, data, 100.5e-3), 115.0)
+        }
+        2 => {
+            let driven = holed(blank(50, 16e-3), 10, 34e-3, 7.5e-3, 0.0);
+            (pair(blank(50, 16e-3), driven, 100.5e-3), 115.0)
+        }
+        3 => {
+            let driven = holed(blank(85, 12e-3), 6, 56e-3, 17.5e-3, 0.0);
+            (pair(blank(29, 10e-3), driven, 114.5e-3), 160.0)
+        }
+        _ => unreachable!("the paper has three test cases"),
+    }
+}
+
+/// The flexible method at the standard level, 40 positions a mesh period over the true period, exact active set and
+/// tangent.
+pub(crate) fn case(pair: GearPair, output_torques: &[f64]) -> Case {
+    Case {
+        pair,
+        method: Method::Flexible,
+        output_torques: output_torques.to_vec(),
+        resolution: Resolution {
+            positions_per_mesh_period: 40,
+            span_mesh_periods: None,
+            grid: GridLevel::Standard,
+            contact_solver: ContactSolver::ActiveSet,
+            stiffness: StiffnessRule::Tangent,
+            blank_positions: 16,
+            interface_radius: None,
+            formulas: Formulas {
+                tooth: ToothFormula::WeberBanaschek,
+                body: BodyFormula::Sainsot,
+                plane_state: PlaneState::Stress,
+            },
+            error_estimate: false,
+        },
+        driving_speed: None,
+    }
+}
+
+/// Test case `number` of the paper by the flexible method.
+pub(crate) fn test_case(number: u32) -> Case {
+    let (pair, output_torque) = paper_case(number);
+    case(pair, &[output_torque])
+}
+
+/// A design of section 5: the standard pair with holes (N, R, r) in its driven gear.
+pub(crate) fn study_design(holes: Option<(u32, f64, f64)>, output_torques: &[f64]) -> Case {
+    let solid = relieved(gear(50, 15e-3));
+    let driven = holes.map_or(solid, |(count, circle_radius, radius)| {
+        holed(solid, count, circle_radius, radius, 0.0)
+    });
+    case(pair(solid, driven, 100.5e-3), output_torques)
+}
