@@ -9,6 +9,7 @@ use uuid::Uuid;
 
 use super::problem::Problem;
 use super::results::StatisticsDocument;
+use super::units::significant;
 use super::warning::GearName;
 
 /// What of a results document a table shows. It is kept beside the document, so that a table of thousands of rows reads
@@ -195,7 +196,7 @@ pub struct TableRow {
     /// Whether no other design of the study is at least as good in everything and better in something, of those that
     /// were computed by the same method at the same torques so far. Compared are the mass of both gears (less is
     /// better), the largest peak-to-peak transmission error over the torques (less), and the mean tangent stiffness,
-    /// averaged over the torques (more).
+    /// averaged over the torques (more), each to six significant digits.
     pub pareto: bool,
     /// One entry for each output torque.
     pub curves: Vec<RowCurve>,
@@ -253,7 +254,8 @@ pub fn table(gear: GearName, states: Vec<RowState>) -> Vec<TableRow> {
 
 impl Summary {
     fn pair_mass(&self) -> Option<f64> {
-        Some(self.driving.mass_kg? + self.driven.mass_kg?)
+        let sum = self.driving.mass_kg? + self.driven.mass_kg?;
+        Some(significant(sum, 10))
     }
 
     /// What designs are compared by, each the less the better; none if a number is missing.
@@ -268,11 +270,13 @@ impl Summary {
         if self.curves.is_empty() {
             return None;
         }
-        Some([
+        let objectives = [
             self.pair_mass()?,
             worst_range,
             -stiffness / self.curves.len() as f64,
-        ])
+        ];
+        // Six digits: what differs beyond them, as the masses of a study of constant mass do, is rounding and no merit.
+        Some(objectives.map(|objective| significant(objective, 6)))
     }
 
     /// What has to be the same for a comparison to mean something: method and torques.
