@@ -8,7 +8,8 @@ use utoipa::OpenApi as _;
 use utoipa::openapi::{OpenApi, Server, ServerBuilder};
 use utoipa_swagger_ui::{Config, SwaggerUi};
 
-use super::router::{App, routes};
+use super::app::App;
+use super::router::routes;
 
 /// What stands before the paths.
 #[derive(utoipa::OpenApi)]

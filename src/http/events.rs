@@ -11,9 +11,9 @@ use serde::Serialize;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
+use super::app::App;
 use super::client::Client;
 use super::parameters::job_id;
-use super::router::App;
 use super::view::JobView;
 use crate::jobs::{News, Progress, Status};
 use crate::wire::Problem;

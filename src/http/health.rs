@@ -9,8 +9,8 @@ use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 use utoipa::ToSchema;
 
+use super::app::App;
 use super::problem::Plain;
-use super::router::App;
 
 /// Whether the service can work.
 #[derive(Serialize, ToSchema)]

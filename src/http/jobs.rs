@@ -9,11 +9,11 @@ use serde::Deserialize;
 use utoipa::IntoParams;
 use uuid::Uuid;
 
+use super::app::App;
 use super::client::Client;
 use super::conditional::Tag;
 use super::parameters::{Parameters, invalid, job_id};
 use super::prefer::Wait;
-use super::router::App;
 use super::view::{JobView, ListView};
 use crate::jobs::{Filter, Membership, Status};
 use crate::wire::Problem;

@@ -9,7 +9,7 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use metrics_exporter_prometheus::{Matcher, PrometheusBuilder, PrometheusHandle};
 
-use super::router::App;
+use super::app::App;
 use crate::wire::Problem;
 
 /// The numbers of this process. One recorder serves all parts of it, as the `metrics` facade wants.

@@ -1,8 +1,9 @@
 //! The jobs over HTTP. A handler takes a document, hands it on, and answers; all work is done below.
 //!
-//! In reading order: the router and its layers; how errors become problem documents; what requests are made of
+//! In reading order: what handlers work with; the router and its layers; how errors become problem documents; what requests are made of
 //! (body, client, parameters, preferences); what answers are made of (entity tags, the view of a job); the handlers.
 
+mod app;
 mod client;
 mod conditional;
 mod docs;
@@ -23,5 +24,6 @@ mod submit;
 mod tables;
 mod view;
 
+pub use app::{App, Edge};
 pub use docs::openapi;
-pub use router::{App, Edge, router};
+pub use router::router;

@@ -11,7 +11,7 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use tracing::error;
 
-use super::router::Edge;
+use super::app::Edge;
 use crate::jobs::{JobError, Status};
 use crate::wire::{Code, Problem};
 

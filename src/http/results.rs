@@ -5,11 +5,11 @@ use axum::http::HeaderMap;
 use axum::http::header::{CACHE_CONTROL, CONTENT_LOCATION, CONTENT_TYPE, HeaderValue};
 use axum::response::{IntoResponse, Response};
 
+use super::app::App;
 use super::client::Client;
 use super::conditional::Tag;
 use super::parameters::job_id;
 use super::problem::of_missing_results;
-use super::router::App;
 use crate::jobs::Job;
 use crate::wire::Problem;
 

@@ -1,7 +1,6 @@
 //! The router: every route, and the layers around them.
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicUsize;
 use std::time::Duration;
 
 use axum::Router;
@@ -23,35 +22,15 @@ use tracing::Level;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
+use super::app::App;
 use super::{
     docs, events, health, jobs, metrics, problem, problem_pages, reference, results, studies,
     submit, tables,
 };
-use crate::jobs::Jobs;
 use crate::wire::{Code, Problem};
 
 /// A request has its answer's head within this time. Longer than the longest wait that a client may ask for.
 const REQUEST_TIMEOUT: Duration = Duration::from_secs(90);
-
-/// What handlers work with.
-#[derive(Clone)]
-pub struct App {
-    /// The jobs.
-    pub jobs: Jobs,
-    /// The number of workers that live.
-    pub workers_alive: Arc<AtomicUsize>,
-    /// How the service looks from outside.
-    pub edge: Arc<Edge>,
-}
-
-/// How the service looks from outside.
-#[derive(Debug, Clone, Default)]
-pub struct Edge {
-    /// What stands before the path in every link: nothing, or the public address without a slash at its end.
-    pub public_url: String,
-    /// The origins whose pages may call the service; `*` for all.
-    pub cors_origins: Vec<HeaderValue>,
-}
 
 /// The service.
 pub fn router(app: App) -> Router {

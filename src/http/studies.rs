@@ -20,13 +20,13 @@ use serde_json::Value;
 use utoipa::{IntoParams, ToSchema};
 use uuid::Uuid;
 
+use super::app::{App, Edge};
 use super::client::Client;
 use super::conditional::Tag;
 use super::document::Document;
 use super::parameters::{IdempotencyKey, Parameters, invalid};
 use super::prefer::Wait;
 use super::problem::internal;
-use super::router::{App, Edge};
 use super::view::with_public_type;
 use crate::jobs::{News, Status, StudyRecord, StudySubmitted};
 use crate::wire::study_table::{csv, table};

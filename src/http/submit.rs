@@ -5,12 +5,12 @@ use axum::http::header::{CONTENT_TYPE, HeaderValue, LOCATION, RETRY_AFTER};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 
+use super::app::App;
 use super::client::Client;
 use super::document::Document;
 use super::parameters::IdempotencyKey;
 use super::prefer::Wait;
 use super::results;
-use super::router::App;
 use super::view::JobView;
 use crate::jobs::{Job, Submitted};
 use crate::wire::{Problem, Submission};

@@ -9,12 +9,12 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 use utoipa::IntoParams;
 
+use super::app::App;
 use super::client::Client;
 use super::conditional::Tag;
 use super::parameters::{Parameters, job_id};
 use super::problem::of_missing_results;
 use super::results::keep_for_good;
-use super::router::App;
 use crate::wire::{Code, Problem};
 
 /// What a table shows: where in a curve its columns stand, and which they are.

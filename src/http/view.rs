@@ -7,7 +7,7 @@ use serde_json::Value;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-use super::router::Edge;
+use super::app::Edge;
 use crate::jobs::{Job, Status};
 
 /// A job: one submission, where it stands, and where to find what belongs to it.

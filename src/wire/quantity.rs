@@ -364,7 +364,7 @@ pub(super) const PENALTY: Quantity = needed(
     "penalty_n_per_m",
     "Penalty stiffness",
     "N/m",
-    (1e5, 1e15),
+    (1e5, 1e18),
     "The penalty stiffness of a contact cell, eq. 7 of the paper. It changes the number of iterations, not the result.",
 )
 .or(Preset::Value(1e9));

@@ -11,7 +11,7 @@ pub enum Method {
     Flexible,
     /// Rigid blanks plus fitted blank rotations: section 3 of the paper.
     Decomposition,
-    /// Rigid blanks plus the exact first-order term of the holed blanks.
+    /// The contact of round blanks plus the exact first-order term of what holes change around them.
     ProjectedDecomposition,
     /// Closed-form compliances on the theoretical lines of contact: eqs. 4 and 5.
     LoadDistribution,

@@ -46,7 +46,7 @@ mod tests {
 
     #[test]
     fn a_straight_run_keeps_its_ends_and_a_corner_stays() {
-        let path: Vec<(f64, f64)> = (0..=20)
+        let path: Vec<(f64, f64)> = (0_i32..=20)
             .map(|i| (f64::from(i), f64::from((i - 10).abs())))
             .collect();
         assert_eq!(

@@ -362,15 +362,10 @@ mod tests {
         let [flexible, fitted, projected] =
             [case.flexible(), case.decomposition(), case.projected()].map(statistics);
         let off = |a: f64, b: f64| (a / b - 1.0).abs();
-        for i in 0..6 {
+        for (i, (value, printed)) in flexible.iter().zip(paper::TABLE_2[1].flexible).enumerate() {
             // DESIGN section 5: with bores and hole circles fitted to the means, means within 4 %, the rest within 13 %.
             let bound = if i % 3 == 0 { 0.04 } else { 0.13 };
-            let printed = paper::TABLE_2[1].flexible[i];
-            assert!(
-                off(flexible[i], printed) < bound,
-                "{} beside {printed}",
-                flexible[i]
-            );
+            assert!(off(*value, printed) < bound, "{value} beside {printed}");
         }
         // Issue 3: mean, rms, peak-to-peak and mean stiffness against the flexible method.
         for (i, (by_fit, by_projection)) in
