@@ -232,3 +232,25 @@ fn the_stiffness_by_a_torque_step_is_the_tangent() {
         .count();
     assert!(close >= 36, "{close} of 40 positions agree");
 }
+
+#[test]
+fn what_designs_share_changes_no_digit() {
+    // The second design finds teeth and rigid-blank contacts of the first in the library.
+    let library = Library::default();
+    let run = Run::unattended();
+    let [first, second] =
+        [(8, 34e-3, 8.385e-3), (10, 30e-3, 7e-3)].map(|holes| study_design(Some(holes), &[115.0]));
+    for method in [
+        Method::Decomposition,
+        Method::ProjectedDecomposition,
+        Method::Flexible,
+    ] {
+        let with = |case: &Case| Case {
+            method,
+            ..case.clone()
+        };
+        analyze(&with(&first), &library, &run).expect("a design of the study");
+        let shared = analyze(&with(&second), &library, &run).expect("a design of the study");
+        assert_eq!(shared, solve(&second, method), "{method:?}");
+    }
+}

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use super::case::{Case, StiffnessRule};
 use super::curve::{BlankFit, BlankSample, DecompositionParts, Evidence, LoadShare};
 use super::flexible::{self, Blanks};
-use super::library::Library;
+use super::library::{Library, interface_radius};
 use super::model::{MeshContact, PairModel, tooth_offset};
 use super::{Analysis, AnalysisError, CurveParts, mesh_positions, warnings};
 use crate::fem::body::Coupling;
@@ -55,7 +55,7 @@ pub(super) fn decompose(
         let (model, unknowns) =
             flexible::model(case, Blanks::OnlyHoledOf(member), level, library, run)?;
         degrees_of_freedom = degrees_of_freedom.max(unknowns);
-        let interface_radius = flexible::interface_radius(case, member);
+        let interface_radius = interface_radius(case, member);
         blanks.push(HoledBlank {
             member,
             model,
@@ -68,10 +68,17 @@ pub(super) fn decompose(
         StiffnessRule::Tangent => TORQUE_STEP,
         StiffnessRule::TorqueStep { fraction } => fraction,
     };
+    let base = RigidBlank {
+        case,
+        model: &rigid,
+        level,
+        library,
+        run,
+    };
     let mut curves = Vec::with_capacity(case.output_torques.len());
     for &output_torque in &case.output_torques {
         let load = case.pair.load(output_torque);
-        let at = |load: f64| Terms::at(case, &rigid, &blanks, load, run);
+        let at = |load: f64| Terms::at(&base, &blanks, load);
         let (middle, low, high) = (
             at(load)?,
             at(load * (1.0 - step))?,
@@ -108,24 +115,48 @@ pub(super) fn decompose(
     })
 }
 
+/// The pair with its holed blanks rigid (paper: wh), whose contacts all hole patterns on the same teeth share.
+struct RigidBlank<'a> {
+    case: &'a Case,
+    model: &'a PairModel,
+    level: GridLevel,
+    library: &'a Library,
+    run: &'a Run,
+}
+
+impl RigidBlank<'_> {
+    fn contacts(
+        &self,
+        load: f64,
+        positions: &[f64],
+    ) -> Result<Arc<Vec<MeshContact>>, AnalysisError> {
+        let mut solved = false;
+        let solve = || {
+            solved = true;
+            flexible::contacts(self.model, load, positions, self.run)
+        };
+        let contacts = self
+            .library
+            .rigid_blank_contacts(self.case, self.level, load, positions, solve)?;
+        if !solved {
+            self.run.reached(positions.len() as u64)?;
+        }
+        Ok(contacts)
+    }
+}
+
 /// The terms of eq. 15 at one load.
 struct Terms {
-    contacts: Vec<MeshContact>,
+    contacts: Arc<Vec<MeshContact>>,
     fits: Vec<BlankFit>,
 }
 
 impl Terms {
-    fn at(
-        case: &Case,
-        rigid: &PairModel,
-        blanks: &[HoledBlank],
-        load: f64,
-        run: &Run,
-    ) -> Result<Self, AnalysisError> {
-        let contacts = flexible::contacts(rigid, load, &one_mesh_period(case), run)?;
+    fn at(base: &RigidBlank<'_>, blanks: &[HoledBlank], load: f64) -> Result<Self, AnalysisError> {
+        let contacts = base.contacts(load, &one_mesh_period(base.case))?;
         let fits = blanks
             .iter()
-            .map(|blank| blank.fit(case, rigid, load, run))
+            .map(|blank| blank.fit(base, load))
             .collect::<Result<_, _>>()?;
         Ok(Self { contacts, fits })
     }
@@ -160,25 +191,19 @@ impl HoledBlank {
     /// R_b θ_gb = δ_whole − δ_wh without a further solve. (With the tangential part imposed and the radial direction left
     /// free of traction the annulus is softer than in its gear: the rms of case 1 then falls 43 % short, where the paper
     /// has 8.5 %.)
-    fn fit(
-        &self,
-        case: &Case,
-        rigid: &PairModel,
-        load: f64,
-        run: &Run,
-    ) -> Result<BlankFit, AnalysisError> {
-        let gear = case.pair.gear(self.member);
-        let count = case.resolution.blank_positions;
+    fn fit(&self, base: &RigidBlank<'_>, load: f64) -> Result<BlankFit, AnalysisError> {
+        let gear = base.case.pair.gear(self.member);
+        let count = base.case.resolution.blank_positions;
         let holes = gear.holes().map_or(1, |holes| holes.count);
         let period = f64::from(gear.tooth_count()) / f64::from(holes);
         let positions: Vec<f64> = (0..count)
             .map(|j| f64::from(j) * period / f64::from(count))
             .collect();
-        let whole = flexible::contacts(&self.model, load, &positions, run)?;
-        let without = flexible::contacts(rigid, load, &positions, run)?;
+        let whole = flexible::contacts(&self.model, load, &positions, base.run)?;
+        let without = base.contacts(load, &positions)?;
         let samples: Vec<BlankSample> = positions
             .iter()
-            .zip(whole.iter().zip(&without))
+            .zip(whole.iter().zip(without.iter()))
             .map(|(&mesh_position, (whole, without))| BlankSample {
                 mesh_position,
                 rotation: whole.transmission_error - without.transmission_error,
@@ -224,10 +249,17 @@ pub(super) fn project(
     let mut warnings = warnings(case);
     let positions = mesh_positions(case);
     let period = one_mesh_period(case);
+    let base = RigidBlank {
+        case,
+        model: &rigid,
+        level,
+        library,
+        run,
+    };
     let mut curves = Vec::with_capacity(case.output_torques.len());
     for &output_torque in &case.output_torques {
         let load = case.pair.load(output_torque);
-        let without = flexible::contacts(&rigid, load, &period, run)?;
+        let without = base.contacts(load, &period)?;
         let (contacts, stiffness) = flexible::solved(case, &round, load, &period, run)?;
         flexible::gather(&mut evidence, &contacts, load);
         flexible::warn_of_tips(&mut warnings, &contacts);

@@ -1,8 +1,8 @@
 //! What a case will cost, known before it is computed.
 
 use super::case::{Case, Method};
-use super::library::{blank_grid, harmonics};
-use super::{expected_positions, flexible};
+use super::expected_positions;
+use super::library::{blank_grid, harmonics, interface_radius};
 use crate::gear::Member;
 use crate::grid::ToothGrid;
 
@@ -46,7 +46,7 @@ pub fn estimate(case: &Case) -> Estimate {
     let level = case.resolution.grid;
     for member in Member::BOTH {
         let gear = case.pair.gear(member);
-        let radius = flexible::interface_radius(case, member);
+        let radius = interface_radius(case, member);
         let (Ok(tooth), Ok(blank)) = (
             ToothGrid::new(gear, radius, level),
             blank_grid(gear, radius, level),

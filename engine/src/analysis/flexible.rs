@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::case::{Case, StiffnessRule};
 use super::curve::{Evidence, LoadShare, Warning};
-use super::library::{Library, default_interface_radius};
+use super::library::{Library, interface_radius};
 use super::model::{GearModel, MeshContact, PairModel, PositionError, WarmStart};
 use super::{AnalysisError, cells_per_patch};
 use crate::gear::Member;
@@ -23,16 +23,6 @@ pub(super) enum Blanks {
     HoledRigid,
     /// As [`Blanks::HoledRigid`], but the holed blank of one gear takes part.
     OnlyHoledOf(Member),
-}
-
-/// The interface radius R_w of one gear of a case.
-pub(super) fn interface_radius(case: &Case, member: Member) -> f64 {
-    let gear = case.pair.gear(member);
-    let asked = case
-        .resolution
-        .interface_radius
-        .filter(|_| gear.holes().is_some());
-    asked.unwrap_or_else(|| default_interface_radius(gear))
 }
 
 /// The model of `case`, and its unknowns before condensation.

@@ -3,6 +3,8 @@
 use std::sync::Arc;
 
 use super::AnalysisError;
+use super::case::{Case, ContactSolver};
+use super::model::MeshContact;
 use super::shelf::Shelf;
 use crate::contact::flank::FlankTable;
 use crate::fem::FemError;
@@ -63,6 +65,7 @@ struct Shelves {
     teeth: Shelf<Key, Teeth>,
     blanks: Shelf<Key, BlankSubstructure>,
     gears: Shelf<Key, Gear>,
+    contacts: Shelf<Key, Vec<MeshContact>>,
 }
 
 impl Default for Library {
@@ -78,7 +81,8 @@ impl Library {
         Self(Arc::new(Shelves {
             teeth: Shelf::new(bytes / 2),
             blanks: Shelf::new(bytes / 4),
-            gears: Shelf::new(bytes / 4),
+            gears: Shelf::new(bytes / 8),
+            contacts: Shelf::new(bytes / 8),
         }))
     }
 
@@ -114,6 +118,27 @@ impl Library {
     ) -> Result<Arc<Gear>, AnalysisError> {
         self.shared_gear(gear, interface_radius, level, run)
             .map_err(|error| error.of(member))
+    }
+
+    /// The contacts of `case` under `load` at `positions` with its holed blanks rigid, solved by `solve` if no other case
+    /// has: they depend on no hole, so that all hole patterns on the same teeth share them.
+    ///
+    /// # Errors
+    ///
+    /// What `solve` fails with.
+    pub(super) fn rigid_blank_contacts(
+        &self,
+        case: &Case,
+        level: GridLevel,
+        load: f64,
+        positions: &[f64],
+        solve: impl FnOnce() -> Result<Vec<MeshContact>, AnalysisError>,
+    ) -> Result<Arc<Vec<MeshContact>>, AnalysisError> {
+        let mut key = rigid_blank_key(case, level);
+        key.push(load.to_bits());
+        key.extend(positions.iter().map(|eta| eta.to_bits()));
+        let bytes = |contacts: &Vec<MeshContact>| contacts.iter().map(MeshContact::bytes).sum();
+        self.0.contacts.part(key, bytes, solve)
     }
 
     fn shared_teeth(
@@ -196,6 +221,16 @@ pub fn default_interface_radius(gear: &SpurGear) -> f64 {
         .map_or(gear.bore_radius(), HolePattern::outer_reach);
     let r_f = gear.root_radius();
     (r_f - gear.data().rack.module).max(f64::midpoint(r_f, inner))
+}
+
+/// The interface radius R_w of one gear of a case.
+pub(super) fn interface_radius(case: &Case, member: Member) -> f64 {
+    let gear = case.pair.gear(member);
+    let asked = case
+        .resolution
+        .interface_radius
+        .filter(|_| gear.holes().is_some());
+    asked.unwrap_or_else(|| default_interface_radius(gear))
 }
 
 /// The orders that the interface circle carries: on its way from the root circle the field of the teeth falls by
@@ -312,6 +347,32 @@ fn tooth_bits(gear: &SpurGear) -> Vec<u64> {
 fn teeth_key(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Key {
     let mut key = tooth_bits(gear);
     key.extend([interface_radius.to_bits(), level as u64]);
+    key
+}
+
+/// What the contacts of a case depend on while its holed blanks are rigid.
+fn rigid_blank_key(case: &Case, level: GridLevel) -> Key {
+    let mut key = vec![case.pair.center_distance().to_bits()];
+    for member in Member::BOTH {
+        let gear = case.pair.gear(member);
+        key.extend(teeth_key(gear, interface_radius(case, member), level));
+        // A solid blank stays flexible, so that its bore counts; a holed one is rigid whatever is inside.
+        key.push(gear.holes().map_or(gear.bore_radius().to_bits(), |_| 0));
+        if let Some(relief) = gear.tip_relief() {
+            key.extend([
+                relief.amount().to_bits(),
+                relief.start_radius().to_bits(),
+                relief.shape() as u64,
+            ]);
+        }
+    }
+    match case.resolution.contact_solver {
+        ContactSolver::ActiveSet => key.push(0),
+        ContactSolver::AugmentedLagrangian {
+            penalty,
+            gap_tolerance,
+        } => key.extend([penalty.to_bits(), gap_tolerance.to_bits()]),
+    }
     key
 }
 

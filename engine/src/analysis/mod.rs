@@ -1,7 +1,7 @@
 //! From a pair to its curves: the methods, their results and spectra.
 //!
-//! Read in this order: [`case`] (what is asked), [`model`] (the contact of a pair at one position), [`flexible`],
-//! [`decomposition`] and [`load_distribution`] (the methods), [`curve`] and [`spectrum`] (what comes out), [`library`]
+//! Read in this order: [`case`] (what is asked), [`model`] (the contact of a pair at one position), `flexible`,
+//! `decomposition` and [`load_distribution`] (the methods), [`curve`] and [`spectrum`] (what comes out), [`library`]
 //! (what cases share).
 
 pub mod case;

@@ -101,6 +101,16 @@ pub enum PositionError {
 }
 
 impl MeshContact {
+    /// About how much memory it holds.
+    pub fn bytes(&self) -> usize {
+        let loads = |pair: &PairContact| {
+            let modes = |loads: &[Vec<f64>; 2]| loads.iter().map(Vec::len).sum::<usize>();
+            modes(&pair.modal_loads) + modes(&pair.modal_derivatives)
+        };
+        let numbers: usize = self.pairs.iter().map(loads).sum();
+        size_of::<Self>() + self.pairs.len() * size_of::<PairContact>() + numbers * size_of::<f64>()
+    }
+
     /// The number of pairs that carry load.
     pub fn loaded_pairs(&self) -> u32 {
         self.pairs.iter().filter(|pair| pair.share > 0.0).count() as u32

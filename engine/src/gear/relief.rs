@@ -69,6 +69,11 @@ impl TipRelief {
         self.start_radius
     }
 
+    /// How the relief grows.
+    pub fn shape(&self) -> ReliefShape {
+        self.shape
+    }
+
     /// The material c(r) removed at `radius`, along the normal; zero below the start.
     pub fn depth(&self, radius: f64) -> f64 {
         let fraction =
