@@ -17,7 +17,7 @@ use super::router::routes;
     info(
         title = "Meshwright",
         description = "Static transmission error and mesh stiffness of spur gear pairs, with tip relief and lightening holes.\n\nSubmit a job, look until it is `successful`, get its results. Units stand in the names of fields. Every error is a problem document (RFC 9457) with a stable `code`.",
-        license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0"),
+        license(name = "MIT", identifier = "MIT"),
     ),
     tags(
         (name = "Jobs", description = "Computations, from submission to end."),
