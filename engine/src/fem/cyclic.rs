@@ -11,6 +11,9 @@ use super::FemError;
 use super::dense::Cholesky;
 use crate::run::Run;
 
+/// Columns of a product between two looks at the run: a tenth of a second for the largest rings of one sector.
+const PANEL: usize = 32;
+
 /// The harmonics of orders −M … M on an interface circle, with real unknowns.
 ///
 /// The unknowns are, for each component (radial, then tangential within an order): a_0, then a_n and b_n of
@@ -131,11 +134,12 @@ impl Sector {
     ///
     /// # Errors
     ///
-    /// [`FemError::NotPositiveDefinite`].
+    /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`].
     pub fn condense_class(
         &self,
         class: usize,
         harmonics: &Harmonics,
+        run: &Run,
     ) -> Result<(Mat<c64>, ClassSolution), FemError> {
         let orders = harmonics.class(class, self.count);
         let ns = 2 * self.side_nodes;
@@ -146,7 +150,16 @@ impl Sector {
         let phase = self.phase(class);
         let real = |i: usize, j: usize| c64::new(k[(i, j)], 0.0);
         let arc = Mat::<c64>::from_fn(na, na, |i, j| real(2 * ns + i, 2 * ns + j));
-        let mut condensed = e.adjoint() * (&arc * &e);
+        let mut condensed = Mat::<c64>::zeros(e.ncols(), e.ncols());
+        // A ring of one sector has all orders in one class: its products take long and are done in panels.
+        for start in (0..e.ncols()).step_by(PANEL) {
+            run.check()?;
+            let width = PANEL.min(e.ncols() - start);
+            let forces = &arc * e.subcols(start, width);
+            condensed
+                .subcols_mut(start, width)
+                .copy_from(e.adjoint() * forces);
+        }
         let solution = if ns == 0 {
             ClassSolution {
                 sides: None,
@@ -189,8 +202,7 @@ impl Sector {
         let mut stiffness = Mat::zeros(harmonics.unknowns(), harmonics.unknowns());
         // Classes c and S − c are each other's conjugates; both are visited only through their orders, so half suffice.
         for class in 0..=self.count / 2 {
-            run.check()?;
-            let (condensed, solution) = self.condense_class(class, harmonics)?;
+            let (condensed, solution) = self.condense_class(class, harmonics, run)?;
             self.add_class(
                 &mut stiffness,
                 harmonics,

@@ -158,8 +158,7 @@ impl TeethRing {
         let mut tooth_forces = Mat::<f64>::zeros(harmonics.unknowns(), r);
         let mut class_compliance = Vec::with_capacity(z / 2 + 1);
         for class in 0..=z / 2 {
-            run.check()?;
-            let (condensed, solution) = sector.condense_class(class, &harmonics)?;
+            let (condensed, solution) = sector.condense_class(class, &harmonics, run)?;
             sector.add_class(
                 &mut stiffness,
                 &harmonics,
