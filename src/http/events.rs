@@ -6,7 +6,7 @@ use std::time::Duration;
 use axum::extract::{Path, State};
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
-use futures_util::stream;
+use futures_util::stream::{self, Stream};
 use serde::Serialize;
 use utoipa::ToSchema;
 use uuid::Uuid;
@@ -70,12 +70,28 @@ pub(super) async fn events(
         let event = watch.next().await?;
         Some((Ok::<_, Infallible>(event), watch))
     });
+    Ok(answer(events))
+}
+
+/// The answer that streams `events`.
+pub(super) fn answer(
+    events: impl Stream<Item = Result<Event, Infallible>> + Send + 'static,
+) -> Response {
     // A proxy that collects the answer before it passes it on would spoil the stream.
-    Ok((
+    (
         [("x-accel-buffering", "no")],
         Sse::new(events).keep_alive(KeepAlive::default()),
     )
-        .into_response())
+        .into_response()
+}
+
+/// Event number `count` of a stream.
+pub(super) fn event(count: u64, name: &str, data: &impl Serialize) -> Event {
+    let data = serde_json::to_string(data).expect("a view is plain data");
+    Event::default()
+        .id(count.to_string())
+        .event(name)
+        .data(data)
 }
 
 /// One client that watches one job.
@@ -133,10 +149,6 @@ impl Watch {
 
     fn event(&mut self, name: &str, data: &impl Serialize) -> Event {
         self.count += 1;
-        let data = serde_json::to_string(data).expect("a view is plain data");
-        Event::default()
-            .id(self.count.to_string())
-            .event(name)
-            .data(data)
+        event(self.count, name, data)
     }
 }

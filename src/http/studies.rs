@@ -11,7 +11,7 @@ use axum::http::header::{
     CACHE_CONTROL, CONTENT_DISPOSITION, CONTENT_TYPE, HeaderMap, HeaderValue, LINK, LOCATION,
     RETRY_AFTER,
 };
-use axum::response::sse::{Event, KeepAlive, Sse};
+use axum::response::sse::Event;
 use axum::response::{IntoResponse, Response};
 use futures_util::stream;
 use jiff::Timestamp;
@@ -24,6 +24,7 @@ use super::app::{App, Edge};
 use super::client::Client;
 use super::conditional::Tag;
 use super::document::Document;
+use super::events;
 use super::parameters::{IdempotencyKey, Parameters, invalid};
 use super::prefer::Wait;
 use super::problem::internal;
@@ -493,12 +494,7 @@ pub(super) async fn events(
         let event = watch.next().await?;
         Some((Ok::<_, Infallible>(event), watch))
     });
-    // A proxy that collects the answer before it passes it on would spoil the stream.
-    Ok((
-        [("x-accel-buffering", "no")],
-        Sse::new(events).keep_alive(KeepAlive::default()),
-    )
-        .into_response())
+    Ok(events::answer(events))
 }
 
 /// One client that watches one study.
@@ -547,11 +543,7 @@ impl Watch {
 
     fn event(&mut self, name: &str, data: &impl Serialize) -> Event {
         self.count += 1;
-        let data = serde_json::to_string(data).expect("a view is plain data");
-        Event::default()
-            .id(self.count.to_string())
-            .event(name)
-            .data(data)
+        events::event(self.count, name, data)
     }
 }
 

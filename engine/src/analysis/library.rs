@@ -259,11 +259,8 @@ fn build_teeth(
     let tooth = ToothSubstructure::new(gear, &grid)?;
     run.check()?;
     let ring = TeethRing::new(&tooth, harmonics(gear, interface_radius, level), run)?;
-    let (arc, side) = tooth.shared_nodes;
-    let nodes = tooth.grid_nodes - side - 1;
     // Nodes of the interface circle belong to the teeth; the blank's follow them.
-    let degrees_of_freedom = 2 * u64::from(gear.tooth_count()) * (nodes as u64);
-    debug_assert!(arc > 1, "an arc has two ends");
+    let degrees_of_freedom = 2 * u64::from(gear.tooth_count()) * (tooth.own_nodes() as u64);
     Ok(Teeth {
         flank: Arc::new(FlankTable::new(&tooth, gear.material(), gear.face_width())),
         on_rigid_blank: Arc::new(Coupling::on_rigid_blank(&ring)),

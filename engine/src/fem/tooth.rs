@@ -29,8 +29,6 @@ pub struct ToothSubstructure {
     pub flank_points: Vec<Vector>,
     /// Nodes of the sector's grid.
     pub grid_nodes: usize,
-    /// Nodes that the sector shares: its arc, and one of its sides.
-    pub shared_nodes: (usize, usize),
     mode_forces: Mat<f64>,
     sector: Sector,
 }
@@ -114,10 +112,14 @@ impl ToothSubstructure {
                 .map(|&node| grid.grid.nodes[node as usize])
                 .collect(),
             grid_nodes: grid.grid.nodes.len(),
-            shared_nodes: (grid.arc_nodes.len(), right.len()),
             mode_forces,
             sector,
         })
+    }
+
+    /// The nodes of the sector that are not also nodes of its neighbor: all but one side, which ends on the arc.
+    pub fn own_nodes(&self) -> usize {
+        self.grid_nodes - self.sector.side_nodes - 1
     }
 
     /// The number r of loading modes.
@@ -341,7 +343,6 @@ mod tests {
             roll_lengths: Vec::new(),
             flank_points: Vec::new(),
             grid_nodes: 0,
-            shared_nodes: (0, 0),
             mode_forces: Mat::from_fn(n, 2, |i, j| (2.0 + (3 * i + 7 * j) as f64).cos()),
             sector,
         }
