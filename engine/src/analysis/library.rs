@@ -199,7 +199,7 @@ impl Teeth {
     /// About how much memory they hold.
     fn bytes(&self) -> usize {
         let (n, r) = (self.ring.harmonics.unknowns(), self.flank.mode_count());
-        let couplings = self.ring.held_coupling.len() * r * r + self.on_rigid_blank.entries();
+        let couplings = 2 * self.on_rigid_blank.entries();
         size_of::<f64>() * (n * n + n * r + couplings + self.flank.entries())
     }
 }
