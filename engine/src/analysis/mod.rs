@@ -23,6 +23,7 @@ pub use case::{
 pub use curve::{Analysis, Curve, ErrorEstimate, Evidence, Statistics, Warning};
 pub use estimate::{Estimate, estimate};
 pub use library::Library;
+pub use shelf::ShelfUsage;
 
 use crate::contact::ContactError;
 use crate::gear::{GearPair, Member};
