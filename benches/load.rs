@@ -3,6 +3,9 @@
 //! `./load` runs all of it; `./load latency polls` some. The service keeps its log, its metrics and its database on the
 //! disk as in production. Where the overhead of the service is measured, its engine is replaced by one that has the
 //! results already (`instant`), or by one that never has them (`endless`); the overload runs the real program.
+//!
+//! wrk keeps a number of connections busy: where it sends as fast as it is answered, its latencies are those of a queue
+//! of that length. Where it has a rate to keep, an answer that is late counts for those that had to wait behind it.
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Write};
@@ -80,8 +83,8 @@ fn main() -> anyhow::Result<()> {
     let bench = Bench::new()?;
     describe_machine()?;
     bench.describe_disk()?;
-    println!("| scenario | rate | p50 | p99 | longest | answers |");
-    println!("| --- | ---: | ---: | ---: | ---: | --- |");
+    println!("| scenario | rate | p50 | p99 | longest | processor time a request | answers |");
+    println!("| --- | ---: | ---: | ---: | ---: | ---: | --- |");
     if wanted("latency") {
         bench.latency()?;
     }
@@ -205,6 +208,10 @@ struct Seen {
     round_p50_us: f64,
     round_p99_us: f64,
     round_max_us: f64,
+    /// Processor time of the service for each request, which other processes on the machine hardly change. Absent where
+    /// its engine works too.
+    #[serde(skip)]
+    processor_us: Option<f64>,
 }
 
 impl Bench {
@@ -264,11 +271,12 @@ impl Bench {
         let seen = self.wrk(&service, &load)?.finish()?;
         seen.check(&[200, 202]);
         println!(
-            "| one job after the other, polled without a pause | {:.0} jobs/s | {} | {} | {} | {} |",
+            "| one job after the other, polled without a pause | {:.0} jobs/s | {} | {} | {} | {} | {} |",
             seen.rounds as f64 / seen.seconds,
             milliseconds(seen.round_p50_us),
             milliseconds(seen.round_p99_us),
             milliseconds(seen.round_max_us),
+            seen.processor_time(),
             seen.answers(),
         );
         service.end()
@@ -283,7 +291,7 @@ impl Bench {
             if engine == "instant" {
                 let ended = service.metric("meshwright_jobs_ended_total")?;
                 println!(
-                    "| jobs ended meanwhile | {:.0}/s | | | | |",
+                    "| jobs ended meanwhile | {:.0}/s | | | | | |",
                     ended / seen.seconds
                 );
             }
@@ -325,7 +333,7 @@ impl Bench {
         seen.row("both, five polls for each submission", &[200, 202]);
         let rate = |status| seen.statuses.get(&status).copied().unwrap_or(0) as f64 / seen.seconds;
         println!(
-            "| of these | {:.0} submissions/s, {:.0} polls/s | | | | |",
+            "| of these | {:.0} submissions/s, {:.0} polls/s | | | | | |",
             rate(202),
             rate(200)
         );
@@ -354,7 +362,7 @@ impl Bench {
         thread::sleep(SPAN);
         let served = (service.metric("meshwright_jobs_ended_total")? - before)
             / start.elapsed().as_secs_f64();
-        println!("| overload: jobs served, no other requests | {served:.1}/s | | | | |");
+        println!("| overload: jobs served, no other requests | {served:.1}/s | | | | | |");
 
         let polled = self.path("polled-overload");
         fs::copy(&taken, &polled)?;
@@ -391,7 +399,7 @@ impl Bench {
             &[202, 503],
         );
         poll.finish()?.row("overload: polls meanwhile", &[200]);
-        println!("| overload: jobs served meanwhile | {served:.1}/s | | | | |");
+        println!("| overload: jobs served meanwhile | {served:.1}/s | | | | | |");
         let third = |part: usize| {
             let ends = |at: usize| memory.len() * at / 3;
             memory[ends(part)..ends(part + 1)]
@@ -400,7 +408,7 @@ impl Bench {
                 .fold(0.0, f64::max)
         };
         println!(
-            "| overload: most memory in the first, second, last third | {:.0}, {:.0}, {:.0} MB | | | | |",
+            "| overload: most memory in the first, second, last third | {:.0}, {:.0}, {:.0} MB | | | | | |",
             third(0),
             third(1),
             third(2)
@@ -414,7 +422,7 @@ impl Bench {
             .collect::<Result<_, _>>()?;
         let successful = service.successful(&addresses)?;
         println!(
-            "| afterwards: jobs taken and successful | {} of {} | | | | all ended {:.0} s later |",
+            "| afterwards: jobs taken and successful | {} of {} | | | | | all ended {:.0} s later |",
             successful,
             addresses.len(),
             start.elapsed().as_secs_f64()
@@ -454,7 +462,7 @@ impl Bench {
         Ok(Served { process, address })
     }
 
-    fn wrk(&self, service: &Served, load: &Load<'_>) -> anyhow::Result<Running> {
+    fn wrk<'a>(&self, service: &'a Served, load: &Load<'_>) -> anyhow::Result<Running<'a>> {
         // Scripts count upwards from here; nobody sends so many in one run.
         let first = self.sent.fetch_add(1_000_000, Ordering::Relaxed);
         let mut command = match load.core {
@@ -483,7 +491,15 @@ impl Bench {
         if let Some(path) = load.polled {
             command.env("LOAD_POLLED", path);
         }
-        Ok(Running(command.stdout(Stdio::piped()).spawn()?))
+        let before_us = match load.core {
+            Some(_) => Some(service.processor_us()?),
+            None => None,
+        };
+        Ok(Running {
+            process: command.stdout(Stdio::piped()).spawn()?,
+            service,
+            before_us,
+        })
     }
 }
 
@@ -502,17 +518,29 @@ impl<'a> Load<'a> {
 }
 
 /// A wrk that runs.
-struct Running(Child);
+struct Running<'a> {
+    process: Child,
+    service: &'a Served,
+    /// Processor time of the service before, if it is to be told.
+    before_us: Option<f64>,
+}
 
-impl Running {
+impl Running<'_> {
     fn finish(self) -> anyhow::Result<Seen> {
-        let output = self.0.wait_with_output()?;
+        let output = self.process.wait_with_output()?;
+        let after_us = self.service.processor_us()?;
         let text = String::from_utf8(output.stdout)?;
         let result = text
             .lines()
             .find_map(|line| line.strip_prefix("RESULT "))
             .with_context(|| format!("wrk has no result: {text}"))?;
-        Ok(serde_json::from_str(result)?)
+        let seen: Seen = serde_json::from_str(result)?;
+        Ok(Seen {
+            processor_us: self
+                .before_us
+                .map(|before_us| (after_us - before_us) / seen.requests as f64),
+            ..seen
+        })
     }
 }
 
@@ -529,6 +557,11 @@ impl Seen {
         );
     }
 
+    fn processor_time(&self) -> String {
+        self.processor_us
+            .map_or_else(String::new, |time| format!("{time:.0} µs"))
+    }
+
     fn answers(&self) -> String {
         let counts: Vec<_> = self
             .statuses
@@ -541,11 +574,12 @@ impl Seen {
     fn row(&self, name: &str, expected: &[u16]) {
         self.check(expected);
         println!(
-            "| {name} | {:.0}/s | {} | {} | {} | {} |",
+            "| {name} | {:.0}/s | {} | {} | {} | {} | {} |",
             self.requests as f64 / self.seconds,
             milliseconds(self.p50_us),
             milliseconds(self.p99_us),
             milliseconds(self.max_us),
+            self.processor_time(),
             self.answers(),
         );
     }
@@ -605,6 +639,23 @@ impl Served {
             count += list["items"].as_array().map_or(0, Vec::len);
         }
         Ok(count)
+    }
+
+    /// Processor time of the process so far.
+    fn processor_us(&self) -> anyhow::Result<f64> {
+        /// The system counts in hundredths of a second.
+        const TICK_US: f64 = 1e4;
+        let stat = fs::read_to_string(format!("/proc/{}/stat", self.process.id()))?;
+        let (_, behind_name) = stat
+            .rsplit_once(')')
+            .context("a process has a name in brackets")?;
+        let ticks = behind_name
+            .split_whitespace()
+            .skip(11)
+            .take(2)
+            .map(str::parse::<f64>)
+            .sum::<Result<f64, _>>()?;
+        Ok(ticks * TICK_US)
     }
 
     fn memory_mb(&self) -> anyhow::Result<f64> {

@@ -31,7 +31,7 @@ struct Solved {
     summary: Option<String>,
 }
 
-/// What the engine's threads take from the processor while others want it: about a tenth of a thread's usual share.
+/// So much nicer than others are the engine's threads: while others want the processor, they take a tenth of a share.
 #[cfg(target_os = "linux")]
 const ENGINE_NICENESS: i32 = 10;
 
@@ -156,7 +156,7 @@ fn engine_threads(worker: usize) -> Result<ThreadPool, rayon::ThreadPoolBuildErr
 fn give_way() {
     // Elsewhere the priority belongs to the whole process, and there is nothing to tell apart.
     #[cfg(target_os = "linux")]
-    if let Err(error) = rustix::process::setpriority_process(None, ENGINE_NICENESS) {
+    if let Err(error) = rustix::process::nice(ENGINE_NICENESS) {
         warn!(%error, "the engine's threads keep the priority of those that answer");
     }
 }
