@@ -38,8 +38,9 @@ const SPAN: Duration = Duration::from_secs(10);
 const OVERLOAD_SPAN: Duration = Duration::from_secs(60);
 /// A thousand waiting jobs, each looked at once a second as `Retry-After` says.
 const POLLS_PER_SECOND: f64 = 1000.0;
-/// So many times what is served is submitted in the overload; a little more than the three times that are to be shown.
-const SURPLUS: f64 = 3.3;
+/// So many times what was served before is submitted in the overload: three times are to be shown, and what is served
+/// while it lasts may be more.
+const SURPLUS: f64 = 4.0;
 const SCENARIOS: [&str; 5] = ["latency", "submissions", "polls", "mixed", "overload"];
 
 #[derive(Parser)]
