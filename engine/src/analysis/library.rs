@@ -188,7 +188,8 @@ impl Teeth {
     fn bytes(&self) -> usize {
         let (n, r) = (self.ring.harmonics.unknowns(), self.flank.mode_count());
         let couplings = 2 * self.on_rigid_blank.entries();
-        size_of::<f64>() * (n * n + n * r + couplings + self.flank.entries())
+        let patterns = (n + r) * self.ring.force_patterns.ncols();
+        size_of::<f64>() * (n * n + patterns + couplings + self.flank.entries())
     }
 }
 
