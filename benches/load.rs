@@ -19,8 +19,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, ensure};
 use clap::Parser;
 use meshwright::config::Config;
-use meshwright::jobs::Solve;
-use meshwright::serve::serve;
+use meshwright::serve::{Compute, serve};
 use meshwright::wire::{self, Code, Problem, Submission};
 use meshwright_engine::analysis::Library;
 use meshwright_engine::run::Run;
@@ -122,9 +121,9 @@ fn describe_machine() -> anyhow::Result<()> {
 
 /// The service with an engine that takes no time, or all of it.
 fn run_stub(arguments: StubArguments) -> anyhow::Result<()> {
-    let solve: Solve = match arguments.engine.as_str() {
+    let compute: Compute = match arguments.engine.as_str() {
         "instant" => instant()?,
-        _ => Arc::new(|_: &Submission, run: &Run| {
+        _ => Arc::new(|_: &Submission, _: &Library, run: &Run| {
             while run.check().is_ok() {
                 thread::sleep(Duration::from_millis(50));
             }
@@ -137,7 +136,7 @@ fn run_stub(arguments: StubArguments) -> anyhow::Result<()> {
         .with_ansi(false)
         .init();
     tokio::runtime::Runtime::new()?.block_on(async {
-        let service = serve(&arguments.config, solve, Arc::new(jiff::Timestamp::now)).await?;
+        let service = serve(&arguments.config, compute, Arc::new(jiff::Timestamp::now)).await?;
         println!(
             "Meshwright serves http://{}; its engine is {}.",
             service.address(),
@@ -150,7 +149,7 @@ fn run_stub(arguments: StubArguments) -> anyhow::Result<()> {
 }
 
 /// An engine that has the results of test case 2 ready. Those of every job differ, as those of distinct jobs do.
-fn instant() -> anyhow::Result<Solve> {
+fn instant() -> anyhow::Result<Compute> {
     let submission = Submission::parse(SUBMISSION.as_bytes())
         .map_err(|problem| anyhow::anyhow!("{problem:?}"))?;
     let results = wire::solve(&submission, &Library::default(), &Run::unattended())
@@ -161,7 +160,7 @@ fn instant() -> anyhow::Result<Solve> {
         .context("results are an object")?
         .to_owned();
     let jobs = AtomicU64::new(0);
-    Ok(Arc::new(move |_, _| {
+    Ok(Arc::new(move |_, _, _| {
         let job = jobs.fetch_add(1, Ordering::Relaxed);
         Ok(format!("{{\"job\":{job},{rest}"))
     }))
