@@ -49,7 +49,7 @@ pub fn estimate(case: &Case) -> Estimate {
         let radius = interface_radius(case, member);
         let (Ok(tooth), Ok(blank)) = (
             ToothGrid::new(gear, radius, level),
-            blank_grid(gear, radius, level),
+            blank_grid(gear, gear.holes(), radius, level),
         ) else {
             continue;
         };

@@ -26,6 +26,9 @@ const MOST_ORDERS_PER_TOOTH: usize = 8;
 /// refused or warned of.
 const MOST_ELEMENTS_PER_TOOTH: f64 = 10.0;
 
+/// Elements along the interface circle of a holed blank, at least.
+const ELEMENTS_AROUND_HOLES: f64 = 400.0;
+
 /// All teeth of a gear, down to the interface circle.
 #[derive(Debug)]
 pub struct Teeth {
@@ -56,6 +59,15 @@ pub(super) struct GearParts<'a> {
     pub(super) interface_radius: f64,
     /// Whether its blank takes part, or is rigid.
     pub(super) with_blank: bool,
+}
+
+/// Something to be made for a gear.
+type Task<'a> = (&'a GearParts<'a>, Part<'a>);
+
+/// A part that several gears may share.
+enum Part<'a> {
+    Teeth,
+    Blank(Option<&'a HolePattern>),
 }
 
 /// Why a gear has no model.
@@ -164,36 +176,39 @@ impl Library {
         level: GridLevel,
         run: &Run,
     ) -> Result<(), AnalysisError> {
-        let teeth = |of: &GearParts<'_>| teeth_key(of.gear, of.interface_radius, level);
-        let blank = |of: &GearParts<'_>| blank_key(of.gear, of.interface_radius, level);
-        let first = |i: usize, key: &dyn Fn(&GearParts<'_>) -> Key| {
-            let own = key(&gears[i]);
-            gears[..i].iter().all(|earlier| key(earlier) != own)
-        };
         // Teeth first: they take longest.
-        let mut tasks: Vec<(usize, bool)> = Vec::new();
-        tasks.extend(
-            (0..gears.len())
-                .filter(|&i| first(i, &teeth))
-                .map(|i| (i, false)),
-        );
-        let with_blank = (0..gears.len()).filter(|&i| {
-            let of = &gears[i];
+        let mut tasks: Vec<(Key, Task<'_>)> = Vec::new();
+        let mut add = |key: Key, task| {
+            if tasks.iter().all(|(known, _)| *known != key) {
+                tasks.push((key, task));
+            }
+        };
+        for of in gears {
+            let key = teeth_key(of.gear, of.interface_radius, level);
+            add(key, (of, Part::Teeth));
+        }
+        for of in gears {
             let whole = gear_key(of.gear, of.interface_radius, level);
-            of.with_blank && first(i, &blank) && !self.0.gears.holds(&whole)
-        });
-        tasks.extend(with_blank.map(|i| (i, true)));
+            if of.with_blank && !self.0.gears.holds(&whole) {
+                // A holed blank stands beside the solid one that its highest orders find.
+                let low = orders_of_blank(of.gear, of.gear.holes(), of.interface_radius, level);
+                let solid = (low != harmonics(of.gear, of.interface_radius, level)).then_some(None);
+                for holes in [Some(of.gear.holes()), solid].into_iter().flatten() {
+                    let key = blank_key(of.gear, holes, of.interface_radius, level);
+                    add(key, (of, Part::Blank(holes)));
+                }
+            }
+        }
         tasks
             .par_iter()
             .with_max_len(1)
-            .try_for_each(|&(i, is_blank)| {
-                let of = &gears[i];
-                let made = if is_blank {
-                    self.shared_blank(of.gear, of.interface_radius, level, run)
-                        .map(drop)
-                } else {
-                    self.shared_teeth(of.gear, of.interface_radius, level, run)
-                        .map(drop)
+            .try_for_each(|(_, (of, part))| {
+                let (gear, radius) = (of.gear, of.interface_radius);
+                let made = match part {
+                    Part::Teeth => self.shared_teeth(gear, radius, level, run).map(drop),
+                    Part::Blank(holes) => self
+                        .shared_blank(gear, *holes, radius, level, run)
+                        .map(drop),
                 };
                 made.map_err(|error| error.of(of.member))
             })
@@ -235,18 +250,20 @@ impl Library {
         )
     }
 
+    /// The blank of `gear` with `holes`, or without.
     fn shared_blank(
         &self,
         gear: &SpurGear,
+        holes: Option<&HolePattern>,
         interface_radius: f64,
         level: GridLevel,
         run: &Run,
     ) -> Result<Arc<BlankSubstructure>, BuildError> {
         run.check()?;
         self.0.blanks.part_made_once(
-            blank_key(gear, interface_radius, level),
+            blank_key(gear, holes, interface_radius, level),
             |blank| size_of::<f64>() * blank.harmonics.unknowns().pow(2),
-            || build_blank(gear, interface_radius, level, run),
+            || build_blank(gear, holes, interface_radius, level, run),
         )
     }
 
@@ -260,8 +277,19 @@ impl Library {
         let key = gear_key(gear, interface_radius, level);
         self.0.gears.part(key, Gear::bytes, || {
             let teeth = self.shared_teeth(gear, interface_radius, level, run)?;
-            let blank = self.shared_blank(gear, interface_radius, level, run)?;
-            join(&teeth, &blank, hole_phase(gear), run)
+            let blank = self.shared_blank(gear, gear.holes(), interface_radius, level, run)?;
+            let low = blank.harmonics;
+            let coupling = if low == teeth.ring.harmonics {
+                Coupling::on_blank(&teeth.ring, &blank, hole_phase(gear), run)?
+            } else {
+                let solid = self.shared_blank(gear, None, interface_radius, level, run)?;
+                let ring = teeth.ring.above(low, &solid, run)?;
+                Coupling::on_blank(&ring, &blank, hole_phase(gear), run)?
+            };
+            Ok(Gear {
+                coupling: Arc::new(coupling),
+                degrees_of_freedom: teeth.degrees_of_freedom + 2 * blank.grid_nodes as u64,
+            })
         })
     }
 }
@@ -328,16 +356,42 @@ pub(super) fn interface_radius(case: &Case, member: Member) -> f64 {
 /// 4.5 to 6.5, and by 2e-8 from there to 9.75. More orders than the blank's grid resolves do harm: on the standard grid the
 /// rms of case 1 is 4e-4 off the fine one's with 4.5, and 2e-3 with 6.5.
 pub(super) fn harmonics(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Harmonics {
+    let z = gear.tooth_count() as usize;
+    Harmonics {
+        largest: orders_within(
+            gear.root_radius() - interface_radius,
+            interface_radius,
+            level,
+        )
+        .clamp(z, MOST_ORDERS_PER_TOOTH * z),
+    }
+}
+
+/// The orders that see the `holes` of a blank, by the same rule: on its way from the holes to the interface circle their
+/// field falls as well. None of them, and all orders find the blank alike.
+fn orders_of_blank(
+    gear: &SpurGear,
+    holes: Option<&HolePattern>,
+    interface_radius: f64,
+    level: GridLevel,
+) -> Harmonics {
+    let all = harmonics(gear, interface_radius, level);
+    holes.map_or(all, |holes| {
+        let depth = interface_radius - holes.outer_reach();
+        let largest = orders_within(depth, interface_radius, level).min(all.largest);
+        Harmonics { largest }
+    })
+}
+
+/// The orders of a circle of radius `radius` whose fields fall by less than the share that the level leaves out over
+/// `depth`.
+fn orders_within(depth: f64, radius: f64, level: GridLevel) -> usize {
     let decay = match level {
         GridLevel::Coarse => 3.25,
         GridLevel::Standard => 4.5,
         GridLevel::Fine => 6.5,
     };
-    let orders = decay * interface_radius / (gear.root_radius() - interface_radius);
-    let z = gear.tooth_count() as usize;
-    Harmonics {
-        largest: (orders.ceil() as usize).clamp(z, MOST_ORDERS_PER_TOOTH * z),
-    }
+    (decay * radius / depth).ceil() as usize
 }
 
 fn build_teeth(
@@ -361,53 +415,48 @@ fn build_teeth(
     })
 }
 
-/// The grid of one sector of the blank of `gear`, fine enough on the interface circle for the orders that it carries.
+/// The grid of one sector of the blank of `gear`, with `holes` or without, fine enough on the interface circle for the
+/// orders that it carries.
 pub(super) fn blank_grid(
     gear: &SpurGear,
+    holes: Option<&HolePattern>,
     interface_radius: f64,
     level: GridLevel,
 ) -> Result<BlankGrid, GridError> {
-    let orders = harmonics(gear, interface_radius, GridLevel::Standard).largest as f64;
+    let z = f64::from(gear.tooth_count());
+    let orders = orders_of_blank(gear, holes, interface_radius, GridLevel::Standard).largest;
     // Seven nodes, three and a half elements, for two wavelengths of the highest order.
-    let elements_per_tooth = (1.75 * orders / f64::from(gear.tooth_count()))
-        .clamp(ELEMENTS_PER_TOOTH, MOST_ELEMENTS_PER_TOOTH);
+    let of_orders = 1.75 * orders as f64 / z;
+    // Holes are as large as their gear and not as its teeth.
+    let least = holes.map_or(ELEMENTS_PER_TOOTH, |_| {
+        ELEMENTS_PER_TOOTH.min(ELEMENTS_AROUND_HOLES / z)
+    });
     BlankGrid::new(
         gear.bore_radius(),
         interface_radius,
-        gear.holes(),
+        holes,
         gear.tooth_count(),
-        elements_per_tooth,
+        of_orders.clamp(least, MOST_ELEMENTS_PER_TOOTH),
         level,
     )
 }
 
 fn build_blank(
     gear: &SpurGear,
+    holes: Option<&HolePattern>,
     interface_radius: f64,
     level: GridLevel,
     run: &Run,
 ) -> Result<BlankSubstructure, BuildError> {
-    let grid = blank_grid(gear, interface_radius, level)?;
+    let grid = blank_grid(gear, holes, interface_radius, level)?;
     Ok(BlankSubstructure::new(
         &grid,
         interface_radius,
         gear.material(),
         gear.face_width(),
-        harmonics(gear, interface_radius, level),
+        orders_of_blank(gear, holes, interface_radius, level),
         run,
     )?)
-}
-
-fn join(
-    teeth: &Teeth,
-    blank: &BlankSubstructure,
-    phase: f64,
-    run: &Run,
-) -> Result<Gear, BuildError> {
-    Ok(Gear {
-        coupling: Arc::new(Coupling::on_blank(&teeth.ring, blank, phase, run)?),
-        degrees_of_freedom: teeth.degrees_of_freedom + 2 * blank.grid_nodes as u64,
-    })
 }
 
 fn tooth_bits(gear: &SpurGear) -> Vec<u64> {
@@ -440,7 +489,7 @@ fn teeth_key(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Key {
 
 fn gear_key(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Key {
     let mut key = teeth_key(gear, interface_radius, level);
-    key.extend(blank_key(gear, interface_radius, level));
+    key.extend(blank_key(gear, gear.holes(), interface_radius, level));
     key.push(hole_phase(gear).to_bits());
     key
 }
@@ -475,9 +524,14 @@ fn rigid_blank_key(case: &Case, level: GridLevel) -> Key {
     key
 }
 
-fn blank_key(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Key {
+fn blank_key(
+    gear: &SpurGear,
+    holes: Option<&HolePattern>,
+    interface_radius: f64,
+    level: GridLevel,
+) -> Key {
     let mut key = tooth_bits(gear);
-    let holes = gear.holes().map_or([0.0; 3], |holes| {
+    let holes = holes.map_or([0.0; 3], |holes| {
         [f64::from(holes.count), holes.circle_radius, holes.radius]
     });
     key.extend(

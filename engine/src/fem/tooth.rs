@@ -3,7 +3,8 @@
 use faer::{Mat, c64};
 
 use super::FemError;
-use super::body::FARTHEST_NEIGHBOR;
+use super::blank::BlankSubstructure;
+use super::body::{FARTHEST_NEIGHBOR, tooth_angle};
 use super::condensation::{condense, mirror_lower};
 use super::cyclic::{Component, Harmonics, Sector};
 use super::dense::Cholesky;
@@ -219,6 +220,79 @@ impl TeethRing {
             tooth_count: z,
             held_coupling,
         })
+    }
+
+    /// This ring on a blank of which only the orders of `low` see the holes: the ones above, which find the blank as
+    /// stiff as the `solid` one, are eliminated.
+    ///
+    /// Both are alike at every tooth, so that only orders meet that differ by a multiple of Z: few at a time.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError::NotPositiveDefinite`].
+    pub fn above(
+        &self,
+        low: Harmonics,
+        solid: &BlankSubstructure,
+        run: &Run,
+    ) -> Result<Self, FemError> {
+        let (z, n) = (self.tooth_count, low.unknowns());
+        let mut reduced = Self {
+            harmonics: low,
+            stiffness: self.stiffness.submatrix(0, 0, n, n).to_owned(),
+            force_patterns: self.force_patterns.subrows(0, n).to_owned(),
+            pattern_shares: self.pattern_shares.clone(),
+            tooth_count: z,
+            held_coupling: self.held_coupling.clone(),
+        };
+        for orders in self.harmonics.meeting_orders(z) {
+            run.check()?;
+            // Unknowns stand by rising order: the low ones keep their places.
+            let above: Vec<usize> = orders
+                .iter()
+                .copied()
+                .filter(|&n| n > low.largest)
+                .collect();
+            if above.is_empty() {
+                continue;
+            }
+            let (of_low, of_high) = (
+                low.unknowns_of(&orders[..orders.len() - above.len()]),
+                self.harmonics.unknowns_of(&above),
+            );
+            let stiffness = Mat::from_fn(of_high.len(), of_high.len(), |i, j| {
+                let at = (of_high[i], of_high[j]);
+                self.stiffness[at] + solid.stiffness[at]
+            });
+            let rim = Cholesky::new(stiffness).ok_or(FemError::NotPositiveDefinite {
+                part: "the rim",
+                unknowns: of_high.len(),
+            })?;
+            let mut half = Mat::from_fn(of_high.len(), of_low.len(), |i, j| {
+                self.stiffness[(of_high[i], of_low[j])]
+            });
+            rim.half_solve_in_place(half.as_mut());
+            let patterns_of = |tooth: usize| {
+                let mut patterns = self.patterns_of_tooth_at(tooth_angle(tooth, z), &above);
+                rim.half_solve_in_place(patterns.as_mut());
+                patterns
+            };
+            let own = patterns_of(0);
+            let (softer, weaker) = (half.transpose() * &half, half.transpose() * &own);
+            for (i, &row) in of_low.iter().enumerate() {
+                for (j, &column) in of_low.iter().enumerate() {
+                    reduced.stiffness[(row, column)] -= softer[(i, j)];
+                }
+                for pattern in 0..weaker.ncols() {
+                    reduced.force_patterns[(row, pattern)] -= weaker[(i, pattern)];
+                }
+            }
+            for (d, coupling) in reduced.held_coupling.iter_mut().enumerate() {
+                let shares = &self.pattern_shares;
+                *coupling += shares.transpose() * (own.transpose() * patterns_of(d)) * shares;
+            }
+        }
+        Ok(reduced)
     }
 
     /// G on the harmonics of `orders`, order by order, for the tooth at `angle`.
