@@ -235,7 +235,7 @@ pub(super) fn interface_radius(case: &Case, member: Member) -> f64 {
 
 /// The orders that the interface circle carries: on its way from the root circle the field of the teeth falls by
 /// e^(−n (r_f − R_w)/R_w), at the standard level to e⁻⁶·⁵ of it for the first order that is left out.
-pub(super) fn harmonics(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Harmonics {
+pub fn harmonics(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Harmonics {
     let decay = match level {
         GridLevel::Coarse => 3.25,
         GridLevel::Standard => 6.5,
@@ -270,7 +270,11 @@ fn build_teeth(
 }
 
 /// The grid of one sector of the blank of `gear`, fine enough on the interface circle for the orders that it carries.
-pub(super) fn blank_grid(
+///
+/// # Errors
+///
+/// [`GridError`] if the holes leave no room for elements.
+pub fn blank_grid(
     gear: &SpurGear,
     interface_radius: f64,
     level: GridLevel,
