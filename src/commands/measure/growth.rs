@@ -92,7 +92,7 @@ const SPAN: u32 = 5;
 const METHODS: [(Method, &str); 3] = [
     (Method::Flexible, "flexible"),
     (Method::Decomposition, "decomposition"),
-    (Method::ProjectedDecomposition, "projected decomposition"),
+    (Method::ProjectedDecomposition, "projected"),
 ];
 
 /// Measures them all, telling `progress` what comes next.
@@ -204,7 +204,7 @@ fn over_holes() -> anyhow::Result<Growth> {
         ("flexible, true period", None, Method::Flexible),
         ("flexible, 5 mesh periods", Some(SPAN), Method::Flexible),
         (
-            "projected decomposition, true period",
+            "projected, true period",
             None,
             Method::ProjectedDecomposition,
         ),

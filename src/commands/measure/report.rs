@@ -105,7 +105,7 @@ fn sentence(growth: &Growth) -> String {
             format!(
                 "Test case 2 with other tooth counts, bore and holes scaled with the room for them, over 5 mesh periods (200 \
                  positions): {} ms at {} teeth, {} ms at {}, {} ms at {}. The positions cost the same whatever the number of \
-                 teeth; the gears grow with the power {power:.1} of it from {} teeth on, the dense algebra on the interface circle.",
+                 teeth; the gears grow with the power {power:.1} of it from {} teeth on.",
                 milliseconds(whole.seconds[0]),
                 whole.counts[0],
                 milliseconds(whole.seconds[middle]),
@@ -120,10 +120,10 @@ fn sentence(growth: &Growth) -> String {
             let (least, most) = ends(&fixed.seconds);
             let (least_whole, most_whole) = ends(&whole.seconds);
             format!(
-                "Test case 2 with other hole counts in its driven gear. Over 5 mesh periods the job takes {} to {} ms: one sector \
-                 of the blank says everything, and more holes make it smaller. Over the true period, which is 1 to 50 mesh periods \
-                 with these counts, it takes {} to {} ms: the positions are what is paid for, and the projected decomposition, which solves \
-                 the contact over one mesh period, pays them only once.",
+                "Test case 2 with other hole counts in its driven gear, the holes as large as there is room for and at most as \
+                 in the test case. Over 5 mesh periods the job takes {} to {} ms. Over the true period, which is 1 to 50 mesh \
+                 periods with these counts, it takes {} to {} ms: what is paid for is positions, not holes. The projected \
+                 decomposition solves the contact over one mesh period whatever the true period is.",
                 milliseconds(least),
                 milliseconds(most),
                 milliseconds(least_whole),
@@ -205,7 +205,11 @@ pub(super) fn figure(growth: &Growth) -> Figure {
     let (x, y) = match growth.varied {
         // Twenty to three hundred teeth span several decades of time.
         Varied::ToothCount => (
-            Axis::decades(label, 1, 3),
+            Axis::decades(label, 1, 3).with_ticks(
+                [10, 20, 50, 100, 200, 300]
+                    .map(|count| (f64::from(count), count.to_string()))
+                    .to_vec(),
+            ),
             Axis::decades("time in s", decade(&scaled).0, decade(&scaled).1),
         ),
         _ => {
