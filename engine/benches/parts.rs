@@ -7,6 +7,7 @@ use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main};
 use meshwright_engine::analysis::library::{blank_grid, default_interface_radius, harmonics};
 use meshwright_engine::analysis::model::WarmStart;
+use meshwright_engine::analysis::phase::Phase;
 use meshwright_engine::analysis::{Case, Library, pair_model};
 use meshwright_engine::contact::flank::FlankTable;
 use meshwright_engine::contact::patch::Approach;
@@ -85,7 +86,6 @@ fn positions(criterion: &mut Criterion) {
         let load = case.pair.load(case.output_torques[0]);
         let model = pair_model(&case, &Library::default(), &Run::unattended()).expect("a model");
         let mut group = group(criterion, &format!("case {number}, one position"));
-        // At 0.3 one pair carries the load, at 0.7 (or 0 of the next) two do.
         for (eta, pairs) in [(0.05, "one pair"), (0.5, "two pairs")] {
             group.bench_function(format!("{pairs}: detection"), |bencher| {
                 bencher.iter(|| black_box(approaches(&case, eta)));
@@ -105,6 +105,18 @@ fn positions(criterion: &mut Criterion) {
             group.bench_function(format!("{pairs}: all of it, warm"), |bencher| {
                 bencher.iter(|| black_box(model.contact(eta, load, &mut warm)));
             });
+            // A curve meets the same fraction of the mesh period once in every mesh period.
+            let mut phase = Phase::new(&model, eta, load).expect("flanks come near");
+            let (mut period, periods) = (0, i64::from(case.pair.period()));
+            group.bench_function(
+                format!("{pairs}: all of it, a further mesh period"),
+                |bencher| {
+                    bencher.iter(|| {
+                        period = (period + 1) % periods;
+                        black_box(phase.contact(period, &mut warm, |_, _| ()))
+                    });
+                },
+            );
         }
         group.finish();
     }

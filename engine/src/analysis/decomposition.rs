@@ -11,7 +11,9 @@ use super::curve::{BlankFit, BlankSample, DecompositionParts, Evidence, LoadShar
 use super::flexible::{self, Blanks};
 use super::library::{Library, interface_radius};
 use super::model::{MeshContact, PairModel, tooth_offset};
+use super::phase::{Laid, PairLoads};
 use super::{Analysis, AnalysisError, CurveParts, mesh_positions, warnings};
+use crate::contact::ContactSolution;
 use crate::fem::body::Coupling;
 use crate::gear::Member;
 use crate::grid::GridLevel;
@@ -260,16 +262,18 @@ pub(super) fn project(
     for &output_torque in &case.output_torques {
         let load = case.pair.load(output_torque);
         let without = base.contacts(load, &period)?;
-        let (contacts, stiffness) = flexible::solved(case, &round, load, &period, run)?;
+        let keep = |laid: &Laid, solution: &ContactSolution| laid.modal_loads(solution);
+        let (contacts, loads, stiffness) =
+            flexible::solved(case, &round, load, &period, run, keep)?;
         flexible::gather(&mut evidence, &contacts, load);
         flexible::warn_of_tips(&mut warnings, &contacts);
         let (mut transmission_error, mut tangent) = (Vec::new(), Vec::new());
         for i in 0..positions.len() {
-            let (contact, k_0) = (&contacts[i % period.len()], stiffness[i % period.len()]);
+            let at = i % period.len();
             let (delta, compliance) =
-                added_compliance(&round, &whole, contact, (i / period.len()) as i64);
-            transmission_error.push(contact.transmission_error + delta);
-            tangent.push(1.0 / (1.0 / k_0 + compliance));
+                added_compliance(&round, &whole, &loads[at], (i / period.len()) as i64);
+            transmission_error.push(contacts[at].transmission_error + delta);
+            tangent.push(1.0 / (1.0 / stiffness[at] + compliance));
         }
         let parts = CurveParts {
             transmission_error,
@@ -302,12 +306,12 @@ fn round_average(whole: &PairModel, case: &Case) -> PairModel {
     round
 }
 
-/// qᵀ ΔH p and qᵀ ΔH q for the contact of `round`, moved on by `periods` mesh periods.
+/// qᵀ ΔH p and qᵀ ΔH q for the `pairs` in contact in `round`, in the mesh period `period`.
 fn added_compliance(
     round: &PairModel,
     whole: &PairModel,
-    contact: &MeshContact,
-    periods: i64,
+    pairs: &[PairLoads],
+    period: i64,
 ) -> (f64, f64) {
     let (mut forces, mut derivatives) = (0.0, 0.0);
     for member in Member::BOTH {
@@ -316,17 +320,16 @@ fn added_compliance(
         if Arc::ptr_eq(before, after) {
             continue;
         }
-        for a in &contact.pairs {
-            let tooth = round.tooth(member, a.pair + periods);
-            for b in &contact.pairs {
+        for a in pairs {
+            let tooth = round.tooth(member, period + a.pair);
+            for b in pairs {
                 let offset = tooth_offset(member, b.pair - a.pair);
-                let q = &a.modal_derivatives[g];
+                let q = &a.derivatives[g];
                 let with = |coupling: &Coupling, loads: &[f64]| {
                     bilinear(coupling, tooth, offset, q, loads)
                 };
-                forces += with(after, &b.modal_loads[g]) - with(before, &b.modal_loads[g]);
-                derivatives +=
-                    with(after, &b.modal_derivatives[g]) - with(before, &b.modal_derivatives[g]);
+                forces += with(after, &b.loads[g]) - with(before, &b.loads[g]);
+                derivatives += with(after, &b.derivatives[g]) - with(before, &b.derivatives[g]);
             }
         }
     }
@@ -383,6 +386,7 @@ fn repeated_contacts(case: &Case, contacts: &[MeshContact]) -> CurveParts {
 mod tests {
     use super::*;
     use crate::analysis::model::WarmStart;
+    use crate::analysis::phase::Phase;
     use crate::analysis::{
         BodyFormula, ContactSolver, Formulas, Method, PlaneState, Resolution, ToothFormula,
     };
@@ -450,10 +454,15 @@ mod tests {
                 model
                     .contact(eta, load, &mut WarmStart::default())
                     .expect("a contact")
+                    .transmission_error
             };
-            let (delta, _) = added_compliance(&round, &whole, &at(&round), 0);
-            let difference =
-                (at(&above).transmission_error - at(&below).transmission_error) / (2.0 * step);
+            let mut phase = Phase::new(&round, eta, load).expect("flanks that face each other");
+            let loads = |laid: &Laid, solution: &ContactSolution| laid.modal_loads(solution);
+            let (_, loads) = phase
+                .contact(0, &mut WarmStart::default(), loads)
+                .expect("a contact");
+            let (delta, _) = added_compliance(&round, &whole, &loads, 0);
+            let difference = (at(&above) - at(&below)) / (2.0 * step);
             assert!(
                 (delta - difference).abs() < 1e-5 * difference.abs().max(1e-7),
                 "{eta}: {delta} {difference}"

@@ -6,13 +6,18 @@ use super::case::{Case, StiffnessRule};
 use super::curve::{Evidence, LoadShare, Warning};
 use super::library::{Library, interface_radius};
 use super::model::{GearModel, MeshContact, PairModel, PositionError, WarmStart};
+use super::phase::{Laid, Phase};
 use super::{AnalysisError, cells_per_patch};
+use crate::contact::ContactSolution;
 use crate::gear::Member;
 use crate::grid::GridLevel;
 use crate::run::Run;
 
-/// Positions that one thread solves in a row, each starting from the last; fixed, so that results do not depend on threads.
-const CHUNK: usize = 20;
+/// Phases that one thread solves in a row, each starting from the last; fixed, so that results do not depend on threads.
+const CHUNK: usize = 5;
+
+/// Fractions of the mesh period that differ by less are one: far above their rounding, far below any step.
+const SAME_FRACTION: f64 = 1e-9;
 
 /// Which blanks take part in a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,30 +88,78 @@ pub(super) fn model(
 ///
 /// # Errors
 ///
-/// The first position that has no solution, or [`AnalysisError::Stopped`].
+/// A position that has no solution, or [`AnalysisError::Stopped`].
 pub(super) fn contacts(
     model: &PairModel,
     load: f64,
     positions: &[f64],
     run: &Run,
 ) -> Result<Vec<MeshContact>, AnalysisError> {
-    let chunks: Result<Vec<Vec<MeshContact>>, AnalysisError> = positions
+    contacts_keeping(model, load, positions, run, |_, _| ())
+        .map(|contacts| contacts.into_iter().map(|(contact, ())| contact).collect())
+}
+
+/// As [`contacts`], with what `keep` takes of each.
+pub(super) fn contacts_keeping<T: Send>(
+    model: &PairModel,
+    load: f64,
+    positions: &[f64],
+    run: &Run,
+    keep: impl Fn(&Laid, &ContactSolution) -> T + Sync,
+) -> Result<Vec<(MeshContact, T)>, AnalysisError> {
+    let phases = phases(positions);
+    let solved: Result<Vec<Vec<_>>, AnalysisError> = phases
         .par_chunks(CHUNK)
         .map(|chunk| {
-            let mut warm = WarmStart::default();
-            chunk
-                .iter()
-                .map(|&eta| {
-                    let contact = model
-                        .contact(eta, load, &mut warm)
-                        .map_err(|error| at_position(error, eta))?;
+            let mut contacts = Vec::new();
+            let mut first = WarmStart::default();
+            for (fraction, places) in chunk {
+                // Each phase starts from the one before it, and each further period of a phase from the last period.
+                let mut phase = None;
+                let mut warm = first.clone();
+                for &place in places {
+                    let eta = positions[place];
+                    let mut solve = || {
+                        let phase = match &mut phase {
+                            Some(phase) => phase,
+                            none => none.insert(Phase::new(model, *fraction, load)?),
+                        };
+                        phase.contact((eta - fraction).round() as i64, &mut warm, &keep)
+                    };
+                    let contact = solve().map_err(|error| at_position(error, eta))?;
+                    contacts.push((place, contact));
                     run.reached(1)?;
-                    Ok(contact)
-                })
-                .collect()
+                    if place == places[0] {
+                        first = warm.clone();
+                    }
+                }
+            }
+            Ok(contacts)
         })
         .collect();
-    Ok(chunks?.into_iter().flatten().collect())
+    let mut contacts: Vec<_> = solved?.into_iter().flatten().collect();
+    contacts.sort_unstable_by_key(|&(place, _)| place);
+    Ok(contacts.into_iter().map(|(_, contact)| contact).collect())
+}
+
+/// Positions by their fraction of the mesh period, rising, with the places of those that have it.
+fn phases(positions: &[f64]) -> Vec<(f64, Vec<usize>)> {
+    let fraction = |place: usize| positions[place] - positions[place].floor();
+    let mut places: Vec<usize> = (0..positions.len()).collect();
+    places.sort_by(|&a, &b| fraction(a).total_cmp(&fraction(b)));
+    let mut phases: Vec<(f64, Vec<usize>)> = Vec::new();
+    for place in places {
+        match phases.last_mut() {
+            Some((known, places)) if fraction(place) - *known < SAME_FRACTION => {
+                places.push(place);
+            }
+            _ => phases.push((fraction(place), vec![place])),
+        }
+    }
+    for (_, places) in &mut phases {
+        places.sort_unstable();
+    }
+    phases
 }
 
 fn at_position(error: PositionError, mesh_position: f64) -> AnalysisError {
@@ -128,23 +181,22 @@ fn at_position(error: PositionError, mesh_position: f64) -> AnalysisError {
     }
 }
 
-/// The solved positions of one torque: contacts and the tangent stiffness by the rule of the case.
-pub(super) fn solved(
+/// The solved positions of one torque with what `keep` takes of each, and the tangent stiffness by the rule of the case.
+pub(super) fn solved<T: Send>(
     case: &Case,
     model: &PairModel,
     load: f64,
     positions: &[f64],
     run: &Run,
-) -> Result<(Vec<MeshContact>, Vec<f64>), AnalysisError> {
-    let contacts_at = |load| contacts(model, load, positions, run);
-    let middle = contacts_at(load)?;
+    keep: impl Fn(&Laid, &ContactSolution) -> T + Sync,
+) -> Result<(Vec<MeshContact>, Vec<T>, Vec<f64>), AnalysisError> {
+    let middle = contacts_keeping(model, load, positions, run, keep)?;
+    let (middle, kept): (Vec<MeshContact>, Vec<T>) = middle.into_iter().unzip();
     let stiffness = match case.resolution.stiffness {
         StiffnessRule::Tangent => middle.iter().map(|contact| contact.stiffness).collect(),
         StiffnessRule::TorqueStep { fraction } => {
-            let (low, high) = (
-                contacts_at(load * (1.0 - fraction))?,
-                contacts_at(load * (1.0 + fraction))?,
-            );
+            let at = |factor: f64| contacts(model, load * factor, positions, run);
+            let (low, high) = (at(1.0 - fraction)?, at(1.0 + fraction)?);
             let pairs = low.iter().zip(&high);
             pairs
                 .map(|(low, high)| {
@@ -153,7 +205,7 @@ pub(super) fn solved(
                 .collect()
         }
     };
-    Ok((middle, stiffness))
+    Ok((middle, kept, stiffness))
 }
 
 /// Shares of the load by pair offset n − floor(η), for the offsets that ever carry load.

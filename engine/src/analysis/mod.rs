@@ -1,6 +1,6 @@
 //! From a pair to its curves: the methods, their results and spectra.
 //!
-//! Read in this order: [`case`] (what is asked), [`model`] (the contact of a pair at one position), `flexible`,
+//! Read in this order: [`case`] (what is asked), [`model`] and [`phase`] (the contact of a pair at one position), `flexible`,
 //! `decomposition` and [`load_distribution`] (the methods), [`curve`] and [`spectrum`] (what comes out), [`library`]
 //! (what cases share).
 
@@ -12,6 +12,7 @@ mod flexible;
 pub mod library;
 pub mod load_distribution;
 pub mod model;
+pub mod phase;
 mod shelf;
 pub mod spectrum;
 
@@ -161,7 +162,8 @@ fn flexible(
     let mut curves = Vec::with_capacity(case.output_torques.len());
     for &output_torque in &case.output_torques {
         let load = case.pair.load(output_torque);
-        let (contacts, stiffness) = flexible::solved(case, &model, load, &positions, run)?;
+        let (contacts, _, stiffness) =
+            flexible::solved(case, &model, load, &positions, run, |_, _| ())?;
         flexible::gather(&mut evidence, &contacts, load);
         flexible::warn_of_tips(&mut warnings, &contacts);
         let parts = CurveParts {

@@ -96,112 +96,34 @@ impl FlankTable {
         }
     }
 
-    /// The loads of the modes that forces `p` on `points` exert: Vᵀ p.
-    pub fn modal_loads(&self, points: &[FlankPoint], p: &[f64]) -> Vec<f64> {
-        let mut loads = vec![0.0; self.mode_count()];
-        for (point, force) in points.iter().zip(p) {
-            for (row, weight) in point.rows() {
-                for (mode, load) in loads.iter_mut().enumerate() {
-                    *load += force * weight * self.modes[(row, mode)];
-                }
-            }
-        }
-        loads
+    /// The smooth compliance W R Wᵀ among `points` of one tooth with its interface held, without the logarithm.
+    pub fn smooth_compliance(&self, points: &[FlankPoint]) -> Mat<f64> {
+        let (first, weights) = weights(points);
+        let count = weights.ncols();
+        let around = self.smooth.submatrix(first, first, count, count);
+        &weights * around * weights.transpose()
     }
 
-    /// Adds to `h`, at (`row`, `col`), the compliance between the points of two patches of one gear, without the logarithm.
-    ///
-    /// `same_tooth` says whether the patches are on one tooth; `coupling` is X between their teeth, to be transposed if it
-    /// says so.
-    pub fn add_compliance(
-        &self,
-        h: &mut Mat<f64>,
-        (row, points): (usize, &[FlankPoint]),
-        (col, others): (usize, &[FlankPoint]),
-        same_tooth: bool,
-        (coupling, transposed): (&Mat<f64>, bool),
-    ) {
-        let (rows, cols) = (Range::of(points), Range::of(others));
-        let r = self.mode_count();
-        // M = R + V X Vᵀ on the nodes around both patches.
-        let mut half = Mat::<f64>::zeros(r, cols.len);
-        for j in 0..cols.len {
-            for k in 0..r {
-                let v = self.modes[(cols.start + j, k)];
-                for i in 0..r {
-                    half[(i, j)] += v * if transposed {
-                        coupling[(k, i)]
-                    } else {
-                        coupling[(i, k)]
-                    };
-                }
-            }
-        }
-        let mut around = Mat::<f64>::zeros(rows.len, cols.len);
-        for j in 0..cols.len {
-            for k in 0..r {
-                let x = half[(k, j)];
-                for i in 0..rows.len {
-                    around[(i, j)] += self.modes[(rows.start + i, k)] * x;
-                }
-            }
-            if same_tooth {
-                for i in 0..rows.len {
-                    around[(i, j)] += self.smooth[(rows.start + i, cols.start + j)];
-                }
-            }
-        }
-        let mut column = vec![0.0; rows.len];
-        for (j, other) in others.iter().enumerate() {
-            column.fill(0.0);
-            for (node, weight) in other.rows() {
-                for (i, value) in column.iter_mut().enumerate() {
-                    *value += weight * around[(i, node - cols.start)];
-                }
-            }
-            for (i, point) in points.iter().enumerate() {
-                h[(row + i, col + j)] += point
-                    .rows()
-                    .into_iter()
-                    .map(|(node, weight)| weight * column[node - rows.start])
-                    .sum::<f64>();
-            }
-        }
+    /// W V: how each loading mode shows at `points`.
+    pub fn modes_at(&self, points: &[FlankPoint]) -> Mat<f64> {
+        let (first, weights) = weights(points);
+        &weights * self.modes.subrows(first, weights.ncols())
     }
 }
 
-impl FlankPoint {
-    /// The unknowns around the point and their weights.
-    fn rows(&self) -> [(usize, f64); 8] {
-        std::array::from_fn(|i| {
-            let (node, component) = (i / 2, i % 2);
-            (
-                2 * (self.first + node) + component,
-                self.weights[node] * self.direction[component],
-            )
-        })
-    }
-}
-
-/// The unknowns around the points of a patch.
-struct Range {
-    start: usize,
-    len: usize,
-}
-
-impl Range {
-    fn of(points: &[FlankPoint]) -> Self {
-        let first = points.iter().map(|point| point.first).min().unwrap_or(0);
-        let last = points
-            .iter()
-            .map(|point| point.first + 4)
-            .max()
-            .unwrap_or(first);
-        Self {
-            start: 2 * first,
-            len: 2 * (last - first),
+/// The weights W of the unknowns around `points`, one row each, and the first of these unknowns.
+fn weights(points: &[FlankPoint]) -> (usize, Mat<f64>) {
+    let first = points.iter().map(|point| point.first).min().unwrap_or(0);
+    let end = points.iter().map(|point| point.first + 4).max();
+    let mut weights = Mat::zeros(points.len(), 2 * (end.unwrap_or(first) - first));
+    for (i, point) in points.iter().enumerate() {
+        for (node, weight) in point.weights.into_iter().enumerate() {
+            for (component, along) in point.direction.into_iter().enumerate() {
+                weights[(i, 2 * (point.first - first + node) + component)] = weight * along;
+            }
         }
     }
+    (2 * first, weights)
 }
 
 /// Replaces the entries of the symmetric table `a` near its diagonal by what its farther ones say.

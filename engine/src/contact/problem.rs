@@ -37,6 +37,31 @@ impl ContactProblem {
         gaps: Vec<f64>,
         arms: Vec<f64>,
     ) -> Result<Self, ContactError> {
+        if compliance.nrows() == compliance.ncols() {
+            symmetrize(&mut compliance)?;
+        }
+        Self::checked(compliance, gaps, arms)
+    }
+
+    /// As [`ContactProblem::new`], with H given by its lower triangle.
+    ///
+    /// # Errors
+    ///
+    /// As for [`ContactProblem::new`]; such a compliance is always symmetric.
+    pub fn of_lower_triangle(
+        mut compliance: Mat<f64>,
+        gaps: Vec<f64>,
+        arms: Vec<f64>,
+    ) -> Result<Self, ContactError> {
+        for column in 1..compliance.ncols().min(compliance.nrows()) {
+            for row in 0..column {
+                compliance[(row, column)] = compliance[(column, row)];
+            }
+        }
+        Self::checked(compliance, gaps, arms)
+    }
+
+    fn checked(compliance: Mat<f64>, gaps: Vec<f64>, arms: Vec<f64>) -> Result<Self, ContactError> {
         let (rows, columns) = (compliance.nrows(), compliance.ncols());
         if rows == 0 && columns == 0 && gaps.is_empty() && arms.is_empty() {
             return Err(ContactError::NoPoints);
@@ -63,7 +88,6 @@ impl ContactProblem {
         if (0..rows).any(|point| compliance[(point, point)] <= 0.0) {
             return Err(ContactError::NotPositiveDefinite { points: 1 });
         }
-        symmetrize(&mut compliance)?;
         Ok(Self {
             compliance,
             gaps,
@@ -108,14 +132,22 @@ impl ContactProblem {
 }
 
 fn all_finite(quantity: ContactQuantity, values: &[f64]) -> Result<(), ContactError> {
-    match values.iter().position(|value| !value.is_finite()) {
-        Some(point) => Err(ContactError::NotFinite {
-            quantity,
-            point,
-            value: values[point],
-        }),
-        None => Ok(()),
+    // Without an early end the test runs over several values at once; that there is none is the rule.
+    if values
+        .iter()
+        .fold(true, |finite, value| finite & value.is_finite())
+    {
+        return Ok(());
     }
+    let point = values
+        .iter()
+        .position(|value| !value.is_finite())
+        .unwrap_or_default();
+    Err(ContactError::NotFinite {
+        quantity,
+        point,
+        value: values[point],
+    })
 }
 
 fn symmetrize(compliance: &mut Mat<f64>) -> Result<(), ContactError> {

@@ -19,6 +19,8 @@ pub struct BlankSubstructure {
     pub harmonics: Harmonics,
     /// The stiffness on them, with hole 0 at the angle 0.
     pub stiffness: Mat<f64>,
+    /// The number of equal sectors: that of the holes, or of the teeth for a solid blank.
+    pub sector_count: usize,
     /// Nodes of all sectors together, the shared sides counted once.
     pub grid_nodes: usize,
 }
@@ -70,6 +72,7 @@ impl BlankSubstructure {
             interface_radius,
             harmonics,
             stiffness,
+            sector_count: count,
             grid_nodes,
         })
     }

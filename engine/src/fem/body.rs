@@ -1,6 +1,7 @@
 //! A whole gear: its ring of teeth on its blank.
 
 use faer::Mat;
+use faer::prelude::ReborrowMut;
 
 use super::FemError;
 use super::blank::BlankSubstructure;
@@ -11,31 +12,36 @@ use crate::run::Run;
 /// How far apart, in teeth, two loaded teeth of one gear may stand.
 pub const FARTHEST_NEIGHBOR: usize = 4;
 
+/// Blocks in a row of X: a tooth with itself and with those after it.
+const NEIGHBORS: usize = FARTHEST_NEIGHBOR + 1;
+
+/// Rows of X that are made together, so that factors are passed once for all of their teeth.
+const ROWS_AT_ONCE: usize = 8;
+
 /// How the loaded teeth of one gear move each other: the blocks X_ij of H_ij = δ_ij H_0 + V X_ij Vᵀ.
 ///
-/// Every tooth has its own row: nothing here assumes that teeth are alike once the blank has holes.
+/// A gear whose teeth and holes repeat together repeats its rows of X with them, and keeps one period of rows.
 #[derive(Debug, Clone)]
 pub struct Coupling {
     tooth_count: usize,
-    /// X between tooth i and tooth i + d, at i (FARTHEST + 1) + d.
+    /// X between tooth i and tooth i + d, at i (FARTHEST + 1) + d, for the teeth of one period.
     blocks: Vec<Mat<f64>>,
 }
 
 impl Coupling {
     /// Teeth on a rigid blank: the interface circle is held (paper: wh).
     pub fn on_rigid_blank(teeth: &TeethRing) -> Self {
-        let tooth_count = teeth.held_coupling.len();
-        let of_tooth =
-            (0..=FARTHEST_NEIGHBOR).map(|d| teeth.held_coupling[d % tooth_count].clone());
         Self {
-            tooth_count,
-            blocks: (0..tooth_count).flat_map(|_| of_tooth.clone()).collect(),
+            tooth_count: teeth.tooth_count,
+            blocks: teeth.held_coupling.clone(),
         }
     }
 
     /// Teeth on a flexible blank whose hole 0 stands at the angle `phase`.
     ///
-    /// C = (S_blank + S_teeth)⁻¹ on the harmonics of the interface circle, and X_ij adds F_iᵀ C F_j.
+    /// C = (S_blank + S_teeth)⁻¹ on the harmonics of the interface circle, and X_ij adds F_iᵀ C F_j. With Z teeth and a
+    /// blank of N equal sectors the gear repeats g = gcd(Z, N) times: only orders that differ by a multiple of g meet in C,
+    /// and the rows of Z/g teeth say everything.
     ///
     /// # Errors
     ///
@@ -46,69 +52,85 @@ impl Coupling {
         phase: f64,
         run: &Run,
     ) -> Result<Self, FemError> {
-        let z = teeth.held_coupling.len();
-        let unknowns = teeth.harmonics.unknowns();
-        let total = &teeth.stiffness + blank.stiffness_at(phase);
-        let ring = Cholesky::new_watched(total, run)?.ok_or(FemError::NotPositiveDefinite {
-            part: "the gear's interface",
-            unknowns,
-        })?;
-        // With L⁻¹ F of both teeth, a block is one plain product. Only neighbors are needed at a time, and the first few
-        // once more at the end, where the circle closes.
-        let mut halves: Vec<Option<Mat<f64>>> = vec![None; z];
-        let mut blocks = Vec::with_capacity(z * (FARTHEST_NEIGHBOR + 1));
-        for i in 0..z {
-            run.check()?;
-            for d in 0..=FARTHEST_NEIGHBOR {
-                let j = (i + d) % z;
-                for tooth in [i, j] {
-                    if halves[tooth].is_none() {
-                        let mut half = teeth.forces_of_tooth_at(tooth_angle(tooth, z));
-                        ring.half_solve_in_place(half.as_mut());
-                        halves[tooth] = Some(half);
-                    }
-                }
-                let (Some(one), Some(other)) = (&halves[i], &halves[j]) else {
-                    unreachable!("both halves were just made")
-                };
-                blocks.push(&teeth.held_coupling[d % z] + one.transpose() * other);
-            }
-            if i >= FARTHEST_NEIGHBOR {
-                halves[i] = None;
-            }
+        let repeats = gcd(teeth.tooth_count, blank.sector_count);
+        Self::repeating(teeth, blank, phase, repeats, run)
+    }
+
+    /// As [`Coupling::on_blank`], with every tooth's own row and nothing taken from symmetry: an oracle for tests.
+    ///
+    /// # Errors
+    ///
+    /// As [`Coupling::on_blank`].
+    pub fn tooth_by_tooth(
+        teeth: &TeethRing,
+        blank: &BlankSubstructure,
+        phase: f64,
+        run: &Run,
+    ) -> Result<Self, FemError> {
+        Self::repeating(teeth, blank, phase, 1, run)
+    }
+
+    fn repeating(
+        teeth: &TeethRing,
+        blank: &BlankSubstructure,
+        phase: f64,
+        repeats: usize,
+        run: &Run,
+    ) -> Result<Self, FemError> {
+        let rows = teeth.tooth_count / repeats;
+        let stiffness = blank.stiffness_at(phase);
+        let mut blocks: Vec<Mat<f64>> = (0..rows)
+            .flat_map(|_| teeth.held_coupling.iter().cloned())
+            .collect();
+        for orders in teeth.harmonics.meeting_orders(repeats) {
+            let unknowns = teeth.harmonics.unknowns_of(&orders);
+            let total = Mat::from_fn(unknowns.len(), unknowns.len(), |i, j| {
+                let at = (unknowns[i], unknowns[j]);
+                teeth.stiffness[at] + stiffness[at]
+            });
+            let ring = Cholesky::new_watched(total, run)?.ok_or(FemError::NotPositiveDefinite {
+                part: "the gear's interface",
+                unknowns: unknowns.len(),
+            })?;
+            add_answers(&mut blocks, teeth, &orders, &ring, run)?;
         }
         Ok(Self {
-            tooth_count: z,
+            tooth_count: teeth.tooth_count,
             blocks,
         })
     }
 
     /// The coupling of a gear that is alike all around: each block the mean over the teeth.
     pub fn round_average(&self) -> Self {
-        let (z, per_tooth) = (self.tooth_count, FARTHEST_NEIGHBOR + 1);
-        let means = (0..per_tooth).map(|d| {
-            let rows = self.blocks.iter().skip(d).step_by(per_tooth);
-            let sum = rows.fold(
-                Mat::zeros(self.blocks[d].nrows(), self.blocks[d].ncols()),
-                |sum, block| sum + block,
-            );
-            sum * faer::Scale(1.0 / z as f64)
+        let share = faer::Scale(1.0 / self.rows() as f64);
+        let means = (0..NEIGHBORS).map(|d| {
+            let zeros = Mat::zeros(self.blocks[d].nrows(), self.blocks[d].ncols());
+            let rows = self.blocks.iter().skip(d).step_by(NEIGHBORS);
+            rows.fold(zeros, |sum, block| sum + block) * share
         });
-        let means: Vec<Mat<f64>> = means.collect();
         Self {
-            tooth_count: z,
-            blocks: (0..z).flat_map(|_| means.iter().cloned()).collect(),
+            tooth_count: self.tooth_count,
+            blocks: means.collect(),
         }
+    }
+
+    /// The teeth of one period.
+    fn rows(&self) -> usize {
+        self.blocks.len() / NEIGHBORS
     }
 
     /// This coupling and a `share` of the way to `other`.
     #[cfg(test)]
     pub(crate) fn mixed(&self, other: &Self, share: f64) -> Self {
-        let blocks = self.blocks.iter().zip(&other.blocks);
+        let (ours, theirs) = (self.blocks.iter().cycle(), other.blocks.iter().cycle());
         let mix = |(a, b): (&Mat<f64>, &Mat<f64>)| a + faer::Scale(share) * (b - a);
         Self {
             tooth_count: self.tooth_count,
-            blocks: blocks.map(mix).collect(),
+            blocks: ours
+                .zip(theirs)
+                .map(mix)
+                .take(self.tooth_count * NEIGHBORS)
+                .collect(),
         }
     }
 
@@ -127,19 +149,64 @@ impl Coupling {
         let distance = usize::try_from(offset.unsigned_abs())
             .ok()
             .filter(|&d| d <= FARTHEST_NEIGHBOR)?;
-        let (first, transposed) = if offset >= 0 {
-            (i, false)
+        let first = if offset >= 0 {
+            i
         } else {
-            (
-                (i + self.tooth_count - distance % self.tooth_count) % self.tooth_count,
-                true,
-            )
+            i + self.tooth_count - distance % self.tooth_count
         };
         Some((
-            &self.blocks[first * (FARTHEST_NEIGHBOR + 1) + distance],
-            transposed,
+            &self.blocks[first % self.rows() * NEIGHBORS + distance],
+            offset < 0,
         ))
     }
+}
+
+/// Adds F_iᵀ C F_j on `orders`, whose stiffness C⁻¹ is factorized in `ring`, to the `blocks` of every row.
+///
+/// With L⁻¹ F of both teeth, a block is one plain product.
+fn add_answers(
+    blocks: &mut [Mat<f64>],
+    teeth: &TeethRing,
+    orders: &[usize],
+    ring: &Cholesky<f64>,
+    run: &Run,
+) -> Result<(), FemError> {
+    let (z, r) = (teeth.tooth_count, teeth.tooth_forces.ncols());
+    let unknowns = teeth.harmonics.unknowns_of(orders).len();
+    let rows = blocks.len() / NEIGHBORS;
+    // L⁻¹ F of the teeth of some rows and of the neighbors of the last.
+    let mut halves = Mat::<f64>::zeros(unknowns, (ROWS_AT_ONCE + FARTHEST_NEIGHBOR) * r);
+    for first in (0..rows).step_by(ROWS_AT_ONCE) {
+        run.check()?;
+        // The last teeth of the rows before are the first ones of these.
+        let known = if first == 0 { 0 } else { FARTHEST_NEIGHBOR };
+        for tooth in 0..known {
+            let (mut to, from) = halves.split_at_col_mut(ROWS_AT_ONCE * r);
+            to.rb_mut()
+                .subcols_mut(tooth * r, r)
+                .copy_from(from.subcols(tooth * r, r));
+        }
+        let here = ROWS_AT_ONCE.min(rows - first);
+        let count = here + FARTHEST_NEIGHBOR;
+        for tooth in known..count {
+            let angle = tooth_angle((first + tooth) % z, z);
+            let forces = teeth.forces_of_tooth_at(angle, orders);
+            halves.subcols_mut(tooth * r, r).copy_from(forces);
+        }
+        ring.half_solve_in_place(halves.subcols_mut(known * r, (count - known) * r));
+        for row in 0..here {
+            let one = halves.subcols(row * r, r);
+            let answers = one.transpose() * halves.subcols(row * r, NEIGHBORS * r);
+            for d in 0..NEIGHBORS {
+                blocks[(first + row) * NEIGHBORS + d] += answers.subcols(d * r, r);
+            }
+        }
+    }
+    Ok(())
+}
+
+fn gcd(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { gcd(b, a % b) }
 }
 
 /// The angle of tooth `i` of `z` in the gear's frame.

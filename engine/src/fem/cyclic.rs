@@ -45,6 +45,37 @@ impl Harmonics {
         place + usize::from(component == Component::Tangential)
     }
 
+    /// The order that an unknown belongs to.
+    pub fn order(&self, unknown: usize) -> usize {
+        (unknown + 2) / 4
+    }
+
+    /// Whether an unknown is an a_n with n > 0, whose b_n stands two places later.
+    pub fn is_cosine(&self, unknown: usize) -> bool {
+        unknown >= 2 && unknown % 4 >= 2
+    }
+
+    /// The unknowns of `orders`, order by order.
+    pub fn unknowns_of(&self, orders: &[usize]) -> Vec<usize> {
+        let of_order = |&n: &usize| {
+            let first = self.cosine(n, Component::Radial);
+            first..first + if n == 0 { 2 } else { 4 }
+        };
+        orders.iter().flat_map(of_order).collect()
+    }
+
+    /// The orders 0 … M in groups that meet in a body which repeats itself `repeats` times around: those whose sum or
+    /// difference is a multiple of it.
+    pub fn meeting_orders(&self, repeats: usize) -> Vec<Vec<usize>> {
+        let group = |class: usize| -> Vec<usize> {
+            (0..=self.largest)
+                .filter(|n| (n % repeats).min(repeats - n % repeats) == class)
+                .collect()
+        };
+        let groups = (0..=repeats / 2).map(group);
+        groups.filter(|orders| !orders.is_empty()).collect()
+    }
+
     /// The orders n in −M … M with n ≡ `class` (mod `sectors`).
     pub fn class(&self, class: usize, sectors: usize) -> Vec<i64> {
         let (m, s) = (self.largest as i64, sectors as i64);

@@ -3,6 +3,7 @@
 use faer::{Mat, c64};
 
 use super::FemError;
+use super::body::FARTHEST_NEIGHBOR;
 use super::condensation::{condense, mirror_lower};
 use super::cyclic::{Component, Harmonics, Sector};
 use super::dense::Cholesky;
@@ -137,7 +138,9 @@ pub struct TeethRing {
     pub stiffness: Mat<f64>,
     /// The forces on the harmonics that the unit modes of tooth 0 exert; real unknowns by r.
     pub tooth_forces: Mat<f64>,
-    /// X_d: the answer of tooth 0 to the modes of tooth d, with the interface circle held; d = 0 … Z − 1.
+    /// The number Z of teeth.
+    pub tooth_count: usize,
+    /// X_d: the answer of tooth 0 to the modes of tooth d, with the interface circle held; d = 0 … [`FARTHEST_NEIGHBOR`].
     pub held_coupling: Vec<Mat<f64>>,
 }
 
@@ -191,29 +194,37 @@ impl TeethRing {
                 &solution.orders,
             );
         }
-        let held_coupling = (0..z)
+        let held_coupling = (0..=FARTHEST_NEIGHBOR)
             .map(|d| held_coupling(&class_compliance, z, d))
             .collect();
         Ok(Self {
             harmonics,
             stiffness,
             tooth_forces,
+            tooth_count: z,
             held_coupling,
         })
     }
 
-    /// The forces on the harmonics of the unit modes of the tooth at `angle`.
-    pub fn forces_of_tooth_at(&self, angle: f64) -> Mat<f64> {
-        let mut turned = self.tooth_forces.clone();
-        for n in 1..=self.harmonics.largest {
-            let (sin, cos) = (n as f64 * angle).sin_cos();
-            for component in [Component::Radial, Component::Tangential] {
-                let a = self.harmonics.cosine(n, component);
-                for j in 0..turned.ncols() {
-                    let (x, y) = (turned[(a, j)], turned[(a + 2, j)]);
-                    turned[(a, j)] = cos * x - sin * y;
-                    turned[(a + 2, j)] = sin * x + cos * y;
-                }
+    /// The forces on the harmonics of `orders`, order by order, of the unit modes of the tooth at `angle`.
+    pub fn forces_of_tooth_at(&self, angle: f64, orders: &[usize]) -> Mat<f64> {
+        let unknowns = self.harmonics.unknowns_of(orders);
+        let mut turned = Mat::from_fn(unknowns.len(), self.tooth_forces.ncols(), |i, j| {
+            self.tooth_forces[(unknowns[i], j)]
+        });
+        let turns: Vec<(usize, (f64, f64))> = (0..unknowns.len())
+            .filter(|&i| self.harmonics.is_cosine(unknowns[i]))
+            .map(|i| {
+                let n = self.harmonics.order(unknowns[i]);
+                (i, (n as f64 * angle).sin_cos())
+            })
+            .collect();
+        for j in 0..turned.ncols() {
+            let column = turned.col_as_slice_mut(j);
+            for &(i, (sin, cos)) in &turns {
+                let (x, y) = (column[i], column[i + 2]);
+                column[i] = cos * x - sin * y;
+                column[i + 2] = sin * x + cos * y;
             }
         }
         turned
@@ -384,7 +395,8 @@ mod tests {
                 let expected = arc(&tooth.sector, &harmonics, i).transpose() * on_arc
                     - coupling.transpose() * &solved;
                 let angle = 2.0 * std::f64::consts::PI * i as f64 / count as f64;
-                let reached = ring.forces_of_tooth_at(angle);
+                let orders: Vec<usize> = (0..=largest).collect();
+                let reached = ring.forces_of_tooth_at(angle, &orders);
                 for q in 0..nq {
                     for j in 0..2 {
                         let apart = (reached[(q, j)] - expected[(q, j)]).abs();

@@ -64,7 +64,8 @@ fn a_rigid_motion_of_the_interface_circle_costs_nothing_and_carries_the_flanks()
             // V Fᵀ q: what the motion of the circle does to the flank of a tooth.
             for i in [0, 7] {
                 let angle = 2.0 * std::f64::consts::PI * f64::from(i) / f64::from(z);
-                let forces = ring.forces_of_tooth_at(angle);
+                let orders: Vec<usize> = (0..=ring.harmonics.largest).collect();
+                let forces = ring.forces_of_tooth_at(angle, &orders);
                 let modal: Vec<f64> = (0..forces.ncols())
                     .map(|mode| (0..n).map(|row| forces[(row, mode)] * motion[row]).sum())
                     .collect();
