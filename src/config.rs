@@ -8,6 +8,9 @@ use std::time::Duration;
 
 use axum::http::{HeaderValue, Uri};
 
+use crate::jobs::PreviewRules;
+use crate::wire;
+
 /// Where and how the service runs. Every option has its variable of the environment.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Config {
@@ -59,6 +62,26 @@ pub struct Config {
     #[arg(long, env = "MESHWRIGHT_TIME_LIMIT_SECONDS", default_value_t = 600, value_name = "SECONDS",
           value_parser = clap::value_parser!(u64).range(1..=7 * 24 * 3600))]
     pub time_limit_seconds: u64,
+
+    /// Memory for the teeth, blanks and gears that jobs and previews share, in MB of 2^20 bytes.
+    #[arg(long, env = "MESHWRIGHT_CACHE_MB", default_value_t = 256, value_name = "MB",
+          value_parser = clap::value_parser!(u32).range(0..=1 << 20))]
+    pub cache_mb: u32,
+
+    /// Previews that requests may wait for at the same time; further ones are refused.
+    #[arg(long, env = "MESHWRIGHT_PREVIEWS", default_value_t = 8, value_name = "NUMBER",
+          value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub previews: u32,
+
+    /// Positions times torques of one preview, at most.
+    #[arg(long, env = "MESHWRIGHT_PREVIEW_POSITIONS", default_value_t = 4000, value_name = "NUMBER",
+          value_parser = clap::value_parser!(u64).range(1..=wire::limits().positions))]
+    pub preview_positions: u64,
+
+    /// Time for one preview, from its request to its answer.
+    #[arg(long, env = "MESHWRIGHT_PREVIEW_TIME_LIMIT_SECONDS", default_value_t = 10, value_name = "SECONDS",
+          value_parser = clap::value_parser!(u64).range(1..=60))]
+    pub preview_time_limit_seconds: u64,
 }
 
 impl Config {
@@ -72,6 +95,21 @@ impl Config {
     /// The time for one job.
     pub fn time_limit(&self) -> Duration {
         Duration::from_secs(self.time_limit_seconds)
+    }
+
+    /// Memory for the substructures that jobs and previews share, in bytes.
+    pub fn cache_bytes(&self) -> usize {
+        // More than can be addressed is as much as there is.
+        (self.cache_mb as usize).saturating_mul(1 << 20)
+    }
+
+    /// What previews are allowed.
+    pub fn preview_rules(&self) -> PreviewRules {
+        PreviewRules {
+            at_once: self.previews as usize,
+            most_positions: self.preview_positions,
+            time_limit: Duration::from_secs(self.preview_time_limit_seconds),
+        }
     }
 }
 

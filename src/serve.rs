@@ -7,6 +7,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use anyhow::{Context, bail};
+use meshwright_engine::analysis::Library;
+use meshwright_engine::run::Run;
 use tokio::net::TcpListener;
 use tokio::task::JoinHandle;
 use tokio_util::sync::CancellationToken;
@@ -14,10 +16,16 @@ use tracing::{info, warn};
 
 use crate::config::Config;
 use crate::http::{App, Edge, router};
-use crate::jobs::{Clock, Jobs, Pace, Rules, Solve, Store, Workers};
+use crate::jobs::{Clock, Jobs, Pace, Previews, Rules, Solve, Store, Workers};
+use crate::wire::{Problem, Submission};
 
 /// At a shutdown, running work and open answers get so long to end.
 const GRACE: Duration = Duration::from_secs(10);
+
+/// How a submission is computed with the substructures that all computations share, as by
+/// [`wire::solve`](fn@crate::wire::solve).
+pub type Compute =
+    Arc<dyn Fn(&Submission, &Library, &Run) -> Result<String, Problem> + Send + Sync>;
 
 /// A service that runs.
 pub struct Service {
@@ -29,12 +37,12 @@ pub struct Service {
     _lock: DatabaseLock,
 }
 
-/// Starts the service: the database, the workers, the listener. It computes with `solve` and reads the time from `clock`.
+/// Starts the service: the database, the workers, the listener. It computes with `compute` and reads the time from `clock`.
 ///
 /// # Errors
 ///
 /// When the database cannot be opened, belongs to another process, or the address cannot be taken.
-pub async fn serve(config: &Config, solve: Solve, clock: Clock) -> anyhow::Result<Service> {
+pub async fn serve(config: &Config, compute: Compute, clock: Clock) -> anyhow::Result<Service> {
     let lock = DatabaseLock::take(&config.database)?;
     let store = Store::open(&config.database)
         .await
@@ -47,6 +55,12 @@ pub async fn serve(config: &Config, solve: Solve, clock: Clock) -> anyhow::Resul
         .context("the listener has no address")?;
 
     let stop = CancellationToken::new();
+    let library = Library::with_capacity(config.cache_bytes());
+    let solve: Solve = {
+        let library = library.clone();
+        Arc::new(move |submission, run| compute(submission, &library, run))
+    };
+    let previews = Previews::new(Arc::clone(&solve), config.preview_rules(), stop.clone())?;
     let jobs = Jobs::new(
         store.clone(),
         Rules {
@@ -64,6 +78,8 @@ pub async fn serve(config: &Config, solve: Solve, clock: Clock) -> anyhow::Resul
     };
     let app = App {
         jobs,
+        previews,
+        library,
         workers_alive: workers.alive(),
         edge: Arc::new(edge),
     };
@@ -87,7 +103,8 @@ impl Service {
         self.address
     }
 
-    /// Ends in order: takes no more work, returns running jobs to the queue, ends open streams, closes the database.
+    /// Ends in order: takes no more work, returns running jobs to the queue, stops previews, ends open streams, closes the
+    /// database.
     pub async fn shut_down(mut self) {
         info!("shutting down");
         self.stop.cancel();

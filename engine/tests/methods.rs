@@ -2,6 +2,8 @@
 
 mod cases;
 
+use std::sync::Barrier;
+
 use cases::{study_design, test_case};
 use meshwright_engine::analysis::{Analysis, Case, Curve, Library, Method, Warning, analyze};
 use meshwright_engine::run::Run;
@@ -252,5 +254,115 @@ fn what_designs_share_changes_no_digit() {
         analyze(&with(&first), &library, &run).expect("a design of the study");
         let shared = analyze(&with(&second), &library, &run).expect("a design of the study");
         assert_eq!(shared, solve(&second, method), "{method:?}");
+    }
+}
+
+/// Two designs on the same teeth, by a method that takes from every shelf and by the reference.
+fn designs_by_methods() -> Vec<Case> {
+    let designs = [(8, 34e-3, 8.385e-3), (10, 30e-3, 7e-3)];
+    let cases = designs.map(|holes| study_design(Some(holes), &[115.0, 20.0]));
+    let methods = [Method::Flexible, Method::Decomposition];
+    let with = |case: &Case, method| Case {
+        method,
+        ..case.clone()
+    };
+    cases
+        .iter()
+        .flat_map(|case| methods.map(|method| with(case, method)))
+        .collect()
+}
+
+fn solve_from(library: &Library, case: &Case) -> Analysis {
+    analyze(case, library, &Run::unattended()).expect("a design of the study")
+}
+
+/// A library with room for everything.
+const ROOMY: usize = 1 << 30;
+
+/// The size of a library in which the gears of `cases` find half the room that they want, so that they drive each other out.
+fn too_little_for(cases: &[Case]) -> usize {
+    let library = Library::with_capacity(ROOMY);
+    for case in cases {
+        solve_from(&library, case);
+    }
+    let gears = library
+        .usage()
+        .into_iter()
+        .find_map(|(shelf, usage)| (shelf == "gears").then_some(usage))
+        .expect("gears have a shelf");
+    // Theirs is an eighth of the whole.
+    assert_eq!(gears.capacity, ROOMY / 8);
+    gears.bytes / 2 * 8
+}
+
+#[test]
+fn a_library_changes_no_digit_whether_it_is_cold_warm_too_small_or_absent() {
+    let cases = designs_by_methods();
+    let cold: Vec<_> = cases
+        .iter()
+        .map(|case| solve_from(&Library::default(), case))
+        .collect();
+    for capacity in [0, too_little_for(&cases), ROOMY] {
+        let library = Library::with_capacity(capacity);
+        // Once cold, once with what the first time left.
+        for (case, cold) in cases.iter().zip(&cold).chain(cases.iter().zip(&cold)) {
+            assert!(
+                solve_from(&library, case) == *cold,
+                "{:?} from {capacity} bytes: {:?}",
+                case.method,
+                library.usage()
+            );
+        }
+        for (shelf, usage) in library.usage() {
+            assert!(usage.bytes <= usage.capacity, "{shelf}: {usage:?}");
+            if capacity == 0 {
+                assert!(usage.hits == 0 && usage.evictions > 0, "{shelf}: {usage:?}");
+            }
+            if capacity == ROOMY {
+                let computed_once = usage.misses == usage.entries as u64;
+                assert!(computed_once && usage.evictions == 0, "{shelf}: {usage:?}");
+            }
+        }
+        let evictions: u64 = library
+            .usage()
+            .iter()
+            .map(|(_, usage)| usage.evictions)
+            .sum();
+        assert_eq!(evictions > 0, capacity < ROOMY, "{:?}", library.usage());
+    }
+}
+
+#[test]
+fn jobs_at_once_on_one_library_get_the_results_that_each_gets_alone() {
+    let cases = designs_by_methods();
+    let alone: Vec<_> = cases
+        .iter()
+        .map(|case| solve_from(&Library::default(), case))
+        .collect();
+    // Once with room for everything, so that they find each other's parts; once with so little that they drive them out.
+    for capacity in [ROOMY, too_little_for(&cases)] {
+        let library = Library::with_capacity(capacity);
+        let start = Barrier::new(cases.len());
+        // As in the service, each job has threads of its own.
+        let solve_together = |case: &Case| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(2)
+                .build()
+                .expect("a pool");
+            start.wait();
+            pool.install(|| solve_from(&library, case))
+        };
+        let together: Vec<_> = std::thread::scope(|scope| {
+            let jobs: Vec<_> = cases
+                .iter()
+                .map(|case| scope.spawn(|| solve_together(case)))
+                .collect();
+            jobs.into_iter()
+                .map(|job| job.join().expect("no job panics"))
+                .collect()
+        });
+        for ((case, together), alone) in cases.iter().zip(&together).zip(&alone) {
+            assert!(together == alone, "{:?} in {capacity} bytes", case.method);
+        }
     }
 }

@@ -7,15 +7,10 @@ use std::sync::Arc;
 use anyhow::Context;
 use meshwright::config::Config;
 use meshwright::serve::serve;
-use meshwright::wire::{self, Submission};
-use meshwright_engine::analysis::Library;
-use meshwright_engine::run::Run;
+use meshwright::wire;
 use tracing_subscriber::EnvFilter;
 
 use super::demo;
-
-/// What the substructures that jobs share may take.
-const LIBRARY_BYTES: usize = 256 << 20;
 
 /// Serve jobs over HTTP.
 #[derive(Debug, clap::Args)]
@@ -50,13 +45,9 @@ impl Serve {
             .with_ansi(std::io::stderr().is_terminal())
             .init();
 
-        // Jobs share the teeth and blanks that they have in common.
-        let library = Library::with_capacity(LIBRARY_BYTES);
-        let solve =
-            move |submission: &Submission, run: &Run| wire::solve(submission, &library, run);
         let service = serve(
             &self.config,
-            Arc::new(solve),
+            Arc::new(wire::solve),
             Arc::new(jiff::Timestamp::now),
         )
         .await?;

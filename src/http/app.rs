@@ -4,14 +4,19 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
 
 use axum::http::header::HeaderValue;
+use meshwright_engine::analysis::Library;
 
-use crate::jobs::Jobs;
+use crate::jobs::{Jobs, Previews};
 
 /// What handlers work with.
 #[derive(Clone)]
 pub struct App {
     /// The jobs.
     pub jobs: Jobs,
+    /// The previews.
+    pub previews: Previews,
+    /// The substructures that jobs and previews share.
+    pub library: Library,
     /// The number of workers that live.
     pub workers_alive: Arc<AtomicUsize>,
     /// How the service looks from outside.

@@ -7,6 +7,7 @@ use axum::extract::{MatchedPath, Request, State};
 use axum::http::header::CONTENT_TYPE;
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
+use meshwright_engine::analysis::Library;
 use metrics_exporter_prometheus::{Matcher, PrometheusBuilder, PrometheusHandle};
 
 use super::app::App;
@@ -18,11 +19,18 @@ fn recorder() -> &'static PrometheusHandle {
     RECORDER.get_or_init(|| {
         let requests = Matcher::Full("meshwright_http_request_duration_seconds".to_owned());
         let jobs = Matcher::Full("meshwright_job_wall_time_seconds".to_owned());
+        let previews = Matcher::Full("meshwright_preview_engine_seconds".to_owned());
         let recorder = PrometheusBuilder::new()
             .set_buckets_for_metric(requests, &[0.001, 0.005, 0.02, 0.1, 0.5, 2.0, 10.0, 60.0])
             .and_then(|builder| {
                 builder
                     .set_buckets_for_metric(jobs, &[0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 600.0])
+            })
+            .and_then(|builder| {
+                builder.set_buckets_for_metric(
+                    previews,
+                    &[0.01, 0.02, 0.035, 0.05, 0.1, 0.3, 1.0, 3.0, 10.0],
+                )
             })
             .expect("the lists of buckets are not empty")
             .build_recorder();
@@ -44,6 +52,35 @@ fn recorder() -> &'static PrometheusHandle {
         );
         metrics::describe_gauge!("meshwright_jobs_waiting", "Jobs in the queue.");
         metrics::describe_gauge!("meshwright_jobs_running", "Jobs that are being computed.");
+        metrics::describe_gauge!(
+            "meshwright_previews_running",
+            "Previews that requests wait for."
+        );
+        metrics::describe_histogram!(
+            "meshwright_preview_engine_seconds",
+            "Time that a preview was computed."
+        );
+        metrics::describe_gauge!(
+            "meshwright_cache_bytes",
+            "Memory of the substructures that jobs and previews share."
+        );
+        metrics::describe_gauge!(
+            "meshwright_cache_capacity_bytes",
+            "Memory that they may take."
+        );
+        metrics::describe_gauge!("meshwright_cache_entries", "Substructures that are kept.");
+        metrics::describe_counter!(
+            "meshwright_cache_hits_total",
+            "Substructures that were wanted and kept."
+        );
+        metrics::describe_counter!(
+            "meshwright_cache_misses_total",
+            "Substructures that were wanted and had to be computed."
+        );
+        metrics::describe_counter!(
+            "meshwright_cache_evictions_total",
+            "Substructures that found no room or had to make room."
+        );
         handle
     })
 }
@@ -70,7 +107,7 @@ pub(super) async fn count(request: Request, next: Next) -> Response {
 
 /// Get metrics
 ///
-/// Numbers of requests and jobs in the Prometheus text format.
+/// Numbers of requests, jobs, previews and of the cache in the Prometheus text format.
 #[utoipa::path(
     get, path = "/metrics", tag = "Operation", operation_id = "metrics",
     responses((status = 200, description = "The numbers.", body = String, content_type = "text/plain")),
@@ -79,12 +116,28 @@ pub(super) async fn metrics(State(app): State<App>) -> Result<Response, Problem>
     let (waiting, running) = app.jobs.depth().await?;
     metrics::gauge!("meshwright_jobs_waiting").set(gauge(waiting));
     metrics::gauge!("meshwright_jobs_running").set(gauge(running));
+    metrics::gauge!("meshwright_previews_running").set(app.previews.count() as f64);
+    tell_cache(&app.library);
     recorder().run_upkeep();
     Ok((
         [(CONTENT_TYPE, "text/plain; version=0.0.4")],
         recorder().render(),
     )
         .into_response())
+}
+
+/// The cache counts for itself; what it has counted is copied when somebody looks.
+fn tell_cache(library: &Library) {
+    for (shelf, usage) in library.usage() {
+        metrics::gauge!("meshwright_cache_bytes", "shelf" => shelf).set(usage.bytes as f64);
+        metrics::gauge!("meshwright_cache_capacity_bytes", "shelf" => shelf)
+            .set(usage.capacity as f64);
+        metrics::gauge!("meshwright_cache_entries", "shelf" => shelf).set(usage.entries as f64);
+        metrics::counter!("meshwright_cache_hits_total", "shelf" => shelf).absolute(usage.hits);
+        metrics::counter!("meshwright_cache_misses_total", "shelf" => shelf).absolute(usage.misses);
+        metrics::counter!("meshwright_cache_evictions_total", "shelf" => shelf)
+            .absolute(usage.evictions);
+    }
 }
 
 /// Gauges are floating-point numbers, exact for any number of jobs that fits on a disk.

@@ -14,6 +14,7 @@ mod jobs;
 mod metrics;
 mod parameters;
 mod prefer;
+mod previews;
 mod problem;
 mod problem_pages;
 mod reference;

@@ -12,7 +12,7 @@ use axum::response::{IntoResponse, Response};
 use tracing::error;
 
 use super::app::Edge;
-use crate::jobs::{JobError, Status};
+use crate::jobs::{JobError, PreviewError, Status};
 use crate::wire::{Code, Problem};
 
 const PROBLEM_JSON: HeaderValue = HeaderValue::from_static("application/problem+json");
@@ -41,7 +41,9 @@ fn render(problem: &Problem, mut headers: HeaderMap) -> Response {
 fn retry_after(code: Code) -> Option<&'static str> {
     match code {
         Code::ResultNotReady => Some("1"),
-        Code::QueueFull => Some("5"),
+        // Previews take a fraction of a second each.
+        Code::PreviewsFull => Some("1"),
+        Code::QueueFull | Code::Unavailable => Some("5"),
         _ => None,
     }
 }
@@ -92,7 +94,34 @@ impl From<JobError> for Problem {
     }
 }
 
-fn sentence(error: &JobError) -> String {
+impl From<PreviewError> for Problem {
+    fn from(error: PreviewError) -> Self {
+        match error {
+            PreviewError::Full(_) => Problem::new(
+                Code::PreviewsFull,
+                format!("{}. Try again later.", sentence(&error)),
+            ),
+            PreviewError::Superseded => Problem::new(
+                Code::PreviewSuperseded,
+                "A newer request with the same preview_id took the place of this one.",
+            ),
+            PreviewError::TimeLimit(limit) => Problem::new(
+                Code::TimeLimit,
+                format!(
+                    "The preview was stopped after {} s, the limit for one. POST /v1/jobs has more time.",
+                    limit.as_secs_f64()
+                ),
+            ),
+            PreviewError::ShuttingDown => Problem::new(
+                Code::Unavailable,
+                "The service is shutting down and computes no more previews.",
+            ),
+            PreviewError::Failed(problem) => problem,
+        }
+    }
+}
+
+fn sentence(error: &impl std::error::Error) -> String {
     let text = error.to_string();
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| {

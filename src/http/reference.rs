@@ -1,10 +1,12 @@
 //! What a client can know without a job: whether a submission would do, examples, and limits.
 
 use axum::Json;
+use axum::extract::State;
 use serde::Serialize;
 use serde_json::Value;
 use utoipa::ToSchema;
 
+use super::app::App;
 use super::document::Document;
 use crate::wire::{self, Limits, Problem, Submission, Validation};
 
@@ -69,13 +71,43 @@ pub(super) async fn examples() -> Json<Examples> {
     })
 }
 
+/// The limits of every submission, and those of this service.
+#[derive(Serialize, ToSchema)]
+#[schema(title = "Limits")]
+pub(super) struct ServiceLimits {
+    #[serde(flatten)]
+    submission: Limits,
+    /// What previews are allowed.
+    previews: PreviewLimits,
+}
+
+/// What previews are allowed.
+#[derive(Serialize, ToSchema)]
+#[schema(title = "Limits of previews")]
+struct PreviewLimits {
+    /// The most positions times torques of one.
+    positions: u64,
+    /// The most at once.
+    at_once: usize,
+    /// From the request to its answer, in seconds.
+    time_limit_seconds: u64,
+}
+
 /// Get limits
 ///
-/// The bounds that submissions must keep.
+/// The bounds that submissions must keep, and those of previews.
 #[utoipa::path(
     get, path = "/v1/limits", tag = "Reference", operation_id = "get_limits",
-    responses((status = 200, description = "The limits.", body = Limits)),
+    responses((status = 200, description = "The limits.", body = ServiceLimits)),
 )]
-pub(super) async fn limits() -> Json<Limits> {
-    Json(wire::limits())
+pub(super) async fn limits(State(app): State<App>) -> Json<ServiceLimits> {
+    let rules = app.previews.rules();
+    Json(ServiceLimits {
+        submission: wire::limits(),
+        previews: PreviewLimits {
+            positions: rules.most_positions,
+            at_once: rules.at_once,
+            time_limit_seconds: rules.time_limit.as_secs(),
+        },
+    })
 }

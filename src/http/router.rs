@@ -24,8 +24,8 @@ use utoipa_axum::routes;
 
 use super::app::App;
 use super::{
-    docs, events, health, jobs, metrics, problem, problem_pages, reference, results, studies,
-    submit, tables,
+    docs, events, health, jobs, metrics, previews, problem, problem_pages, reference, results,
+    studies, submit, tables,
 };
 use crate::wire::{Code, Problem};
 
@@ -73,6 +73,7 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(results::results))
         .routes(routes!(tables::table))
         .routes(routes!(events::events))
+        .routes(routes!(previews::preview))
         .routes(routes!(studies::submit, studies::list))
         .routes(routes!(studies::show, studies::delete))
         .routes(routes!(studies::results))
@@ -143,6 +144,7 @@ fn cors(origins: &[HeaderValue]) -> CorsLayer {
             RETRY_AFTER,
             name("content-location"),
             name("preference-applied"),
+            name("server-timing"),
             name("x-request-id"),
         ])
         .max_age(Duration::from_secs(3600))

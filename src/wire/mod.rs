@@ -2,7 +2,8 @@
 //!
 //! Read in this order: [`problem`] (what goes wrong), [`submission`] with its parts [`pair`], [`gear`] and
 //! [`resolution`] (what is asked), [`geometry`], [`warning`] and [`results`] (what is answered), [`solve`](mod@solve)
-//! (what leads from the one to the other) and [`examples`](mod@examples); then [`study`] and [`study_table`], many
+//! (what leads from the one to the other) and [`examples`](mod@examples); [`preview`], a submission that is answered at
+//! once; then [`study`] and [`study_table`], many
 //! submissions at once. `units`, `quantity`, `tree`, `schema` and
 //! `pointer` carry them: conversions, the table of bounds, JSON with its places, OpenAPI, and places in a submission.
 //!
@@ -28,10 +29,13 @@ pub mod warning;
 pub mod examples;
 pub mod solve;
 
+pub mod preview;
+
 pub mod study;
 pub mod study_table;
 
 pub use examples::{Example, examples};
+pub use preview::Preview;
 pub use problem::{Code, FieldError, Problem};
 pub use results::Results;
 pub use solve::{Limits, Validation, limits, solve, validate};

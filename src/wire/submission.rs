@@ -11,7 +11,7 @@ use super::pair::PairDocument;
 use super::problem::{Code, FieldError, Problem};
 use super::quantity::{self, MOST_POSITIONS, MOST_TAGS, MOST_TORQUES};
 use super::resolution::ResolutionDocument;
-use super::schema::{self, documented};
+use super::schema::{self, Property, documented};
 use super::tree::{Choice, Errors, Node, ObjectReader, as_word};
 use super::units::{Side, plain, rounded_inward, to_mm};
 
@@ -52,6 +52,25 @@ documented!(
     schema::object(
         "Submission",
         "What is asked: a gear pair, torques, and how to compute. Unknown fields are refused.",
+        Submission::properties()
+    )
+);
+
+/// What a submission is for, which decides how large it may be.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Purpose {
+    /// A job, which is queued.
+    Job,
+    /// A preview, for which a request waits.
+    Preview {
+        /// The most positions times torques.
+        most_positions: u64,
+    },
+}
+
+impl Submission {
+    /// What the schema says of its fields.
+    pub(super) fn properties() -> Vec<Property> {
         vec![
             schema::choice::<Method>("method", "Method", "How the curves are computed.", None),
             schema::document::<PairDocument>("pair", true),
@@ -61,11 +80,11 @@ documented!(
                     "Output torques",
                     "The torques on the driven gear, each of which gives a curve. Unit: N m.",
                     schema::number_schema(&quantity::OUTPUT_TORQUE),
-                    (1, MOST_TORQUES)
+                    (1, MOST_TORQUES),
                 )
                 .unique_items(true)
                 .into(),
-                true
+                true,
             ),
             schema::number(&quantity::DRIVING_SPEED),
             schema::document::<ResolutionDocument>("resolution", false),
@@ -80,17 +99,15 @@ documented!(
                         .min_length(Some(1))
                         .max_length(Some(MOST_TAGS.1))
                         .into(),
-                    (0, MOST_TAGS.0)
+                    (0, MOST_TAGS.0),
                 )
                 .default(Some(serde_json::json!([])))
                 .into(),
-                false
+                false,
             ),
         ]
-    )
-);
+    }
 
-impl Submission {
     /// Reads and checks a submission.
     ///
     /// # Errors
@@ -100,7 +117,9 @@ impl Submission {
     pub fn parse(document: &[u8]) -> Result<Self, Problem> {
         let node = Node::parse(document)?;
         let errors = Errors::default();
-        match Self::read(&node, &errors) {
+        let read = ObjectReader::new(&node, String::new(), &errors)
+            .and_then(|reader| Self::read(reader, Purpose::Job, &errors));
+        match read {
             Some(submission) if errors.count() == 0 => Ok(submission),
             _ => Err(errors.into_problem()),
         }
@@ -123,8 +142,13 @@ impl Submission {
         errors
     }
 
-    fn read(node: &Node, errors: &Errors) -> Option<Self> {
-        let mut document = Document::read(ObjectReader::new(node, String::new(), errors)?)?;
+    /// Reads what is left of `reader`, and checks it.
+    pub(super) fn read(
+        reader: ObjectReader<'_>,
+        purpose: Purpose,
+        errors: &Errors,
+    ) -> Option<Self> {
+        let mut document = Document::read(reader)?;
         if errors.count() > 0 {
             return None;
         }
@@ -136,7 +160,7 @@ impl Submission {
             .resolution
             .span_mesh_periods
             .get_or_insert(pair.period());
-        document.check_size(errors);
+        document.check_size(purpose, errors);
         let case = Case {
             pair,
             method: document.method,
@@ -386,7 +410,16 @@ impl Document {
         }
     }
 
-    fn check_size(&self, errors: &Errors) {
+    fn check_size(&self, purpose: Purpose, errors: &Errors) {
+        let (limit, said) = match purpose {
+            Purpose::Job => (MOST_POSITIONS, format!("the limit is {MOST_POSITIONS}")),
+            Purpose::Preview { most_positions } => (
+                most_positions,
+                format!(
+                    "the limit of a preview is {most_positions}, that of POST /v1/jobs {MOST_POSITIONS}"
+                ),
+            ),
+        };
         let resolution = &self.resolution;
         let span = u64::from(resolution.span_mesh_periods.unwrap_or(1));
         let (positions, torques) = (
@@ -394,12 +427,12 @@ impl Document {
             self.output_torques_n_m.len() as u64,
         );
         let total = span * positions * torques;
-        if total <= MOST_POSITIONS {
+        if total <= limit {
             return;
         }
-        let fitting_positions = MOST_POSITIONS / (span * torques);
-        let fitting_torques = MOST_POSITIONS / (span * positions);
-        let fitting_span = MOST_POSITIONS / (positions * torques);
+        let fitting_positions = limit / (span * torques);
+        let fitting_torques = limit / (span * positions);
+        let fitting_span = limit / (positions * torques);
         let mut ways = Vec::new();
         let least_positions = quantity::POSITIONS.bounds.0 as u64;
         if fitting_positions >= least_positions {
@@ -411,17 +444,21 @@ impl Document {
         if fitting_span >= 1 {
             ways.push(format!("a span of {fitting_span} mesh periods"));
         }
+        if ways.is_empty() {
+            ways.push("less of more than one of them".to_owned());
+        }
         let (name, nearest) = if fitting_positions >= least_positions {
-            (quantity::POSITIONS.name, fitting_positions)
+            (quantity::POSITIONS.name, Some(fitting_positions as f64))
         } else {
-            (quantity::SPAN.name, fitting_span)
+            let nearest = (fitting_span >= 1).then_some(fitting_span as f64);
+            (quantity::SPAN.name, nearest)
         };
         let detail = format!(
-            "{span} mesh periods of {positions} positions at {torques} torques are {total} positions; the limit is {MOST_POSITIONS}. What would fit: {}.",
+            "{span} mesh periods of {positions} positions at {torques} torques are {total} positions; {said}. What would fit: {}.",
             ways.join(", or ")
         );
         let pointer = format!("/resolution/{name}");
-        errors.push(FieldError::new(pointer, Code::TooLarge, detail).nearest(nearest as f64));
+        errors.push(FieldError::new(pointer, Code::TooLarge, detail).nearest(nearest));
     }
 }
 

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use meshwright::config::Config;
 use meshwright::jobs::Solve;
-use meshwright::serve::{Service, serve};
-use meshwright::wire::{Code, Problem, Submission};
+use meshwright::serve::{Compute, Service, serve};
+use meshwright::wire::{self, Code, Problem, Submission};
 use meshwright_engine::run::Run;
 use reqwest::{Client, RequestBuilder, Response, StatusCode};
 use serde_json::{Value, json};
@@ -27,7 +27,7 @@ pub(crate) const RESULTS: &str = r#"{ "method": "flexible",  "curves": [
 /// A service and a client of it.
 pub(crate) struct Bench {
     pub(crate) config: Config,
-    solve: Solve,
+    compute: Compute,
     service: Option<Service>,
     pub(crate) base: String,
     pub(crate) client: Client,
@@ -68,7 +68,20 @@ impl Bench {
         (Self::start(adjust, solve).await, engine)
     }
 
+    /// A service with one worker that computes.
+    pub(crate) async fn real() -> Self {
+        Self::start_with(|_| {}, Arc::new(wire::solve)).await
+    }
+
     pub(crate) async fn start(adjust: impl FnOnce(&mut Config), solve: Solve) -> Self {
+        Self::start_with(
+            adjust,
+            Arc::new(move |submission, _, run| solve(submission, run)),
+        )
+        .await
+    }
+
+    async fn start_with(adjust: impl FnOnce(&mut Config), compute: Compute) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let mut config = Config {
             listen: "127.0.0.1:0".parse().unwrap(),
@@ -78,12 +91,16 @@ impl Bench {
             public_url: None,
             queue_limit: 100,
             time_limit_seconds: 600,
+            cache_mb: 256,
+            previews: 4,
+            preview_positions: 4000,
+            preview_time_limit_seconds: 20,
         };
         adjust(&mut config);
         let client = Client::builder().timeout(PATIENCE).build().unwrap();
         let mut bench = Self {
             config,
-            solve,
+            compute,
             service: None,
             base: String::new(),
             client,
@@ -104,7 +121,7 @@ impl Bench {
     pub(crate) async fn another(&self) -> anyhow::Result<Service> {
         serve(
             &self.config,
-            Arc::clone(&self.solve),
+            Arc::clone(&self.compute),
             Arc::new(jiff::Timestamp::now),
         )
         .await

@@ -30,6 +30,7 @@ fn every_field_of_a_submission_tells_a_form_its_title_and_its_kind() {
     let mut seen = 0;
     for schema in [
         "Submission",
+        "Preview",
         "Pair",
         "Gear",
         "Blank",

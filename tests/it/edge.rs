@@ -200,6 +200,7 @@ async fn the_documentation_needs_nothing_from_elsewhere() {
         "/v1/jobs/{id}/events",
         "/v1/jobs/{id}/cancel",
         "/v1/validate",
+        "/v1/preview",
         "/v1/examples",
         "/v1/limits",
         "/problems/{slug}",

@@ -12,6 +12,7 @@ mod edge;
 mod events;
 mod life;
 mod lists;
+mod previews;
 mod real;
 mod recovery;
 mod refusals;

@@ -1,23 +1,8 @@
 //! The service with its real engine: what a portal gets for the examples that it finds.
 
-use std::sync::Arc;
-
-use meshwright::wire::{self, Submission};
-use meshwright_engine::analysis::Library;
-use meshwright_engine::run::Run;
 use serde_json::Value;
 
 use super::bench::Bench;
-
-/// A service that computes.
-async fn service() -> Bench {
-    let library = Library::default();
-    Bench::start(
-        |_| {},
-        Arc::new(move |submission: &Submission, run: &Run| wire::solve(submission, &library, run)),
-    )
-    .await
-}
 
 async fn post(bench: &Bench, json: String) -> (u16, Value) {
     let request = bench.client.post(format!("{}/v1/jobs", bench.base));
@@ -54,7 +39,7 @@ async fn example(bench: &Bench, name: &str) -> Value {
 
 #[tokio::test]
 async fn test_case_2_comes_back_with_the_curves_of_the_paper_and_their_evidence() {
-    let bench = service().await;
+    let bench = Bench::real().await;
     let (status, results) = post(&bench, example(&bench, "test-case-2").await.to_string()).await;
     assert_eq!(status, 200, "{results}");
     let curve = &results["curves"][0];
@@ -91,7 +76,7 @@ async fn test_case_2_comes_back_with_the_curves_of_the_paper_and_their_evidence(
 
 #[tokio::test]
 async fn case_3_as_printed_is_refused_with_a_distance_that_works() {
-    let bench = service().await;
+    let bench = Bench::real().await;
     let printed = example(&bench, "bad-case-3-as-printed").await;
     let (status, problem) = post(&bench, printed.to_string()).await;
     assert_eq!(status, 422);
@@ -119,7 +104,7 @@ async fn case_3_as_printed_is_refused_with_a_distance_that_works() {
 
 #[tokio::test]
 async fn every_method_answers_with_the_same_document_and_says_what_it_does_not_see() {
-    let bench = service().await;
+    let bench = Bench::real().await;
     let mut submission = example(&bench, "test-case-2").await;
     submission["resolution"] =
         serde_json::json!({ "grid": "coarse", "positions_per_mesh_period": 16 });

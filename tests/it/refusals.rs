@@ -44,7 +44,7 @@ async fn bad_bodies_are_refused_and_leave_nothing_behind() {
     ];
     for body in bodies {
         let shown = String::from_utf8_lossy(&body[..body.len().min(80)]).into_owned();
-        for path in ["/v1/jobs", "/v1/validate"] {
+        for path in ["/v1/jobs", "/v1/validate", "/v1/preview"] {
             let request = bench
                 .client
                 .post(bench.url(path))
@@ -184,6 +184,7 @@ async fn a_method_that_is_not_taken_is_told_which_are() {
     for (method, path, allowed) in [
         (Method::PUT, "/v1/jobs", "GET,HEAD,POST"),
         (Method::GET, "/v1/validate", "POST"),
+        (Method::GET, "/v1/preview", "POST"),
         (Method::POST, "/v1/jobs/1/results", "GET,HEAD"),
     ] {
         let response = bench

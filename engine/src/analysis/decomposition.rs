@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use super::case::{Case, StiffnessRule};
 use super::curve::{BlankFit, BlankSample, DecompositionParts, Evidence, LoadShare};
-use super::flexible::{self, Blanks};
+use super::flexible::{self, Blanks, Solved};
 use super::library::{Library, interface_radius};
 use super::model::{MeshContact, PairModel, tooth_offset};
 use super::phase::{Laid, PairLoads};
@@ -263,8 +263,11 @@ pub(super) fn project(
         let load = case.pair.load(output_torque);
         let without = base.contacts(load, &period)?;
         let keep = |laid: &Laid, solution: &ContactSolution| laid.modal_loads(solution);
-        let (contacts, loads, stiffness) =
-            flexible::solved(case, &round, load, &period, run, keep)?;
+        let Solved {
+            contacts,
+            kept: loads,
+            stiffness,
+        } = flexible::solved(case, &round, load, &period, run, keep)?;
         flexible::gather(&mut evidence, &contacts, load);
         flexible::warn_of_tips(&mut warnings, &contacts);
         let (mut transmission_error, mut tangent) = (Vec::new(), Vec::new());

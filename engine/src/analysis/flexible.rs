@@ -181,7 +181,17 @@ fn at_position(error: PositionError, mesh_position: f64) -> AnalysisError {
     }
 }
 
-/// The solved positions of one torque with what `keep` takes of each, and the tangent stiffness by the rule of the case.
+/// The solved positions of one torque.
+pub(super) struct Solved<T> {
+    /// The contact at each.
+    pub(super) contacts: Vec<MeshContact>,
+    /// What was kept of each beside.
+    pub(super) kept: Vec<T>,
+    /// The tangent stiffness by the rule of the case.
+    pub(super) stiffness: Vec<f64>,
+}
+
+/// Solves the positions of one torque and keeps of each what `keep` takes.
 pub(super) fn solved<T: Send>(
     case: &Case,
     model: &PairModel,
@@ -189,13 +199,13 @@ pub(super) fn solved<T: Send>(
     positions: &[f64],
     run: &Run,
     keep: impl Fn(&Laid, &ContactSolution) -> T + Sync,
-) -> Result<(Vec<MeshContact>, Vec<T>, Vec<f64>), AnalysisError> {
+) -> Result<Solved<T>, AnalysisError> {
     let middle = contacts_keeping(model, load, positions, run, keep)?;
-    let (middle, kept): (Vec<MeshContact>, Vec<T>) = middle.into_iter().unzip();
+    let (contacts, kept): (Vec<MeshContact>, Vec<T>) = middle.into_iter().unzip();
     let stiffness = match case.resolution.stiffness {
-        StiffnessRule::Tangent => middle.iter().map(|contact| contact.stiffness).collect(),
+        StiffnessRule::Tangent => contacts.iter().map(|contact| contact.stiffness).collect(),
         StiffnessRule::TorqueStep { fraction } => {
-            let at = |factor: f64| contacts(model, load * factor, positions, run);
+            let at = |factor: f64| self::contacts(model, load * factor, positions, run);
             let (low, high) = (at(1.0 - fraction)?, at(1.0 + fraction)?);
             let pairs = low.iter().zip(&high);
             pairs
@@ -205,7 +215,11 @@ pub(super) fn solved<T: Send>(
                 .collect()
         }
     };
-    Ok((middle, kept, stiffness))
+    Ok(Solved {
+        contacts,
+        kept,
+        stiffness,
+    })
 }
 
 /// Shares of the load by pair offset n − floor(η), for the offsets that ever carry load.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::AnalysisError;
 use super::case::{Case, ContactSolver};
 use super::model::MeshContact;
-use super::shelf::Shelf;
+use super::shelf::{Shelf, ShelfUsage};
 use crate::contact::flank::FlankTable;
 use crate::fem::FemError;
 use crate::fem::blank::BlankSubstructure;
@@ -88,6 +88,22 @@ impl Library {
             gears: Shelf::new(bytes / 8),
             contacts: Shelf::new(bytes / 8),
         }))
+    }
+
+    /// How each of its shelves is used, by what stands on it.
+    pub fn usage(&self) -> [(&'static str, ShelfUsage); 4] {
+        let Shelves {
+            teeth,
+            blanks,
+            gears,
+            contacts,
+        } = &*self.0;
+        [
+            ("teeth", teeth.usage()),
+            ("blanks", blanks.usage()),
+            ("gears", gears.usage()),
+            ("contacts", contacts.usage()),
+        ]
     }
 
     /// The teeth of `gear` down to `interface_radius`.
@@ -188,7 +204,8 @@ impl Teeth {
     fn bytes(&self) -> usize {
         let (n, r) = (self.ring.harmonics.unknowns(), self.flank.mode_count());
         let couplings = 2 * self.on_rigid_blank.entries();
-        size_of::<f64>() * (n * n + n * r + couplings + self.flank.entries())
+        let patterns = (n + r) * self.ring.force_patterns.ncols();
+        size_of::<f64>() * (n * n + patterns + couplings + self.flank.entries())
     }
 }
 

@@ -23,13 +23,14 @@ pub use case::{
 pub use curve::{Analysis, Curve, ErrorEstimate, Evidence, Statistics, Warning};
 pub use estimate::{Estimate, estimate};
 pub use library::Library;
+pub use shelf::ShelfUsage;
 
 use crate::contact::ContactError;
 use crate::gear::{GearPair, Member};
 use crate::grid::GridLevel;
 use crate::run::{Run, Stopped};
 use curve::{DecompositionParts, LoadShare};
-use flexible::Blanks;
+use flexible::{Blanks, Solved};
 use spectrum::Spectrum;
 
 /// Backlash below this, in meters, counts as none.
@@ -162,8 +163,11 @@ fn flexible(
     let mut curves = Vec::with_capacity(case.output_torques.len());
     for &output_torque in &case.output_torques {
         let load = case.pair.load(output_torque);
-        let (contacts, _, stiffness) =
-            flexible::solved(case, &model, load, &positions, run, |_, _| ())?;
+        let Solved {
+            contacts,
+            stiffness,
+            ..
+        } = flexible::solved(case, &model, load, &positions, run, |_, _| ())?;
         flexible::gather(&mut evidence, &contacts, load);
         flexible::warn_of_tips(&mut warnings, &contacts);
         let parts = CurveParts {

@@ -19,6 +19,26 @@ struct Books<K, T> {
     parts: HashMap<K, (Arc<T>, usize, u64)>,
     bytes: usize,
     clock: u64,
+    hits: u64,
+    misses: u64,
+    evictions: u64,
+}
+
+/// How a shelf is used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ShelfUsage {
+    /// What its parts take, in bytes.
+    pub bytes: usize,
+    /// What they may take, in bytes.
+    pub capacity: usize,
+    /// Parts that it holds.
+    pub entries: usize,
+    /// Times that a part was asked for and there, since the start.
+    pub hits: u64,
+    /// Times that a part was asked for and had to be computed, since the start.
+    pub misses: u64,
+    /// Parts that found no room or had to make room, since the start.
+    pub evictions: u64,
 }
 
 impl<K: Eq + Hash + Clone, T> Shelf<K, T> {
@@ -28,6 +48,9 @@ impl<K: Eq + Hash + Clone, T> Shelf<K, T> {
             parts: HashMap::new(),
             bytes: 0,
             clock: 0,
+            hits: 0,
+            misses: 0,
+            evictions: 0,
         };
         Self {
             books: Mutex::new(books),
@@ -51,6 +74,19 @@ impl<K: Eq + Hash + Clone, T> Shelf<K, T> {
         Ok(part)
     }
 
+    /// How it is used.
+    pub(super) fn usage(&self) -> ShelfUsage {
+        let books = self.books();
+        ShelfUsage {
+            bytes: books.bytes,
+            capacity: self.capacity,
+            entries: books.parts.len(),
+            hits: books.hits,
+            misses: books.misses,
+            evictions: books.evictions,
+        }
+    }
+
     fn books(&self) -> MutexGuard<'_, Books<K, T>> {
         // The books hold only finished parts, so that a panic elsewhere leaves nothing half done in them.
         self.books.lock().unwrap_or_else(PoisonError::into_inner)
@@ -60,12 +96,21 @@ impl<K: Eq + Hash + Clone, T> Shelf<K, T> {
 impl<K: Eq + Hash + Clone, T> Books<K, T> {
     fn find(&mut self, key: &K) -> Option<Arc<T>> {
         self.clock += 1;
-        let (part, _, used) = self.parts.get_mut(key)?;
+        let Some((part, _, used)) = self.parts.get_mut(key) else {
+            self.misses += 1;
+            return None;
+        };
+        self.hits += 1;
         *used = self.clock;
         Some(part.clone())
     }
 
     fn keep(&mut self, key: K, part: Arc<T>, size: usize, capacity: usize) {
+        if size > capacity {
+            // All others would have to go, and then it would go itself.
+            self.evictions += 1;
+            return;
+        }
         self.clock += 1;
         self.bytes += size;
         if let Some((_, size, _)) = self.parts.insert(key, (part, size, self.clock)) {
@@ -78,6 +123,7 @@ impl<K: Eq + Hash + Clone, T> Books<K, T> {
             };
             if let Some((_, size, _)) = self.parts.remove(&key) {
                 self.bytes -= size;
+                self.evictions += 1;
             }
         }
     }
@@ -106,9 +152,30 @@ mod tests {
     }
 
     #[test]
-    fn a_part_that_is_too_large_is_given_but_not_kept() {
-        let shelf = Shelf::new(5);
-        assert!(built(&shelf, 1) && built(&shelf, 1));
+    fn a_part_that_is_too_large_is_given_but_not_kept_and_drives_no_other_out() {
+        let shelf = Shelf::new(15);
+        assert!(built(&shelf, 1));
+        for _ in 0..2 {
+            assert_eq!(shelf.part(2, |_| 16, || Ok::<_, ()>(2)).as_deref(), Ok(&2));
+        }
+        assert!(!built(&shelf, 1));
+    }
+
+    #[test]
+    fn it_tells_how_it_is_used() {
+        let shelf = Shelf::new(20);
+        for key in [1, 2, 1, 3] {
+            built(&shelf, key);
+        }
+        let usage = ShelfUsage {
+            bytes: 20,
+            capacity: 20,
+            entries: 2,
+            hits: 1,
+            misses: 3,
+            evictions: 1,
+        };
+        assert_eq!(shelf.usage(), usage);
     }
 
     #[test]

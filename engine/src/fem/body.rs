@@ -163,7 +163,7 @@ impl Coupling {
 
 /// Adds F_iᵀ C F_j on `orders`, whose stiffness C⁻¹ is factorized in `ring`, to the `blocks` of every row.
 ///
-/// With L⁻¹ F of both teeth, a block is one plain product.
+/// F_i = G_i W, and with L⁻¹ G of both teeth what is inside is one plain product.
 fn add_answers(
     blocks: &mut [Mat<f64>],
     teeth: &TeethRing,
@@ -171,10 +171,10 @@ fn add_answers(
     ring: &Cholesky<f64>,
     run: &Run,
 ) -> Result<(), FemError> {
-    let (z, r) = (teeth.tooth_count, teeth.tooth_forces.ncols());
+    let (z, r) = (teeth.tooth_count, teeth.force_patterns.ncols());
     let unknowns = teeth.harmonics.unknowns_of(orders).len();
     let rows = blocks.len() / NEIGHBORS;
-    // L⁻¹ F of the teeth of some rows and of the neighbors of the last.
+    // L⁻¹ G of the teeth of some rows and of the neighbors of the last.
     let mut halves = Mat::<f64>::zeros(unknowns, (ROWS_AT_ONCE + FARTHEST_NEIGHBOR) * r);
     for first in (0..rows).step_by(ROWS_AT_ONCE) {
         run.check()?;
@@ -190,7 +190,7 @@ fn add_answers(
         let count = here + FARTHEST_NEIGHBOR;
         for tooth in known..count {
             let angle = tooth_angle((first + tooth) % z, z);
-            let forces = teeth.forces_of_tooth_at(angle, orders);
+            let forces = teeth.patterns_of_tooth_at(angle, orders);
             halves.subcols_mut(tooth * r, r).copy_from(forces);
         }
         ring.half_solve_in_place(halves.subcols_mut(known * r, (count - known) * r));
@@ -198,7 +198,9 @@ fn add_answers(
             let one = halves.subcols(row * r, r);
             let answers = one.transpose() * halves.subcols(row * r, NEIGHBORS * r);
             for d in 0..NEIGHBORS {
-                blocks[(first + row) * NEIGHBORS + d] += answers.subcols(d * r, r);
+                let answer = answers.subcols(d * r, r);
+                blocks[(first + row) * NEIGHBORS + d] +=
+                    teeth.pattern_shares.transpose() * answer * &teeth.pattern_shares;
             }
         }
     }

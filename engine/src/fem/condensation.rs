@@ -12,7 +12,7 @@ use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
     supernodal::SupernodalLltRef,
 };
-use faer::sparse::{SparseColMat, Triplet};
+use faer::sparse::{SparseColMat, SymbolicSparseColMat};
 use faer::{Accum, Mat, Par, Side};
 
 use super::FemError;
@@ -52,29 +52,13 @@ pub fn condense(
     fixed: &[u32],
 ) -> Result<Mat<f64>, FemError> {
     let numbering = Numbering::new(grid.nodes.len(), kept, fixed);
-    let (n, interior) = (numbering.unknowns(), numbering.interior());
-    let mut triplets = Vec::with_capacity(grid.elements.len() * 136 + 2 * kept.len());
+    let mut matrix = BlockMatrix::new(&grid.elements, &numbering);
     for (element, k) in grid
         .elements
         .iter()
         .zip(element_stiffnesses(grid, material, thickness))
     {
-        for (b, &node_b) in element.iter().enumerate() {
-            let Some(col) = numbering.first(node_b) else {
-                continue;
-            };
-            for (a, &node_a) in element.iter().enumerate() {
-                let Some(row) = numbering.first(node_a) else {
-                    continue;
-                };
-                for (c, d) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                    let (i, j) = (row + c, col + d);
-                    if i >= j {
-                        triplets.push(Triplet::new(i as u32, j as u32, k[(2 * a + c, 2 * b + d)]));
-                    }
-                }
-            }
-        }
+        matrix.add(element, &k, &numbering);
     }
     // Springs on the kept unknowns make a floating grid definite; they add to the Schur complement exactly and are taken
     // off again below.
@@ -83,17 +67,16 @@ pub fn condense(
     } else {
         0.0
     };
-    if spring > 0.0 {
-        triplets.extend((interior..n).map(|i| Triplet::new(i as u32, i as u32, spring)));
+    for node in numbering.interior..numbering.count {
+        matrix.add_to_diagonal(node, spring);
     }
-    let too_large = FemError::TooLarge { part, unknowns: n };
-    let stiffness = SparseColMat::<u32, f64>::try_new_from_triplets(n, n, &triplets)
-        .map_err(|_| too_large.clone())?;
-    drop(triplets);
-    let mut schur = trailing_schur(&stiffness, interior).map_err(|error| match error {
-        Failure::Size => too_large,
-        Failure::Indefinite => FemError::NotPositiveDefinite { part, unknowns: n },
-    })?;
+    let unknowns = 2 * numbering.count;
+    let mut schur = matrix
+        .trailing_schur(numbering.interior)
+        .map_err(|error| match error {
+            Failure::Size => FemError::TooLarge { part, unknowns },
+            Failure::Indefinite => FemError::NotPositiveDefinite { part, unknowns },
+        })?;
     for i in 0..schur.nrows() {
         schur[(i, i)] -= spring;
     }
@@ -105,11 +88,169 @@ enum Failure {
     Indefinite,
 }
 
-/// The Schur complement of the symmetric matrix whose lower triangle is `a` on its unknowns from `interior` on.
-fn trailing_schur(a: &SparseColMat<u32, f64>, interior: usize) -> Result<Mat<f64>, Failure> {
-    let n = a.nrows();
-    let kept = n - interior;
-    let order = fill_reducing_order(a, interior).map_err(|()| Failure::Size)?;
+/// The lower triangle of a symmetric matrix of 2 x 2 blocks, one for each pair of nodes of a common element.
+struct BlockMatrix {
+    /// Where the rows of each block column begin in `rows`.
+    starts: Vec<usize>,
+    /// The block rows of each column, rising, the diagonal first.
+    rows: Vec<u32>,
+    /// The unknowns' own columns one after the other; without the entry above the diagonal.
+    values: Vec<f64>,
+}
+
+impl BlockMatrix {
+    /// A matrix of zeros with the pattern of `elements`.
+    fn new(elements: &[[u32; 8]], numbering: &Numbering) -> Self {
+        let pairs = || {
+            elements.iter().flat_map(|element| {
+                let places = element.map(|node| numbering.place(node));
+                let all = places
+                    .into_iter()
+                    .flat_map(move |column| places.into_iter().map(move |row| column.zip(row)));
+                all.flatten().filter(|(column, row)| row >= column)
+            })
+        };
+        let mut ends = vec![0; numbering.count + 1];
+        for (column, _) in pairs() {
+            ends[column + 1] += 1;
+        }
+        for column in 0..numbering.count {
+            ends[column + 1] += ends[column];
+        }
+        let mut next = ends.clone();
+        let mut all = vec![0; ends[numbering.count]];
+        for (column, row) in pairs() {
+            all[next[column]] = row as u32;
+            next[column] += 1;
+        }
+        let (mut starts, mut rows) = (vec![0], Vec::with_capacity(all.len() / 2));
+        for range in ends.windows(2) {
+            let column = &mut all[range[0]..range[1]];
+            column.sort_unstable();
+            let first = rows.len();
+            for &row in &*column {
+                if rows.len() == first || rows[rows.len() - 1] != row {
+                    rows.push(row);
+                }
+            }
+            starts.push(rows.len());
+        }
+        let values = vec![0.0; 4 * rows.len() - numbering.count];
+        Self {
+            starts,
+            rows,
+            values,
+        }
+    }
+
+    /// Where the first unknown of a block column has its values, and how many blocks there are; those of the second
+    /// unknown follow.
+    fn column(&self, column: usize) -> (usize, usize) {
+        let (first, end) = (self.starts[column], self.starts[column + 1]);
+        (4 * first - column, end - first)
+    }
+
+    /// Adds the stiffness `k` of `element`.
+    fn add(&mut self, element: &[u32; 8], k: &ElementStiffness, numbering: &Numbering) {
+        let places = element.map(|node| numbering.place(node));
+        for (b, column) in places.iter().enumerate() {
+            let Some(column) = *column else { continue };
+            let (first, blocks) = self.column(column);
+            let rows = &self.rows[self.starts[column]..self.starts[column + 1]];
+            for (a, row) in places.iter().enumerate() {
+                let Some(row) = row.filter(|row| *row >= column) else {
+                    continue;
+                };
+                let block = rows.partition_point(|&known| (known as usize) < row);
+                let (left, right) = (first + 2 * block, first + 2 * (blocks + block));
+                self.values[left] += k[(2 * a, 2 * b)];
+                self.values[left + 1] += k[(2 * a + 1, 2 * b)];
+                if row > column {
+                    self.values[right - 1] += k[(2 * a, 2 * b + 1)];
+                }
+                self.values[right] += k[(2 * a + 1, 2 * b + 1)];
+            }
+        }
+    }
+
+    /// Adds `value` to both diagonal entries of a block.
+    fn add_to_diagonal(&mut self, block: usize, value: f64) {
+        let (first, blocks) = self.column(block);
+        self.values[first] += value;
+        self.values[first + 2 * blocks] += value;
+    }
+
+    /// The matrix on single unknowns.
+    fn into_unknowns(self) -> SparseColMat<u32, f64> {
+        let count = self.starts.len() - 1;
+        let mut pointers = Vec::with_capacity(2 * count + 1);
+        let mut rows = Vec::with_capacity(self.values.len());
+        pointers.push(0);
+        for column in 0..count {
+            let blocks = &self.rows[self.starts[column]..self.starts[column + 1]];
+            for unknown in 0..2 {
+                rows.extend(
+                    blocks
+                        .iter()
+                        .flat_map(|row| [2 * row, 2 * row + 1])
+                        .skip(unknown),
+                );
+                pointers.push(rows.len() as u32);
+            }
+        }
+        let pattern = SymbolicSparseColMat::new_checked(2 * count, 2 * count, pointers, None, rows);
+        SparseColMat::new(pattern, self.values)
+    }
+
+    /// Approximate minimum degree on the `interior` blocks; the kept ones stay last, in their order.
+    fn fill_reducing_order(&self, interior: usize) -> Result<Perm<u32>, Failure> {
+        let (mut pointers, mut rows) = (vec![0], Vec::new());
+        for column in 0..interior {
+            let blocks = &self.rows[self.starts[column]..self.starts[column + 1]];
+            rows.extend(blocks.iter().filter(|row| (**row as usize) < interior));
+            pointers.push(rows.len() as u32);
+        }
+        let entries = rows.len();
+        let pattern = SymbolicSparseColMat::new_checked(interior, interior, pointers, None, rows);
+        let (mut forward, mut inverse) = (vec![0_u32; interior], vec![0_u32; interior]);
+        let mut memory =
+            MemBuffer::new(amd::order_maybe_unsorted_scratch::<u32>(interior, entries));
+        amd::order_maybe_unsorted(
+            &mut forward,
+            &mut inverse,
+            pattern.as_ref(),
+            Default::default(),
+            MemStack::new(&mut memory),
+        )
+        .map_err(|_| Failure::Size)?;
+        let all = 0..self.starts.len() as u32 - 1;
+        let of_unknowns = |blocks: Vec<u32>| -> Box<[u32]> {
+            let kept = all.clone().skip(interior);
+            let blocks = blocks.into_iter().chain(kept);
+            blocks
+                .flat_map(|block| [2 * block, 2 * block + 1])
+                .collect()
+        };
+        let (forward, inverse) = (of_unknowns(forward), of_unknowns(inverse));
+        let unknowns = forward.len();
+        Ok(Perm::new_checked(forward, inverse, unknowns))
+    }
+
+    /// The Schur complement on the unknowns of the blocks from `interior` on.
+    fn trailing_schur(self, interior: usize) -> Result<Mat<f64>, Failure> {
+        let order = self.fill_reducing_order(interior)?;
+        trailing_schur(&self.into_unknowns(), &order, 2 * interior)
+    }
+}
+
+/// The Schur complement of the symmetric matrix whose lower triangle is `a` on its unknowns from `interior` on, which
+/// `order` leaves in their places.
+fn trailing_schur(
+    a: &SparseColMat<u32, f64>,
+    order: &Perm<u32>,
+    interior: usize,
+) -> Result<Mat<f64>, Failure> {
+    let kept = a.nrows() - interior;
     let params = CholeskySymbolicParams {
         supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
         ..Default::default()
@@ -176,45 +317,6 @@ fn trailing_schur(a: &SparseColMat<u32, f64>, interior: usize) -> Result<Mat<f64
     Ok(schur)
 }
 
-/// Approximate minimum degree on the interior unknowns; the kept ones stay last, in their order.
-fn fill_reducing_order(a: &SparseColMat<u32, f64>, interior: usize) -> Result<Perm<u32>, ()> {
-    let n = a.nrows();
-    let mut pattern = Vec::new();
-    for j in 0..interior {
-        for &i in a.symbolic().row_idx_of_col_raw(j) {
-            if (i as usize) < interior {
-                pattern.push(Triplet::new(i, j as u32, ()));
-            }
-        }
-    }
-    let pattern = pattern
-        .into_iter()
-        .map(|t| Triplet::new(t.row, t.col, 1.0_f64))
-        .collect::<Vec<_>>();
-    let pattern = SparseColMat::<u32, f64>::try_new_from_triplets(interior, interior, &pattern)
-        .map_err(|_| ())?;
-    let (mut forward, mut inverse) = (vec![0_u32; interior], vec![0_u32; interior]);
-    let mut memory = MemBuffer::new(amd::order_maybe_unsorted_scratch::<u32>(
-        interior,
-        pattern.compute_nnz(),
-    ));
-    amd::order_maybe_unsorted(
-        &mut forward,
-        &mut inverse,
-        pattern.symbolic(),
-        Default::default(),
-        MemStack::new(&mut memory),
-    )
-    .map_err(|_| ())?;
-    forward.extend(interior as u32..n as u32);
-    inverse.extend(interior as u32..n as u32);
-    Ok(Perm::new_checked(
-        forward.into_boxed_slice(),
-        inverse.into_boxed_slice(),
-        n,
-    ))
-}
-
 /// Copies the lower triangle of `a` to its upper one.
 pub fn mirror_lower(a: &mut Mat<f64>) {
     for j in 0..a.ncols() {
@@ -224,49 +326,41 @@ pub fn mirror_lower(a: &mut Mat<f64>) {
     }
 }
 
-/// Where the unknowns of each node stand: interior ones first, kept ones last, fixed ones nowhere.
+/// The places of the nodes that move: interior ones first, kept ones last, fixed ones nowhere.
 struct Numbering {
-    first: Vec<u32>,
+    places: Vec<u32>,
     interior: usize,
-    unknowns: usize,
+    count: usize,
 }
 
 impl Numbering {
     const FIXED: u32 = u32::MAX;
 
     fn new(nodes: usize, kept: &[u32], fixed: &[u32]) -> Self {
-        let mut first = vec![0; nodes];
+        let mut places = vec![0; nodes];
         for &node in kept.iter().chain(fixed) {
-            first[node as usize] = Self::FIXED;
+            places[node as usize] = Self::FIXED;
         }
         let mut next = 0;
-        for place in first.iter_mut().filter(|place| **place != Self::FIXED) {
+        for place in places.iter_mut().filter(|place| **place != Self::FIXED) {
             *place = next;
-            next += 2;
+            next += 1;
         }
         let interior = next as usize;
         for &node in kept {
-            first[node as usize] = next;
-            next += 2;
+            places[node as usize] = next;
+            next += 1;
         }
         Self {
-            first,
+            places,
             interior,
-            unknowns: next as usize,
+            count: next as usize,
         }
     }
 
-    fn first(&self, node: u32) -> Option<usize> {
-        let place = self.first[node as usize];
+    fn place(&self, node: u32) -> Option<usize> {
+        let place = self.places[node as usize];
         (place != Self::FIXED).then_some(place as usize)
-    }
-
-    fn interior(&self) -> usize {
-        self.interior
-    }
-
-    fn unknowns(&self) -> usize {
-        self.unknowns
     }
 }
 

@@ -73,11 +73,13 @@ pub fn stiffness(nodes: &[Vector; 8], material: &Material, thickness: f64) -> El
             let weight = w_xi * w_eta * det * thickness;
             let (dd, dn, dg) = (d * weight, d * nu * weight, g * weight);
             for (j, &(xj, yj)) in gradient.iter().enumerate() {
+                let (ddx, ddy, dnx, dny) = (dd * xj, dd * yj, dn * xj, dn * yj);
+                let (dgx, dgy) = (dg * xj, dg * yj);
                 for (i, &(xi, yi)) in gradient.iter().enumerate().take(j + 1) {
-                    k[(2 * i, 2 * j)] += dd * xi * xj + dg * yi * yj;
-                    k[(2 * i, 2 * j + 1)] += dn * xi * yj + dg * yi * xj;
-                    k[(2 * i + 1, 2 * j)] += dn * yi * xj + dg * xi * yj;
-                    k[(2 * i + 1, 2 * j + 1)] += dd * yi * yj + dg * xi * xj;
+                    k[(2 * i, 2 * j)] += xi * ddx + yi * dgy;
+                    k[(2 * i, 2 * j + 1)] += xi * dny + yi * dgx;
+                    k[(2 * i + 1, 2 * j)] += yi * dnx + xi * dgy;
+                    k[(2 * i + 1, 2 * j + 1)] += yi * ddy + xi * dgx;
                 }
             }
         }

@@ -11,7 +11,7 @@ use crate::gear::{SpurGear, Vector, radial, tangential};
 use crate::grid::ToothGrid;
 use crate::run::Run;
 
-/// Singular values of Ψ below this share of the largest carry nothing: H keeps nine digits.
+/// Singular values below this share of the largest carry nothing: H keeps nine digits.
 const MODE_TOLERANCE: f64 = 1e-11;
 
 /// One tooth sector, condensed to its interface and its loaded flank.
@@ -136,8 +136,11 @@ pub struct TeethRing {
     pub harmonics: Harmonics,
     /// The stiffness of all teeth together on the harmonics.
     pub stiffness: Mat<f64>,
-    /// The forces on the harmonics that the unit modes of tooth 0 exert; real unknowns by r.
-    pub tooth_forces: Mat<f64>,
+    /// The forces on the harmonics that the unit modes of tooth 0 exert are G W: here G, real unknowns by the few patterns
+    /// of which they consist.
+    pub force_patterns: Mat<f64>,
+    /// W: how much of each pattern a mode exerts.
+    pub pattern_shares: Mat<f64>,
     /// The number Z of teeth.
     pub tooth_count: usize,
     /// X_d: the answer of tooth 0 to the modes of tooth d, with the interface circle held; d = 0 … [`FARTHEST_NEIGHBOR`].
@@ -197,20 +200,32 @@ impl TeethRing {
         let held_coupling = (0..=FARTHEST_NEIGHBOR)
             .map(|d| held_coupling(&class_compliance, z, d))
             .collect();
+        // Modes that hardly show at the flank need fewer digits, and on their way to the interface circle their fields grow
+        // alike: they exert about half as many patterns as they are.
+        let heights: Vec<f64> = tooth.modes.col_iter().map(|mode| mode.norm_l2()).collect();
+        let seen = Mat::from_fn(tooth_forces.nrows(), r, |i, j| {
+            tooth_forces[(i, j)] * heights[j]
+        });
+        let (force_patterns, shares) = compress(&seen).ok_or(FemError::NotPositiveDefinite {
+            part: "the forces of the teeth",
+            unknowns: r,
+        })?;
+        let pattern_shares = Mat::from_fn(shares.ncols(), r, |i, j| shares[(j, i)] / heights[j]);
         Ok(Self {
             harmonics,
             stiffness,
-            tooth_forces,
+            force_patterns,
+            pattern_shares,
             tooth_count: z,
             held_coupling,
         })
     }
 
-    /// The forces on the harmonics of `orders`, order by order, of the unit modes of the tooth at `angle`.
-    pub fn forces_of_tooth_at(&self, angle: f64, orders: &[usize]) -> Mat<f64> {
+    /// G on the harmonics of `orders`, order by order, for the tooth at `angle`.
+    pub fn patterns_of_tooth_at(&self, angle: f64, orders: &[usize]) -> Mat<f64> {
         let unknowns = self.harmonics.unknowns_of(orders);
-        let mut turned = Mat::from_fn(unknowns.len(), self.tooth_forces.ncols(), |i, j| {
-            self.tooth_forces[(unknowns[i], j)]
+        let mut turned = Mat::from_fn(unknowns.len(), self.force_patterns.ncols(), |i, j| {
+            self.force_patterns[(unknowns[i], j)]
         });
         let turns: Vec<(usize, (f64, f64))> = (0..unknowns.len())
             .filter(|&i| self.harmonics.is_cosine(unknowns[i]))
@@ -305,15 +320,16 @@ fn in_axes(a: &Mat<f64>, axes: &[[Vector; 2]]) -> Mat<f64> {
     rotated
 }
 
-/// Splits Ψ into V Q with orthonormal rows of Q, which are the force patterns on the interface: (V, Qᵀ).
-fn compress(psi: &Mat<f64>) -> Option<(Mat<f64>, Mat<f64>)> {
-    let svd = psi.thin_svd().ok()?;
+/// Splits `a` into a product of two matrices, the second with orthonormal rows, by its singular values above
+/// [`MODE_TOLERANCE`]: (U Σ, V).
+fn compress(a: &Mat<f64>) -> Option<(Mat<f64>, Mat<f64>)> {
+    let svd = a.thin_svd().ok()?;
     let (u, v, s) = (svd.U(), svd.V(), svd.S().column_vector());
     let rank = (0..s.nrows())
         .take_while(|&i| s[i] > MODE_TOLERANCE * s[0])
         .count();
-    let modes = Mat::from_fn(u.nrows(), rank, |i, j| u[(i, j)] * s[j]);
-    Some((modes, v.subcols(0, rank).to_owned()))
+    let scaled = Mat::from_fn(u.nrows(), rank, |i, j| u[(i, j)] * s[j]);
+    Some((scaled, v.subcols(0, rank).to_owned()))
 }
 
 fn symmetrize(a: &mut Mat<f64>) {
@@ -350,7 +366,7 @@ mod tests {
         let n = sector.stiffness.nrows();
         ToothSubstructure {
             fixed_compliance: Mat::zeros(0, 0),
-            modes: Mat::zeros(0, 2),
+            modes: Mat::identity(2, 2),
             roll_lengths: Vec::new(),
             flank_points: Vec::new(),
             grid_nodes: 0,
@@ -396,7 +412,7 @@ mod tests {
                     - coupling.transpose() * &solved;
                 let angle = 2.0 * std::f64::consts::PI * i as f64 / count as f64;
                 let orders: Vec<usize> = (0..=largest).collect();
-                let reached = ring.forces_of_tooth_at(angle, &orders);
+                let reached = ring.patterns_of_tooth_at(angle, &orders) * &ring.pattern_shares;
                 for q in 0..nq {
                     for j in 0..2 {
                         let apart = (reached[(q, j)] - expected[(q, j)]).abs();

@@ -65,7 +65,7 @@ fn a_rigid_motion_of_the_interface_circle_costs_nothing_and_carries_the_flanks()
             for i in [0, 7] {
                 let angle = 2.0 * std::f64::consts::PI * f64::from(i) / f64::from(z);
                 let orders: Vec<usize> = (0..=ring.harmonics.largest).collect();
-                let forces = ring.forces_of_tooth_at(angle, &orders);
+                let forces = ring.patterns_of_tooth_at(angle, &orders) * &ring.pattern_shares;
                 let modal: Vec<f64> = (0..forces.ncols())
                     .map(|mode| (0..n).map(|row| forces[(row, mode)] * motion[row]).sum())
                     .collect();

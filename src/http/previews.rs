@@ -1,0 +1,60 @@
+//! Previews: results in the answer to the request itself.
+
+use axum::extract::State;
+use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, HeaderName};
+use axum::response::{IntoResponse, Response};
+
+use super::app::App;
+use super::client::Client;
+use super::document::Document;
+use crate::jobs::Previewed;
+use crate::wire::{Preview, Problem};
+
+/// See the results at once
+///
+/// For a form that shows the curve while a hole is dragged: the same submission as for a job, answered in the same request
+/// with the same results document, to the last digit. Nothing is kept: no job, no id, no entry in a list. In return it is
+/// bounded: fewer positions times torques and less time than a job, and only so many at once (`/v1/limits` tells the
+/// bounds).
+///
+/// With a `preview_id`, a newer request of the same client stops the older one, which is answered with
+/// `preview_superseded`; the newer one is never refused for the sake of the older. A client that closes the connection
+/// stops its preview too. Teeth are computed once and kept for all: only the first preview of a pair takes the time of a
+/// job, a moved hole far less.
+#[utoipa::path(
+    post, path = "/v1/preview", tag = "Results", operation_id = "preview",
+    request_body(content = Preview, content_type = "application/json", description = "The submission, and perhaps a `preview_id`."),
+    responses(
+        (status = 200, description = "The results, as a job would give them.", body = crate::wire::Results, headers(
+            ("Server-Timing" = String, description = "`engine`: time of the computation; `wait`: time until there were threads for it; both in ms."),
+            ("Cache-Control" = String, description = "`no-store`."),
+        )),
+        (status = 400, description = "The body is no JSON.", body = Problem, content_type = "application/problem+json"),
+        (status = 408, description = "The body came too slowly.", body = Problem, content_type = "application/problem+json"),
+        (status = 409, description = "A newer request with the same `preview_id` took the place of this one.", body = Problem, content_type = "application/problem+json"),
+        (status = 413, description = "The body has more than 1 MiB.", body = Problem, content_type = "application/problem+json"),
+        (status = 415, description = "The body is not declared as JSON.", body = Problem, content_type = "application/problem+json"),
+        (status = 422, description = "The submission cannot be computed, or is too large or too long for a preview; `errors` says which field is why. `POST /v1/jobs` takes more.", body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(super) async fn preview(
+    State(app): State<App>,
+    Client(client): Client,
+    Document(document): Document,
+) -> Result<Response, Problem> {
+    let preview = Preview::parse(&document, app.previews.rules().most_positions)?;
+    let previewed = app.previews.compute(&client, preview).await?;
+    let headers = [
+        (CONTENT_TYPE, "application/json".to_owned()),
+        (CACHE_CONTROL, "no-store".to_owned()),
+        (HeaderName::from_static("server-timing"), timing(&previewed)),
+    ];
+    Ok((headers, previewed.document).into_response())
+}
+
+fn timing(previewed: &Previewed) -> String {
+    let [engine, wait] =
+        [previewed.computed, previewed.waited].map(|time| time.as_secs_f64() * 1e3);
+    format!("engine;dur={engine:.2}, wait;dur={wait:.2}")
+}

@@ -1,0 +1,333 @@
+//! Previews: computations that a request waits for and nobody keeps.
+//!
+//! A preview is admitted if fewer than the limit are; then it waits for one of a few rooms, each with threads of its own,
+//! and is computed there. One that is no longer wanted (replaced by a newer one, or its client has gone) counts no more
+//! from that moment on, although its room is free only when the engine has obeyed the stop. So a newer preview is never
+//! refused because of the older one that it replaces, and the engine never does more than its rooms allow.
+
+use std::collections::HashMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard};
+use std::thread;
+use std::time::Duration;
+
+use meshwright_engine::run::Run;
+use rayon::ThreadPool;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, oneshot};
+use tokio::time::{Instant, sleep_until};
+use tokio_util::sync::CancellationToken;
+use tracing::error;
+
+use super::worker::{Solve, StartError, message_of};
+use crate::wire::{Code, Preview, Problem, Submission};
+
+/// Rooms that there are at least, so that a newer preview begins while the one that it replaces winds down.
+const FEWEST_ROOMS: usize = 2;
+
+/// What previews are allowed.
+#[derive(Debug, Clone, Copy)]
+pub struct PreviewRules {
+    /// So many requests may wait for theirs at the same time.
+    pub at_once: usize,
+    /// Positions times torques of one, at most.
+    pub most_positions: u64,
+    /// From the request to its answer, at most.
+    pub time_limit: Duration,
+}
+
+/// A preview that was computed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Previewed {
+    /// The text of the results document: the one that a job would give.
+    pub document: String,
+    /// How long it waited for threads.
+    pub waited: Duration,
+    /// How long the engine took.
+    pub computed: Duration,
+}
+
+/// Why there is no preview.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PreviewError {
+    /// As many are wanted at once as are allowed.
+    #[error("{0} previews are wanted at once, which is the limit")]
+    Full(usize),
+    /// A newer one took its place.
+    #[error("a newer preview took the place of this one")]
+    Superseded,
+    /// It took too long.
+    #[error("the preview took longer than {0:?}")]
+    TimeLimit(Duration),
+    /// The service is shutting down.
+    #[error("the service is shutting down")]
+    ShuttingDown,
+    /// The engine has no answer.
+    #[error(transparent)]
+    Failed(Problem),
+}
+
+/// The previews of this process; cloning shares them.
+#[derive(Clone)]
+pub struct Previews(Arc<Desk>);
+
+struct Desk {
+    solve: Solve,
+    rules: PreviewRules,
+    stop: CancellationToken,
+    // Mutexes of the standard library: they are never held across an await.
+    wanted: Mutex<Wanted>,
+    rooms: Arc<Semaphore>,
+    free: Mutex<Vec<Arc<ThreadPool>>>,
+}
+
+/// The previews that requests wait for.
+#[derive(Default)]
+struct Wanted {
+    count: usize,
+    /// Those that a newer one may replace, by client and id.
+    named: HashMap<Name, Arc<Ticket>>,
+}
+
+/// A client, and what it calls a series of previews.
+type Name = (String, String);
+
+/// One preview that a request waits for.
+#[derive(Debug, Default)]
+struct Ticket {
+    superseded: CancellationToken,
+    /// Tells the engine to stop.
+    stop: Arc<AtomicBool>,
+}
+
+/// The guard of a preview that is wanted. Dropped, wherever its request ends, it stops the engine.
+struct Admitted {
+    desk: Arc<Desk>,
+    name: Option<Name>,
+    ticket: Arc<Ticket>,
+}
+
+/// Threads for one computation. They are free for the next when this is dropped.
+struct Room {
+    desk: Arc<Desk>,
+    threads: Arc<ThreadPool>,
+    _permit: OwnedSemaphorePermit,
+}
+
+impl Previews {
+    /// Previews that `solve` computes, until `stop` comes.
+    ///
+    /// # Errors
+    ///
+    /// When the threads cannot be started.
+    pub fn new(
+        solve: Solve,
+        rules: PreviewRules,
+        stop: CancellationToken,
+    ) -> Result<Self, StartError> {
+        let cores = thread::available_parallelism().map_or(1, usize::from);
+        let rooms = rules.at_once.min(cores.max(FEWEST_ROOMS));
+        let free: Result<_, _> = (0..rooms)
+            .map(|room| {
+                let pool = rayon::ThreadPoolBuilder::new()
+                    .thread_name(move |index| format!("preview-{room}-{index}"));
+                pool.build().map(Arc::new)
+            })
+            .collect();
+        Ok(Self(Arc::new(Desk {
+            solve,
+            rules,
+            stop,
+            wanted: Mutex::default(),
+            rooms: Arc::new(Semaphore::new(rooms)),
+            free: Mutex::new(free.map_err(StartError::Threads)?),
+        })))
+    }
+
+    /// What they are allowed.
+    pub fn rules(&self) -> PreviewRules {
+        self.0.rules
+    }
+
+    /// The number that requests wait for.
+    pub fn count(&self) -> usize {
+        self.0.wanted().count
+    }
+
+    /// Computes `preview` for `client`, and stops the older one of the same client and id. Dropping the future stops the
+    /// engine.
+    ///
+    /// # Errors
+    ///
+    /// A [`PreviewError`].
+    pub async fn compute(&self, client: &str, preview: Preview) -> Result<Previewed, PreviewError> {
+        let Preview { submission, id } = preview;
+        let rules = self.rules();
+        let admitted = self.admit(id.map(|id| (client.to_owned(), id)))?;
+        let start = Instant::now();
+        let deadline = start + rules.time_limit;
+
+        let room = self.room();
+        let room = admitted
+            .unless_over(deadline, PreviewError::Full(rules.at_once), room)
+            .await?;
+        let waited = start.elapsed();
+        let result = admitted
+            .unless_over(
+                deadline,
+                PreviewError::TimeLimit(rules.time_limit),
+                room.launch(submission, admitted.run()),
+            )
+            .await?;
+        // The sender is only ever dropped with a result in it.
+        let (result, computed) = result.unwrap_or_else(|_| (Err(failure()), Duration::ZERO));
+        let document = result.map_err(PreviewError::Failed)?;
+        metrics::histogram!("meshwright_preview_engine_seconds").record(computed.as_secs_f64());
+        Ok(Previewed {
+            document,
+            waited,
+            computed,
+        })
+    }
+
+    /// Takes a place among those that are wanted, from the older one of the same name if there is one.
+    fn admit(&self, name: Option<Name>) -> Result<Admitted, PreviewError> {
+        let desk = &self.0;
+        if desk.stop.is_cancelled() {
+            return Err(PreviewError::ShuttingDown);
+        }
+        let ticket = Arc::new(Ticket::default());
+        let mut wanted = desk.wanted();
+        let older = name.as_ref().and_then(|name| wanted.named.remove(name));
+        match older {
+            // Its place goes over to the newer one.
+            Some(older) => older.supersede(),
+            None if wanted.count >= desk.rules.at_once => {
+                return Err(PreviewError::Full(wanted.count));
+            }
+            None => wanted.count += 1,
+        }
+        if let Some(name) = &name {
+            wanted.named.insert(name.clone(), Arc::clone(&ticket));
+        }
+        drop(wanted);
+        Ok(Admitted {
+            desk: Arc::clone(desk),
+            name,
+            ticket,
+        })
+    }
+
+    /// Waits for threads. Who came first gets them first.
+    async fn room(&self) -> Room {
+        let permit = Arc::clone(&self.0.rooms).acquire_owned().await;
+        let permit = permit.expect("the semaphore is never closed");
+        let threads = self.0.free().pop();
+        Room {
+            desk: Arc::clone(&self.0),
+            threads: threads.expect("there are as many rooms as permits"),
+            _permit: permit,
+        }
+    }
+}
+
+impl Desk {
+    fn wanted(&self) -> MutexGuard<'_, Wanted> {
+        self.wanted
+            .lock()
+            .expect("nothing panics while it holds this lock")
+    }
+
+    fn free(&self) -> MutexGuard<'_, Vec<Arc<ThreadPool>>> {
+        self.free
+            .lock()
+            .expect("nothing panics while it holds this lock")
+    }
+}
+
+impl Ticket {
+    fn supersede(&self) {
+        self.stop.store(true, Ordering::Relaxed);
+        self.superseded.cancel();
+    }
+}
+
+impl Admitted {
+    /// The handle for the engine's work.
+    fn run(&self) -> Run {
+        Run::new(Arc::clone(&self.ticket.stop), |_, _| {})
+    }
+
+    /// What `work` gives, unless the preview is over before.
+    async fn unless_over<T>(
+        &self,
+        deadline: Instant,
+        late: PreviewError,
+        work: impl Future<Output = T>,
+    ) -> Result<T, PreviewError> {
+        tokio::select! {
+            result = work => Ok(result),
+            () = self.ticket.superseded.cancelled() => Err(PreviewError::Superseded),
+            () = self.desk.stop.cancelled() => Err(PreviewError::ShuttingDown),
+            () = sleep_until(deadline) => Err(late),
+        }
+    }
+}
+
+impl Drop for Admitted {
+    fn drop(&mut self) {
+        let mut wanted = self.desk.wanted();
+        // Under the lock, so that a newer one either took the place before or finds it gone.
+        if !self.ticket.superseded.is_cancelled() {
+            wanted.count -= 1;
+            if let Some(name) = &self.name {
+                wanted.named.remove(name);
+            }
+        }
+        self.ticket.stop.store(true, Ordering::Relaxed);
+    }
+}
+
+impl Room {
+    /// Starts the computation on the room's threads. A panic in it is the engine's fault and ends this preview only.
+    fn launch(
+        self,
+        submission: Submission,
+        run: Run,
+    ) -> oneshot::Receiver<(Result<String, Problem>, Duration)> {
+        let (sender, receiver) = oneshot::channel();
+        let threads = Arc::clone(&self.threads);
+        threads.spawn(move || {
+            let start = std::time::Instant::now();
+            let work = || (self.desk.solve)(&submission, &run);
+            let result = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
+                error!(
+                    panic = message_of(&*panic),
+                    "the engine panicked in a preview"
+                );
+                Err(failure())
+            });
+            let computed = start.elapsed();
+            // Before the answer, so that who asks again at once finds the room free.
+            drop(self);
+            // Nobody waits for a preview that was stopped.
+            let _ = sender.send((result, computed));
+        });
+        receiver
+    }
+}
+
+impl Drop for Room {
+    fn drop(&mut self) {
+        // The permit follows when the fields are dropped, so that who gets it finds the threads.
+        self.desk.free().push(Arc::clone(&self.threads));
+    }
+}
+
+/// The cause stands in the log.
+fn failure() -> Problem {
+    Problem::new(
+        Code::InternalError,
+        "The service failed while it computed this preview. The failure has been logged.",
+    )
+}
