@@ -98,20 +98,23 @@ fn sentence(growth: &Growth) -> String {
     match growth.varied {
         Varied::ToothCount => {
             let (whole, gears) = (&series[0], &series[1]);
+            let (least, most) = ends(&series[2].seconds);
             let last = whole.counts.len() - 1;
             let middle = last / 2;
             let power = (gears.seconds[last] / gears.seconds[middle]).ln()
                 / (f64::from(gears.counts[last]) / f64::from(gears.counts[middle])).ln();
             format!(
                 "Test case 2 with other tooth counts, bore and holes scaled with the room for them, over 5 mesh periods (200 \
-                 positions): {} ms at {} teeth, {} ms at {}, {} ms at {}. The positions cost the same whatever the number of \
-                 teeth; the gears grow with the power {power:.1} of it from {} teeth on.",
+                 positions): {} ms at {} teeth, {} ms at {}, {} ms at {}. The positions take {} to {} ms of it; the gears grow with \
+                 the power {power:.1} of the tooth count from {} teeth on.",
                 milliseconds(whole.seconds[0]),
                 whole.counts[0],
                 milliseconds(whole.seconds[middle]),
                 whole.counts[middle],
                 milliseconds(whole.seconds[last]),
                 whole.counts[last],
+                milliseconds(least),
+                milliseconds(most),
                 whole.counts[middle],
             )
         }
@@ -119,13 +122,16 @@ fn sentence(growth: &Growth) -> String {
             let (whole, fixed) = (&series[0], &series[1]);
             let (least, most) = ends(&fixed.seconds);
             let (least_whole, most_whole) = ends(&whole.seconds);
+            let slowest = fixed.seconds.iter().position(|&seconds| seconds == most);
+            let at_most = slowest.map_or(0, |i| fixed.counts[i]);
             format!(
                 "Test case 2 with other hole counts in its driven gear, the holes as large as there is room for and at most as \
-                 in the test case. Over 5 mesh periods the job takes {} to {} ms. Over the true period, which is 1 to 50 mesh \
-                 periods with these counts, it takes {} to {} ms: what is paid for is positions, not holes. The projected \
-                 decomposition solves the contact over one mesh period whatever the true period is.",
+                 in the test case. Over 5 mesh periods the job takes {} to {} ms, most with {} holes; the fewer holes, the \
+                 larger the sector of the blank that is condensed. Over the true period, which is 1 to 50 mesh periods with these counts, \
+                 it takes {} to {} ms.",
                 milliseconds(least),
                 milliseconds(most),
+                at_most,
                 milliseconds(least_whole),
                 milliseconds(most_whole),
             )
