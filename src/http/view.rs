@@ -4,6 +4,7 @@ use axum::body::Bytes;
 use jiff::Timestamp;
 use serde::Serialize;
 use serde_json::Value;
+use serde_json::value::RawValue;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
@@ -50,7 +51,7 @@ pub(super) struct JobView<'a> {
     /// The submission with every default filled in. Absent in lists.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<crate::wire::Submission>)]
-    submission: Option<Value>,
+    submission: Option<&'a RawValue>,
 }
 
 /// Where to find what belongs to a job.
@@ -112,6 +113,7 @@ impl<'a> JobView<'a> {
     /// The whole view, with the submission.
     pub(super) fn whole(job: &'a Job, edge: &Edge) -> Self {
         Self {
+            // It is JSON as it stands: a look at a job need not take it apart and put it together again.
             submission: serde_json::from_str(&job.submission).ok(),
             ..Self::new(job, edge)
         }

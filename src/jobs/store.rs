@@ -55,6 +55,8 @@ impl Store {
             SqlitePoolOptions::new()
                 .idle_timeout(None)
                 .max_lifetime(None)
+                // A connection to a file does not break while it lies idle; the look would double the way of a query.
+                .test_before_acquire(false)
         };
 
         let writer = pool()

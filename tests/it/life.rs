@@ -1,6 +1,9 @@
 //! A job from submission to end, and the ways to end it early.
 
-use meshwright::wire::{Code, Problem};
+use std::sync::Arc;
+
+use meshwright::wire::{Code, Problem, Submission};
+use meshwright_engine::run::Run;
 use reqwest::StatusCode;
 use serde_json::Value;
 
@@ -280,4 +283,25 @@ async fn two_workers_compute_two_jobs_at_the_same_time() {
     for path in paths {
         assert_eq!(bench.ended(&path).await["status"], "successful");
     }
+}
+
+#[tokio::test]
+#[cfg(target_os = "linux")]
+async fn the_engine_gives_way_to_those_who_answer() {
+    /// The niceness of the thread that asks: the seventeenth word behind its name.
+    fn niceness() -> i32 {
+        let stat = std::fs::read_to_string("/proc/thread-self/stat").unwrap();
+        let (_, behind_name) = stat.rsplit_once(')').unwrap();
+        let word = behind_name.split_whitespace().nth(16);
+        word.unwrap().parse().unwrap()
+    }
+    let (tell, mut told) = tokio::sync::mpsc::unbounded_channel();
+    let solve = move |_: &Submission, _: &Run| {
+        tell.send(niceness()).unwrap();
+        Ok(RESULTS.to_owned())
+    };
+    let bench = Bench::start(|_| {}, Arc::new(solve)).await;
+    let path = bench.submit(&submission(115.0)).await;
+    bench.ended(&path).await;
+    assert!(told.recv().await.unwrap() > niceness());
 }

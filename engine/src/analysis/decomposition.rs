@@ -14,7 +14,6 @@ use super::model::{MeshContact, PairModel, tooth_offset};
 use super::phase::{Laid, PairLoads};
 use super::{Analysis, AnalysisError, CurveParts, mesh_positions, warnings};
 use crate::contact::ContactSolution;
-use crate::fem::body::Coupling;
 use crate::gear::Member;
 use crate::grid::GridLevel;
 use crate::run::Run;
@@ -246,6 +245,7 @@ pub(super) fn project(
         flexible::model(case, Blanks::HoledRigid, level, library, run)?;
     let (whole, unknowns) = flexible::model(case, Blanks::Flexible, level, library, run)?;
     let round = round_average(&whole, case);
+    let members = rounded(&round, &whole);
     degrees_of_freedom = degrees_of_freedom.max(unknowns);
     let mut evidence = Evidence::new(degrees_of_freedom);
     let mut warnings = warnings(case);
@@ -270,11 +270,16 @@ pub(super) fn project(
         } = flexible::solved(case, &round, load, &period, run, keep)?;
         flexible::gather(&mut evidence, &contacts, load);
         flexible::warn_of_tips(&mut warnings, &contacts);
+        // What round blanks yield is the same in every period.
+        let before: Vec<(f64, f64)> = loads
+            .iter()
+            .map(|pairs| yielded(&round, &members, pairs, 0))
+            .collect();
         let (mut transmission_error, mut tangent) = (Vec::new(), Vec::new());
         for i in 0..positions.len() {
             let at = i % period.len();
-            let (delta, compliance) =
-                added_compliance(&round, &whole, &loads[at], (i / period.len()) as i64);
+            let after = yielded(&whole, &members, &loads[at], (i / period.len()) as i64);
+            let (delta, compliance) = (after.0 - before[at].0, after.1 - before[at].1);
             transmission_error.push(contacts[at].transmission_error + delta);
             tangent.push(1.0 / (1.0 / stiffness[at] + compliance));
         }
@@ -309,48 +314,40 @@ fn round_average(whole: &PairModel, case: &Case) -> PairModel {
     round
 }
 
-/// qᵀ ΔH p and qᵀ ΔH q for the `pairs` in contact in `round`, in the mesh period `period`.
-fn added_compliance(
-    round: &PairModel,
-    whole: &PairModel,
-    pairs: &[PairLoads],
-    period: i64,
-) -> (f64, f64) {
-    let (mut forces, mut derivatives) = (0.0, 0.0);
-    for member in Member::BOTH {
+/// The members whose holed blanks `round` has made alike all around.
+fn rounded(round: &PairModel, whole: &PairModel) -> Vec<Member> {
+    let is_rounded = |member: &Member| {
         let g = member.index();
-        let (before, after) = (&round.gears[g].coupling, &whole.gears[g].coupling);
-        if Arc::ptr_eq(before, after) {
-            continue;
-        }
+        !Arc::ptr_eq(&round.gears[g].coupling, &whole.gears[g].coupling)
+    };
+    Member::BOTH.into_iter().filter(is_rounded).collect()
+}
+
+/// qᵀ X p and qᵀ X q of `members` for the loads of `pairs` in the mesh period `period`: what their blanks yield.
+fn yielded(model: &PairModel, members: &[Member], pairs: &[PairLoads], period: i64) -> (f64, f64) {
+    let (mut forces, mut derivatives) = (0.0, 0.0);
+    for &member in members {
+        let g = member.index();
         for a in pairs {
-            let tooth = round.tooth(member, period + a.pair);
+            let tooth = model.tooth(member, period + a.pair);
+            let q = a.loads[g].col(1).transpose();
             for b in pairs {
                 let offset = tooth_offset(member, b.pair - a.pair);
-                let q = &a.derivatives[g];
-                let with = |coupling: &Coupling, loads: &[f64]| {
-                    bilinear(coupling, tooth, offset, q, loads)
+                // Teeth too far apart do not move each other.
+                let Some((x, transposed)) = model.gears[g].coupling.block(tooth, offset) else {
+                    continue;
                 };
-                forces += with(after, &b.loads[g]) - with(before, &b.loads[g]);
-                derivatives += with(after, &b.derivatives[g]) - with(before, &b.derivatives[g]);
+                let moved = if transposed {
+                    x.transpose() * &b.loads[g]
+                } else {
+                    x * &b.loads[g]
+                };
+                forces += q * moved.col(0);
+                derivatives += q * moved.col(1);
             }
         }
     }
     (forces, derivatives)
-}
-
-/// qᵀ X p between the modes of `tooth` and of the tooth `offset` places from it; zero where they are too far apart.
-fn bilinear(coupling: &Coupling, tooth: usize, offset: i64, q: &[f64], p: &[f64]) -> f64 {
-    let Some((x, transposed)) = coupling.block(tooth, offset) else {
-        return 0.0;
-    };
-    let mut sum = 0.0;
-    for (i, q) in q.iter().enumerate() {
-        for (j, p) in p.iter().enumerate() {
-            sum += q * p * if transposed { x[(j, i)] } else { x[(i, j)] };
-        }
-    }
-    sum
 }
 
 /// The positions of one mesh period.
@@ -464,7 +461,9 @@ mod tests {
             let (_, loads) = phase
                 .contact(0, &mut WarmStart::default(), loads)
                 .expect("a contact");
-            let (delta, _) = added_compliance(&round, &whole, &loads, 0);
+            let members = rounded(&round, &whole);
+            let delta =
+                yielded(&whole, &members, &loads, 0).0 - yielded(&round, &members, &loads, 0).0;
             let difference = (at(&above) - at(&below)) / (2.0 * step);
             assert!(
                 (delta - difference).abs() < 1e-5 * difference.abs().max(1e-7),

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::case::{Case, StiffnessRule};
 use super::curve::{Evidence, LoadShare, Warning};
-use super::library::{Library, interface_radius};
+use super::library::{GearParts, Library, interface_radius};
 use super::model::{GearModel, MeshContact, PairModel, PositionError, WarmStart};
 use super::phase::{Laid, Phase};
 use super::{AnalysisError, cells_per_patch};
@@ -38,14 +38,22 @@ pub(super) fn model(
     library: &Library,
     run: &Run,
 ) -> Result<(PairModel, u64), AnalysisError> {
-    let build = |member: Member| -> Result<(GearModel, u64), AnalysisError> {
+    let gears = Member::BOTH.map(|member| {
         let gear = case.pair.gear(member);
-        let radius = interface_radius(case, member);
+        GearParts {
+            gear,
+            member,
+            interface_radius: interface_radius(case, member),
+            with_blank: gear.holes().is_none()
+                || blanks == Blanks::Flexible
+                || blanks == Blanks::OnlyHoledOf(member),
+        }
+    });
+    library.prepare(&gears, level, run)?;
+    let build = |of: GearParts<'_>| -> Result<(GearModel, u64), AnalysisError> {
+        let (gear, member, radius) = (of.gear, of.member, of.interface_radius);
         let teeth = library.teeth(gear, member, radius, level, run)?;
-        let takes_part = gear.holes().is_none()
-            || blanks == Blanks::Flexible
-            || blanks == Blanks::OnlyHoledOf(member);
-        if takes_part {
+        if of.with_blank {
             let whole = library.gear(gear, member, radius, level, run)?;
             Ok((
                 GearModel {
@@ -64,16 +72,7 @@ pub(super) fn model(
             ))
         }
     };
-    // Equal teeth are computed once, before both gears go on in parallel.
-    let driving_radius = interface_radius(case, Member::Driving);
-    library.teeth(
-        case.pair.driving(),
-        Member::Driving,
-        driving_radius,
-        level,
-        run,
-    )?;
-    let (driving, driven) = rayon::join(|| build(Member::Driving), || build(Member::Driven));
+    let (driving, driven) = rayon::join(|| build(gears[0]), || build(gears[1]));
     let ((driving, dof_1), (driven, dof_2)) = (driving?, driven?);
     let model = PairModel {
         pair: case.pair,

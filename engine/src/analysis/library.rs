@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::AnalysisError;
 use super::case::{Case, ContactSolver};
 use super::model::MeshContact;
@@ -44,6 +46,16 @@ pub struct Gear {
     pub coupling: Arc<Coupling>,
     /// Unknowns before condensation.
     pub degrees_of_freedom: u64,
+}
+
+/// What a model needs of one gear.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct GearParts<'a> {
+    pub(super) gear: &'a SpurGear,
+    pub(super) member: Member,
+    pub(super) interface_radius: f64,
+    /// Whether its blank takes part, or is rigid.
+    pub(super) with_blank: bool,
 }
 
 /// Why a gear has no model.
@@ -140,6 +152,53 @@ impl Library {
             .map_err(|error| error.of(member))
     }
 
+    /// Makes in parallel, as far as they are not known, the teeth of `gears` and the blanks of those that take part with
+    /// theirs: no part needs another, and equal ones are made once.
+    ///
+    /// # Errors
+    ///
+    /// [`AnalysisError::Discretization`], or [`AnalysisError::Stopped`].
+    pub(super) fn prepare(
+        &self,
+        gears: &[GearParts<'_>],
+        level: GridLevel,
+        run: &Run,
+    ) -> Result<(), AnalysisError> {
+        let teeth = |of: &GearParts<'_>| teeth_key(of.gear, of.interface_radius, level);
+        let blank = |of: &GearParts<'_>| blank_key(of.gear, of.interface_radius, level);
+        let first = |i: usize, key: &dyn Fn(&GearParts<'_>) -> Key| {
+            let own = key(&gears[i]);
+            gears[..i].iter().all(|earlier| key(earlier) != own)
+        };
+        // Teeth first: they take longest.
+        let mut tasks: Vec<(usize, bool)> = Vec::new();
+        tasks.extend(
+            (0..gears.len())
+                .filter(|&i| first(i, &teeth))
+                .map(|i| (i, false)),
+        );
+        let with_blank = (0..gears.len()).filter(|&i| {
+            let of = &gears[i];
+            let whole = gear_key(of.gear, of.interface_radius, level);
+            of.with_blank && first(i, &blank) && !self.0.gears.holds(&whole)
+        });
+        tasks.extend(with_blank.map(|i| (i, true)));
+        tasks
+            .par_iter()
+            .with_max_len(1)
+            .try_for_each(|&(i, is_blank)| {
+                let of = &gears[i];
+                let made = if is_blank {
+                    self.shared_blank(of.gear, of.interface_radius, level, run)
+                        .map(drop)
+                } else {
+                    self.shared_teeth(of.gear, of.interface_radius, level, run)
+                        .map(drop)
+                };
+                made.map_err(|error| error.of(of.member))
+            })
+    }
+
     /// The contacts of `case` under `load` at `positions` with its holed blanks rigid, solved by `solve` if no other case
     /// has: they depend on no hole, so that all hole patterns on the same teeth share them.
     ///
@@ -169,10 +228,25 @@ impl Library {
         run: &Run,
     ) -> Result<Arc<Teeth>, BuildError> {
         run.check()?;
-        self.0.teeth.part(
+        self.0.teeth.part_made_once(
             teeth_key(gear, interface_radius, level),
             Teeth::bytes,
             || build_teeth(gear, interface_radius, level, run),
+        )
+    }
+
+    fn shared_blank(
+        &self,
+        gear: &SpurGear,
+        interface_radius: f64,
+        level: GridLevel,
+        run: &Run,
+    ) -> Result<Arc<BlankSubstructure>, BuildError> {
+        run.check()?;
+        self.0.blanks.part_made_once(
+            blank_key(gear, interface_radius, level),
+            |blank| size_of::<f64>() * blank.harmonics.unknowns().pow(2),
+            || build_blank(gear, interface_radius, level, run),
         )
     }
 
@@ -183,18 +257,11 @@ impl Library {
         level: GridLevel,
         run: &Run,
     ) -> Result<Arc<Gear>, BuildError> {
-        let phase = gear.holes().map_or(0.0, |holes| holes.phase);
-        let mut key = teeth_key(gear, interface_radius, level);
-        key.extend(blank_key(gear, interface_radius, level));
-        key.push(phase.to_bits());
+        let key = gear_key(gear, interface_radius, level);
         self.0.gears.part(key, Gear::bytes, || {
             let teeth = self.shared_teeth(gear, interface_radius, level, run)?;
-            let blank = self.0.blanks.part(
-                blank_key(gear, interface_radius, level),
-                |blank| size_of::<f64>() * blank.harmonics.unknowns().pow(2),
-                || build_blank(gear, &teeth, interface_radius, level, run),
-            )?;
-            join(&teeth, &blank, phase, run)
+            let blank = self.shared_blank(gear, interface_radius, level, run)?;
+            join(&teeth, &blank, hole_phase(gear), run)
         })
     }
 }
@@ -320,7 +387,6 @@ pub fn blank_grid(
 
 fn build_blank(
     gear: &SpurGear,
-    teeth: &Teeth,
     interface_radius: f64,
     level: GridLevel,
     run: &Run,
@@ -331,7 +397,7 @@ fn build_blank(
         interface_radius,
         gear.material(),
         gear.face_width(),
-        teeth.ring.harmonics,
+        harmonics(gear, interface_radius, level),
         run,
     )?)
 }
@@ -374,6 +440,17 @@ fn teeth_key(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Key {
     let mut key = tooth_bits(gear);
     key.extend([interface_radius.to_bits(), level as u64]);
     key
+}
+
+fn gear_key(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Key {
+    let mut key = teeth_key(gear, interface_radius, level);
+    key.extend(blank_key(gear, interface_radius, level));
+    key.push(hole_phase(gear).to_bits());
+    key
+}
+
+fn hole_phase(gear: &SpurGear) -> f64 {
+    gear.holes().map_or(0.0, |holes| holes.phase)
 }
 
 /// What the contacts of a case depend on while its holed blanks are rigid.

@@ -59,14 +59,12 @@ pub struct Laid {
 }
 
 /// What a contact loads the modes of one tooth pair with.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct PairLoads {
     /// The pair, numbered from the reference pair of the period.
     pub pair: i64,
-    /// The loads Vᵀp of the modes of the driving and the driven tooth.
-    pub loads: [Vec<f64>; 2],
-    /// The loads Vᵀq that one newton of load adds to them.
-    pub derivatives: [Vec<f64>; 2],
+    /// Of the driving and of the driven tooth: Vᵀp, and Vᵀq that one newton of load adds to it; one column each.
+    pub loads: [Mat<f64>; 2],
 }
 
 impl<'a> Phase<'a> {
@@ -350,19 +348,16 @@ impl Laid {
 
     /// What `solution` loads the modes of each pair with.
     pub fn modal_loads(&self, solution: &ContactSolution) -> Vec<PairLoads> {
-        let of = |a: usize, forces: &[f64]| {
-            let forces = faer::ColRef::from_slice(&forces[self.starts[a]..self.starts[a + 1]]);
-            std::array::from_fn(|gear| {
-                let loads = self.modes[gear][a].transpose() * forces;
-                loads.iter().copied().collect()
-            })
-        };
-        let pairs = self.patches.iter().enumerate();
+        let (p, q) = (&solution.forces, &solution.load_derivative);
+        let pairs = self.patches.iter().zip(self.starts.windows(2)).enumerate();
         pairs
-            .map(|(a, patch)| PairLoads {
-                pair: patch.pair,
-                loads: of(a, &solution.forces),
-                derivatives: of(a, &solution.load_derivative),
+            .map(|(a, (patch, range))| {
+                let here = &[&p[range[0]..range[1]], &q[range[0]..range[1]]];
+                let forces = Mat::from_fn(patch.cells.len(), 2, |i, j| here[j][i]);
+                PairLoads {
+                    pair: patch.pair,
+                    loads: std::array::from_fn(|gear| self.modes[gear][a].transpose() * &forces),
+                }
             })
             .collect()
     }

@@ -5,8 +5,6 @@ use std::hash::Hash;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Parts by key, shared between threads; their sizes together stay within a bound.
-///
-/// Two threads that want the same new part at the same moment both compute it, and get the same bits.
 #[derive(Debug)]
 pub(super) struct Shelf<K, T> {
     books: Mutex<Books<K, T>>,
@@ -17,6 +15,8 @@ pub(super) struct Shelf<K, T> {
 struct Books<K, T> {
     /// Each part with its size and when it was last used.
     parts: HashMap<K, (Arc<T>, usize, u64)>,
+    /// Who makes one of these parts holds its gate.
+    making: HashMap<K, Arc<Mutex<()>>>,
     bytes: usize,
     clock: u64,
     hits: u64,
@@ -46,6 +46,7 @@ impl<K: Eq + Hash + Clone, T> Shelf<K, T> {
     pub(super) fn new(capacity: usize) -> Self {
         let books = Books {
             parts: HashMap::new(),
+            making: HashMap::new(),
             bytes: 0,
             clock: 0,
             hits: 0,
@@ -59,6 +60,8 @@ impl<K: Eq + Hash + Clone, T> Shelf<K, T> {
     }
 
     /// The part of `key`, built if it is not there; `bytes` tells the size of a new one.
+    ///
+    /// Two threads that want the same new part at the same moment both build it, and get the same bits.
     pub(super) fn part<E>(
         &self,
         key: K,
@@ -68,6 +71,45 @@ impl<K: Eq + Hash + Clone, T> Shelf<K, T> {
         if let Some(part) = self.books().find(&key) {
             return Ok(part);
         }
+        self.made(key, bytes, build)
+    }
+
+    /// As [`Shelf::part`], but of two threads that want the same new part at the same moment one builds it and the other
+    /// waits. `build` must not itself wait for other threads, or they might wait for each other.
+    pub(super) fn part_made_once<E>(
+        &self,
+        key: K,
+        bytes: impl FnOnce(&T) -> usize,
+        build: impl FnOnce() -> Result<T, E>,
+    ) -> Result<Arc<T>, E> {
+        let gate = {
+            let mut books = self.books();
+            if let Some(part) = books.find(&key) {
+                return Ok(part);
+            }
+            books.making.entry(key.clone()).or_default().clone()
+        };
+        let _turn = gate.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(part) = self.books().find(&key) {
+            return Ok(part);
+        }
+        let made = self.made(key.clone(), bytes, build);
+        self.books().making.remove(&key);
+        made
+    }
+
+    /// Whether the part of `key` is there.
+    pub(super) fn holds(&self, key: &K) -> bool {
+        self.books().parts.contains_key(key)
+    }
+
+    fn made<E>(
+        &self,
+        key: K,
+        bytes: impl FnOnce(&T) -> usize,
+        build: impl FnOnce() -> Result<T, E>,
+    ) -> Result<Arc<T>, E> {
+        self.books().misses += 1;
         let part = Arc::new(build()?);
         let size = bytes(&part);
         self.books().keep(key, part.clone(), size, self.capacity);
@@ -96,10 +138,7 @@ impl<K: Eq + Hash + Clone, T> Shelf<K, T> {
 impl<K: Eq + Hash + Clone, T> Books<K, T> {
     fn find(&mut self, key: &K) -> Option<Arc<T>> {
         self.clock += 1;
-        let Some((part, _, used)) = self.parts.get_mut(key) else {
-            self.misses += 1;
-            return None;
-        };
+        let (part, _, used) = self.parts.get_mut(key)?;
         self.hits += 1;
         *used = self.clock;
         Some(part.clone())
@@ -131,6 +170,9 @@ impl<K: Eq + Hash + Clone, T> Books<K, T> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Barrier;
+    use std::thread;
+
     use super::*;
 
     fn built(shelf: &Shelf<u32, u32>, key: u32) -> bool {
@@ -183,5 +225,48 @@ mod tests {
         let shelf = Shelf::<u32, u32>::new(100);
         assert_eq!(shelf.part(1, |_| 10, || Err("no")), Err("no"));
         assert!(built(&shelf, 1));
+    }
+
+    #[test]
+    fn of_two_who_want_the_same_part_one_makes_it() {
+        let shelf = Shelf::<u32, u32>::new(20);
+        let begun = Barrier::new(2);
+        thread::scope(|scope| {
+            scope.spawn(|| {
+                shelf.part_made_once(
+                    1,
+                    |_| 10,
+                    || {
+                        begun.wait();
+                        Ok::<_, ()>(1)
+                    },
+                )
+            });
+            begun.wait();
+            let second = shelf.part_made_once(1, |_| 10, || Err(()));
+            assert_eq!(second.as_deref(), Ok(&1), "the first made it");
+        });
+        assert_eq!((shelf.usage().misses, shelf.usage().hits), (1, 1));
+    }
+
+    #[test]
+    fn who_waited_for_a_failure_makes_the_part() {
+        let shelf = Shelf::<u32, u32>::new(20);
+        let begun = Barrier::new(2);
+        thread::scope(|scope| {
+            scope.spawn(|| {
+                shelf.part_made_once(
+                    1,
+                    |_| 10,
+                    || {
+                        begun.wait();
+                        Err(())
+                    },
+                )
+            });
+            begun.wait();
+            let second = shelf.part_made_once(1, |_| 10, || Ok::<_, ()>(2));
+            assert_eq!(second.as_deref(), Ok(&2));
+        });
     }
 }

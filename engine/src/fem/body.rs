@@ -1,7 +1,7 @@
 //! A whole gear: its ring of teeth on its blank.
 
 use faer::Mat;
-use faer::prelude::ReborrowMut;
+use rayon::prelude::*;
 
 use super::FemError;
 use super::blank::BlankSubstructure;
@@ -15,8 +15,9 @@ pub const FARTHEST_NEIGHBOR: usize = 4;
 /// Blocks in a row of X: a tooth with itself and with those after it.
 const NEIGHBORS: usize = FARTHEST_NEIGHBOR + 1;
 
-/// Rows of X that are made together, so that factors are passed once for all of their teeth.
-const ROWS_AT_ONCE: usize = 8;
+/// Rows of X that one thread makes together, so that it passes the factor once for all of their teeth; the last teeth's
+/// neighbors come on top.
+const ROWS_AT_ONCE: usize = 16;
 
 /// How the loaded teeth of one gear move each other: the blocks X_ij of H_ij = δ_ij H_0 + V X_ij Vᵀ.
 ///
@@ -173,38 +174,31 @@ fn add_answers(
 ) -> Result<(), FemError> {
     let (z, r) = (teeth.tooth_count, teeth.force_patterns.ncols());
     let unknowns = teeth.harmonics.unknowns_of(orders).len();
-    let rows = blocks.len() / NEIGHBORS;
-    // L⁻¹ G of the teeth of some rows and of the neighbors of the last.
-    let mut halves = Mat::<f64>::zeros(unknowns, (ROWS_AT_ONCE + FARTHEST_NEIGHBOR) * r);
-    for first in (0..rows).step_by(ROWS_AT_ONCE) {
-        run.check()?;
-        // The last teeth of the rows before are the first ones of these.
-        let known = if first == 0 { 0 } else { FARTHEST_NEIGHBOR };
-        for tooth in 0..known {
-            let (mut to, from) = halves.split_at_col_mut(ROWS_AT_ONCE * r);
-            to.rb_mut()
-                .subcols_mut(tooth * r, r)
-                .copy_from(from.subcols(tooth * r, r));
-        }
-        let here = ROWS_AT_ONCE.min(rows - first);
-        let count = here + FARTHEST_NEIGHBOR;
-        for tooth in known..count {
-            let angle = tooth_angle((first + tooth) % z, z);
-            let forces = teeth.patterns_of_tooth_at(angle, orders);
-            halves.subcols_mut(tooth * r, r).copy_from(forces);
-        }
-        ring.half_solve_in_place(halves.subcols_mut(known * r, (count - known) * r));
-        for row in 0..here {
-            let one = halves.subcols(row * r, r);
-            let answers = one.transpose() * halves.subcols(row * r, NEIGHBORS * r);
-            for d in 0..NEIGHBORS {
-                let answer = answers.subcols(d * r, r);
-                blocks[(first + row) * NEIGHBORS + d] +=
-                    teeth.pattern_shares.transpose() * answer * &teeth.pattern_shares;
+    blocks
+        .par_chunks_mut(ROWS_AT_ONCE * NEIGHBORS)
+        .enumerate()
+        .try_for_each(|(chunk, blocks)| {
+            run.check()?;
+            let (first, rows) = (chunk * ROWS_AT_ONCE, blocks.len() / NEIGHBORS);
+            // L⁻¹ G of the teeth of these rows and of the neighbors of the last.
+            let count = rows + FARTHEST_NEIGHBOR;
+            let mut halves = Mat::<f64>::zeros(unknowns, count * r);
+            for tooth in 0..count {
+                let angle = tooth_angle((first + tooth) % z, z);
+                let patterns = teeth.patterns_of_tooth_at(angle, orders);
+                halves.subcols_mut(tooth * r, r).copy_from(patterns);
             }
-        }
-    }
-    Ok(())
+            ring.half_solve_in_place(halves.as_mut());
+            for (row, blocks) in blocks.chunks_exact_mut(NEIGHBORS).enumerate() {
+                let one = halves.subcols(row * r, r);
+                let answers = one.transpose() * halves.subcols(row * r, NEIGHBORS * r);
+                for (d, block) in blocks.iter_mut().enumerate() {
+                    let answer = answers.subcols(d * r, r);
+                    *block += teeth.pattern_shares.transpose() * answer * &teeth.pattern_shares;
+                }
+            }
+            Ok(())
+        })
 }
 
 fn gcd(a: usize, b: usize) -> usize {

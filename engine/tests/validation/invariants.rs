@@ -1,18 +1,23 @@
 //! What must hold whatever the numbers are: equilibrium and closed gaps, recomputed on whole gears from nodal forces;
 //! signs, monotony and symmetry; and the agreement of the ways to one result.
 
+use std::sync::Arc;
+
 use meshwright_engine::analysis::library::{Library, default_interface_radius};
 use meshwright_engine::analysis::model::{Touch, WarmStart};
 use meshwright_engine::analysis::{Case, ContactSolver, Curve, StiffnessRule, analyze, pair_model};
-use meshwright_engine::fem::body::tooth_angle;
+use meshwright_engine::fem::blank::BlankSubstructure;
+use meshwright_engine::fem::body::{Coupling, tooth_angle};
 use meshwright_engine::gear::{GearPair, Member, SpurGear, Vector, radial, tangential};
+use meshwright_engine::grid::blank::ELEMENTS_PER_TOOTH;
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::quadrature::GAUSS_3;
 use meshwright_engine::run::Run;
 use nalgebra::DMatrix;
 
 use crate::support::{
-    beyond_path, case, library, paper_case, roll_length, small_pair, solve, standard_pair,
+    beyond_path, case, gear, holed, library, paper_case, roll_length, small_pair, solve,
+    standard_pair,
 };
 use crate::whole::WholeGear;
 
@@ -397,25 +402,83 @@ fn more_load_means_more_transmission_error_and_the_tangent_is_its_slope() {
     }
 }
 
-/// The largest amplitude off the multiples of `keep` bins, over the mean.
-fn off_multiples(curve: &Curve, keep: usize) -> f64 {
-    let spectrum = curve.spectrum.as_ref().expect("whole periods");
-    let lines = spectrum.transmission_error.iter().enumerate();
-    let off = lines
-        .filter(|(bin, _)| (bin + 1) % keep != 0)
-        .map(|(_, amplitude)| *amplitude);
-    off.fold(0.0, f64::max) / curve.transmission_error_statistics.mean
+/// `gear` with every tooth's own row of X, and with the rows that symmetry leaves of it.
+fn couplings(gear: &SpurGear, level: GridLevel) -> [Coupling; 2] {
+    let run = Run::unattended();
+    let r_w = default_interface_radius(gear);
+    let teeth = library()
+        .teeth(gear, Member::Driven, r_w, level, &run)
+        .expect("teeth");
+    let (bore, z) = (gear.bore_radius(), gear.tooth_count());
+    let grid = BlankGrid::new(bore, r_w, gear.holes(), z, ELEMENTS_PER_TOOTH, level);
+    let blank = BlankSubstructure::new(
+        &grid.expect("a grid"),
+        r_w,
+        gear.material(),
+        gear.face_width(),
+        teeth.ring.harmonics,
+        &run,
+    )
+    .expect("a blank");
+    let phase = gear.holes().map_or(0.0, |holes| holes.phase);
+    let tooth_by_tooth = Coupling::tooth_by_tooth(&teeth.ring, &blank, phase, &run);
+    let on_blank = Coupling::on_blank(&teeth.ring, &blank, phase, &run);
+    [tooth_by_tooth, on_blank].map(|coupling| coupling.expect("a gear"))
 }
 
 #[test]
-fn a_solid_pair_has_nothing_between_the_harmonics_of_its_mesh() {
-    // Every tooth has its own row of the compliance; only the mechanics makes them alike.
-    for span in [5, 50] {
-        let mut case = case(standard_pair(true), &[115.0]);
-        case.resolution.span_mesh_periods = Some(span);
-        let off = off_multiples(&solve(&case).curves[0], span as usize);
-        println!("{span} mesh periods: {off:.1e} of the mean");
-        assert!(off < 1e-9);
+fn rows_that_symmetry_leaves_are_the_rows_of_all_teeth() {
+    // 50 teeth: all alike on a solid blank, every fifth on 10 holes, every twenty-fifth on 8, none on 7.
+    let data = gear(50, 15e-3);
+    let gears = [
+        data,
+        holed(data, 10, 34e-3, 7.5e-3, 0.03),
+        holed(data, 8, 34e-3, 8e-3, 0.1),
+        holed(data, 7, 34e-3, 8e-3, 0.0),
+    ];
+    for data in gears {
+        let gear = SpurGear::new(data).expect("a gear");
+        let [all, some] = couplings(&gear, GridLevel::Coarse);
+        let mut largest = 0.0_f64;
+        for (tooth, offset) in (0..50).flat_map(|tooth| [-4, -1, 0, 2].map(|d| (tooth, d))) {
+            let block = |coupling: &Coupling| coupling.block(tooth, offset).map(|(x, _)| x.clone());
+            let (Some(a), Some(b)) = (block(&all), block(&some)) else {
+                panic!("teeth near each other")
+            };
+            largest = largest.max((&a - &b).norm_max() / a.norm_max());
+        }
+        let holes = gear.holes().map_or(0, |holes| holes.count);
+        println!(
+            "{holes} holes: {largest:.1e}, {} entries of {}",
+            some.entries(),
+            all.entries()
+        );
+        // Rounding of two factorizations.
+        assert!(largest < 1e-10);
+    }
+}
+
+#[test]
+fn a_solid_pair_repeats_with_every_mesh_period() {
+    // Every tooth has its own row of the compliance and every position is solved by itself; only the mechanics makes them
+    // alike. What lies off the harmonics of the mesh is no larger than the difference between two periods.
+    let case = case(standard_pair(true), &[115.0]);
+    let mut model = pair_model(&case, library(), &Run::unattended()).expect("a model");
+    for member in Member::BOTH {
+        let [tooth_by_tooth, _] = couplings(case.pair.gear(member), case.resolution.grid);
+        model.gears[member.index()].coupling = Arc::new(tooth_by_tooth);
+    }
+    let load = case.pair.load(115.0);
+    let at = |eta: f64| {
+        let contact = model.contact(eta, load, &mut WarmStart::default());
+        contact.expect("a contact").transmission_error
+    };
+    for fraction in [0.0, 0.15, 0.4, 0.62, 0.85] {
+        let first = at(fraction);
+        let apart = (1..50).map(|period| (at(f64::from(period) + fraction) - first).abs());
+        let largest = apart.fold(0.0, f64::max) / first;
+        println!("{fraction} of 50 mesh periods: {largest:.1e} of the first");
+        assert!(largest < 1e-9);
     }
 }
 
