@@ -24,6 +24,8 @@ enum Command {
     Study(commands::study::Study),
     /// Ask a running service whether it is ready; exit code 1 if not.
     Health(commands::health::Health),
+    /// Measure how fast this machine computes, and how time grows with what is asked.
+    Measure(commands::measure::Measure),
     /// Recompute the paper's tables, figures and study.
     Reproduce(commands::reproduce::Reproduce),
 }
@@ -34,6 +36,10 @@ fn main() -> anyhow::Result<ExitCode> {
         Command::Solve(solve) => solve.run(),
         Command::Study(study) => study.run(),
         Command::Health(health) => health.run(),
+        Command::Measure(measure) => {
+            measure.run()?;
+            Ok(ExitCode::SUCCESS)
+        }
         Command::Reproduce(reproduce) => {
             reproduce.run()?;
             Ok(ExitCode::SUCCESS)

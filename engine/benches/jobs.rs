@@ -1,14 +1,26 @@
-//! Whole jobs in-process, by the goals of DESIGN section 6: cold (an empty library) unless the name says otherwise.
+//! Whole jobs in this process, by the goals of DESIGN section 6: cold (an empty library) unless the name says otherwise.
 
 use std::hint::black_box;
 
-use criterion::{Criterion, criterion_group, criterion_main};
-use meshwright_engine::analysis::{Case, Library, Method, analyze};
+use criterion::measurement::WallTime;
+use criterion::{BatchSize, BenchmarkGroup, Criterion, criterion_group, criterion_main};
+use meshwright_engine::analysis::library::default_interface_radius;
+use meshwright_engine::analysis::model::WarmStart;
+use meshwright_engine::analysis::{Case, Library, Method, analyze, pair_model};
+use meshwright_engine::gear::{GearPair, Member, SpurGear};
+use meshwright_engine::grid::GridLevel;
 use meshwright_engine::run::Run;
 
 #[path = "../tests/cases/mod.rs"]
 mod cases;
-use cases::{study_design, test_case};
+use cases::{case, standard_pair, study_design, test_case};
+
+const METHODS: [(Method, &str); 4] = [
+    (Method::Flexible, "flexible"),
+    (Method::Decomposition, "decomposition"),
+    (Method::ProjectedDecomposition, "projected"),
+    (Method::LoadDistribution, "load distribution"),
+];
 
 fn solve(case: &Case, library: &Library) {
     black_box(
@@ -16,68 +28,228 @@ fn solve(case: &Case, library: &Library) {
     );
 }
 
-fn jobs(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("jobs");
-    group.sample_size(10);
-    let methods = [
-        (Method::Flexible, "flexible"),
-        (Method::Decomposition, "decomposition"),
-        (Method::ProjectedDecomposition, "projected"),
-    ];
-    for (case, number) in [(test_case(1), 1), (test_case(2), 2), (test_case(3), 3)] {
-        for (method, name) in methods {
-            let case = Case {
-                method,
-                ..case.clone()
-            };
-            group.bench_function(format!("{name}, case {number}"), |bencher| {
-                bencher.iter(|| solve(&case, &Library::default()))
+fn solve_cold(case: &Case) {
+    solve(case, &Library::default());
+}
+
+/// The paper's cases and the standard pair, with the names that the benchmarks give them.
+fn pairs() -> [(Case, &'static str); 4] {
+    [
+        (test_case(1), "case 1"),
+        (test_case(2), "case 2"),
+        (test_case(3), "case 3"),
+        (case(standard_pair(true), &[115.0]), "standard pair"),
+    ]
+}
+
+fn by(case: &Case, method: Method) -> Case {
+    Case {
+        method,
+        ..case.clone()
+    }
+}
+
+/// A library that knows the teeth of `case` and nothing else.
+fn with_teeth(case: &Case) -> Library {
+    let library = Library::default();
+    for member in Member::BOTH {
+        let gear = case.pair.gear(member);
+        let radius = default_interface_radius(gear);
+        library
+            .teeth(
+                gear,
+                member,
+                radius,
+                case.resolution.grid,
+                &Run::unattended(),
+            )
+            .expect("the teeth of the paper have grids");
+    }
+    library
+}
+
+/// `case` with the hole circles of its gears larger by `change`, in meters.
+fn with_moved_holes(case: &Case, change: f64) -> Case {
+    let moved = |gear: &SpurGear| {
+        let mut data = *gear.data();
+        if let Some(holes) = &mut data.blank.holes {
+            holes.circle_radius += change;
+        }
+        SpurGear::new(data).expect("holes that move by a tenth of a millimeter still fit")
+    };
+    let (driving, driven) = (moved(case.pair.driving()), moved(case.pair.driven()));
+    Case {
+        pair: GearPair::new(driving, driven, case.pair.center_distance())
+            .expect("holes do not keep teeth apart"),
+        ..case.clone()
+    }
+}
+
+fn group<'a>(criterion: &'a mut Criterion, name: &str) -> BenchmarkGroup<'a, WallTime> {
+    let mut group = criterion.benchmark_group(name);
+    group
+        .sample_size(10)
+        .warm_up_time(std::time::Duration::from_millis(500))
+        .measurement_time(std::time::Duration::from_secs(3));
+    group
+}
+
+fn cold(criterion: &mut Criterion) {
+    let mut group = group(criterion, "cold");
+    for (case, pair) in pairs() {
+        for (method, name) in METHODS {
+            let case = by(&case, method);
+            group.bench_function(format!("{pair}, {name}"), |bencher| {
+                bencher.iter(|| solve_cold(&case));
             });
         }
     }
-    group.bench_function(
-        "projected, case 2, a new hole pattern on known teeth",
-        |bencher| {
-            let case = Case {
-                method: Method::ProjectedDecomposition,
-                ..test_case(2)
-            };
-            let solid = Case {
-                method: Method::Flexible,
-                ..study_design(None, &[115.0])
-            };
-            bencher.iter_batched(
-                || {
-                    let library = Library::default();
-                    solve(&solid, &library);
-                    library
-                },
-                |library| solve(&case, &library),
-                criterion::BatchSize::PerIteration,
-            );
-        },
-    );
-    group.bench_function(
-        "section 5, six designs at two torques, flexible",
-        |bencher| {
-            let holes = [
-                None,
-                Some((8, 34e-3, 8.385e-3)),
-                Some((10, 34e-3, 7.5e-3)),
-                Some((6, 30e-3, 9.683e-3)),
-                Some((8, 30e-3, 8.385e-3)),
-                Some((8, 27e-3, 8.385e-3)),
-            ];
-            bencher.iter(|| {
-                let library = Library::default();
-                for design in holes {
-                    solve(&study_design(design, &[20.0, 115.0]), &library);
-                }
-            });
-        },
-    );
     group.finish();
 }
 
-criterion_group!(benches, jobs);
+fn teeth_known(criterion: &mut Criterion) {
+    let mut group = group(criterion, "teeth known");
+    for (case, pair) in pairs() {
+        for (method, name) in METHODS.into_iter().take(3) {
+            let case = by(&case, method);
+            group.bench_function(format!("{pair}, {name}"), |bencher| {
+                bencher.iter_batched_ref(
+                    || with_teeth(&case),
+                    |library| solve(&case, library),
+                    BatchSize::PerIteration,
+                );
+            });
+        }
+    }
+    group.finish();
+}
+
+/// What a designer does who drags a hole or turns up the torque: everything is known but what changes.
+fn changes(criterion: &mut Criterion) {
+    let mut group = group(criterion, "change");
+    for (case, pair) in pairs().into_iter().take(3) {
+        for (method, name) in METHODS.into_iter().take(3) {
+            let case = by(&case, method);
+            let library = Library::default();
+            solve(&case, &library);
+            let mut torque = case.output_torques[0];
+            group.bench_function(format!("{pair}, {name}, a further torque"), |bencher| {
+                bencher.iter(|| {
+                    // A torque that no iteration had before, so that its contacts are not known.
+                    torque += 1e-6;
+                    let further = Case {
+                        output_torques: vec![torque],
+                        ..case.clone()
+                    };
+                    solve(&further, &library);
+                });
+            });
+        }
+    }
+    for (case, pair) in pairs().into_iter().take(3) {
+        for (method, name) in METHODS.into_iter().take(3) {
+            let mut case = by(&case, method);
+            let moved = with_moved_holes(&case, 0.1e-3);
+            group.bench_function(format!("{pair}, {name}, holes moved"), |bencher| {
+                bencher.iter_batched_ref(
+                    || {
+                        let library = with_teeth(&case);
+                        solve(&case, &library);
+                        library
+                    },
+                    |library| solve(&moved, library),
+                    BatchSize::PerIteration,
+                );
+            });
+            // What a preview computes; the pair before it was previewed as well.
+            case.resolution.positions_per_mesh_period = 20;
+            let moved = with_moved_holes(&case, 0.1e-3);
+            if pair == "case 2" {
+                group.bench_function(
+                    format!("{pair}, {name}, holes moved, 20 positions a mesh period"),
+                    |bencher| {
+                        bencher.iter_batched_ref(
+                            || {
+                                let library = with_teeth(&case);
+                                solve(&case, &library);
+                                library
+                            },
+                            |library| solve(&moved, library),
+                            BatchSize::PerIteration,
+                        );
+                    },
+                );
+            }
+        }
+    }
+    for (case, pair) in pairs() {
+        let model = pair_model(&case, &Library::default(), &Run::unattended())
+            .expect("the paper's pairs have models");
+        let load = case.pair.load(case.output_torques[0]);
+        let steps = f64::from(case.resolution.positions_per_mesh_period);
+        let positions = case.positions();
+        let (mut i, mut warm) = (0, WarmStart::default());
+        group.bench_function(format!("{pair}, flexible, a further position"), |bencher| {
+            bencher.iter(|| {
+                let eta = i as f64 / steps;
+                i = (i + 1) % positions;
+                black_box(
+                    model
+                        .contact(eta, load, &mut warm)
+                        .expect("every position of the paper's cases has a solution"),
+                )
+            });
+        });
+    }
+    group.finish();
+}
+
+fn study(criterion: &mut Criterion) {
+    let holes = [
+        None,
+        Some((8, 34e-3, 8.385e-3)),
+        Some((10, 34e-3, 7.5e-3)),
+        Some((6, 30e-3, 9.683e-3)),
+        Some((8, 30e-3, 8.385e-3)),
+        Some((8, 27e-3, 8.385e-3)),
+    ];
+    let mut group = group(criterion, "study");
+    for (method, name) in METHODS.into_iter().take(3) {
+        group.bench_function(
+            format!("section 5, six designs at two torques, {name}"),
+            |bencher| {
+                bencher.iter(|| {
+                    let library = Library::default();
+                    for design in holes {
+                        solve(&by(&study_design(design, &[20.0, 115.0]), method), &library);
+                    }
+                });
+            },
+        );
+    }
+    group.finish();
+}
+
+fn resolution(criterion: &mut Criterion) {
+    let mut group = group(criterion, "resolution");
+    for (level, name) in [
+        (GridLevel::Coarse, "coarse"),
+        (GridLevel::Standard, "standard"),
+        (GridLevel::Fine, "fine"),
+    ] {
+        let mut case = test_case(2);
+        case.resolution.grid = level;
+        group.bench_function(format!("case 2, flexible, {name} grid"), |bencher| {
+            bencher.iter(|| solve_cold(&case));
+        });
+    }
+    let mut case = test_case(2);
+    case.resolution.error_estimate = true;
+    group.bench_function("case 2, flexible, with error estimate", |bencher| {
+        bencher.iter(|| solve_cold(&case));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, cold, teeth_known, changes, study, resolution);
 criterion_main!(benches);

@@ -1,57 +1,138 @@
-//! The parts of a job: grids, substructures, the joined gear and one position.
+//! Where the time of a job goes: the grids, the substructures and the joined gear of the driven gears of cases 2 and 3, and
+//! one position of their contact.
 
 use std::hint::black_box;
 
-use criterion::{Criterion, criterion_group, criterion_main};
-use meshwright_engine::analysis::Library;
-use meshwright_engine::analysis::library::default_interface_radius;
-use meshwright_engine::fem::tooth::ToothSubstructure;
-use meshwright_engine::gear::Member;
-use meshwright_engine::grid::{GridLevel, ToothGrid};
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main};
+use meshwright_engine::analysis::library::{
+    blank_grid, default_interface_radius, harmonics, orders_of_blank,
+};
+use meshwright_engine::analysis::model::WarmStart;
+use meshwright_engine::analysis::phase::Phase;
+use meshwright_engine::analysis::{Case, Library, pair_model};
+use meshwright_engine::contact::flank::FlankTable;
+use meshwright_engine::contact::patch::Approach;
+use meshwright_engine::contact::solve_active_set;
+use meshwright_engine::fem::blank::BlankSubstructure;
+use meshwright_engine::fem::body::Coupling;
+use meshwright_engine::fem::tooth::{TeethRing, ToothSubstructure};
+use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::run::Run;
 
 #[path = "../tests/cases/mod.rs"]
 mod cases;
 use cases::test_case;
 
-fn parts(criterion: &mut Criterion) {
-    let case = test_case(3);
-    let gear = case.pair.driven();
-    let radius = default_interface_radius(gear);
-    let run = Run::unattended();
-    let mut group = criterion.benchmark_group("parts of case 3, gear 2");
-    group.sample_size(20);
-    let grid = ToothGrid::new(gear, radius, GridLevel::Standard).expect("a grid");
-    group.bench_function("tooth grid", |bencher| {
-        bencher.iter(|| black_box(ToothGrid::new(gear, radius, GridLevel::Standard)))
-    });
-    group.bench_function("tooth condensed", |bencher| {
-        bencher.iter(|| black_box(ToothSubstructure::new(gear, &grid)))
-    });
-    group.bench_function("teeth", |bencher| {
-        bencher.iter(|| {
-            black_box(Library::default().teeth(
-                gear,
-                Member::Driven,
-                radius,
-                GridLevel::Standard,
-                &run,
-            ))
-        });
-    });
-    group.bench_function("teeth, blank and their coupling", |bencher| {
-        bencher.iter(|| {
-            black_box(Library::default().gear(
-                gear,
-                Member::Driven,
-                radius,
-                GridLevel::Standard,
-                &run,
-            ))
-        });
-    });
-    group.finish();
+fn group<'a>(criterion: &'a mut Criterion, name: &str) -> BenchmarkGroup<'a, WallTime> {
+    let mut group = criterion.benchmark_group(name);
+    group
+        .sample_size(10)
+        .warm_up_time(std::time::Duration::from_millis(300))
+        .measurement_time(std::time::Duration::from_secs(2));
+    group
 }
 
-criterion_group!(benches, parts);
+fn gears(criterion: &mut Criterion) {
+    for number in [2, 3] {
+        let case = test_case(number);
+        let gear = case.pair.driven();
+        let radius = default_interface_radius(gear);
+        let level = GridLevel::Standard;
+        let orders = harmonics(gear, radius, level);
+        let (material, width) = (gear.material(), gear.face_width());
+        let run = Run::unattended();
+        let mut group = group(criterion, &format!("case {number}, driven gear"));
+
+        let grid = ToothGrid::new(gear, radius, level).expect("a grid");
+        group.bench_function("tooth: grid", |bencher| {
+            bencher.iter(|| black_box(ToothGrid::new(gear, radius, level)));
+        });
+        let tooth = ToothSubstructure::new(gear, &grid).expect("a tooth");
+        group.bench_function("tooth: condensed", |bencher| {
+            bencher.iter(|| black_box(ToothSubstructure::new(gear, &grid)));
+        });
+        group.bench_function("tooth: flank table", |bencher| {
+            bencher.iter(|| black_box(FlankTable::new(&tooth, material, width)));
+        });
+        let ring = TeethRing::new(&tooth, orders, &run).expect("a ring");
+        group.bench_function("teeth: ring", |bencher| {
+            bencher.iter(|| black_box(TeethRing::new(&tooth, orders, &run)));
+        });
+        let lay = |holes| blank_grid(gear, holes, radius, level).expect("a grid");
+        group.bench_function("blank: grid", |bencher| {
+            bencher.iter(|| black_box(lay(gear.holes())));
+        });
+        let condense = |grid: &BlankGrid, orders| {
+            BlankSubstructure::new(grid, radius, material, width, orders, &run).expect("a blank")
+        };
+        let (low, grid) = (
+            orders_of_blank(gear, gear.holes(), radius, level),
+            lay(gear.holes()),
+        );
+        group.bench_function("blank: condensed, and its ring", |bencher| {
+            bencher.iter(|| black_box(condense(&grid, low)));
+        });
+        let (blank, solid) = (condense(&grid, low), condense(&lay(None), orders));
+        group.bench_function("gear: orders above the holes eliminated", |bencher| {
+            bencher.iter(|| black_box(ring.above(low, &solid, &run)));
+        });
+        let above = ring.above(low, &solid, &run).expect("a ring");
+        group.bench_function("gear: teeth and blank joined", |bencher| {
+            bencher.iter(|| black_box(Coupling::on_blank(&above, &blank, 0.0, &run)));
+        });
+        group.finish();
+    }
+}
+
+/// The pairs to either side of position `eta` that may touch.
+fn approaches(case: &Case, eta: f64) -> Vec<Approach> {
+    (-3..=4)
+        .filter_map(|n| Approach::of(&case.pair, eta, n))
+        .collect()
+}
+
+fn positions(criterion: &mut Criterion) {
+    for number in [2, 3] {
+        let case = test_case(number);
+        let load = case.pair.load(case.output_torques[0]);
+        let model = pair_model(&case, &Library::default(), &Run::unattended()).expect("a model");
+        let mut group = group(criterion, &format!("case {number}, one position"));
+        for (eta, pairs) in [(0.05, "one pair"), (0.5, "two pairs")] {
+            group.bench_function(format!("{pairs}: detection"), |bencher| {
+                bencher.iter(|| black_box(approaches(&case, eta)));
+            });
+            let mut warm = WarmStart::default();
+            let touch = model.touch(eta, load, &mut warm).expect("contact");
+            let touching = touch.solution.active.clone();
+            group.bench_function(format!("{pairs}: contact solve, cold"), |bencher| {
+                bencher.iter(|| black_box(solve_active_set(&touch.problem, load, None)));
+            });
+            group.bench_function(format!("{pairs}: contact solve, warm"), |bencher| {
+                bencher.iter(|| black_box(solve_active_set(&touch.problem, load, Some(&touching))));
+            });
+            group.bench_function(format!("{pairs}: all of it, cold"), |bencher| {
+                bencher.iter(|| black_box(model.contact(eta, load, &mut WarmStart::default())));
+            });
+            group.bench_function(format!("{pairs}: all of it, warm"), |bencher| {
+                bencher.iter(|| black_box(model.contact(eta, load, &mut warm)));
+            });
+            // A curve meets the same fraction of the mesh period once in every mesh period.
+            let mut phase = Phase::new(&model, eta, load).expect("flanks come near");
+            let (mut period, periods) = (0, i64::from(case.pair.period()));
+            group.bench_function(
+                format!("{pairs}: all of it, a further mesh period"),
+                |bencher| {
+                    bencher.iter(|| {
+                        period = (period + 1) % periods;
+                        black_box(phase.contact(period, &mut warm, |_, _| ()))
+                    });
+                },
+            );
+        }
+        group.finish();
+    }
+}
+
+criterion_group!(benches, gears, positions);
 criterion_main!(benches);

@@ -3,6 +3,7 @@
 mod chart;
 mod demo;
 pub(crate) mod health;
+pub(crate) mod measure;
 pub(crate) mod plot;
 pub(crate) mod reproduce;
 pub(crate) mod serve;

@@ -355,7 +355,7 @@ pub(super) fn interface_radius(case: &Case, member: Member) -> f64 {
 /// What is left out shows with the square of that: on the fine grid the mean STE of the paper's cases moves by 2e-6 from
 /// 4.5 to 6.5, and by 2e-8 from there to 9.75. More orders than the blank's grid resolves do harm: on the standard grid the
 /// rms of case 1 is 4e-4 off the fine one's with 4.5, and 2e-3 with 6.5.
-pub(super) fn harmonics(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Harmonics {
+pub fn harmonics(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Harmonics {
     let z = gear.tooth_count() as usize;
     Harmonics {
         largest: orders_within(
@@ -369,7 +369,7 @@ pub(super) fn harmonics(gear: &SpurGear, interface_radius: f64, level: GridLevel
 
 /// The orders that see the `holes` of a blank, by the same rule: on its way from the holes to the interface circle their
 /// field falls as well. None of them, and all orders find the blank alike.
-fn orders_of_blank(
+pub fn orders_of_blank(
     gear: &SpurGear,
     holes: Option<&HolePattern>,
     interface_radius: f64,
@@ -417,7 +417,11 @@ fn build_teeth(
 
 /// The grid of one sector of the blank of `gear`, with `holes` or without, fine enough on the interface circle for the
 /// orders that it carries.
-pub(super) fn blank_grid(
+///
+/// # Errors
+///
+/// [`GridError`] if the holes leave no room for elements.
+pub fn blank_grid(
     gear: &SpurGear,
     holes: Option<&HolePattern>,
     interface_radius: f64,

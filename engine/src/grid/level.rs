@@ -1,11 +1,17 @@
 //! How fine the finite-element grids are.
 
 /// The public grid levels; each step halves every element.
+///
+/// What coarse and standard promise are differences from fine in the flexible method over the true period, on the paper's
+/// cases and the standard pair; `tests/validation/convergence.rs` holds them. A harmonic below a fifth of the largest one is
+/// meant as a part of that one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum GridLevel {
-    /// Half as fine as standard: for first looks.
+    /// Half as fine as standard, for first looks: within 0.2 % of the mean transmission error, 2 % of its peak-to-peak and rms,
+    /// 0.3 % of the mean stiffness and 4 % of the first three mesh harmonics.
     Coarse,
-    /// The level at which the published accuracy holds.
+    /// The level at which the published accuracy holds: within 0.03 % of the mean, 0.5 % of peak-to-peak and rms, 0.1 % of the
+    /// mean stiffness and 1 % of the first three mesh harmonics.
     Standard,
     /// Twice as fine as standard: for error estimates.
     Fine,

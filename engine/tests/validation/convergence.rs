@@ -8,11 +8,33 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::support::{case, paper_case, solve, standard_pair};
 
-/// Bounds between the standard and the fine level (DESIGN section 5).
-const MEAN: f64 = 1e-3;
-const PEAK_TO_PEAK: f64 = 1e-2;
-const MEAN_STIFFNESS: f64 = 5e-3;
-const MESH_HARMONIC: f64 = 1e-2;
+/// How far the curves of one level may be from those of the fine one, relative.
+struct Bounds {
+    mean: f64,
+    peak_to_peak: f64,
+    rms: f64,
+    mean_stiffness: f64,
+    mesh_harmonic: f64,
+}
+
+/// What the coarse level promises, in its documentation and in that of the field `grid`.
+const COARSE: Bounds = Bounds {
+    mean: 2e-3,
+    peak_to_peak: 2e-2,
+    rms: 2e-2,
+    mean_stiffness: 3e-3,
+    mesh_harmonic: 4e-2,
+};
+
+/// What the standard level promises. DESIGN section 5 asks for 0.1 %, 1 %, 0.5 % of the mean stiffness and 1 % of the harmonics.
+const STANDARD: Bounds = Bounds {
+    mean: 3e-4,
+    peak_to_peak: 5e-3,
+    rms: 5e-3,
+    mean_stiffness: 1e-3,
+    mesh_harmonic: 1e-2,
+};
+
 /// The part of the largest mesh harmonic below which a harmonic is held to the bound as a part of the largest one instead of
 /// its own. Where the contact of a tip corner sets in, the levels differ by 3 nm at single positions; that is 0.7 nm in
 /// each harmonic, and 3 % of the second one of cases 1 and 2, which at 38 and 24 nm nearly cancels beside the 317 and 270 nm
@@ -36,37 +58,31 @@ fn mesh_harmonics(curve: &Curve) -> [f64; 3] {
     })
 }
 
-/// Prints what a step of the level changes, and holds it to the bounds if `bounded`.
-fn compare(name: &str, now: &Curve, finer: &Curve, bounded: bool) {
-    let change = |value: fn(&Curve) -> f64| value(now) / value(finer) - 1.0;
+/// Prints how far `curve` is from that of the fine level, and holds it to `bounds`.
+fn compare(name: &str, curve: &Curve, fine: &Curve, bounds: &Bounds) {
+    let change = |value: fn(&Curve) -> f64| value(curve) / value(fine) - 1.0;
     let mean = change(|curve| curve.transmission_error_statistics.mean);
     let peak_to_peak = change(|curve| curve.transmission_error_statistics.peak_to_peak);
+    let rms = change(|curve| curve.transmission_error_statistics.rms);
     let stiffness = change(|curve| curve.mesh_stiffness_tangent_statistics.mean);
-    let (harmonics, finer_harmonics) = (mesh_harmonics(now), mesh_harmonics(finer));
-    let relative: Vec<f64> = harmonics
-        .iter()
-        .zip(finer_harmonics)
-        .map(|(a, b)| a / b - 1.0)
-        .collect();
+    let (harmonics, fine_harmonics) = (mesh_harmonics(curve), mesh_harmonics(fine));
+    let largest = fine_harmonics.iter().copied().fold(0.0, f64::max);
+    let harmonics = harmonics.map(|amplitude| amplitude / largest);
+    let fine_harmonics = fine_harmonics.map(|amplitude| amplitude / largest);
+    let changes: [f64; 3] = std::array::from_fn(|i| {
+        let against = Some(fine_harmonics[i]).filter(|part| *part > SMALL_HARMONIC);
+        (harmonics[i] - fine_harmonics[i]) / against.unwrap_or(1.0)
+    });
     println!(
-        "{name}: mean {mean:+.2e}, p-p {peak_to_peak:+.2e}, mean k {stiffness:+.2e}, H_kZ2 {relative:+.4?} of {finer_harmonics:?} m"
+        "{name}: mean {mean:+.2e}, p-p {peak_to_peak:+.2e}, rms {rms:+.2e}, mean k {stiffness:+.2e}, H_kZ2 {changes:+.4?} of \
+         {fine_harmonics:.4?} times {largest:.3e} m"
     );
-    if bounded {
-        assert!(mean.abs() < MEAN, "{name}");
-        assert!(peak_to_peak.abs() < PEAK_TO_PEAK, "{name}");
-        assert!(stiffness.abs() < MEAN_STIFFNESS, "{name}");
-        let largest = finer_harmonics.iter().copied().fold(0.0, f64::max);
-        for (a, b) in harmonics.into_iter().zip(finer_harmonics) {
-            let against = if b > SMALL_HARMONIC * largest {
-                b
-            } else {
-                largest
-            };
-            assert!(
-                (a - b).abs() < MESH_HARMONIC * against,
-                "{name}: {a} to {b} m of {largest} m"
-            );
-        }
+    assert!(mean.abs() < bounds.mean, "{name}");
+    assert!(peak_to_peak.abs() < bounds.peak_to_peak, "{name}");
+    assert!(rms.abs() < bounds.rms, "{name}");
+    assert!(stiffness.abs() < bounds.mean_stiffness, "{name}");
+    for change in changes {
+        assert!(change.abs() < bounds.mesh_harmonic, "{name}: {changes:?}");
     }
 }
 
@@ -74,17 +90,13 @@ fn check(name: &str, pair: GearPair, torques: &[f64]) {
     let [coarse, standard, fine] = [GridLevel::Coarse, GridLevel::Standard, GridLevel::Fine]
         .map(|level| at(pair, torques, level));
     for (i, torque) in torques.iter().enumerate() {
+        let name = format!("{name}, T {torque}");
+        compare(&format!("{name}, coarse"), &coarse[i], &fine[i], &COARSE);
         compare(
-            &format!("{name}, T {torque}, coarse to standard"),
-            &coarse[i],
-            &standard[i],
-            false,
-        );
-        compare(
-            &format!("{name}, T {torque}, standard to fine"),
+            &format!("{name}, standard"),
             &standard[i],
             &fine[i],
-            true,
+            &STANDARD,
         );
     }
 }
@@ -128,7 +140,7 @@ fn ripple(values: &[f64]) -> f64 {
 
 #[test]
 fn plateaus_of_the_curves_have_no_ripple() {
-    // Where the number of pairs does not change, away from tip corners, the curves are smooth; 200 positions a period
+    // Where the number of pairs does not change, away from tip corners, the curves are smooth; 400 positions a period
     // see what moves with the cells and the elements.
     for (name, relief, torque, from, to) in [
         ("with relief", true, 115.0, 0.30, 0.70),
@@ -136,9 +148,9 @@ fn plateaus_of_the_curves_have_no_ripple() {
         ("without relief", false, 115.0, 0.30, 0.70),
     ] {
         let mut case = case(standard_pair(relief), &[torque]);
-        case.resolution.positions_per_mesh_period = 200;
+        case.resolution.positions_per_mesh_period = 400;
         let curve = &solve(&case).curves[0];
-        let plateau = (0..200).filter(|i| (from..=to).contains(&curve.mesh_position[*i]));
+        let plateau = (0..400).filter(|i| (from..=to).contains(&curve.mesh_position[*i]));
         let plateau: Vec<usize> = plateau.collect();
         let of = |values: &[f64]| plateau.iter().map(|i| values[*i]).collect::<Vec<f64>>();
         let delta = ripple(&of(&curve.transmission_error));

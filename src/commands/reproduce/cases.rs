@@ -20,7 +20,7 @@ pub(super) const KEPT: [(u32, u32); 5] = [(8, 34), (10, 34), (6, 30), (8, 30), (
 /// # Errors
 ///
 /// If no such example ships, or if it cannot be computed.
-pub(super) fn example(name: &str) -> anyhow::Result<Case> {
+pub(in crate::commands) fn example(name: &str) -> anyhow::Result<Case> {
     let example = examples()
         .iter()
         .find(|example| example.name == name)
@@ -34,7 +34,7 @@ pub(super) fn example(name: &str) -> anyhow::Result<Case> {
 }
 
 /// `case` by another method.
-pub(super) fn by(case: &Case, method: Method) -> Case {
+pub(in crate::commands) fn by(case: &Case, method: Method) -> Case {
     Case {
         method,
         ..case.clone()
@@ -42,7 +42,7 @@ pub(super) fn by(case: &Case, method: Method) -> Case {
 }
 
 /// `case` at other output torques, in N m.
-pub(super) fn at_torques(case: &Case, output_torques: Vec<f64>) -> Case {
+pub(in crate::commands) fn at_torques(case: &Case, output_torques: Vec<f64>) -> Case {
     Case {
         output_torques,
         ..case.clone()
@@ -54,7 +54,10 @@ pub(super) fn at_torques(case: &Case, output_torques: Vec<f64>) -> Case {
 /// # Errors
 ///
 /// If the holes do not fit.
-pub(super) fn with_holes(case: &Case, holes: Option<HolePattern>) -> anyhow::Result<Case> {
+pub(in crate::commands) fn with_holes(
+    case: &Case,
+    holes: Option<HolePattern>,
+) -> anyhow::Result<Case> {
     let with = |gear: &SpurGear, holes| {
         let mut data = *gear.data();
         data.blank.holes = holes;

@@ -16,7 +16,7 @@ pub(super) const METHODS: [Method; 3] = [
 ];
 
 /// The name of a method in legends and tables.
-pub(super) fn method_name(method: Method) -> &'static str {
+pub(in crate::commands) fn method_name(method: Method) -> &'static str {
     match method {
         Method::Flexible => "flexible",
         Method::Decomposition => "decomposition",
@@ -324,7 +324,7 @@ fn steps(low: f64, high: f64, count: u32) -> Vec<f64> {
 }
 
 /// The named line of the spectrum of `curve`: its amplitudes of δ in meters and of k in N/m.
-pub(super) fn line(curve: &Curve, label: &str) -> anyhow::Result<(f64, f64)> {
+pub(in crate::commands) fn line(curve: &Curve, label: &str) -> anyhow::Result<(f64, f64)> {
     let spectrum = curve
         .spectrum
         .as_ref()

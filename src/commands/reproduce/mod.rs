@@ -3,13 +3,13 @@
 //! Read in this order: [`cases`] (what is asked), [`paper`] (what the paper prints), [`computed`] (what comes out), then
 //! what is made of it: [`tables`], [`claims`], [`figures`] and the [`report`] that holds them.
 
-mod cases;
+pub(super) mod cases;
 mod claims;
-mod computed;
+pub(super) mod computed;
 mod figures;
 mod paper;
 mod report;
-mod tables;
+pub(super) mod tables;
 
 use std::fs;
 use std::path::PathBuf;

@@ -8,10 +8,10 @@ use super::computed::{Computed, Design, Sweep, TestCase, line};
 use super::paper::{self, OPTIMAL_TORQUES, PrintedCase};
 
 /// A row of a table.
-pub(super) type Cells = Vec<String>;
+pub(in crate::commands) type Cells = Vec<String>;
 
 /// A Markdown table.
-pub(super) fn table(header: &[&str], rows: &[Cells]) -> String {
+pub(in crate::commands) fn table(header: &[&str], rows: &[Cells]) -> String {
     let mut text = row(header);
     text.push_str(&row(&vec!["---"; header.len()]));
     for cells in rows {
