@@ -13,6 +13,7 @@ mod store;
 mod studies;
 mod study;
 mod study_transitions;
+mod threads;
 mod transitions;
 mod worker;
 

@@ -19,6 +19,7 @@ use tokio::time::{Instant, sleep_until};
 use tokio_util::sync::CancellationToken;
 use tracing::error;
 
+use super::threads::{Work, engine_threads};
 use super::worker::{Solve, StartError, message_of};
 use crate::wire::{Code, Preview, Problem, Submission};
 
@@ -129,9 +130,8 @@ impl Previews {
         let rooms = rules.at_once.min(cores.max(FEWEST_ROOMS));
         let free: Result<_, _> = (0..rooms)
             .map(|room| {
-                let pool = rayon::ThreadPoolBuilder::new()
-                    .thread_name(move |index| format!("preview-{room}-{index}"));
-                pool.build().map(Arc::new)
+                let name = move |index| format!("preview-{room}-{index}");
+                engine_threads(name, Work::Preview).map(Arc::new)
             })
             .collect();
         Ok(Self(Arc::new(Desk {

@@ -18,6 +18,7 @@ use tracing::{error, info, warn};
 use super::job::Job;
 use super::live::Running;
 use super::queue::Jobs;
+use super::threads::{Work, engine_threads};
 use super::transitions::{Claim, Claimed, Lost};
 use crate::wire::{Code, Problem, SOLVER_VERSION, Submission, Summary};
 
@@ -30,10 +31,6 @@ struct Solved {
     document: String,
     summary: Option<String>,
 }
-
-/// So much nicer than others are the engine's threads: while others want the processor, they take a tenth of a share.
-#[cfg(target_os = "linux")]
-const ENGINE_NICENESS: i32 = 10;
 
 /// How the workers keep time.
 #[derive(Debug, Clone, Copy)]
@@ -101,7 +98,8 @@ impl Workers {
         for worker in 0..count {
             let alive = Alive::new(&alive);
             let shop = Arc::clone(&shop);
-            let threads = engine_threads(worker).map_err(StartError::Threads)?;
+            let name = move |index| format!("engine-{worker}-{index}");
+            let threads = engine_threads(name, Work::Job).map_err(StartError::Threads)?;
             tasks.spawn(async move {
                 let _alive = alive;
                 shop.work(&threads).await;
@@ -136,29 +134,6 @@ pub enum StartError {
     /// The jobs of an earlier process cannot be recovered.
     #[error("the jobs of an earlier process cannot be recovered")]
     Database(#[source] sqlx::Error),
-}
-
-/// The threads of one worker, as many as there are cores: a single job fills the machine.
-///
-/// Workers do not share them. In a pool that several jobs share, a thread that waits for a part of its job may take up
-/// another whole job, and the first one ends only when that one does.
-fn engine_threads(worker: usize) -> Result<ThreadPool, rayon::ThreadPoolBuildError> {
-    rayon::ThreadPoolBuilder::new()
-        .thread_name(move |index| format!("engine-{worker}-{index}"))
-        .start_handler(|_| give_way())
-        .build()
-}
-
-/// Lets the system serve other threads before this one. A request needs a core for a fraction of a millisecond, a
-/// computation all of them for as long as it lasts: without a difference a request waits for the end of a time slice of
-/// every engine's thread, which under full load is longer than everything else that it waits for. The computation loses
-/// what requests take, no more.
-fn give_way() {
-    // Elsewhere the priority belongs to the whole process, and there is nothing to tell apart.
-    #[cfg(target_os = "linux")]
-    if let Err(error) = rustix::process::nice(ENGINE_NICENESS) {
-        warn!(%error, "the engine's threads keep the priority of those that answer");
-    }
 }
 
 struct Alive(Arc<AtomicUsize>);

@@ -303,5 +303,9 @@ async fn the_engine_gives_way_to_those_who_answer() {
     let bench = Bench::start(|_| {}, Arc::new(solve)).await;
     let path = bench.submit(&submission(115.0)).await;
     bench.ended(&path).await;
-    assert!(told.recv().await.unwrap() > niceness());
+    let of_job = told.recv().await.unwrap();
+    let preview = bench.post("/v1/preview", &submission(115.0));
+    assert_eq!(preview.send().await.unwrap().status(), 200);
+    let of_preview = told.recv().await.unwrap();
+    assert!(niceness() < of_preview && of_preview < of_job);
 }
