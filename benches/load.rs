@@ -26,6 +26,10 @@ use meshwright_engine::run::Run;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
+/// As in the program.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 /// Test case 2 of the paper, the submission whose variants are sent.
 const SUBMISSION: &str = include_str!("../api/examples/test-case-2.json");
 const SCRIPTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/load");
@@ -71,15 +75,16 @@ fn main() -> anyhow::Result<()> {
     let wanted = |name: &str| {
         arguments.scenarios.is_empty() || arguments.scenarios.iter().any(|given| given == name)
     };
-    ensure!(
-        Command::new("wrk")
-            .arg("--version")
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .status()
-            .is_ok(),
-        "wrk is not installed; ./load installs it"
-    );
+    let wrk = Command::new("wrk")
+        .arg("--version")
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status();
+    if wrk.is_err() {
+        // `cargo bench` runs all benches, on machines without wrk too.
+        eprintln!("wrk is not installed, so that nothing was measured; ./load installs it.");
+        return Ok(());
+    }
     let bench = Bench::new()?;
     describe_machine()?;
     bench.describe_disk()?;

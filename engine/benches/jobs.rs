@@ -11,6 +11,10 @@ use meshwright_engine::gear::{GearPair, Member, SpurGear};
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::run::Run;
 
+/// As in the program.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 #[path = "../tests/cases/mod.rs"]
 mod cases;
 use cases::{case, standard_pair, study_design, test_case};

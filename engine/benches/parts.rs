@@ -20,6 +20,10 @@ use meshwright_engine::fem::tooth::{TeethRing, ToothSubstructure};
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::run::Run;
 
+/// As in the program.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 #[path = "../tests/cases/mod.rs"]
 mod cases;
 use cases::test_case;
