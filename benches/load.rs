@@ -43,8 +43,15 @@ const OVERLOAD_SPAN: Duration = Duration::from_secs(60);
 const POLLS_PER_SECOND: f64 = 1000.0;
 /// So many times what was served before is submitted in the overload: three times are to be shown, and what is served
 /// while it lasts may be more.
-const SURPLUS: f64 = 4.0;
-const SCENARIOS: [&str; 5] = ["latency", "submissions", "polls", "mixed", "overload"];
+const SURPLUS: f64 = 5.0;
+const SCENARIOS: [&str; 6] = [
+    "latency",
+    "submissions",
+    "polls",
+    "mixed",
+    "previews",
+    "overload",
+];
 
 #[derive(Parser)]
 struct Arguments {
@@ -101,6 +108,9 @@ fn main() -> anyhow::Result<()> {
     }
     if wanted("mixed") {
         bench.mixed()?;
+    }
+    if wanted("previews") {
+        bench.previews()?;
     }
     if wanted("overload") {
         bench.overload(Duration::from_secs(arguments.overload_seconds))?;
@@ -345,11 +355,29 @@ impl Bench {
         service.end()
     }
 
+    /// Previews by the real program on all cores: one after the other, first alone and then while both workers compute.
+    fn previews(&self) -> anyhow::Result<()> {
+        let service = self.program("previews")?;
+        let drag = Load {
+            connections: 1,
+            core: None,
+            ..Load::of("preview", SPAN)
+        };
+        let seen = self.wrk(&service, &drag)?.finish()?;
+        seen.row("previews of a dragged hole, 20 positions", &[200]);
+        let fill = Load {
+            core: None,
+            ..Load::of("submit", Duration::from_secs(2))
+        };
+        self.wrk(&service, &fill)?.finish()?.check(&[202, 503]);
+        let seen = self.wrk(&service, &drag)?.finish()?;
+        seen.row("the same, while both workers compute", &[200]);
+        service.end()
+    }
+
     /// The real program on all cores, with three times the work that it can do.
     fn overload(&self, span: Duration) -> anyhow::Result<()> {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_meshwright"));
-        command.arg("serve");
-        let service = self.serve(command, "overload", 1000)?;
+        let service = self.program("overload")?;
         let taken = self.path("taken-overload");
 
         // The queue is filled, and what is served is counted.
@@ -444,6 +472,13 @@ impl Bench {
             .arg(std::env::current_exe()?)
             .args(["stub", engine, "--workers", "2"]);
         self.serve(command, name, queue_limit)
+    }
+
+    /// The real program on all cores.
+    fn program(&self, name: &str) -> anyhow::Result<Served> {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_meshwright"));
+        command.arg("serve");
+        self.serve(command, name, 1000)
     }
 
     fn serve(&self, mut command: Command, name: &str, queue_limit: u32) -> anyhow::Result<Served> {

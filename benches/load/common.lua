@@ -21,7 +21,7 @@ local function text_of(path)
    return text
 end
 
-local document = text_of(os.getenv("LOAD_SUBMISSION"))
+document = text_of(os.getenv("LOAD_SUBMISSION"))
 local number = tonumber(os.getenv("LOAD_FIRST"))
 
 -- The next submission, which has not been sent before: every other one has a torque of its own, the rest a hole radius.
