@@ -2,19 +2,20 @@
 
 use super::case::{Case, Method};
 use super::expected_positions;
-use super::library::{blank_grid, harmonics, interface_radius};
-use crate::gear::Member;
+use super::library::{blank_grid, harmonics, interface_radius, orders_of_blank};
+use crate::gear::{Member, gcd};
 use crate::grid::ToothGrid;
 
-/// Seconds of one core for a contact solution at the standard level, for a node of a factorized grid, and for a
-/// multiplication and addition of dense linear algebra; measured on a 2.5 GHz server core, good to a factor of two.
-const SECONDS: (f64, f64, f64) = (0.3e-3, 8e-6, 0.08e-9);
+/// Seconds of one core for the first contact solution at a fraction of the mesh period, for each further one there, for a
+/// node of a factorized grid, and for a multiplication and addition of dense linear algebra; measured on a 2.6 GHz server
+/// core, good to a factor of two.
+const SECONDS: [f64; 4] = [0.2e-3, 0.05e-3, 6e-6, 0.05e-9];
 
-/// Loading modes of a tooth, about.
-const MODES: f64 = 24.0;
+/// Patterns of force that a tooth exerts on the interface circle, about.
+const PATTERNS: f64 = 18.0;
 
 /// Memory that any case takes, in bytes.
-const BASE_MEMORY: f64 = 30e6;
+const BASE_MEMORY: f64 = 60e6;
 
 /// What a case will cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,8 +33,14 @@ pub struct Estimate {
 /// Estimates what `case` will cost; the grids are laid, nothing is solved. A gear whose grid fails counts as nothing.
 pub fn estimate(case: &Case) -> Estimate {
     let positions = (case.positions() * case.output_torques.len()) as u64;
-    let (per_contact, per_node, per_operation) = SECONDS;
-    let mut seconds = per_contact * expected_positions(case) as f64;
+    let [per_first, per_further, per_node, per_operation] = SECONDS;
+    let solutions = expected_positions(case);
+    // Only the flexible method solves a fraction of the mesh period more than once.
+    let further = match case.method {
+        Method::Flexible => solutions - solutions / u64::from(case.span()).max(1),
+        _ => 0,
+    };
+    let mut seconds = per_first * (solutions - further) as f64 + per_further * further as f64;
     let (mut degrees_of_freedom, mut memory) = (0, BASE_MEMORY);
     if case.method == Method::LoadDistribution {
         return Estimate {
@@ -58,12 +65,20 @@ pub fn estimate(case: &Case) -> Estimate {
         let blank_nodes = (blank.grid.nodes.len() - blank.side_nodes.0.len() - 2) as u64;
         degrees_of_freedom += 2 * (teeth * tooth_nodes + sectors * blank_nodes);
 
-        let unknowns = harmonics(gear, radius, level).unknowns() as f64;
-        let modes = MODES * teeth as f64;
-        memory += 8.0 * (4.0 * unknowns * unknowns + 2.0 * unknowns * modes)
+        let orders = orders_of_blank(gear, gear.holes(), radius, level);
+        let (all, met) = (
+            harmonics(gear, radius, level).unknowns() as f64,
+            orders.unknowns() as f64,
+        );
+        // The gear repeats itself so many times, and keeps the rows of the teeth of one period.
+        let repeats = f64::from(gcd(gear.tooth_count(), blank.sector_count));
+        let rows = teeth as f64 / repeats;
+        memory += 8.0 * (4.0 * all * all + 2.0 * met * rows.min(32.0) * PATTERNS)
             + 3e3 * (tooth_nodes + blank_nodes) as f64;
+        let factorization = met * met * met / (6.0 * repeats * repeats);
+        let answers = rows * PATTERNS * met * (met / (2.0 * repeats) + 5.0 * PATTERNS);
         seconds += per_node * (tooth_nodes + blank_nodes) as f64
-            + per_operation * unknowns * unknowns * (unknowns / 3.0 + modes);
+            + per_operation * (factorization + answers);
     }
     Estimate {
         degrees_of_freedom,

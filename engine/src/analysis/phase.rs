@@ -18,7 +18,6 @@ use crate::contact::{
     AugmentedLagrangian, ContactProblem, ContactSolution, solve_active_set,
     solve_augmented_lagrangian,
 };
-
 use crate::gear::Member;
 
 /// Pairs to either side of the reference pair that may touch.

@@ -7,6 +7,7 @@ use super::FemError;
 use super::blank::BlankSubstructure;
 use super::dense::Cholesky;
 use super::tooth::TeethRing;
+use crate::gear::gcd;
 use crate::run::Run;
 
 /// How far apart, in teeth, two loaded teeth of one gear may stand.
@@ -53,8 +54,8 @@ impl Coupling {
         phase: f64,
         run: &Run,
     ) -> Result<Self, FemError> {
-        let repeats = gcd(teeth.tooth_count, blank.sector_count);
-        Self::repeating(teeth, blank, phase, repeats, run)
+        let repeats = gcd(teeth.tooth_count as u32, blank.sector_count as u32);
+        Self::repeating(teeth, blank, phase, repeats as usize, run)
     }
 
     /// As [`Coupling::on_blank`], with every tooth's own row and nothing taken from symmetry: an oracle for tests.
@@ -199,10 +200,6 @@ fn add_answers(
             }
             Ok(())
         })
-}
-
-fn gcd(a: usize, b: usize) -> usize {
-    if b == 0 { a } else { gcd(b, a % b) }
 }
 
 /// The angle of tooth `i` of `z` in the gear's frame.

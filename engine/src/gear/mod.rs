@@ -32,3 +32,8 @@ pub fn radial(angle: f64) -> Vector {
 pub fn tangential(angle: f64) -> Vector {
     Vector::new(-angle.sin(), angle.cos())
 }
+
+/// The greatest common divisor: a turn that two counts divide evenly repeats so many times.
+pub(crate) fn gcd(a: u32, b: u32) -> u32 {
+    if b == 0 { a } else { gcd(b, a % b) }
+}

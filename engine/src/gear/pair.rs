@@ -1,7 +1,7 @@
 //! Two spur gears in engagement.
 
-use super::SpurGear;
 use super::involute::involute_function;
+use super::{SpurGear, gcd};
 
 /// One of the two gears of a pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -323,10 +323,6 @@ fn bisect(mut good: f64, mut bad: f64, holds: impl Fn(f64) -> bool) -> f64 {
         }
     }
     good
-}
-
-fn gcd(a: u32, b: u32) -> u32 {
-    if b == 0 { a } else { gcd(b, a % b) }
 }
 
 #[cfg(test)]
