@@ -6,7 +6,7 @@ use meshwright_engine::gear::GearPair;
 use meshwright_engine::grid::GridLevel;
 use nalgebra::{DMatrix, DVector};
 
-use crate::support::{case, paper_case, solve, standard_pair};
+use crate::support::{case, gear, holed, pair, paper_case, solve, standard_pair};
 
 /// How far the curves of one level may be from those of the fine one, relative.
 struct Bounds {
@@ -117,6 +117,16 @@ fn halving_every_element_moves_the_curves_of_case_2_by_less_than_promised() {
 fn halving_every_element_moves_the_curves_of_case_3_by_less_than_promised() {
     let (pair, torque) = paper_case(3);
     check("case 3", pair, &[torque]);
+}
+
+#[test]
+fn halving_every_element_moves_the_curves_of_large_gears_by_less_than_promised() {
+    // Blanks of more than a hundred teeth are divided by their holes, here once near the rim and once far from it.
+    for (circle_radius, radius) in [(165e-3, 26e-3), (105e-3, 24e-3)] {
+        let driven = holed(gear(200, 16e-3), 8, circle_radius, radius, 0.01);
+        let pair = pair(gear(200, 16e-3), driven, 400.5e-3);
+        check(&format!("holes at {circle_radius} m"), pair, &[400.0]);
+    }
 }
 
 #[test]
