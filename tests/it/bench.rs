@@ -163,6 +163,12 @@ impl Bench {
         response.json().await.unwrap()
     }
 
+    /// The document at an address.
+    pub(crate) async fn document(&self, path: &str) -> Value {
+        let answer = self.get(path).send().await.unwrap();
+        answer.json().await.unwrap()
+    }
+
     /// The job at an address when it has ended.
     pub(crate) async fn ended(&self, path: &str) -> Value {
         let job: Value = self

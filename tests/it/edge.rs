@@ -28,26 +28,12 @@ async fn every_link_bears_the_public_address() {
         );
     }
     let work = engine.next().await;
-    let problem: Value = bench
-        .get(&format!("{path}/results"))
-        .send()
-        .await
-        .unwrap()
-        .json()
-        .await
-        .unwrap();
+    let problem: Value = bench.document(&format!("{path}/results")).await;
     assert_eq!(
         problem["type"],
         format!("{public}/problems/result-not-ready")
     );
-    let nowhere: Value = bench
-        .get("/nowhere")
-        .send()
-        .await
-        .unwrap()
-        .json()
-        .await
-        .unwrap();
+    let nowhere: Value = bench.document("/nowhere").await;
     assert_eq!(nowhere["type"], format!("{public}/problems/not-found"));
 
     work.fail(meshwright::wire::Problem::new(Code::TimeLimit, "late"));
@@ -55,14 +41,7 @@ async fn every_link_bears_the_public_address() {
         bench.ended(path).await["problem"]["type"],
         format!("{public}/problems/time-limit")
     );
-    let openapi: Value = bench
-        .get("/openapi.json")
-        .send()
-        .await
-        .unwrap()
-        .json()
-        .await
-        .unwrap();
+    let openapi: Value = bench.document("/openapi.json").await;
     assert_eq!(openapi["servers"][0]["url"], public);
 }
 
@@ -184,14 +163,7 @@ async fn the_documentation_needs_nothing_from_elsewhere() {
         "{script}"
     );
 
-    let openapi: Value = bench
-        .get("/openapi.json")
-        .send()
-        .await
-        .unwrap()
-        .json()
-        .await
-        .unwrap();
+    let openapi: Value = bench.document("/openapi.json").await;
     for path in [
         "/v1/jobs",
         "/v1/jobs/{id}",
@@ -273,14 +245,7 @@ async fn the_service_tells_its_health_and_numbers() {
 #[tokio::test]
 async fn what_can_be_known_without_a_job_is_told() {
     let bench = Bench::quick().await;
-    let examples: Value = bench
-        .get("/v1/examples")
-        .send()
-        .await
-        .unwrap()
-        .json()
-        .await
-        .unwrap();
+    let examples: Value = bench.document("/v1/examples").await;
     for example in examples["items"].as_array().unwrap() {
         assert!(
             example["name"].is_string()
@@ -288,17 +253,7 @@ async fn what_can_be_known_without_a_job_is_told() {
                 && example["submission"].is_object()
         );
     }
-    assert!(
-        bench
-            .get("/v1/limits")
-            .send()
-            .await
-            .unwrap()
-            .json::<Value>()
-            .await
-            .unwrap()
-            .is_object()
-    );
+    assert!(bench.document("/v1/limits").await.is_object());
     let valid: Value = bench
         .post("/v1/validate", &submission(115.0))
         .send()
@@ -308,13 +263,6 @@ async fn what_can_be_known_without_a_job_is_told() {
         .await
         .unwrap();
     assert_eq!(valid["valid"], true);
-    let list: Value = bench
-        .get("/v1/jobs")
-        .send()
-        .await
-        .unwrap()
-        .json()
-        .await
-        .unwrap();
+    let list: Value = bench.document("/v1/jobs").await;
     assert_eq!(list["items"].as_array().unwrap().len(), 0);
 }

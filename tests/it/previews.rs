@@ -201,14 +201,7 @@ async fn a_preview_that_is_too_large_is_sent_to_the_jobs() {
         "{problem}"
     );
     assert!(engine.is_idle());
-    let limits: Value = bench
-        .get("/v1/limits")
-        .send()
-        .await
-        .unwrap()
-        .json()
-        .await
-        .unwrap();
+    let limits: Value = bench.document("/v1/limits").await;
     assert_eq!(
         limits["previews"],
         json!({ "positions": 199, "at_once": 4, "time_limit_seconds": 20 })

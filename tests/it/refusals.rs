@@ -59,14 +59,7 @@ async fn bad_bodies_are_refused_and_leave_nothing_behind() {
             );
         }
     }
-    let list: Value = bench
-        .get("/v1/jobs")
-        .send()
-        .await
-        .unwrap()
-        .json()
-        .await
-        .unwrap();
+    let list: Value = bench.document("/v1/jobs").await;
     assert_eq!(list["items"].as_array().unwrap().len(), 0);
 }
 

@@ -36,14 +36,7 @@ async fn a_key_gives_the_same_job_however_often_it_is_sent() {
     );
     assert_eq!(late.json::<Value>().await.unwrap()["status"], "successful");
     assert!(engine.is_idle());
-    let list: Value = bench
-        .get("/v1/jobs")
-        .send()
-        .await
-        .unwrap()
-        .json()
-        .await
-        .unwrap();
+    let list: Value = bench.document("/v1/jobs").await;
     assert_eq!(list["items"].as_array().unwrap().len(), 1);
 }
 
