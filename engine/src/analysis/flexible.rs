@@ -99,7 +99,7 @@ pub(super) fn contacts(
 }
 
 /// As [`contacts`], with what `keep` takes of each.
-pub(super) fn contacts_keeping<T: Send>(
+fn contacts_keeping<T: Send>(
     model: &PairModel,
     load: f64,
     positions: &[f64],
@@ -114,18 +114,15 @@ pub(super) fn contacts_keeping<T: Send>(
             let mut first = WarmStart::default();
             for (fraction, places) in chunk {
                 // Each phase starts from the one before it, and each further period of a phase from the last period.
-                let mut phase = None;
+                let first_eta = positions[places[0]];
+                let mut phase = Phase::new(model, *fraction, load)
+                    .map_err(|error| at_position(error, first_eta))?;
                 let mut warm = first.clone();
                 for &place in places {
                     let eta = positions[place];
-                    let mut solve = || {
-                        let phase = match &mut phase {
-                            Some(phase) => phase,
-                            none => none.insert(Phase::new(model, *fraction, load)?),
-                        };
-                        phase.contact((eta - fraction).round() as i64, &mut warm, &keep)
-                    };
-                    let contact = solve().map_err(|error| at_position(error, eta))?;
+                    let contact = phase
+                        .contact((eta - fraction).round() as i64, &mut warm, &keep)
+                        .map_err(|error| at_position(error, eta))?;
                     contacts.push((place, contact));
                     run.reached(1)?;
                     if place == places[0] {

@@ -227,46 +227,40 @@ mod tests {
         assert!(built(&shelf, 1));
     }
 
-    #[test]
-    fn of_two_who_want_the_same_part_one_makes_it() {
-        let shelf = Shelf::<u32, u32>::new(20);
+    /// What the second gets of two who want the same part: it comes while the first makes it, to `made`, and would itself
+    /// make `own`.
+    fn second_of_two(
+        shelf: &Shelf<u32, u32>,
+        made: Result<u32, ()>,
+        own: Result<u32, ()>,
+    ) -> Result<u32, ()> {
         let begun = Barrier::new(2);
         thread::scope(|scope| {
             scope.spawn(|| {
-                shelf.part_made_once(
-                    1,
-                    |_| 10,
-                    || {
-                        begun.wait();
-                        Ok::<_, ()>(1)
-                    },
-                )
+                let build = || {
+                    begun.wait();
+                    made
+                };
+                shelf.part_made_once(1, |_| 10, build)
             });
             begun.wait();
-            let second = shelf.part_made_once(1, |_| 10, || Err(()));
-            assert_eq!(second.as_deref(), Ok(&1), "the first made it");
-        });
+            shelf.part_made_once(1, |_| 10, || own).map(|part| *part)
+        })
+    }
+
+    #[test]
+    fn of_two_who_want_the_same_part_one_makes_it() {
+        let shelf = Shelf::new(20);
+        assert_eq!(
+            second_of_two(&shelf, Ok(1), Err(())),
+            Ok(1),
+            "the first made it"
+        );
         assert_eq!((shelf.usage().misses, shelf.usage().hits), (1, 1));
     }
 
     #[test]
     fn who_waited_for_a_failure_makes_the_part() {
-        let shelf = Shelf::<u32, u32>::new(20);
-        let begun = Barrier::new(2);
-        thread::scope(|scope| {
-            scope.spawn(|| {
-                shelf.part_made_once(
-                    1,
-                    |_| 10,
-                    || {
-                        begun.wait();
-                        Err(())
-                    },
-                )
-            });
-            begun.wait();
-            let second = shelf.part_made_once(1, |_| 10, || Ok::<_, ()>(2));
-            assert_eq!(second.as_deref(), Ok(&2));
-        });
+        assert_eq!(second_of_two(&Shelf::new(20), Err(()), Ok(2)), Ok(2));
     }
 }

@@ -1,6 +1,6 @@
 //! What `cargo bench` found, as a table beside the paper's times, the goals and an earlier run.
 //!
-//! `cargo run --release -p meshwright-engine --example bench_table -- CRITERION_FOLDER [--baseline NAME] [--before BEFORE.csv]
+//! `cargo run --release --example bench_table -- CRITERION_FOLDER [--baseline NAME] [--before BEFORE.csv]
 //! [--csv]` prints Markdown, or with `--csv` what a later run takes as `--before`. Times are the least of criterion's samples,
 //! each the mean of its iterations: other work on a machine only ever adds time.
 
