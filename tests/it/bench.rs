@@ -188,6 +188,50 @@ impl Bench {
     }
 }
 
+/// The events of a stream, one after the other.
+pub(crate) struct Events {
+    response: Response,
+    text: String,
+}
+
+impl Events {
+    pub(crate) async fn of(bench: &Bench, path: &str) -> Self {
+        let request = bench
+            .get(&format!("{path}/events"))
+            .header("last-event-id", "7")
+            .timeout(PATIENCE);
+        let response = request.send().await.unwrap();
+        assert_eq!(response.status(), StatusCode::OK);
+        assert_eq!(response.headers()["content-type"], "text/event-stream");
+        Self {
+            response,
+            text: String::new(),
+        }
+    }
+
+    /// The name and data of the next event; none at the end of the stream.
+    pub(crate) async fn next(&mut self) -> Option<(String, Value)> {
+        loop {
+            if let Some((event, rest)) = self.text.split_once("\n\n") {
+                let field = |name: &str| {
+                    event
+                        .lines()
+                        .find_map(|line| line.strip_prefix(name))
+                        .map(str::to_owned)
+                };
+                let found = field("event: ").zip(field("data: "));
+                self.text = rest.to_owned();
+                if let Some((name, data)) = found {
+                    return Some((name, serde_json::from_str(&data).unwrap()));
+                }
+            } else {
+                let chunk = self.response.chunk().await.unwrap()?;
+                self.text.push_str(std::str::from_utf8(&chunk).unwrap());
+            }
+        }
+    }
+}
+
 impl Engine {
     fn new() -> (Self, Solve) {
         let (begun, works) = mpsc::unbounded_channel();
