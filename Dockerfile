@@ -1,15 +1,30 @@
-# The service in a small image: built with the toolchain, run by a user who owns nothing but /data.
-FROM rust:1.95-slim-bookworm AS build
-WORKDIR /source
-COPY . .
-RUN cargo build --release --locked --bin meshwright
+# The service in a small image: built with the toolchain, run by a user who owns nothing but /data. Other bases can be given, as
+# tests/container/run does where no image registry is reached.
+ARG BUILD_IMAGE=rust:1.95-slim-bookworm
+ARG RUN_IMAGE=debian:bookworm-slim
 
-FROM debian:bookworm-slim
+FROM ${BUILD_IMAGE} AS build
+WORKDIR /source
+# First the dependencies, in a layer that stays as long as the manifests do: the sources are empty, so that nothing else is built.
+COPY Cargo.toml Cargo.lock build.rs ./
+COPY engine/Cargo.toml engine/
+COPY migrations migrations
+RUN tests="src/lib.rs src/main.rs benches/process.rs benches/load.rs engine/src/lib.rs engine/benches/jobs.rs engine/benches/parts.rs" \
+    && for file in $tests; do mkdir -p "$(dirname "$file")" && echo 'fn main() {}' > "$file"; done \
+    && cargo build --release --locked --bin meshwright \
+    && rm -r src benches engine/src engine/benches
+COPY . .
+# The empty sources were newer than these.
+RUN touch src/lib.rs src/main.rs engine/src/lib.rs && cargo build --release --locked --bin meshwright
+
+FROM ${RUN_IMAGE}
+# The certificates are for webhooks.
+RUN apt-get update && apt-get install --yes --no-install-recommends ca-certificates && rm -rf /var/lib/apt/lists/*
 RUN useradd --system --no-create-home meshwright && install --directory --owner=meshwright /data
 COPY --from=build /source/target/release/meshwright /usr/local/bin/meshwright
 USER meshwright
 VOLUME /data
-# Inside a container the loopback would reach nobody; outside, publish the port where it should be seen.
+# Inside a container the loopback would reach nobody. The service asks for keys there: docker exec ... meshwright keys create NAME
 ENV MESHWRIGHT_LISTEN=0.0.0.0:8080 MESHWRIGHT_DATABASE=/data/meshwright.db
 EXPOSE 8080
 HEALTHCHECK --interval=30s --timeout=5s --start-period=5s CMD ["meshwright", "health"]

@@ -5,6 +5,7 @@ use axum::body::Bytes;
 use axum::http::header::CONTENT_TYPE;
 use axum::routing::get;
 use utoipa::OpenApi as _;
+use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityRequirement, SecurityScheme};
 use utoipa::openapi::{OpenApi, Server, ServerBuilder};
 use utoipa_swagger_ui::{Config, SwaggerUi};
 
@@ -23,14 +24,39 @@ use super::router::routes;
         (name = "Jobs", description = "Computations, from submission to end."),
         (name = "Results", description = "What was computed."),
         (name = "Studies", description = "Many variants of a submission at once, and their table."),
+        (name = "Webhooks", description = "Where a client is told that its jobs and studies have ended."),
         (name = "Reference", description = "What can be known without a job."),
         (name = "Operation", description = "For those who run the service."),
     ),
 )]
 struct Introduction;
 
+/// The name of the security scheme.
+const KEY: &str = "key";
+
 pub(super) fn introduction() -> OpenApi {
-    Introduction::openapi()
+    let mut openapi = Introduction::openapi();
+    let scheme = HttpBuilder::new()
+        .scheme(HttpAuthScheme::Bearer)
+        .bearer_format("mw_ID_SECRET")
+        .description(Some("A key that the operator of the service made (`meshwright keys create`). Needed as soon as there is one, and wherever others than this machine can call."))
+        .build();
+    openapi
+        .components
+        .get_or_insert_default()
+        .add_security_scheme(KEY, SecurityScheme::Http(scheme));
+    say_whether_keys_are_needed(&mut openapi, false);
+    openapi
+}
+
+/// Says whether requests need a key, those aside that never do.
+pub(super) fn say_whether_keys_are_needed(openapi: &mut OpenApi, needed: bool) {
+    let with_key = SecurityRequirement::new(KEY, Vec::<String>::new());
+    openapi.security = Some(if needed {
+        vec![with_key]
+    } else {
+        vec![SecurityRequirement::default(), with_key]
+    });
 }
 
 /// The OpenAPI document of the service, as it is without a public address.

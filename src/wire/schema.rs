@@ -1,5 +1,6 @@
 //! OpenAPI schemas built from the same tables as the checks.
 
+use meshwright_engine::analysis::Method;
 use serde_json::{Value, json};
 use utoipa::ToSchema;
 use utoipa::openapi::extensions::ExtensionsBuilder;
@@ -106,6 +107,11 @@ pub(super) fn choice<C: Choice>(
         choice_schema(title, description, default),
         default.is_none(),
     )
+}
+
+/// The schema of the word of a method.
+pub fn method_schema() -> RefOr<Schema> {
+    choice_schema::<Method>("Method", "How the curves are computed.", None)
 }
 
 /// The schema of one of several words.

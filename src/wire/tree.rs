@@ -56,20 +56,67 @@ impl Node {
         }
     }
 
+    /// The document that serde read, which had no key twice.
+    pub(super) fn of(value: &serde_json::Value) -> Self {
+        use serde_json::Value;
+        match value {
+            Value::Null => Self::Null,
+            Value::Bool(value) => Self::Bool(*value),
+            // Every number of JSON that was read has a nearest double.
+            Value::Number(number) => Self::Number(number.as_f64().unwrap_or(f64::NAN)),
+            Value::String(text) => Self::Text(text.clone()),
+            Value::Array(items) => Self::List(items.iter().map(Self::of).collect()),
+            Value::Object(fields) => {
+                let fields = fields.iter();
+                Self::Object(
+                    fields
+                        .map(|(key, value)| (key.clone(), Self::of(value)))
+                        .collect(),
+                )
+            }
+        }
+    }
+
+    /// The value of one of its fields, if it is an object with it.
+    pub(super) fn into_field(self, name: &str) -> Option<Self> {
+        let Self::Object(fields) = self else {
+            return None;
+        };
+        let mut fields = fields.into_iter();
+        fields.find(|(key, _)| key == name).map(|(_, value)| value)
+    }
+
+    /// A text that equal values have in common, and others have not.
+    pub(super) fn key(&self) -> String {
+        format!("{self:?}")
+    }
+
+    /// The pointer to a key that stands twice in its object, below `pointer`.
     fn key_that_stands_twice(&self, pointer: &str) -> Option<String> {
+        let steps = self.steps_to_double_key()?;
+        // Found from the inside, so the outermost step came last.
+        let steps = steps.iter().rev();
+        Some(steps.fold(pointer.to_owned(), |pointer, step| joined(&pointer, step)))
+    }
+
+    fn steps_to_double_key(&self) -> Option<Vec<String>> {
+        let with = |step: String, steps: Option<Vec<String>>| {
+            let mut steps = steps?;
+            steps.push(step);
+            Some(steps)
+        };
         match self {
             Self::List(items) => items
                 .iter()
                 .enumerate()
-                .find_map(|(i, item)| item.key_that_stands_twice(&format!("{pointer}/{i}"))),
+                .find_map(|(i, item)| with(i.to_string(), Some(item.steps_to_double_key()?))),
             Self::Object(fields) => {
                 let mut seen = HashSet::new();
                 fields.iter().find_map(|(key, value)| {
-                    let pointer = joined(pointer, key);
                     if seen.insert(key) {
-                        value.key_that_stands_twice(&pointer)
+                        with(key.clone(), Some(value.steps_to_double_key()?))
                     } else {
-                        Some(pointer)
+                        Some(vec![key.clone()])
                     }
                 })
             }
@@ -175,8 +222,17 @@ impl Errors {
         self.0.borrow().len()
     }
 
+    /// Whether no more are told.
+    fn is_full(&self) -> bool {
+        self.count() >= MOST_ERRORS
+    }
+
+    pub(super) fn into_errors(self) -> Vec<FieldError> {
+        self.0.into_inner()
+    }
+
     pub(super) fn into_problem(self) -> Problem {
-        Problem::of_fields(self.0.into_inner())
+        Problem::of_fields(self.into_errors())
     }
 }
 
@@ -425,6 +481,10 @@ impl<'a> ObjectReader<'a> {
     /// Refuses the fields that nobody asked for.
     pub(super) fn finish(self) {
         for (key, _) in self.fields {
+            // A document of nothing but unknown fields would be compared with the known ones for seconds.
+            if self.errors.is_full() {
+                return;
+            }
             if !self.known.contains(&key.as_str()) {
                 let meant = nearest_word(key, &self.known)
                     .map_or_else(String::new, |word| format!(" Is {word} meant?"));
@@ -466,26 +526,10 @@ fn nearest_word(word: &str, known: &[&'static str]) -> Option<&'static str> {
     }
     known
         .iter()
-        .map(|&other| (edits(word, other), other))
+        .map(|&other| (strsim::levenshtein(word, other), other))
         .min()
         .filter(|(edits, other)| *edits * 3 <= other.len())
         .map(|(_, other)| other)
-}
-
-/// The edit distance of Levenshtein.
-fn edits(one: &str, other: &str) -> usize {
-    let other: Vec<char> = other.chars().collect();
-    let mut row: Vec<usize> = (0..=other.len()).collect();
-    for (i, a) in one.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, b) in other.iter().enumerate() {
-            let substitution = diagonal + usize::from(a != *b);
-            diagonal = row[j + 1];
-            row[j + 1] = substitution.min(diagonal + 1).min(row[j] + 1);
-        }
-    }
-    row[other.len()]
 }
 
 #[cfg(test)]

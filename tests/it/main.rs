@@ -7,12 +7,18 @@
 
 mod bench;
 
+mod batch;
+mod chaos;
+mod connections;
 mod contract;
+mod disk;
+mod door;
 mod edge;
 mod events;
 mod life;
 mod lists;
 mod previews;
+mod process;
 mod real;
 mod recovery;
 mod refusals;
@@ -21,3 +27,4 @@ mod sigkill;
 mod studies;
 mod tables;
 mod time;
+mod webhooks;
