@@ -17,7 +17,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     /// Serve jobs over HTTP.
-    Serve(commands::serve::Serve),
+    Serve(Box<commands::serve::Serve>),
     /// Compute one submission.
     Solve(commands::solve::Solve),
     /// Compute a study: many variants of one submission, and their table.

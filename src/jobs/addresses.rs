@@ -36,10 +36,15 @@ fn is_public_v6(address: Ipv6Addr) -> bool {
         return is_public_v4(Ipv4Addr::from((u32::from(a) << 16) | u32::from(b)));
     }
     let is_unicast = parts[0] & 0xe000 == 0x2000;
-    let set_aside = (parts[0] == 0x2001 && parts[1] < 0x200) // protocol assignments, Teredo among them
-        || (parts[0] == 0x2001 && parts[1] == 0xdb8) // documentation
-        || parts[0] == 0x2002 // 6to4, which carries version 4
-        || (parts[0] == 0x3fff && parts[1] < 0x1000); // documentation
+    let set_aside = match (parts[0], parts[1]) {
+        // Protocol assignments, Teredo among them; documentation.
+        (0x2001, second) => second < 0x200 || second == 0xdb8,
+        // 6to4, which carries version 4.
+        (0x2002, _) => true,
+        // Documentation.
+        (0x3fff, second) => second < 0x1000,
+        _ => false,
+    };
     is_unicast && !set_aside
 }
 

@@ -31,7 +31,7 @@ impl Health {
         })
     }
 
-    fn found(&self, result: Result<(), &StoreError>) {
+    fn found(&self, result: Result<&(), &StoreError>) {
         let now = result.err().map(cause);
         self.fault.send_if_modified(|fault| {
             match (&*fault, &now) {
@@ -135,7 +135,7 @@ async fn try_out(writer: &SqlitePool, health: &Arc<Health>) {
     let result = tried.await;
     // Damage is no matter of trying again; whoever meets it says so.
     if !matches!(result, Err(StoreError::Broken(_))) {
-        health.found(result.as_ref().map(|()| ()));
+        health.found(result.as_ref());
     }
 }
 
@@ -162,7 +162,7 @@ impl Write {
         let committed = sqlx::raw_sql("commit").execute(&mut *self.connection).await;
         let committed = committed.map(|_| ()).map_err(StoreError::from);
         self.ended = committed.is_ok();
-        self.health.found(committed.as_ref().map(|()| ()));
+        self.health.found(committed.as_ref());
         committed
     }
 
