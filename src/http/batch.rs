@@ -21,6 +21,9 @@ use crate::wire::{Code, FieldError, Problem, Submission};
 /// The most submissions of a batch.
 pub(super) const MOST_IN_BATCH: usize = 100;
 
+/// Errors beyond this number are not told.
+const MOST_ERRORS: usize = 50;
+
 /// Submissions that stand side by side. Unlike the designs of a study they have nothing in common.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -55,13 +58,14 @@ pub(super) struct BatchItem<'a> {
 
 /// Submit a batch of jobs
 ///
-/// Up to 100 submissions at once. Each is taken or refused by itself, as if it had been sent alone; the answer says what came
-/// of each, in their order. With an `Idempotency-Key` the batch may be repeated: what was taken is not taken twice.
+/// Up to 100 submissions at once. A batch with a field that no submission may have is refused as a whole, with its place.
+/// Otherwise each submission is taken or refused by itself, as if it had been sent alone: teeth that do not reach each other,
+/// a queue that is full. The answer says what came of each, in their order. With an `Idempotency-Key` the batch may be repeated: what was taken is not taken twice.
 #[utoipa::path(
     post, path = "/v1/jobs/batch", tag = "Jobs", operation_id = "submit_batch",
     request_body(content = Batch, content_type = "application/json", description = "The submissions."),
     params(
-        ("Idempotency-Key" = Option<String>, Header, description = "A word of the client's choice, 1 to 250 characters, kept for a day: the same key and submission at the same place get the same job."),
+        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[!-~]+$", description = "A word of the client's choice, 1 to 250 characters, kept for a day: the same key and submission at the same place get the same job."),
     ),
     responses(
         (status = 202, description = "What came of each submission. None may have been taken.", body = BatchAnswer),
@@ -69,7 +73,7 @@ pub(super) struct BatchItem<'a> {
         (status = 408, description = "The body came too slowly.", body = Problem, content_type = "application/problem+json"),
         (status = 413, description = "The body has more than 4 MiB.", body = Problem, content_type = "application/problem+json"),
         (status = 415, description = "The body is not declared as JSON.", body = Problem, content_type = "application/problem+json"),
-        (status = 422, description = "The body is no batch, or has more than 100 submissions.", body = Problem, content_type = "application/problem+json"),
+        (status = 422, description = "The body is no batch, has more than 100 submissions, or fields that no submission may have; `errors` says which.", body = Problem, content_type = "application/problem+json"),
         (status = 503, description = "Too many batches come at once. Try again after `Retry-After` seconds.", body = Problem, content_type = "application/problem+json"),
     ),
 )]
@@ -133,6 +137,22 @@ fn read(document: &[u8]) -> Result<Vec<Result<Submission, Problem>>, Problem> {
         };
         let error = FieldError::new("/submissions", code, detail).nearest(nearest);
         return Err(Problem::of_fields(vec![error]));
+    }
+    let wrong: Vec<FieldError> = batch
+        .submissions
+        .iter()
+        .enumerate()
+        .flat_map(|(i, submission)| {
+            let errors = Submission::field_errors(submission.get().as_bytes());
+            errors.into_iter().map(move |error| FieldError {
+                pointer: format!("/submissions/{i}{}", error.pointer),
+                ..error
+            })
+        })
+        .take(MOST_ERRORS)
+        .collect();
+    if !wrong.is_empty() {
+        return Err(Problem::of_fields(wrong));
     }
     let submissions = batch.submissions.iter();
     Ok(submissions

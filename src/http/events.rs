@@ -34,16 +34,29 @@ pub(super) struct ProgressView {
     positions_total: u64,
 }
 
-/// An event of a job: its name, and its data as JSON. The data of `status` is a job, that of `progress` how far it has come.
+/// An event of a job.
 #[derive(ToSchema)]
 #[schema(title = "JobEvent")]
-#[serde(tag = "event", content = "data", rename_all = "snake_case")]
 #[expect(dead_code, reason = "it stands for the events in the OpenAPI document")]
-pub(super) enum JobEvent<'a> {
-    /// The job, at the start of the stream and whenever its state changes.
-    Status(Box<JobView<'a>>),
+pub(super) struct JobEvent {
+    /// The number of the event in the stream.
+    id: String,
+    /// `status` at the start of the stream and whenever the state changes, else `progress`.
+    event: EventName,
+    /// JSON: of `status` a `Job`, of `progress` a `Progress`.
+    #[schema(content_media_type = "application/json")]
+    data: String,
+}
+
+/// The name of an event.
+#[derive(ToSchema)]
+#[schema(title = "EventName", rename_all = "snake_case")]
+#[expect(dead_code, reason = "it stands for the names in the OpenAPI document")]
+pub(super) enum EventName {
+    /// What is watched, as it stands.
+    Status,
     /// How far it has come.
-    Progress(ProgressView),
+    Progress,
 }
 
 /// Watch a job

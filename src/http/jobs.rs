@@ -25,13 +25,22 @@ use crate::wire::{Problem, Status};
 #[into_params(parameter_in = Query)]
 pub(super) struct ListParameters {
     /// Jobs in this state, or in one of these, separated by commas.
-    #[param(example = "accepted,running")]
+    #[param(
+        example = "accepted,running",
+        pattern = "^(accepted|running|successful|failed|dismissed)(,(accepted|running|successful|failed|dismissed))*$"
+    )]
     status: Option<String>,
     /// Jobs with this tag.
     tag: Option<String>,
     /// Jobs of these ids, separated by commas; those that do not exist are left out. 200 at most.
+    #[param(
+        pattern = "^[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}(,[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}){0,199}$"
+    )]
     ids: Option<String>,
     /// Jobs of the study of this id; `none` for jobs that belong to no study.
+    #[param(
+        pattern = "^(none|[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12})$"
+    )]
     study: Option<String>,
     /// Jobs from the first one on that was submitted at this instant or later (RFC 3339).
     #[param(format = DateTime)]
@@ -43,6 +52,7 @@ pub(super) struct ListParameters {
     #[param(minimum = 1, maximum = 200, default = 50)]
     limit: Option<u32>,
     /// Where to go on: `next` of the list before.
+    #[param(pattern = "^c[1-9a-f][0-9a-f]{0,14}$")]
     cursor: Option<String>,
 }
 

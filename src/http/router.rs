@@ -45,6 +45,7 @@ pub fn router(app: App) -> Router {
     let edge = Arc::clone(&app.edge);
     let (router, mut openapi) = routes().split_for_parts();
     openapi.servers = Some(vec![docs::server(&edge.public_url)]);
+    docs::add_common_answers(&mut openapi);
     docs::say_whether_keys_are_needed(&mut openapi, edge.asks_for_keys);
     let is_https = edge.public_url.starts_with("https://");
     let door = Arc::clone(&app.door);

@@ -64,7 +64,8 @@ async fn submit_all(client: Client, base: Base, numbers: Vec<u64>) -> BTreeMap<u
                 .header("idempotency-key", format!("job {number}"))
                 .json(&job(number));
             if let Ok(answer) = request.send().await
-                && answer.status() == 202
+                // 200 where the answer to an earlier try was lost, and the job has ended meanwhile.
+                && answer.status().is_success()
                 && let Ok(job) = answer.json::<Value>().await
             {
                 break job["id"].as_str().unwrap().to_owned();

@@ -13,7 +13,7 @@ use super::study_id;
 use super::view::StudyView;
 use crate::http::app::App;
 use crate::http::client::Client;
-use crate::http::events::{self, Watching};
+use crate::http::events::{self, EventName, Watching};
 use crate::jobs::News;
 use crate::wire::{Problem, Status};
 
@@ -30,16 +30,18 @@ pub(in crate::http) struct StudyProgressView {
     total: u64,
 }
 
-/// An event of a study: its name, and its data as JSON. The data of `status` is a study, that of `progress` how far it has come.
+/// An event of a study.
 #[derive(ToSchema)]
 #[schema(title = "StudyEvent")]
-#[serde(tag = "event", content = "data", rename_all = "snake_case")]
 #[expect(dead_code, reason = "it stands for the events in the OpenAPI document")]
-pub(in crate::http) enum StudyEvent {
-    /// The study, at the start of the stream and whenever its state changes.
-    Status(Box<StudyView>),
-    /// How far it has come.
-    Progress(StudyProgressView),
+pub(in crate::http) struct StudyEvent {
+    /// The number of the event in the stream.
+    id: String,
+    /// `status` at the start of the stream and whenever the state changes, else `progress`.
+    event: EventName,
+    /// JSON: of `status` a `StudyState`, of `progress` a `StudyProgress`.
+    #[schema(content_media_type = "application/json")]
+    data: String,
 }
 
 /// Watch a study

@@ -63,7 +63,7 @@ pub(in crate::http) async fn results(
     get, path = "/v1/studies/{id}/results/{file}", tag = "Studies", operation_id = "get_study_file",
     params(
         ("id" = String, Path, format = "uuid", description = "The id of the study."),
-        ("file" = StudyFile, Path, description = "`table.json`, `table.csv` or `documents.ndjson`."),
+        ("file" = inline(StudyFile), Path, description = "`table.json`, `table.csv` or `documents.ndjson`."),
         ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
     ),
     responses(
