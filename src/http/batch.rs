@@ -65,7 +65,7 @@ pub(super) struct BatchItem<'a> {
     post, path = "/v1/jobs/batch", tag = "Jobs", operation_id = "submit_batch",
     request_body(content = Batch, content_type = "application/json", description = "The submissions."),
     params(
-        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[!-~]+$", description = "A word of the client's choice, 1 to 250 characters, kept for a day: the same key and submission at the same place get the same job."),
+        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[!-~]([ -~]*[!-~])?$", description = "A word of the client's choice, 1 to 250 characters, kept for a day: the same key and submission at the same place get the same job."),
     ),
     responses(
         (status = 202, description = "What came of each submission. None may have been taken.", body = BatchAnswer),

@@ -27,14 +27,14 @@ pub(super) struct ListParameters {
     /// Jobs in this state, or in one of these, separated by commas.
     #[param(
         example = "accepted,running",
-        pattern = "^(accepted|running|successful|failed|dismissed)(,(accepted|running|successful|failed|dismissed))*$"
+        pattern = "^((accepted|running|successful|failed|dismissed)(,(accepted|running|successful|failed|dismissed))*)?$"
     )]
     status: Option<String>,
     /// Jobs with this tag.
     tag: Option<String>,
     /// Jobs of these ids, separated by commas; those that do not exist are left out. 200 at most.
     #[param(
-        pattern = "^[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}(,[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}){0,199}$"
+        pattern = "^([0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}(,[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}){0,199})?$"
     )]
     ids: Option<String>,
     /// Jobs of the study of this id; `none` for jobs that belong to no study.

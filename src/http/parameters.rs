@@ -33,7 +33,9 @@ impl<S: Sync> FromRequestParts<S> for IdempotencyKey {
         match key.to_str() {
             Ok(key)
                 if (1..=255).contains(&key.len())
-                    && key.bytes().all(|byte| byte.is_ascii_graphic()) =>
+                    && key
+                        .bytes()
+                        .all(|byte| byte == b' ' || byte.is_ascii_graphic()) =>
             {
                 Ok(Self(Some(key.to_owned())))
             }

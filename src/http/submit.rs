@@ -36,7 +36,7 @@ pub(super) enum SubmitAnswer<'a> {
     post, path = "/v1/jobs", tag = "Jobs", operation_id = "submit_job",
     request_body(content = Submission, content_type = "application/json", description = "The submission."),
     params(
-        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[!-~]+$", description = "A word of the client's choice, 1 to 255 characters, kept for a day: the same key and submission get the same job, however often they are sent."),
+        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[!-~]([ -~]*[!-~])?$", description = "A word of the client's choice, 1 to 255 characters, kept for a day: the same key and submission get the same job, however often they are sent."),
         ("Prefer" = Option<String>, Header, description = "`wait=N`: answer with the results if the job ends within N seconds (60 at most)."),
     ),
     responses(

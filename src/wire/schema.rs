@@ -155,7 +155,16 @@ pub(super) fn flag(name: &'static str, title: &str, description: &str, default: 
 
 /// A property that is the document `T`.
 pub(super) fn document<T: ToSchema>(name: &'static str, needed: bool) -> Property {
-    (name, reference::<T>(), needed)
+    if needed {
+        return (name, reference::<T>(), true);
+    }
+    // Null is as good as absent.
+    let null = ObjectBuilder::new().schema_type(Type::Null);
+    let either = OneOfBuilder::new()
+        .title(Some(T::name()))
+        .item(reference::<T>())
+        .item(null);
+    (name, either.into(), false)
 }
 
 /// A property that is the document `T` or null, which is its default.

@@ -49,7 +49,7 @@ fn study_id(text: &str) -> Result<Uuid, Problem> {
     post, path = "/v1/studies", tag = "Studies", operation_id = "submit_study",
     request_body(content = Study, content_type = "application/json", description = "The study."),
     params(
-        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[!-~]+$", description = "A word of the client's choice, 1 to 255 characters, kept for a day: the same key and study get the same study, however often they are sent."),
+        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[!-~]([ -~]*[!-~])?$", description = "A word of the client's choice, 1 to 255 characters, kept for a day: the same key and study get the same study, however often they are sent."),
     ),
     responses(
         (status = 202, description = "The study is taken.", body = StudyView, headers(
