@@ -15,11 +15,6 @@ pub(super) struct Pointer {
     steps: Vec<String>,
 }
 
-/// A pointer's step as it is written: the key with `~` and `/` escaped.
-pub(super) fn escaped(key: &str) -> String {
-    key.replace('~', "~0").replace('/', "~1")
-}
-
 impl Pointer {
     /// Reads a pointer.
     ///

@@ -8,10 +8,10 @@ use super::constant_mass::ConstantMass;
 use super::labels::name_values;
 use super::size::{MOST_DESIGNS, too_many};
 use super::{Axis, Listed, Plan, Study};
-use crate::wire::pointer::{Pointer, escaped};
+use crate::wire::pointer::Pointer;
 use crate::wire::problem::{Code, FieldError};
 use crate::wire::tags::{self, is_short_text};
-use crate::wire::tree::{Errors, Node, ObjectReader, OptionalObject};
+use crate::wire::tree::{Errors, Node, ObjectReader, OptionalObject, escaped};
 
 /// The most axes, and the most changes of one design: the submission has fewer fields.
 pub(super) const MOST_CHANGES: usize = 100;

@@ -7,10 +7,10 @@ use meshwright_engine::run::Run;
 use serde_json::Value;
 
 use super::{Plan, Study};
-use crate::wire::pointer::{Pointer, escaped};
+use crate::wire::pointer::Pointer;
 use crate::wire::problem::{Code, FieldError, Problem};
 use crate::wire::submission::Submission;
-use crate::wire::tree::{Errors, Node};
+use crate::wire::tree::{Errors, Node, escaped};
 
 /// Between so many designs it is asked whether anybody still waits.
 const BETWEEN_LOOKS: usize = 64;
