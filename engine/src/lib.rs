@@ -39,4 +39,5 @@ pub mod fem;
 pub mod gear;
 pub mod grid;
 pub mod quadrature;
+pub mod root_finding;
 pub mod run;

@@ -10,7 +10,7 @@ use utoipa::ToSchema;
 use super::geometry::{Frequencies, PairGeometry};
 use super::problem::{Code, Problem};
 use super::submission::{SOLVER_VERSION, Submission};
-use super::units::{rounded_json, to_mm, to_mpa, to_um};
+use super::units::{or_null, rounded_json, to_mm, to_mpa, to_um};
 use super::warning::{GearName, WarningDocument};
 
 /// What a submission comes to. It is bit-identical for the same input and version.
@@ -54,8 +54,9 @@ pub struct CurveDocument {
     pub mesh_stiffness_secant_n_per_m: Vec<f64>,
     /// The number of tooth pairs that carry load.
     pub pairs_in_contact: Vec<u32>,
-    /// The largest contact pressure, in MPa.
-    pub peak_contact_pressure_mpa: Vec<f64>,
+    /// The largest contact pressure, in MPa; null where a sharp tip corner carries, at which it has no limit.
+    #[serde(serialize_with = "or_null")]
+    pub peak_contact_pressure_mpa: Vec<Option<f64>>,
     /// The share of the load on each pair that ever carries any, by rising offset.
     pub load_shares: Vec<LoadShareDocument>,
     /// Statistics over the span.
@@ -314,7 +315,11 @@ impl CurveDocument {
             mesh_stiffness_tangent_n_per_m: curve.mesh_stiffness_tangent.clone(),
             mesh_stiffness_secant_n_per_m: curve.mesh_stiffness_secant.clone(),
             pairs_in_contact: curve.pairs_in_contact.clone(),
-            peak_contact_pressure_mpa: each(&curve.peak_contact_pressure, to_mpa),
+            peak_contact_pressure_mpa: curve
+                .peak_contact_pressure
+                .iter()
+                .map(|pressure| pressure.map(to_mpa))
+                .collect(),
             load_shares: curve
                 .load_shares
                 .iter()
@@ -522,7 +527,7 @@ mod tests {
                 load,
                 mesh_stiffness_secant: delta.iter().map(|delta| load / delta).collect(),
                 pairs_in_contact: vec![2; positions],
-                peak_contact_pressure: wave(600e6, 50e6),
+                peak_contact_pressure: wave(600e6, 50e6).into_iter().map(Some).collect(),
                 load_shares: (-1..=2)
                     .map(|pair_offset| LoadShare {
                         pair_offset,

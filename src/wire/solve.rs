@@ -65,6 +65,17 @@ fn problem_of(error: &AnalysisError) -> Problem {
                 plain(*mesh_position)
             ),
         ),
+        AnalysisError::TooFarApart {
+            mesh_position,
+            apart,
+            coupled,
+        } => Problem::new(
+            Code::NotConverged,
+            format!(
+                "At mesh position {} the load presses teeth together that stand {apart} apart; the model couples at most {coupled}. A smaller torque would do.",
+                plain(*mesh_position)
+            ),
+        ),
         AnalysisError::NoFormula { reason } => Problem::new(
             Code::NoFormula,
             format!("The load distribution has no formula for this pair: {reason}."),

@@ -5,7 +5,7 @@ use meshwright_engine::gear::Member;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::units::{plain, to_mm};
+use super::units::{plain, to_mm, to_mpa};
 
 /// A warning: the result stands, but with something to know.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
@@ -37,6 +37,12 @@ pub enum WarningCode {
     ThinLigament,
     /// A tip corner carries load off the line of action.
     TipCornerContact,
+    /// The contact reaches the fillet of a gear, where it is not followed.
+    ContactReachesFillet,
+    /// The face widths differ by more than a plane model can stand for.
+    FaceWidthsDiffer,
+    /// The contact presses harder than materials bear in proportion.
+    ContactBeyondElasticity,
     /// The span is not whole true periods.
     PartialSpan,
     /// Formulas are used outside the range for which they were published.
@@ -121,6 +127,41 @@ impl WarningDocument {
                     format!(
                         "The tip corner of the {member} gear touches off the line of action and carries up to {} % of the load; more tip relief avoids it.",
                         plain((1000.0 * largest_share).round() / 10.0)
+                    ),
+                )
+            },
+            Warning::ContactReachesFillet { member } => Self {
+                gear: Some(member.into()),
+                ..new(
+                    WarningCode::ContactReachesFillet,
+                    format!(
+                        "The contact reaches the fillet of the {member} gear, where it is not followed; a larger center distance or a smaller torque avoids it."
+                    ),
+                )
+            },
+            Warning::FaceWidthsDiffer { ratio } => Self {
+                value: Some(ratio),
+                unit: Some("1"),
+                ..new(
+                    WarningCode::FaceWidthsDiffer,
+                    format!(
+                        "One face is {} times as wide as the other: away from the contact each gear is taken for a plate of its own width, which makes the wider one too stiff.",
+                        plain(ratio)
+                    ),
+                )
+            },
+            Warning::ContactBeyondElasticity {
+                pressure,
+                youngs_modulus,
+            } => Self {
+                value: Some(to_mpa(pressure)),
+                unit: Some("MPa"),
+                ..new(
+                    WarningCode::ContactBeyondElasticity,
+                    format!(
+                        "The contact pressure comes to {} MPa, {} % of Young's modulus: no material stays elastic there.",
+                        plain(to_mpa(pressure).round()),
+                        plain((1000.0 * pressure / youngs_modulus).round() / 10.0)
                     ),
                 )
             },

@@ -1,6 +1,7 @@
 //! What is asked: a pair, the torques and how to compute.
 
 use super::spectrum::RotationSpeed;
+use crate::contact::ContactSolver;
 use crate::gear::GearPair;
 use crate::grid::GridLevel;
 
@@ -15,20 +16,6 @@ pub enum Method {
     ProjectedDecomposition,
     /// Closed-form compliances on the theoretical lines of contact: eqs. 4 and 5.
     LoadDistribution,
-}
-
-/// The solver of the contact conditions.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum ContactSolver {
-    /// The exact active set.
-    ActiveSet,
-    /// The augmented Lagrangian of the paper, eq. 7.
-    AugmentedLagrangian {
-        /// The penalty stiffness κ of a contact cell in N/m.
-        penalty: f64,
-        /// The gap tolerance ε in meters.
-        gap_tolerance: f64,
-    },
 }
 
 /// How the tangent stiffness is obtained.

@@ -52,7 +52,10 @@ pub(in crate::analysis) fn distribute(case: &Case, run: &Run) -> Result<Analysis
         let parts = CurveParts {
             transmission_error: all(|contact| contact.transmission_error),
             stiffness: all(|contact| contact.stiffness),
-            peak_contact_pressure: all(|contact| contact.peak_pressure),
+            peak_contact_pressure: repeated(
+                case,
+                contacts.iter().map(|contact| Some(contact.peak_pressure)),
+            ),
             pairs_in_contact: repeated(
                 case,
                 contacts
@@ -267,7 +270,7 @@ impl<'a> Compliances<'a> {
     }
 
     fn line_pair(&self, offset: i32, rolls: [f64; 2]) -> Result<LinePair, AnalysisError> {
-        let (plane, width) = (self.formulas.plane_state, self.pair.contact_width());
+        let (plane, width) = (self.formulas.plane_state, self.pair.common_face_width());
         let (mut compliance, mut gap) = (0.0, 0.0);
         let mut bodies = Vec::with_capacity(2);
         for member in Member::BOTH {

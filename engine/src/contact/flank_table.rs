@@ -7,9 +7,10 @@
 
 use faer::Mat;
 
+use super::corner::{Corner, block};
 use super::half_plane::logarithm_factor;
 use crate::fem::tooth::ToothSubstructure;
-use crate::gear::Material;
+use crate::gear::{Involute, SpurGear};
 
 /// Nodes this near to each other (four elements) see the grid rather than the body in their compliance.
 const NEAR: usize = 8;
@@ -22,8 +23,8 @@ pub struct FlankTable {
     smooth: Mat<f64>,
     /// V on the same unknowns.
     modes: Mat<f64>,
-    /// c = 2/(π E b).
-    logarithm_factor: f64,
+    flank: Involute,
+    corner: Corner,
 }
 
 /// A point on a flank in terms of the nodes around it: four nodes from `first`, their weights, and the components of the
@@ -33,18 +34,25 @@ pub struct FlankPoint {
     first: usize,
     weights: [f64; 4],
     direction: [f64; 2],
+    /// The arc length from the base circle.
+    arc: f64,
 }
 
 impl FlankTable {
-    /// Tabulates the flank of `tooth`.
-    pub fn new(tooth: &ToothSubstructure, material: &Material, thickness: f64) -> Self {
-        let factor = logarithm_factor(material.youngs_modulus, thickness);
+    /// Tabulates the flank of `tooth`, a tooth of `gear`.
+    pub fn new(tooth: &ToothSubstructure, gear: &SpurGear) -> Self {
+        let factor = logarithm_factor(gear.material().youngs_modulus, gear.face_width());
+        let module = gear.data().rack.module;
         let nodes = tooth.roll_lengths.len();
         let mut smooth = tooth.fixed_compliance.clone();
         for component in [0, 1] {
             let mut part = Mat::from_fn(nodes, nodes, |i, j| {
                 let distance = (tooth.flank_points[i] - tooth.flank_points[j]).norm();
-                let logarithm = if i == j { 0.0 } else { factor * distance.ln() };
+                let logarithm = if i == j {
+                    0.0
+                } else {
+                    factor * (distance / module).ln()
+                };
                 tooth.fixed_compliance[(2 * i + component, 2 * j + component)] + logarithm
             });
             bridge_diagonal(&mut part);
@@ -54,17 +62,31 @@ impl FlankTable {
                 }
             }
         }
+        let flank = *gear.flank();
+        let roll_lengths = tooth.roll_lengths.clone();
+        let arcs: Vec<f64> = roll_lengths.iter().map(|s| flank.arc_length(*s)).collect();
+        let between = |one: f64, other: f64| {
+            let [one, other] =
+                [one, other].map(|arc| stencil(&roll_lengths, flank.roll_length_at_arc(arc)));
+            let mut sum = [[0.0; 2]; 2];
+            for (i, weight) in one.1.into_iter().enumerate() {
+                for (j, other_weight) in other.1.into_iter().enumerate() {
+                    let entry = block(&smooth, one.0 + i, other.0 + j);
+                    for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                        sum[a][b] += weight * other_weight * entry[a][b];
+                    }
+                }
+            }
+            sum
+        };
+        let corner = Corner::new(gear, &arcs, factor, between);
         Self {
-            roll_lengths: tooth.roll_lengths.clone(),
+            roll_lengths,
             smooth,
             modes: tooth.modes.clone(),
-            logarithm_factor: factor,
+            flank,
+            corner,
         }
-    }
-
-    /// The factor c = 2/(π E b) of the logarithm.
-    pub fn logarithm_factor(&self) -> f64 {
-        self.logarithm_factor
     }
 
     /// The number of table entries, for the books of a cache.
@@ -79,36 +101,55 @@ impl FlankTable {
 
     /// The point at roll length `s`, pressed along `direction` (against the outward normal, against the way to the tip).
     pub fn point(&self, s: f64, direction: [f64; 2]) -> FlankPoint {
-        let nodes = &self.roll_lengths;
-        let after = nodes.partition_point(|&node| node < s);
-        let first = after.saturating_sub(2).min(nodes.len() - 4);
-        let stencil = &nodes[first..first + 4];
-        let weights = std::array::from_fn(|i| {
-            (0..4)
-                .filter(|&j| j != i)
-                .map(|j| (s - stencil[j]) / (stencil[i] - stencil[j]))
-                .product()
-        });
+        let (first, weights) = stencil(&self.roll_lengths, s);
         FlankPoint {
             first,
             weights,
             direction,
+            arc: self.flank.arc_length(s),
         }
     }
 
-    /// The smooth compliance W R Wᵀ among `points` of one tooth with its interface held, without the logarithm.
-    pub fn smooth_compliance(&self, points: &[FlankPoint]) -> Mat<f64> {
-        let (first, weights) = weights(points);
-        let count = weights.ncols();
-        let around = self.smooth.submatrix(first, first, count, count);
-        &weights * around * weights.transpose()
+    /// The smooth compliance W R Wᵀ between `points` and `loaded` points of one tooth with its interface held, without the
+    /// logarithm.
+    pub fn smooth_compliance(&self, points: &[FlankPoint], loaded: &[FlankPoint]) -> Mat<f64> {
+        let ((row, weights), (column, loads)) = (weights(points), weights(loaded));
+        let around = self
+            .smooth
+            .submatrix(row, column, weights.ncols(), loads.ncols());
+        let mut compliance = &weights * around * loads.transpose();
+        for (j, load) in loaded.iter().enumerate() {
+            for (i, point) in points.iter().enumerate() {
+                if let Some(block) = self.corner.compliance(point.arc, load.arc) {
+                    compliance[(i, j)] = (0..2)
+                        .flat_map(|a| (0..2).map(move |b| (a, b)))
+                        .map(|(a, b)| point.direction[a] * block[a][b] * load.direction[b])
+                        .sum();
+                }
+            }
+        }
+        compliance
     }
 
-    /// W V: how each loading mode shows at `points`.
-    pub fn modes_at(&self, points: &[FlankPoint]) -> Mat<f64> {
+    /// W V: how the flank follows its interface at `points`.
+    pub fn shapes_at(&self, points: &[FlankPoint]) -> Mat<f64> {
         let (first, weights) = weights(points);
         &weights * self.modes.subrows(first, weights.ncols())
     }
+}
+
+/// The first of the four nodes around roll length `s`, and their weights in a cubic.
+fn stencil(nodes: &[f64], s: f64) -> (usize, [f64; 4]) {
+    let after = nodes.partition_point(|&node| node < s);
+    let first = after.saturating_sub(2).min(nodes.len() - 4);
+    let stencil = &nodes[first..first + 4];
+    let weights = std::array::from_fn(|i| {
+        (0..4)
+            .filter(|&j| j != i)
+            .map(|j| (s - stencil[j]) / (stencil[i] - stencil[j]))
+            .product()
+    });
+    (first, weights)
 }
 
 /// The weights W of the unknowns around `points`, one row each, and the first of these unknowns.
