@@ -2,6 +2,7 @@
 
 use super::involute::involute_function;
 use super::{SpurGear, gcd};
+use crate::root_finding::bisect;
 
 /// One of the two gears of a pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -310,19 +311,6 @@ impl Member {
             Self::Driven => Self::Driving,
         }
     }
-}
-
-/// The last place, going from `good` towards `bad`, at which `holds` still holds.
-fn bisect(mut good: f64, mut bad: f64, holds: impl Fn(f64) -> bool) -> f64 {
-    for _ in 0..80 {
-        let middle = f64::midpoint(good, bad);
-        if holds(middle) {
-            good = middle
-        } else {
-            bad = middle
-        }
-    }
-    good
 }
 
 #[cfg(test)]
