@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn the_form_of_odonnell_is_softer_by_less_than_a_tenth() {
+    fn the_form_of_odonnell_is_stiffer_by_less_than_a_tenth() {
         // O'Donnell's rotation as Cornell has it, written out as published (plane stress): 5.306 for c_1, 1.534 for c_3
         // and 0.4167/(1 + ν) for c_4.
         let (nu, u_s, tan) = (0.3_f64, 2.5 / 4.0, 0.33_f64.tan());
