@@ -1,13 +1,17 @@
-//! Where something ceases to hold.
+//! Where a condition ceases to hold.
 
-/// The last place, going from `good` towards `bad`, at which `holds` still holds: to the last digit.
+/// Halvings that bring any interval met here down to neighboring numbers.
+const MOST_HALVINGS: u32 = 200;
+
+/// The last place, going from `good` towards `bad`, at which `holds` still holds, to the last digit.
 ///
-/// `holds` is taken to change once on the way; it is not asked at `good`.
-pub fn bisect(mut good: f64, mut bad: f64, holds: impl Fn(f64) -> bool) -> f64 {
-    loop {
+/// `holds` is taken to hold at `good` and to fail at `bad`; neither is asked. Where it changes several times, one of the
+/// changes is found. `bad` may lie below `good`.
+pub fn bisect(mut good: f64, mut bad: f64, mut holds: impl FnMut(f64) -> bool) -> f64 {
+    for _ in 0..MOST_HALVINGS {
         let middle = f64::midpoint(good, bad);
-        if middle == good || middle == bad || middle.is_nan() {
-            return good;
+        if middle == good || middle == bad {
+            break;
         }
         if holds(middle) {
             good = middle
@@ -15,6 +19,7 @@ pub fn bisect(mut good: f64, mut bad: f64, holds: impl Fn(f64) -> bool) -> f64 {
             bad = middle
         }
     }
+    good
 }
 
 #[cfg(test)]
@@ -22,17 +27,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_root_of_two_is_found_to_its_last_digit_from_either_side() {
-        let root = 2.0_f64.sqrt();
-        let below = bisect(0.0, 2.0, |x| x * x <= 2.0);
-        let above = bisect(2.0, 0.0, |x| x * x > 2.0);
-        assert!(below <= root && root - below <= f64::EPSILON * 2.0);
-        assert!(above >= below && above - below <= f64::EPSILON * 2.0);
+    fn a_change_is_found_to_the_last_digit_from_either_side() {
+        let below = bisect(0.0, 2.0, |x| x * x < 2.0);
+        let above = bisect(2.0, 0.0, |x| x * x >= 2.0);
+        assert!(below * below < 2.0 && above * above >= 2.0);
+        assert_eq!(below.next_up(), above, "nothing lies between them");
     }
 
     #[test]
-    fn what_never_ceases_holds_up_to_the_end() {
-        assert!((bisect(1.0, 3.0, |_| true) - 3.0).abs() < 1e-15);
+    fn a_condition_that_never_or_always_holds_leads_to_an_end() {
         assert_eq!(bisect(1.0, 3.0, |_| false), 1.0);
+        assert_eq!(bisect(1.0, 3.0, |_| true), 3.0_f64.next_down());
     }
 }

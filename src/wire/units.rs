@@ -31,6 +31,11 @@ pub(super) fn to_um(value: f64) -> f64 {
     value * 1e6
 }
 
+/// Newtons per meter to newtons per millimeter.
+pub(super) fn to_n_per_mm(value: f64) -> f64 {
+    value / 1e3
+}
+
 /// Pascals to megapascals.
 pub(super) fn to_mpa(value: f64) -> f64 {
     value / 1e6

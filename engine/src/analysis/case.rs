@@ -2,7 +2,7 @@
 
 use super::spectrum::RotationSpeed;
 use crate::contact::ContactSolver;
-use crate::gear::GearPair;
+use crate::gear::{GearPair, PlaneState};
 use crate::grid::GridLevel;
 
 /// The method that turns a gear pair into curves (DESIGN section 3).
@@ -35,7 +35,7 @@ pub enum StiffnessRule {
 pub enum ToothFormula {
     /// Bending, shear and compression of the true profile (Weber and Banaschek).
     WeberBanaschek,
-    /// The single stiffness c'_th of ISO 6336-1, which contains body and local deformation.
+    /// The theoretical single stiffness of ISO 6336-1, which contains body and local deformation.
     Iso6336,
 }
 
@@ -50,15 +50,6 @@ pub enum BodyFormula {
     Rigid,
 }
 
-/// The plane state of the local deformation in the load distribution.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum PlaneState {
-    /// No stress across the face width.
-    Stress,
-    /// No strain across the face width.
-    Strain,
-}
-
 /// The formulas of the load distribution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Formulas {
@@ -66,7 +57,7 @@ pub struct Formulas {
     pub tooth: ToothFormula,
     /// The body's compliance.
     pub body: BodyFormula,
-    /// The plane state.
+    /// The plane state of tooth, half plane and local deformation.
     pub plane_state: PlaneState,
 }
 

@@ -1,5 +1,6 @@
 //! What comes out: curves over mesh position, and the evidence for them.
 
+use super::load_distribution::FormulaRange;
 use super::spectrum::Spectrum;
 use crate::gear::Member;
 
@@ -184,11 +185,8 @@ pub enum Warning {
         /// Mesh periods of the true period.
         period: u32,
     },
-    /// Formulas were used outside the range for which they were published.
-    FormulaRange {
-        /// The gear.
-        member: Member,
-    },
+    /// A formula is used outside the range for which it was published.
+    FormulaRange(FormulaRange),
     /// The method does not see holes that the drawing has.
     HolesNotSeen,
 }

@@ -1,7 +1,7 @@
 //! From a pair to its curves: the methods, their results and spectra.
 //!
 //! Read in this order: [`case`] (what is asked), [`model`] and [`phase`] (the contact of a pair at one position), `flexible`,
-//! `decomposition` and [`load_distribution`] (the methods), [`curve`] and [`spectrum`] (what comes out), [`library`]
+//! `decomposition` and `load_distribution` (the methods), [`curve`] and [`spectrum`] (what comes out), [`library`]
 //! (what cases share).
 
 pub mod case;
@@ -10,19 +10,20 @@ mod decomposition;
 mod estimate;
 mod flexible;
 pub mod library;
-pub mod load_distribution;
+mod load_distribution;
 mod shelf;
 pub mod spectrum;
 
-pub use case::{
-    BodyFormula, Case, Formulas, Method, PlaneState, Resolution, StiffnessRule, ToothFormula,
-};
+pub use case::{BodyFormula, Case, Formulas, Method, Resolution, StiffnessRule, ToothFormula};
 pub use curve::{Analysis, Curve, ErrorEstimate, Evidence, Statistics, Warning};
 pub use estimate::{Estimate, estimate};
 pub use library::Library;
+pub use load_distribution::{Formula, FormulaQuantity, FormulaRange};
 pub use shelf::ShelfUsage;
 
 pub use crate::contact::ContactSolver;
+pub use crate::gear::PlaneState;
+
 use crate::contact::{ContactError, PairModel};
 use crate::fem::tooth::FARTHEST_COUPLED;
 use crate::gear::{GearPair, Member};
@@ -89,11 +90,16 @@ pub enum AnalysisError {
         /// How far apart coupled teeth stand.
         coupled: usize,
     },
-    /// A formula of the load distribution does not hold for a gear.
-    #[error("the load distribution has no formula for this pair: {reason}")]
+    /// A formula of the load distribution, far outside the range for which it was published, gives a pair of teeth no
+    /// compliance.
+    #[error("{formula} gives a pair of teeth the compliance {compliance} m/N")]
     NoFormula {
-        /// Which formula, and the number outside its range.
-        reason: String,
+        /// The formula.
+        formula: Formula,
+        /// The gear whose part it is; `None` for the pair.
+        member: Option<Member>,
+        /// What it gives, in m/N: not positive, or no number.
+        compliance: f64,
     },
     /// A grid or a factorization failed.
     #[error("the {member} gear cannot be discretized: {reason}")]
@@ -338,8 +344,12 @@ pub fn warnings(case: &Case) -> Vec<Warning> {
             period: pair.period(),
         });
     }
-    if case.method == Method::LoadDistribution && has_holes(pair) {
-        warnings.push(Warning::HolesNotSeen);
+    if case.method == Method::LoadDistribution {
+        if has_holes(pair) {
+            warnings.push(Warning::HolesNotSeen);
+        }
+        let outside = load_distribution::out_of_range(case);
+        warnings.extend(outside.into_iter().map(Warning::FormulaRange));
     }
     warnings
 }

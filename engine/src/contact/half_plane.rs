@@ -1,21 +1,23 @@
-//! The local deformation of a flank: the half plane under cells of uniform pressure.
+//! The local deformation of a flank: the half plane under cells of uniform pressure, and under Hertz's.
 
 use std::f64::consts::PI;
 
 use crate::gear::SpurGear;
 
-/// The factor c = 2/(π E b) of the logarithm in the compliance of a half plane in plane stress: u = −c F ln|x| + constant.
-pub fn logarithm_factor(youngs_modulus: f64, thickness: f64) -> f64 {
-    2.0 / (PI * youngs_modulus * thickness)
+/// The factor c = 2/(π E' b) of the logarithm in the compliance of a half plane: u = −c F ln|x| + constant.
+///
+/// E' is Young's modulus in plane stress, E/(1 − ν²) in plane strain.
+pub fn logarithm_factor(plane_modulus: f64, thickness: f64) -> f64 {
+    2.0 / (PI * plane_modulus * thickness)
 }
 
-/// The half-width a of the contact of two cylinders of plane stress under `load`, and its peak pressure.
+/// The half-width a of the contact of two cylinders under `load`, and its peak pressure.
 ///
 /// With the sum c_1 + c_2 of the logarithm `factors` of both bodies over the face `width` on which they touch,
-/// a² = 2 F ρ (c_1 + c_2), and p_0 = 2F/(π a b) (Hertz).
+/// a² = 2 F ρ (c_1 + c_2), and p_0 = 2F/(π a b) = a/(π b ρ (c_1 + c_2)) (Hertz). Both vanish with the load.
 pub fn hertz(load: f64, radius: f64, factors: f64, width: f64) -> (f64, f64) {
     let a = (2.0 * load * radius * factors).sqrt();
-    (a, 2.0 * load / (PI * a * width))
+    (a, a / (PI * width * radius * factors))
 }
 
 /// How one gear gives way near a load on its flank, beyond what is smooth on the scale of its tooth.

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::involute::involute_function;
 use super::rack::Trochoid;
-use super::{Blank, HolePattern, Involute, Rack, ReliefShape, ReliefStart, TipRelief};
+use super::{Blank, HolePattern, Involute, Material, Rack, ReliefShape, ReliefStart, TipRelief};
 use crate::quadrature::gauss_legendre_panels;
 use crate::root_finding::bisect;
 
@@ -16,17 +16,6 @@ pub const LEAST_TIP_THICKNESS: f64 = 0.05;
 
 /// The least rim between the bore and the root circle, in modules.
 pub const LEAST_RIM: f64 = 1.0;
-
-/// An elastic material.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Material {
-    /// Young's modulus E in pascals.
-    pub youngs_modulus: f64,
-    /// Poisson's ratio ν.
-    pub poisson_ratio: f64,
-    /// The density in kg/m³.
-    pub density: f64,
-}
 
 /// A tip relief as a drawing gives it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -443,13 +432,14 @@ impl SpurGear {
     fn largest_addendum(&self) -> f64 {
         let r_0 = self.reference_radius() + self.profile_shift_length();
         let least = LEAST_TIP_THICKNESS * self.data.rack.module;
+        let thick_enough = |addendum: f64| {
+            let r_a = r_0 + addendum;
+            2.0 * r_a * self.flank.half_angle(r_a) >= least
+        };
         bisect(
             self.form_radius() - r_0,
             self.data.rack.addendum,
-            |addendum| {
-                let r_a = r_0 + addendum;
-                2.0 * r_a * self.flank.half_angle(r_a) >= least
-            },
+            thick_enough,
         )
     }
 
