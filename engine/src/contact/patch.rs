@@ -140,16 +140,16 @@ impl Facing<'_> {
         let normal = (sight.normal - place.normal).normalize();
         let on_seat = [-normal.dot(&place.normal), -normal.dot(&place.to_tip)];
         let on_mate = [normal.dot(&sight.normal), normal.dot(&sight.to_tip())];
-        // The driven gear is pressed away from the driving flank.
-        let push = match self.seat {
-            Member::Driving => -normal,
-            Member::Driven => normal,
+        // The driven gear is pressed away from the driving flank, where its own flank stands.
+        let (at, push) = match self.seat {
+            Member::Driving => (place.point - sight.gap * sight.normal, -normal),
+            Member::Driven => (place.point, normal),
         };
         Some(Cell {
             roll_lengths: self.on_both(here.roll_length, sight.roll_length),
             directions: self.on_both(on_seat, on_mate),
             gap: f64::midpoint(before, after),
-            arm: self.placement().arm(place.point, push),
+            arm: self.placement().arm(at, push),
         })
     }
 }
