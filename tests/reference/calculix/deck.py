@@ -86,7 +86,7 @@ def write_deck(path, pair, grids, pairs, forces, contact_stiffness, printed=()):
         for force in forces:
             out.write("*STEP, INC=60\n*STATIC\n1., 1., 1e-4, 1.\n")
             # CalculiX's own 0.5 % of residual leaves the active contact points of a corner undecided.
-            out.write("*CONTROLS, PARAMETERS=FIELD\n1e-5, 1e-4, , , 2e-2, 1e-5, 1e-3, 1e-8\n")
+            out.write("*CONTROLS, PARAMETERS=FIELD\n1e-5, 1e-3, , , 2e-2, 1e-5, 1e-3, 1e-8\n")
             out.write(f"*CLOAD\n{hub}, 1, {number(force / pair.face_width)}\n")
             out.write("*NODE PRINT, NSET=HUB, FREQUENCY=999\nU\n")
             for name, _, _ in printed:

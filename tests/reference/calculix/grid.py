@@ -13,7 +13,9 @@ from gears import polar, rotate
 
 
 # The angle by which a curve may turn along one edge.
-LARGEST_TURN = pi / 5
+LARGEST_TURN = pi / 6
+# Below this least Jacobian over twice the straight area a triangle counts as folded.
+LEAST_JACOBIAN = 0.05
 
 
 @dataclass
@@ -158,8 +160,34 @@ def tooth_curves(gear, tooth, angle, center):
     return curves
 
 
-def gear_grid(pair, which, eta, sizes, extra_turn=0.0):
-    """The grid of gear `which` of the pair at mesh position eta, turned counter-clockwise by `extra_turn`."""
+def gear_grid(pair, which, eta, sizes, fine_teeth, extra_turn=0.0):
+    """The grid of gear `which` of the pair at mesh position eta, turned counter-clockwise by `extra_turn`.
+
+    A curved edge can fold its triangle, usually at a sharp fillet. There the grid is made finer on the teeth (by number)
+    that have to be true, and the edge straight on the others.
+    """
+    for _ in range(20):
+        grid = divided(pair, which, eta, sizes, extra_turn)
+        straighten(grid, fine_teeth)
+        folded = np.flatnonzero(relative_jacobians(grid) < LEAST_JACOBIAN)
+        if not len(folded):
+            return grid
+        for corners in grid.nodes[grid.triangles[folded, :3]]:
+            reach = np.hypot(*(corners - corners.mean(axis=0)).T).max()
+            sizes.add(corners.mean(axis=0), reach, 0.6 * reach)
+    raise RuntimeError(f"triangles at {grid.nodes[grid.triangles[folded, 0]]} stay folded")
+
+
+def straighten(grid, fine_teeth):
+    """Moves the middles of edges that fold a triangle onto their chords, except on the given teeth."""
+    folded = set(np.flatnonzero(relative_jacobians(grid) < LEAST_JACOBIAN))
+    for edge in grid.edges:
+        ends = key(*edge.ends)
+        if edge.tooth is not None and edge.tooth not in fine_teeth and any(t in folded for t, _ in grid.sides[ends]):
+            grid.nodes[grid.middles[ends]] = (grid.nodes[ends[0]] + grid.nodes[ends[1]]) / 2
+
+
+def divided(pair, which, eta, sizes, extra_turn):
     gear, center = pair.gears[which], pair.centers[which]
     outline = Outline(sizes)
     # Tooth n of the driving gear lies clockwise of tooth 0, that of the driven gear counter-clockwise.
@@ -266,22 +294,22 @@ def second_order(outline, nodes, corners, regions):
     missing = [edge for edge in outline.edges if key(*edge.ends) not in sides]
     if missing:
         raise RuntimeError(f"gmsh lost {len(missing)} edges of the outline")
-    grid = Grid(np.array(points), np.array(triangles), regions, outline.edges, middles, sides)
-    if (worst := least_jacobian(grid)) <= 0.05:
-        raise RuntimeError(f"a triangle is nearly folded: least relative Jacobian {worst:.3f}")
-    return grid
+    return Grid(np.array(points), np.array(triangles), regions, outline.edges, middles, sides)
 
 
-def least_jacobian(grid):
-    """The least Jacobian at the corners and middles of all triangles, over twice their straight area."""
+def relative_jacobians(grid):
+    """The least Jacobian of each triangle over its corners and middles, over twice its straight area."""
     x = grid.nodes[grid.triangles]
-    straight = np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0])
-    worst = np.inf
+    straight = cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0])
+    relative = []
     for r, s in ((0, 0), (1, 0), (0, 1), (0.5, 0), (0.5, 0.5), (0, 0.5)):
-        d = shape_gradients(r, s)
-        j = np.einsum("kd,ekx->edx", d, x)
-        worst = min(worst, float(np.min(np.cross(j[:, 0], j[:, 1]) / straight)))
-    return worst
+        j = np.einsum("kd,ekx->edx", shape_gradients(r, s), x)
+        relative.append(cross(j[:, 0], j[:, 1]) / straight)
+    return np.min(relative, axis=0)
+
+
+def cross(a, b):
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
 def shape_gradients(r, s):

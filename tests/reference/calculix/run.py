@@ -25,7 +25,8 @@ def solve_and_keep(name, eta, refinement, work):
         return json.loads(kept.read_text())
     options = series.options.refined(refinement)
     try:
-        position = solve_position(series.pair, eta, series.torques, options, folder, stress=series.stress)
+        every = series.positions.index(eta) % series.stiffness_every == 0 or eta == series.check_at
+        position = solve_position(series.pair, eta, series.torques, options, folder, every, series.stress)
     except Exception as error:
         # A position without a solution is said, not dropped.
         position = {"mesh_position": eta, "loads": [], "converged": False, "error": str(error)}

@@ -21,18 +21,18 @@ class Options:
     """How a position is divided and solved; lengths in millimeters."""
 
     # Element size at the contacts and at the fillets of loaded teeth, of unloaded teeth, in the body, at holes and webs.
-    contact: float = 0.025
-    fillet: float = 0.18
-    tooth: float = 1.6
+    contact: float = 0.03
+    fillet: float = 0.25
+    tooth: float = 2.5
     body: float = 3.0
     holes: float = 1.4
-    growth: float = 0.35
+    growth: float = 0.5
     # Half the length of flank that is divided finely.
-    strip: float = 0.35
+    strip: float = 0.32
     # Pairs whose rigid gap is smaller can come into contact.
     reach: float = 0.03
     # Rigid overlap of the first pair at the start, so that load control begins in contact; it is added to the result.
-    overlap: float = 0.0008
+    overlap: float = 0.0004
     # Penalty, MPa/mm.
     contact_stiffness: float = 1e8
     # Extra discs of fine grid for stress: size along the loaded fillets of loaded teeth.
@@ -93,7 +93,8 @@ def prepare(pair, eta, options):
     grids = []
     for which in (0, 1):
         sizes = sizes_for(pair, which, eta, near, options, first_gap)
-        grids.append(gear_grid(pair, which, eta, sizes, extra_turn=which * built_in / pair.driven.rb))
+        loaded = {n % pair.gears[which].z for n in near}
+        grids.append(gear_grid(pair, which, eta, sizes, loaded, extra_turn=which * built_in / pair.driven.rb))
     return Position(grids, near, built_in)
 
 
@@ -106,15 +107,19 @@ def run_ccx(folder, name):
     return "Job finished" in log, len(re.findall(r"^ iteration ", log, re.M))
 
 
-def solve_position(pair, eta, torques, options, folder, stress=False):
-    """Solves one position at each torque (N m) and at its step. A dictionary as it stands in the result files."""
+def solve_position(pair, eta, torques, options, folder, stiffness=True, stress=False):
+    """Solves one position at each torque (N m) and, for the stiffness, at its step.
+
+    Returns a dictionary as it stands in the result files.
+    """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     position = prepare(pair, eta, options)
     pairs = list(position.near)
     torques = sorted(torques)
     rb2 = pair.driven.rb
-    forces = [factor * torque * 1e3 / rb2 for torque in torques for factor in (1.0, STEP)]
+    factors = (1.0, STEP) if stiffness else (1.0,)
+    forces = [factor * torque * 1e3 / rb2 for torque in torques for factor in factors]
     printed = []
     if stress:
         from stress import fillet_sets
@@ -139,21 +144,22 @@ def solve_position(pair, eta, torques, options, folder, stress=False):
         "converged": finished and len(steps) == len(forces),
     }
     for k, torque in enumerate(torques):
-        if len(steps) <= 2 * k:
+        first = k * len(factors)
+        if len(steps) <= first:
             break
-        at = steps[2 * k]
+        force, at = forces[first], steps[first]
         delta = position.built_in + at["hub"]
         load = {
             "output_torque_n_m": torque,
             "transmission_error_um": round(delta * 1e3, 4),
             "load_shares": {label(n): round(share, 4) for n, share in at["shares"].items() if share > 0},
             "largest_contact_pressure_mpa": {label(n): round(p, 1) for n, p in at["pressures"].items() if p > 0},
-            "force_balance": round(at["sum"] * pair.face_width / forces[2 * k] - 1, 6),
-            "moment_balance": round(at["moment"] * pair.face_width / (forces[2 * k] * rb2) - 1, 6),
+            "force_balance": round(at["sum"] * pair.face_width / force - 1, 6),
+            "moment_balance": round(at["moment"] * pair.face_width / (force * rb2) - 1, 6),
         }
-        if len(steps) > 2 * k + 1:
-            step = position.built_in + steps[2 * k + 1]["hub"] - delta
-            load["stiffness_step_2_percent_n_per_um"] = round((forces[2 * k + 1] - forces[2 * k]) / step * 1e-3, 2)
+        if stiffness and len(steps) > first + 1:
+            step = position.built_in + steps[first + 1]["hub"] - delta
+            load["stiffness_step_2_percent_n_per_um"] = round((STEP - 1) * force / step * 1e-3, 2)
         if stress:
             from stress import fillet_stress
 
