@@ -22,11 +22,15 @@ def region_thickness(gear, region, face_width):
 
 
 def contact_edges(grid, gear, n):
-    """Sides (triangle, side) of the loaded flank and tip of tooth n."""
+    """Sides (triangle, side) of the loaded flank of tooth n, a tip rounding included.
+
+    The tip land is left out: no pressure can act on it beyond a sharp corner, but CalculiX would find points under the
+    corner to lie under the land too, and push them out sideways.
+    """
     tooth = n % gear.z
     found = []
     for edge in grid.edges:
-        if edge.tooth == tooth and (edge.name == "tip" or edge.loaded_side and edge.name in ("flank", "rounding", "fillet")):
+        if edge.tooth == tooth and edge.loaded_side and edge.name in ("flank", "rounding", "fillet"):
             found += grid.sides[key(*edge.ends)]
     return found
 

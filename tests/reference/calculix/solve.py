@@ -118,7 +118,9 @@ def solve_position(pair, eta, torques, options, folder, stiffness=True, stress=F
     pairs = list(position.near)
     torques = sorted(torques)
     rb2 = pair.driven.rb
-    factors = (1.0, STEP) if stiffness else (1.0,)
+    # CalculiX divides the faces that touch only when a load step begins, before they slide by some micrometers; where a
+    # corner touches that matters, so the load is kept for a second step.
+    factors = (1.0, 1.0, STEP) if stiffness else (1.0, 1.0)
     forces = [factor * torque * 1e3 / rb2 for torque in torques for factor in factors]
     printed = []
     if stress:
@@ -144,10 +146,10 @@ def solve_position(pair, eta, torques, options, folder, stiffness=True, stress=F
         "converged": finished and len(steps) == len(forces),
     }
     for k, torque in enumerate(torques):
-        first = k * len(factors)
-        if len(steps) <= first:
+        settled = k * len(factors) + 1
+        if len(steps) <= settled:
             break
-        force, at = forces[first], steps[first]
+        force, at = forces[settled], steps[settled]
         delta = position.built_in + at["hub"]
         load = {
             "output_torque_n_m": torque,
@@ -157,8 +159,8 @@ def solve_position(pair, eta, torques, options, folder, stiffness=True, stress=F
             "force_balance": round(at["sum"] * pair.face_width / force - 1, 6),
             "moment_balance": round(at["moment"] * pair.face_width / (force * rb2) - 1, 6),
         }
-        if stiffness and len(steps) > first + 1:
-            step = position.built_in + steps[first + 1]["hub"] - delta
+        if stiffness and len(steps) > settled + 1:
+            step = position.built_in + steps[settled + 1]["hub"] - delta
             load["stiffness_step_2_percent_n_per_um"] = round((STEP - 1) * force / step * 1e-3, 2)
         if stress:
             from stress import fillet_stress
