@@ -174,6 +174,7 @@ def checks(series, solved, positions):
         found["grid"] = {
             "mesh_position": series.check_at,
             "refinement": series.refinement,
+            "refined_sizes": list(series.refined),
             "nodes": [grid.get("nodes") for grid in (coarse, fine)],
             "converged": fine["converged"],
             "loads": [

@@ -23,7 +23,7 @@ def solve_and_keep(name, eta, refinement, work):
     kept = folder / "position.json"
     if kept.exists():
         return json.loads(kept.read_text())
-    options = series.options.refined(refinement)
+    options = series.options.refined(refinement, series.refined)
     try:
         every = series.positions.index(eta) % series.stiffness_every == 0 or eta == series.check_at
         position = solve_position(series.pair, eta, series.torques, options, folder, every, series.stress)

@@ -12,6 +12,7 @@ from deck import contact_edges, write_deck
 from gears import polar, rotate
 from grid import Sizes, gear_grid
 
+ALL_SIZES = ("contact", "fillet", "tooth", "body", "holes", "growth", "stress_fillet")
 # Solutions at T and at this many T give the stiffness.
 STEP = 1.02
 
@@ -38,10 +39,9 @@ class Options:
     # Extra discs of fine grid for stress: size along the loaded fillets of loaded teeth.
     stress_fillet: float = None
 
-    def refined(self, factor):
-        sizes = ("contact", "fillet", "tooth", "body", "holes", "stress_fillet")
-        finer = {name: getattr(self, name) / factor for name in sizes if getattr(self, name)}
-        return replace(self, growth=self.growth / factor, **finer)
+    def refined(self, factor, names=ALL_SIZES):
+        """These options with the named sizes divided by a factor."""
+        return replace(self, **{name: getattr(self, name) / factor for name in names if getattr(self, name)})
 
 
 def sizes_for(pair, which, eta, near, options, first_gap):
@@ -120,19 +120,19 @@ def solve_position(pair, eta, torques, options, folder, stiffness=True, stress=F
     rb2 = pair.driven.rb
     # CalculiX divides the faces that touch only when a load step begins, before they slide by some micrometers; where a
     # corner touches that matters, so the load is kept for a second step.
-    factors = (1.0, 1.0, STEP) if stiffness else (1.0, 1.0)
-    forces = [factor * torque * 1e3 / rb2 for torque in torques for factor in factors]
+    factors = [(1.0, False), (1.0, True), (STEP, True)][: 3 if stiffness else 2]
+    load_steps = [(factor * torque * 1e3 / rb2, sharp) for torque in torques for factor, sharp in factors]
     printed = []
     if stress:
         from stress import fillet_sets
 
         printed = fillet_sets(pair, position)
-    write_deck(folder / "p.inp", pair, position.grids, pairs, forces, options.contact_stiffness, printed)
+    write_deck(folder / "p.inp", pair, position.grids, pairs, load_steps, options.contact_stiffness, printed)
     finished, iterations = run_ccx(folder, "p")
     owners = {
         triangle: n for n in pairs for triangle, _ in contact_edges(position.grids[0], pair.driving, n)
     }
-    steps = read_steps(folder / "p.dat", pair, pairs, owners, len(forces))
+    steps = read_steps(folder / "p.dat", pair, pairs, owners, len(load_steps))
     base = int(np.floor(eta))
     label = lambda n: str(base - n)
     document = {
@@ -143,13 +143,13 @@ def solve_position(pair, eta, torques, options, folder, stiffness=True, stress=F
         "loads": [],
         "nodes": sum(len(grid.nodes) for grid in position.grids),
         "iterations": iterations,
-        "converged": finished and len(steps) == len(forces),
+        "converged": finished and len(steps) == len(load_steps),
     }
     for k, torque in enumerate(torques):
         settled = k * len(factors) + 1
         if len(steps) <= settled:
             break
-        force, at = forces[settled], steps[settled]
+        force, at = load_steps[settled][0], steps[settled]
         delta = position.built_in + at["hub"]
         load = {
             "output_torque_n_m": torque,
