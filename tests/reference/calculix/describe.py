@@ -1,5 +1,7 @@
 """The result file of a series: provenance, inputs (also as a submission of the service), positions, checks."""
 
+import json
+import re
 from dataclasses import asdict
 from math import sqrt
 
@@ -62,6 +64,8 @@ def gear_inputs(gear):
         "ra": gear.ra,
         "rf": gear.rf,
         "bore": gear.bore,
+        "E_MPa": gear.youngs_modulus,
+        "nu": gear.poisson_ratio,
         "relief": gear.relief
         and {
             "Ca": gear.relief.amount,
@@ -173,15 +177,17 @@ def checks(series, solved, positions):
         coarse, fine = solved[(series.check_at, 1.0)], solved[(series.check_at, series.refinement)]
         found["grid"] = {
             "mesh_position": series.check_at,
-            "refinement": series.refinement,
-            "refined_sizes": list(series.refined),
+            "sizes_divided_by": series.refinement,
+            "sizes": list(series.refined),
             "nodes": [grid.get("nodes") for grid in (coarse, fine)],
             "converged": fine["converged"],
-            "loads": [
-                {key: [load[key] for load in pair] for key in pair[0] if key in pair[1] and key != "fillets"}
-                for pair in zip(coarse["loads"], fine["loads"])
-            ],
+            "loads": fine["loads"],
         }
-        if series.stress and fine["loads"]:
-            found["grid"]["fillets"] = [load["fillets"] for load in fine["loads"]]
     return found
+
+
+def as_text(document):
+    """The document as JSON with one line for each list of numbers or words."""
+    text = json.dumps(document, indent=1)
+    flat = re.compile(r"\[\s*((?:[^\[\]{}]+?,\s*)*[^\[\]{}]+?)\s*\]")
+    return flat.sub(lambda found: "[" + re.sub(r",\s+", ", ", found.group(1)) + "]", text) + "\n"

@@ -9,7 +9,7 @@ import tempfile
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
-from describe import describe
+from describe import as_text, describe
 from series import all_series
 from solve import solve_position
 
@@ -68,7 +68,7 @@ def main():
     for name in arguments.names:
         solved = solve_series(series[name], arguments.processes, arguments.work)
         document = describe(series[name], solved)
-        (RESULTS / f"{name}.json").write_text(json.dumps(document, indent=1) + "\n")
+        (RESULTS / f"{name}.json").write_text(as_text(document))
 
 
 if __name__ == "__main__":
