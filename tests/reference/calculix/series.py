@@ -78,7 +78,6 @@ def all_series():
             (115.0,),
             # Two pairs between 0.166 and 0.588 of a period, one pair in the rest.
             (0.0, 0.05, 0.1, 0.14, 0.18, 0.24, 0.38, 0.52, 0.57, 0.6, 0.64, 0.7, 0.85),
-            Options(body=4.5),
             check_at=0.14,
         ),
         Series(
@@ -87,7 +86,6 @@ def all_series():
             shifted_pair(-1.1),
             (115.0,),
             (0.0, 0.1, 0.18, 0.22, 0.26, 0.3, 0.4, 0.58, 0.76, 0.84, 0.88, 0.92),
-            Options(body=4.5),
             check_at=0.26,
         ),
         materials(),
@@ -113,7 +111,7 @@ def materials():
         Pair(driving, driven, 113.0),
         (8.0,),
         spread(0.0, 0.9, 10),
-        Options(contact=0.04, strip=0.7, reach=0.15, contact_stiffness=3e6, overlap=0.002),
+        Options(body=3.0, contact=0.04, strip=0.7, reach=0.15, contact_stiffness=3e6, overlap=0.002),
         check_at=0.3,
     )
 
@@ -128,6 +126,7 @@ def contact_ratio():
         Pair(gear, replace(gear, z=61), 121.2),
         (180.0,),
         (0.0, 0.02, 0.05, 0.08, 0.14, 0.3, 0.5, 0.7, 0.92, 0.95, 0.98),
+        Options(body=3.0),
         check_at=0.05,
     )
 
@@ -140,7 +139,7 @@ def pitch_error():
         "tooth 3 of the driven gear stands 6 um of reference arc towards its loaded flank",
         standard_pair(driven=dict(pitch_deviations={3: along_base_tangent})),
         (115.0,),
-        (1.5, 2.0, 2.1, 2.2, 2.3, 2.5, 3.0, 3.5, 3.7, 3.8, 3.9),
+        (2.0, 2.1, 2.2, 2.3, 3.0, 3.7, 3.8),
         check_at=2.2,
     )
 
@@ -151,7 +150,7 @@ def web():
         "the driven gear's blank is 6 mm thick between r 20 and 42 mm",
         standard_pair(driven=dict(web=Web(20.0, 42.0, 6.0))),
         (115.0,),
-        (0.0, 0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375, 0.4375, 0.5),
+        (0.0, 0.1875, 0.25, 0.375, 0.5),
         check_at=0.25,
     )
 
@@ -164,8 +163,8 @@ def web_holes():
         "the web of calculix-web with six round holes",
         standard_pair(driven=dict(web=Web(20.0, 42.0, 6.0), holes=holes)),
         (115.0,),
-        spread(0.0, 25 - 25 / 9, 9),
-        check_at=2.75,
+        (0.0, 2.25, 4.5, 6.1875, 10.5, 15.75),
+        check_at=2.25,
     )
 
 
@@ -178,8 +177,8 @@ def four_holes():
         "four unequal holes in the driven gear, over its whole revolution",
         standard_pair(driven=dict(holes=holes)),
         (115.0,),
-        spread(0.0, 50 - 50 / 11, 11),
-        check_at=4.5625,
+        spread(0.0, 50 - 50 / 7, 7),
+        check_at=7.125,
     )
 
 
@@ -189,7 +188,7 @@ def crowning():
         "profile crowning of 8 um on both gears, as a table of 41 points; no tip relief",
         standard_pair(relief=None, crowning=0.008),
         (115.0,),
-        (0.0, 0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375, 0.4375, 0.5),
+        (0.0, 0.1875, 0.25, 0.375, 0.5),
         check_at=0.25,
     )
 

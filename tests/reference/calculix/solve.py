@@ -25,7 +25,7 @@ class Options:
     contact: float = 0.03
     fillet: float = 0.25
     tooth: float = 2.5
-    body: float = 3.0
+    body: float = 4.5
     holes: float = 1.4
     growth: float = 0.5
     # Half the length of flank that is divided finely.
