@@ -314,10 +314,12 @@ class Pair:
         return self.driven.rb * apart[k], center + polar(radii[k], np.interp(radii[k], r1, angle_about(mate)))
 
     def near_pairs(self, eta, reach):
-        """The pairs whose gap is below `reach`, as {n: (gap, point)}."""
+        """The pairs whose gap is below `reach`, as {n: (gap, point)}; none is more than a base pitch off the path."""
         near = {}
-        middle = int(np.floor(eta))
-        for n in range(middle - 3, middle + 5):
+        start, pitch, end = self.path
+        first = eta - (end - pitch) / self.pb - 1
+        last = eta + (pitch - start) / self.pb + 1
+        for n in range(int(np.ceil(first)), int(np.floor(last)) + 1):
             gap, point = self.gap(eta, n)
             if gap < reach:
                 near[n] = (gap, point)
