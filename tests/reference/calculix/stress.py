@@ -65,7 +65,7 @@ def fillet_stress(pair, position, eta, printed):
             points, stresses = np.array(points), np.array(stresses)
             start = gear.fillet(gear.alpha)
             steps = np.hypot(*np.diff(np.vstack([start, points]), axis=0).T)
-            k = int(np.argmax(np.abs(stresses)))
+            k, tensile = int(np.argmax(np.abs(stresses))), int(np.argmax(stresses))
             angle = np.degrees(np.arctan2(points[:, 1], points[:, 0]))
             found.append(
                 {
@@ -74,6 +74,8 @@ def fillet_stress(pair, position, eta, printed):
                     "largest_von_mises_mpa": round(float(abs(stresses[k])), 2),
                     "largest_at_angle_deg": round(float(angle[k]), 4),
                     "largest_at_radius_mm": round(float(np.hypot(*points[k])), 4),
+                    "largest_principal_mpa": round(float(stresses[tensile]), 2),
+                    "largest_principal_at_angle_deg": round(float(angle[tensile]), 4),
                     "angle_deg": [round(float(v), 4) for v in angle],
                     "radius_mm": [round(float(v), 4) for v in np.hypot(*points.T)],
                     "arc_from_form_circle_mm": [round(float(v), 4) for v in np.cumsum(steps)],
