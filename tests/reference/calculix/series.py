@@ -215,6 +215,7 @@ def rounding():
         standard_pair(relief=None, tip_rounding=0.2),
         (115.0,),
         (0.05, 0.1, 0.15, 0.2, 0.25, 0.3),
-        Options(contact=0.012, strip=0.25),
-        check_at=0.15,
+        # Half the contact of a rounding is 10 um wide.
+        Options(contact=0.02, strip=0.25, core=0.0025),
+        check_at=0.25,
     )

@@ -12,7 +12,7 @@ from deck import contact_edges, write_deck
 from gears import polar, rotate
 from grid import Sizes, gear_grid
 
-ALL_SIZES = ("contact", "fillet", "tooth", "body", "holes", "growth", "stress_fillet")
+ALL_SIZES = ("contact", "core", "fillet", "tooth", "body", "holes", "growth", "stress_fillet")
 # Solutions at T and at this many T give the stiffness.
 STEP = 1.02
 
@@ -30,6 +30,9 @@ class Options:
     growth: float = 0.5
     # Half the length of flank that is divided finely.
     strip: float = 0.32
+    # Element size within `core_reach` of the points of first touch, for contacts as narrow as those of a tip rounding.
+    core: float = None
+    core_reach: float = 0.04
     # Pairs whose rigid gap is smaller can come into contact.
     reach: float = 0.03
     # Rigid overlap of the first pair at the start, so that load control begins in contact; it is added to the result.
@@ -44,6 +47,17 @@ class Options:
         return replace(self, **{name: getattr(self, name) / factor for name in names if getattr(self, name)})
 
 
+def add_strip(sizes, place, profile, touch, reach, size):
+    """Discs of a size along the profile, as far as `reach` from a point."""
+    distance = np.hypot(*(profile - touch).T)
+    strip = profile[distance <= max(reach, distance.min() + 1e-9)]
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(strip, axis=0).T))])
+    spacing = 2.5 * size
+    for at in np.arange(0.0, along[-1] + spacing, spacing):
+        k = min(np.searchsorted(along, at), len(along) - 1)
+        sizes.add(place(strip[k]), 1.3 * size, size)
+
+
 def sizes_for(pair, which, eta, near, options, first_gap):
     """The size field of one gear: strips at the contacts, discs at the fillets around them, rings at holes and webs."""
     gear, center = pair.gears[which], pair.centers[which]
@@ -52,13 +66,9 @@ def sizes_for(pair, which, eta, near, options, first_gap):
     place = lambda point: center + rotate(np.asarray(point) - center, turn / gear.rb)
     for n, (_, touch) in near.items():
         profile = pair.loaded_profile(which, eta, n)
-        distance = np.hypot(*(profile - touch).T)
-        strip = profile[distance <= max(options.strip, distance.min() + 1e-9)]
-        along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(strip, axis=0).T))])
-        spacing = 2.5 * options.contact
-        for at in np.arange(0.0, along[-1] + spacing, spacing):
-            k = min(np.searchsorted(along, at), len(along) - 1)
-            sizes.add(place(strip[k]), 1.3 * options.contact, options.contact)
+        add_strip(sizes, place, profile, touch, options.strip, options.contact)
+        if options.core:
+            add_strip(sizes, place, profile, touch, options.core_reach, options.core)
     for tooth in {n + k for n in near for k in (-1, 0, 1)}:
         angle = pair.tooth_angle(which, eta, tooth)
         # The middle of the fillet, halfway between its ends in angle of its normal.
