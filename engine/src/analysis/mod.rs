@@ -167,7 +167,7 @@ fn analyze_at(
     }
 }
 
-/// The model behind the flexible method for `case`, to be asked position by position.
+/// The model behind the flexible method for `case`, to be asked position by position, with as many pairs in contact as can be followed.
 ///
 /// # Errors
 ///
@@ -176,7 +176,7 @@ pub fn pair_model(case: &Case, library: &Library, run: &Run) -> Result<PairModel
     faer::set_global_parallelism(faer::Par::Seq);
     let settings = Settings {
         level: case.resolution.grid,
-        farthest: FIRST_COUPLED,
+        farthest: FARTHEST_COUPLED,
     };
     flexible::model(case, Blanks::Flexible, settings, library, run).map(|(model, _)| model)
 }

@@ -67,8 +67,10 @@ impl<'a> Facing<'a> {
     pub fn of(gears: &'a GearPair, eta: f64, n: i64) -> Option<Self> {
         let (s_a, s_e) = gears.path_of_contact();
         let s_1 = gears.roll_length_of(eta - n as f64);
-        // Past the middle of the path of contact the contact is nearer to the driving tip, which leaves it at E.
-        let seat = if s_1 > f64::midpoint(s_a, s_e) {
+        // Past the middle of the path of contact the contact is nearer to the driving tip, which leaves it at E. A pair that stands
+        // just there is told alike however its numbers are rounded.
+        let middle = f64::midpoint(s_a, s_e) + 1e-9 * (s_e - s_a);
+        let seat = if s_1 > middle {
             Member::Driving
         } else {
             Member::Driven
@@ -105,7 +107,7 @@ impl<'a> Facing<'a> {
     }
 
     /// The same flanks, told on the other gear.
-    pub(super) fn from_mate(&self) -> Option<Self> {
+    pub(super) fn told_on_mate(&self) -> Option<Self> {
         Self::from_seat(self.gears, self.eta, self.pair, self.seat.other())
     }
 

@@ -12,13 +12,15 @@ use super::half_plane::logarithm_factor;
 use crate::fem::tooth::ToothSubstructure;
 use crate::gear::{Involute, SpurGear};
 
-/// Nodes this near to each other (four elements) see the grid rather than the body in their compliance.
-const NEAR: usize = 8;
+/// Nodes this near to each other (two elements) see the grid rather than the body in their compliance.
+const NEAR: usize = 4;
 
 /// The smooth compliance of the loaded flank of one tooth with its interface held, and its loading modes.
 #[derive(Debug, Clone)]
 pub struct FlankTable {
-    roll_lengths: Vec<f64>,
+    /// The arc length of each node from the base circle: the compliance is smooth along the flank, and not in the roll length
+    /// near the base circle.
+    arcs: Vec<f64>,
     /// R on (normal, towards the tip) of each node.
     smooth: Mat<f64>,
     /// V on the same unknowns.
@@ -63,11 +65,10 @@ impl FlankTable {
             }
         }
         let flank = *gear.flank();
-        let roll_lengths = tooth.roll_lengths.clone();
-        let arcs: Vec<f64> = roll_lengths.iter().map(|s| flank.arc_length(*s)).collect();
+        let roll_lengths = tooth.roll_lengths.iter();
+        let arcs: Vec<f64> = roll_lengths.map(|s| flank.arc_length(*s)).collect();
         let between = |one: f64, other: f64| {
-            let [one, other] =
-                [one, other].map(|arc| stencil(&roll_lengths, flank.roll_length_at_arc(arc)));
+            let [one, other] = [one, other].map(|arc| stencil(&arcs, arc));
             let mut sum = [[0.0; 2]; 2];
             for (i, weight) in one.1.into_iter().enumerate() {
                 for (j, other_weight) in other.1.into_iter().enumerate() {
@@ -81,7 +82,7 @@ impl FlankTable {
         };
         let corner = Corner::new(gear, &arcs, factor, between);
         Self {
-            roll_lengths,
+            arcs,
             smooth,
             modes: tooth.modes.clone(),
             flank,
@@ -101,12 +102,13 @@ impl FlankTable {
 
     /// The point at roll length `s`, pressed along `direction` (against the outward normal, against the way to the tip).
     pub fn point(&self, s: f64, direction: [f64; 2]) -> FlankPoint {
-        let (first, weights) = stencil(&self.roll_lengths, s);
+        let arc = self.flank.arc_length(s);
+        let (first, weights) = stencil(&self.arcs, arc);
         FlankPoint {
             first,
             weights,
             direction,
-            arc: self.flank.arc_length(s),
+            arc,
         }
     }
 
@@ -138,15 +140,15 @@ impl FlankTable {
     }
 }
 
-/// The first of the four nodes around roll length `s`, and their weights in a cubic.
-fn stencil(nodes: &[f64], s: f64) -> (usize, [f64; 4]) {
-    let after = nodes.partition_point(|&node| node < s);
+/// The first of the four of `nodes` around `x`, and their weights in a cubic.
+fn stencil(nodes: &[f64], x: f64) -> (usize, [f64; 4]) {
+    let after = nodes.partition_point(|&node| node < x);
     let first = after.saturating_sub(2).min(nodes.len() - 4);
     let stencil = &nodes[first..first + 4];
     let weights = std::array::from_fn(|i| {
         (0..4)
             .filter(|&j| j != i)
-            .map(|j| (s - stencil[j]) / (stencil[i] - stencil[j]))
+            .map(|j| (x - stencil[j]) / (stencil[i] - stencil[j]))
             .product()
     });
     (first, weights)
@@ -170,7 +172,7 @@ fn weights(points: &[FlankPoint]) -> (usize, Mat<f64>) {
 /// Replaces the entries of the symmetric table `a` near its diagonal by what its farther ones say.
 ///
 /// Along each antidiagonal the smooth part is even in the distance d between the nodes: a + b d² + c d⁴ through the
-/// distances 8, 12 and 16 bridges the nearer ones. Near the ends of the flank fewer distances fit, and the last few nodes
+/// distances 4, 8 and 12 bridges the nearer ones. Near the ends of the flank fewer distances fit, and the last few nodes
 /// continue their neighbors in a straight line.
 fn bridge_diagonal(a: &mut Mat<f64>) {
     let last = a.nrows() as i64 - 1;
@@ -245,8 +247,10 @@ mod tests {
         bridge_diagonal(&mut table);
         for i in 0..60_usize {
             for j in 0..60_usize {
-                let inside = i + j >= 16 && i + j <= 118 - 16;
-                let tolerance = if inside { 1e-10 } else { 0.1 };
+                // Where all three distances fit, the bridge is exact for this function; towards the ends fewer fit and it goes on
+                // straight, which leaves the curvature (6 of this mean's) over twelve nodes: 6/2 · 0.12² / 2 = 0.02.
+                let ends = (i + j).min(118 - i - j);
+                let tolerance = if ends >= NEAR + 9 { 1e-10 } else { 3e-2 };
                 assert!(
                     (table[(i, j)] - exact(i, j)).abs() < tolerance,
                     "({i}, {j}): {} {}",

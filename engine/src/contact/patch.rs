@@ -139,7 +139,7 @@ impl Facing<'_> {
         // Pressed together both flanks turn to a common normal between their own.
         let normal = (sight.normal - place.normal).normalize();
         let on_seat = [-normal.dot(&place.normal), -normal.dot(&place.to_tip)];
-        let on_mate = [normal.dot(&sight.normal), normal.dot(&sight.to_tip())];
+        let on_mate = [normal.dot(&sight.normal), normal.dot(&sight.tipward())];
         // The driven gear is pressed away from the driving flank, where its own flank stands.
         let (at, push) = match self.seat {
             Member::Driving => (place.point - sight.gap * sight.normal, -normal),

@@ -175,7 +175,7 @@ fn on_flanks(facing: &Facing<'_>, patch: &Patch, reach: f64, found: &mut Vec<(Ce
     let flank = facing.gears().gear(patch.seat).flank();
     for (view, count) in [
         (Some(*facing), STRETCHES[0]),
-        (facing.from_mate(), STRETCHES[1]),
+        (facing.told_on_mate(), STRETCHES[1]),
     ] {
         let Some(view) = view else { continue };
         let (low, high) = (view.range.from + half, view.range.to - half);

@@ -125,7 +125,7 @@ impl<'a> Placement<'a> {
 
 impl Sight {
     /// The way to the tip at the foot.
-    pub(super) fn to_tip(&self) -> Vector {
+    pub(super) fn tipward(&self) -> Vector {
         // An involute's normal is e_t and its tangent e_r of the same angle.
         Vector::new(self.normal.y, -self.normal.x)
     }
@@ -134,7 +134,7 @@ impl Sight {
     pub(super) fn change(&self, base_radius: f64, way: Vector) -> (f64, f64) {
         // The point stands at r_b e_r(t) + L e_t(t) of the center, L the tangent: dt = −way·e_r / L, and the gap is the
         // distance along e_t.
-        let turn = -way.dot(&self.to_tip()) / self.tangent;
+        let turn = -way.dot(&self.tipward()) / self.tangent;
         (way.dot(&self.normal), -base_radius * turn)
     }
 }

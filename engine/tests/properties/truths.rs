@@ -71,8 +71,8 @@ pub(crate) const TRUTHS: &[Truth] = &[
     },
     Truth {
         name: "the_curve_has_no_jump",
-        // A sixteenth of the step leaves at most half of the largest difference, or next to nothing of δ.
-        bound: 0.5,
+        // What a step of 1/24 mesh period leaves, as a part of δ, after fourteen halvings into the steeper half.
+        bound: 2e-4,
         figure: jump,
     },
     Truth {
@@ -84,6 +84,13 @@ pub(crate) const TRUTHS: &[Truth] = &[
         name: "both_contact_solvers_agree",
         bound: 1e-6,
         figure: between_solvers,
+    },
+    Truth {
+        name: "halving_every_element_changes_little",
+        // As parts of what the standard level may be off: 0.1 % of the mean, 1 % of the peak-to-peak or 0.1 % of the mean where
+        // that is more.
+        bound: 1.0,
+        figure: standard_beside_fine,
     },
 ];
 
@@ -317,8 +324,11 @@ fn similarity(drawn: &DrawnPair) -> Result<Option<f64>, String> {
         .map(|delta| delta / s)
         .collect();
     let stiffness: Vec<f64> = other.mesh_stiffness_tangent.iter().map(|k| k / s).collect();
+    // Gaps are differences of coordinates as large as the center distance, and no truer than those.
+    let least = scaled.iter().copied().fold(f64::INFINITY, f64::min);
+    let rounding = 4.0 * f64::EPSILON * drawn.pair.center_distance() / least;
     Ok(Some(
-        largest_difference(&one.transmission_error, &scaled)
+        (largest_difference(&one.transmission_error, &scaled) - rounding)
             .max(largest_difference(&one.mesh_stiffness_tangent, &stiffness)),
     ))
 }
@@ -468,32 +478,32 @@ fn not_monotone(drawn: &DrawnPair) -> Result<Option<f64>, String> {
 /// of δ.
 fn jump(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     const COARSE: u32 = 24;
+    const HALVINGS: u32 = 14;
     let mut case = case(&drawn.pair, &[drawn.output_torque]);
     case.resolution.positions_per_mesh_period = COARSE;
     let curve = solve(&case)?.curves.remove(0);
     let model = model(&drawn.pair)?;
     let load = drawn.pair.load(drawn.output_torque);
+    let delta = |eta| Ok::<_, String>(contact(&model, eta, load)?.transmission_error);
     let deltas = &curve.transmission_error;
     let steps: BTreeMap<u64, usize> = (0..deltas.len() - 1)
         .map(|i| ((deltas[i + 1] - deltas[i]).abs().to_bits(), i))
         .collect();
-    let mean = curve.transmission_error_statistics.mean;
     let mut worst = 0.0_f64;
-    // The two largest steps.
-    for (&bits, &i) in steps.iter().rev().take(2) {
-        let whole = f64::from_bits(bits);
-        let mut last = None;
-        for j in 0..=16 {
-            let eta = (i as f64 + f64::from(j) / 16.0) / f64::from(COARSE);
-            let delta = contact(&model, eta, load)?.transmission_error;
-            if let Some(last) = last {
-                let step: f64 = delta - last;
-                if step.abs() > 2e-3 * mean {
-                    worst = worst.max(step.abs() / whole);
-                }
+    // The two largest steps, each followed into its steeper half.
+    for &i in steps.values().rev().take(2) {
+        let mut ends = [i, i + 1].map(|i| i as f64 / f64::from(COARSE));
+        let mut values = [delta(ends[0])?, delta(ends[1])?];
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (ends[0] + ends[1]);
+            let value = delta(middle)?;
+            if (value - values[0]).abs() > (values[1] - value).abs() {
+                (ends[1], values[1]) = (middle, value);
+            } else {
+                (ends[0], values[0]) = (middle, value);
             }
-            last = Some(delta);
         }
+        worst = worst.max((values[1] - values[0]).abs() / values[0].abs());
     }
     Ok(Some(worst))
 }
@@ -550,4 +560,23 @@ fn between_solvers(drawn: &DrawnPair) -> Result<Option<f64>, String> {
         gap_tolerance: 1e-7 * least,
     };
     Ok(Some(largest_difference(&one, &delta(&other)?)))
+}
+
+fn standard_beside_fine(drawn: &DrawnPair) -> Result<Option<f64>, String> {
+    let at = |level| -> Result<Curve, String> {
+        let mut case = case(&drawn.pair, &[drawn.output_torque]);
+        case.resolution.grid = level;
+        case.resolution.positions_per_mesh_period = 16;
+        Ok(solve(&case)?.curves.remove(0))
+    };
+    let (standard, fine) = (at(GridLevel::Standard)?, at(GridLevel::Fine)?);
+    let (a, b) = (
+        standard.transmission_error_statistics,
+        fine.transmission_error_statistics,
+    );
+    let mean = (a.mean / b.mean - 1.0).abs() / 1e-3;
+    let allowed = (1e-2 * b.peak_to_peak).max(1e-3 * b.mean);
+    Ok(Some(
+        mean.max((a.peak_to_peak - b.peak_to_peak).abs() / allowed),
+    ))
 }
