@@ -8,12 +8,11 @@ use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main};
 use meshwright_engine::analysis::library::{
     blank_grid, default_interface_radius, harmonics, orders_of_blank,
 };
-use meshwright_engine::analysis::model::WarmStart;
-use meshwright_engine::analysis::phase::Phase;
 use meshwright_engine::analysis::{Case, Library, pair_model};
-use meshwright_engine::contact::flank::FlankTable;
-use meshwright_engine::contact::patch::Approach;
-use meshwright_engine::contact::solve_active_set;
+use meshwright_engine::contact::WarmStart;
+use meshwright_engine::contact::facing::Facing;
+use meshwright_engine::contact::flank_table::FlankTable;
+use meshwright_engine::contact::{Stage, solve_active_set};
 use meshwright_engine::fem::blank::BlankSubstructure;
 use meshwright_engine::fem::body::Coupling;
 use meshwright_engine::fem::tooth::{TeethRing, ToothSubstructure};
@@ -57,7 +56,7 @@ fn gears(criterion: &mut Criterion) {
             bencher.iter(|| black_box(ToothSubstructure::new(gear, &grid)));
         });
         group.bench_function("tooth: flank table", |bencher| {
-            bencher.iter(|| black_box(FlankTable::new(&tooth, material, width)));
+            bencher.iter(|| black_box(FlankTable::new(&tooth, gear)));
         });
         let ring = TeethRing::new(&tooth, orders, &run).expect("a ring");
         group.bench_function("teeth: ring", |bencher| {
@@ -83,16 +82,16 @@ fn gears(criterion: &mut Criterion) {
         });
         let above = ring.above(low, &solid, &run).expect("a ring");
         group.bench_function("gear: teeth and blank joined", |bencher| {
-            bencher.iter(|| black_box(Coupling::on_blank(&above, &blank, 0.0, &run)));
+            bencher.iter(|| black_box(Coupling::on_blank(&above, &blank, 0.0, 4, &run)));
         });
         group.finish();
     }
 }
 
 /// The pairs to either side of position `eta` that may touch.
-fn approaches(case: &Case, eta: f64) -> Vec<Approach> {
+fn facings(case: &Case, eta: f64) -> Vec<Facing<'_>> {
     (-3..=4)
-        .filter_map(|n| Approach::of(&case.pair, eta, n))
+        .filter_map(|n| Facing::of(&case.pair, eta, n))
         .collect()
 }
 
@@ -104,16 +103,16 @@ fn positions(criterion: &mut Criterion) {
         let mut group = group(criterion, &format!("case {number}, one position"));
         for (eta, pairs) in [(0.05, "one pair"), (0.5, "two pairs")] {
             group.bench_function(format!("{pairs}: detection"), |bencher| {
-                bencher.iter(|| black_box(approaches(&case, eta)));
+                bencher.iter(|| black_box(facings(&case, eta)));
             });
             let mut warm = WarmStart::default();
-            let touch = model.touch(eta, load, &mut warm).expect("contact");
-            let touching = touch.solution.active.clone();
+            let cells = model.cells(eta, load, &mut warm).expect("contact");
+            let touching = cells.solution.active.clone();
             group.bench_function(format!("{pairs}: contact solve, cold"), |bencher| {
-                bencher.iter(|| black_box(solve_active_set(&touch.problem, load, None)));
+                bencher.iter(|| black_box(solve_active_set(&cells.problem, load, None)));
             });
             group.bench_function(format!("{pairs}: contact solve, warm"), |bencher| {
-                bencher.iter(|| black_box(solve_active_set(&touch.problem, load, Some(&touching))));
+                bencher.iter(|| black_box(solve_active_set(&cells.problem, load, Some(&touching))));
             });
             group.bench_function(format!("{pairs}: all of it, cold"), |bencher| {
                 bencher.iter(|| black_box(model.contact(eta, load, &mut WarmStart::default())));
@@ -122,14 +121,14 @@ fn positions(criterion: &mut Criterion) {
                 bencher.iter(|| black_box(model.contact(eta, load, &mut warm)));
             });
             // A curve meets the same fraction of the mesh period once in every mesh period.
-            let mut phase = Phase::new(&model, eta, load).expect("flanks come near");
+            let mut stage = Stage::new(&model, eta, load).expect("flanks come near");
             let (mut period, periods) = (0, i64::from(case.pair.period()));
             group.bench_function(
                 format!("{pairs}: all of it, a further mesh period"),
                 |bencher| {
                     bencher.iter(|| {
                         period = (period + 1) % periods;
-                        black_box(phase.contact(period, &mut warm, |_, _| ()))
+                        black_box(stage.contact(period, &mut warm, |_, _| ()))
                     });
                 },
             );

@@ -27,7 +27,7 @@
 //!    and w: an exact active set and the augmented Lagrangian of eq. 7.
 //! 5. **Methods** ([`analysis`]). Flexible (section 2 of the paper), decomposition (section 3, eqs. 9 to 15), projected
 //!    decomposition (ours), and the classical load distribution (eqs. 4 and 5) from closed-form compliances
-//!    ([`analysis::load_distribution`]).
+//!    (`analysis::load_distribution`).
 //!
 //! *Mesh* always means gear teeth in engagement; finite elements live on a [`grid::Grid`].
 //!
@@ -39,4 +39,5 @@ pub mod fem;
 pub mod gear;
 pub mod grid;
 pub mod quadrature;
+pub mod root_finding;
 pub mod run;

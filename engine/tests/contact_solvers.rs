@@ -62,7 +62,7 @@ fn mean_logarithm(places_apart: usize, cell: f64) -> f64 {
 
 /// The local compliance of two equal half-planes in plane stress, cells of width `cell` apart, in m/N.
 ///
-/// -2/(pi E* b) ln(|x| / length) with E* = E/2; `length` sets the depth that the approach is measured to.
+/// -2/(pi E* b) ln(|x| / length) with E* = E/2; `length` sets the depth that delta is measured to.
 fn half_planes(places_apart: usize, cell: f64, length: f64) -> f64 {
     -4.0 / (PI * YOUNG * WIDTH) * (mean_logarithm(places_apart, cell) - length.ln())
 }
@@ -125,13 +125,13 @@ fn without_count(solution: ContactSolution) -> ContactSolution {
 /// Refuses a solution that breaks eqs. (4) to (6), recomputed here by plain sums.
 fn assert_signorini(problem: &ContactProblem, load: f64, solution: &ContactSolution) {
     let (h, g_0, w) = (problem.compliance(), problem.gaps(), problem.arms());
-    let (p, delta) = (&solution.forces, solution.approach);
+    let (p, delta) = (&solution.forces, solution.transmission_error);
     let carried: f64 = w.iter().zip(p).map(|(w, p)| w * p).sum();
     assert!((carried - load).abs() <= 1e-12 * load);
     for j in 0..p.len() {
         let deformation: f64 = (0..p.len()).map(|i| h[(j, i)] * p[i]).sum();
         let gap = deformation + g_0[j] - delta * w[j];
-        // 1e-12 of the approach is the tolerance of the signs, with rounding to spare.
+        // 1e-12 of delta is the tolerance of the signs, with rounding to spare.
         assert!(gap >= -2e-12 * delta, "gap {gap} at {delta}");
         assert!(p[j] >= 0.0);
         assert!((p[j] * gap).abs() <= 1e-12 * load * delta);
@@ -153,7 +153,10 @@ fn the_solvers_agree_on_500_random_problems_and_both_obey_signorini() {
             solve_augmented_lagrangian(&problem, load, &STIFF).expect("a sound problem");
         assert_signorini(&problem, load, &exact);
 
-        assert!((augmented.approach - exact.approach).abs() <= 1e-6 * exact.approach);
+        assert!(
+            (augmented.transmission_error - exact.transmission_error).abs()
+                <= 1e-6 * exact.transmission_error
+        );
         assert!((augmented.stiffness - exact.stiffness).abs() <= 1e-6 * exact.stiffness);
         assert!(
             largest_difference(&augmented.forces, &exact.forces) <= 1e-6 * largest(&exact.forces)
@@ -164,7 +167,7 @@ fn the_solvers_agree_on_500_random_problems_and_both_obey_signorini() {
 }
 
 #[test]
-fn a_soft_penalty_takes_more_updates_and_ends_at_the_same_approach() {
+fn a_soft_penalty_takes_more_updates_and_ends_at_the_same_delta() {
     let mut numbers = Numbers(7);
     for _ in 0..20 {
         let (problem, load) = random_problem(&mut numbers);
@@ -179,9 +182,9 @@ fn a_soft_penalty_takes_more_updates_and_ends_at_the_same_approach() {
             let augmented =
                 solve_augmented_lagrangian(&problem, load, &settings).expect("a sound problem");
             updates.push(augmented.multiplier_updates);
-            // A gap of 1e-12 m at every point would shift the approach by as much.
+            // A gap of 1e-12 m at every point would shift delta by as much.
             assert!(
-                (augmented.approach - exact.approach).abs() <= 1e-12,
+                (augmented.transmission_error - exact.transmission_error).abs() <= 1e-12,
                 "penalty {penalty}"
             );
         }
@@ -196,8 +199,8 @@ fn a_soft_penalty_takes_more_updates_and_ends_at_the_same_approach() {
 struct Looseness {
     /// Updates of the multipliers, at most.
     updates: u32,
-    /// Error of the approach, in m.
-    approach: f64,
+    /// Error of delta, in m.
+    delta: f64,
     /// Error of a force, over the largest force.
     force: f64,
     /// Problems whose tangent stiffness is that of another contact.
@@ -212,7 +215,7 @@ fn looseness_of_the_papers_tolerance(penalty: f64) -> Looseness {
     };
     let mut worst = Looseness {
         updates: 0,
-        approach: 0.0,
+        delta: 0.0,
         force: 0.0,
         wrong_contacts: 0,
     };
@@ -223,7 +226,9 @@ fn looseness_of_the_papers_tolerance(penalty: f64) -> Looseness {
         let loose = solve_augmented_lagrangian(&problem, load, &settings).expect("a sound problem");
         let force = largest_difference(&exact.forces, &loose.forces) / largest(&exact.forces);
         worst.updates = worst.updates.max(loose.multiplier_updates);
-        worst.approach = worst.approach.max((loose.approach - exact.approach).abs());
+        worst.delta = worst
+            .delta
+            .max((loose.transmission_error - exact.transmission_error).abs());
         worst.force = worst.force.max(force);
         worst.wrong_contacts += usize::from(loose.active != exact.active);
     }
@@ -235,18 +240,18 @@ fn with_the_papers_penalty_its_tolerance_changes_nothing() {
     // 1e17 N/m leaves p / kappa < 1e-12 m under these loads: the first multipliers pass any tolerance in use.
     let worst = looseness_of_the_papers_tolerance(1e17);
     assert_eq!((worst.updates, worst.wrong_contacts), (1, 0));
-    assert!(worst.approach < 1e-12, "{}", worst.approach);
+    assert!(worst.delta < 1e-12, "{}", worst.delta);
     assert!(worst.force < 1e-6, "{}", worst.force);
 }
 
 #[test]
 fn with_a_moderate_penalty_the_papers_tolerance_costs_nanometers_and_the_edge_of_the_contact() {
-    // 1e10 N/m is about a hundred times as stiff as a mesh. The approach is off by up to 9.3 nm, which is the tolerance
+    // 1e10 N/m is about a hundred times as stiff as a mesh. Delta is off by up to 9.3 nm, which is the tolerance
     // (10 nm) and 1 % of a peak-to-peak of 1 um; forces by up to 13 % of the largest; and in 19 of the 200 problems, most
     // of them with few points in contact, a point at the edge touches that should not, and k with it.
     let worst = looseness_of_the_papers_tolerance(1e10);
     assert!(worst.updates <= 4, "{}", worst.updates);
-    assert!((1e-9..1e-8).contains(&worst.approach), "{}", worst.approach);
+    assert!((1e-9..1e-8).contains(&worst.delta), "{}", worst.delta);
     assert!((0.05..0.2).contains(&worst.force), "{}", worst.force);
     assert!(
         (10..40).contains(&worst.wrong_contacts),
@@ -286,7 +291,7 @@ fn a_right_warm_start_takes_one_system() {
 }
 
 #[test]
-fn the_stiffness_is_the_slope_of_load_over_approach_while_the_set_holds() {
+fn the_stiffness_is_the_slope_of_load_over_delta_while_the_set_holds() {
     let mut numbers = Numbers(5);
     let mut held = 0;
     for _ in 0..200 {
@@ -296,9 +301,9 @@ fn the_stiffness_is_the_slope_of_load_over_approach_while_the_set_holds() {
         let after = solve_active_set(&problem, load + step, None).expect("a sound problem");
         if before.active == after.active {
             held += 1;
-            // On one set the approach is linear in the load; rounding of the approach counts 1e4-fold, and more
+            // On one set delta is linear in the load; rounding of delta counts 1e4-fold, and more
             // where a small load has to close a wide gap first.
-            let slope = step / (after.approach - before.approach);
+            let slope = step / (after.transmission_error - before.transmission_error);
             assert!((slope - before.stiffness).abs() <= 1e-6 * before.stiffness);
             for ((p, p_after), q) in before
                 .forces
@@ -332,7 +337,7 @@ fn more_load_brings_the_bodies_closer() {
                 solve_active_set(&problem, load, warm.as_ref().map(|last| &last.active[..]))
                     .expect("a sound problem");
             if let Some(last) = &warm {
-                assert!(solution.approach > last.approach);
+                assert!(solution.transmission_error > last.transmission_error);
             }
             warm = Some(solution);
         }

@@ -120,7 +120,7 @@ impl PairGeometry {
             base_pitch_mm: to_mm(pair.base_pitch()),
             period_mesh_periods: pair.period(),
             backlash_mm: to_mm(pair.backlash()),
-            contact_width_mm: to_mm(pair.contact_width()),
+            contact_width_mm: to_mm(pair.common_face_width()),
             path_of_contact: PathOfContact::of(pair),
             driving: GearGeometry::of(pair, Member::Driving),
             driven: GearGeometry::of(pair, Member::Driven),

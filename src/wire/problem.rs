@@ -74,7 +74,7 @@ codes! {
     NotConverged "not-converged" 422 "The contact did not converge"
         "The contact solver did not meet its tolerance at a position, which the detail names with the residual gap, or no flanks came near each other there. A larger gap tolerance, another penalty or the active set helps where the augmented Lagrangian was asked for."
     NoFormula "no-formula" 422 "A formula does not hold for this pair"
-        "The load distribution takes its compliances from published formulas, and one of them does not hold for this pair; the detail says which and why. Another choice under resolution.load_distribution may hold, and the flexible method knows no such bounds."
+        "The load distribution takes its compliances from published formulas. One of them is so far outside its range that it gives no positive compliance; the detail says which. Another choice under resolution.load_distribution may hold, and the flexible method knows no such bounds. Where a formula is outside its range and still gives a compliance, there are results, with the warning formula_range."
     DiscretizationFailed
         "discretization-failed" 422 "A gear could not be divided into elements"
         "The finite-element grid of a gear, or a factorization on it, failed; the detail says where. Proportions far from the usual do that: very thin ligaments, very small holes. Another grid level may help."

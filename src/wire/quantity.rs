@@ -181,7 +181,7 @@ pub(super) const RACK_TIP_RADIUS: Quantity = needed(
     "Tip rounding of the basic rack",
     "mm",
     (0.005, 50.0),
-    "The radius of the rack's tip rounding, which generates the fillet. At least 0.05 modules, and it has to fit between the rack's flanks.",
+    "The radius of the rack's tip rounding, which generates the fillet. At least 0.05 modules, and it has to fit between the rack's flanks; where the default does not, the largest that does is taken.",
 )
 .or(Preset::Modules(0.38));
 

@@ -65,7 +65,7 @@ impl Choice for ToothFormula {
         (
             "iso_6336",
             Self::Iso6336,
-            "the single stiffness of ISO 6336-1, which contains body and local deformation",
+            "the theoretical single stiffness of ISO 6336-1 (method B) with its factors for rack and material, without its empirical ones (C_M, low line loads); contains body and local deformation",
         ),
     ];
 }
@@ -251,7 +251,7 @@ documented!(
             schema::choice(
                 "plane_state",
                 "Plane state",
-                "The plane state of the local deformation.",
+                "The plane state of tooth, half plane and local deformation.",
                 Some(PlaneState::Stress)
             ),
         ]

@@ -2,7 +2,9 @@
 
 use meshwright_engine::analysis::curve::{BlankFit, DecompositionParts, ErrorEstimate};
 use meshwright_engine::analysis::spectrum::Spectrum;
-use meshwright_engine::analysis::{Analysis, Case, Curve, Method, Statistics};
+use meshwright_engine::analysis::{
+    Analysis, BodyFormula, Case, Curve, Formulas, Method, Statistics, ToothFormula,
+};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
@@ -10,7 +12,7 @@ use utoipa::ToSchema;
 use super::geometry::{Frequencies, PairGeometry};
 use super::problem::{Code, Problem};
 use super::submission::{SOLVER_VERSION, Submission};
-use super::units::{rounded_json, to_mm, to_mpa, to_um};
+use super::units::{or_null, rounded_json, to_mm, to_mpa, to_um};
 use super::warning::{GearName, WarningDocument};
 
 /// What a submission comes to. It is bit-identical for the same input and version.
@@ -54,8 +56,9 @@ pub struct CurveDocument {
     pub mesh_stiffness_secant_n_per_m: Vec<f64>,
     /// The number of tooth pairs that carry load.
     pub pairs_in_contact: Vec<u32>,
-    /// The largest contact pressure, in MPa.
-    pub peak_contact_pressure_mpa: Vec<f64>,
+    /// The largest contact pressure, in MPa; null where a sharp tip corner carries, at which it has no limit.
+    #[serde(serialize_with = "or_null")]
+    pub peak_contact_pressure_mpa: Vec<Option<f64>>,
     /// The share of the load on each pair that ever carries any, by rising offset.
     pub load_shares: Vec<LoadShareDocument>,
     /// Statistics over the span.
@@ -314,7 +317,11 @@ impl CurveDocument {
             mesh_stiffness_tangent_n_per_m: curve.mesh_stiffness_tangent.clone(),
             mesh_stiffness_secant_n_per_m: curve.mesh_stiffness_secant.clone(),
             pairs_in_contact: curve.pairs_in_contact.clone(),
-            peak_contact_pressure_mpa: each(&curve.peak_contact_pressure, to_mpa),
+            peak_contact_pressure_mpa: curve
+                .peak_contact_pressure
+                .iter()
+                .map(|pressure| pressure.map(to_mpa))
+                .collect(),
             load_shares: curve
                 .load_shares
                 .iter()
@@ -425,7 +432,7 @@ impl EvidenceDocument {
             stiffness_rule: submission.resolution().stiffness_in_words(),
             resolution: without_nulls(submission),
             definitions: DEFINITIONS.to_vec(),
-            does_not_see: does_not_see(submission.case().method),
+            does_not_see: does_not_see(submission.case()),
             error_estimate: evidence
                 .error_estimate
                 .as_ref()
@@ -455,27 +462,54 @@ impl ErrorEstimateDocument {
     }
 }
 
-/// What `method` leaves out.
-fn does_not_see(method: Method) -> Vec<&'static str> {
+/// What the method of `case` leaves out.
+fn does_not_see(case: &Case) -> Vec<&'static str> {
     const ALWAYS: [&str; 4] = [
         "inertia and damping: the analysis is quasi-static",
         "friction between the flanks",
         "anything that varies across the face width: misalignment, crowning, helix; the model is plane",
         "shafts, bearings and housing: both hubs are rigid and their axes fixed",
     ];
-    let own: &[&str] = match method {
-        Method::Flexible => &[],
-        Method::Decomposition => &[
+    let own: Vec<&str> = match case.method {
+        Method::Flexible => vec![],
+        Method::Decomposition => vec![
             "sidebands of the holes about the mesh orders in the transmission error: each blank's rotation is fitted by its mean and one harmonic",
             "what the holes change in the load sharing between pairs",
         ],
-        Method::ProjectedDecomposition => &[
+        Method::ProjectedDecomposition => vec![
             "what the fluctuation of the holed blanks changes in the load sharing between pairs, beyond first order",
         ],
-        Method::LoadDistribution => &[
-            "holes: the bodies are solid",
-            "contact off the theoretical line of action, at tip corners",
-            "the body that neighboring pairs share: each pair carries a body compliance of its own",
+        Method::LoadDistribution => formulas_do_not_see(case.resolution.formulas),
+    };
+    ALWAYS.into_iter().chain(own).collect()
+}
+
+/// What the load distribution by `formulas` leaves out.
+fn formulas_do_not_see(formulas: Formulas) -> Vec<&'static str> {
+    const ALWAYS: [&str; 4] = [
+        "holes: the bodies are solid",
+        "contact off the theoretical line of action, at tip corners, and on it the way of the contact along the flank under load or relief",
+        "the body that neighboring pairs share: each pair carries a body compliance of its own",
+        "its own error: formulas have no grid, so that an error_estimate has nothing to refine",
+    ];
+    const OF_PARTS: &str = "that a wider gear is loaded on a part of its width: its teeth and body yield as if loaded on all of it; the flanks touch on the common width";
+    let own: &[&str] = match (formulas.tooth, formulas.body) {
+        (ToothFormula::WeberBanaschek, BodyFormula::Sainsot) => &[
+            OF_PARTS,
+            "Poisson's ratio and the plane state in the bodies: the fit of Sainsot, Velex and Duverger has neither",
+        ],
+        (ToothFormula::WeberBanaschek, BodyFormula::HalfPlane) => {
+            &[OF_PARTS, "bores: a body is a half plane without end"]
+        }
+        (ToothFormula::WeberBanaschek, BodyFormula::Rigid) => &[
+            OF_PARTS,
+            "the deformation of the bodies: they are rigid, as asked for",
+        ],
+        (ToothFormula::Iso6336, _) => &[
+            "width beyond the common face width",
+            "bores, fillets, and where on the flank a pair touches: one stiffness, that of the stiffest position, stands for all",
+            "how a contact stiffens with its load: the stiffness is constant",
+            "what measured stiffnesses fall short of the theory: C_M = 0.8 of ISO 6336-1 and its fall below 100 N/mm are left out",
         ],
     };
     ALWAYS.iter().chain(own).copied().collect()
@@ -522,7 +556,7 @@ mod tests {
                 load,
                 mesh_stiffness_secant: delta.iter().map(|delta| load / delta).collect(),
                 pairs_in_contact: vec![2; positions],
-                peak_contact_pressure: wave(600e6, 50e6),
+                peak_contact_pressure: wave(600e6, 50e6).into_iter().map(Some).collect(),
                 load_shares: (-1..=2)
                     .map(|pair_offset| LoadShare {
                         pair_offset,
@@ -622,6 +656,30 @@ mod tests {
         assert_eq!(document["evidence"]["resolution"]["grid"], "standard");
         assert_eq!(curve["statistics"]["partial"], false);
         assert!(!text.contains("null"));
+    }
+
+    #[test]
+    fn the_load_distribution_says_what_each_of_its_formulas_does_not_see() {
+        let unseen = |tooth, body| {
+            let mut case = submission("test-case-2", None).case().clone();
+            case.method = Method::LoadDistribution;
+            case.resolution.formulas.tooth = tooth;
+            case.resolution.formulas.body = body;
+            does_not_see(&case).join("\n")
+        };
+        let (parts, whole) = (ToothFormula::WeberBanaschek, ToothFormula::Iso6336);
+        for (tooth, body, word) in [
+            (parts, BodyFormula::Sainsot, "Poisson's ratio"),
+            (parts, BodyFormula::HalfPlane, "bores"),
+            (parts, BodyFormula::Rigid, "they are rigid"),
+            (whole, BodyFormula::Sainsot, "C_M"),
+        ] {
+            let told = unseen(tooth, body);
+            assert!(told.contains(word), "{told}");
+            assert!(told.contains("holes: the bodies are solid"));
+        }
+        assert!(!unseen(parts, BodyFormula::Sainsot).contains("C_M"));
+        assert!(!unseen(whole, BodyFormula::Rigid).contains("they are rigid"));
     }
 
     #[test]

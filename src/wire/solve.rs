@@ -65,10 +65,31 @@ fn problem_of(error: &AnalysisError) -> Problem {
                 plain(*mesh_position)
             ),
         ),
-        AnalysisError::NoFormula { reason } => Problem::new(
-            Code::NoFormula,
-            format!("The load distribution has no formula for this pair: {reason}."),
+        AnalysisError::TooFarApart {
+            mesh_position,
+            apart,
+            coupled,
+        } => Problem::new(
+            Code::NotConverged,
+            format!(
+                "At mesh position {} the load presses teeth together that stand {apart} apart; the model couples at most {coupled}. A smaller torque would do.",
+                plain(*mesh_position)
+            ),
         ),
+        AnalysisError::NoFormula {
+            formula,
+            member,
+            compliance,
+        } => {
+            let part = member.map_or(String::new(), |member| format!(" of the {member} gear"));
+            Problem::new(
+                Code::NoFormula,
+                format!(
+                    "Far outside the range for which it was published, {formula}{part} gives a pair of teeth a compliance of {} um/N. It has to be a positive number.",
+                    plain(to_um(*compliance))
+                ),
+            )
+        }
         AnalysisError::Discretization { member, reason } => Problem::new(
             Code::DiscretizationFailed,
             format!("The {member} gear could not be divided into elements: {reason}."),

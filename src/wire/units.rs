@@ -2,7 +2,9 @@
 
 use std::io;
 
+use serde::ser::SerializeSeq;
 use serde_json::ser::{CompactFormatter, Formatter};
+use serde_json::value::RawValue;
 
 /// Millimeters to meters. A division by a power of ten rounds once, so that 100.5 mm is the double nearest 0.1005 m.
 pub(super) fn from_mm(value: f64) -> f64 {
@@ -27,6 +29,11 @@ pub(super) fn to_mm(value: f64) -> f64 {
 /// Meters to micrometers.
 pub(super) fn to_um(value: f64) -> f64 {
     value * 1e6
+}
+
+/// Newtons per meter to newtons per millimeter.
+pub(super) fn to_n_per_mm(value: f64) -> f64 {
+    value / 1e3
 }
 
 /// Pascals to megapascals.
@@ -101,12 +108,30 @@ pub(super) fn rounded_inward(bound: f64, side: Side, steps: u32) -> f64 {
 ///
 /// # Errors
 ///
-/// A number that is not finite has no place in JSON and fails; so does an absent value, which has to be left out.
+/// A number that is not finite has no place in JSON and fails; so does an absent value, which has to be left out or
+/// written by [`or_null`].
 pub(super) fn rounded_json(document: &impl serde::Serialize) -> serde_json::Result<String> {
     let mut text = Vec::new();
     let mut serializer = serde_json::Serializer::with_formatter(&mut text, RoundingFormatter);
     document.serialize(&mut serializer)?;
     String::from_utf8(text).map_err(serde::ser::Error::custom)
+}
+
+/// Writes numbers of which some are meant to be absent.
+pub(super) fn or_null<S: serde::Serializer>(
+    values: &[Option<f64>],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let null = RawValue::from_string("null".to_owned()).map_err(serde::ser::Error::custom)?;
+    let mut list = serializer.serialize_seq(Some(values.len()))?;
+    for value in values {
+        match value {
+            Some(value) => list.serialize_element(value)?,
+            // As it stands, past the formatter, which takes a null for a number that went wrong.
+            None => list.serialize_element(&null)?,
+        }
+    }
+    list.end()
 }
 
 struct RoundingFormatter;
@@ -126,6 +151,18 @@ impl Formatter for RoundingFormatter {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_absent_value_that_is_meant_is_null_and_one_that_went_wrong_is_not() {
+        #[derive(serde::Serialize)]
+        struct Pressures(#[serde(serialize_with = "or_null")] Vec<Option<f64>>);
+        let written = |values: &[Option<f64>]| rounded_json(&Pressures(values.to_vec()));
+        assert_eq!(
+            written(&[Some(1.5), None]).expect("both are meant"),
+            "[1.5,null]"
+        );
+        assert!(written(&[Some(f64::NAN)]).is_err());
+    }
 
     #[test]
     fn lengths_in_mm_become_the_nearest_double_in_meters() {

@@ -1,11 +1,11 @@
 //! What a reader should know beside the numbers.
 
-use meshwright_engine::analysis::Warning;
+use meshwright_engine::analysis::{FormulaQuantity, FormulaRange, Warning};
 use meshwright_engine::gear::Member;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::units::{plain, to_mm};
+use super::units::{plain, significant, to_mm, to_mpa, to_n_per_mm};
 
 /// A warning: the result stands, but with something to know.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
@@ -37,9 +37,15 @@ pub enum WarningCode {
     ThinLigament,
     /// A tip corner carries load off the line of action.
     TipCornerContact,
+    /// The contact reaches the fillet of a gear, where it is not followed.
+    ContactReachesFillet,
+    /// The face widths differ by more than a plane model can stand for.
+    FaceWidthsDiffer,
+    /// The contact presses harder than materials bear in proportion.
+    ContactBeyondElasticity,
     /// The span is not whole true periods.
     PartialSpan,
-    /// Formulas are used outside the range for which they were published.
+    /// A formula is used outside the range for which it was published.
     FormulaRange,
     /// The method does not see the holes that the drawing has.
     HolesNotSeen,
@@ -124,6 +130,41 @@ impl WarningDocument {
                     ),
                 )
             },
+            Warning::ContactReachesFillet { member } => Self {
+                gear: Some(member.into()),
+                ..new(
+                    WarningCode::ContactReachesFillet,
+                    format!(
+                        "The contact reaches the fillet of the {member} gear, where it is not followed; a larger center distance or a smaller torque avoids it."
+                    ),
+                )
+            },
+            Warning::FaceWidthsDiffer { ratio } => Self {
+                value: Some(ratio),
+                unit: Some("1"),
+                ..new(
+                    WarningCode::FaceWidthsDiffer,
+                    format!(
+                        "One face is {} times as wide as the other: away from the contact each gear is taken for a plate of its own width, which makes the wider one too stiff.",
+                        plain(ratio)
+                    ),
+                )
+            },
+            Warning::ContactBeyondElasticity {
+                pressure,
+                youngs_modulus,
+            } => Self {
+                value: Some(to_mpa(pressure)),
+                unit: Some("MPa"),
+                ..new(
+                    WarningCode::ContactBeyondElasticity,
+                    format!(
+                        "The contact pressure comes to {} MPa, {} % of Young's modulus: no material stays elastic there.",
+                        plain(to_mpa(pressure).round()),
+                        plain((1000.0 * pressure / youngs_modulus).round() / 10.0)
+                    ),
+                )
+            },
             Warning::PartialSpan { span, period } => Self {
                 value: Some(f64::from(span)),
                 unit: Some("mesh periods"),
@@ -134,19 +175,105 @@ impl WarningDocument {
                     ),
                 )
             },
-            Warning::FormulaRange { member } => Self {
-                gear: Some(member.into()),
-                ..new(
-                    WarningCode::FormulaRange,
-                    format!(
-                        "The {member} gear lies outside the range for which the formulas were published."
-                    ),
-                )
-            },
+            Warning::FormulaRange(found) => Self::of_range(&found),
             Warning::HolesNotSeen => new(
                 WarningCode::HolesNotSeen,
                 "This method does not see holes: its curves are those of solid blanks.".to_owned(),
             ),
         }
+    }
+
+    fn of_range(found: &FormulaRange) -> Self {
+        let (to_unit, unit): (fn(f64) -> f64, _) = match found.quantity {
+            FormulaQuantity::RootHalfAngle => (f64::to_degrees, "deg"),
+            FormulaQuantity::LineLoad => (to_n_per_mm, "N/mm"),
+            _ => (|value| value, "1"),
+        };
+        // Four digits are more than a formula's range has.
+        let [value, least, greatest] =
+            [found.value, found.least, found.greatest].map(|value| significant(to_unit(value), 4));
+        Self {
+            code: WarningCode::FormulaRange,
+            detail: out_of_range(found, [value, least, greatest].map(plain)),
+            gear: found.member.map(GearName::from),
+            value: Some(value),
+            unit: Some(unit),
+        }
+    }
+}
+
+/// The sentence about `found`, whose value and range are told in the reader's unit.
+fn out_of_range(found: &FormulaRange, [value, least, greatest]: [String; 3]) -> String {
+    let whose = found
+        .member
+        .map_or("the pair".to_owned(), |member| format!("the {member} gear"));
+    let range = match found.quantity {
+        FormulaQuantity::RadiusRatio => format!(
+            "root radii of {least} to {greatest} times the bore radius; that of {whose} is {value} times"
+        ),
+        FormulaQuantity::RootHalfAngle => format!(
+            "teeth that span {least} to {greatest} deg to each side at the root circle; those of {whose} span {value} deg"
+        ),
+        FormulaQuantity::BodyFunction(name) => {
+            format!(
+                "bodies with {least} to {greatest} for its function {name}; {whose} has {value}"
+            )
+        }
+        FormulaQuantity::ShiftDifference => {
+            format!("pinions with at least the profile shift of their wheel; x1 - x2 is {value}")
+        }
+        FormulaQuantity::ShiftSum => {
+            format!("profile shifts x1 + x2 of {least} to {greatest}; here the sum is {value}")
+        }
+        FormulaQuantity::LineLoad => format!(
+            "a tangential force of at least {least} N/mm of face width; the least torque gives {value} N/mm, where the standard lowers the stiffness and this method does not"
+        ),
+    };
+    let formula = found.quantity.formula().to_string();
+    let (first, rest) = formula.split_at(1);
+    format!("{}{rest} was published for {range}.", first.to_uppercase())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn document(quantity: FormulaQuantity, member: Option<Member>, value: f64) -> WarningDocument {
+        let [least, greatest] = match quantity {
+            FormulaQuantity::RootHalfAngle => [0.01, 0.12],
+            _ => [100e3, f64::INFINITY],
+        };
+        WarningDocument::of(&Warning::FormulaRange(FormulaRange {
+            quantity,
+            member,
+            value,
+            least,
+            greatest,
+        }))
+    }
+
+    #[test]
+    fn a_formula_outside_its_range_is_told_with_its_number_in_the_readers_unit() {
+        let warning = document(FormulaQuantity::RootHalfAngle, Some(Member::Driven), 0.13);
+        assert_eq!(
+            warning.detail,
+            "The gear body of Sainsot, Velex and Duverger was published for teeth that span 0.573 to 6.875 deg to each side at the root circle; those of the driven gear span 7.448 deg."
+        );
+        assert_eq!(
+            (warning.gear, warning.value, warning.unit),
+            (Some(GearName::Driven), Some(7.448), Some("deg"))
+        );
+    }
+
+    #[test]
+    fn a_low_line_load_is_one_of_the_pair() {
+        let warning = document(FormulaQuantity::LineLoad, None, 12.5e3);
+        assert!(warning.detail.starts_with(
+            "The single stiffness of ISO 6336-1 was published for a tangential force of at least 100 N/mm"
+        ));
+        assert_eq!(
+            (warning.gear, warning.value, warning.unit),
+            (None, Some(12.5), Some("N/mm"))
+        );
     }
 }

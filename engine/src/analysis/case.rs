@@ -1,7 +1,8 @@
 //! What is asked: a pair, the torques and how to compute.
 
 use super::spectrum::RotationSpeed;
-use crate::gear::GearPair;
+use crate::contact::ContactSolver;
+use crate::gear::{GearPair, PlaneState};
 use crate::grid::GridLevel;
 
 /// The method that turns a gear pair into curves (DESIGN section 3).
@@ -15,20 +16,6 @@ pub enum Method {
     ProjectedDecomposition,
     /// Closed-form compliances on the theoretical lines of contact: eqs. 4 and 5.
     LoadDistribution,
-}
-
-/// The solver of the contact conditions.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum ContactSolver {
-    /// The exact active set.
-    ActiveSet,
-    /// The augmented Lagrangian of the paper, eq. 7.
-    AugmentedLagrangian {
-        /// The penalty stiffness κ of a contact cell in N/m.
-        penalty: f64,
-        /// The gap tolerance ε in meters.
-        gap_tolerance: f64,
-    },
 }
 
 /// How the tangent stiffness is obtained.
@@ -48,7 +35,7 @@ pub enum StiffnessRule {
 pub enum ToothFormula {
     /// Bending, shear and compression of the true profile (Weber and Banaschek).
     WeberBanaschek,
-    /// The single stiffness c'_th of ISO 6336-1, which contains body and local deformation.
+    /// The theoretical single stiffness of ISO 6336-1, which contains body and local deformation.
     Iso6336,
 }
 
@@ -63,15 +50,6 @@ pub enum BodyFormula {
     Rigid,
 }
 
-/// The plane state of the local deformation in the load distribution.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum PlaneState {
-    /// No stress across the face width.
-    Stress,
-    /// No strain across the face width.
-    Strain,
-}
-
 /// The formulas of the load distribution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Formulas {
@@ -79,7 +57,7 @@ pub struct Formulas {
     pub tooth: ToothFormula,
     /// The body's compliance.
     pub body: BodyFormula,
-    /// The plane state.
+    /// The plane state of tooth, half plane and local deformation.
     pub plane_state: PlaneState,
 }
 

@@ -1,5 +1,6 @@
 //! What comes out: curves over mesh position, and the evidence for them.
 
+use super::load_distribution::FormulaRange;
 use super::spectrum::Spectrum;
 use crate::gear::Member;
 
@@ -99,8 +100,8 @@ pub struct Curve {
     pub mesh_stiffness_secant: Vec<f64>,
     /// The number of tooth pairs that carry load.
     pub pairs_in_contact: Vec<u32>,
-    /// The largest contact pressure in Pa.
-    pub peak_contact_pressure: Vec<f64>,
+    /// The largest contact pressure in Pa; `None` where a sharp tip corner carries, at which it has no limit.
+    pub peak_contact_pressure: Vec<Option<f64>>,
     /// The share of each pair that ever carries load, by rising offset.
     pub load_shares: Vec<LoadShare>,
     /// Of δ.
@@ -160,6 +161,23 @@ pub enum Warning {
         /// The largest share of the load that such a contact carries.
         largest_share: f64,
     },
+    /// The contact reaches the fillet of a gear, where it is not followed: the load at its end is not what it would be.
+    ContactReachesFillet {
+        /// The gear whose fillet is reached.
+        member: Member,
+    },
+    /// The face widths differ by more than a plane model can stand for.
+    FaceWidthsDiffer {
+        /// The larger over the smaller.
+        ratio: f64,
+    },
+    /// The contact presses so hard that materials do not stay linear.
+    ContactBeyondElasticity {
+        /// The largest contact pressure in Pa.
+        pressure: f64,
+        /// The smaller Young's modulus in Pa.
+        youngs_modulus: f64,
+    },
     /// The span is not whole true periods: statistics are partial and there is no spectrum.
     PartialSpan {
         /// Mesh periods computed.
@@ -167,11 +185,8 @@ pub enum Warning {
         /// Mesh periods of the true period.
         period: u32,
     },
-    /// Formulas were used outside the range for which they were published.
-    FormulaRange {
-        /// The gear.
-        member: Member,
-    },
+    /// A formula is used outside the range for which it was published.
+    FormulaRange(FormulaRange),
     /// The method does not see holes that the drawing has.
     HolesNotSeen,
 }

@@ -10,10 +10,9 @@ use super::case::{Case, StiffnessRule};
 use super::curve::{BlankFit, BlankSample, DecompositionParts, Evidence, LoadShare};
 use super::flexible::{self, Blanks, Solved};
 use super::library::{Library, interface_radius};
-use super::model::{MeshContact, PairModel, tooth_offset};
-use super::phase::{Laid, PairLoads};
-use super::{Analysis, AnalysisError, CurveParts, mesh_positions, warnings};
-use crate::contact::ContactSolution;
+use super::{Analysis, AnalysisError, CurveParts, Settings, mesh_positions, warnings};
+use crate::contact::model::teeth_on;
+use crate::contact::{ContactCells, ContactSolution, MeshContact, PairLoads, PairModel};
 use crate::gear::Member;
 use crate::grid::GridLevel;
 use crate::run::Run;
@@ -45,16 +44,16 @@ struct HoledBlank {
 /// Eqs. 9 to 15: δ = δ_wh + Σ over holed gears of A + B cos(N θ + phase), fitted to samples of the holed blank's rotation.
 pub(super) fn decompose(
     case: &Case,
-    level: GridLevel,
+    settings: Settings,
     library: &Library,
     run: &Run,
 ) -> Result<Analysis, AnalysisError> {
     let (rigid, mut degrees_of_freedom) =
-        flexible::model(case, Blanks::HoledRigid, level, library, run)?;
+        flexible::model(case, Blanks::HoledRigid, settings, library, run)?;
     let mut blanks = Vec::new();
     for member in holed(case) {
         let (model, unknowns) =
-            flexible::model(case, Blanks::OnlyHoledOf(member), level, library, run)?;
+            flexible::model(case, Blanks::OnlyHoledOf(member), settings, library, run)?;
         degrees_of_freedom = degrees_of_freedom.max(unknowns);
         let interface_radius = interface_radius(case, member);
         blanks.push(HoledBlank {
@@ -72,7 +71,7 @@ pub(super) fn decompose(
     let base = RigidBlank {
         case,
         model: &rigid,
-        level,
+        level: settings.level,
         library,
         run,
     };
@@ -237,13 +236,13 @@ impl HoledBlank {
 /// compliance instead of its fluctuation: the peak-to-peak of cases 1 and 3 is then 8 % off.
 pub(super) fn project(
     case: &Case,
-    level: GridLevel,
+    settings: Settings,
     library: &Library,
     run: &Run,
 ) -> Result<Analysis, AnalysisError> {
     let (rigid, mut degrees_of_freedom) =
-        flexible::model(case, Blanks::HoledRigid, level, library, run)?;
-    let (whole, unknowns) = flexible::model(case, Blanks::Flexible, level, library, run)?;
+        flexible::model(case, Blanks::HoledRigid, settings, library, run)?;
+    let (whole, unknowns) = flexible::model(case, Blanks::Flexible, settings, library, run)?;
     let round = round_average(&whole, case);
     let members = rounded(&round, &whole);
     degrees_of_freedom = degrees_of_freedom.max(unknowns);
@@ -254,7 +253,7 @@ pub(super) fn project(
     let base = RigidBlank {
         case,
         model: &rigid,
-        level,
+        level: settings.level,
         library,
         run,
     };
@@ -262,7 +261,9 @@ pub(super) fn project(
     for &output_torque in &case.output_torques {
         let load = case.pair.load(output_torque);
         let without = base.contacts(load, &period)?;
-        let keep = |laid: &Laid, solution: &ContactSolution| laid.modal_loads(solution);
+        let keep = |cells: &ContactCells, solution: &ContactSolution| {
+            cells.loads(&[&solution.forces, &solution.load_derivative])
+        };
         let Solved {
             contacts,
             kept: loads,
@@ -332,11 +333,8 @@ fn yielded(model: &PairModel, members: &[Member], pairs: &[PairLoads], period: i
             let tooth = model.tooth(member, period + a.pair);
             let q = a.loads[g].col(1).transpose();
             for b in pairs {
-                let offset = tooth_offset(member, b.pair - a.pair);
-                // Teeth too far apart do not move each other.
-                let Some((x, transposed)) = model.gears[g].coupling.block(tooth, offset) else {
-                    continue;
-                };
+                let offset = teeth_on(member, b.pair - a.pair);
+                let (x, transposed) = model.gears[g].coupling.block(tooth, offset);
                 let moved = if transposed {
                     x.transpose() * &b.loads[g]
                 } else {
@@ -385,11 +383,10 @@ fn repeated_contacts(case: &Case, contacts: &[MeshContact]) -> CurveParts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::model::WarmStart;
-    use crate::analysis::phase::Phase;
     use crate::analysis::{
         BodyFormula, ContactSolver, Formulas, Method, PlaneState, Resolution, ToothFormula,
     };
+    use crate::contact::{Stage, WarmStart};
     use crate::gear::spur::tests::paper_gear;
     use crate::gear::{GearPair, HolePattern, SpurGear};
 
@@ -433,7 +430,10 @@ mod tests {
         let (whole, _) = flexible::model(
             &case,
             Blanks::Flexible,
-            GridLevel::Coarse,
+            Settings {
+                level: GridLevel::Coarse,
+                farthest: 4,
+            },
             &Library::default(),
             &Run::unattended(),
         )
@@ -456,9 +456,11 @@ mod tests {
                     .expect("a contact")
                     .transmission_error
             };
-            let mut phase = Phase::new(&round, eta, load).expect("flanks that face each other");
-            let loads = |laid: &Laid, solution: &ContactSolution| laid.modal_loads(solution);
-            let (_, loads) = phase
+            let mut stage = Stage::new(&round, eta, load).expect("flanks that face each other");
+            let loads = |cells: &ContactCells, solution: &ContactSolution| {
+                cells.loads(&[&solution.forces, &solution.load_derivative])
+            };
+            let (_, loads) = stage
                 .contact(0, &mut WarmStart::default(), loads)
                 .expect("a contact");
             let members = rounded(&round, &whole);

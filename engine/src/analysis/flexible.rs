@@ -5,15 +5,15 @@ use rayon::prelude::*;
 use super::case::{Case, StiffnessRule};
 use super::curve::{Evidence, LoadShare, Warning};
 use super::library::{GearParts, Library, interface_radius};
-use super::model::{GearModel, MeshContact, PairModel, PositionError, WarmStart};
-use super::phase::{Laid, Phase};
-use super::{AnalysisError, cells_per_patch};
-use crate::contact::ContactSolution;
+use super::{AnalysisError, Settings, cells_per_patch};
+use crate::contact::{
+    ContactCells, ContactSolution, GearModel, MeshContact, PairModel, PositionError, Stage,
+    WarmStart,
+};
 use crate::gear::Member;
-use crate::grid::GridLevel;
 use crate::run::Run;
 
-/// Phases that one thread solves in a row, each starting from the last; fixed, so that results do not depend on threads.
+/// Stages that one thread solves in a row, each starting from the last; fixed, so that results do not depend on threads.
 const CHUNK: usize = 5;
 
 /// Fractions of the mesh period that differ by less are one: far above their rounding, far below any step.
@@ -34,10 +34,11 @@ pub(super) enum Blanks {
 pub(super) fn model(
     case: &Case,
     blanks: Blanks,
-    level: GridLevel,
+    settings: Settings,
     library: &Library,
     run: &Run,
 ) -> Result<(PairModel, u64), AnalysisError> {
+    let Settings { level, farthest } = settings;
     let gears = Member::BOTH.map(|member| {
         let gear = case.pair.gear(member);
         GearParts {
@@ -49,12 +50,12 @@ pub(super) fn model(
                 || blanks == Blanks::OnlyHoledOf(member),
         }
     });
-    library.prepare(&gears, level, run)?;
+    library.prepare(&gears, settings, run)?;
     let build = |of: GearParts<'_>| -> Result<(GearModel, u64), AnalysisError> {
         let (gear, member, radius) = (of.gear, of.member, of.interface_radius);
         let teeth = library.teeth(gear, member, radius, level, run)?;
         if of.with_blank {
-            let whole = library.gear(gear, member, radius, level, run)?;
+            let whole = library.gear(gear, member, radius, level, farthest, run)?;
             Ok((
                 GearModel {
                     flank: teeth.flank.clone(),
@@ -104,23 +105,23 @@ fn contacts_keeping<T: Send>(
     load: f64,
     positions: &[f64],
     run: &Run,
-    keep: impl Fn(&Laid, &ContactSolution) -> T + Sync,
+    keep: impl Fn(&ContactCells, &ContactSolution) -> T + Sync,
 ) -> Result<Vec<(MeshContact, T)>, AnalysisError> {
-    let phases = phases(positions);
-    let solved: Result<Vec<Vec<_>>, AnalysisError> = phases
+    let stages = stages(positions);
+    let solved: Result<Vec<Vec<_>>, AnalysisError> = stages
         .par_chunks(CHUNK)
         .map(|chunk| {
             let mut contacts = Vec::new();
             let mut first = WarmStart::default();
             for (fraction, places) in chunk {
-                // Each phase starts from the one before it, and each further period of a phase from the last period.
+                // Each stage starts from the one before it, and each further period of a stage from the last period.
                 let first_eta = positions[places[0]];
-                let mut phase = Phase::new(model, *fraction, load)
+                let mut stage = Stage::new(model, *fraction, load)
                     .map_err(|error| at_position(error, first_eta))?;
                 let mut warm = first.clone();
                 for &place in places {
                     let eta = positions[place];
-                    let contact = phase
+                    let contact = stage
                         .contact((eta - fraction).round() as i64, &mut warm, &keep)
                         .map_err(|error| at_position(error, eta))?;
                     contacts.push((place, contact));
@@ -139,28 +140,33 @@ fn contacts_keeping<T: Send>(
 }
 
 /// Positions by their fraction of the mesh period, rising, with the places of those that have it.
-fn phases(positions: &[f64]) -> Vec<(f64, Vec<usize>)> {
+fn stages(positions: &[f64]) -> Vec<(f64, Vec<usize>)> {
     let fraction = |place: usize| positions[place] - positions[place].floor();
     let mut places: Vec<usize> = (0..positions.len()).collect();
     places.sort_by(|&a, &b| fraction(a).total_cmp(&fraction(b)));
-    let mut phases: Vec<(f64, Vec<usize>)> = Vec::new();
+    let mut stages: Vec<(f64, Vec<usize>)> = Vec::new();
     for place in places {
-        match phases.last_mut() {
+        match stages.last_mut() {
             Some((known, places)) if fraction(place) - *known < SAME_FRACTION => {
                 places.push(place);
             }
-            _ => phases.push((fraction(place), vec![place])),
+            _ => stages.push((fraction(place), vec![place])),
         }
     }
-    for (_, places) in &mut phases {
+    for (_, places) in &mut stages {
         places.sort_unstable();
     }
-    phases
+    stages
 }
 
 fn at_position(error: PositionError, mesh_position: f64) -> AnalysisError {
     match error {
         PositionError::NoContact => AnalysisError::NoContact { mesh_position },
+        PositionError::TooFarApart { apart, coupled } => AnalysisError::TooFarApart {
+            mesh_position,
+            apart,
+            coupled,
+        },
         PositionError::Contact(crate::contact::ContactError::NotConverged {
             iterations,
             gap,
@@ -194,7 +200,7 @@ pub(super) fn solved<T: Send>(
     load: f64,
     positions: &[f64],
     run: &Run,
-    keep: impl Fn(&Laid, &ContactSolution) -> T + Sync,
+    keep: impl Fn(&ContactCells, &ContactSolution) -> T + Sync,
 ) -> Result<Solved<T>, AnalysisError> {
     let middle = contacts_keeping(model, load, positions, run, keep)?;
     let (contacts, kept): (Vec<MeshContact>, Vec<T>) = middle.into_iter().unzip();
@@ -257,9 +263,14 @@ pub(super) fn gather(evidence: &mut Evidence, contacts: &[MeshContact], load: f6
     }
 }
 
-/// Warns of tips that touch off the path of contact.
+/// Warns of tips that touch off the path of contact, and of contact that reaches a fillet.
 pub(super) fn warn_of_tips(warnings: &mut Vec<Warning>, contacts: &[MeshContact]) {
     for member in Member::BOTH {
+        let mut pairs = contacts.iter().flat_map(|contact| &contact.pairs);
+        let warning = Warning::ContactReachesFillet { member };
+        if pairs.any(|pair| pair.fillet == Some(member)) && !warnings.contains(&warning) {
+            warnings.push(warning);
+        }
         let shares = contacts
             .iter()
             .flat_map(|contact| &contact.pairs)

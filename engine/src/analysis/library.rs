@@ -4,16 +4,16 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::AnalysisError;
-use super::case::{Case, ContactSolver};
-use super::model::MeshContact;
+use super::case::Case;
 use super::shelf::{Shelf, ShelfUsage};
-use crate::contact::flank::FlankTable;
+use super::{AnalysisError, Settings};
+use crate::contact::flank_table::FlankTable;
+use crate::contact::{ContactSolver, MeshContact};
 use crate::fem::FemError;
 use crate::fem::blank::BlankSubstructure;
 use crate::fem::body::Coupling;
 use crate::fem::cyclic::Harmonics;
-use crate::fem::tooth::{TeethRing, ToothSubstructure};
+use crate::fem::tooth::{FARTHEST_COUPLED, TeethRing, ToothSubstructure};
 use crate::gear::{HolePattern, Member, SpurGear};
 use crate::grid::blank::ELEMENTS_PER_TOOTH;
 use crate::grid::{BlankGrid, GridError, GridLevel, ToothGrid};
@@ -158,9 +158,10 @@ impl Library {
         member: Member,
         interface_radius: f64,
         level: GridLevel,
+        farthest: usize,
         run: &Run,
     ) -> Result<Arc<Gear>, AnalysisError> {
-        self.shared_gear(gear, interface_radius, level, run)
+        self.shared_gear(gear, interface_radius, level, farthest, run)
             .map_err(|error| error.of(member))
     }
 
@@ -173,9 +174,10 @@ impl Library {
     pub(super) fn prepare(
         &self,
         gears: &[GearParts<'_>],
-        level: GridLevel,
+        settings: Settings,
         run: &Run,
     ) -> Result<(), AnalysisError> {
+        let Settings { level, farthest } = settings;
         // Teeth first: they take longest.
         let mut tasks: Vec<(Key, Task<'_>)> = Vec::new();
         let mut add = |key: Key, task| {
@@ -188,7 +190,7 @@ impl Library {
             add(key, (of, Part::Teeth));
         }
         for of in gears {
-            let whole = gear_key(of.gear, of.interface_radius, level);
+            let whole = gear_key(of.gear, of.interface_radius, level, farthest);
             if of.with_blank && !self.0.gears.holds(&whole) {
                 // A holed blank stands beside the solid one that its highest orders find.
                 let low = orders_of_blank(of.gear, of.gear.holes(), of.interface_radius, level);
@@ -272,19 +274,20 @@ impl Library {
         gear: &SpurGear,
         interface_radius: f64,
         level: GridLevel,
+        farthest: usize,
         run: &Run,
     ) -> Result<Arc<Gear>, BuildError> {
-        let key = gear_key(gear, interface_radius, level);
+        let key = gear_key(gear, interface_radius, level, farthest);
         self.0.gears.part(key, Gear::bytes, || {
             let teeth = self.shared_teeth(gear, interface_radius, level, run)?;
             let blank = self.shared_blank(gear, gear.holes(), interface_radius, level, run)?;
             let low = blank.harmonics;
             let coupling = if low == teeth.ring.harmonics {
-                Coupling::on_blank(&teeth.ring, &blank, hole_phase(gear), run)?
+                Coupling::on_blank(&teeth.ring, &blank, hole_phase(gear), farthest, run)?
             } else {
                 let solid = self.shared_blank(gear, None, interface_radius, level, run)?;
                 let ring = teeth.ring.above(low, &solid, run)?;
-                Coupling::on_blank(&ring, &blank, hole_phase(gear), run)?
+                Coupling::on_blank(&ring, &blank, hole_phase(gear), farthest, run)?
             };
             Ok(Gear {
                 coupling: Arc::new(coupling),
@@ -391,7 +394,8 @@ fn orders_within(depth: f64, radius: f64, level: GridLevel) -> usize {
         GridLevel::Standard => 4.5,
         GridLevel::Fine => 6.5,
     };
-    (decay * radius / depth).ceil() as usize
+    // Similar gears, whose lengths differ by rounding, carry the same orders.
+    (decay * radius / depth - 1e-9).ceil() as usize
 }
 
 fn build_teeth(
@@ -408,8 +412,8 @@ fn build_teeth(
     // Nodes of the interface circle belong to the teeth; the blank's follow them.
     let degrees_of_freedom = 2 * u64::from(gear.tooth_count()) * (tooth.own_nodes() as u64);
     Ok(Teeth {
-        flank: Arc::new(FlankTable::new(&tooth, gear.material(), gear.face_width())),
-        on_rigid_blank: Arc::new(Coupling::on_rigid_blank(&ring)),
+        flank: Arc::new(FlankTable::new(&tooth, gear)),
+        on_rigid_blank: Arc::new(Coupling::on_rigid_blank(&ring, FARTHEST_COUPLED)),
         ring,
         degrees_of_freedom,
     })
@@ -491,10 +495,10 @@ fn teeth_key(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Key {
     key
 }
 
-fn gear_key(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Key {
+fn gear_key(gear: &SpurGear, interface_radius: f64, level: GridLevel, farthest: usize) -> Key {
     let mut key = teeth_key(gear, interface_radius, level);
     key.extend(blank_key(gear, gear.holes(), interface_radius, level));
-    key.push(hole_phase(gear).to_bits());
+    key.extend([hole_phase(gear).to_bits(), farthest as u64]);
     key
 }
 

@@ -1,7 +1,7 @@
 //! From a pair to its curves: the methods, their results and spectra.
 //!
 //! Read in this order: [`case`] (what is asked), [`model`] and [`phase`] (the contact of a pair at one position), `flexible`,
-//! `decomposition` and [`load_distribution`] (the methods), [`curve`] and [`spectrum`] (what comes out), [`library`]
+//! `decomposition` and `load_distribution` (the methods), [`curve`] and [`spectrum`] (what comes out), [`library`]
 //! (what cases share).
 
 pub mod case;
@@ -10,22 +10,22 @@ mod decomposition;
 mod estimate;
 mod flexible;
 pub mod library;
-pub mod load_distribution;
-pub mod model;
-pub mod phase;
+mod load_distribution;
 mod shelf;
 pub mod spectrum;
 
-pub use case::{
-    BodyFormula, Case, ContactSolver, Formulas, Method, PlaneState, Resolution, StiffnessRule,
-    ToothFormula,
-};
+pub use case::{BodyFormula, Case, Formulas, Method, Resolution, StiffnessRule, ToothFormula};
 pub use curve::{Analysis, Curve, ErrorEstimate, Evidence, Statistics, Warning};
 pub use estimate::{Estimate, estimate};
 pub use library::Library;
+pub use load_distribution::{Formula, FormulaQuantity, FormulaRange};
 pub use shelf::ShelfUsage;
 
-use crate::contact::ContactError;
+pub use crate::contact::ContactSolver;
+pub use crate::gear::PlaneState;
+
+use crate::contact::{ContactError, PairModel};
+use crate::fem::tooth::FARTHEST_COUPLED;
 use crate::gear::{GearPair, Member};
 use crate::grid::GridLevel;
 use crate::run::{Run, Stopped};
@@ -33,8 +33,20 @@ use curve::{DecompositionParts, LoadShare};
 use flexible::{Blanks, Solved};
 use spectrum::Spectrum;
 
-/// Backlash below this, in meters, counts as none.
-const NO_BACKLASH: f64 = 1e-9;
+/// How far apart, in teeth, loaded teeth are coupled at first; heavier loads bring more pairs into contact, and then this is
+/// doubled.
+const FIRST_COUPLED: usize = 4;
+
+/// Backlash below this, in modules, counts as none.
+const NO_BACKLASH: f64 = 1e-6;
+
+/// Beyond this ratio of the face widths a plane model is told to be doubtful: the load spreads over the wider gear's width by bending it, which
+/// a plane does not see.
+const LIKE_WIDTHS: f64 = 1.5;
+
+/// Pressures beyond this part of Young's modulus strain a material by about as much: hardened steel yields near one percent, plastics bend
+/// their curve at two.
+const ELASTIC_STRAIN: f64 = 0.02;
 
 /// Why a case could not be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -66,11 +78,28 @@ pub enum AnalysisError {
         /// The mesh position η.
         mesh_position: f64,
     },
-    /// A formula of the load distribution does not hold for a gear.
-    #[error("the load distribution has no formula for this pair: {reason}")]
+    /// Teeth touch that are too far apart for the model.
+    #[error(
+        "at mesh position {mesh_position} teeth touch that stand {apart} apart, and at most {coupled} can be coupled"
+    )]
+    TooFarApart {
+        /// The mesh position η.
+        mesh_position: f64,
+        /// Teeth between the first and the last that touch.
+        apart: usize,
+        /// How far apart coupled teeth stand.
+        coupled: usize,
+    },
+    /// A formula of the load distribution, far outside the range for which it was published, gives a pair of teeth no
+    /// compliance.
+    #[error("{formula} gives a pair of teeth the compliance {compliance} m/N")]
     NoFormula {
-        /// Which formula, and the number outside its range.
-        reason: String,
+        /// The formula.
+        formula: Formula,
+        /// The gear whose part it is; `None` for the pair.
+        member: Option<Member>,
+        /// What it gives, in m/N: not positive, or no number.
+        compliance: f64,
     },
     /// A grid or a factorization failed.
     #[error("the {member} gear cannot be discretized: {reason}")]
@@ -105,33 +134,51 @@ pub fn analyze(case: &Case, library: &Library, run: &Run) -> Result<Analysis, An
     Ok(analysis)
 }
 
+/// How finely a model is made, and how far apart its teeth are coupled.
+#[derive(Debug, Clone, Copy)]
+struct Settings {
+    level: GridLevel,
+    farthest: usize,
+}
+
 fn analyze_at(
     case: &Case,
     level: GridLevel,
     library: &Library,
     run: &Run,
 ) -> Result<Analysis, AnalysisError> {
-    match case.method {
-        Method::Flexible => flexible(case, level, library, run),
-        Method::Decomposition => decomposition::decompose(case, level, library, run),
-        Method::ProjectedDecomposition => decomposition::project(case, level, library, run),
-        Method::LoadDistribution => load_distribution::distribute(case, run),
+    let mut farthest = FIRST_COUPLED;
+    loop {
+        let settings = Settings { level, farthest };
+        let answer = match case.method {
+            Method::Flexible => flexible(case, settings, library, run),
+            Method::Decomposition => decomposition::decompose(case, settings, library, run),
+            Method::ProjectedDecomposition => decomposition::project(case, settings, library, run),
+            Method::LoadDistribution => load_distribution::distribute(case, run),
+        };
+        match answer {
+            Err(AnalysisError::TooFarApart { .. }) if farthest < FARTHEST_COUPLED => farthest *= 2,
+            Ok(mut analysis) => {
+                warn_of_pressures(&mut analysis.warnings, case, &analysis.curves);
+                return Ok(analysis);
+            }
+            error => return error,
+        }
     }
 }
 
-/// The model behind the flexible method for `case`, to be asked position by position.
+/// The model behind the flexible method for `case`, to be asked position by position, with as many pairs in contact as can be followed.
 ///
 /// # Errors
 ///
 /// [`AnalysisError::Discretization`], or [`AnalysisError::Stopped`].
-pub fn pair_model(
-    case: &Case,
-    library: &Library,
-    run: &Run,
-) -> Result<model::PairModel, AnalysisError> {
+pub fn pair_model(case: &Case, library: &Library, run: &Run) -> Result<PairModel, AnalysisError> {
     faer::set_global_parallelism(faer::Par::Seq);
-    flexible::model(case, Blanks::Flexible, case.resolution.grid, library, run)
-        .map(|(model, _)| model)
+    let settings = Settings {
+        level: case.resolution.grid,
+        farthest: FARTHEST_COUPLED,
+    };
+    flexible::model(case, Blanks::Flexible, settings, library, run).map(|(model, _)| model)
 }
 
 /// Contact solutions that `case` needs at one grid level.
@@ -152,11 +199,12 @@ fn expected_positions(case: &Case) -> u64 {
 
 fn flexible(
     case: &Case,
-    level: GridLevel,
+    settings: Settings,
     library: &Library,
     run: &Run,
 ) -> Result<Analysis, AnalysisError> {
-    let (model, degrees_of_freedom) = flexible::model(case, Blanks::Flexible, level, library, run)?;
+    let (model, degrees_of_freedom) =
+        flexible::model(case, Blanks::Flexible, settings, library, run)?;
     let positions = mesh_positions(case);
     let mut evidence = Evidence::new(degrees_of_freedom);
     let mut warnings = warnings(case);
@@ -196,12 +244,26 @@ fn flexible(
     })
 }
 
+/// Warns of pressures that no material bears in proportion.
+fn warn_of_pressures(warnings: &mut Vec<Warning>, case: &Case, curves: &[Curve]) {
+    let moduli = Member::BOTH.map(|member| case.pair.gear(member).material().youngs_modulus);
+    let youngs_modulus = moduli[0].min(moduli[1]);
+    let pressures = curves.iter().flat_map(|curve| &curve.peak_contact_pressure);
+    let pressure = pressures.flatten().copied().fold(0.0, f64::max);
+    if pressure > ELASTIC_STRAIN * youngs_modulus {
+        warnings.push(Warning::ContactBeyondElasticity {
+            pressure,
+            youngs_modulus,
+        });
+    }
+}
+
 /// What a method finds at each position of one torque.
 struct CurveParts {
     transmission_error: Vec<f64>,
     stiffness: Vec<f64>,
     pairs_in_contact: Vec<u32>,
-    peak_contact_pressure: Vec<f64>,
+    peak_contact_pressure: Vec<Option<f64>>,
     load_shares: Vec<LoadShare>,
     decomposition: Option<DecompositionParts>,
 }
@@ -259,7 +321,7 @@ fn cells_per_patch(level: GridLevel) -> usize {
 pub fn warnings(case: &Case) -> Vec<Warning> {
     let pair = &case.pair;
     let mut warnings = Vec::new();
-    if pair.backlash() < NO_BACKLASH {
+    if pair.backlash() < NO_BACKLASH * pair.driving().data().rack.module {
         warnings.push(Warning::ZeroBacklash);
     }
     for member in Member::BOTH {
@@ -271,14 +333,23 @@ pub fn warnings(case: &Case) -> Vec<Warning> {
             warnings.push(Warning::ThinLigament { member, ligament });
         }
     }
+    let widths = [pair.driving().face_width(), pair.driven().face_width()];
+    let ratio = widths[0].max(widths[1]) / pair.common_face_width();
+    if ratio > LIKE_WIDTHS {
+        warnings.push(Warning::FaceWidthsDiffer { ratio });
+    }
     if !case.covers_whole_periods() {
         warnings.push(Warning::PartialSpan {
             span: case.span(),
             period: pair.period(),
         });
     }
-    if case.method == Method::LoadDistribution && has_holes(pair) {
-        warnings.push(Warning::HolesNotSeen);
+    if case.method == Method::LoadDistribution {
+        if has_holes(pair) {
+            warnings.push(Warning::HolesNotSeen);
+        }
+        let outside = load_distribution::out_of_range(case);
+        warnings.extend(outside.into_iter().map(Warning::FormulaRange));
     }
     warnings
 }

@@ -22,7 +22,7 @@ const NEWTON_STEP_LIMIT: u32 = 30;
 /// Single exchanges allowed for each candidate point: far more than a walk that adds each point once and drops it again.
 const EXCHANGES_PER_POINT: usize = 20;
 
-/// What counts as no gap, relative to the approach that the load alone could cause.
+/// What counts as no gap, relative to delta that the load alone could cause.
 ///
 /// Rounding in H p leaves some 1e-15 of it.
 const RELATIVE_GAP_TOLERANCE: f64 = 1e-12;
@@ -139,7 +139,7 @@ struct Trial<'a> {
     /// H_A^-1 w_A at the points of the set.
     response: Vec<f64>,
     stiffness: f64,
-    approach_beyond_touch: f64,
+    delta_beyond_touch: f64,
     /// The linear systems solved so far.
     iterations: u32,
 }
@@ -151,10 +151,10 @@ impl<'a> Trial<'a> {
         let points = problem.point_count();
         let (g_0, w, H) = (problem.gaps(), problem.arms(), problem.compliance());
 
-        // The whole load on the point that touches first gives the largest approach that is possible at all, since more
+        // The whole load on the point that touches first gives the largest delta that is possible at all, since more
         // points can only carry it with less energy.
-        let largest_approach = load * H[(first, first)] / w[first].powi(2);
-        let gap_tolerance = RELATIVE_GAP_TOLERANCE * largest_approach;
+        let largest_delta = load * H[(first, first)] / w[first].powi(2);
+        let gap_tolerance = RELATIVE_GAP_TOLERANCE * largest_delta;
         // Where point j lets go of p_j and any other point m takes it over, the gap at j closes by at most
         // p_j w_j^2 (sqrt(H_jj)/w_j + sqrt(H_mm)/w_m)^2 <= 4 p_j w_j^2 r. With half the gap tolerance a point thrown out
         // for a small force is not taken in again for a small penetration. No point may lose its fair share of the load,
@@ -182,7 +182,7 @@ impl<'a> Trial<'a> {
             gaps: vec![0.0; points],
             response: Vec::new(),
             stiffness: 0.0,
-            approach_beyond_touch: 0.0,
+            delta_beyond_touch: 0.0,
             iterations: 0,
         }
     }
@@ -205,7 +205,7 @@ impl<'a> Trial<'a> {
             self.forces[j] = delta * x - y;
         }
         self.stiffness = k;
-        self.approach_beyond_touch = delta;
+        self.delta_beyond_touch = delta;
         self.response.clear();
         self.response.extend_from_slice(x);
         self.set = set;
@@ -224,7 +224,7 @@ impl<'a> Trial<'a> {
     }
 
     fn take_gaps(&mut self) {
-        let delta = self.approach_beyond_touch;
+        let delta = self.delta_beyond_touch;
         for ((gap, g), w) in self
             .gaps
             .iter_mut()
@@ -300,7 +300,7 @@ impl<'a> Trial<'a> {
         }
         Equilibrium {
             forces: self.forces,
-            approach_beyond_touch: self.approach_beyond_touch,
+            delta_beyond_touch: self.delta_beyond_touch,
             active: self.active,
             load_derivative,
             stiffness: self.stiffness,
@@ -380,7 +380,7 @@ mod tests {
         // The second spring is reached at F = gap / h_1 = 500 N.
         let alone = solve_active_set(&problem, 499.0, None).expect("a sound problem");
         assert_eq!(alone.active, [true, false]);
-        assert_close(alone.approach, 499.0 * h_1);
+        assert_close(alone.transmission_error, 499.0 * h_1);
         assert_close(alone.stiffness, h_1.recip());
         assert_eq!(alone.load_derivative, [1.0, 0.0]);
 
@@ -389,31 +389,31 @@ mod tests {
         let stiffness = h_1.recip() + h_2.recip();
         assert_eq!(both.active, [true, true]);
         assert_close(both.stiffness, stiffness);
-        assert_close(both.approach, (1500.0 + gap / h_2) / stiffness);
-        assert_close(both.forces[1], (both.approach - gap) / h_2);
+        assert_close(both.transmission_error, (1500.0 + gap / h_2) / stiffness);
+        assert_close(both.forces[1], (both.transmission_error - gap) / h_2);
         assert_close(both.load_derivative[0], h_1.recip() / stiffness);
     }
 
     #[test]
-    fn a_gap_that_all_points_have_moves_the_approach_and_nothing_else() {
+    fn a_gap_that_all_points_have_moves_delta_and_nothing_else() {
         let near = solve_active_set(&springs([2e-9, 5e-9], [0.0, 1e-6]), 1500.0, None)
             .expect("a sound problem");
         let far = solve_active_set(&springs([2e-9, 5e-9], [1e-3, 1.001e-3]), 1500.0, None)
             .expect("a sound problem");
-        assert_close(far.approach, near.approach + 1e-3);
+        assert_close(far.transmission_error, near.transmission_error + 1e-3);
         // 1e-3 m has digits down to 1e-19 m, which is 1e-10 N here.
         assert!((far.forces[1] - near.forces[1]).abs() < 1e-9);
     }
 
     #[test]
-    fn an_arm_multiplies_the_force_in_the_load_and_the_approach_in_the_gap() {
+    fn an_arm_multiplies_the_force_in_the_load_and_delta_in_the_gap() {
         let compliance = Mat::from_fn(1, 1, |_, _| 4e-9);
         let problem =
             ContactProblem::new(compliance, vec![1e-6], vec![0.5]).expect("a sound problem");
         // w p = F, H p + g_0 = delta w.
         let solution = solve_active_set(&problem, 100.0, None).expect("a sound problem");
         assert_close(solution.forces[0], 200.0);
-        assert_close(solution.approach, (4e-9 * 200.0 + 1e-6) / 0.5);
+        assert_close(solution.transmission_error, (4e-9 * 200.0 + 1e-6) / 0.5);
         assert_close(solution.stiffness, 0.25 / 4e-9);
     }
 
@@ -435,7 +435,7 @@ mod tests {
         let close =
             |value: f64, expected: f64| assert!((value - expected).abs() <= 1e-11 * expected);
         close(solution.stiffness, stiffness);
-        close(solution.approach, load / stiffness);
+        close(solution.transmission_error, load / stiffness);
         close(solution.forces[0], load / (stiffness * h * (1.0 + r)));
         close(
             solution.forces[20],

@@ -35,7 +35,7 @@ const STEP_LIMIT: u32 = 500;
 /// Bisections that find the least Phi along a line; an f64 has no more digits.
 const BISECTIONS: u32 = 60;
 
-/// What counts as no gap, relative to the approach that the load alone could cause: rounding in H p.
+/// What counts as no gap, relative to delta that the load alone could cause: rounding in H p.
 const ROUNDING: f64 = 1e-13;
 
 /// Penalty, tolerance and limit of the augmented Lagrangian.
@@ -54,7 +54,7 @@ pub struct AugmentedLagrangian {
 
 /// Solves the contact under `load` (N, positive) by the augmented Lagrangian, starting without multipliers.
 ///
-/// Every force, and the approach, is inexact by what a gap of [`AugmentedLagrangian::gap_tolerance`] makes. The tangent
+/// Every force, and delta, is inexact by what a gap of [`AugmentedLagrangian::gap_tolerance`] makes. The tangent
 /// is that of rigid contact on the set found, without the springs.
 ///
 /// # Errors
@@ -115,10 +115,10 @@ struct Springs {
     push_tolerance: f64,
 }
 
-/// Forces, approach and pressed springs that balance the load for given multipliers.
+/// Forces, delta and pressed springs that balance the load for given multipliers.
 struct Balance {
     forces: DVector<f64>,
-    approach_beyond_touch: f64,
+    delta_beyond_touch: f64,
     pressed: Vec<bool>,
     /// The linear systems solved so far, those before this balance included.
     iterations: u32,
@@ -133,8 +133,8 @@ impl Springs {
         let (first, first_touch) = problem.first_touch();
         let arms = DVector::from_column_slice(problem.arms());
         let gaps_at_touch = DVector::from_column_slice(problem.gaps()) - first_touch * &arms;
-        let largest_approach = load * compliance[(first, first)] / arms[first].powi(2);
-        let push_tolerance = ROUNDING * (load + penalty * largest_approach);
+        let largest_delta = load * compliance[(first, first)] / arms[first].powi(2);
+        let push_tolerance = ROUNDING * (load + penalty * largest_delta);
         Self {
             compliance,
             gaps_at_touch,
@@ -146,8 +146,8 @@ impl Springs {
     }
 
     /// H s + g_0 - delta w, in m.
-    fn gaps(&self, forces: &DVector<f64>, approach: f64) -> DVector<f64> {
-        &self.compliance * forces + &self.gaps_at_touch - approach * &self.arms
+    fn gaps(&self, forces: &DVector<f64>, delta: f64) -> DVector<f64> {
+        &self.compliance * forces + &self.gaps_at_touch - delta * &self.arms
     }
 
     /// What each spring would push with if it could pull as well: lambda - kappa g, in N.
@@ -157,7 +157,7 @@ impl Springs {
 
     /// The largest of the penetrations and of the gaps under a force, in m.
     fn gap_error(&self, balance: &Balance) -> f64 {
-        let gaps = self.gaps(&balance.forces, balance.approach_beyond_touch);
+        let gaps = self.gaps(&balance.forces, balance.delta_beyond_touch);
         let errors = gaps
             .iter()
             .zip(&balance.pressed)
@@ -179,8 +179,8 @@ impl Springs {
         let mut step = 0;
         while step < STEP_LIMIT {
             step += 1;
-            let (forces, approach) = self.newton_point(multipliers, &pressed)?;
-            let gaps = self.gaps(&forces, approach);
+            let (forces, delta) = self.newton_point(multipliers, &pressed)?;
+            let gaps = self.gaps(&forces, delta);
             if !gaps.iter().all(|gap| gap.is_finite()) {
                 break;
             }
@@ -196,7 +196,7 @@ impl Springs {
             if next == pressed {
                 return Ok(Balance {
                     forces,
-                    approach_beyond_touch: approach,
+                    delta_beyond_touch: delta,
                     pressed,
                     iterations: iterations_before + step,
                 });
@@ -204,12 +204,12 @@ impl Springs {
             gap = gaps.iter().fold(0.0, |deepest: f64, gap| deepest.max(-gap));
             if step < full_step_limit && next.contains(&true) {
                 pressed = next;
-                point = Some((forces, approach));
+                point = Some((forces, delta));
             } else {
-                let (start, start_approach) = point.unwrap_or_else(|| (multipliers.clone(), 0.0));
+                let (start, start_delta) = point.unwrap_or_else(|| (multipliers.clone(), 0.0));
                 let reached =
-                    self.least_energy(multipliers, (&start, start_approach), (&forces, approach));
-                let (balanced, now_pressed) = self.balance_approach(multipliers, &reached);
+                    self.least_energy(multipliers, (&start, start_delta), (&forces, delta));
+                let (balanced, now_pressed) = self.balance_delta(multipliers, &reached);
                 pressed = now_pressed;
                 point = Some((reached, balanced));
             }
@@ -221,7 +221,7 @@ impl Springs {
         })
     }
 
-    /// Forces and approach that balance the load if exactly the `pressed` springs act, pulling where they must.
+    /// Forces and delta that balance the load if exactly the `pressed` springs act, pulling where they must.
     #[expect(non_snake_case, reason = "the compliance keeps its letter")]
     fn newton_point(
         &self,
@@ -257,12 +257,12 @@ impl Springs {
     fn least_energy(
         &self,
         multipliers: &DVector<f64>,
-        (start, start_approach): (&DVector<f64>, f64),
-        (end, end_approach): (&DVector<f64>, f64),
+        (start, start_delta): (&DVector<f64>, f64),
+        (end, end_delta): (&DVector<f64>, f64),
     ) -> DVector<f64> {
-        let (d, e) = (end - start, end_approach - start_approach);
+        let (d, e) = (end - start, end_delta - start_delta);
         let opening = &self.compliance * &d - e * &self.arms;
-        let first_push = self.pushes(multipliers, &self.gaps(start, start_approach));
+        let first_push = self.pushes(multipliers, &self.gaps(start, start_delta));
         let (d_h_s, d_h_d) = (
             d.dot(&(&self.compliance * start)),
             d.dot(&(&self.compliance * &d)),
@@ -292,14 +292,10 @@ impl Springs {
         start + low * d
     }
 
-    /// The approach at which the springs carry the load on bodies deformed by `forces`, and the springs then pressed.
+    /// Delta at which the springs carry the load on bodies deformed by `forces`, and the springs then pressed.
     ///
     /// It minimizes Phi over delta, and leaves at least one spring pressed.
-    fn balance_approach(
-        &self,
-        multipliers: &DVector<f64>,
-        forces: &DVector<f64>,
-    ) -> (f64, Vec<bool>) {
+    fn balance_delta(&self, multipliers: &DVector<f64>, forces: &DVector<f64>) -> (f64, Vec<bool>) {
         let pushes = self.pushes(multipliers, &self.gaps(forces, 0.0));
         let (w, kappa) = (&self.arms, self.penalty);
         // Spring j pushes with r_j + kappa delta w_j from delta = -r_j / (kappa w_j) on.
@@ -333,7 +329,7 @@ impl Springs {
     ) -> Result<Equilibrium, ContactError> {
         let Balance {
             forces,
-            approach_beyond_touch,
+            delta_beyond_touch,
             pressed,
             iterations,
         } = balance;
@@ -354,7 +350,7 @@ impl Springs {
             .for_each(|(&point, x)| load_derivative[point] = x / stiffness);
         Ok(Equilibrium {
             forces: forces.iter().copied().collect(),
-            approach_beyond_touch,
+            delta_beyond_touch,
             active: pressed,
             load_derivative,
             stiffness,
@@ -395,7 +391,7 @@ mod tests {
         };
         let soft = solve_augmented_lagrangian(&problem, load, &once).expect("a sound problem");
         // The body and the spring in series: delta = F (h + 1/kappa).
-        assert!((soft.approach - load * (h + 1.0 / penalty)).abs() <= 1e-20);
+        assert!((soft.transmission_error - load * (h + 1.0 / penalty)).abs() <= 1e-20);
         assert!((soft.penetration - load / penalty).abs() <= 1e-20);
 
         let twice = AugmentedLagrangian {
@@ -405,7 +401,7 @@ mod tests {
         };
         let hard = solve_augmented_lagrangian(&problem, load, &twice).expect("a sound problem");
         assert_eq!((hard.multiplier_updates, hard.iterations), (2, 2));
-        assert!((hard.approach - load * h).abs() <= 1e-20);
+        assert!((hard.transmission_error - load * h).abs() <= 1e-20);
     }
 
     #[test]
@@ -415,14 +411,14 @@ mod tests {
         let alone =
             solve_augmented_lagrangian(&problem, 499.0, &SETTINGS).expect("a sound problem");
         assert_eq!(alone.active, [true, false]);
-        assert!((alone.approach - 499.0 * h_1).abs() <= 1e-14);
+        assert!((alone.transmission_error - 499.0 * h_1).abs() <= 1e-14);
 
         // In parallel: k = 1/h_1 + 1/h_2, F = delta / h_1 + (delta - gap) / h_2; delta is off by the gap tolerance.
         let both =
             solve_augmented_lagrangian(&problem, 1500.0, &SETTINGS).expect("a sound problem");
         let stiffness = h_1.recip() + h_2.recip();
         assert!((both.stiffness - stiffness).abs() <= 1e-12 * stiffness);
-        assert!((both.approach - (1500.0 + gap / h_2) / stiffness).abs() <= 1e-14);
+        assert!((both.transmission_error - (1500.0 + gap / h_2) / stiffness).abs() <= 1e-14);
         assert!((both.load_derivative[0] - h_1.recip() / stiffness).abs() <= 1e-12);
     }
 

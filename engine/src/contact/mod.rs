@@ -1,14 +1,19 @@
-//! Frictionless contact between two flanks, condensed to the cells where they may touch.
+//! Frictionless contact between the flanks of two gears.
 //!
 //! In reading order:
-//! - [`patch`]: where flanks come near each other, and their gaps, from the true geometry,
-//! - [`flank`] and [`half_plane`]: the compliance of the cells, smooth part and logarithm,
-//! - [`ContactProblem`]: compliance, gaps and arms; and [`ContactSolution`]: forces, approach, stiffness, residuals,
+//! - [`placement`] and [`facing`]: where flanks stand and how they face each other, from the true geometry,
+//! - [`patch`]: cells about the places where they are nearest,
+//! - [`flank_table`], [`half_plane`] and `corner`: the compliance of the cells, smooth part, logarithm, and near a sharp tip,
+//! - [`cells`]: the cells of all pairs of one mesh position, H on them, and what their solution says of the mesh,
+//! - [`stage`]: one fraction of the mesh period, from laying the cells to a solution that nothing penetrates,
+//! - `penetration`: the look over the whole flanks that proves it,
+//! - [`model`]: what all of this is asked of,
+//! - [`ContactProblem`]: compliance, gaps and arms; and [`ContactSolution`]: forces, delta, stiffness, residuals,
 //! - [`solve_active_set`]: the exact solver, for every position of a mesh,
 //! - [`solve_augmented_lagrangian`]: the method of the paper (eq. 7), for comparison.
 //!
 //! With the forces p at the candidate points, the compliance H of both gears, the gaps g_0 before loading and the
-//! arms w, the approach delta under the load F follows from the Signorini conditions (eqs. 4 to 6):
+//! arms w, the transmission error delta under the load F follows from the Signorini conditions (eqs. 4 to 6):
 //!
 //! ```text
 //! g = H p + g_0 - delta w >= 0,   p >= 0,   p_j g_j = 0,   w^T p = F
@@ -22,11 +27,21 @@
 
 mod active_set;
 mod augmented_lagrangian;
-pub mod flank;
+pub mod cells;
+mod corner;
+pub mod facing;
+pub mod flank_table;
 pub mod half_plane;
+pub mod model;
 pub mod patch;
+mod penetration;
+pub mod placement;
 mod problem;
+pub mod stage;
 
 pub use active_set::solve_active_set;
 pub use augmented_lagrangian::{AugmentedLagrangian, solve_augmented_lagrangian};
+pub use cells::{ContactCells, MeshCells, MeshContact, PairContact, PairLoads};
+pub use model::{ContactSolver, GearModel, PairModel, PositionError, WarmStart};
 pub use problem::{ContactError, ContactProblem, ContactQuantity, ContactSolution};
+pub use stage::Stage;

@@ -1,16 +1,15 @@
-//! Where flanks come near each other: patches of contact cells, found from the true geometry.
+//! Patches of contact cells about the places where flanks are nearest.
 //!
-//! One flank of each pair carries the cells: the one whose tip is nearer, so that the patch may end at its tip corner. The
-//! gap of a cell is measured along the normal of the other flank, which is the tangent from the cell to that gear's base
-//! circle; reliefs add to it. On the line of action this is the theoretical contact; off it, where a tip corner digs into
-//! the other flank, the normal is tilted and its arm about the other center is not its base radius.
+//! The cells lie on the flank of the seat, the gear whose tip is nearer. On the line of action a cell presses along the
+//! theoretical normal; off it, where a tip corner digs into the other flank, the normal is tilted and its arm about the other
+//! center is not its base radius.
 
-use std::f64::consts::PI;
+use super::facing::{Facing, RangeEnd};
+use super::half_plane::{NearField, logarithm_factor};
+use crate::gear::Member;
 
-use super::half_plane;
-use crate::gear::{GearPair, Member, SpurGear, Vector, radial, tangential};
-
-/// Widths of the patch to either side of the deepest point, in Hertz half-widths of the whole load.
+/// Half the width of a patch, in half-widths of the contact under the whole load: the contact and a quarter beside it, so that one that
+/// a relief shifts still fits.
 const PATCH_HALF_WIDTH: f64 = 1.25;
 
 /// One contact cell.
@@ -31,299 +30,175 @@ pub struct Cell {
 pub struct Patch {
     /// The pair: the number n of the mesh position at which it passes the pitch point.
     pub pair: i64,
-    /// The gear whose flank carries the cells.
-    pub carrier: Member,
+    /// The gear on whose flank the cells lie.
+    pub seat: Member,
+    /// Where the first cell begins, by arc length on the seat's flank.
+    pub from: f64,
     /// The width of each cell along the flank.
     pub cell_width: f64,
-    /// The cells, towards the carrier's tip.
+    /// The cells, towards the seat's tip.
     pub cells: Vec<Cell>,
-    /// Whether the first cell begins where the carrier's flank does.
-    pub starts_at_form: bool,
-    /// Whether the last cell ends at the carrier's tip corner.
-    pub ends_at_tip: bool,
-    /// Whether the nominal contact lies past the carrier's tip, off the path of contact.
+    /// What ends the patch on either side, where it reaches as far as the flanks face each other.
+    pub ends: [Option<RangeEnd>; 2],
+    /// How each gear gives way near the contact.
+    pub near_fields: [NearField; 2],
+    /// Whether the nominal contact lies past the seat's tip, off the path of contact.
     pub off_path: bool,
 }
 
-/// Two flanks that come near each other, before cells are laid on them.
-#[derive(Debug, Clone, Copy)]
-pub struct Approach {
-    /// The pair n.
-    pub pair: i64,
-    /// The smallest gap between the flanks.
-    pub gap: f64,
-    placement: Placement,
-    carrier: Member,
-    /// Arc length on the carrier at the smallest gap.
-    arc: f64,
-    off_path: bool,
-}
-
-/// Both gears turned to a mesh position, as seen by one tooth pair.
-///
-/// The driving center is the origin, the driven one lies on the x axis; the driving gear turns counter-clockwise.
-#[derive(Debug, Clone, Copy)]
-struct Placement {
-    centers: [Vector; 2],
-    /// The angle of each tooth's centerline.
-    angles: [f64; 2],
-}
-
-/// What a point sees of the other flank: roll length there, gap along its normal, and that normal.
-struct Sight {
-    roll_length: f64,
-    gap: f64,
-    normal: Vector,
-}
-
-impl Placement {
-    fn new(pair: &GearPair, driving_roll: f64, driven_roll: f64) -> Self {
-        let alpha_w = pair.working_pressure_angle();
-        let angle = |gear: &SpurGear, tangent: f64, s: f64| {
-            tangent - gear.flank().base_half_angle() + s / gear.base_radius()
-        };
+impl Patch {
+    /// Lays `count` cells about the nearest point of `facing`, wide enough for `load` and then by the factor `widening`.
+    ///
+    /// Where the flanks cease to face each other the patch ends, so that its cells move with the contact and close up smoothly
+    /// towards a corner.
+    pub fn new(facing: &Facing<'_>, load: f64, count: usize, widening: f64) -> Self {
+        let gears = facing.gears();
+        let width = gears.common_face_width();
+        let nearest = facing.point(facing.nearest);
+        let radii = nearest.map_or([0.0; 2], |point| {
+            facing.on_both(point.roll_length, point.sight.roll_length)
+        });
+        let factors: f64 = Member::BOTH
+            .map(|member| logarithm_factor(gears.gear(member).material().youngs_modulus, width))
+            .into_iter()
+            .sum();
+        // Near a base circle the involute is as sharp as one likes; a tenth of the other radius is as small as the patch goes.
+        let least = 0.1 * radii[0].max(radii[1]);
+        let [rho_1, rho_2] = radii.map(|radius| radius.max(least));
+        let rho = rho_1 * rho_2 / (rho_1 + rho_2);
+        let half_width = contact_width(load * factors, rho, facing.opening_angle());
+        let reach = PATCH_HALF_WIDTH * widening * half_width;
+        let range = facing.range;
+        let (from, to) = (
+            (facing.nearest - reach).max(range.from),
+            (facing.nearest + reach).min(range.to),
+        );
+        let cell_width = (to - from) / count as f64;
         Self {
-            centers: [Vector::zeros(), Vector::new(pair.center_distance(), 0.0)],
-            angles: [
-                angle(pair.driving(), -alpha_w, driving_roll),
-                angle(pair.driven(), PI - alpha_w, driven_roll),
+            pair: facing.pair,
+            seat: facing.seat,
+            from,
+            cell_width,
+            cells: (0..count)
+                .filter_map(|i| facing.cell(from + (i as f64 + 0.5) * cell_width, cell_width))
+                .collect(),
+            ends: [
+                (from <= range.from).then_some(range.ends[0]),
+                (to >= range.to).then_some(range.ends[1]),
             ],
+            near_fields: Member::BOTH
+                .map(|member| NearField::new(gears.gear(member), radii[member.index()], width)),
+            off_path: facing.off_path,
         }
     }
+}
 
-    /// The point of the flank of `gear` at roll length `s`, its outward normal and its way to the tip.
-    fn point(&self, gear: &SpurGear, member: Member, s: f64) -> (Vector, Vector, Vector) {
-        let t = self.angles[member.index()] + gear.flank().tangent_angle(s);
-        let (e_r, e_t) = (radial(t), tangential(t));
+impl Patch {
+    /// Where the cells begin and end, by arc length on the seat's flank.
+    pub fn reach(&self) -> (f64, f64) {
         (
-            self.centers[member.index()] + gear.base_radius() * e_r + s * e_t,
-            e_t,
-            e_r,
+            self.from,
+            self.from + self.cell_width * self.cells.len() as f64,
         )
     }
 
-    /// The flank of `gear` as seen from `point`; `None` from inside its base circle.
-    fn sight(&self, gear: &SpurGear, member: Member, point: Vector) -> Option<Sight> {
-        let d = point - self.centers[member.index()];
-        let r_b = gear.base_radius();
-        let from_tangent_point = (d.norm_squared() - r_b * r_b).max(0.0).sqrt();
-        let t = d.y.atan2(d.x) - (from_tangent_point / r_b).atan();
-        let turn = self.angles[member.index()] + gear.flank().base_half_angle() - t;
-        let roll_length = r_b * (turn - (turn / (2.0 * PI)).round() * 2.0 * PI);
-        (from_tangent_point > 0.0).then(|| Sight {
-            roll_length,
-            gap: from_tangent_point - roll_length,
-            normal: tangential(t),
-        })
+    /// What ends the contact of the `active` cells where it reaches an end of the flanks.
+    pub fn ended_by(&self, active: &[bool]) -> Vec<RangeEnd> {
+        let first = self.ends[0].filter(|_| active.first() == Some(&true));
+        let last = self.ends[1].filter(|_| active.last() == Some(&true));
+        first.into_iter().chain(last).collect()
     }
 }
 
-impl Approach {
-    /// How the flanks of pair `n` come near each other at mesh position `eta`; `None` where they face nothing.
-    pub fn of(pair: &GearPair, eta: f64, n: i64) -> Option<Self> {
-        let line = pair.line_of_action();
-        let s_1 = pair.pitch_roll_length() + (eta - n as f64) * pair.base_pitch();
-        let placement = Placement::new(pair, s_1, line - s_1);
-        let carrier = if s_1 < pair.pitch_roll_length() {
-            Member::Driven
-        } else {
-            Member::Driving
-        };
-        let gear = pair.gear(carrier);
-        let nominal = if carrier == Member::Driving {
-            s_1
-        } else {
-            line - s_1
-        };
-        let (low, high) = (
-            gear.flank().arc_length(gear.form_roll_length()),
-            gear.flank().arc_length(gear.tip_roll_length()),
-        );
-        let gap_at = |arc: f64| {
-            cell_gap(pair, &placement, carrier, arc).map_or(f64::INFINITY, |(gap, ..)| gap)
-        };
-        // The gap is a parabola about the nominal contact plus reliefs that grow towards either tip: it has one minimum.
-        let arc = golden_minimum(low, high, 1e-4 * (high - low).min(1e-3), gap_at);
-        let arc = if gap_at(high) <= gap_at(arc) {
-            high
-        } else {
-            arc
-        };
-        let gap = gap_at(arc);
-        gap.is_finite().then_some(Self {
-            pair: n,
-            gap,
-            placement,
-            carrier,
-            arc,
-            off_path: nominal > gear.tip_roll_length(),
-        })
-    }
+/// How far a contact reaches from its middle or from its corner, where the gap opens as σ x + x²/(2 ρ).
+///
+/// Without an angle σ this is Hertz's half-width, a² = 2 ρ c F. A tilted corner on a half plane presses with
+/// p ~ √((L − x)/x) over the width L = 2 c F/σ. The root between them has both as its limits.
+fn contact_width(indentation: f64, radius: f64, angle: f64) -> f64 {
+    // σ L/2 + L²/(2 ρ) = c F, without the difference of like numbers.
+    let root = (angle * angle + 8.0 * indentation / radius).sqrt();
+    4.0 * indentation / (angle + root)
+}
 
-    /// Lays `count` cells about the deepest point, wide enough for `load` and then by the factor `widening`.
-    ///
-    /// `factors` is the sum of both logarithm factors. Where the flank ends, the patch ends with it, so that its cells move
-    /// with the contact and close up smoothly towards a corner.
-    pub fn patch(
-        &self,
-        pair: &GearPair,
-        load: f64,
-        factors: f64,
-        count: usize,
-        widening: f64,
-    ) -> Patch {
-        let gear = pair.gear(self.carrier);
-        let flank = gear.flank();
-        let (low, high) = (
-            flank.arc_length(gear.form_roll_length()),
-            flank.arc_length(gear.tip_roll_length()),
-        );
-        let s = flank.roll_length_at_arc(self.arc);
-        let other = (pair.line_of_action() - s).max(0.1 * s);
-        let (half_width, _) =
-            half_plane::hertz(load, s * other / (s + other), factors, pair.contact_width());
-        let reach = PATCH_HALF_WIDTH * widening * half_width;
-        let (from, to) = ((self.arc - reach).max(low), (self.arc + reach).min(high));
-        let cell_width = (to - from) / count as f64;
-        let cells = (0..count)
-            .filter_map(|i| self.cell(pair, from + (i as f64 + 0.5) * cell_width, cell_width))
-            .collect();
-        Patch {
-            pair: self.pair,
-            carrier: self.carrier,
-            cell_width,
-            cells,
-            starts_at_form: from <= low,
-            ends_at_tip: to >= high,
-            off_path: self.off_path,
+impl Facing<'_> {
+    /// What belongs to the seat and to the other gear, as driving and driven.
+    fn on_both<T: Copy>(&self, seat: T, other: T) -> [T; 2] {
+        match self.seat {
+            Member::Driving => [seat, other],
+            Member::Driven => [other, seat],
         }
     }
 
-    fn cell(&self, pair: &GearPair, arc: f64, width: f64) -> Option<Cell> {
-        let (carrier, other) = (self.carrier, self.carrier.other());
+    /// A cell of width `width` about `arc`; `None` inside the other base circle.
+    pub(super) fn cell(&self, arc: f64, width: f64) -> Option<Cell> {
         // The mean gap of the cell, by two Gauss points.
         let offset = width / 12.0_f64.sqrt();
-        let (gap_0, ..) = cell_gap(pair, &self.placement, carrier, arc - offset)?;
-        let (gap_1, ..) = cell_gap(pair, &self.placement, carrier, arc + offset)?;
-        let (_, sight, s) = cell_gap(pair, &self.placement, carrier, arc)?;
-        if sight.roll_length < pair.gear(other).form_roll_length() {
-            return None;
-        }
-        let (point, normal, to_tip) = self.placement.point(pair.gear(carrier), carrier, s);
-        let mut roll_lengths = [0.0; 2];
-        roll_lengths[carrier.index()] = s;
-        roll_lengths[other.index()] = sight.roll_length;
-        let mut directions = [[1.0, 0.0]; 2];
-        directions[carrier.index()] = [-sight.normal.dot(&normal), -sight.normal.dot(&to_tip)];
-        let force = if other == Member::Driving {
-            sight.normal
-        } else {
-            -sight.normal
+        let (before, after) = (self.point(arc - offset)?.gap, self.point(arc + offset)?.gap);
+        let here = self.point(arc)?;
+        let (place, sight) = (here.place, here.sight);
+        // Pressed together both flanks turn to a common normal between their own.
+        let normal = (sight.normal - place.normal).normalize();
+        let on_seat = [-normal.dot(&place.normal), -normal.dot(&place.to_tip)];
+        let on_mate = [normal.dot(&sight.normal), normal.dot(&sight.tipward())];
+        // The driven gear is pressed away from the driving flank, where its own flank stands.
+        let (at, push) = match self.seat {
+            Member::Driving => (place.point - sight.gap * sight.normal, -normal),
+            Member::Driven => (place.point, normal),
         };
-        let from_axis = point - self.placement.centers[1];
-        let arm = -(from_axis.x * force.y - from_axis.y * force.x) / pair.driven().base_radius();
         Some(Cell {
-            roll_lengths,
-            directions,
-            gap: f64::midpoint(gap_0, gap_1),
-            arm,
+            roll_lengths: self.on_both(here.roll_length, sight.roll_length),
+            directions: self.on_both(on_seat, on_mate),
+            gap: f64::midpoint(before, after),
+            arm: self.placement().arm(at, push),
         })
     }
-}
-
-/// The gap at `arc` on the carrier, reliefs included, what is seen there and the carrier's roll length.
-fn cell_gap(
-    pair: &GearPair,
-    placement: &Placement,
-    carrier: Member,
-    arc: f64,
-) -> Option<(f64, Sight, f64)> {
-    let (gear, other) = (pair.gear(carrier), pair.gear(carrier.other()));
-    let s = gear.flank().roll_length_at_arc(arc);
-    let (point, ..) = placement.point(gear, carrier, s);
-    let sight = placement.sight(other, carrier.other(), point)?;
-    // Past the other flank's ends there is nothing to touch.
-    if !(0.0..=other.tip_roll_length()).contains(&sight.roll_length) {
-        return None;
-    }
-    let relief = gear.relief_depth(gear.flank().radius(s))
-        + other.relief_depth(other.flank().radius(sight.roll_length));
-    Some((sight.gap + relief, sight, s))
-}
-
-/// The place of the minimum of a function with one minimum, by golden sections.
-fn golden_minimum(mut low: f64, mut high: f64, tolerance: f64, f: impl Fn(f64) -> f64) -> f64 {
-    let ratio = (5.0_f64.sqrt() - 1.0) / 2.0;
-    let (mut a, mut b) = (high - ratio * (high - low), low + ratio * (high - low));
-    let (mut f_a, mut f_b) = (f(a), f(b));
-    while high - low > tolerance {
-        if f_a < f_b {
-            (high, b, f_b) = (b, a, f_a);
-            a = high - ratio * (high - low);
-            f_a = f(a);
-        } else {
-            (low, a, f_a) = (a, b, f_b);
-            b = low + ratio * (high - low);
-            f_b = f(b);
-        }
-    }
-    f64::midpoint(low, high)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::gear::spur::tests::paper_gear;
-    use crate::gear::{ReliefData, ReliefShape, ReliefStart};
+    use crate::gear::{GearPair, SpurGear};
 
-    fn pair(relief: bool) -> GearPair {
-        let mut data = paper_gear(50);
-        if relief {
-            data.tip_relief = Some(ReliefData {
-                amount: 5e-6,
-                shape: ReliefShape::Linear,
-                start: ReliefStart::RadialLength(1.75e-3),
-            });
-        }
-        let gear = SpurGear::new(data).expect("the standard gear");
+    fn pair() -> GearPair {
+        let gear = SpurGear::new(paper_gear(50)).expect("the standard gear");
         GearPair::new(gear, gear, 100.5e-3).expect("meshes")
+    }
+
+    fn patch(pair: &GearPair, eta: f64, n: i64, count: usize) -> Patch {
+        let facing = Facing::of(pair, eta, n).expect("flanks that face each other");
+        Patch::new(&facing, 2447.61, count, 1.0)
     }
 
     #[test]
     fn conjugate_flanks_touch_on_the_line_of_action_with_arm_one() {
-        let pair = pair(false);
+        let pair = pair();
         for (eta, n) in [(0.0, 0), (0.3, 0), (0.3, 1), (0.7, 1), (-0.25, 0)] {
-            let approach = Approach::of(&pair, eta, n).expect("near");
-            assert!(approach.gap.abs() < 1e-12, "gap {} at {eta}", approach.gap);
-            let patch = approach.patch(&pair, 2447.61, 3e-10, 40, 1.0);
-            let s = pair.pitch_roll_length() + (eta - n as f64) * pair.base_pitch();
-            for cell in &patch.cells {
-                assert!(
-                    (cell.arm - 1.0).abs() < 1e-2,
-                    "cells beside the line of action are tilted by a/ρ: {}",
-                    cell.arm
-                );
-            }
+            let patch = patch(&pair, eta, n, 40);
+            let s = pair.roll_length_of(eta - n as f64);
+            // At x beside the line of action both normals are turned against each other by x (1/s_1 + 1/s_2): half of that
+            // tilts the force, whose arm then differs by s_2 times it.
+            let other = pair.line_of_action() - s;
+            let tilt = 20.0 * patch.cell_width * (1.0 / s + 1.0 / other) / 2.0;
+            let most = 1.1 * tilt * other / pair.driven().base_radius();
+            assert!(patch.cells.iter().all(|cell| (cell.arm - 1.0).abs() < most));
             let nearest = patch
                 .cells
                 .iter()
                 .min_by(|a, b| a.gap.total_cmp(&b.gap))
                 .expect("cells");
-            assert!((nearest.roll_lengths[0] - s).abs() < 0.02e-3);
-            assert!(
-                (nearest.roll_lengths[0] + nearest.roll_lengths[1] - pair.line_of_action()).abs()
-                    < 5e-6,
-                "half a cell beside it"
-            );
+            // Half a cell beside it: along a roll length a cell is r_b/s of its width.
+            let cell =
+                patch.cell_width * pair.driving().base_radius() / s.min(pair.line_of_action() - s);
+            assert!((nearest.roll_lengths[0] - s).abs() < 0.51 * cell);
+            let sum = nearest.roll_lengths[0] + nearest.roll_lengths[1];
+            assert!((sum - pair.line_of_action()).abs() < cell);
         }
     }
 
     #[test]
     fn the_gap_beside_the_contact_is_the_parabola_of_the_relative_curvature() {
-        let pair = pair(false);
-        let patch = Approach::of(&pair, 0.2, 0)
-            .expect("near")
-            .patch(&pair, 2447.61, 3e-10, 41, 1.0);
+        let patch = patch(&pair(), 0.2, 0, 41);
         let (center, end) = (patch.cells[20], patch.cells[36]);
         let x = 16.0 * patch.cell_width;
         let curvature = 1.0 / center.roll_lengths[0] + 1.0 / center.roll_lengths[1];
@@ -334,47 +209,29 @@ mod tests {
     }
 
     #[test]
-    fn past_the_path_of_contact_the_tip_corner_is_nearest_from_either_gear() {
-        let pair = pair(false);
+    fn past_the_path_of_contact_the_patch_ends_at_the_tip_corner_of_either_gear() {
+        let pair = pair();
         let (s_a, s_e) = pair.path_of_contact();
-        let before = (s_a - pair.pitch_roll_length()) / pair.base_pitch() - 0.1;
-        let after = (s_e - pair.pitch_roll_length()) / pair.base_pitch() + 0.1;
-        for (eta, carrier) in [(before, Member::Driven), (after, Member::Driving)] {
-            let approach = Approach::of(&pair, eta, 0).expect("near");
-            assert_eq!(approach.carrier, carrier);
-            assert!(
-                approach.off_path && approach.gap > 1e-6 && approach.gap < 1e-4,
-                "{}",
-                approach.gap
-            );
-            let patch = approach.patch(&pair, 2447.61, 3e-10, 40, 1.0);
-            assert!(patch.ends_at_tip);
+        let periods = |s: f64| (s - pair.pitch_roll_length()) / pair.base_pitch();
+        for (eta, seat) in [
+            (periods(s_a) - 0.1, Member::Driven),
+            (periods(s_e) + 0.1, Member::Driving),
+        ] {
+            let patch = patch(&pair, eta, 0, 40);
+            assert!(patch.off_path && patch.seat == seat);
+            assert_eq!(patch.ends, [None, Some(RangeEnd::Tip)]);
             let last = patch.cells.last().expect("cells");
             assert!(patch.cells.iter().all(|cell| cell.gap >= last.gap));
         }
     }
 
     #[test]
-    fn reliefs_add_to_the_gap() {
-        let (plain, relieved) = (pair(false), pair(true));
-        let eta = 0.5;
-        let gap = |pair: &GearPair| Approach::of(pair, eta, 0).expect("near").gap;
-        let s = plain.pitch_roll_length() + eta * plain.base_pitch();
-        let depth = relieved
-            .driving()
-            .relief_depth(relieved.driving().flank().radius(s));
-        // A slope σ beside a parabola of radius ρ lowers its minimum by σ² ρ/2.
-        let (r_b, r) = (
-            plain.driving().base_radius(),
-            plain.driving().flank().radius(s),
-        );
-        let slope = 5e-6 / 1.75e-3 * r_b / r;
-        let rho = s * (plain.line_of_action() - s) / plain.line_of_action();
-        let expected = depth - slope * slope * rho / 2.0;
-        let added = gap(&relieved) - gap(&plain);
-        assert!(
-            depth > 2e-6 && (added - expected).abs() < 1e-9,
-            "{added} {expected}"
-        );
+    fn a_contact_is_as_wide_as_hertz_or_as_the_tilted_corner_has_it() {
+        let (indentation, radius) = (7e-7, 9e-3);
+        let hertz = (2.0_f64 * indentation * radius).sqrt();
+        assert!((contact_width(indentation, radius, 0.0) / hertz - 1.0).abs() < 1e-14);
+        // At an angle where the parabola is small beside the tilt: their ratio is L/(ρ σ) = 1.6e-4.
+        let tilted = contact_width(indentation, radius, 1.0);
+        assert!((tilted / (2.0 * indentation) - 1.0).abs() < 2e-4);
     }
 }

@@ -23,7 +23,7 @@ pub struct ContactProblem {
 impl ContactProblem {
     /// States the problem with the `compliance` H of both bodies (m/N), the `gaps` g_0 (m) and the `arms` w (-).
     ///
-    /// H_ij is how much the gap at point i opens under a unit force at point j, approach held. A positive gap is open.
+    /// H_ij is how much the gap at point i opens under a unit force at point j, delta held. A positive gap is open.
     /// w_j is the arm of force j about the driven center over the base radius, 1 on the line of action. The two
     /// triangles of H are replaced by their mean.
     ///
@@ -120,14 +120,12 @@ impl ContactProblem {
         &self.arms
     }
 
-    /// The point that touches first, and the approach min_j g_0j / w_j at which it does, in m.
+    /// The point that touches first, and the delta = min_j g_0j / w_j at which it does, in m.
     pub fn first_touch(&self) -> (usize, f64) {
-        let approaches = self.gaps.iter().zip(&self.arms).map(|(gap, arm)| gap / arm);
-        approaches
-            .enumerate()
-            .fold((0, f64::INFINITY), |first, next| {
-                if next.1 < first.1 { next } else { first }
-            })
+        let touches = self.gaps.iter().zip(&self.arms).map(|(gap, arm)| gap / arm);
+        touches.enumerate().fold((0, f64::INFINITY), |first, next| {
+            if next.1 < first.1 { next } else { first }
+        })
     }
 }
 
@@ -172,15 +170,15 @@ fn symmetrize(compliance: &mut Mat<f64>) -> Result<(), ContactError> {
     Ok(())
 }
 
-/// Contact under a load: who carries it, how far the bodies approach, how stiff the contact is, and how exact that is.
+/// Contact under a load: who carries it, how far the driven gear lags, how stiff the contact is, and how exact that is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactSolution {
     /// The force p at each point, in N; never negative, zero off the active set.
     pub forces: Vec<f64>,
     /// The gap g = H p + g_0 - delta w left at each point, in m, positive where open.
     pub gaps: Vec<f64>,
-    /// The approach delta, in m, positive when the load makes the driven gear lag.
-    pub approach: f64,
+    /// The transmission error delta, in m, positive when the load makes the driven gear lag.
+    pub transmission_error: f64,
     /// Whether each point is in contact.
     pub active: Vec<bool>,
     /// The derivative q = dp/dF = H_A^-1 w_A / k of each force to the load, zero off the active set A.
@@ -191,7 +189,7 @@ pub struct ContactSolution {
     pub iterations: u32,
     /// The updates of the multipliers; 0 for a solver that has none.
     pub multiplier_updates: u32,
-    /// The largest |p_j g_j| over F (delta - delta_0), with the approach delta_0 of first touch.
+    /// The largest |p_j g_j| over F (delta - delta_0), with the delta_0 of first touch.
     pub complementarity: f64,
     /// The largest penetration, in m: the most negative gap with its sign turned, or 0.
     pub penetration: f64,
@@ -202,10 +200,10 @@ pub struct ContactSolution {
 /// What a solver has found, before its residuals are taken.
 pub(super) struct Equilibrium {
     pub(super) forces: Vec<f64>,
-    /// The approach beyond first touch, delta - delta_0, in m.
+    /// The transmission error beyond first touch, delta - delta_0, in m.
     ///
     /// Positive, whatever the gaps; residuals are taken with it so that a large common gap costs them no digits.
-    pub(super) approach_beyond_touch: f64,
+    pub(super) delta_beyond_touch: f64,
     pub(super) active: Vec<bool>,
     pub(super) load_derivative: Vec<f64>,
     pub(super) stiffness: f64,
@@ -217,7 +215,7 @@ impl Equilibrium {
     /// Takes the residuals, from the problem as stated and not from what the solver believed.
     pub(super) fn into_solution(self, problem: &ContactProblem, load: f64) -> ContactSolution {
         let (_, first_touch) = problem.first_touch();
-        let (w, g_0, delta) = (problem.arms(), problem.gaps(), self.approach_beyond_touch);
+        let (w, g_0, delta) = (problem.arms(), problem.gaps(), self.delta_beyond_touch);
 
         let mut gaps: Vec<f64> = g_0
             .iter()
@@ -250,7 +248,7 @@ impl Equilibrium {
             load_residual: (carried - load).abs() / load,
             gaps,
             forces: self.forces,
-            approach: first_touch + delta,
+            transmission_error: first_touch + delta,
             active: self.active,
             load_derivative: self.load_derivative,
             stiffness: self.stiffness,
@@ -490,9 +488,9 @@ mod tests {
         let problem =
             ContactProblem::new(identity(3), vec![3e-6, 1e-6, 1.1e-6], vec![1.0, 0.5, 1.0])
                 .expect("a sound problem");
-        let (point, approach) = problem.first_touch();
+        let (point, delta) = problem.first_touch();
         assert_eq!(point, 2);
         // 1.1 um over 1 is less than 1 um over one half.
-        assert_eq!(approach, 1.1e-6);
+        assert_eq!(delta, 1.1e-6);
     }
 }

@@ -4,7 +4,7 @@ use faer::{Mat, c64};
 
 use super::FemError;
 use super::blank::BlankSubstructure;
-use super::body::{FARTHEST_NEIGHBOR, tooth_angle};
+use super::body::tooth_angle;
 use super::condensation::{condense, mirror_lower};
 use super::cyclic::{Component, Harmonics, Sector};
 use super::dense::Cholesky;
@@ -14,6 +14,10 @@ use crate::run::Run;
 
 /// Singular values below this share of the largest carry nothing: H keeps nine digits.
 const MODE_TOLERANCE: f64 = 1e-11;
+
+/// How far apart, in teeth, two teeth of one gear may be loaded together: several times what the heaviest load makes of the contact
+/// ratio of any gear that can be drawn.
+pub const FARTHEST_COUPLED: usize = 16;
 
 /// One tooth sector, condensed to its interface and its loaded flank.
 ///
@@ -144,7 +148,7 @@ pub struct TeethRing {
     pub pattern_shares: Mat<f64>,
     /// The number Z of teeth.
     pub tooth_count: usize,
-    /// X_d: the answer of tooth 0 to the modes of tooth d, with the interface circle held; d = 0 … [`FARTHEST_NEIGHBOR`].
+    /// X_d: the answer of tooth 0 to the modes of tooth d, with the interface circle held; d = 0 … [`FARTHEST_COUPLED`].
     pub held_coupling: Vec<Mat<f64>>,
 }
 
@@ -198,7 +202,7 @@ impl TeethRing {
                 &solution.orders,
             );
         }
-        let held_coupling = (0..=FARTHEST_NEIGHBOR)
+        let held_coupling = (0..=FARTHEST_COUPLED)
             .map(|d| held_coupling(&class_compliance, z, d))
             .collect();
         // Modes that hardly show at the flank need fewer digits, and on their way to the interface circle their fields grow

@@ -1,13 +1,14 @@
 //! What the drawing says: racks, flanks, teeth, reliefs, blanks and the pair they make.
 //!
 //! Read in this order: [`involute`] (one flank), [`rack`] (the tool and the fillet it leaves), [`relief`], [`blank`],
-//! [`spur`] (a whole gear), [`pair`] (two of them at a center distance).
+//! [`material`], [`spur`] (a whole gear), [`pair`] (two of them at a center distance).
 //!
 //! Every gear is described in its own frame: the center of the gear is the origin, the centerline of tooth 0 is the
 //! x axis, and the loaded flank of each tooth lies on its counter-clockwise side.
 
 pub mod blank;
 pub mod involute;
+pub mod material;
 pub mod pair;
 pub mod rack;
 pub mod relief;
@@ -15,10 +16,11 @@ pub mod spur;
 
 pub use blank::{Blank, HolePattern};
 pub use involute::Involute;
+pub use material::{Material, PlaneState};
 pub use pair::{GearPair, GearPairError, Member};
 pub use rack::Rack;
 pub use relief::{ReliefShape, ReliefStart, TipRelief};
-pub use spur::{GearData, GearError, Material, ReliefData, SpurGear};
+pub use spur::{GearData, GearError, ReliefData, SpurGear};
 
 /// A point or vector of the plane, in meters.
 pub type Vector = nalgebra::Vector2<f64>;

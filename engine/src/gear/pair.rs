@@ -2,6 +2,7 @@
 
 use super::involute::involute_function;
 use super::{SpurGear, gcd};
+use crate::root_finding::bisect;
 
 /// One of the two gears of a pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -141,7 +142,9 @@ impl GearPair {
         }
         // Below the base circles together there is no line of action; the backlash decides the nearest distance.
         let base_radii = self.driving.base_radius() + self.driven.base_radius();
-        if center_distance <= base_radii || self.backlash() < -1e-12 {
+        // Rounding of a distance that was typed for no backlash is none.
+        let jams = self.backlash() < -1e-9 * self.driving.data().rack.module;
+        if center_distance <= base_radii || jams {
             let backlash = if center_distance <= base_radii {
                 f64::NEG_INFINITY
             } else {
@@ -243,6 +246,12 @@ impl GearPair {
         self.driving.base_radius() * self.working_pressure_angle().tan()
     }
 
+    /// The roll length on the driving gear at which a pair nominally touches `periods` mesh periods after it passed the pitch
+    /// point.
+    pub fn roll_length_of(&self, periods: f64) -> f64 {
+        self.pitch_roll_length() + periods * self.base_pitch()
+    }
+
     /// The roll lengths on the driving gear at the ends A and E of the path of contact.
     pub fn path_of_contact(&self) -> (f64, f64) {
         (
@@ -281,7 +290,7 @@ impl GearPair {
     }
 
     /// The face width on which the gears touch: the smaller of the two.
-    pub fn contact_width(&self) -> f64 {
+    pub fn common_face_width(&self) -> f64 {
         self.driving.face_width().min(self.driven.face_width())
     }
 
@@ -310,19 +319,6 @@ impl Member {
             Self::Driven => Self::Driving,
         }
     }
-}
-
-/// The last place, going from `good` towards `bad`, at which `holds` still holds.
-fn bisect(mut good: f64, mut bad: f64, holds: impl Fn(f64) -> bool) -> f64 {
-    for _ in 0..80 {
-        let middle = f64::midpoint(good, bad);
-        if holds(middle) {
-            good = middle
-        } else {
-            bad = middle
-        }
-    }
-    good
 }
 
 #[cfg(test)]

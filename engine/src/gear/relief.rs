@@ -76,13 +76,29 @@ impl TipRelief {
 
     /// The material c(r) removed at `radius`, along the normal; zero below the start.
     pub fn depth(&self, radius: f64) -> f64 {
-        let fraction =
-            ((radius - self.start_radius) / (self.tip_radius - self.start_radius)).max(0.0);
+        let fraction = self.fraction(radius);
         self.amount
             * match self.shape {
                 ReliefShape::Linear => fraction,
                 ReliefShape::Parabolic => fraction * fraction,
             }
+    }
+
+    /// The slope dc/dr at `radius`, towards the tip where the relief has a kink.
+    pub fn slope(&self, radius: f64) -> f64 {
+        if radius < self.start_radius {
+            return 0.0;
+        }
+        self.amount / (self.tip_radius - self.start_radius)
+            * match self.shape {
+                ReliefShape::Linear => 1.0,
+                ReliefShape::Parabolic => 2.0 * self.fraction(radius),
+            }
+    }
+
+    /// The part of the way from the start to the tip.
+    fn fraction(&self, radius: f64) -> f64 {
+        ((radius - self.start_radius) / (self.tip_radius - self.start_radius)).max(0.0)
     }
 }
 
@@ -98,6 +114,19 @@ mod tests {
             ReliefStart::RollLengthFromTip(length).radius(&flank, 52e-3),
             0.0
         );
+    }
+
+    #[test]
+    fn the_slope_is_that_of_the_depth() {
+        for shape in [ReliefShape::Linear, ReliefShape::Parabolic] {
+            let relief = TipRelief::new(5e-6, shape, 50.25e-3, 52e-3);
+            for radius in [50e-3, 50.3e-3, 51e-3, 51.9e-3] {
+                let step = 1e-7;
+                let difference =
+                    (relief.depth(radius + step) - relief.depth(radius - step)) / (2.0 * step);
+                assert!((relief.slope(radius) - difference).abs() < 1e-10);
+            }
+        }
     }
 
     #[test]

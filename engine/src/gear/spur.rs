@@ -4,8 +4,9 @@ use std::f64::consts::PI;
 
 use super::involute::involute_function;
 use super::rack::Trochoid;
-use super::{Blank, HolePattern, Involute, Rack, ReliefShape, ReliefStart, TipRelief};
+use super::{Blank, HolePattern, Involute, Material, Rack, ReliefShape, ReliefStart, TipRelief};
 use crate::quadrature::gauss_legendre_panels;
+use crate::root_finding::bisect;
 
 /// The least material, in meters, between a hole and its neighbor, the bore or the root circle.
 pub const LEAST_LIGAMENT: f64 = 0.5e-3;
@@ -15,17 +16,6 @@ pub const LEAST_TIP_THICKNESS: f64 = 0.05;
 
 /// The least rim between the bore and the root circle, in modules.
 pub const LEAST_RIM: f64 = 1.0;
-
-/// An elastic material.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Material {
-    /// Young's modulus E in pascals.
-    pub youngs_modulus: f64,
-    /// Poisson's ratio ν.
-    pub poisson_ratio: f64,
-    /// The density in kg/m³.
-    pub density: f64,
-}
 
 /// A tip relief as a drawing gives it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,7 +50,7 @@ pub struct GearData {
 /// Why a gear cannot be made as drawn. Lengths are in meters.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum GearError {
-    /// The rack's tip rounding does not fit between its flanks or below its pitch line.
+    /// The rack's tip rounding does not fit between its flanks.
     #[error("the rack's tip rounding of radius {tip_radius} m does not fit: at most {largest} m")]
     RackTipRadius {
         /// The radius asked for.
@@ -181,12 +171,8 @@ impl SpurGear {
 
     fn check_rack(&self) -> Result<(), GearError> {
         let rack = &self.data.rack;
-        let largest = rack
-            .largest_tip_radius()
-            .min(rack.dedendum - self.profile_shift_length());
-        if rack.tip_radius > largest
-            || rack.tip_radius >= rack.dedendum - self.profile_shift_length()
-        {
+        let largest = rack.largest_tip_radius();
+        if rack.tip_radius > largest {
             return Err(GearError::RackTipRadius {
                 tip_radius: rack.tip_radius,
                 largest,
@@ -331,6 +317,19 @@ impl SpurGear {
         self.tip_relief.map_or(0.0, |relief| relief.depth(radius))
     }
 
+    /// The slope of [`SpurGear::relief_depth`] by the radius.
+    pub fn relief_slope(&self, radius: f64) -> f64 {
+        self.tip_relief.map_or(0.0, |relief| relief.slope(radius))
+    }
+
+    /// The flank from the form circle to the tip circle, by arc length from the base circle.
+    pub fn flank_arcs(&self) -> (f64, f64) {
+        (
+            self.flank.arc_length(self.form_roll_length()),
+            self.flank.arc_length(self.tip_roll_length()),
+        )
+    }
+
     /// The angle 2π/Z between teeth.
     pub fn pitch_angle(&self) -> f64 {
         2.0 * PI / f64::from(self.data.tooth_count)
@@ -433,17 +432,15 @@ impl SpurGear {
     fn largest_addendum(&self) -> f64 {
         let r_0 = self.reference_radius() + self.profile_shift_length();
         let least = LEAST_TIP_THICKNESS * self.data.rack.module;
-        let (mut low, mut high) = (self.form_radius() - r_0, self.data.rack.addendum);
-        for _ in 0..60 {
-            let middle = f64::midpoint(low, high);
-            let r_a = r_0 + middle;
-            if 2.0 * r_a * self.flank.half_angle(r_a) < least {
-                high = middle
-            } else {
-                low = middle
-            }
-        }
-        low
+        let thick_enough = |addendum: f64| {
+            let r_a = r_0 + addendum;
+            2.0 * r_a * self.flank.half_angle(r_a) >= least
+        };
+        bisect(
+            self.form_radius() - r_0,
+            self.data.rack.addendum,
+            thick_enough,
+        )
     }
 
     /// The area and the second polar moment inside the tooth profile, by Green's theorem along one half tooth:

@@ -9,6 +9,7 @@ use super::block::{Edge, GridBuilder, backwards};
 use super::division::{Grading, reversed, uniform};
 use super::{Grid, GridError, GridLevel, checked};
 use crate::gear::{HolePattern, Vector, radial};
+use crate::root_finding::bisect;
 
 /// The least number of elements on the interface circle per tooth at the standard level.
 pub const ELEMENTS_PER_TOOTH: f64 = 4.0;
@@ -418,17 +419,10 @@ impl Hole {
     /// The angle φ in (0, π) whose point is seen from the middle in the direction of the box's corner at `x` and +β.
     fn towards(&self, x: f64) -> f64 {
         let target = self.beta.atan2(x - self.middle);
-        let (mut low, mut high) = (0.0, PI);
-        for _ in 0..50 {
-            let phi = f64::midpoint(low, high);
+        bisect(0.0, PI, |phi| {
             let p = self.point(phi);
-            if p.y.atan2(p.x - self.middle) < target {
-                low = phi;
-            } else {
-                high = phi;
-            }
-        }
-        f64::midpoint(low, high)
+            p.y.atan2(p.x - self.middle) < target
+        })
     }
 
     /// The angles φ of the lattice points between spoke `i` and the next.

@@ -22,7 +22,8 @@ impl GridLevel {
     ///
     /// The standard count is made even, so that the levels are 1 : 2 : 4 exactly.
     pub(super) fn count(self, standard: f64) -> usize {
-        let half = (standard / 2.0).round().max(1.0) as usize;
+        // A little more than half rounds up, so that similar gears, whose sizes differ by rounding, are divided alike.
+        let half = (standard / 2.0 + 1e-9).round().max(1.0) as usize;
         match self {
             Self::Coarse => half,
             Self::Standard => 2 * half,

@@ -486,7 +486,7 @@ mod tests {
     fn sweep() -> Vec<(SpurGear, f64)> {
         let mut gears = Vec::new();
         for z in [17, 18, 20, 25, 29, 50, 85, 150, 300] {
-            for x in [-0.3, 0.0, 0.5, 0.9] {
+            for x in [-0.3, 0.0, 0.5, 0.9, 1.2] {
                 gears.extend(gear(z, x));
             }
         }

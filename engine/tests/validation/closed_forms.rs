@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use meshwright_engine::analysis::model::WarmStart;
 use meshwright_engine::analysis::pair_model;
+use meshwright_engine::contact::WarmStart;
 use meshwright_engine::fem::blank::BlankSubstructure;
 use meshwright_engine::fem::cyclic::{Component, Harmonics};
 use meshwright_engine::grid::{BlankGrid, GridLevel};
@@ -56,30 +56,30 @@ fn the_contact_at_the_pitch_point_is_hertz() {
     let case = case(standard_pair(false), &[115.0]);
     let model = pair_model(&case, library(), &Run::unattended()).expect("a model");
     let load = case.pair.load(115.0);
-    let touch = model
-        .touch(0.0, load, &mut WarmStart::default())
+    let found = model
+        .cells(0.0, load, &mut WarmStart::default())
         .expect("contact");
-    let patch = touch
+    let patch = found
         .patches
         .iter()
         .find(|patch| patch.pair == 0)
         .expect("the reference pair touches at the pitch point");
-    let before: usize = touch
+    let before: usize = found
         .patches
         .iter()
         .take_while(|patch| patch.pair != 0)
         .map(|patch| patch.cells.len())
         .sum();
     let here = before..before + patch.cells.len();
-    let touching = touch.solution.active[here.clone()]
+    let touching = found.solution.active[here.clone()]
         .iter()
         .filter(|active| **active)
         .count();
     let half_width = 0.5 * touching as f64 * patch.cell_width;
-    let peak = touch.solution.forces[here]
+    let peak = found.solution.forces[here]
         .iter()
         .fold(0.0_f64, |peak, p| peak.max(*p))
-        / (patch.cell_width * case.pair.contact_width());
+        / (patch.cell_width * case.pair.common_face_width());
     println!(
         "half-width {half_width:.4e} m of cells {:.4e} m, peak pressure {peak:.4e} Pa",
         patch.cell_width
@@ -89,7 +89,7 @@ fn the_contact_at_the_pitch_point_is_hertz() {
         "within one cell"
     );
     assert!((peak / 677e6 - 1.0).abs() < 0.02);
-    let carried: f64 = touch.solution.forces.iter().sum();
+    let carried: f64 = found.solution.forces.iter().sum();
     assert!(
         (carried / load - 1.0).abs() < 1e-4,
         "one pair carries all; arms differ from one by (a/ρ)²"

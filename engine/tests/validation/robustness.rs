@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;
 
-use meshwright_engine::analysis::{Analysis, AnalysisError, Case, Library, Method, analyze};
+use meshwright_engine::analysis::{Analysis, AnalysisError, Case, Curve, Library, Method, analyze};
 use meshwright_engine::gear::{GearData, GearPair, SpurGear};
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::run::Run;
@@ -100,6 +100,7 @@ fn trouble(case: &Case) -> Option<String> {
             curve
                 .peak_contact_pressure
                 .iter()
+                .flatten()
                 .copied()
                 .fold(0.0, f64::max),
         );
@@ -282,10 +283,8 @@ fn contact_is_as_wide_as_the_narrower_gear() {
     assert!(
         wider.transmission_error_statistics.mean > half.transmission_error_statistics.mean / 2.0
     );
-    // Hertz: each body's own thickness enters its logarithm, so that c_1 + c_2 falls from 2 to 3/2 and a with its root.
-    let pressure = wider.peak_contact_pressure[0] / half.peak_contact_pressure[0];
-    assert!(
-        (pressure / (4.0_f64 / 3.0).sqrt() - 1.0).abs() < 0.01,
-        "{pressure}"
-    );
+    // Hertz: the flanks touch on the narrower width, whatever lies beside it.
+    let pressure = |curve: &Curve| curve.peak_contact_pressure[0].expect("no corner carries");
+    let ratio = pressure(&wider) / pressure(&half);
+    assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
 }

@@ -5,7 +5,7 @@ mod cases;
 
 use std::sync::OnceLock;
 
-use meshwright_engine::analysis::{Analysis, Case, Curve, Library, analyze};
+use meshwright_engine::analysis::{Analysis, Case, Library, analyze};
 use meshwright_engine::gear::GearPair;
 use meshwright_engine::run::Run;
 
@@ -38,22 +38,6 @@ pub(crate) fn roll_length(pair: &GearPair, eta: f64, n: i64) -> f64 {
 pub(crate) fn beyond_path(pair: &GearPair, roll_length: f64) -> f64 {
     let (s_a, s_e) = pair.path_of_contact();
     (s_a - roll_length).max(roll_length - s_e).max(0.0)
-}
-
-/// The pairs that carry load at position `i` of a curve: roll length on the driving gear and share, by rising roll length.
-pub(crate) fn loaded_pairs(pair: &GearPair, curve: &Curve, i: usize) -> Vec<(f64, f64)> {
-    let eta = curve.mesh_position[i];
-    let mut loaded: Vec<(f64, f64)> = curve
-        .load_shares
-        .iter()
-        .filter(|share| share.share[i] > 0.0)
-        .map(|share| {
-            let n = eta.floor() as i64 + i64::from(share.pair_offset);
-            (roll_length(pair, eta, n), share.share[i])
-        })
-        .collect();
-    loaded.sort_by(|a, b| a.0.total_cmp(&b.0));
-    loaded
 }
 
 /// Where the reference data lie: `tests/reference` at the root of the repository.

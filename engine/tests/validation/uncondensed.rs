@@ -124,14 +124,14 @@ fn answers_of_substructures(
     )
     .expect("a blank");
     let phase = gear.holes().map_or(0.0, |holes| holes.phase);
-    let coupling = Coupling::on_blank(&ring, &blank, phase, &Run::unattended()).expect("a gear");
+    let coupling = Coupling::on_blank(&ring, &blank, phase, 4, &Run::unattended()).expect("a gear");
     let unknowns = loaded_unknowns(substructure.roll_lengths.len());
     let v = &substructure.modes;
     let v_loaded = Mat::from_fn(unknowns.len(), v.ncols(), |i, j| v[(unknowns[i], j)]);
     let mut answers = Vec::new();
     for loaded in LOADED_TEETH {
         for offset in OFFSETS {
-            let (x, transposed) = coupling.block(loaded, offset).expect("near");
+            let (x, transposed) = coupling.block(loaded, offset);
             // X runs from the loaded tooth to the other one; the answer of the other one is its transpose.
             let x = if transposed {
                 x.to_owned()

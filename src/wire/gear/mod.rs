@@ -20,7 +20,7 @@ pub use relief::{ReliefDocument, StartDocument};
 use super::quantity;
 use super::schema::{self, documented};
 use super::tree::{ObjectReader, OptionalObject};
-use super::units::from_mm;
+use super::units::{Side, from_mm, rounded_inward};
 
 /// A gear, in the reader's units, with every default filled in.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -65,6 +65,23 @@ documented!(
     )
 );
 
+/// The rounding of a rack's tip where none is given: `usual`, or the largest that fits between its flanks. In mm and degrees.
+fn usual_tip_radius(usual: f64, module: f64, pressure_angle: f64, dedendum: f64) -> f64 {
+    let rack = Rack {
+        module,
+        pressure_angle: pressure_angle.to_radians(),
+        addendum: module,
+        dedendum,
+        tip_radius: usual,
+    };
+    let largest = rack.largest_tip_radius();
+    if usual <= largest {
+        usual
+    } else {
+        rounded_inward(largest, Side::AtMost, 0)
+    }
+}
+
 impl GearDocument {
     /// Reads a gear; what is wrong is reported to the reader's errors.
     pub(super) fn read(mut reader: ObjectReader<'_>) -> Option<Self> {
@@ -74,7 +91,18 @@ impl GearDocument {
         let profile_shift = reader.number(&quantity::PROFILE_SHIFT, None);
         let addendum_mm = reader.number(&quantity::ADDENDUM, module_mm);
         let dedendum_mm = reader.number(&quantity::DEDENDUM, module_mm);
-        let rack_tip_radius_mm = reader.number(&quantity::RACK_TIP_RADIUS, module_mm);
+        let given = reader.present(quantity::RACK_TIP_RADIUS.name).is_some();
+        let mut rack_tip_radius_mm = reader.number(&quantity::RACK_TIP_RADIUS, module_mm);
+        if !given
+            && let (Some(radius), Some(module), Some(angle), Some(dedendum)) = (
+                rack_tip_radius_mm,
+                module_mm,
+                pressure_angle_deg,
+                dedendum_mm,
+            )
+        {
+            rack_tip_radius_mm = Some(usual_tip_radius(radius, module, angle, dedendum));
+        }
         let face_width_mm = reader.number(&quantity::FACE_WIDTH, None);
         let tip_relief = match reader.optional_object("tip_relief") {
             OptionalObject::Absent => Some(None),

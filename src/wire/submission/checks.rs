@@ -20,7 +20,7 @@ impl Document {
         let softer = modulus(pair.driving()).min(modulus(pair.driven()));
         let module = pair.driving().data().rack.module;
         let largest_load =
-            LARGEST_DEFLECTION * module * USUAL_STIFFNESS * softer * pair.contact_width();
+            LARGEST_DEFLECTION * module * USUAL_STIFFNESS * softer * pair.common_face_width();
         let largest = largest_load * pair.driven().base_radius();
         for (i, &torque) in self.output_torques_n_m.iter().enumerate() {
             if torque > largest {

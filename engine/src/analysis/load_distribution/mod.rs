@@ -4,100 +4,140 @@
 //! A loaded pair of teeth gives way in three places, and for each there is a closed form. Forces act along the line
 //! of action, so compliances (m/N) add up in series over the two gears:
 //!
-//! | what gives way | formula | module |
+//! | what gives way | formula | file |
 //! | --- | --- | --- |
-//! | the tooth, a cantilever of varying section | Weber and Banaschek's integral over the true profile | [`weber_banaschek`] |
-//! | the body under the tooth, as a ring on a rigid bore | Sainsot, Velex and Duverger | [`sainsot`] |
-//! | the body under the tooth, as a half-plane | Weber and Banaschek; O'Donnell | [`half_plane`] |
-//! | the flanks at the contact | Hertz, and Weber's approach of points at a depth | [`hertz`] |
-//! | all of it at once, per pair of teeth | ISO 6336-1, method B, single stiffness | [`iso6336`] |
+//! | the tooth, a cantilever of varying section | Weber and Banaschek's integral over the true profile | `weber_banaschek` |
+//! | the body under the tooth, as a ring on a rigid bore | Sainsot, Velex and Duverger | `sainsot` |
+//! | the body under the tooth, as a half plane | Weber and Banaschek | `half_plane` |
+//! | the flanks at the contact | Hertz, and Weber's approach of points at a depth | `approach` |
+//! | all of it at once, per pair of teeth | ISO 6336-1, method B, single stiffness | `iso6336` |
 //!
-//! Reading order: [`elastic_constants`] and [`tooth_load`] (where the load line meets the tooth, the one piece of
-//! geometry that all formulas share), then the table from top to bottom.
+//! Reading order: `tooth_load` and `profile` (where the load line meets the tooth, and how thick it is), then the table from
+//! top to bottom, `compliance` (which pairs touch, and their formulas), `sharing` (how they share the load) and `range`
+//! (where formulas are used outside the range for which they were published: computed, and flagged).
 //!
-//! What this route cannot see: holes (a body is a ring or a half-plane), and the body that neighboring pairs share -
+//! Where the face widths differ, each tooth and body yields by its own width, and the flanks touch on the common one; ISO's
+//! stiffness is that of the common width.
+//!
+//! What this route cannot see: holes (a body is a ring or a half plane), and the body that neighboring pairs share -
 //! each pair carries a body of its own, so that the deflection of one tooth does not tilt the next. ISO's single
-//! stiffness knows neither position nor bore.
+//! stiffness knows neither position nor bore nor load.
 
-mod curve;
-pub mod elastic_constants;
-pub mod half_plane;
-pub mod hertz;
-pub mod iso6336;
-pub mod quantity;
-pub mod sainsot;
-pub mod tooth_load;
-pub mod weber_banaschek;
+mod approach;
+mod compliance;
+mod half_plane;
+mod iso6336;
+mod profile;
+mod range;
+mod sainsot;
+mod sharing;
+mod tooth_load;
+mod weber_banaschek;
 
-pub(super) use curve::distribute;
+pub use range::{Formula, FormulaQuantity, FormulaRange};
 
-#[cfg(test)]
-mod tests {
-    use super::elastic_constants::ElasticConstants;
-    use super::half_plane::{self, FoundationForm};
-    use super::hertz::{ContactBody, LineContact};
-    use super::iso6336::{IsoGear, IsoPair};
-    use super::tooth_load::{InvoluteTooth, ToothLoad};
-    use super::weber_banaschek;
-    use crate::analysis::PlaneState;
+use super::case::{BodyFormula, Case, StiffnessRule, ToothFormula};
+use super::curve::{Evidence, LoadShare};
+use super::decomposition::{one_mesh_period, repeated};
+use super::{Analysis, AnalysisError, CurveParts, mesh_positions, warnings};
+use crate::gear::Member;
+use crate::run::Run;
+use compliance::PairFormulas;
+use sainsot::Ring;
+use sharing::{LinePair, Shared, rise, share};
 
-    #[test]
-    fn the_sum_of_the_formulas_at_the_pitch_point_lies_near_the_single_stiffness_of_iso() {
-        // ISO's q' is a fit to sums of this very kind. The tooth here runs down to the root circle as an
-        // involute, without its fillet, and the load is one of many: 10 % allows for that.
-        let steel = ElasticConstants::new(210e9, 0.3).expect("steel is a material");
-        let (z, m, alpha, b, force) = (50.0_f64, 2e-3, 20_f64.to_radians(), 20e-3, 6000.0);
-        let r_b = 0.5 * m * z * alpha.cos();
-        let tooth = InvoluteTooth::new(50, alpha, 0.0, r_b, 47.5e-3).expect("the tooth exists");
-        let s = r_b * alpha.tan();
-        let load = ToothLoad::at_roll_length(&tooth, s).expect("the pitch point lies on the flank");
-
-        // Half-thickness over height, by bisection for the radius whose flank point has that height.
-        let half_thickness = |y: f64| {
-            let (mut low, mut high) = (r_b, 60e-3);
-            for _ in 0..60 {
-                let r = 0.5 * (low + high);
-                if r * tooth.half_angle_at(r).cos() < 47.5e-3 + y {
-                    low = r;
-                } else {
-                    high = r;
-                }
-            }
-            low * tooth.half_angle_at(low).sin()
-        };
-        let root_width = 2.0 * half_thickness(0.0);
-
-        let plane = PlaneState::Strain;
-        let bending = weber_banaschek::tooth_compliance(half_thickness, &load, b, &steel, plane)
-            .expect("the profile is a tooth");
-        let body = half_plane::compliance(
-            FoundationForm::WeberBanaschek,
-            &load,
-            root_width,
-            b,
-            &steel,
-            plane,
-        )
-        .expect("the root has a width");
-        let flank = ContactBody {
-            material: steel,
-            curvature_radius: s,
-            depth: load.depth,
-        };
-        let contact = LineContact::new([flank, flank], b, plane).expect("both flanks are convex");
-        let approach = contact.approach(force).expect("the contact is narrow");
-
-        let stiffness_per_width = 1.0 / (2.0 * (bending.total() + body) + approach / force) / b;
-        let gear = IsoGear {
-            tooth_count: 50,
-            profile_shift: 0.0,
-        };
-        let c_th = IsoPair::new([gear, gear], 0.0, alpha)
-            .expect("the pair is in ISO's range")
-            .theoretical_single_stiffness();
-        assert!(
-            (stiffness_per_width / c_th - 1.0).abs() < 0.1,
-            "{stiffness_per_width:e} beside {c_th:e} Pa"
-        );
+/// Computes `case` by the load distribution.
+pub(super) fn distribute(case: &Case, run: &Run) -> Result<Analysis, AnalysisError> {
+    let formulas = PairFormulas::new(&case.pair, case.resolution.formulas);
+    let positions = one_mesh_period(case)
+        .into_iter()
+        .map(|eta| formulas.pairs_at(eta))
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut evidence = Evidence::new(0);
+    let mut curves = Vec::with_capacity(case.output_torques.len());
+    for &output_torque in &case.output_torques {
+        let load = case.pair.load(output_torque);
+        let mut contacts = Vec::with_capacity(positions.len());
+        for pairs in &positions {
+            let contact = solved(pairs, load, case.resolution.stiffness);
+            evidence.equilibrium_residual = evidence.equilibrium_residual.max(contact.residual);
+            contacts.push(contact);
+            run.reached(1)?;
+        }
+        let parts = curve_parts(case, &contacts, load);
+        curves.push(parts.into_curve(case, output_torque, mesh_positions(case)));
     }
+    Ok(Analysis {
+        curves,
+        evidence,
+        warnings: warnings(case),
+    })
+}
+
+/// What of `case` lies outside the ranges of the formulas that it asks for.
+pub(super) fn out_of_range(case: &Case) -> Vec<FormulaRange> {
+    let (pair, formulas) = (&case.pair, case.resolution.formulas);
+    match (formulas.tooth, formulas.body) {
+        (ToothFormula::Iso6336, _) => {
+            let torques = case.output_torques.iter().copied();
+            iso6336::out_of_range(pair, torques.fold(f64::INFINITY, f64::min))
+        }
+        (ToothFormula::WeberBanaschek, BodyFormula::Sainsot) => Member::BOTH
+            .into_iter()
+            .flat_map(|member| Ring::of(pair.gear(member)).out_of_range(member))
+            .collect(),
+        (ToothFormula::WeberBanaschek, BodyFormula::HalfPlane | BodyFormula::Rigid) => Vec::new(),
+    }
+}
+
+/// `load` shared among `pairs`, with the stiffness by `rule`.
+fn solved(pairs: &[LinePair], load: f64, rule: StiffnessRule) -> Shared {
+    let contact = share(pairs, load);
+    match rule {
+        StiffnessRule::Tangent => contact,
+        StiffnessRule::TorqueStep { fraction } => {
+            let more = rise(pairs, (1.0 + fraction) * load);
+            let less = rise(pairs, (1.0 - fraction) * load);
+            let stiffness = 2.0 * fraction * load / (more - less);
+            Shared {
+                stiffness,
+                ..contact
+            }
+        }
+    }
+}
+
+fn curve_parts(case: &Case, contacts: &[Shared], load: f64) -> CurveParts {
+    let all = |value: fn(&Shared) -> f64| repeated(case, contacts.iter().map(value));
+    let pairs_in_contact = contacts
+        .iter()
+        .map(|contact| contact.loaded().count() as u32);
+    let pressures = contacts.iter().map(|contact| Some(contact.peak_pressure));
+    CurveParts {
+        transmission_error: all(|contact| contact.transmission_error),
+        stiffness: all(|contact| contact.stiffness),
+        peak_contact_pressure: repeated(case, pressures),
+        pairs_in_contact: repeated(case, pairs_in_contact),
+        load_shares: load_shares(case, contacts, load),
+        decomposition: None,
+    }
+}
+
+fn load_shares(case: &Case, contacts: &[Shared], load: f64) -> Vec<LoadShare> {
+    let mut offsets: Vec<i32> = contacts
+        .iter()
+        .flat_map(|contact| contact.loaded().map(|force| force.0))
+        .collect();
+    offsets.sort_unstable();
+    offsets.dedup();
+    let share_of = |pair_offset: i32| LoadShare {
+        pair_offset,
+        share: repeated(
+            case,
+            contacts
+                .iter()
+                .map(|contact| contact.share(pair_offset, load)),
+        ),
+    };
+    offsets.into_iter().map(share_of).collect()
 }

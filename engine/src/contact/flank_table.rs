@@ -7,23 +7,26 @@
 
 use faer::Mat;
 
+use super::corner::{Corner, block};
 use super::half_plane::logarithm_factor;
 use crate::fem::tooth::ToothSubstructure;
-use crate::gear::Material;
+use crate::gear::{Involute, SpurGear};
 
-/// Nodes this near to each other (four elements) see the grid rather than the body in their compliance.
-const NEAR: usize = 8;
+/// Nodes this near to each other (two elements) see the grid rather than the body in their compliance.
+const NEAR: usize = 4;
 
 /// The smooth compliance of the loaded flank of one tooth with its interface held, and its loading modes.
 #[derive(Debug, Clone)]
 pub struct FlankTable {
-    roll_lengths: Vec<f64>,
+    /// The arc length of each node from the base circle: the compliance is smooth along the flank, and not in the roll length
+    /// near the base circle.
+    arcs: Vec<f64>,
     /// R on (normal, towards the tip) of each node.
     smooth: Mat<f64>,
     /// V on the same unknowns.
     modes: Mat<f64>,
-    /// c = 2/(π E b).
-    logarithm_factor: f64,
+    flank: Involute,
+    corner: Corner,
 }
 
 /// A point on a flank in terms of the nodes around it: four nodes from `first`, their weights, and the components of the
@@ -33,18 +36,25 @@ pub struct FlankPoint {
     first: usize,
     weights: [f64; 4],
     direction: [f64; 2],
+    /// The arc length from the base circle.
+    arc: f64,
 }
 
 impl FlankTable {
-    /// Tabulates the flank of `tooth`.
-    pub fn new(tooth: &ToothSubstructure, material: &Material, thickness: f64) -> Self {
-        let factor = logarithm_factor(material.youngs_modulus, thickness);
+    /// Tabulates the flank of `tooth`, a tooth of `gear`.
+    pub fn new(tooth: &ToothSubstructure, gear: &SpurGear) -> Self {
+        let factor = logarithm_factor(gear.material().youngs_modulus, gear.face_width());
+        let module = gear.data().rack.module;
         let nodes = tooth.roll_lengths.len();
         let mut smooth = tooth.fixed_compliance.clone();
         for component in [0, 1] {
             let mut part = Mat::from_fn(nodes, nodes, |i, j| {
                 let distance = (tooth.flank_points[i] - tooth.flank_points[j]).norm();
-                let logarithm = if i == j { 0.0 } else { factor * distance.ln() };
+                let logarithm = if i == j {
+                    0.0
+                } else {
+                    factor * (distance / module).ln()
+                };
                 tooth.fixed_compliance[(2 * i + component, 2 * j + component)] + logarithm
             });
             bridge_diagonal(&mut part);
@@ -54,17 +64,30 @@ impl FlankTable {
                 }
             }
         }
+        let flank = *gear.flank();
+        let roll_lengths = tooth.roll_lengths.iter();
+        let arcs: Vec<f64> = roll_lengths.map(|s| flank.arc_length(*s)).collect();
+        let between = |one: f64, other: f64| {
+            let [one, other] = [one, other].map(|arc| stencil(&arcs, arc));
+            let mut sum = [[0.0; 2]; 2];
+            for (i, weight) in one.1.into_iter().enumerate() {
+                for (j, other_weight) in other.1.into_iter().enumerate() {
+                    let entry = block(&smooth, one.0 + i, other.0 + j);
+                    for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                        sum[a][b] += weight * other_weight * entry[a][b];
+                    }
+                }
+            }
+            sum
+        };
+        let corner = Corner::new(gear, &arcs, factor, between);
         Self {
-            roll_lengths: tooth.roll_lengths.clone(),
+            arcs,
             smooth,
             modes: tooth.modes.clone(),
-            logarithm_factor: factor,
+            flank,
+            corner,
         }
-    }
-
-    /// The factor c = 2/(π E b) of the logarithm.
-    pub fn logarithm_factor(&self) -> f64 {
-        self.logarithm_factor
     }
 
     /// The number of table entries, for the books of a cache.
@@ -79,36 +102,56 @@ impl FlankTable {
 
     /// The point at roll length `s`, pressed along `direction` (against the outward normal, against the way to the tip).
     pub fn point(&self, s: f64, direction: [f64; 2]) -> FlankPoint {
-        let nodes = &self.roll_lengths;
-        let after = nodes.partition_point(|&node| node < s);
-        let first = after.saturating_sub(2).min(nodes.len() - 4);
-        let stencil = &nodes[first..first + 4];
-        let weights = std::array::from_fn(|i| {
-            (0..4)
-                .filter(|&j| j != i)
-                .map(|j| (s - stencil[j]) / (stencil[i] - stencil[j]))
-                .product()
-        });
+        let arc = self.flank.arc_length(s);
+        let (first, weights) = stencil(&self.arcs, arc);
         FlankPoint {
             first,
             weights,
             direction,
+            arc,
         }
     }
 
-    /// The smooth compliance W R Wᵀ among `points` of one tooth with its interface held, without the logarithm.
-    pub fn smooth_compliance(&self, points: &[FlankPoint]) -> Mat<f64> {
-        let (first, weights) = weights(points);
-        let count = weights.ncols();
-        let around = self.smooth.submatrix(first, first, count, count);
-        &weights * around * weights.transpose()
+    /// The smooth compliance W R Wᵀ between `points` and `loaded` points of one tooth with its interface held, without the
+    /// logarithm.
+    pub fn smooth_compliance(&self, points: &[FlankPoint], loaded: &[FlankPoint]) -> Mat<f64> {
+        let ((row, weights), (column, loads)) = (weights(points), weights(loaded));
+        let around = self
+            .smooth
+            .submatrix(row, column, weights.ncols(), loads.ncols());
+        let mut compliance = &weights * around * loads.transpose();
+        for (j, load) in loaded.iter().enumerate() {
+            for (i, point) in points.iter().enumerate() {
+                if let Some(block) = self.corner.compliance(point.arc, load.arc) {
+                    compliance[(i, j)] = (0..2)
+                        .flat_map(|a| (0..2).map(move |b| (a, b)))
+                        .map(|(a, b)| point.direction[a] * block[a][b] * load.direction[b])
+                        .sum();
+                }
+            }
+        }
+        compliance
     }
 
-    /// W V: how each loading mode shows at `points`.
-    pub fn modes_at(&self, points: &[FlankPoint]) -> Mat<f64> {
+    /// W V: how the flank follows its interface at `points`.
+    pub fn shapes_at(&self, points: &[FlankPoint]) -> Mat<f64> {
         let (first, weights) = weights(points);
         &weights * self.modes.subrows(first, weights.ncols())
     }
+}
+
+/// The first of the four of `nodes` around `x`, and their weights in a cubic.
+fn stencil(nodes: &[f64], x: f64) -> (usize, [f64; 4]) {
+    let after = nodes.partition_point(|&node| node < x);
+    let first = after.saturating_sub(2).min(nodes.len() - 4);
+    let stencil = &nodes[first..first + 4];
+    let weights = std::array::from_fn(|i| {
+        (0..4)
+            .filter(|&j| j != i)
+            .map(|j| (x - stencil[j]) / (stencil[i] - stencil[j]))
+            .product()
+    });
+    (first, weights)
 }
 
 /// The weights W of the unknowns around `points`, one row each, and the first of these unknowns.
@@ -129,7 +172,7 @@ fn weights(points: &[FlankPoint]) -> (usize, Mat<f64>) {
 /// Replaces the entries of the symmetric table `a` near its diagonal by what its farther ones say.
 ///
 /// Along each antidiagonal the smooth part is even in the distance d between the nodes: a + b d² + c d⁴ through the
-/// distances 8, 12 and 16 bridges the nearer ones. Near the ends of the flank fewer distances fit, and the last few nodes
+/// distances 4, 8 and 12 bridges the nearer ones. Near the ends of the flank fewer distances fit, and the last few nodes
 /// continue their neighbors in a straight line.
 fn bridge_diagonal(a: &mut Mat<f64>) {
     let last = a.nrows() as i64 - 1;
@@ -204,8 +247,10 @@ mod tests {
         bridge_diagonal(&mut table);
         for i in 0..60_usize {
             for j in 0..60_usize {
-                let inside = i + j >= 16 && i + j <= 118 - 16;
-                let tolerance = if inside { 1e-10 } else { 0.1 };
+                // Where all three distances fit, the bridge is exact for this function; towards the ends fewer fit and it goes on
+                // straight, which leaves the curvature (6 of this mean's) over twelve nodes: 6/2 · 0.12² / 2 = 0.02.
+                let ends = (i + j).min(118 - i - j);
+                let tolerance = if ends >= NEAR + 9 { 1e-10 } else { 3e-2 };
                 assert!(
                     (table[(i, j)] - exact(i, j)).abs() < tolerance,
                     "({i}, {j}): {} {}",

@@ -1,0 +1,134 @@
+//! The discrete model of a pair: both gears' flanks and how their teeth move each other.
+
+use std::sync::Arc;
+
+use super::flank_table::FlankTable;
+use super::stage::Stage;
+use super::{ContactError, MeshCells, MeshContact};
+use crate::fem::body::Coupling;
+use crate::gear::{GearPair, Member};
+
+/// The solver of the contact conditions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ContactSolver {
+    /// The exact active set.
+    ActiveSet,
+    /// The augmented Lagrangian of the paper, eq. 7.
+    AugmentedLagrangian {
+        /// The penalty stiffness κ of a contact cell in N/m.
+        penalty: f64,
+        /// The gap tolerance ε in meters.
+        gap_tolerance: f64,
+    },
+}
+
+/// One gear: its flank table and the coupling of its teeth.
+#[derive(Debug, Clone)]
+pub struct GearModel {
+    /// The flank of every tooth.
+    pub flank: Arc<FlankTable>,
+    /// How loaded teeth move each other.
+    pub coupling: Arc<Coupling>,
+}
+
+/// A pair ready for contact at any position and load.
+#[derive(Debug, Clone)]
+pub struct PairModel {
+    /// The pair.
+    pub pair: GearPair,
+    /// Driving and driven gear.
+    pub gears: [GearModel; 2],
+    /// Cells in one patch.
+    pub cells_per_patch: usize,
+    /// The solver.
+    pub solver: ContactSolver,
+}
+
+/// What one position leaves for the next: where each pair was in contact, and the transmission error.
+///
+/// Pairs are numbered from the reference pair of the position's own mesh period.
+#[derive(Debug, Clone, Default)]
+pub struct WarmStart {
+    /// The transmission error; `None` at a cold start.
+    pub(super) transmission_error: Option<f64>,
+    /// The cells that touched, pair by pair.
+    pub(super) active: Vec<(i64, Vec<bool>)>,
+}
+
+/// Why a position has no solution.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PositionError {
+    /// No flanks face each other.
+    #[error("no flanks come near each other")]
+    NoContact,
+    /// Teeth touch that are farther apart than the model couples.
+    #[error(
+        "teeth touch that stand {apart} apart, and the model couples those up to {coupled} apart"
+    )]
+    TooFarApart {
+        /// Teeth between the first and the last that touch.
+        apart: usize,
+        /// How far apart coupled teeth stand.
+        coupled: usize,
+    },
+    /// The contact solver failed.
+    #[error(transparent)]
+    Contact(#[from] ContactError),
+}
+
+impl PairModel {
+    /// The contact at mesh position `eta` under `load`, summed up pair by pair.
+    ///
+    /// # Errors
+    ///
+    /// [`PositionError`].
+    pub fn contact(
+        &self,
+        eta: f64,
+        load: f64,
+        warm: &mut WarmStart,
+    ) -> Result<MeshContact, PositionError> {
+        let period = eta.floor();
+        let mut stage = Stage::new(self, eta - period, load)?;
+        let (contact, ()) = stage.contact(period as i64, warm, |_, _| ())?;
+        Ok(contact)
+    }
+
+    /// The contact at mesh position `eta` under `load`, cell by cell.
+    ///
+    /// # Errors
+    ///
+    /// [`PositionError`].
+    pub fn cells(
+        &self,
+        eta: f64,
+        load: f64,
+        warm: &mut WarmStart,
+    ) -> Result<MeshCells, PositionError> {
+        let period = eta.floor();
+        Stage::new(self, eta - period, load)?.cells(period as i64, warm)
+    }
+
+    /// The tooth of `member` in pair n.
+    pub fn tooth(&self, member: Member, n: i64) -> usize {
+        let z = i64::from(self.pair.gear(member).tooth_count());
+        teeth_on(member, n).rem_euclid(z) as usize
+    }
+
+    /// How far apart coupled teeth of either gear stand at most.
+    pub fn coupled_teeth(&self) -> usize {
+        let [one, other] = [0, 1].map(|gear| self.gears[gear].coupling.farthest());
+        one.min(other)
+    }
+}
+
+/// The teeth counter-clockwise, in the frame of `member`, from the tooth of one pair to that of the pair `pairs` later.
+///
+/// The next tooth counter-clockwise of the driving gear is ahead and meshes before, that of the driven gear is behind and
+/// meshes after.
+pub fn teeth_on(member: Member, pairs: i64) -> i64 {
+    match member {
+        Member::Driving => -pairs,
+        Member::Driven => pairs,
+    }
+}

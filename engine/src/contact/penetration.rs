@@ -1,0 +1,232 @@
+//! Whether anything penetrates after the solution: a look at the whole flanks of all pairs in reach, cells or not.
+//!
+//! The solver knows only the cells that were laid. This looks at stretches spread over both flanks of every pair, from the fillet
+//! to the tip, and asks for their gaps under the forces found: g = g_0 − δ w + u. Elastic bodies give way where
+//! they are pressed, so that a stretch with g_0 > δ w stays open; of the others u is taken from the model. Stretches are as
+//! wide as a cell, since pressures that are even over a cell close gaps in the mean over one.
+
+use faer::Mat;
+
+use super::ContactSolution;
+use super::cells::{ContactCells, PairLoads};
+use super::facing::Facing;
+use super::model::{PairModel, teeth_on};
+use super::patch::{Cell, Patch};
+use crate::gear::Member;
+
+/// Stretches on the flank of the seat and on that of its mate.
+const STRETCHES: [usize; 2] = [32, 16];
+
+/// The stretches that may penetrate at one fraction of the mesh period.
+pub(super) struct Penetration {
+    reach: f64,
+    /// By patch.
+    pairs: Vec<Stretches>,
+}
+
+/// What was found.
+#[derive(Default)]
+pub(super) struct Found {
+    /// The largest penetration of the flanks, in meters; zero if everything is open.
+    pub(super) largest: f64,
+    /// The largest beside the patches.
+    pub(super) beside: f64,
+    /// Pairs in which the tip of one gear is pressed into the fillet of the other, and that other gear; cells do not follow there.
+    pub(super) fillets: Vec<(i64, Member)>,
+}
+
+/// Where a stretch lies.
+#[derive(Clone, Copy)]
+enum Place {
+    /// Where there are cells.
+    OnPatch,
+    /// On the flanks, beside the cells.
+    Beside,
+    /// On the fillet of a gear, faced by the other's tip.
+    Fillet(Member),
+}
+
+/// The stretches of one pair.
+struct Stretches {
+    /// Gap, arm and place of each.
+    stretches: Vec<(f64, f64, Place)>,
+    /// What unit forces on the cells of the pair do to each, with the interfaces held.
+    held: Mat<f64>,
+    /// W V of each gear.
+    shapes: [Mat<f64>; 2],
+}
+
+impl Penetration {
+    /// The stretches of `facings` whose gap is within `reach`, for the pairs of `cells`; pairs without cells are farther apart.
+    pub(super) fn new(
+        model: &PairModel,
+        cells: &ContactCells,
+        facings: &[Facing<'_>],
+        reach: f64,
+    ) -> Self {
+        let of = |patch: &Patch| {
+            let mut found = Vec::new();
+            for facing in facings.iter().filter(|facing| facing.pair == patch.pair) {
+                on_flanks(facing, patch, reach, &mut found);
+            }
+            Stretches::new(model, patch, &found)
+        };
+        Self {
+            reach,
+            pairs: cells.patches.iter().map(of).collect(),
+        }
+    }
+
+    /// The largest δ for which these are all stretches that may penetrate.
+    pub(super) fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// What penetrates under the forces of `solution` with the teeth that mesh in `period`.
+    pub(super) fn of(
+        &self,
+        model: &PairModel,
+        cells: &ContactCells,
+        period: i64,
+        solution: &ContactSolution,
+    ) -> Found {
+        let mut found = Found::default();
+        let loads = cells.loads(&[&solution.forces]);
+        for (pair, (patch, range)) in self.pairs.iter().zip(cells.ranges()) {
+            if pair.stretches.is_empty() {
+                continue;
+            }
+            let moved = Member::BOTH.map(|member| moved(model, member, period, patch.pair, &loads));
+            let yielded = pair.yielded(&solution.forces[range], &moved);
+            for (&(gap, arm, place), yielded) in pair.stretches.iter().zip(yielded) {
+                let depth = solution.transmission_error * arm - gap - yielded;
+                match place {
+                    Place::Fillet(member) if depth > 0.0 => {
+                        found.fillets.push((patch.pair, member))
+                    }
+                    Place::Fillet(_) => {}
+                    Place::Beside => found.beside = found.beside.max(depth),
+                    Place::OnPatch => found.largest = found.largest.max(depth),
+                }
+            }
+        }
+        found.largest = found.largest.max(found.beside);
+        found
+    }
+}
+
+impl Stretches {
+    fn new(model: &PairModel, patch: &Patch, found: &[(Cell, Place)]) -> Self {
+        let arcs: Vec<f64> = found
+            .iter()
+            .map(|(cell, _)| {
+                let flank = model.pair.gear(patch.seat).flank();
+                flank.arc_length(cell.roll_lengths[patch.seat.index()])
+            })
+            .collect();
+        let mut held = Mat::from_fn(found.len(), patch.cells.len(), |i, j| {
+            let center = patch.from + (j as f64 + 0.5) * patch.cell_width;
+            let fields = patch.near_fields.iter();
+            fields
+                .map(|field| field.between(arcs[i] - center, patch.cell_width))
+                .sum()
+        });
+        let shapes = [0, 1].map(|gear| {
+            let flank = &model.gears[gear].flank;
+            let on_flank =
+                |cell: &Cell| flank.point(cell.roll_lengths[gear], cell.directions[gear]);
+            let here: Vec<_> = found.iter().map(|(cell, _)| on_flank(cell)).collect();
+            let there: Vec<_> = patch.cells.iter().map(on_flank).collect();
+            held += flank.smooth_compliance(&here, &there);
+            flank.shapes_at(&here)
+        });
+        Self {
+            stretches: found
+                .iter()
+                .map(|(cell, place)| (cell.gap, cell.arm, *place))
+                .collect(),
+            held,
+            shapes,
+        }
+    }
+
+    /// u of each stretch under the `forces` on the cells of its pair, with the interfaces `moved`.
+    fn yielded(&self, forces: &[f64], moved: &[Mat<f64>; 2]) -> Vec<f64> {
+        let mut yielded = vec![0.0; self.stretches.len()];
+        let mut add = |rows: &Mat<f64>, column: &mut dyn Iterator<Item = f64>| {
+            for (j, factor) in column.enumerate() {
+                for (sum, entry) in yielded.iter_mut().zip(rows.col_as_slice(j)) {
+                    *sum += entry * factor;
+                }
+            }
+        };
+        add(&self.held, &mut forces.iter().copied());
+        for (shapes, moved) in self.shapes.iter().zip(moved) {
+            add(shapes, &mut moved.col_as_slice(0).iter().copied());
+        }
+        yielded
+    }
+}
+
+/// Adds to `found` the stretches over both flanks of `facing`, as wide as the cells of `patch`, whose gap is within `reach`.
+fn on_flanks(facing: &Facing<'_>, patch: &Patch, reach: f64, found: &mut Vec<(Cell, Place)>) {
+    let half = 0.5 * patch.cell_width;
+    let (from, to) = patch.reach();
+    let flank = facing.gears().gear(patch.seat).flank();
+    for (view, count) in [
+        (Some(*facing), STRETCHES[0]),
+        (facing.told_on_mate(), STRETCHES[1]),
+    ] {
+        let Some(view) = view else { continue };
+        let (low, high) = (view.range.from + half, view.range.to - half);
+        for i in 0..=count {
+            let arc = low + (high - low) * i as f64 / count as f64;
+            if view.point(arc).is_some_and(|point| point.gap <= reach) {
+                found.extend(view.cell(arc, patch.cell_width).map(|cell| {
+                    let on_seat = flank.arc_length(cell.roll_lengths[patch.seat.index()]);
+                    let on_patch = (from..=to).contains(&on_seat);
+                    (
+                        cell,
+                        if on_patch {
+                            Place::OnPatch
+                        } else {
+                            Place::Beside
+                        },
+                    )
+                }));
+            }
+        }
+        // Below the flank of the other gear the tip gives way about as the lowest place that faces it does.
+        if let Some(gap) = view.tip_to_fillet().filter(|gap| *gap <= reach) {
+            let lowest = view.cell(high, patch.cell_width);
+            let place = Place::Fillet(view.seat.other());
+            found.extend(lowest.map(|cell| (Cell { gap, ..cell }, place)));
+        }
+    }
+}
+
+/// X Σ Vᵀp of the tooth of `member` in `pair`: how its interface moves under the loads of all pairs.
+fn moved(
+    model: &PairModel,
+    member: Member,
+    period: i64,
+    pair: i64,
+    loads: &[PairLoads],
+) -> Mat<f64> {
+    let gear = member.index();
+    let coupling = &model.gears[gear].coupling;
+    let mut moved = Mat::zeros(coupling.shape_count(), 1);
+    for other in loads {
+        let (x, transposed) = coupling.block(
+            model.tooth(member, period + pair),
+            teeth_on(member, other.pair - pair),
+        );
+        let force = &other.loads[gear];
+        moved += if transposed {
+            x.transpose() * force
+        } else {
+            x * force
+        };
+    }
+    moved
+}

@@ -1,0 +1,64 @@
+//! What a gear is made of, and what a plane state makes of it.
+
+/// An isotropic, linearly elastic material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Material {
+    /// Young's modulus E in pascals.
+    pub youngs_modulus: f64,
+    /// Poisson's ratio ν.
+    pub poisson_ratio: f64,
+    /// The density in kg/m³.
+    pub density: f64,
+}
+
+/// What a plane problem takes for granted across the face width.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum PlaneState {
+    /// No stress across the face width: a narrow gear.
+    Stress,
+    /// No strain across the face width: a wide gear.
+    Strain,
+}
+
+impl Material {
+    /// The shear modulus G = E/(2(1 + ν)) in pascals, the same in both plane states.
+    pub fn shear_modulus(&self) -> f64 {
+        self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
+    }
+
+    /// The modulus E' of a plane problem in pascals: E in plane stress, E/(1 − ν²) in plane strain.
+    pub fn plane_modulus(&self, plane: PlaneState) -> f64 {
+        match plane {
+            PlaneState::Stress => self.youngs_modulus,
+            PlaneState::Strain => self.youngs_modulus / (1.0 - self.poisson_ratio.powi(2)),
+        }
+    }
+
+    /// The ratio ν' of a plane problem: ν in plane stress, ν/(1 − ν) in plane strain.
+    pub fn plane_poisson_ratio(&self, plane: PlaneState) -> f64 {
+        match plane {
+            PlaneState::Stress => self.poisson_ratio,
+            PlaneState::Strain => self.poisson_ratio / (1.0 - self.poisson_ratio),
+        }
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    pub(crate) const STEEL: Material = Material {
+        youngs_modulus: 210e9,
+        poisson_ratio: 0.3,
+        density: 7850.0,
+    };
+
+    #[test]
+    fn the_shear_modulus_is_the_same_in_both_plane_states() {
+        // G = E'/(2(1 + ν')) in either state; only rounding is allowed for.
+        for plane in [PlaneState::Stress, PlaneState::Strain] {
+            let g = STEEL.plane_modulus(plane) / (2.0 * (1.0 + STEEL.plane_poisson_ratio(plane)));
+            assert!((g / STEEL.shear_modulus() - 1.0).abs() < 1e-14);
+        }
+    }
+}
