@@ -7,6 +7,7 @@
 //! - [`cells`]: the cells of all pairs of one mesh position, H on them, and what their solution says of the mesh,
 //! - [`stage`]: one fraction of the mesh period, from laying the cells to a solution that nothing penetrates,
 //! - `penetration`: the look over the whole flanks that proves it,
+//! - [`positions`]: many positions of one load, in parallel,
 //! - [`model`]: what all of this is asked of,
 //! - [`ContactProblem`]: compliance, gaps and arms; and [`ContactSolution`]: forces, delta, stiffness, residuals,
 //! - [`solve_active_set`]: the exact solver, for every position of a mesh,
@@ -36,6 +37,7 @@ pub mod model;
 pub mod patch;
 mod penetration;
 pub mod placement;
+pub mod positions;
 mod problem;
 pub mod stage;
 

@@ -268,6 +268,54 @@ impl SpurGear {
         &self.data
     }
 
+    /// The same teeth on a blank without bore and holes: what is left to say where the blank does not matter.
+    pub fn without_blank(&self) -> Self {
+        self.on_blank(Blank {
+            bore_radius: 0.0,
+            holes: None,
+        })
+    }
+
+    /// The same gear without holes.
+    pub fn without_holes(&self) -> Self {
+        self.on_blank(Blank {
+            holes: None,
+            ..self.data.blank
+        })
+    }
+
+    /// The same gear with hole 0 at the angle 0.
+    pub fn with_holes_unturned(&self) -> Self {
+        let holes = self.data.blank.holes;
+        self.on_blank(Blank {
+            holes: holes.map(|holes| HolePattern {
+                phase: 0.0,
+                ..holes
+            }),
+            ..self.data.blank
+        })
+    }
+
+    /// The same gear with flanks that are not relieved.
+    pub fn without_relief(&self) -> Self {
+        Self {
+            data: GearData {
+                tip_relief: None,
+                ..self.data
+            },
+            tip_relief: None,
+            ..*self
+        }
+    }
+
+    /// The same gear on a `blank` that is known to fit.
+    fn on_blank(&self, blank: Blank) -> Self {
+        Self {
+            data: GearData { blank, ..self.data },
+            ..*self
+        }
+    }
+
     /// The number of teeth Z.
     pub fn tooth_count(&self) -> u32 {
         self.data.tooth_count
