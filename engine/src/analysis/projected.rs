@@ -11,9 +11,8 @@ use super::setup::Setup;
 use super::warning::{warn_of_tips, warnings};
 use super::{Analysis, AnalysisError};
 use crate::assembly::Blanks;
-use crate::contact::model::teeth_on;
 use crate::contact::{ContactCells, ContactSolution, MeshContact, PairLoads, PairModel};
-use crate::gear::Member;
+use crate::gear::{Member, teeth_on};
 
 /// The models of a pair whose holed blanks are expanded about round ones.
 struct Expansion<'a> {
@@ -67,7 +66,7 @@ impl Expansion<'_> {
         let load = case.pair.load(output_torque);
         let period = case.one_mesh_period();
         let rigid = self.rigid.contacts(load, &period)?;
-        let keep = |cells: &ContactCells, solution: &ContactSolution| {
+        let keep = |cells: &ContactCells<'_>, solution: &ContactSolution| {
             cells.loads(&[&solution.forces, &solution.load_derivative])
         };
         let Solved {
@@ -118,7 +117,7 @@ fn yielded(model: &PairModel, members: &[Member], pairs: &[PairLoads], period: i
     for &member in members {
         let g = member.index();
         for a in pairs {
-            let tooth = model.tooth(member, period + a.pair);
+            let tooth = model.pair.tooth(member, period + a.pair);
             let q = a.loads[g].col(1).transpose();
             for b in pairs {
                 let offset = teeth_on(member, b.pair - a.pair);
@@ -161,7 +160,7 @@ mod tests {
         });
         let gear = SpurGear::new(data).expect("a gear that can be made");
         Case {
-            pair: GearPair::new(gear, gear, 100.5e-3).expect("a pair that meshes"),
+            pair: GearPair::new(gear.clone(), gear, 100.5e-3).expect("a pair that meshes"),
             method: Method::ProjectedDecomposition,
             output_torques: vec![115.0],
             resolution: Resolution {
@@ -210,7 +209,7 @@ mod tests {
                     .transmission_error
             };
             let mut stage = Stage::new(&round, eta, load).expect("flanks that face each other");
-            let loads = |cells: &ContactCells, solution: &ContactSolution| {
+            let loads = |cells: &ContactCells<'_>, solution: &ContactSolution| {
                 cells.loads(&[&solution.forces, &solution.load_derivative])
             };
             let (_, loads) = stage

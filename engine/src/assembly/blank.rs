@@ -28,7 +28,7 @@ impl BlankSpec {
     /// The blank of `gear` inside `interface_radius`, with hole 0 at the angle 0: a blank is turned when it is joined.
     pub fn new(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Self {
         Self {
-            gear: gear.with_holes_unturned().without_relief(),
+            gear: gear.with_holes_unturned().with_plain_flanks(),
             interface_radius,
             level,
         }

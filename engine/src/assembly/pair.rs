@@ -86,7 +86,7 @@ impl PairSpec {
         let gears = parts.gears(&wanted, run)?;
         let gears = [0, if equal { 0 } else { 1 }].map(|g| &gears[g]);
         let model = PairModel {
-            pair: self.flanks,
+            pair: self.flanks.clone(),
             gears: gears.map(|gear| gear.model.clone()),
             cells_per_patch: cells_per_patch(self.level),
             solver: self.solver,

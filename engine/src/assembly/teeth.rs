@@ -33,11 +33,11 @@ pub struct Teeth {
 }
 
 impl TeethSpec {
-    /// The teeth of `gear` down to `interface_radius`. Nothing inside that circle counts, and no relief: it is a gap and
-    /// hardly changes how a tooth bends.
+    /// The teeth of `gear` down to `interface_radius`. Nothing inside that circle counts, and no modification or deviation: a few
+    /// micrometers are a gap, and hardly change how a tooth bends.
     pub fn new(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Self {
         Self {
-            gear: gear.without_blank().without_relief(),
+            gear: gear.without_blank().with_plain_flanks(),
             interface_radius,
             level,
         }
