@@ -75,7 +75,7 @@ fn with_teeth(case: &Case) -> Library {
 /// `case` with the hole circles of its gears larger by `change`, in meters.
 fn with_moved_holes(case: &Case, change: f64) -> Case {
     let moved = |gear: &SpurGear| {
-        let mut data = *gear.data();
+        let mut data = gear.data().clone();
         if let Some(holes) = &mut data.blank.holes {
             holes.circle_radius += change;
         }

@@ -67,7 +67,11 @@ impl PairDocument {
         if !matched {
             return None;
         }
-        match GearPair::new(driving, driven, from_mm(self.center_distance_mm)) {
+        match GearPair::new(
+            driving.clone(),
+            driven.clone(),
+            from_mm(self.center_distance_mm),
+        ) {
             Ok(pair) => Some(pair),
             Err(error) => {
                 self.told(&driving, &driven, &error)
@@ -190,5 +194,5 @@ fn nearest_distance(driving: &SpurGear, driven: &SpurGear, bound: f64, side: Sid
     const MOST_STEPS: u32 = 3;
     (0..MOST_STEPS)
         .map(|steps| rounded_inward(bound, side, steps))
-        .find(|&distance| GearPair::new(*driving, *driven, from_mm(distance)).is_ok())
+        .find(|&distance| GearPair::new(driving.clone(), driven.clone(), from_mm(distance)).is_ok())
 }

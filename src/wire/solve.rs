@@ -193,6 +193,6 @@ pub fn limits() -> Limits {
         tags: MOST_TAGS.0,
         tag_length: MOST_TAGS.1,
         designs: super::study::MOST_DESIGNS,
-        least_ligament_mm: super::units::to_mm(meshwright_engine::gear::spur::LEAST_LIGAMENT),
+        least_ligament_mm: super::units::to_mm(meshwright_engine::gear::data::LEAST_LIGAMENT),
     }
 }

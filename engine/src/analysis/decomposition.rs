@@ -401,7 +401,7 @@ mod tests {
         });
         let gear = SpurGear::new(data).expect("a gear that can be made");
         Case {
-            pair: GearPair::new(gear, gear, 100.5e-3).expect("a pair that meshes"),
+            pair: GearPair::new(gear.clone(), gear, 100.5e-3).expect("a pair that meshes"),
             method: Method::ProjectedDecomposition,
             output_torques: vec![115.0],
             resolution: Resolution {

@@ -76,7 +76,7 @@ pub(super) fn model(
     let (driving, driven) = rayon::join(|| build(gears[0]), || build(gears[1]));
     let ((driving, dof_1), (driven, dof_2)) = (driving?, driven?);
     let model = PairModel {
-        pair: case.pair,
+        pair: case.pair.clone(),
         gears: [driving, driven],
         cells_per_patch: cells_per_patch(level),
         solver: case.resolution.contact_solver,

@@ -478,6 +478,7 @@ fn tooth_bits(gear: &SpurGear) -> Vec<u64> {
         rack.dedendum,
         rack.tip_radius,
         data.profile_shift,
+        data.thickness_deviation,
         data.face_width,
         material.youngs_modulus,
         material.poisson_ratio,
@@ -514,13 +515,12 @@ fn rigid_blank_key(case: &Case, level: GridLevel) -> Key {
         key.extend(teeth_key(gear, interface_radius(case, member), level));
         // A solid blank stays flexible, so that its bore counts; a holed one is rigid whatever is inside.
         key.push(gear.holes().map_or(gear.bore_radius().to_bits(), |_| 0));
-        if let Some(relief) = gear.tip_relief() {
-            key.extend([
-                relief.amount().to_bits(),
-                relief.start_radius().to_bits(),
-                relief.shape() as u64,
-            ]);
-        }
+        let data = gear.data();
+        let text = format!(
+            "{:?}{:?}{:?}",
+            data.modifications, data.deviations, data.tip_edge
+        );
+        key.extend(text.bytes().map(u64::from));
     }
     match case.resolution.contact_solver {
         ContactSolver::ActiveSet => key.push(0),

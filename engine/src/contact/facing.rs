@@ -130,12 +130,11 @@ impl<'a> Facing<'a> {
         let s = gear.flank().roll_length_at_arc(arc);
         let place = self.placement.place(self.seat, s);
         let sight = self.placement.sight(self.seat.other(), place.point)?;
-        let relief = gear.relief_depth(gear.flank().radius(s))
-            + mate.relief_depth(mate.flank().radius(sight.roll_length));
+        let removed = gear.removed(s) + mate.removed(sight.roll_length);
         Some(FacingPoint {
             roll_length: s,
             place,
-            gap: sight.gap + relief,
+            gap: sight.gap + removed,
             sight,
         })
     }
@@ -242,13 +241,9 @@ impl<'a> Facing<'a> {
             return 0.0;
         };
         let (gap, seen) = sight.change(mate.base_radius(), place.to_tip);
-        let (r, r_mate) = (
-            gear.flank().radius(s),
-            mate.flank().radius(sight.roll_length),
-        );
-        // A radius grows by r_b/r along an arc, and by s/r along a roll length.
-        gap + gear.relief_slope(r) * gear.base_radius() / r
-            + mate.relief_slope(r_mate) * sight.roll_length / r_mate * seen
+        // An arc grows by s/r_b along a roll length.
+        gap + gear.removed_slope(s) * gear.base_radius() / s.max(1e-9 * gear.base_radius())
+            + mate.removed_slope(sight.roll_length) * seen
     }
 }
 
@@ -256,17 +251,19 @@ impl<'a> Facing<'a> {
 mod tests {
     use super::*;
     use crate::gear::spur::tests::paper_gear;
-    use crate::gear::{ReliefData, ReliefShape, ReliefStart, SpurGear};
+    use crate::gear::{ModificationData, ReliefData, ReliefShape, ReliefStart, SpurGear};
 
     fn pair(relief: Option<ReliefShape>) -> GearPair {
         let mut data = paper_gear(50);
-        data.tip_relief = relief.map(|shape| ReliefData {
+        let relief = relief.map(|shape| ReliefData {
             amount: 5e-6,
             shape,
             start: ReliefStart::RadialLength(1.75e-3),
         });
+        data.modifications
+            .extend(relief.map(ModificationData::TipRelief));
         let gear = SpurGear::new(data).expect("the standard gear");
-        GearPair::new(gear, gear, 100.5e-3).expect("meshes")
+        GearPair::new(gear.clone(), gear, 100.5e-3).expect("meshes")
     }
 
     /// 40 and 80 teeth with shifts ±1.1: the path of contact lies beside the pitch point.
@@ -342,7 +339,7 @@ mod tests {
         let gap = |pair: &GearPair| Facing::of(pair, 0.5, 0).expect("near").gap;
         let s = plain.roll_length_of(0.5);
         let radius = relieved.driving().flank().radius(s);
-        let depth = relieved.driving().relief_depth(radius);
+        let depth = relieved.driving().removed(s);
         // A slope σ beside a parabola of radius ρ lowers its minimum by σ² ρ/2.
         let slope = 5e-6 / 1.75e-3 * plain.driving().base_radius() / radius;
         let rho = s * (plain.line_of_action() - s) / plain.line_of_action();

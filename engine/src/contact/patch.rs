@@ -162,7 +162,7 @@ mod tests {
 
     fn pair() -> GearPair {
         let gear = SpurGear::new(paper_gear(50)).expect("the standard gear");
-        GearPair::new(gear, gear, 100.5e-3).expect("meshes")
+        GearPair::new(gear.clone(), gear, 100.5e-3).expect("meshes")
     }
 
     fn patch(pair: &GearPair, eta: f64, n: i64, count: usize) -> Patch {

@@ -1,8 +1,8 @@
 //! Pairs on which a defect was once seen, each the instance of a class; what must hold of drawn pairs must hold of them.
 
 use meshwright_engine::gear::{
-    Blank, GearData, GearPair, HolePattern, Material, Rack, ReliefData, ReliefShape, ReliefStart,
-    SpurGear,
+    Blank, GearData, GearPair, HolePattern, Material, ModificationData, Rack, ReliefData,
+    ReliefShape, ReliefStart, SpurGear, TipEdge, ToothDeviations,
 };
 
 use crate::drawn::DrawnPair;
@@ -28,8 +28,11 @@ fn gear(
             tip_radius: tip_radius * 1e-3,
         },
         profile_shift,
+        thickness_deviation: 0.0,
+        tip_edge: TipEdge::Sharp,
         face_width: face_width * 1e-3,
-        tip_relief: None,
+        modifications: Vec::new(),
+        deviations: ToothDeviations::default(),
         material: Material {
             youngs_modulus: youngs_modulus * 1e9,
             poisson_ratio,
@@ -44,11 +47,11 @@ fn gear(
 
 fn relieved(data: GearData, amount_um: f64, shape: ReliefShape, start: ReliefStart) -> GearData {
     GearData {
-        tip_relief: Some(ReliefData {
+        modifications: vec![ModificationData::TipRelief(ReliefData {
             amount: amount_um * 1e-6,
             shape,
             start,
-        }),
+        })],
         ..data
     }
 }

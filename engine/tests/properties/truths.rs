@@ -9,7 +9,9 @@ use meshwright_engine::analysis::{
 };
 use meshwright_engine::contact::half_plane::{hertz, logarithm_factor};
 use meshwright_engine::contact::{MeshContact, PairModel, WarmStart};
-use meshwright_engine::gear::{GearData, GearPair, Member, ReliefStart, SpurGear, Vector};
+use meshwright_engine::gear::{
+    GearData, GearPair, Member, ModificationData, ReliefStart, SpurGear, Vector,
+};
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::run::Run;
 
@@ -99,7 +101,7 @@ const POSITIONS: u32 = 8;
 
 fn case(pair: &GearPair, output_torques: &[f64]) -> Case {
     Case {
-        pair: *pair,
+        pair: pair.clone(),
         method: Method::Flexible,
         output_torques: output_torques.to_vec(),
         resolution: Resolution {
@@ -150,7 +152,7 @@ fn changed(
     change: impl Fn(&mut GearData, Member),
 ) -> Result<GearPair, String> {
     let gear = |member: Member| {
-        let mut data = *pair.gear(member).data();
+        let mut data = pair.gear(member).data().clone();
         change(&mut data, member);
         SpurGear::new(data).map_err(|error| error.to_string())
     };
@@ -160,7 +162,7 @@ fn changed(
 
 fn unrelieved(pair: &GearPair) -> Result<GearPair, String> {
     changed(pair, pair.center_distance(), |data, _| {
-        data.tip_relief = None
+        data.modifications.clear()
     })
 }
 
@@ -205,8 +207,7 @@ fn polygon_gap(pair: &GearPair, eta: f64, n: i64) -> Option<f64> {
             .map(|i| {
                 let s = from + (to - from) * i as f64 / POINTS as f64;
                 // Relief moves the point inward along the normal.
-                let point = gear.flank().point(s)
-                    - gear.relief_depth(gear.flank().radius(s)) * gear.flank().normal(s);
+                let point = gear.flank().point(s) - gear.removed(s) * gear.flank().normal(s);
                 let (sin, cos) = angle.sin_cos();
                 Vector::new(
                     cos * point.x - sin * point.y + center,
@@ -293,7 +294,7 @@ fn scale(data: &mut GearData, s: f64) {
     ] {
         *length *= s;
     }
-    if let Some(relief) = &mut data.tip_relief {
+    if let [ModificationData::TipRelief(relief)] = &mut data.modifications[..] {
         relief.amount *= s;
         match &mut relief.start {
             ReliefStart::RadialLength(length)
@@ -391,8 +392,12 @@ fn swapped(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     let plain = unrelieved(&drawn.pair)?;
     let pair = &plain;
     // Seen from behind and run backward, the same flanks touch: hole angles, told from the loaded flank, stay as they are.
-    let other = GearPair::new(*pair.driven(), *pair.driving(), pair.center_distance())
-        .map_err(|error| error.to_string())?;
+    let other = GearPair::new(
+        pair.driven().clone(),
+        pair.driving().clone(),
+        pair.center_distance(),
+    )
+    .map_err(|error| error.to_string())?;
     let load = pair.load(drawn.output_torque);
     let (here, there) = (model(pair)?, model(&other)?);
     let mut worst = None;

@@ -8,7 +8,9 @@
 
 use meshwright_engine::analysis::pair_model;
 use meshwright_engine::contact::{MeshContact, WarmStart};
-use meshwright_engine::gear::{GearData, GearPair, Material, ReliefData, ReliefShape, ReliefStart};
+use meshwright_engine::gear::{
+    GearData, GearPair, Material, ModificationData, ReliefData, ReliefShape, ReliefStart,
+};
 use meshwright_engine::run::Run;
 use serde_json::Value;
 
@@ -108,7 +110,8 @@ fn reference_pairs(
 /// Solves `pair` at all positions of `file`, each torque and its step.
 fn compare(file: &str, pair: &GearPair) -> Vec<Compared> {
     let document = reference(file);
-    let model = pair_model(&case(*pair, &[1.0]), library(), &Run::unattended()).expect("a model");
+    let model =
+        pair_model(&case(pair.clone(), &[1.0]), library(), &Run::unattended()).expect("a model");
     let at = |eta: f64, load: f64| -> MeshContact {
         model
             .contact(eta, load, &mut WarmStart::default())
@@ -263,7 +266,7 @@ fn the_standard_pair_without_relief_follows_calculix_into_its_tip_corners() {
 fn eight_holes_in_the_driven_gear_follow_calculix_over_one_hole_period() {
     // A hole lies on the line of centers at mesh position 0; positions are 6.25/16 mesh periods apart.
     let solid = relieved(gear(50, 15e-3));
-    let driven = holed(solid, 8, 34e-3, 8.39e-3, 1.6938_f64.to_radians());
+    let driven = holed(solid.clone(), 8, 34e-3, 8.39e-3, 1.6938_f64.to_radians());
     check(
         "calculix-s3.json",
         pair(solid, driven, 100.5e-3),
@@ -304,11 +307,11 @@ fn a_steel_gear_that_drives_a_polymer_follows_calculix() {
             poisson_ratio,
             ..data.material
         };
-        data.tip_relief = Some(ReliefData {
+        data.modifications = vec![ModificationData::TipRelief(ReliefData {
             amount: 30e-6,
             shape: ReliefShape::Linear,
             start: ReliefStart::RadialLength(1.2e-3),
-        });
+        })];
         data
     };
     let pair = pair(
@@ -325,11 +328,11 @@ fn two_or_three_pairs_at_a_contact_ratio_of_2_09_follow_calculix() {
         let mut data = gear(tooth_count, 15e-3);
         data.rack.pressure_angle = 17.5_f64.to_radians();
         (data.rack.addendum, data.rack.dedendum) = (2.3e-3, 2.6e-3);
-        data.tip_relief = Some(ReliefData {
+        data.modifications = vec![ModificationData::TipRelief(ReliefData {
             amount: 6e-6,
             shape: ReliefShape::Linear,
             start: ReliefStart::RadialLength(0.8e-3),
-        });
+        })];
         data
     };
     let pair = pair(toothed(60), toothed(61), 121.2e-3);

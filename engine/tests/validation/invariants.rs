@@ -309,7 +309,7 @@ fn moments_about_both_axes_are_in_the_ratio_of_the_base_radii_and_the_compliance
     for (name, (pair, torque)) in
         cases.chain([("no relief".to_owned(), (standard_pair(false), 115.0))])
     {
-        let case = case(pair, &[torque]);
+        let case = case(pair.clone(), &[torque]);
         let load = pair.load(torque);
         let model = pair_model(&case, library(), &Run::unattended()).expect("a model");
         for eta in [0.0, 0.3, 0.5, 0.85, 4.4] {
@@ -431,9 +431,9 @@ fn rows_that_symmetry_leaves_are_the_rows_of_all_teeth() {
     // 50 teeth: all alike on a solid blank, every fifth on 10 holes, every twenty-fifth on 8, none on 7.
     let data = gear(50, 15e-3);
     let gears = [
-        data,
-        holed(data, 10, 34e-3, 7.5e-3, 0.03),
-        holed(data, 8, 34e-3, 8e-3, 0.1),
+        data.clone(),
+        holed(data.clone(), 10, 34e-3, 7.5e-3, 0.03),
+        holed(data.clone(), 8, 34e-3, 8e-3, 0.1),
         holed(data, 7, 34e-3, 8e-3, 0.0),
     ];
     for data in gears {

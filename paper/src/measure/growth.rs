@@ -168,7 +168,7 @@ fn stages(case: &Case) -> anyhow::Result<(f64, f64)> {
 /// Test case 2 with `count` teeth on both gears: the teeth as they are, bore and holes scaled with the room for them.
 fn of_teeth(count: u32) -> anyhow::Result<Case> {
     let mut case = example("test-case-2")?;
-    let data = *case.pair.driving().data();
+    let data = case.pair.driving().data().clone();
     let (z, module) = (f64::from(count), data.rack.module);
     // The teeth stand as far apart as those of the test case; the interface circle is one module below the roots.
     let center_distance = z * module + 0.5e-3;
@@ -179,7 +179,7 @@ fn of_teeth(count: u32) -> anyhow::Result<Case> {
         SpurGear::new(GearData {
             tooth_count: count,
             blank: Blank { bore_radius, holes },
-            ..data
+            ..data.clone()
         })
     };
     let holes = HolePattern {

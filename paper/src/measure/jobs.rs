@@ -94,7 +94,7 @@ fn with_moved_holes(case: &Case) -> anyhow::Result<Option<Case>> {
         return Ok(None);
     }
     let moved = |gear: &SpurGear| {
-        let mut data = *gear.data();
+        let mut data = gear.data().clone();
         if let Some(holes) = &mut data.blank.holes {
             holes.circle_radius += MOVE;
         }

@@ -56,7 +56,7 @@ pub(crate) fn at_torques(case: &Case, output_torques: Vec<f64>) -> Case {
 /// If the holes do not fit.
 pub(crate) fn with_holes(case: &Case, holes: Option<HolePattern>) -> anyhow::Result<Case> {
     let with = |gear: &SpurGear, holes| {
-        let mut data = *gear.data();
+        let mut data = gear.data().clone();
         data.blank.holes = holes;
         SpurGear::new(data)
     };

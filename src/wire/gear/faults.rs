@@ -1,7 +1,7 @@
 //! What prevents a gear, told by field, with the bound beyond which it could be made.
 
-use meshwright_engine::gear::spur::{LEAST_LIGAMENT, LEAST_RIM, LEAST_TIP_THICKNESS};
-use meshwright_engine::gear::{GearError, SpurGear, TipRelief};
+use meshwright_engine::gear::data::{LEAST_LIGAMENT, LEAST_RIM, LEAST_TIP_THICKNESS};
+use meshwright_engine::gear::{GearError, Relief, SpurGear};
 
 use super::GearDocument;
 use super::field::Field;
@@ -50,7 +50,7 @@ impl GearDocument {
         self.check_proportions()?;
         let gear = SpurGear::new(self.data()).map_err(|error| self.fault(&error))?;
         // A relief that begins and ends at the tip is a step, which no grid and no contact search can follow.
-        match gear.tip_relief().map(TipRelief::start_radius) {
+        match gear.tip_relief().map(Relief::start_radius) {
             Some(start) if start > gear.tip_radius() - self.least_relief() => {
                 Err(self.relief_fault(start, gear.form_radius(), gear.tip_radius()))
             }
@@ -186,6 +186,7 @@ impl GearDocument {
                 )),
             ),
             GearError::ReliefTooLong {
+                modification: _,
                 start_radius,
                 form_radius,
                 tip_radius,
@@ -202,6 +203,15 @@ impl GearDocument {
                     mm(largest)
                 ),
                 Some((to_mm(largest), Side::AtMost)),
+            ),
+            GearError::TeethTooThick { .. }
+            | GearError::TipEdgeTooLarge { .. }
+            | GearError::TableDoesNotRise { .. }
+            | GearError::DeviationCount { .. } => Fault::new(
+                Field::ProfileShift,
+                Code::OutOfRange,
+                error.to_string(),
+                None,
             ),
             GearError::HolesOverlap {
                 ligament,

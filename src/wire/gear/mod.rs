@@ -10,7 +10,7 @@ mod material;
 mod relief;
 mod repair;
 
-use meshwright_engine::gear::{GearData, Rack};
+use meshwright_engine::gear::{GearData, ModificationData, Rack, TipEdge, ToothDeviations};
 use serde::Serialize;
 
 pub use blank::{BlankDocument, HolesDocument};
@@ -144,7 +144,14 @@ impl GearDocument {
             },
             profile_shift: self.profile_shift,
             face_width: from_mm(self.face_width_mm),
-            tip_relief: self.tip_relief.as_ref().map(ReliefDocument::data),
+            thickness_deviation: 0.0,
+            tip_edge: TipEdge::Sharp,
+            modifications: self
+                .tip_relief
+                .iter()
+                .map(|relief| ModificationData::TipRelief(relief.data()))
+                .collect(),
+            deviations: ToothDeviations::default(),
             material: self.material.data(),
             blank: self.blank.data(),
         }

@@ -92,7 +92,7 @@ impl<'a> PairFormulas<'a> {
             .map(|member| ToothLoad::at_roll_length(self.pair.gear(member), rolls[member.index()]));
         let gap = Member::BOTH.map(|member| {
             let gear = self.pair.gear(member);
-            gear.relief_depth(gear.flank().radius(rolls[member.index()]))
+            gear.removed(rolls[member.index()])
         });
         let bodies = Member::BOTH.map(|member| ContactBody {
             material: *self.pair.gear(member).material(),
@@ -249,7 +249,7 @@ mod tests {
     fn at_a_contact_ratio_of_one_no_position_is_without_a_pair() {
         let at = |a| {
             let gear = SpurGear::new(paper_gear(50)).expect("the standard gear");
-            GearPair::new(gear, gear, a)
+            GearPair::new(gear.clone(), gear, a)
         };
         // 102.074 mm, to the last digit.
         let largest = crate::root_finding::bisect(101e-3, 103e-3, |a| at(a).is_ok());
