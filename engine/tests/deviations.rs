@@ -10,6 +10,7 @@ use meshwright_engine::contact::{WarmStart, light_contact};
 use meshwright_engine::gear::{
     Eccentricity, GearData, GearPair, Member, ModificationData, SpurGear,
 };
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
 fn pair(driving: GearData, driven: GearData) -> GearPair {
@@ -180,7 +181,7 @@ fn teeth_renumbered_by_one_move_the_curve_by_one_mesh_period() {
         let load = pair.load(30.0);
         let model = pair_model(
             &case(pair, &[30.0]),
-            &Default::default(),
+            &Library::default(),
             &Run::unattended(),
         )
         .expect("a model");
@@ -205,7 +206,7 @@ fn deviations_of_all_teeth_alike_are_a_turn_of_the_gear() {
     let solve = |pair: &GearPair, eta: f64| {
         let model = pair_model(
             &case(pair.clone(), &[30.0]),
-            &Default::default(),
+            &Library::default(),
             &Run::unattended(),
         )
         .expect("a model");
@@ -235,7 +236,7 @@ fn a_slope_of_every_tooth_is_the_slope_of_the_drawing() {
         let load = pair.load(30.0);
         let model = pair_model(
             &case(pair, &[30.0]),
-            &Default::default(),
+            &Library::default(),
             &Run::unattended(),
         )
         .expect("a model");

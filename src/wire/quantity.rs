@@ -367,7 +367,9 @@ pub(super) const PENALTY: Quantity = needed(
     (1e5, 1e18),
     "The penalty stiffness of a contact cell, eq. 7 of the paper. It changes the number of iterations, not the result.",
 )
-.or(Preset::Value(1e9));
+.or(Preset::Absent(
+    "100 times Young's modulus of the softer gear times the common face width",
+));
 
 pub(super) const GAP_TOLERANCE: Quantity = needed(
     "gap_tolerance_um",

@@ -113,7 +113,7 @@ fn expected_positions(case: &Case) -> u64 {
     match case.method {
         Method::Flexible => torques * solves * case.positions() as u64,
         Method::Decomposition => decomposition::expected_positions(case),
-        Method::ProjectedDecomposition => torques * (solves + 1) * per_period,
+        Method::ProjectedDecomposition => projected::expected_positions(case),
         Method::LoadDistribution => torques * per_period,
     }
 }
