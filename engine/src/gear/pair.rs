@@ -129,6 +129,24 @@ impl GearPair {
         Ok(pair)
     }
 
+    /// The same pair on blanks without bores and holes: what is left to say where only flanks matter.
+    pub fn without_blanks(&self) -> Self {
+        Self {
+            driving: self.driving.without_blank(),
+            driven: self.driven.without_blank(),
+            center_distance: self.center_distance,
+        }
+    }
+
+    /// The same pair of gears whose teeth do not deviate.
+    pub fn as_drawn(&self) -> Self {
+        Self {
+            driving: self.driving.as_drawn(),
+            driven: self.driven.as_drawn(),
+            center_distance: self.center_distance,
+        }
+    }
+
     fn check(&self) -> Result<(), GearPairError> {
         let tip_radii = self.driving.tip_radius() + self.driven.tip_radius();
         let center_distance = self.center_distance;

@@ -8,7 +8,7 @@ use super::modification::{Modification, Relief, TablePlaces};
 use super::rack::Trochoid;
 use super::tip::BrokenEdge;
 use super::{
-    GearData, GearError, HolePattern, Involute, Material, ModificationData, TipEdge,
+    Blank, GearData, GearError, HolePattern, Involute, Material, ModificationData, TipEdge,
     ToothDeviations,
 };
 use crate::root_finding::bisect;
@@ -283,6 +283,69 @@ impl SpurGear {
         &self.data
     }
 
+    /// The same teeth on a blank without bore and holes: what is left to say where the blank does not matter.
+    pub fn without_blank(&self) -> Self {
+        self.on_blank(Blank {
+            bore_radius: 0.0,
+            holes: None,
+        })
+    }
+
+    /// The same gear without holes.
+    pub fn without_holes(&self) -> Self {
+        self.on_blank(Blank {
+            holes: None,
+            ..self.data.blank
+        })
+    }
+
+    /// The same gear with hole 0 at the angle 0.
+    pub fn with_holes_unturned(&self) -> Self {
+        let holes = self.data.blank.holes;
+        self.on_blank(Blank {
+            holes: holes.map(|holes| HolePattern {
+                phase: 0.0,
+                ..holes
+            }),
+            ..self.data.blank
+        })
+    }
+
+    /// The same gear with flanks that are neither modified nor deviate. A broken edge of the tip stays.
+    pub fn with_plain_flanks(&self) -> Self {
+        Self {
+            data: GearData {
+                modifications: Vec::new(),
+                deviations: ToothDeviations::default(),
+                ..self.data.clone()
+            },
+            modifications: Vec::new(),
+            ..self.clone()
+        }
+    }
+
+    /// The same gear with teeth that do not deviate.
+    pub fn as_drawn(&self) -> Self {
+        Self {
+            data: GearData {
+                deviations: ToothDeviations::default(),
+                ..self.data.clone()
+            },
+            ..self.clone()
+        }
+    }
+
+    /// The same gear on a `blank` that is known to fit.
+    fn on_blank(&self, blank: Blank) -> Self {
+        Self {
+            data: GearData {
+                blank,
+                ..self.data.clone()
+            },
+            ..self.clone()
+        }
+    }
+
     /// The number of teeth Z.
     pub fn tooth_count(&self) -> u32 {
         self.data.tooth_count
@@ -382,6 +445,13 @@ impl SpurGear {
             amount * (s - from) / (to - from)
         });
         pitch + slope
+    }
+
+    /// How far the eccentricity moves the loaded flank of `tooth` along its normal at the roll length `s`, to the first order in it.
+    pub fn runout(&self, tooth: usize, s: f64) -> f64 {
+        let normal = tooth as f64 * self.pitch_angle() + self.flank.tangent_angle(s) + PI / 2.0;
+        let moved = self.data.deviations.displacement(0.0);
+        moved.x * normal.cos() + moved.y * normal.sin()
     }
 
     /// The slope of [`SpurGear::deviation`] by the roll length.
@@ -530,7 +600,7 @@ impl SpurGear {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::gear::{Blank, Rack, ReliefData, ReliefShape, ReliefStart};
+    use crate::gear::{Rack, ReliefData, ReliefShape, ReliefStart};
 
     /// The paper's gears (Table 1): module 2 mm, 20 degrees, addendum 2 mm, dedendum 2.5 mm, width 20 mm, steel.
     pub(crate) fn paper_gear(tooth_count: u32) -> GearData {
