@@ -49,7 +49,7 @@ pub(super) fn solved<T: Send>(
     model: &PairModel,
     load: f64,
     positions: &[f64],
-    keep: impl Fn(&ContactCells, &ContactSolution) -> T + Sync,
+    keep: impl Fn(&ContactCells<'_>, &ContactSolution) -> T + Sync,
 ) -> Result<Solved<T>, AnalysisError> {
     let middle = contacts_keeping(model, load, positions, setup.run, keep)?;
     let (contacts, kept): (Vec<MeshContact>, Vec<T>) = middle.into_iter().unzip();

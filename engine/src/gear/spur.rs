@@ -311,14 +311,16 @@ impl SpurGear {
         })
     }
 
-    /// The same gear with flanks that are neither modified nor deviate. A broken edge of the tip stays.
+    /// The same gear with flanks as the rack cuts them, each like the other, up to a sharp tip.
     pub fn with_plain_flanks(&self) -> Self {
         Self {
             data: GearData {
+                tip_edge: TipEdge::Sharp,
                 modifications: Vec::new(),
                 deviations: ToothDeviations::default(),
                 ..self.data.clone()
             },
+            broken_edge: None,
             modifications: Vec::new(),
             ..self.clone()
         }
