@@ -14,7 +14,9 @@ pub mod rack;
 pub mod relief;
 pub mod spur;
 
-pub use blank::{Blank, HolePattern};
+pub use blank::{
+    Blank, BlankRegion, Hole, HolePattern, HoleShape, Ligament, Moments, Symmetry, Web,
+};
 pub use involute::Involute;
 pub use material::{Material, PlaneState};
 pub use pair::{GearPair, GearPairError, Member};
