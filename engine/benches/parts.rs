@@ -15,7 +15,8 @@ use meshwright_engine::contact::flank_table::FlankTable;
 use meshwright_engine::contact::{Stage, solve_active_set};
 use meshwright_engine::fem::blank::BlankSubstructure;
 use meshwright_engine::fem::body::Coupling;
-use meshwright_engine::fem::tooth::{TeethRing, ToothSubstructure};
+use meshwright_engine::fem::teeth::TeethRing;
+use meshwright_engine::fem::tooth::ToothSubstructure;
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::run::Run;
 

@@ -25,7 +25,7 @@ pub use crate::contact::ContactSolver;
 pub use crate::gear::PlaneState;
 
 use crate::contact::{ContactError, PairModel};
-use crate::fem::tooth::FARTHEST_COUPLED;
+use crate::fem::teeth::FARTHEST_COUPLED;
 use crate::gear::{GearPair, Member};
 use crate::grid::GridLevel;
 use crate::run::{Run, Stopped};

@@ -3,9 +3,10 @@
 use faer::Mat;
 
 use super::FemError;
+use super::axes::in_polar_axes;
 use super::condensation::condense;
 use super::cyclic::{Component, Harmonics, Sector};
-use super::tooth::in_polar_axes;
+
 use crate::gear::Material;
 use crate::grid::BlankGrid;
 use crate::run::Run;

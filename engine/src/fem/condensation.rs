@@ -16,23 +16,23 @@ use faer::sparse::{SparseColMat, SymbolicSparseColMat};
 use faer::{Accum, Mat, Par, Side};
 
 use super::FemError;
+use super::dense::mirror_lower;
 use super::element::{self, ElementStiffness};
-use crate::gear::{Material, Vector};
-use crate::grid::Grid;
+use crate::gear::Material;
+use crate::grid::element::MOST_NODES;
+use crate::grid::{Element, Grid};
 
-/// The stiffness of every element of `grid`, of one material and thickness.
+/// The stiffness of every element of `grid` in turn, of one material; `thickness`, in meters, is that of an element whose own
+/// is 1.
 pub fn element_stiffnesses(
     grid: &Grid,
     material: &Material,
     thickness: f64,
-) -> Vec<ElementStiffness> {
-    grid.elements
-        .iter()
-        .map(|element| {
-            let nodes: [Vector; 8] = element.map(|node| grid.nodes[node as usize]);
-            element::stiffness(&nodes, material, thickness)
-        })
-        .collect()
+) -> impl Iterator<Item = ElementStiffness> {
+    grid.elements.iter().map(move |element| {
+        let (nodes, part) = (element.places(&grid.nodes), element.thickness());
+        element::stiffness(element.kind(), &nodes, material, thickness * part)
+    })
 }
 
 /// Condenses `grid` to the unknowns of the nodes in `kept`, with the nodes in `fixed` held.
@@ -100,13 +100,11 @@ struct BlockMatrix {
 
 impl BlockMatrix {
     /// A matrix of zeros with the pattern of `elements`.
-    fn new(elements: &[[u32; 8]], numbering: &Numbering) -> Self {
+    fn new(elements: &[Element], numbering: &Numbering) -> Self {
         let pairs = || {
             elements.iter().flat_map(|element| {
-                let places = element.map(|node| numbering.place(node));
-                let all = places
-                    .into_iter()
-                    .flat_map(move |column| places.into_iter().map(move |row| column.zip(row)));
+                let places = || element.nodes().iter().map(|node| numbering.place(*node));
+                let all = places().flat_map(move |column| places().map(move |row| column.zip(row)));
                 all.flatten().filter(|(column, row)| row >= column)
             })
         };
@@ -151,8 +149,11 @@ impl BlockMatrix {
     }
 
     /// Adds the stiffness `k` of `element`.
-    fn add(&mut self, element: &[u32; 8], k: &ElementStiffness, numbering: &Numbering) {
-        let places = element.map(|node| numbering.place(node));
+    fn add(&mut self, element: &Element, k: &ElementStiffness, numbering: &Numbering) {
+        let mut places = [None; MOST_NODES];
+        for (place, node) in places.iter_mut().zip(element.nodes()) {
+            *place = numbering.place(*node);
+        }
         for (b, column) in places.iter().enumerate() {
             let Some(column) = *column else { continue };
             let (first, blocks) = self.column(column);
@@ -317,15 +318,6 @@ fn trailing_schur(
     Ok(schur)
 }
 
-/// Copies the lower triangle of `a` to its upper one.
-pub fn mirror_lower(a: &mut Mat<f64>) {
-    for j in 0..a.ncols() {
-        for i in 0..j {
-            a[(i, j)] = a[(j, i)];
-        }
-    }
-}
-
 /// The places of the nodes that move: interior ones first, kept ones last, fixed ones nowhere.
 struct Numbering {
     places: Vec<u32>,
@@ -365,10 +357,11 @@ impl Numbering {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
+    use crate::gear::Vector;
 
     const STEEL: Material = Material {
         youngs_modulus: 210e9,
@@ -377,7 +370,7 @@ mod tests {
     };
 
     /// Four distorted elements around one corner: nodes on the lattice of corners and midsides.
-    fn patch() -> Grid {
+    pub(in crate::fem) fn patch() -> Grid {
         let mut number = [[u32::MAX; 5]; 5];
         let mut nodes = Vec::new();
         for (j, row) in number.iter_mut().enumerate() {
@@ -403,6 +396,7 @@ mod tests {
             ]
             .map(|(a, b)| number[j + b][i + a])
         };
+        let element = |i: usize, j: usize| Element::quadrilateral(element(i, j));
         Grid {
             nodes,
             elements: vec![element(0, 0), element(2, 0), element(0, 2), element(2, 2)],
@@ -418,9 +412,10 @@ mod tests {
             .iter()
             .zip(element_stiffnesses(grid, &STEEL, 20e-3))
         {
-            let place = |local: usize| 2 * element[local / 2] as usize + local % 2;
-            for i in 0..16 {
-                for j in 0..16 {
+            let place = |local: usize| 2 * element.nodes()[local / 2] as usize + local % 2;
+            let unknowns = 2 * element.nodes().len();
+            for i in 0..unknowns {
+                for j in 0..unknowns {
                     k[(place(i), place(j))] += stiffness[(i, j)];
                 }
             }
@@ -490,7 +485,8 @@ mod tests {
     fn a_grid_turned_inside_out_is_refused() {
         let mut grid = patch();
         for element in &mut grid.elements {
-            *element = [0, 3, 2, 1, 7, 6, 5, 4].map(|place: usize| element[place]);
+            let nodes = element.nodes();
+            *element = Element::quadrilateral([0, 3, 2, 1, 7, 6, 5, 4].map(|i: usize| nodes[i]));
         }
         let error = condense("a patch", &grid, &STEEL, 20e-3, &[0, 4], &[]).expect_err("a refusal");
         assert!(matches!(

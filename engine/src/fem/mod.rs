@@ -1,15 +1,18 @@
 //! Plane-stress finite elements and exact substructuring.
 //!
-//! Read in this order: [`element`] (one Q8), [`condensation`] (a grid's stiffness on the unknowns that are kept),
-//! [`cyclic`] (N equal sectors joined into a ring, on its harmonics), [`tooth`], [`blank`], and [`body`], which joins
-//! them into the compliance of a whole gear.
+//! Read in this order: [`element`] (one element), [`condensation`] (a grid's stiffness on the unknowns that are kept),
+//! [`cyclic`] (N equal sectors joined into a ring, on its harmonics), [`tooth`], [`teeth`] (the ring of them), [`blank`], and
+//! [`body`], which joins them into the compliance of a whole gear. Beside them: [`dense`] (factorizations), `axes` and `modes`.
 
+mod axes;
 pub mod blank;
 pub mod body;
 pub mod condensation;
 pub mod cyclic;
 pub mod dense;
 pub mod element;
+mod modes;
+pub mod teeth;
 pub mod tooth;
 
 use crate::run::Stopped;

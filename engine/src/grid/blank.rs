@@ -45,8 +45,8 @@ pub struct BlankGrid {
     /// The nodes on the sides at −π/n and at π/n, outward, without those on the bore and on the interface circle; equal
     /// radii on both sides. Where n = 1 the two sides are the lips of one cut.
     pub side_nodes: (Vec<u32>, Vec<u32>),
-    /// The nodes around the hole, counter-clockwise, each once.
-    pub hole_nodes: Vec<u32>,
+    /// The nodes around each hole, counter-clockwise, each once.
+    pub hole_edges: Vec<Vec<u32>>,
 }
 
 impl BlankGrid {
@@ -151,7 +151,7 @@ impl Frame {
         builder: GridBuilder,
         interface_radius: f64,
         sector_count: u32,
-        hole_nodes: Edge,
+        hole_edges: Vec<Edge>,
     ) -> BlankGrid {
         let inner = |edge: Edge| edge[1..edge.len() - 1].to_vec();
         let arc_nodes = self.arc(self.arcs.len() - 1);
@@ -161,7 +161,7 @@ impl Frame {
             arc_nodes,
             bore_nodes: self.arc(0),
             side_nodes: (inner(self.ray(0)), inner(self.ray(self.arcs[0].len()))),
-            hole_nodes,
+            hole_edges,
             grid: builder.finish(|p| interface_radius * p.x.exp() * radial(p.y)),
         }
     }
@@ -244,7 +244,7 @@ impl Ring {
             &[vec![arcs.clone()], vec![arcs]],
         );
         frame.fill(&mut builder, 0, 0);
-        frame.blank(builder, self.interface_radius, tooth_count, Edge::new())
+        frame.blank(builder, self.interface_radius, tooth_count, Vec::new())
     }
 
     /// The sector of one hole.
@@ -321,7 +321,12 @@ impl Ring {
             builder.ruled(&spokes[i], side, &spokes[next], &rim);
             hole_nodes.extend(&rim[..rim.len() - 1]);
         }
-        frame.blank(builder, self.interface_radius, holes.count, hole_nodes)
+        frame.blank(
+            builder,
+            self.interface_radius,
+            holes.count,
+            vec![hole_nodes],
+        )
     }
 }
 
@@ -738,10 +743,10 @@ mod tests {
                     .all(|n| point(&n[0]).norm() < point(&n[1]).norm())
             );
             let center = Vector::new(circle * 1e-3, 0.0);
-            assert!(blank.hole_nodes.len() >= 64);
+            assert_eq!(blank.hole_edges.len(), 1);
+            assert!(blank.hole_edges[0].len() >= 64);
             assert!(
-                blank
-                    .hole_nodes
+                blank.hole_edges[0]
                     .iter()
                     .all(|n| ((point(n) - center).norm() - radius * 1e-3).abs() < 1e-14)
             );
@@ -769,7 +774,7 @@ mod tests {
             assert_eq!((blank.sector_count, blank.arc_nodes.len()), (teeth, 9));
             // Four parabolas a pitch.
             assert!((blank.grid.area() / area - 1.0).abs() < 1e-6);
-            assert!(blank.hole_nodes.is_empty());
+            assert!(blank.hole_edges.is_empty());
         }
     }
 
