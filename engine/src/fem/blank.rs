@@ -67,8 +67,7 @@ impl BlankSubstructure {
             arc_angles: grid.arc_angles.clone(),
         };
         let stiffness = sector.ring_stiffness(&harmonics, run)?;
-        // A sector repeats its right side as its left one, and the ends of both are nodes of the bore and of the arc.
-        let grid_nodes = count * (grid.grid.nodes.len() - left.len() - 2);
+        let grid_nodes = count * grid.own_nodes();
         Ok(Self {
             interface_radius,
             harmonics,

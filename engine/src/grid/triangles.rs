@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
+use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use super::outline::Outline;
 use super::sizes::Sizes;
