@@ -32,7 +32,10 @@ pub(super) fn polar_axes(point: Vector) -> [Vector; 2] {
     [radial(angle), tangential(angle)]
 }
 
-/// The symmetric matrix `a` on the polar axes of `points`.
-pub(super) fn in_polar_axes(a: &Mat<f64>, points: impl Iterator<Item = Vector>) -> Mat<f64> {
-    in_axes(a, &points.map(polar_axes).collect::<Vec<_>>())
+/// Rows on (x, y) of each node as rows on the axes of each node.
+pub(super) fn rows_in_axes(rows: &Mat<f64>, axes: &[[Vector; 2]]) -> Mat<f64> {
+    Mat::from_fn(rows.nrows(), rows.ncols(), |i, j| {
+        let node = j / 2;
+        axes[node][j % 2].dot(&Vector::new(rows[(i, 2 * node)], rows[(i, 2 * node + 1)]))
+    })
 }

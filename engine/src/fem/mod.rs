@@ -1,9 +1,11 @@
 //! Plane-stress finite elements and exact substructuring.
 //!
 //! Read in this order: [`element`] (one element), [`condensation`] (a grid's stiffness on the unknowns that are kept),
+//! [`recovery`] (displacements and stresses of the others),
 //! [`cyclic`] (N equal sectors joined into a ring, on its harmonics), [`tooth`], [`teeth`] (the ring of them), [`blank`], and
 //! [`body`], which joins them into the compliance of a whole gear. Beside them: [`dense`] (factorizations), `axes` and `modes`.
 
+mod assembly;
 mod axes;
 pub mod blank;
 pub mod body;
@@ -12,6 +14,7 @@ pub mod cyclic;
 pub mod dense;
 pub mod element;
 mod modes;
+pub mod recovery;
 pub mod teeth;
 pub mod tooth;
 

@@ -60,7 +60,7 @@ impl BlankGrid {
                 elements_per_tooth,
                 level,
             )?;
-            if let Some(sector) = sector.with_web(region.web.as_ref(), face_width) {
+            if let Some(sector) = sector.with_web(region.web_in(face_width), face_width) {
                 return sector.divide();
             }
         }

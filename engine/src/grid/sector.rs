@@ -94,7 +94,7 @@ impl<'a> Sector<'a> {
     }
 
     /// The sector with a web, if the lines of one can be those of a structured grid.
-    pub(super) fn with_web(mut self, web: Option<&Web>, face_width: f64) -> Option<Self> {
+    pub(super) fn with_web(mut self, web: Option<Web>, face_width: f64) -> Option<Self> {
         let chart = |radius: f64| (radius / self.ring.interface_radius).ln();
         self.ring.web = web.map(|web| RingWeb {
             ends: [chart(web.inner_radius), chart(web.outer_radius)],

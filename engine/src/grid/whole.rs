@@ -41,6 +41,10 @@ impl BlankGrid {
         level: GridLevel,
     ) -> Result<Self, GridError> {
         check(region, interface_radius)?;
+        let region = &BlankRegion {
+            web: region.web_in(face_width),
+            ..region.clone()
+        };
         let plan = Plan::new(region, interface_radius, elements_per_turn);
         let part = region.web.map_or(1.0, |web| web.thickness / face_width);
         let mut last = GridError::Distorted {

@@ -4,6 +4,7 @@
 //! cells and positions), [`patch`] and [`uncondensed`] (the substructures and their coupling), [`invariants`] and
 //! [`robustness`]. [`support`] makes the gears, [`whole`] assembles a gear without any condensation.
 
+mod blanks;
 mod calculix;
 mod closed_forms;
 mod convergence;

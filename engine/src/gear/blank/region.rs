@@ -111,6 +111,11 @@ impl BlankRegion {
         }
     }
 
+    /// The web, unless it is as thick as the face is wide: then it is none.
+    pub fn web_in(&self, face_width: f64) -> Option<Web> {
+        self.web.filter(|web| web.thickness != face_width)
+    }
+
     /// The area of all holes together, in m²: holes that overlap count twice.
     pub fn hole_area(&self) -> f64 {
         self.holes.iter().map(|hole| hole.moments().area).sum()
