@@ -196,6 +196,13 @@ impl Sector {
         c64::new(cos, sin)
     }
 
+    /// The phase factor e^{i class 2πd/S} from a sector to the one `distance` places counter-clockwise of it.
+    pub fn turn(&self, class: usize, distance: usize) -> c64 {
+        let part = ((class * distance) % self.count) as f64 / self.count as f64;
+        let (sin, cos) = (2.0 * std::f64::consts::PI * part).sin_cos();
+        c64::new(cos, sin)
+    }
+
     /// E: the polar displacements of the arc's nodes for unit amplitudes of `orders`; two columns an order.
     pub fn arc_of_harmonics(&self, orders: &[i64]) -> Mat<c64> {
         let mut e = Mat::<c64>::zeros(2 * self.arc_angles.len(), 2 * orders.len());

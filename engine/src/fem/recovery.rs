@@ -2,6 +2,20 @@
 //!
 //! A substructure that is condensed together with functionals offers them as rows on its ports
 //! ([`super::condensation::condense_with`]); displacement and stress then need no second solution.
+//!
+//! From the contact forces of one position to the stresses of a gear:
+//!
+//! 1. The contact gives each loaded tooth j its forces p_j on the flank's unknowns: along the outward normal, so pressure is
+//!    negative, and towards the tip, node by node.
+//! 2. m_j = Vᵀ p_j are its modal loads ([`super::tooth::ToothSubstructure::modal_loads`]).
+//! 3. q = C Σ_j F_j m_j is the motion of the interface circle ([`super::motion::InterfaceMotion::under`]).
+//! 4. Along the fillet of tooth i: [`super::teeth_recovery::TeethRecovery::values`] of p_i, all m_j and q, for the
+//!    [`edge_stresses`] of [`crate::grid::ToothGrid::fillet_nodes`].
+//! 5. Along the edge of a hole: [`super::blank::BlankRecovery::values`] of q, for the [`edge_stresses`] of
+//!    [`crate::grid::BlankGrid::hole_edges`].
+//!
+//! On a free edge the von Mises stress is the absolute value of the stress along it. Elsewhere, and on loaded edges, take
+//! [`nodal_stresses`]; for the displacement of a node, [`Functional::displacement`].
 
 use std::collections::HashMap;
 

@@ -3,11 +3,12 @@
 use faer::Mat;
 
 use super::FemError;
-use super::axes::{in_axes, polar_axes};
-use super::condensation::condense;
+use super::axes::{in_axes, polar_axes, rows_in_axes};
+use super::condensation::condense_with;
 use super::cyclic::Sector;
 use super::dense::{Cholesky, mirror_lower, symmetrize};
 use super::modes::compress;
+use super::recovery::Functional;
 use crate::gear::{SpurGear, Vector, radial};
 use crate::grid::ToothGrid;
 
@@ -33,6 +34,15 @@ pub struct ToothSubstructure {
     pub(super) sector: Sector,
 }
 
+/// Functionals asked of a tooth, a row each.
+#[derive(Debug, Clone)]
+pub struct ToothRows {
+    /// By the forces on the flank's unknowns, with the interface held.
+    pub by_flank: Mat<f64>,
+    /// By the displacements of the interface (right side, left side, arc) in polar components, with the flank free.
+    pub(super) by_interface: Mat<f64>,
+}
+
 impl ToothSubstructure {
     /// Condenses `grid`, a sector of `gear`.
     ///
@@ -40,6 +50,19 @@ impl ToothSubstructure {
     ///
     /// [`FemError`] if the grid is degenerate.
     pub fn new(gear: &SpurGear, grid: &ToothGrid) -> Result<Self, FemError> {
+        Ok(Self::with_recovery(gear, grid, &[])?.0)
+    }
+
+    /// Condenses `grid`, a sector of `gear`, and with it the functionals `asked` of its displacements.
+    ///
+    /// # Errors
+    ///
+    /// As [`ToothSubstructure::new`].
+    pub fn with_recovery(
+        gear: &SpurGear,
+        grid: &ToothGrid,
+        asked: &[Functional],
+    ) -> Result<(Self, ToothRows), FemError> {
         let (right, left) = &grid.side_nodes;
         let kept: Vec<u32> = grid
             .flank_nodes
@@ -49,13 +72,13 @@ impl ToothSubstructure {
             .chain(&grid.arc_nodes)
             .copied()
             .collect();
-        let schur = condense(
+        let condensed = condense_with(
             "the tooth",
             &grid.grid,
-            gear.material(),
-            gear.face_width(),
+            (gear.material(), gear.face_width()),
             &kept,
             &[],
+            asked,
         )?;
 
         // Components: normal and towards the tip on the flank, polar elsewhere.
@@ -70,7 +93,8 @@ impl ToothSubstructure {
                     .map(|&node| polar_axes(grid.grid.nodes[node as usize])),
             )
             .collect();
-        let schur = in_axes(&schur, &axes);
+        let schur = in_axes(&condensed.stiffness, &axes);
+        let rows = rows_in_axes(&condensed.rows, &axes);
 
         let f = 2 * grid.flank_nodes.len();
         let b = schur.nrows() - f;
@@ -91,6 +115,12 @@ impl ToothSubstructure {
         stiffness -= half.transpose() * &half;
         mirror_lower(&mut stiffness);
         flank_factor.other_half_solve_in_place(half.as_mut());
+        // u_f = H_0 p + Ψ u_b.
+        let on_flank = rows.subcols(0, f);
+        let rows = ToothRows {
+            by_flank: on_flank * &fixed_compliance,
+            by_interface: rows.subcols(f, b).to_owned() - on_flank * &half,
+        };
         let (modes, mode_forces) = compress(&(-half)).ok_or(FemError::NotPositiveDefinite {
             part: "the flank's modes",
             unknowns: b,
@@ -102,7 +132,7 @@ impl ToothSubstructure {
             side_nodes: right.len(),
             arc_angles: grid.arc_angles.clone(),
         };
-        Ok(Self {
+        let tooth = Self {
             fixed_compliance,
             modes,
             roll_lengths: grid.flank_roll_lengths.clone(),
@@ -114,12 +144,22 @@ impl ToothSubstructure {
             grid_nodes: grid.grid.nodes.len(),
             mode_forces,
             sector,
-        })
+        };
+        Ok((tooth, rows))
     }
 
     /// The nodes of the sector that are not also nodes of its neighbor: all but one side, which ends on the arc.
     pub fn own_nodes(&self) -> usize {
         self.grid_nodes - self.sector.side_nodes - 1
+    }
+
+    /// Vᵀ p: what the forces `flank_forces` on the flank's unknowns are on the loading modes.
+    pub fn modal_loads(&self, flank_forces: &[f64]) -> Vec<f64> {
+        let load = |mode: usize| {
+            let shape = self.modes.col_as_slice(mode).iter();
+            shape.zip(flank_forces).map(|(v, p)| v * p).sum()
+        };
+        (0..self.mode_count()).map(load).collect()
     }
 
     /// The number r of loading modes.

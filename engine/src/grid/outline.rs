@@ -44,7 +44,7 @@ impl Outline {
 
 /// Below this sine of the angle between them, two curves count as touching rather than crossing: an element between them
 /// would be too sharp.
-const LEAST_CROSSING: f64 = 0.5;
+const LEAST_CROSSING: f64 = 0.6;
 
 impl Outline {
     /// Where the circle of `radius` about the axis crosses the curve, by the length along the curve; a circle that all but

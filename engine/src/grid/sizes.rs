@@ -17,6 +17,9 @@ const LEAST: f64 = 2e-4;
 /// Samples of the size along a curve, per element of its own size.
 const SAMPLES: f64 = 8.0;
 
+/// How much of an element sizes may be exceeded by in all, so that blanks that differ by rounding are divided alike.
+const SPARE: f64 = 1e-3;
+
 /// A boundary and the size of the triangles along it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Boundary {
@@ -101,8 +104,7 @@ impl Sizes {
         let ends = through.iter().copied().chain([whole]);
         for (from, to) in starts.zip(ends) {
             let (first, last) = (count_to(from), count_to(to));
-            // Similar blanks, whose numbers differ by rounding, are divided alike.
-            let count = ((last - first - 1e-6).ceil()).max(1.0);
+            let count = ((last - first - SPARE).ceil()).max(1.0);
             lengths.push(from);
             let inner = (1..count as usize).map(|i| first + (last - first) * i as f64 / count);
             lengths.extend(inner.map(length_at));

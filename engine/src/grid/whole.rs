@@ -269,3 +269,287 @@ fn share_within(grid: &Grid, element: &Element, (inner, outer): (f64, f64)) -> f
     }
     f64::from(within) / (parts * parts)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LEVELS: [GridLevel; 3] = [GridLevel::Coarse, GridLevel::Standard, GridLevel::Fine];
+    const FACE_WIDTH: f64 = 20e-3;
+    const INTERFACE: f64 = 45.5e-3;
+
+    fn round(circle_radius: f64, angle: f64, radius: f64) -> Hole {
+        Hole {
+            circle_radius: circle_radius * 1e-3,
+            angle,
+            shape: HoleShape::Round {
+                radius: radius * 1e-3,
+            },
+        }
+    }
+
+    fn slot(circle_radius: f64, angle: f64, width: f64, span: f64) -> Hole {
+        Hole {
+            circle_radius: circle_radius * 1e-3,
+            angle,
+            shape: HoleShape::Slot {
+                width: width * 1e-3,
+                angle: span,
+            },
+        }
+    }
+
+    fn region(bore: f64, holes: Vec<Hole>, web: Option<(f64, f64)>) -> BlankRegion {
+        BlankRegion {
+            bore_radius: bore * 1e-3,
+            holes,
+            web: web.map(|(inner, outer)| Web {
+                inner_radius: inner * 1e-3,
+                outer_radius: outer * 1e-3,
+                thickness: 5e-3,
+            }),
+        }
+    }
+
+    /// Holes of all kinds and places: unequal, thin ligaments, slots long and short, tiny ones, and webs whose edges cross
+    /// them, touch them, and lie next to the bore and the interface circle.
+    fn regions() -> Vec<BlankRegion> {
+        let unequal = vec![
+            round(30.0, 0.0, 10.0),
+            round(30.0, 1.7, 8.0),
+            round(30.0, 3.2, 9.0),
+            round(30.0, 4.6, 6.0),
+        ];
+        let slots = vec![
+            slot(28.0, 0.0, 12.0, 0.9),
+            slot(28.0, 1.6, 12.0, 0.9),
+            slot(28.0, 3.3, 8.0, 1.2),
+            slot(36.0, 3.3, 3.0, 1.2),
+            round(20.0, 5.0, 4.0),
+        ];
+        let nearly_round = [1e-9, 1e-3, 0.1].map(|span| slot(28.0, 1.0 + 20.0 * span, 6.0, span));
+        vec![
+            region(15.0, Vec::new(), None),
+            region(1.0, Vec::new(), None),
+            region(15.0, unequal.clone(), None),
+            region(
+                15.0,
+                vec![round(30.0, 0.0, 14.5), round(34.0, 3.7, 11.0)],
+                None,
+            ),
+            region(12.0, slots, None),
+            region(
+                10.0,
+                vec![round(28.0, 1.0, 0.5), round(30.0, 3.0, 0.7)],
+                None,
+            ),
+            region(10.0, vec![slot(28.0, 1.0, 6.0, 5.9)], None),
+            region(10.0, nearly_round[..1].to_vec(), None),
+            region(10.0, nearly_round[2..].to_vec(), None),
+            region(12.0, Vec::new(), Some((20.0, 40.0))),
+            region(12.0, unequal, Some((20.0, 40.0))),
+            region(
+                12.0,
+                vec![round(30.0, 0.0, 7.0), round(30.0, 3.2, 11.0)],
+                Some((20.0, 40.0)),
+            ),
+            region(12.0, vec![slot(30.0, 0.0, 20.0, 0.9)], Some((20.0, 40.0))),
+            region(12.0, vec![round(30.0, 0.0, 7.0)], Some((12.01, 45.3))),
+            region(12.0, vec![round(30.0, 0.0, 7.0)], Some((25.0, 60.0))),
+        ]
+    }
+
+    fn whole(region: &BlankRegion, level: GridLevel) -> BlankGrid {
+        BlankGrid::whole(region, FACE_WIDTH, INTERFACE, 200.0, level)
+            .unwrap_or_else(|error| panic!("{region:?} at {level:?}: {error}"))
+    }
+
+    #[test]
+    fn blanks_of_all_regions_keep_angles_above_twenty_degrees() {
+        for region in regions() {
+            for level in LEVELS {
+                let quality = whole(&region, level).grid.quality();
+                let angle = quality.smallest_angle.to_degrees();
+                assert!(angle > 20.0, "{region:?} {level:?}: {angle}");
+                assert!(quality.smallest_jacobian > 0.5);
+            }
+        }
+    }
+
+    #[test]
+    fn a_blank_has_the_area_and_the_volume_of_its_region() {
+        for region in regions() {
+            for (level, bound) in [(GridLevel::Standard, 2e-5), (GridLevel::Fine, 2e-6)] {
+                let grid = whole(&region, level).grid;
+                let disc = crate::gear::Moments::of_disc(INTERFACE).area;
+                let area =
+                    disc - std::f64::consts::PI * region.bore_radius.powi(2) - region.hole_area();
+                // Parabolic sides miss an arc by the fourth power of its angle.
+                assert!((grid.area() / area - 1.0).abs() < bound);
+                let inside = BlankRegion {
+                    web: region.web.map(|web| Web {
+                        outer_radius: web.outer_radius.min(INTERFACE),
+                        ..web
+                    }),
+                    ..region.clone()
+                };
+                let volume = disc * FACE_WIDTH - inside.taken_away(FACE_WIDTH).area;
+                let found = grid.weighted_area() * FACE_WIDTH;
+                // Elements that the web's edge crosses take its share by a lattice of points, which may miss a sixteenth of one.
+                assert!(
+                    (found / volume - 1.0).abs() < 5e-4,
+                    "{region:?} {level:?}: {found} {volume}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn each_level_halves_every_triangle_and_keeps_its_corners() {
+        for region in regions() {
+            let [coarse, standard, fine] = LEVELS.map(|level| whole(&region, level));
+            let count = |blank: &BlankGrid| blank.grid.elements.len();
+            assert_eq!(
+                (4 * count(&coarse), 4 * count(&standard)),
+                (count(&standard), count(&fine))
+            );
+            for (i, element) in coarse.grid.elements.iter().enumerate() {
+                let corner = element.nodes()[0] as usize;
+                let same = standard.grid.elements[4 * i].nodes()[0] as usize;
+                assert_eq!(coarse.grid.nodes[corner], standard.grid.nodes[same]);
+            }
+        }
+    }
+
+    #[test]
+    fn boundary_nodes_lie_on_their_curves_in_order() {
+        for region in regions() {
+            let blank = whole(&region, GridLevel::Standard);
+            let point = |node: &u32| blank.grid.nodes[*node as usize];
+            for (nodes, r) in [
+                (&blank.arc_nodes, INTERFACE),
+                (&blank.bore_nodes, region.bore_radius),
+            ] {
+                // Radii are shortened to twelve digits.
+                assert!(
+                    nodes
+                        .iter()
+                        .all(|n| (point(n).norm() - r).abs() < 1e-12 * INTERFACE)
+                );
+                assert!(
+                    nodes.len().is_multiple_of(4),
+                    "corner, midside, ..., halved once"
+                );
+            }
+            assert_eq!(blank.arc_nodes.len(), blank.arc_angles.len());
+            assert!(blank.arc_angles.windows(2).all(|a| a[0] < a[1]));
+            for (node, angle) in blank.arc_nodes.iter().zip(&blank.arc_angles) {
+                let p = point(node);
+                assert!((p.y.atan2(p.x) - angle).sin().abs() < 1e-13);
+            }
+            assert_eq!(blank.hole_edges.len(), region.holes.len());
+            for (edge, hole) in blank.hole_edges.iter().zip(&region.holes) {
+                assert!(
+                    edge.iter()
+                        .all(|n| hole.distance_to(point(n)).abs() < 1e-12)
+                );
+                let area: f64 = (0..edge.len())
+                    .map(|i| (point(&edge[i]), point(&edge[(i + 1) % edge.len()])))
+                    .map(|(p, q)| (p.x * q.y - p.y * q.x) / 2.0)
+                    .sum();
+                assert!(area > 0.0, "counter-clockwise");
+            }
+            let mut used = vec![false; blank.grid.nodes.len()];
+            for node in blank
+                .grid
+                .elements
+                .iter()
+                .flat_map(|element| element.nodes())
+            {
+                used[*node as usize] = true;
+            }
+            assert!(
+                used.iter().all(|used| *used),
+                "every node belongs to an element"
+            );
+        }
+    }
+
+    #[test]
+    fn similar_blanks_are_divided_alike() {
+        for region in regions() {
+            let factor = 7.3;
+            let scaled = BlankRegion {
+                bore_radius: factor * region.bore_radius,
+                holes: region
+                    .holes
+                    .iter()
+                    .map(|hole| Hole {
+                        circle_radius: factor * hole.circle_radius,
+                        shape: match hole.shape {
+                            HoleShape::Round { radius } => HoleShape::Round {
+                                radius: factor * radius,
+                            },
+                            HoleShape::Slot { width, angle } => HoleShape::Slot {
+                                width: factor * width,
+                                angle,
+                            },
+                        },
+                        ..*hole
+                    })
+                    .collect(),
+                web: region.web.map(|web| Web {
+                    inner_radius: factor * web.inner_radius,
+                    outer_radius: factor * web.outer_radius,
+                    ..web
+                }),
+            };
+            let one = whole(&region, GridLevel::Coarse);
+            let other = BlankGrid::whole(
+                &scaled,
+                FACE_WIDTH,
+                factor * INTERFACE,
+                200.0,
+                GridLevel::Coarse,
+            )
+            .expect("a blank");
+            assert_eq!(one.grid.elements, other.grid.elements);
+            for (p, q) in one.grid.nodes.iter().zip(&other.grid.nodes) {
+                assert!((factor * p - q).norm() < 1e-14 * factor);
+            }
+        }
+    }
+
+    #[test]
+    fn rings_and_ligaments_without_width_are_refused() {
+        let refused = |region: &BlankRegion| {
+            BlankGrid::whole(region, FACE_WIDTH, INTERFACE, 200.0, GridLevel::Coarse)
+                .expect_err("a refusal")
+        };
+        assert!(matches!(
+            refused(&region(45.5, Vec::new(), None)),
+            GridError::InterfaceInsideBore { .. }
+        ));
+        assert!(matches!(
+            refused(&region(f64::NAN, Vec::new(), None)),
+            GridError::InterfaceInsideBore { .. }
+        ));
+        let overlapping = vec![round(30.0, 0.0, 8.0), slot(30.0, 0.5, 6.0, 0.5)];
+        let GridError::NoLigament { beside, .. } = refused(&region(15.0, overlapping, None)) else {
+            panic!("they overlap")
+        };
+        assert!(beside < 0.0);
+        for (hole, place) in [(round(37.0, 0.0, 8.6), 0), (round(23.0, 0.0, 8.1), 1)] {
+            let GridError::NoLigament { above, below, .. } =
+                refused(&region(15.0, vec![hole], None))
+            else {
+                panic!("it breaks through")
+            };
+            assert!([above, below][place] < 0.0);
+        }
+        assert!(matches!(
+            refused(&region(15.0, vec![round(30.0, 0.0, 0.0)], None)),
+            GridError::NoLigament { .. }
+        ));
+    }
+}

@@ -373,6 +373,8 @@ pub(crate) struct WholeGear {
     pub(crate) whole: Whole,
     /// The number of each node of the tooth grid, tooth by tooth.
     pub(crate) teeth: Vec<Vec<u32>>,
+    /// The number of each node of the blank's grid, sector by sector.
+    pub(crate) sectors: Vec<Vec<u32>>,
     pub(crate) tooth: ToothGrid,
     pub(crate) bore: Vec<u32>,
 }
@@ -413,6 +415,7 @@ impl WholeGear {
         Self {
             whole,
             teeth,
+            sectors,
             tooth,
             bore,
         }
