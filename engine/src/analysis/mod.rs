@@ -33,7 +33,7 @@ pub use crate::gear::PlaneState;
 
 use crate::assembly::{Blanks, Parts};
 use crate::contact::PairModel;
-use crate::fem::tooth::FARTHEST_COUPLED;
+use crate::fem::teeth::FARTHEST_COUPLED;
 use crate::grid::GridLevel;
 use crate::run::Run;
 use setup::Setup;

@@ -8,7 +8,8 @@
 
 use meshwright_engine::assembly::interface::default_interface_radius;
 use meshwright_engine::fem::cyclic::{Component, Harmonics};
-use meshwright_engine::fem::tooth::{TeethRing, ToothSubstructure};
+use meshwright_engine::fem::teeth::TeethRing;
+use meshwright_engine::fem::tooth::ToothSubstructure;
 use meshwright_engine::gear::{SpurGear, Vector, radial};
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::run::Run;
