@@ -2,7 +2,7 @@
 
 use realfft::RealFftPlanner;
 
-use crate::gear::GearPair;
+use crate::gear::{GearPair, SpurGear};
 
 /// A speed of rotation, in revolutions per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -114,8 +114,8 @@ pub fn harmonics(values: &[f64]) -> Vec<(f64, f64)> {
     output.iter().enumerate().skip(1).map(line).collect()
 }
 
-/// Orders per revolution of the driven gear that have names, each once: the mesh and its multiples, the holes, and the
-/// sidebands that holes make about the mesh.
+/// Orders per revolution of the driven gear that have names, each once: the mesh and its multiples, the holes (N), revolutions of gears
+/// whose teeth deviate, run out or stand on unequal holes (R1 driving, R2 driven), and the sidebands of both about the mesh.
 fn named_orders(pair: &GearPair) -> Vec<(f64, String)> {
     let (z_1, z_2) = (
         f64::from(pair.driving().tooth_count()),
@@ -131,15 +131,18 @@ fn named_orders(pair: &GearPair) -> Vec<(f64, String)> {
     for k in 1..=NAMED_MESH_HARMONICS {
         add(f64::from(k) * z_2, format!("H_{}Z2", multiple(k)));
     }
-    let hole_order = |count: Option<u32>, scale: f64| count.map(|count| f64::from(count) * scale);
-    let n_1 = hole_order(pair.driving().holes().map(|holes| holes.count), z_2 / z_1);
-    let n_2 = hole_order(pair.driven().holes().map(|holes| holes.count), 1.0);
-    // One family of hole lines is simply N; two different ones need their gear's number.
-    let families: Vec<(f64, &str)> = match (n_1, n_2) {
-        (Some(n_1), Some(n_2)) if (n_1 - n_2).abs() > 1e-9 => vec![(n_1, "N1"), (n_2, "N2")],
-        (_, Some(n)) | (Some(n), None) => vec![(n, "N")],
-        (None, None) => Vec::new(),
-    };
+    let scales = [(pair.driving(), z_2 / z_1), (pair.driven(), 1.0)];
+    let families = [
+        (
+            "N",
+            scales.map(|(gear, scale)| hole_order(gear).map(|n| f64::from(n) * scale)),
+        ),
+        (
+            "R",
+            scales.map(|(gear, scale)| repeats_once(gear).then_some(scale)),
+        ),
+    ];
+    let families: Vec<(f64, String)> = families.into_iter().flat_map(of_both).collect();
     for (n, name) in &families {
         add(*n, format!("H_{name}"));
     }
@@ -157,6 +160,35 @@ fn named_orders(pair: &GearPair) -> Vec<(f64, String)> {
     names
 }
 
+/// The order that the holes of `gear` make in one of its revolutions: how often they repeat, or their number where they do not.
+fn hole_order(gear: &SpurGear) -> Option<u32> {
+    match gear.hole_repeats() {
+        0 => None,
+        1 => Some(gear.holes().len() as u32),
+        repeats => Some(repeats),
+    }
+}
+
+/// Whether only a whole revolution of `gear` brings back what its teeth or its holes do.
+fn repeats_once(gear: &SpurGear) -> bool {
+    let once = gear.hole_repeats() == 1 && gear.holes().len() > 1;
+    once || !gear.deviations().is_none()
+}
+
+/// The lines of one kind: its name alone where one gear has them, or both at the same order; else with the number of the gear.
+fn of_both((name, orders): (&str, [Option<f64>; 2])) -> Vec<(f64, String)> {
+    match orders {
+        [Some(one), Some(other)] if (one - other).abs() > 1e-9 => {
+            vec![(one, format!("{name}1")), (other, format!("{name}2"))]
+        }
+        // A revolution is told with its gear, unless both are the same.
+        [Some(one), None] if name == "R" => vec![(one, format!("{name}1"))],
+        [None, Some(other)] if name == "R" => vec![(other, format!("{name}2"))],
+        [_, Some(order)] | [Some(order), None] => vec![(order, name.to_owned())],
+        [None, None] => Vec::new(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::f64::consts::PI;
@@ -168,12 +200,13 @@ mod tests {
     fn case_2() -> GearPair {
         let solid = SpurGear::new(paper_gear(50)).expect("a gear");
         let mut data = paper_gear(50);
-        data.blank.holes = Some(HolePattern {
+        data.blank.holes = HolePattern {
             count: 10,
             circle_radius: 34e-3,
             radius: 7.5e-3,
             phase: 0.0,
-        });
+        }
+        .holes();
         GearPair::new(solid, SpurGear::new(data).expect("a gear"), 100.5e-3).expect("meshes")
     }
 

@@ -37,7 +37,7 @@ fn whole_gear(gear: &SpurGear, level: GridLevel) -> WholeGear {
         level,
     )
     .expect("a blank");
-    let phase = gear.holes().map_or(0.0, |holes| holes.phase);
+    let phase = gear.hole_angle();
     let properties = (gear.material(), gear.face_width());
     WholeGear::new(
         tooth,
@@ -421,7 +421,7 @@ fn couplings(gear: &SpurGear, level: GridLevel) -> [Coupling; 2] {
         &run,
     )
     .expect("a blank");
-    let phase = gear.holes().map_or(0.0, |holes| holes.phase);
+    let phase = gear.hole_angle();
     let tooth_by_tooth = Coupling::tooth_by_tooth(&teeth.ring, &blank, phase, 4, &run);
     let on_blank = Coupling::on_blank(&teeth.ring, &blank, phase, 4, &run);
     [tooth_by_tooth, on_blank].map(|coupling| coupling.expect("a gear"))
@@ -446,7 +446,7 @@ fn rows_that_symmetry_leaves_are_the_rows_of_all_teeth() {
             let (a, b) = (block(&all), block(&some));
             largest = largest.max((&a - &b).norm_max() / a.norm_max());
         }
-        let holes = gear.holes().map_or(0, |holes| holes.count);
+        let holes = gear.hole_repeats();
         println!(
             "{holes} holes: {largest:.1e}, {} entries of {}",
             some.entries(),

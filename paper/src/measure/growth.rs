@@ -2,7 +2,7 @@
 
 use anyhow::Context;
 use meshwright_engine::analysis::{Case, Method, pair_model};
-use meshwright_engine::gear::{Blank, GearData, GearPair, HolePattern, SpurGear};
+use meshwright_engine::gear::{BlankRegion, GearData, GearPair, HolePattern, SpurGear};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use serde::Serialize;

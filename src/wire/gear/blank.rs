@@ -1,6 +1,6 @@
 //! What carries the teeth: the bore and the holes.
 
-use meshwright_engine::gear::{Blank, HolePattern};
+use meshwright_engine::gear::{BlankRegion, HolePattern};
 use serde::Serialize;
 
 use crate::wire::quantity;
