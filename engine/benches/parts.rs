@@ -91,7 +91,7 @@ fn gears(criterion: &mut Criterion) {
 /// The pairs to either side of position `eta` that may touch.
 fn facings(case: &Case, eta: f64) -> Vec<Facing<'_>> {
     (-3..=4)
-        .filter_map(|n| Facing::of(&case.pair, eta, n))
+        .filter_map(|n| Facing::of(&case.pair, eta, n, 0))
         .collect()
 }
 

@@ -11,9 +11,8 @@ use super::curve::{BlankFit, BlankSample, DecompositionParts, Evidence, LoadShar
 use super::flexible::{self, Blanks, Solved};
 use super::library::{Library, interface_radius};
 use super::{Analysis, AnalysisError, CurveParts, Settings, mesh_positions, warnings};
-use crate::contact::model::teeth_on;
 use crate::contact::{ContactCells, ContactSolution, MeshContact, PairLoads, PairModel};
-use crate::gear::Member;
+use crate::gear::{Member, teeth_on};
 use crate::grid::GridLevel;
 use crate::run::Run;
 
@@ -261,7 +260,7 @@ pub(super) fn project(
     for &output_torque in &case.output_torques {
         let load = case.pair.load(output_torque);
         let without = base.contacts(load, &period)?;
-        let keep = |cells: &ContactCells, solution: &ContactSolution| {
+        let keep = |cells: &ContactCells<'_>, solution: &ContactSolution| {
             cells.loads(&[&solution.forces, &solution.load_derivative])
         };
         let Solved {
@@ -330,7 +329,7 @@ fn yielded(model: &PairModel, members: &[Member], pairs: &[PairLoads], period: i
     for &member in members {
         let g = member.index();
         for a in pairs {
-            let tooth = model.tooth(member, period + a.pair);
+            let tooth = model.pair.tooth(member, period + a.pair);
             let q = a.loads[g].col(1).transpose();
             for b in pairs {
                 let offset = teeth_on(member, b.pair - a.pair);
@@ -457,7 +456,7 @@ mod tests {
                     .transmission_error
             };
             let mut stage = Stage::new(&round, eta, load).expect("flanks that face each other");
-            let loads = |cells: &ContactCells, solution: &ContactSolution| {
+            let loads = |cells: &ContactCells<'_>, solution: &ContactSolution| {
                 cells.loads(&[&solution.forces, &solution.load_derivative])
             };
             let (_, loads) = stage

@@ -105,9 +105,9 @@ fn contacts_keeping<T: Send>(
     load: f64,
     positions: &[f64],
     run: &Run,
-    keep: impl Fn(&ContactCells, &ContactSolution) -> T + Sync,
+    keep: impl Fn(&ContactCells<'_>, &ContactSolution) -> T + Sync,
 ) -> Result<Vec<(MeshContact, T)>, AnalysisError> {
-    let stages = stages(positions);
+    let stages = stages(positions, model.pair.is_concentric());
     let solved: Result<Vec<Vec<_>>, AnalysisError> = stages
         .par_chunks(CHUNK)
         .map(|chunk| {
@@ -116,7 +116,13 @@ fn contacts_keeping<T: Send>(
             for (fraction, places) in chunk {
                 // Each stage starts from the one before it, and each further period of a stage from the last period.
                 let first_eta = positions[places[0]];
-                let mut stage = Stage::new(model, *fraction, load)
+                // Where no gear is eccentric, whole periods make no difference to the flanks.
+                let home = if model.pair.is_concentric() {
+                    0.0
+                } else {
+                    first_eta.floor()
+                };
+                let mut stage = Stage::new(model, fraction + home, load)
                     .map_err(|error| at_position(error, first_eta))?;
                 let mut warm = first.clone();
                 for &place in places {
@@ -139,15 +145,16 @@ fn contacts_keeping<T: Send>(
     Ok(contacts.into_iter().map(|(_, contact)| contact).collect())
 }
 
-/// Positions by their fraction of the mesh period, rising, with the places of those that have it.
-fn stages(positions: &[f64]) -> Vec<(f64, Vec<usize>)> {
+/// Positions by their fraction of the mesh period, rising, with the places of those that have it; each by itself if they are not
+/// `together`.
+fn stages(positions: &[f64], together: bool) -> Vec<(f64, Vec<usize>)> {
     let fraction = |place: usize| positions[place] - positions[place].floor();
     let mut places: Vec<usize> = (0..positions.len()).collect();
     places.sort_by(|&a, &b| fraction(a).total_cmp(&fraction(b)));
     let mut stages: Vec<(f64, Vec<usize>)> = Vec::new();
     for place in places {
         match stages.last_mut() {
-            Some((known, places)) if fraction(place) - *known < SAME_FRACTION => {
+            Some((known, places)) if together && fraction(place) - *known < SAME_FRACTION => {
                 places.push(place);
             }
             _ => stages.push((fraction(place), vec![place])),
@@ -200,7 +207,7 @@ pub(super) fn solved<T: Send>(
     load: f64,
     positions: &[f64],
     run: &Run,
-    keep: impl Fn(&ContactCells, &ContactSolution) -> T + Sync,
+    keep: impl Fn(&ContactCells<'_>, &ContactSolution) -> T + Sync,
 ) -> Result<Solved<T>, AnalysisError> {
     let middle = contacts_keeping(model, load, positions, run, keep)?;
     let (contacts, kept): (Vec<MeshContact>, Vec<T>) = middle.into_iter().unzip();

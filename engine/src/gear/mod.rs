@@ -28,7 +28,7 @@ pub use modification::{
     ModificationData, Relief, ReliefData, ReliefShape, ReliefStart, RootReliefData,
     RootReliefStart, TablePlaces,
 };
-pub use pair::{GearPair, GearPairError, Member};
+pub use pair::{GearPair, GearPairError, Member, teeth_on};
 pub use rack::Rack;
 pub use spur::SpurGear;
 pub use tip::TipEdge;

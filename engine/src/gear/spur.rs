@@ -384,6 +384,14 @@ impl SpurGear {
         pitch + slope
     }
 
+    /// The slope of [`SpurGear::deviation`] by the roll length.
+    pub fn deviation_slope(&self, tooth: usize) -> f64 {
+        let amount = self.data.deviations.profile_slope.get(tooth);
+        amount.map_or(0.0, |amount| {
+            amount / (self.tip_roll_length() - self.form_roll_length())
+        })
+    }
+
     /// The largest and the smallest [`SpurGear::deviation`] of any point of any flank.
     pub fn deviation_range(&self) -> [f64; 2] {
         let ends = [self.form_roll_length(), self.tip_roll_length()];

@@ -248,6 +248,8 @@ fn check_on_whole_gears(case: &Case, positions: &[f64], gap_bound: f64) {
             pressed / delta,
             penetration / delta
         );
+        // The elements of the whole gear know nothing of the wedge's law at a corner, which the compliance of cells follows.
+        let gap_bound = if on_path { gap_bound } else { 1.25 * gap_bound };
         assert!(pressed < gap_bound * delta && penetration < gap_bound * delta);
         // With the logarithm they are exact.
         assert!(solution.gaps.iter().all(|gap| *gap > -1e-10 * delta));
