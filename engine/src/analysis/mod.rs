@@ -11,6 +11,7 @@ mod estimate;
 mod flexible;
 pub mod library;
 mod load_distribution;
+mod orders;
 mod shelf;
 pub mod spectrum;
 
@@ -19,6 +20,7 @@ pub use curve::{Analysis, Curve, ErrorEstimate, Evidence, Statistics, Warning};
 pub use estimate::{Estimate, estimate};
 pub use library::Library;
 pub use load_distribution::{Formula, FormulaQuantity, FormulaRange};
+pub use orders::{OrderCause, OrderKind};
 pub use shelf::ShelfUsage;
 
 pub use crate::contact::ContactSolver;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{HolePattern, SpurGear};
+use super::{HolePattern, SpurGear, Vector, radial};
 use crate::quadrature::gauss_legendre_panels;
 
 impl SpurGear {
@@ -20,6 +20,20 @@ impl SpurGear {
         let holes = self.holes().map_or(0.0, HolePattern::polar_moment);
         let bore = PI / 2.0 * self.bore_radius().powi(4);
         self.material().density * self.face_width() * (moment - bore - holes)
+    }
+
+    /// The imbalance in kg m: the mass times the way from the axis of rotation to the center of mass, the centerline of tooth 0 along x.
+    ///
+    /// Holes that repeat around the gear are balanced; a single one is not.
+    pub fn imbalance(&self) -> Vector {
+        let eccentric = self.mass() * self.deviations().displacement(0.0);
+        match self.holes().filter(|holes| holes.count == 1) {
+            None => eccentric,
+            Some(hole) => {
+                let missing = self.material().density * self.face_width() * hole.area();
+                eccentric - missing * hole.circle_radius * radial(hole.phase)
+            }
+        }
     }
 
     /// The area and the second polar moment inside the tooth profile, by Green's theorem along one half tooth:
@@ -67,6 +81,26 @@ mod tests {
     use super::*;
     use crate::gear::TipEdge;
     use crate::gear::spur::tests::paper_gear;
+
+    #[test]
+    fn a_single_hole_draws_the_center_of_mass_away_from_it() {
+        let mut data = paper_gear(50);
+        let pattern = |count| HolePattern {
+            count,
+            circle_radius: 30e-3,
+            radius: 5e-3,
+            phase: 0.5,
+        };
+        data.blank.holes = Some(pattern(1));
+        let gear = SpurGear::new(data.clone()).expect("one hole");
+        // 7850 kg/m3 by 20 mm by pi 25 mm2 at 30 mm.
+        let expected = 7850.0 * 20e-3 * PI * 25e-6 * 30e-3;
+        let imbalance = gear.imbalance();
+        assert!((imbalance + expected * radial(0.5)).norm() < 1e-12 * expected);
+        data.blank.holes = Some(pattern(2));
+        let pair_of_holes = SpurGear::new(data).expect("two holes");
+        assert_eq!(pair_of_holes.imbalance(), Vector::zeros());
+    }
 
     #[test]
     fn the_profile_area_agrees_with_a_polygon_through_the_true_profile() {

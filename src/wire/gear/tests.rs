@@ -57,13 +57,13 @@ fn near(value: f64, expected: f64) {
 
 #[test]
 fn a_tip_diameter_says_the_addendum() {
-    // 104 mm on 50 teeth of module 2 is an addendum of a module; a shift of 0.3 leaves 1.4 mm of it.
+    // 104 mm on 50 teeth of module 2 is an addendum of a module; a shift of -0.1 makes it 2.2 mm.
     near(
         told(&json!({ "tip_diameter_mm": 104.0 })).rack.addendum,
         2e-3,
     );
-    let shifted = json!({ "tip_diameter_mm": 104.0, "profile_shift": 0.3, "addendum_mm": null });
-    near(told(&shifted).rack.addendum, 1.4e-3);
+    let shifted = json!({ "tip_diameter_mm": 104.0, "profile_shift": -0.1, "addendum_mm": null });
+    near(told(&shifted).rack.addendum, 2.2e-3);
     let both = json!({ "tip_diameter_mm": 104.0, "addendum_mm": 2.0 });
     fault(&both, "tip_diameter_mm", Code::ConflictingFields);
 }
@@ -83,7 +83,9 @@ fn a_tip_diameter_has_the_bounds_of_the_addendum_and_answers_in_its_own_words() 
     );
     let nearest = pointed.nearest.expect("a diameter that leaves a tip");
     assert!((105.0..107.9).contains(&nearest), "{pointed:?}");
-    told(&json!({ "tip_diameter_mm": nearest }));
+    // The gear can be made; at this center distance its long teeth reach below the flanks of the other.
+    let left = faults(&json!({ "tip_diameter_mm": nearest }));
+    assert_eq!(left[0].code, Code::Interference, "{left:?}");
 }
 
 #[test]

@@ -55,7 +55,7 @@ pub(in crate::wire) const INTERFACE_RADIUS: Quantity = needed(
     "Interface radius of holed gears",
     "mm",
     (0.1, 7_500.0),
-    "The radius between holes and tooth roots at which the decomposition cuts the blank.",
+    "The radius between holes and tooth roots at which the decomposition cuts the blank: one for both gears, or one for each.",
 )
 .or(Preset::Absent(
     "for each holed gear one module below its root circle, or halfway to the holes where they come closer",

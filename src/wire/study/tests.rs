@@ -345,7 +345,7 @@ fn a_base_that_no_design_mends_is_refused_once() {
     let place = vec!["/base/output_torques_n_m".to_owned()];
     assert_eq!(refused(&document), (Code::TooLarge, place.clone()));
     assert_eq!(
-        refused(&torques(json!([0]), bores.clone())),
+        refused(&torques(json!([-1]), bores.clone())),
         (
             Code::TorqueNotPositive,
             vec!["/base/output_torques_n_m/0".to_owned()]
@@ -361,7 +361,7 @@ fn a_base_that_no_design_mends_is_refused_once() {
     document["axes"] = json!([{ "path": "/method", "values": ["flexible"] }]);
     assert!(parse(&document).is_ok());
     let item = json!([{ "path": "/output_torques_n_m/0", "values": [20] }]);
-    assert!(parse(&torques(json!([0]), item.clone())).is_ok());
+    assert!(parse(&torques(json!([-1]), item.clone())).is_ok());
     // One torque of too many is still one too many.
     let document = torques(json!((1..=61).collect::<Vec<_>>()), item);
     assert_eq!(refused(&document), (Code::TooLarge, place));
