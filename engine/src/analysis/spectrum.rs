@@ -2,7 +2,8 @@
 
 use realfft::RealFftPlanner;
 
-use crate::gear::{GearPair, SpurGear};
+use super::orders::{KnownOrder, OrderKind, Orders};
+use crate::gear::GearPair;
 
 /// A speed of rotation, in revolutions per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,8 +14,10 @@ pub struct RotationSpeed(pub f64);
 pub struct NamedOrder {
     /// The order per revolution of the driven gear.
     pub order: f64,
-    /// For example `H_Z2`, `H_N`, `H_(Z2+N2)`.
+    /// For example `H_Z2`, `H_N`, `H_Z2+N2`, `H_1`, `H_Z2-1(2)`.
     pub label: String,
+    /// What it is.
+    pub kind: OrderKind,
     /// The amplitude of δ in meters.
     pub transmission_error: f64,
     /// The amplitude of k in N/m.
@@ -40,11 +43,8 @@ pub struct Spectrum {
     pub frequency: Option<Vec<f64>>,
 }
 
-/// Mesh harmonics that get a name.
-const NAMED_MESH_HARMONICS: u32 = 10;
-
-/// Mesh harmonics around which sidebands get a name, and sidebands to either side.
-const SIDEBANDS: (u32, u32) = (4, 2);
+/// Lines that get a name because they stand out, and the least part of the largest line that does.
+const STANDING_OUT: (usize, f64) = (10, 0.01);
 
 impl Spectrum {
     /// The spectrum of one curve of `pair` over `span` mesh periods, which are whole true periods.
@@ -60,21 +60,7 @@ impl Spectrum {
         let order: Vec<f64> = (1..=ste.len())
             .map(|bin| bin as f64 * z_2 / f64::from(span))
             .collect();
-        let named = named_orders(pair)
-            .into_iter()
-            .filter_map(|(order, label)| {
-                let bin = order * f64::from(span) / z_2;
-                let index = (bin.round() as usize)
-                    .checked_sub(1)
-                    .filter(|&index| index < ste.len())?;
-                ((bin - bin.round()).abs() < 1e-9).then(|| NamedOrder {
-                    order,
-                    label,
-                    transmission_error: ste[index].0,
-                    mesh_stiffness_tangent: k[index].0,
-                })
-            })
-            .collect();
+        let named = named(&Orders::of(pair), &order, &ste, &k);
         let f_2 = speed.map(|speed| speed.0 * f64::from(pair.driving().tooth_count()) / z_2);
         Self {
             frequency: f_2.map(|f_2| order.iter().map(|order| order * f_2).collect()),
@@ -91,6 +77,54 @@ impl Spectrum {
     pub fn line(&self, label: &str) -> Option<&NamedOrder> {
         self.named.iter().find(|line| line.label == label)
     }
+}
+
+/// The lines that have names, by rising order: those that have one whatever their amplitude, and those that stand out of the others.
+fn named(
+    orders: &Orders,
+    places: &[f64],
+    ste: &[(f64, f64)],
+    stiffness: &[(f64, f64)],
+) -> Vec<NamedOrder> {
+    let Some(first) = places.first() else {
+        return Vec::new();
+    };
+    let known = orders.known().into_iter().filter_map(|known| {
+        let bin = known.order / first;
+        let index = (bin.round() as usize).checked_sub(1)?;
+        let is_a_line = index < places.len() && (bin - bin.round()).abs() < 1e-9;
+        is_a_line.then_some((index, known))
+    });
+    let mut lines: Vec<(usize, KnownOrder)> = known.collect();
+    let others = standing_out(ste, |index| lines.iter().all(|(known, _)| *known != index));
+    let others: Vec<_> = others
+        .into_iter()
+        .filter_map(|index| Some((index, orders.describe(places[index])?)))
+        .collect();
+    lines.extend(others);
+    lines.sort_by_key(|(index, _)| *index);
+    let line = |(index, known): (usize, KnownOrder)| NamedOrder {
+        order: known.order,
+        label: known.label,
+        kind: known.kind,
+        transmission_error: ste[index].0,
+        mesh_stiffness_tangent: stiffness[index].0,
+    };
+    lines.into_iter().map(line).collect()
+}
+
+/// The largest lines among the `others`, as far as they are a part of the largest of all.
+fn standing_out(lines: &[(f64, f64)], others: impl Fn(usize) -> bool) -> Vec<usize> {
+    let largest = lines
+        .iter()
+        .fold(0.0_f64, |largest, line| largest.max(line.0));
+    let (most, part) = STANDING_OUT;
+    let mut found: Vec<usize> = (0..lines.len())
+        .filter(|&index| lines[index].0 > part * largest && others(index))
+        .collect();
+    found.sort_by(|&a, &b| lines[b].0.total_cmp(&lines[a].0));
+    found.truncate(most);
+    found
 }
 
 /// Amplitude and phase of the bins 1 … n/2 of `values`: 2|X|/n, and |X|/n at Nyquist.
@@ -112,81 +146,6 @@ pub fn harmonics(values: &[f64]) -> Vec<(f64, f64)> {
         (factor * x.norm() / n as f64, x.arg())
     };
     output.iter().enumerate().skip(1).map(line).collect()
-}
-
-/// Orders per revolution of the driven gear that have names, each once: the mesh and its multiples, the holes (N), revolutions of gears
-/// whose teeth deviate, run out or stand on unequal holes (R1 driving, R2 driven), and the sidebands of both about the mesh.
-fn named_orders(pair: &GearPair) -> Vec<(f64, String)> {
-    let (z_1, z_2) = (
-        f64::from(pair.driving().tooth_count()),
-        f64::from(pair.driven().tooth_count()),
-    );
-    let multiple = |k: u32| if k == 1 { String::new() } else { k.to_string() };
-    let mut names: Vec<(f64, String)> = Vec::new();
-    let mut add = |order: f64, label: String| {
-        if order > 0.0 && names.iter().all(|(known, _)| (known - order).abs() > 1e-9) {
-            names.push((order, label));
-        }
-    };
-    for k in 1..=NAMED_MESH_HARMONICS {
-        add(f64::from(k) * z_2, format!("H_{}Z2", multiple(k)));
-    }
-    let scales = [(pair.driving(), z_2 / z_1), (pair.driven(), 1.0)];
-    let families = [
-        (
-            "N",
-            scales.map(|(gear, scale)| hole_order(gear).map(|n| f64::from(n) * scale)),
-        ),
-        (
-            "R",
-            scales.map(|(gear, scale)| repeats_once(gear).then_some(scale)),
-        ),
-    ];
-    let families: Vec<(f64, String)> = families.into_iter().flat_map(of_both).collect();
-    for (n, name) in &families {
-        add(*n, format!("H_{name}"));
-    }
-    for (n, name) in &families {
-        for k in 1..=SIDEBANDS.0 {
-            for l in 1..=SIDEBANDS.1 {
-                for (sign, mark) in [(-1.0, '-'), (1.0, '+')] {
-                    let label = format!("H_{}Z2{mark}{}{name}", multiple(k), multiple(l));
-                    add(f64::from(k) * z_2 + sign * f64::from(l) * n, label);
-                }
-            }
-        }
-    }
-    names.sort_by(|a, b| a.0.total_cmp(&b.0));
-    names
-}
-
-/// The order that the holes of `gear` make in one of its revolutions: how often they repeat, or their number where they do not.
-fn hole_order(gear: &SpurGear) -> Option<u32> {
-    match gear.hole_repeats() {
-        0 => None,
-        1 => Some(gear.holes().len() as u32),
-        repeats => Some(repeats),
-    }
-}
-
-/// Whether only a whole revolution of `gear` brings back what its teeth or its holes do.
-fn repeats_once(gear: &SpurGear) -> bool {
-    let once = gear.hole_repeats() == 1 && gear.holes().len() > 1;
-    once || !gear.deviations().is_none()
-}
-
-/// The lines of one kind: its name alone where one gear has them, or both at the same order; else with the number of the gear.
-fn of_both((name, orders): (&str, [Option<f64>; 2])) -> Vec<(f64, String)> {
-    match orders {
-        [Some(one), Some(other)] if (one - other).abs() > 1e-9 => {
-            vec![(one, format!("{name}1")), (other, format!("{name}2"))]
-        }
-        // A revolution is told with its gear, unless both are the same.
-        [Some(one), None] if name == "R" => vec![(one, format!("{name}1"))],
-        [None, Some(other)] if name == "R" => vec![(other, format!("{name}2"))],
-        [_, Some(order)] | [Some(order), None] => vec![(order, name.to_owned())],
-        [None, None] => Vec::new(),
-    }
 }
 
 #[cfg(test)]
@@ -229,6 +188,20 @@ mod tests {
                     && (lines[bin - 1].1 - phase).abs() < 1e-12
             );
         }
+    }
+
+    #[test]
+    fn a_line_that_stands_out_is_named_by_what_it_is() {
+        let wave = |j: u32, bin: f64| (2.0 * PI * bin * f64::from(j) / 200.0).cos();
+        let values: Vec<f64> = (0..200)
+            .map(|j| wave(j, 5.0) + 0.5 * wave(j, 2.0) + 0.005 * wave(j, 3.0))
+            .collect();
+        let spectrum = Spectrum::of(&case_2(), 5, &values, &values, None);
+        let twice = spectrum.line("H_2N").expect("it stands out");
+        assert!((twice.transmission_error - 0.5).abs() < 1e-13 && twice.order == 20.0);
+        // Half a percent of the largest line is the third multiple, and a sideband that is named anyway.
+        assert!(spectrum.line("H_3N").is_none());
+        assert!(spectrum.named.is_sorted_by(|a, b| a.order < b.order));
     }
 
     #[test]
