@@ -123,15 +123,17 @@ impl Case {
         (0..self.positions()).map(|i| i as f64 / steps).collect()
     }
 
-    /// The mesh positions of one mesh period.
-    pub(super) fn one_mesh_period(&self) -> Vec<f64> {
-        let count = self.resolution.positions_per_mesh_period;
-        (0..count)
-            .map(|i| f64::from(i) / f64::from(count))
-            .collect()
+    /// The mesh positions after which contact on blanks that are alike all around repeats: those of one mesh period, or of the whole
+    /// span where teeth deviate.
+    pub(super) fn repeating_positions(&self) -> Vec<f64> {
+        let mut positions = self.mesh_positions();
+        if self.pair.are_teeth_alike() {
+            positions.truncate(self.resolution.positions_per_mesh_period as usize);
+        }
+        positions
     }
 
-    /// What holds over one mesh period, over the whole span.
+    /// What holds at the repeating positions, over the whole span.
     pub(super) fn repeated<T: Clone>(&self, period: impl Iterator<Item = T> + Clone) -> Vec<T> {
         period.cycle().take(self.positions()).collect()
     }
@@ -140,7 +142,7 @@ impl Case {
     pub(super) fn holed(&self) -> Vec<Member> {
         Member::BOTH
             .into_iter()
-            .filter(|&member| self.pair.gear(member).holes().is_some())
+            .filter(|&member| !self.pair.gear(member).holes().is_empty())
             .collect()
     }
 }

@@ -35,7 +35,7 @@ impl CurveParts {
             mesh_stiffness_secant: self
                 .transmission_error
                 .iter()
-                .map(|delta| load / delta)
+                .map(|delta| if load == 0.0 { 0.0 } else { load / delta })
                 .collect(),
             transmission_error_statistics: Statistics::of(&self.transmission_error),
             mesh_stiffness_tangent_statistics: Statistics::of(&self.stiffness),
@@ -67,10 +67,10 @@ impl CurveParts {
         }
     }
 
-    /// What `contacts` that repeat each mesh period of `case` say of everything but δ and k.
-    pub(super) fn of_one_mesh_period(case: &Case, contacts: &[MeshContact]) -> Self {
+    /// What `contacts` at the repeating positions of `case` say of everything but δ and k.
+    pub(super) fn of_repeating(case: &Case, contacts: &[MeshContact]) -> Self {
         let each = contacts.iter();
-        let shares = load_shares(&case.one_mesh_period(), contacts).into_iter();
+        let shares = load_shares(&case.repeating_positions(), contacts).into_iter();
         Self {
             transmission_error: Vec::new(),
             stiffness: Vec::new(),

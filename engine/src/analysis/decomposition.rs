@@ -23,14 +23,15 @@ const TORQUE_STEP: f64 = 0.01;
 /// Contact solutions that the decomposition of `case` needs.
 pub(super) fn expected_positions(case: &Case) -> u64 {
     let samples = 2 * u64::from(case.resolution.blank_positions) * case.holed().len() as u64;
-    3 * case.output_torques.len() as u64
-        * (u64::from(case.resolution.positions_per_mesh_period) + samples)
+    3 * case.output_torques.len() as u64 * (case.repeating_positions().len() as u64 + samples)
 }
 
 /// One holed gear of the decomposition: the model in which its blank is flexible and the other holed one is not.
-struct HoledBlank {
+struct HoledBlank<'a> {
     member: Member,
     model: PairModel,
+    /// The pair with all holed blanks rigid.
+    rigid: &'a RigidBlank<'a>,
     interface_radius: f64,
 }
 
@@ -38,15 +39,26 @@ struct HoledBlank {
 pub(super) fn solve(setup: Setup<'_>) -> Result<Analysis, AnalysisError> {
     let case = setup.case;
     let rigid = RigidBlank::new(setup)?;
+    // How a blank turns under its hub is fitted as drawn: what teeth deviate is in δ_wh.
+    let drawn = Case {
+        pair: case.pair.as_drawn(),
+        ..case.clone()
+    };
+    let of_drawn = Setup {
+        case: &drawn,
+        ..setup
+    };
+    let rigid_as_drawn = RigidBlank::new(of_drawn)?;
     let mut degrees_of_freedom = rigid.degrees_of_freedom;
     let mut blanks = Vec::new();
     for member in case.holed() {
-        let (model, unknowns) = setup.model(Blanks::OnlyHoledOf(member))?;
+        let (model, unknowns) = of_drawn.model(Blanks::OnlyHoledOf(member))?;
         degrees_of_freedom = degrees_of_freedom.max(unknowns);
         let asked = case.resolution.interface_radii[member.index()];
         blanks.push(HoledBlank {
             member,
             model,
+            rigid: &rigid_as_drawn,
             interface_radius: interface_radius(case.pair.gear(member), asked),
         });
     }
@@ -69,7 +81,7 @@ pub(super) fn solve(setup: Setup<'_>) -> Result<Analysis, AnalysisError> {
 /// The curve at one torque, its stiffness by a central difference, and the contacts on rigid blanks behind it.
 fn curve(
     rigid: &RigidBlank<'_>,
-    blanks: &[HoledBlank],
+    blanks: &[HoledBlank<'_>],
     output_torque: f64,
 ) -> Result<(Curve, Arc<Vec<MeshContact>>), AnalysisError> {
     let case = rigid.setup.case;
@@ -93,7 +105,7 @@ fn curve(
             rigid_blank_transmission_error: middle.of_rigid_blank(case),
             blanks: middle.fits,
         }),
-        ..CurveParts::of_one_mesh_period(case, &middle.contacts)
+        ..CurveParts::of_repeating(case, &middle.contacts)
     };
     Ok((parts.into_curve(case, output_torque), middle.contacts))
 }
@@ -105,11 +117,15 @@ struct Terms {
 }
 
 impl Terms {
-    fn at(rigid: &RigidBlank<'_>, blanks: &[HoledBlank], load: f64) -> Result<Self, AnalysisError> {
-        let contacts = rigid.contacts(load, &rigid.setup.case.one_mesh_period())?;
+    fn at(
+        rigid: &RigidBlank<'_>,
+        blanks: &[HoledBlank<'_>],
+        load: f64,
+    ) -> Result<Self, AnalysisError> {
+        let contacts = rigid.contacts(load, &rigid.setup.case.repeating_positions())?;
         let fits = blanks
             .iter()
-            .map(|blank| blank.fit(rigid, load))
+            .map(|blank| blank.fit(load))
             .collect::<Result<_, _>>()?;
         Ok(Self { contacts, fits })
     }
@@ -124,18 +140,17 @@ impl Terms {
         let mut sum = self.of_rigid_blank(case);
         for fit in &self.fits {
             let gear = case.pair.gear(fit.member);
-            let n = gear.holes().map_or(0.0, |holes| f64::from(holes.count));
+            let n = f64::from(gear.hole_repeats());
             for (delta, eta) in sum.iter_mut().zip(case.mesh_positions()) {
                 // Eq. (13) has 2πθ and N; with θ in radians, a period of 2π/N is cos(Nθ).
-                *delta +=
-                    fit.mean + fit.amplitude * (n * eta * gear.pitch_angle() + fit.phase).cos();
+                *delta += fit.at(n * eta * gear.pitch_angle());
             }
         }
         sum
     }
 }
 
-impl HoledBlank {
+impl HoledBlank<'_> {
     /// Samples R_b θ_gb, the rotation of the hub that the holed blank adds (eqs. 11, 12 and 14), over one hole period, and
     /// fits eq. 13 to it.
     ///
@@ -145,17 +160,19 @@ impl HoledBlank {
     /// R_b θ_gb = δ_whole − δ_wh without a further solve. (With the tangential part imposed and the radial direction left
     /// free of traction the annulus is softer than in its gear: the rms of case 1 then falls 43 % short, where the paper
     /// has 8.5 %.)
-    fn fit(&self, rigid: &RigidBlank<'_>, load: f64) -> Result<BlankFit, AnalysisError> {
-        let Setup { case, run, .. } = rigid.setup;
+    fn fit(&self, load: f64) -> Result<BlankFit, AnalysisError> {
+        let Setup { case, run, .. } = self.rigid.setup;
         let gear = case.pair.gear(self.member);
-        let count = case.resolution.blank_positions;
-        let holes = gear.holes().map_or(1, |holes| holes.count);
-        let period = f64::from(gear.tooth_count()) / f64::from(holes);
+        let repeats = gear.hole_repeats().max(1);
+        // Holes that are not all equal, or not equally spaced, make more than one harmonic, and need as many more samples.
+        let unlike = gear.holes().len() as u32 / repeats;
+        let count = case.resolution.blank_positions * unlike.max(1);
+        let period = f64::from(gear.tooth_count()) / f64::from(repeats);
         let positions: Vec<f64> = (0..count)
             .map(|j| f64::from(j) * period / f64::from(count))
             .collect();
         let whole = contacts(&self.model, load, &positions, run)?;
-        let without = rigid.contacts(load, &positions)?;
+        let without = self.rigid.contacts(load, &positions)?;
         let samples: Vec<BlankSample> = positions
             .iter()
             .zip(whole.iter().zip(without.iter()))
@@ -164,20 +181,34 @@ impl HoledBlank {
                 rotation: whole.transmission_error - without.transmission_error,
             })
             .collect();
-        let (mut mean, mut cosine, mut sine) = (0.0, 0.0, 0.0);
-        for (j, sample) in samples.iter().enumerate() {
-            let (sin, cos) = (2.0 * PI * j as f64 / f64::from(count)).sin_cos();
-            mean += sample.rotation / f64::from(count);
-            cosine += 2.0 * sample.rotation * cos / f64::from(count);
-            sine += 2.0 * sample.rotation * sin / f64::from(count);
-        }
+        let rotations: Vec<f64> = samples.iter().map(|sample| sample.rotation).collect();
+        let harmonic = |k: u32| harmonic(&rotations, k);
+        let (amplitude, phase) = harmonic(1);
+        let higher = if unlike > 1 {
+            (2..count.div_ceil(2)).map(harmonic).collect()
+        } else {
+            Vec::new()
+        };
         Ok(BlankFit {
             member: self.member,
             interface_radius: self.interface_radius,
-            mean,
-            amplitude: cosine.hypot(sine),
-            phase: (-sine).atan2(cosine),
+            mean: rotations.iter().sum::<f64>() / f64::from(count),
+            amplitude,
+            phase,
+            higher,
             samples,
         })
     }
+}
+
+/// Amplitude and phase of the harmonic `k` ≥ 1 of evenly spaced `values` over one period.
+fn harmonic(values: &[f64], k: u32) -> (f64, f64) {
+    let count = values.len() as f64;
+    let (mut cosine, mut sine) = (0.0, 0.0);
+    for (j, value) in values.iter().enumerate() {
+        let (sin, cos) = (2.0 * PI * f64::from(k) * j as f64 / count).sin_cos();
+        cosine += 2.0 * value * cos / count;
+        sine += 2.0 * value * sin / count;
+    }
+    (cosine.hypot(sine), (-sine).atan2(cosine))
 }

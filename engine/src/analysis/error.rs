@@ -98,7 +98,7 @@ impl From<PositionsError> for AnalysisError {
 }
 
 impl AnalysisError {
-    fn at_position(error: PositionError, mesh_position: f64) -> Self {
+    pub(super) fn at_position(error: PositionError, mesh_position: f64) -> Self {
         match error {
             PositionError::NoContact => Self::NoContact { mesh_position },
             PositionError::TooFarApart { apart, coupled } => Self::TooFarApart {

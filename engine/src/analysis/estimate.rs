@@ -63,7 +63,7 @@ pub fn estimate(case: &Case) -> Estimate {
         };
         let (teeth, sectors) = (u64::from(gear.tooth_count()), u64::from(blank.sector_count));
         let tooth_nodes = (tooth.grid.nodes.len() - tooth.side_nodes.0.len() - 1) as u64;
-        let blank_nodes = (blank.grid.nodes.len() - blank.side_nodes.0.len() - 2) as u64;
+        let blank_nodes = blank.own_nodes() as u64;
         degrees_of_freedom += 2 * (teeth * tooth_nodes + sectors * blank_nodes);
 
         let orders = orders_of_blank(gear, radius, level);

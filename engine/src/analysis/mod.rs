@@ -1,7 +1,7 @@
 //! From a pair to its curves: the methods, their results and spectra.
 //!
 //! Read in this order: [`case`] (what is asked), `setup` (what the methods work with), `flexible`, `rigid_blank`,
-//! `decomposition`, `projected` and `load_distribution` (the methods), `curve_parts` and [`curve`], [`evidence`], [`warning`],
+//! `decomposition`, `projected` and `load_distribution` (the methods), `light` (torque 0, alike for all), `curve_parts` and [`curve`], [`evidence`], [`warning`],
 //! [`error`] and [`spectrum`] (what comes out), `estimate` (what it costs).
 
 pub mod case;
@@ -12,7 +12,9 @@ pub mod error;
 mod estimate;
 pub mod evidence;
 mod flexible;
+mod light;
 mod load_distribution;
+mod orders;
 mod projected;
 mod rigid_blank;
 mod setup;
@@ -25,6 +27,7 @@ pub use error::AnalysisError;
 pub use estimate::{Estimate, estimate};
 pub use evidence::{ErrorEstimate, Evidence};
 pub use load_distribution::{Formula, FormulaQuantity, FormulaRange};
+pub use orders::{OrderCause, OrderKind};
 pub use warning::{Warning, warnings};
 
 pub use crate::contact::ContactSolver;
@@ -32,7 +35,7 @@ pub use crate::gear::PlaneState;
 
 use crate::assembly::{Blanks, Parts};
 use crate::contact::PairModel;
-use crate::fem::tooth::FARTHEST_COUPLED;
+use crate::fem::teeth::FARTHEST_COUPLED;
 use crate::grid::GridLevel;
 use crate::run::Run;
 use setup::Setup;
@@ -54,12 +57,17 @@ pub fn analyze(case: &Case, parts: &dyn Parts, run: &Run) -> Result<Analysis, An
     // Formulas have no grid to refine.
     let with_estimate = case.resolution.error_estimate && case.method != Method::LoadDistribution;
     run.expect(if with_estimate { 2 } else { 1 } * expected_positions(case));
-    let mut analysis = analyze_at(case, level, parts, run)?;
+    let loaded = light::without_torque_zero(case);
+    if loaded.output_torques.is_empty() {
+        return light::alone(case);
+    }
+    let mut analysis = analyze_at(&loaded, level, parts, run)?;
     if with_estimate {
-        let other = analyze_at(case, level.neighbor(), parts, run)?;
+        let other = analyze_at(&loaded, level.neighbor(), parts, run)?;
         let estimate = ErrorEstimate::between(&analysis.curves, &other.curves);
         analysis.evidence.error_estimate = Some(estimate);
     }
+    analysis.curves = light::with_torque_zero(case, analysis.curves)?;
     Ok(analysis)
 }
 
@@ -109,11 +117,11 @@ fn expected_positions(case: &Case) -> u64 {
         StiffnessRule::Tangent => 1,
         StiffnessRule::TorqueStep { .. } => 3,
     };
-    let per_period = u64::from(case.resolution.positions_per_mesh_period);
+    let repeating = case.repeating_positions().len() as u64;
     match case.method {
         Method::Flexible => torques * solves * case.positions() as u64,
         Method::Decomposition => decomposition::expected_positions(case),
         Method::ProjectedDecomposition => projected::expected_positions(case),
-        Method::LoadDistribution => torques * per_period,
+        Method::LoadDistribution => torques * repeating,
     }
 }

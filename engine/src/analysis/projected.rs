@@ -30,13 +30,14 @@ pub(super) fn expected_positions(case: &Case) -> u64 {
         StiffnessRule::Tangent => 1,
         StiffnessRule::TorqueStep { .. } => 3,
     };
-    let per_period = u64::from(case.resolution.positions_per_mesh_period);
+    let repeating = case.repeating_positions().len() as u64;
+    let fractions = case.resolution.positions_per_mesh_period as usize;
     let checked = if case.holed().is_empty() {
         0
     } else {
-        per_period.min(CHECKED[0] as u64) * u64::from(case.span()).min(CHECKED[1] as u64)
+        fractions.min(CHECKED[0]) * (case.span() as usize).min(CHECKED[1])
     };
-    case.output_torques.len() as u64 * ((solves + 1) * per_period + checked)
+    case.output_torques.len() as u64 * ((solves + 1) * repeating + checked as u64)
 }
 
 /// The models of a pair whose holed blanks are expanded about round ones.
@@ -104,7 +105,7 @@ impl Expansion<'_> {
         let setup = &self.rigid.setup;
         let case = setup.case;
         let load = case.pair.load(output_torque);
-        let period = case.one_mesh_period();
+        let period = case.repeating_positions();
         let rigid = self.rigid.contacts(load, &period)?;
         let keep = |cells: &ContactCells<'_>, solution: &ContactSolution| {
             cells.loads(&[&solution.forces, &solution.load_derivative])
@@ -114,14 +115,15 @@ impl Expansion<'_> {
             kept: loads,
             stiffness,
         } = flexible::solved(setup, &self.round, load, &period, keep)?;
-        // What round blanks yield is the same in every period.
+        // What round blanks yield is the same under every tooth.
         let before: Vec<(f64, f64)> = loads
             .iter()
             .map(|pairs| yielded(&self.round, &self.holed, pairs, 0))
             .collect();
+        let per_period = case.resolution.positions_per_mesh_period as usize;
         let (mut transmission_error, mut tangent) = (Vec::new(), Vec::new());
         for i in 0..case.positions() {
-            let (at, turns) = (i % period.len(), (i / period.len()) as i64);
+            let (at, turns) = (i % period.len(), (i / per_period) as i64);
             let after = yielded(&self.whole, &self.holed, &loads[at], turns);
             let (delta, compliance) = (after.0 - before[at].0, after.1 - before[at].1);
             transmission_error.push(contacts[at].transmission_error + delta);
@@ -136,7 +138,7 @@ impl Expansion<'_> {
                 rigid_blank_transmission_error: case.repeated(of_rigid_blank),
                 blanks: Vec::new(),
             }),
-            ..CurveParts::of_one_mesh_period(case, &contacts)
+            ..CurveParts::of_repeating(case, &contacts)
         };
         Ok(Projected {
             curve: parts.into_curve(case, output_torque),
@@ -146,7 +148,7 @@ impl Expansion<'_> {
     }
 
     /// The largest difference between the projected `transmission_error` and the exact one at the positions of [`CHECKED`], with the
-    /// `stiffness` of round blanks over one mesh period.
+    /// `stiffness` of round blanks at the repeating positions.
     fn error(
         &self,
         load: f64,
@@ -157,11 +159,12 @@ impl Expansion<'_> {
         if self.holed.is_empty() {
             return Ok(0.0);
         }
-        let (per_period, span) = (stiffness.len(), case.span() as usize);
+        let per_period = case.resolution.positions_per_mesh_period as usize;
+        let (span, count) = (case.span() as usize, stiffness.len());
         let change = |i: usize| {
-            let after = stiffness[(i + 1) % per_period] / stiffness[i];
-            let before = stiffness[(i + per_period - 1) % per_period] / stiffness[i];
-            (after.ln()).abs().max(before.ln().abs())
+            let after = stiffness[(i + 1) % count] / stiffness[i];
+            let before = stiffness[(i + count - 1) % count] / stiffness[i];
+            after.ln().abs().max(before.ln().abs())
         };
         let mut fractions: Vec<usize> = (0..per_period).collect();
         fractions.sort_by(|&a, &b| change(b).total_cmp(&change(a)));
@@ -234,12 +237,13 @@ mod tests {
     /// Holes in both gears, without relief, on coarse grids.
     fn holed_pair() -> Case {
         let mut data = paper_gear(50);
-        data.blank.holes = Some(HolePattern {
+        data.blank.holes = HolePattern {
             count: 8,
             circle_radius: 34e-3,
             radius: 8e-3,
             phase: 0.02,
-        });
+        }
+        .holes();
         let gear = SpurGear::new(data).expect("a gear that can be made");
         Case {
             pair: GearPair::new(gear.clone(), gear, 100.5e-3).expect("a pair that meshes"),

@@ -6,7 +6,8 @@ use super::PartError;
 use super::interface::harmonics;
 use crate::contact::flank_table::FlankTable;
 use crate::fem::body::Coupling;
-use crate::fem::tooth::{FARTHEST_COUPLED, TeethRing, ToothSubstructure};
+use crate::fem::teeth::{FARTHEST_COUPLED, TeethRing};
+use crate::fem::tooth::ToothSubstructure;
 use crate::gear::SpurGear;
 use crate::grid::{GridLevel, ToothGrid};
 use crate::run::Run;
@@ -33,8 +34,8 @@ pub struct Teeth {
 }
 
 impl TeethSpec {
-    /// The teeth of `gear` down to `interface_radius`. Nothing inside that circle counts, and no modification or deviation: a few
-    /// micrometers are a gap, and hardly change how a tooth bends.
+    /// The teeth of `gear` down to `interface_radius`. Nothing inside that circle counts, and no modification or
+    /// deviation: they are gaps and hardly change how a tooth bends.
     pub fn new(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Self {
         Self {
             gear: gear.without_blank().with_plain_flanks(),

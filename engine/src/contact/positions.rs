@@ -57,9 +57,8 @@ pub fn contacts_keeping<T: Send>(
     run: &Run,
     keep: impl Fn(&ContactCells<'_>, &ContactSolution) -> T + Sync,
 ) -> Result<Vec<(MeshContact, T)>, PositionsError> {
-    // Where no gear is eccentric, whole periods make no difference to the flanks.
-    let alike = model.pair.is_concentric();
-    let stages = stages(positions, alike);
+    let concentric = model.pair.is_concentric();
+    let stages = stages(positions, concentric);
     let solved: Result<Vec<Vec<_>>, PositionsError> = stages
         .par_chunks(CHUNK)
         .map(|chunk| {
@@ -71,10 +70,14 @@ pub fn contacts_keeping<T: Send>(
                     mesh_position,
                     error,
                 };
-                let first_eta = positions[places[0]];
-                let home = if alike { 0.0 } else { first_eta.floor() };
+                // Flanks of concentric gears stand alike in every mesh period.
+                let home = if concentric {
+                    0.0
+                } else {
+                    positions[places[0]].floor()
+                };
                 let mut stage = Stage::new(model, fraction + home, load)
-                    .map_err(|error| at(error, first_eta))?;
+                    .map_err(|error| at(error, positions[places[0]]))?;
                 let mut warm = first.clone();
                 for &place in places {
                     let eta = positions[place];

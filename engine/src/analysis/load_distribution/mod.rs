@@ -51,7 +51,7 @@ use sharing::{LinePair, Shared, rise, share};
 pub(super) fn distribute(case: &Case, run: &Run) -> Result<Analysis, AnalysisError> {
     let formulas = PairFormulas::new(&case.pair, case.resolution.formulas);
     let positions = case
-        .one_mesh_period()
+        .repeating_positions()
         .into_iter()
         .map(|eta| formulas.pairs_at(eta))
         .collect::<Result<Vec<_>, _>>()?;
