@@ -7,6 +7,8 @@ mod hash;
 
 pub mod wire;
 
+pub mod exchange;
+
 pub mod jobs;
 
 pub mod keys;
