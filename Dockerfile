@@ -5,6 +5,8 @@ ARG RUN_IMAGE=debian:bookworm-slim
 
 FROM ${BUILD_IMAGE} AS build
 WORKDIR /source
+# Names of functions stay for backtraces; lines of sources would be most of the image.
+ENV CARGO_PROFILE_RELEASE_STRIP=debuginfo
 # First the dependencies, in a layer that stays as long as the manifests do: the sources are empty, so that nothing else is built.
 COPY Cargo.toml Cargo.lock build.rs ./
 COPY engine/Cargo.toml engine/

@@ -1,12 +1,14 @@
 //! One process works on a database. That makes it certain, at the start, that a job that is said to run has lost its worker;
 //! without it, two services would take each other's jobs for lost.
 
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::{File, TryLockError};
 use std::io::{Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use tracing::warn;
+
+use crate::private::open_or_make;
 
 /// What the note says while a process works, and after it has ended in order. They are of the same length, so that the
 /// second fits on a disk that is full.
@@ -26,13 +28,7 @@ impl DatabaseLock {
     /// same one.
     pub(crate) fn take(database: &Path) -> anyhow::Result<Self> {
         let open = |path: &Path| {
-            let mut options = OpenOptions::new();
-            let file = options
-                .read(true)
-                .write(true)
-                .create(true)
-                .truncate(false)
-                .open(path);
+            let file = open_or_make(path);
             file.with_context(|| format!("cannot write {}", path.display()))
         };
         let file = open(database)?;

@@ -42,7 +42,8 @@ pub struct DoorRules {
 pub struct Door {
     rules: DoorRules,
     hosts: HashSet<String>,
-    rates: Mutex<HashMap<String, (u32, Arc<DefaultDirectRateLimiter>)>>,
+    /// By client and rate: the keys of a client may have different ones.
+    rates: Mutex<HashMap<(String, NonZeroU32), Arc<DefaultDirectRateLimiter>>>,
     waiting: Arc<Mutex<HashMap<String, usize>>>,
 }
 
@@ -115,16 +116,11 @@ impl Door {
         let burst = quota.saturating_mul(NonZeroU32::MIN.saturating_add(BURST_SECONDS - 1));
         let limiter = {
             let mut rates = self.rates.lock().expect("nothing panics with this lock");
-            let entry = rates.get(client).filter(|(known, _)| *known == rate);
-            match entry {
-                Some((_, limiter)) => Arc::clone(limiter),
-                None => {
-                    let quota = Quota::per_second(quota).allow_burst(burst);
-                    let limiter = Arc::new(DefaultDirectRateLimiter::direct(quota));
-                    rates.insert(client.to_owned(), (rate, Arc::clone(&limiter)));
-                    limiter
-                }
-            }
+            let limiter = rates.entry((client.to_owned(), quota)).or_insert_with(|| {
+                let quota = Quota::per_second(quota).allow_burst(burst);
+                Arc::new(DefaultDirectRateLimiter::direct(quota))
+            });
+            Arc::clone(limiter)
         };
         limiter
             .check()
@@ -135,11 +131,11 @@ impl Door {
     pub(super) fn place_to_wait(&self, client: &str) -> Option<PlaceToWait> {
         let mut waiting = self.waiting.lock().expect("nothing panics with this lock");
         let all: usize = waiting.values().sum();
-        let own = waiting.entry(client.to_owned()).or_default();
-        if all >= self.rules.waiting || *own >= self.rules.waiting_per_client {
+        let own = waiting.get(client).copied().unwrap_or_default();
+        if all >= self.rules.waiting || own >= self.rules.waiting_per_client {
             return None;
         }
-        *own += 1;
+        waiting.insert(client.to_owned(), own + 1);
         Some(PlaceToWait {
             waiting: Arc::clone(&self.waiting),
             client: client.to_owned(),
@@ -261,6 +257,18 @@ mod tests {
             (0..100).all(|_| door.count_request("c", Some(0)).is_ok()),
             "0 is any number"
         );
+    }
+
+    #[test]
+    fn two_keys_of_a_client_by_turns_get_no_more_than_both_may() {
+        let door = door(|_| {});
+        let taken = (0..100)
+            .filter(|turn| {
+                let rate = if turn % 2 == 0 { 3 } else { 5 };
+                door.count_request("a", Some(rate)).is_ok()
+            })
+            .count();
+        assert!(taken <= 6 + 10 + 1, "{taken}");
     }
 
     #[test]

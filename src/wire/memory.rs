@@ -40,3 +40,46 @@ pub fn too_much_memory(needed_mb: u64, limit_mb: u64) -> Problem {
         ),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    /// A pair with as many teeth as a usual one may have, on the standard grid.
+    fn largest_usual(holes: u32, positions: u32) -> Submission {
+        let gear = json!({
+            "tooth_count": USUAL_TEETH / 2, "module_mm": 2.0, "face_width_mm": 20.0,
+            "blank": {
+                "bore_radius_mm": 16.0,
+                "holes": { "count": holes, "circle_radius_mm": 70.0, "radius_mm": 2.0 },
+            },
+        });
+        let document = json!({
+            "method": "flexible",
+            "pair": { "center_distance_mm": 200.5, "driving": gear, "driven": gear },
+            "output_torques_n_m": [200.0],
+            "resolution": { "positions_per_mesh_period": positions },
+        });
+        Submission::parse(document.to_string().as_bytes()).expect("valid")
+    }
+
+    #[test]
+    fn no_usual_pair_takes_more_than_is_said() {
+        for (holes, positions) in [(4, 40), (7, 40), (20, 40), (60, 40), (60, 200), (59, 20)] {
+            let memory = analysis::estimate(largest_usual(holes, positions).case()).memory;
+            assert!(memory <= USUAL_MB * 1_000_000, "{holes} holes: {memory}");
+        }
+    }
+
+    #[test]
+    fn a_limit_below_the_estimate_is_told_with_both() {
+        let submission = largest_usual(20, 40);
+        let needed = memory_above(&submission, 1).expect("more than one MB");
+        assert_eq!(memory_above(&submission, needed), None);
+        let problem = too_much_memory(needed, 1);
+        assert_eq!(problem.code, Code::TooLarge);
+        assert!(problem.detail.contains(&format!("{needed} MB")));
+    }
+}

@@ -340,7 +340,7 @@ impl ResolutionDocument {
                 },
             },
             blank_positions: self.blank_positions,
-            interface_radius: self.interface_radius_mm.map(from_mm),
+            interface_radii: [self.interface_radius_mm.map(from_mm); 2],
             formulas: Formulas {
                 tooth: self.load_distribution.tooth,
                 body: self.load_distribution.body,

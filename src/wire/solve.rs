@@ -1,6 +1,7 @@
 //! From a submission to its results, or to what it would come to.
 
-use meshwright_engine::analysis::{self, AnalysisError, Library};
+use meshwright_engine::analysis::{self, AnalysisError};
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use serde::Serialize;
 use utoipa::ToSchema;

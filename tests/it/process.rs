@@ -3,7 +3,7 @@
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use reqwest::Client;
 use serde_json::Value;
@@ -21,7 +21,20 @@ impl Process {
 
     /// The same with more arguments.
     pub(crate) fn start_with(database: &Path, arguments: &[&str]) -> Self {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_meshwright"))
+        let program = Command::new(env!("CARGO_BIN_EXE_meshwright"));
+        Self::spawn(program, database, arguments)
+    }
+
+    /// The same with so many descriptors.
+    pub(crate) fn start_with_descriptors(database: &Path, descriptors: u32) -> Self {
+        let mut shell = Command::new("sh");
+        let limited = format!("ulimit -n {descriptors}; exec \"$0\" \"$@\"");
+        shell.args(["-c", &limited, env!("CARGO_BIN_EXE_meshwright")]);
+        Self::spawn(shell, database, &[])
+    }
+
+    fn spawn(mut program: Command, database: &Path, arguments: &[&str]) -> Self {
+        let mut child = program
             .args(["serve", "--listen", "127.0.0.1:0", "--database"])
             .arg(database)
             .args(arguments)
@@ -44,6 +57,15 @@ impl Process {
     pub(crate) fn kill(mut self) {
         self.child.kill().unwrap();
         self.child.wait().unwrap();
+    }
+
+    /// SIGTERM, as an operator ends it. Gives back how long it took.
+    pub(crate) fn terminate(mut self) -> Duration {
+        let start = Instant::now();
+        let pid = rustix::process::Pid::from_child(&self.child);
+        rustix::process::kill_process(pid, rustix::process::Signal::TERM).unwrap();
+        assert!(self.child.wait().unwrap().success());
+        start.elapsed()
     }
 
     pub(crate) async fn get(&self, client: &Client, path: &str) -> Value {

@@ -30,6 +30,11 @@ impl ToothDeviations {
         self.are_teeth_alike() && self.displacement(0.0) == Vector::zeros()
     }
 
+    /// Whether no list of teeth was given.
+    pub fn are_without_lists(&self) -> bool {
+        self.cumulative_pitch.is_empty() && self.profile_slope.is_empty()
+    }
+
     /// Whether every tooth is like every other.
     pub fn are_teeth_alike(&self) -> bool {
         let lists = self.cumulative_pitch.iter().chain(&self.profile_slope);

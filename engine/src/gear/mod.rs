@@ -20,7 +20,9 @@ pub mod rack;
 pub mod spur;
 pub mod tip;
 
-pub use blank::{Blank, HolePattern};
+pub use blank::{
+    Blank, BlankRegion, Hole, HolePattern, HoleShape, Ligament, Moments, Symmetry, Web,
+};
 pub use data::{DeviationList, GearData, GearError};
 pub use deviation::{Eccentricity, ToothDeviations};
 pub use involute::Involute;
@@ -29,7 +31,7 @@ pub use modification::{
     ModificationData, Relief, ReliefData, ReliefShape, ReliefStart, RootReliefData,
     RootReliefStart, TablePlaces,
 };
-pub use pair::{GearPair, GearPairError, Member};
+pub use pair::{GearPair, GearPairError, Member, teeth_on};
 pub use rack::Rack;
 pub use spur::SpurGear;
 pub use tip::TipEdge;

@@ -129,6 +129,24 @@ impl GearPair {
         Ok(pair)
     }
 
+    /// The same pair on blanks without bores and holes: what is left to say where only flanks matter.
+    pub fn without_blanks(&self) -> Self {
+        Self {
+            driving: self.driving.without_blank(),
+            driven: self.driven.without_blank(),
+            center_distance: self.center_distance,
+        }
+    }
+
+    /// The same pair of gears whose teeth do not deviate.
+    pub fn as_drawn(&self) -> Self {
+        Self {
+            driving: self.driving.as_drawn(),
+            driven: self.driven.as_drawn(),
+            center_distance: self.center_distance,
+        }
+    }
+
     fn check(&self) -> Result<(), GearPairError> {
         let tip_radii = self.driving.tip_radius() + self.driven.tip_radius();
         let center_distance = self.center_distance;
@@ -314,6 +332,32 @@ impl GearPair {
         p_1 / gcd(p_1, p_2) * p_2
     }
 
+    /// The tooth of `member` in pair n.
+    pub fn tooth(&self, member: Member, n: i64) -> usize {
+        let z = i64::from(self.gear(member).tooth_count());
+        teeth_on(member, n).rem_euclid(z) as usize
+    }
+
+    /// The teeth of pair n, driving and driven.
+    pub fn teeth(&self, n: i64) -> [usize; 2] {
+        Member::BOTH.map(|member| self.tooth(member, n))
+    }
+
+    /// Whether both gears turn about their own axes.
+    pub fn is_concentric(&self) -> bool {
+        Member::BOTH.into_iter().all(|member| {
+            let eccentricity = self.gear(member).deviations().eccentricity;
+            eccentricity.is_none_or(|each| each.amount == 0.0)
+        })
+    }
+
+    /// Whether every tooth of either gear is like the others, and both turn about their own axes: the contact on rigid blanks repeats with
+    /// every mesh period.
+    pub fn are_teeth_alike(&self) -> bool {
+        let alike = |member: Member| self.gear(member).deviations().are_teeth_alike();
+        self.is_concentric() && Member::BOTH.into_iter().all(alike)
+    }
+
     /// The face width on which the gears touch: the smaller of the two.
     pub fn common_face_width(&self) -> f64 {
         self.driving.face_width().min(self.driven.face_width())
@@ -322,6 +366,17 @@ impl GearPair {
     /// The transmitted load F = T/r_b2 of the output torque T (newton meters to newtons).
     pub fn load(&self, output_torque: f64) -> f64 {
         output_torque / self.driven.base_radius()
+    }
+}
+
+/// The teeth counter-clockwise, in the frame of `member`, from the tooth of one pair to that of the pair `pairs` later.
+///
+/// The next tooth counter-clockwise of the driving gear is ahead and meshes before, that of the driven gear is behind and
+/// meshes after.
+pub fn teeth_on(member: Member, pairs: i64) -> i64 {
+    match member {
+        Member::Driving => -pairs,
+        Member::Driven => pairs,
     }
 }
 

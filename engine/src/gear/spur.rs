@@ -8,7 +8,7 @@ use super::modification::{Modification, Relief, TablePlaces};
 use super::rack::Trochoid;
 use super::tip::BrokenEdge;
 use super::{
-    GearData, GearError, HolePattern, Involute, Material, ModificationData, TipEdge,
+    Blank, GearData, GearError, HolePattern, Involute, Material, ModificationData, TipEdge,
     ToothDeviations,
 };
 use crate::root_finding::bisect;
@@ -283,6 +283,71 @@ impl SpurGear {
         &self.data
     }
 
+    /// The same teeth on a blank without bore and holes: what is left to say where the blank does not matter.
+    pub fn without_blank(&self) -> Self {
+        self.on_blank(Blank {
+            bore_radius: 0.0,
+            holes: None,
+        })
+    }
+
+    /// The same gear without holes.
+    pub fn without_holes(&self) -> Self {
+        self.on_blank(Blank {
+            holes: None,
+            ..self.data.blank
+        })
+    }
+
+    /// The same gear with hole 0 at the angle 0.
+    pub fn with_holes_unturned(&self) -> Self {
+        let holes = self.data.blank.holes;
+        self.on_blank(Blank {
+            holes: holes.map(|holes| HolePattern {
+                phase: 0.0,
+                ..holes
+            }),
+            ..self.data.blank
+        })
+    }
+
+    /// The same gear with flanks as the rack cuts them, each like the other, up to a sharp tip.
+    pub fn with_plain_flanks(&self) -> Self {
+        Self {
+            data: GearData {
+                tip_edge: TipEdge::Sharp,
+                modifications: Vec::new(),
+                deviations: ToothDeviations::default(),
+                ..self.data.clone()
+            },
+            broken_edge: None,
+            modifications: Vec::new(),
+            ..self.clone()
+        }
+    }
+
+    /// The same gear with teeth that do not deviate.
+    pub fn as_drawn(&self) -> Self {
+        Self {
+            data: GearData {
+                deviations: ToothDeviations::default(),
+                ..self.data.clone()
+            },
+            ..self.clone()
+        }
+    }
+
+    /// The same gear on a `blank` that is known to fit.
+    fn on_blank(&self, blank: Blank) -> Self {
+        Self {
+            data: GearData {
+                blank,
+                ..self.data.clone()
+            },
+            ..self.clone()
+        }
+    }
+
     /// The number of teeth Z.
     pub fn tooth_count(&self) -> u32 {
         self.data.tooth_count
@@ -387,6 +452,21 @@ impl SpurGear {
             amount * (s - from) / (to - from)
         });
         pitch + slope
+    }
+
+    /// How far the eccentricity moves the loaded flank of `tooth` along its normal at the roll length `s`, to the first order in it.
+    pub fn runout(&self, tooth: usize, s: f64) -> f64 {
+        let normal = tooth as f64 * self.pitch_angle() + self.flank.tangent_angle(s) + PI / 2.0;
+        let moved = self.data.deviations.displacement(0.0);
+        moved.x * normal.cos() + moved.y * normal.sin()
+    }
+
+    /// The slope of [`SpurGear::deviation`] by the roll length.
+    pub fn deviation_slope(&self, tooth: usize) -> f64 {
+        let amount = self.data.deviations.profile_slope.get(tooth);
+        amount.map_or(0.0, |amount| {
+            amount / (self.tip_roll_length() - self.form_roll_length())
+        })
     }
 
     /// The largest and the smallest [`SpurGear::deviation`] of any point of any flank.
@@ -527,7 +607,7 @@ impl SpurGear {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::gear::{Blank, Rack, ReliefData, ReliefShape, ReliefStart};
+    use crate::gear::{Rack, ReliefData, ReliefShape, ReliefStart};
 
     /// The paper's gears (Table 1): module 2 mm, 20 degrees, addendum 2 mm, dedendum 2.5 mm, width 20 mm, steel.
     pub(crate) fn paper_gear(tooth_count: u32) -> GearData {

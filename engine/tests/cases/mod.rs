@@ -120,7 +120,7 @@ pub(crate) fn case(pair: GearPair, output_torques: &[f64]) -> Case {
             contact_solver: ContactSolver::ActiveSet,
             stiffness: StiffnessRule::Tangent,
             blank_positions: 16,
-            interface_radius: None,
+            interface_radii: [None; 2],
             formulas: Formulas {
                 tooth: ToothFormula::WeberBanaschek,
                 body: BodyFormula::Sainsot,

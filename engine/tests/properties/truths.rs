@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use meshwright_engine::analysis::{
-    Analysis, BodyFormula, Case, ContactSolver, Curve, Formulas, Library, Method, PlaneState,
-    Resolution, StiffnessRule, ToothFormula, analyze, pair_model,
+    Analysis, BodyFormula, Case, ContactSolver, Curve, Formulas, Method, PlaneState, Resolution,
+    StiffnessRule, ToothFormula, analyze, pair_model,
 };
 use meshwright_engine::contact::half_plane::{hertz, logarithm_factor};
 use meshwright_engine::contact::{MeshContact, PairModel, WarmStart};
@@ -13,6 +13,7 @@ use meshwright_engine::gear::{
     GearData, GearPair, Member, ModificationData, ReliefStart, SpurGear, Vector,
 };
 use meshwright_engine::grid::GridLevel;
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
 use crate::drawn::DrawnPair;
@@ -111,7 +112,7 @@ fn case(pair: &GearPair, output_torques: &[f64]) -> Case {
             contact_solver: ContactSolver::ActiveSet,
             stiffness: StiffnessRule::Tangent,
             blank_positions: 16,
-            interface_radius: None,
+            interface_radii: [None; 2],
             formulas: Formulas {
                 tooth: ToothFormula::WeberBanaschek,
                 body: BodyFormula::Sainsot,

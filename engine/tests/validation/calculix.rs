@@ -10,6 +10,7 @@ use meshwright_engine::analysis::pair_model;
 use meshwright_engine::contact::{MeshContact, WarmStart};
 use meshwright_engine::gear::{
     GearData, GearPair, Material, ModificationData, ReliefData, ReliefShape, ReliefStart,
+    TablePlaces, TipEdge,
 };
 use meshwright_engine::run::Run;
 use serde_json::Value;
@@ -337,4 +338,55 @@ fn two_or_three_pairs_at_a_contact_ratio_of_2_09_follow_calculix() {
     };
     let pair = pair(toothed(60), toothed(61), 121.2e-3);
     check("calculix-contact-ratio.json", pair, Corners::Settled, 11);
+}
+
+#[test]
+fn a_tooth_that_stands_out_by_6_micrometers_follows_calculix() {
+    let mut data = relieved(gear(50, 15e-3));
+    let plain = data.clone();
+    data.deviations.cumulative_pitch = vec![0.0; 50];
+    data.deviations.cumulative_pitch[3] = 6e-6;
+    check(
+        "calculix-pitch-error.json",
+        pair(plain, data, 100.5e-3),
+        Corners::Settled,
+        7,
+    );
+}
+
+#[test]
+fn a_crowned_profile_given_as_a_table_follows_calculix() {
+    let document = reference("calculix-crowning.json");
+    let gears = &document["inputs"]["submission"]["pair"];
+    let numbers = |table: &Value, name: &str, unit: f64| -> Vec<f64> {
+        let entries = table[name].as_array().expect("a list");
+        let numbers = entries
+            .iter()
+            .map(|entry| entry.as_f64().expect("a number"));
+        numbers.map(|number| number * unit).collect()
+    };
+    let crowned = |name: &str| {
+        let table = &gears[name]["profile_modifications"][0];
+        let mut data = gear(50, 15e-3);
+        data.modifications = vec![ModificationData::Table {
+            places: TablePlaces::RollLengths(numbers(table, "roll_length_mm", 1e-3)),
+            removed: numbers(table, "removed_um", 1e-6),
+        }];
+        data
+    };
+    let tabled = pair(crowned("driving"), crowned("driven"), 100.5e-3);
+    check("calculix-crowning.json", tabled, Corners::Settled, 5);
+    // The table is that of a crowning by 8 µm.
+    let mut data = gear(50, 15e-3);
+    data.modifications = vec![ModificationData::Crowning { amount: 8e-6 }];
+    let pair = pair(data.clone(), data, 100.5e-3);
+    check("calculix-crowning.json", pair, Corners::Settled, 5);
+}
+
+#[test]
+fn a_rounded_tip_that_carries_follows_calculix() {
+    let mut data = gear(50, 15e-3);
+    data.tip_edge = TipEdge::Rounded(0.2e-3);
+    let pair = pair(data.clone(), data, 100.5e-3);
+    check("calculix-rounding.json", pair, Corners::Settled, 6);
 }

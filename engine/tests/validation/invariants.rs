@@ -3,14 +3,16 @@
 
 use std::sync::Arc;
 
-use meshwright_engine::analysis::library::{Library, default_interface_radius};
 use meshwright_engine::analysis::{Case, ContactSolver, Curve, StiffnessRule, analyze, pair_model};
+use meshwright_engine::assembly::interface::{default_interface_radius, harmonics};
+use meshwright_engine::assembly::{Parts, TeethSpec};
 use meshwright_engine::contact::{MeshCells, WarmStart};
 use meshwright_engine::fem::blank::BlankSubstructure;
 use meshwright_engine::fem::body::{Coupling, tooth_angle};
 use meshwright_engine::gear::{GearPair, Member, SpurGear, Vector, radial, tangential};
 use meshwright_engine::grid::blank::ELEMENTS_PER_TOOTH;
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
+use meshwright_engine::library::Library;
 use meshwright_engine::quadrature::GAUSS_3;
 use meshwright_engine::run::Run;
 use nalgebra::DMatrix;
@@ -24,9 +26,7 @@ use crate::whole::WholeGear;
 /// A gear of a case as a whole, on the grids and with the orders that the engine takes.
 fn whole_gear(gear: &SpurGear, level: GridLevel) -> WholeGear {
     let r_w = default_interface_radius(gear);
-    let teeth = library()
-        .teeth(gear, Member::Driving, r_w, level, &Run::unattended())
-        .expect("teeth");
+    let orders = harmonics(gear, r_w, level);
     let tooth = ToothGrid::new(gear, r_w, level).expect("a tooth");
     let blank = BlankGrid::new(
         gear.bore_radius(),
@@ -44,7 +44,7 @@ fn whole_gear(gear: &SpurGear, level: GridLevel) -> WholeGear {
         gear.tooth_count() as usize,
         &blank,
         phase,
-        teeth.ring.harmonics.largest,
+        orders.largest,
         properties,
     )
 }
@@ -248,6 +248,8 @@ fn check_on_whole_gears(case: &Case, positions: &[f64], gap_bound: f64) {
             pressed / delta,
             penetration / delta
         );
+        // The elements of the whole gear know nothing of the wedge's law at a corner, which the compliance of cells follows.
+        let gap_bound = if on_path { gap_bound } else { 1.25 * gap_bound };
         assert!(pressed < gap_bound * delta && penetration < gap_bound * delta);
         // With the logarithm they are exact.
         assert!(solution.gaps.iter().all(|gap| *gap > -1e-10 * delta));
@@ -406,9 +408,8 @@ fn more_load_means_more_transmission_error_and_the_tangent_is_its_slope() {
 fn couplings(gear: &SpurGear, level: GridLevel) -> [Coupling; 2] {
     let run = Run::unattended();
     let r_w = default_interface_radius(gear);
-    let teeth = library()
-        .teeth(gear, Member::Driven, r_w, level, &run)
-        .expect("teeth");
+    let teeth = TeethSpec::new(gear, r_w, level);
+    let teeth = library().teeth(&teeth, &run).expect("teeth");
     let (bore, z) = (gear.bore_radius(), gear.tooth_count());
     let grid = BlankGrid::new(bore, r_w, gear.holes(), z, ELEMENTS_PER_TOOTH, level);
     let blank = BlankSubstructure::new(

@@ -1,8 +1,9 @@
 //! The paper's cases and the standard pair by every method, from nothing and with something known.
 
 use anyhow::Context;
-use meshwright_engine::analysis::{Analysis, Case, Library, Method, analyze};
+use meshwright_engine::analysis::{Analysis, Case, Method, analyze};
 use meshwright_engine::gear::{GearPair, SpurGear};
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use serde::Serialize;
 

@@ -14,6 +14,7 @@ use tracing::{info, warn};
 use super::error::primary_code;
 use super::write::Health;
 use super::{Store, StoreError};
+use crate::private::open_or_make;
 
 static MIGRATIONS: Migrator = sqlx::migrate!();
 
@@ -153,11 +154,13 @@ impl Store {
     }
 }
 
-/// A file that is there and not empty has to be a database; SQLite would say so later, and less clearly.
+/// A file that is there and not empty has to be a database; SQLite would say so later, and less clearly. One that is absent is
+/// made.
 fn refuse_other_files(path: &Path) -> Result<(), OpenError> {
     let mut head = [0; MAGIC.len()];
     let Ok(mut file) = std::fs::File::open(path) else {
-        // What is absent is made; what may not be read is told by SQLite.
+        // What may not be read or made is told by SQLite.
+        let _ = open_or_make(path);
         return Ok(());
     };
     match file.read_exact(&mut head) {

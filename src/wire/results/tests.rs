@@ -2,11 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use meshwright_engine::analysis::curve::{
-    BlankFit, BlankSample, DecompositionParts, ErrorEstimate, LoadShare,
-};
+use meshwright_engine::analysis::curve::{BlankFit, BlankSample, DecompositionParts, LoadShare};
 use meshwright_engine::analysis::spectrum::Spectrum;
-use meshwright_engine::analysis::{Case, Curve, Evidence, Statistics, Warning};
+use meshwright_engine::analysis::{Case, Curve, ErrorEstimate, Evidence, Statistics, Warning};
 use meshwright_engine::gear::Member;
 use serde_json::{Value, json};
 

@@ -99,3 +99,20 @@ async fn a_backup_is_whole_while_others_write_and_takes_no_place() {
     assert!(matches!(again, BackupError::Exists(_)));
     assert!(!folder.path().join("copy.db.partial").exists());
 }
+
+#[cfg(unix)]
+#[tokio::test]
+async fn nobody_but_its_owner_reads_a_database_or_its_copy() {
+    use std::os::unix::fs::PermissionsExt;
+
+    let (store, folder) = store().await;
+    ended(&store, 1, "a").await;
+    let (database, target) = (folder.path().join("jobs.db"), folder.path().join("copy.db"));
+    Store::backup(&database, &target).await.unwrap();
+    for entry in std::fs::read_dir(folder.path()).unwrap() {
+        let entry = entry.unwrap();
+        let mode = entry.metadata().unwrap().permissions().mode();
+        assert_eq!(mode & 0o077, 0, "{:?}", entry.file_name());
+    }
+    assert!(target.exists() && folder.path().join("jobs.db-wal").exists());
+}
