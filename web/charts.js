@@ -3,7 +3,8 @@
 import uPlot from "./vendor/uplot.js";
 import { h, number } from "./dom.js";
 
-const HEIGHT = 230;
+/** The height of a chart, in rem. */
+const HEIGHT = 14.4;
 const DASHES = [[], [6, 4], [2, 3], [10, 3, 2, 3]];
 /** What lies below is noise of the solution, in um. */
 const LEAST_AMPLITUDE = 1e-4;
@@ -35,11 +36,12 @@ function shares(curve) {
 /** The colors and letters of the page as it looks now. */
 export function looks() {
   const style = getComputedStyle(document.documentElement);
+  const rem = parseFloat(style.fontSize);
   const of = (name) => style.getPropertyValue(name).trim();
   return {
     ink: of("--ink"), grid: of("--grid"), faint: of("--faint"), accent: of("--accent"),
     series: [1, 2, 3, 4, 5, 6, 7].map((i) => of(`--series-${i}`)),
-    font: "12px system-ui, sans-serif",
+    rem, font: `${0.75 * rem}px system-ui, sans-serif`,
   };
 }
 
@@ -116,9 +118,9 @@ export class Charts {
     panel.plot?.destroy();
     const axis = { stroke: colors.ink, font: colors.font, grid: { stroke: colors.grid, width: 1 }, ticks: { stroke: colors.grid, size: 4 } };
     const options = {
-      width: this.#width(panel), height: HEIGHT, legend: { show: false }, cursor: { y: false, points: { size: 7 }, drag: { x: false, y: false } },
+      width: this.#width(panel), height: HEIGHT * colors.rem, legend: { show: false }, cursor: { y: false, points: { size: 7 }, drag: { x: false, y: false } },
       padding: [10, 14, 0, 0], scales: { x: { time: false }, y: { range: yRange } },
-      axes: [{ ...axis, label: "mesh position in mesh periods", labelFont: colors.font, labelSize: 20, size: 30, space: 45 }, { ...axis, size: 58, space: 34, values: (_, splits) => splits.map((value) => number(value, 6)) }],
+      axes: [{ ...axis, label: "mesh position in mesh periods", labelFont: colors.font, labelSize: 1.25 * colors.rem, size: 1.9 * colors.rem, space: 2.8 * colors.rem }, { ...axis, size: 3.6 * colors.rem, space: 2.1 * colors.rem, values: (_, splits) => splits.map((value) => number(value, 6)) }],
       series: [{}, ...wanted.map(({ name, color, dash }) => ({ label: name, stroke: color, width: 1.6, dash, points: { show: false }, spanGaps: false }))],
       hooks: { setCursor: [(plot) => this.#follow(plot)] },
     };
@@ -160,9 +162,9 @@ export class Charts {
     panel.plot?.destroy();
     const axis = { stroke: colors.ink, font: colors.font, grid: { stroke: colors.grid, width: 1 }, ticks: { stroke: colors.grid, size: 4 } };
     const options = {
-      width: this.#width(panel), height: HEIGHT, legend: { show: false }, cursor: { y: false, drag: { x: false, y: false } }, padding: [16, 14, 0, 0],
+      width: this.#width(panel), height: HEIGHT * colors.rem, legend: { show: false }, cursor: { y: false, drag: { x: false, y: false } }, padding: [16, 14, 0, 0],
       scales: { x: { time: false, range: [0, last] }, y: { distr: 3, range: (_, __, most) => [LEAST_AMPLITUDE, Math.max(1e-2, (most ?? 1) * 4)] } },
-      axes: [{ ...axis, label: "order, per revolution of the driven gear", labelFont: colors.font, labelSize: 20, size: 30 }, { ...axis, size: 58, values: (_, splits) => splits.map((value) => (value === null || Math.abs(Math.log10(value) % 1) > 1e-6 ? "" : number(value, 1))) }],
+      axes: [{ ...axis, label: "order, per revolution of the driven gear", labelFont: colors.font, labelSize: 1.25 * colors.rem, size: 1.9 * colors.rem }, { ...axis, size: 3.6 * colors.rem, values: (_, splits) => splits.map((value) => (value === null || Math.abs(Math.log10(value) % 1) > 1e-6 ? "" : number(value, 1))) }],
       series: [{}, ...wanted.map(({ name, color }) => ({ label: name, stroke: color, paths: () => null, points: { show: false } }))],
       hooks: { draw: [(plot) => drawStems(plot, panel.names, colors)] },
     };
@@ -175,7 +177,7 @@ export class Charts {
 
   #resize() {
     for (const panel of this.#panels.values()) {
-      if (panel.plot && !panel.figure.hidden && panel.plot.width !== this.#width(panel)) panel.plot.setSize({ width: this.#width(panel), height: HEIGHT });
+      if (panel.plot && !panel.figure.hidden && panel.plot.width !== this.#width(panel)) panel.plot.setSize({ width: this.#width(panel), height: HEIGHT * looks().rem });
     }
     this.setPosition(this.#position);
   }
@@ -244,7 +246,7 @@ function drawStems(plot, names, colors) {
 /** Names over their lines, the tallest first, none over another. */
 function drawNames(plot, names, colors, ratio) {
   const { ctx } = plot;
-  ctx.font = `${11 * ratio}px system-ui, sans-serif`;
+  ctx.font = `${0.69 * colors.rem * ratio}px system-ui, sans-serif`;
   ctx.fillStyle = colors.ink;
   ctx.textAlign = "center";
   const taken = [];
@@ -253,7 +255,7 @@ function drawNames(plot, names, colors, ratio) {
     const width = ctx.measureText(line.label).width;
     const x = Math.min(Math.max(plot.valToPos(line.order, "x", true), plot.bbox.left + width / 2), plot.bbox.left + plot.bbox.width - width / 2);
     const y = plot.valToPos(line.transmission_error_um, "y", true) - 6 * ratio;
-    const box = [x - width / 2 - 2, y - 12 * ratio, x + width / 2 + 2, y + 2];
+    const box = [x - width / 2 - 2, y - 0.75 * colors.rem * ratio, x + width / 2 + 2, y + 2];
     if (taken.some((other) => box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3])) continue;
     taken.push(box);
     ctx.fillText(line.label, x, y);

@@ -4,6 +4,7 @@ import { s, number } from "./dom.js";
 import { HoleHandles } from "./holes.js";
 
 const TURN = Math.PI / 180;
+const MEMBERS = ["driving", "driven"];
 
 export class Drawing {
   #outline = null;
@@ -17,7 +18,9 @@ export class Drawing {
     this.design = design;
     this.onTurn = onTurn;
     this.svg = s("svg", { class: "gears", role: "group", "aria-label": "The gear pair from its true geometry" });
-    this.world = s("g", { transform: "scale(1 -1)" });
+    this.overlay = s("g", { class: "overlay", "aria-hidden": "true" });
+    this.forces = s("g", { class: "forces", "aria-hidden": "true" });
+    this.world = s("g", { transform: "scale(1 -1)" }, ...MEMBERS.map((member) => this.#gear(member)), this.overlay, this.forces);
     this.svg.append(this.world);
     place.replaceChildren(this.svg);
     this.#turnByHand();
@@ -32,13 +35,10 @@ export class Drawing {
     this.#frame();
   }
 
-  /** Shows another pair. */
+  /** Shows another pair. What a hand holds stays in it: elements are changed, not made anew. */
   setOutline(outline) {
     this.#outline = outline;
-    const front = ["driving", "driven"].map((member) => this.#gear(member, outline[member]));
-    this.overlay = s("g", { class: "overlay", "aria-hidden": "true" });
-    this.forces = s("g", { class: "forces", "aria-hidden": "true" });
-    this.world.replaceChildren(...front, this.overlay, this.forces);
+    for (const member of MEMBERS) this.#gears[member].show(outline[member]);
     this.#line();
     this.refreshHoles();
     this.#frame();
@@ -54,6 +54,7 @@ export class Drawing {
   /** Turns both gears to a mesh position. */
   setPosition(position) {
     this.#position = position;
+    if (!this.#outline) return;
     for (const { rotor, outline } of Object.values(this.#gears)) {
       const angle = outline.angle_deg + position * outline.angle_per_mesh_period_deg;
       rotor.setAttribute("transform", `translate(${outline.center_mm.join(" ")}) rotate(${angle})`);
@@ -66,25 +67,32 @@ export class Drawing {
     for (const gear of Object.values(this.#gears)) gear.holes.refresh(wrong);
   }
 
-  #gear(member, outline) {
-    const body = s("path", { d: outlinePath(outline), class: `body ${member}` });
-    const marks = s("g", { class: "circles", "aria-hidden": "true" },
-      s("circle", { r: outline.circles.pitch_mm, class: "pitch" }),
-      s("circle", { r: outline.circles.base_mm, class: "base" }));
-    const bore = s("circle", { r: outline.bore_radius_mm, class: "opening" });
-    const reach = outline.circles.root_mm;
-    const tooth0 = s("circle", { cx: (reach + outline.circles.tip_mm) / 2, r: (outline.circles.tip_mm - reach) / 9, class: "tooth0" });
-    const cross = s("path", { d: `M${-0.12 * reach} 0H${0.12 * reach}M0 ${-0.12 * reach}V${0.12 * reach}`, class: "cross" });
+  #gear(member) {
+    const body = s("path", { class: `body ${member}` });
+    const [pitch, base] = ["pitch", "base"].map((name) => s("circle", { class: name }));
+    const bore = s("circle", { class: "opening" });
+    const tooth0 = s("circle", { class: "tooth0" });
+    const cross = s("path", { class: "cross" });
     const holes = new HoleHandles(member, this.design, (event) => this.#inGear(member, event));
+    const marks = s("g", { class: "circles", "aria-hidden": "true" }, pitch, base);
     const rotor = s("g", { class: `rotor ${member}`, "data-member": member }, body, marks, bore, holes.element, cross, tooth0);
-    this.#gears[member] = { rotor, outline, holes };
+    const gear = { rotor, holes, outline: null };
+    gear.show = (outline) => {
+      const { tip_mm: tip, root_mm: root, pitch_mm, base_mm } = outline.circles;
+      if (JSON.stringify(outline.tooth_mm) !== JSON.stringify(gear.outline?.tooth_mm) || outline.tooth_count !== gear.outline.tooth_count) body.setAttribute("d", outlinePath(outline));
+      gear.outline = outline;
+      for (const [circle, r] of [[pitch, pitch_mm], [base, base_mm], [bore, outline.bore_radius_mm], [tooth0, (tip - root) / 9]]) circle.setAttribute("r", r);
+      tooth0.setAttribute("cx", (root + tip) / 2);
+      cross.setAttribute("d", `M${-0.12 * root} 0H${0.12 * root}M0 ${-0.12 * root}V${0.12 * root}`);
+    };
+    this.#gears[member] = gear;
     return rotor;
   }
 
   #line() {
     const { line_of_action: line, driving, driven } = this.#outline;
     const size = driving.circles.tip_mm - driving.circles.root_mm;
-    this.overlay.append(
+    this.overlay.replaceChildren(
       s("path", { d: `M${line.from_mm.join(" ")}L${line.to_mm.join(" ")}`, class: "action" }),
       s("path", { d: `M${driving.center_mm.join(" ")}L${driven.center_mm.join(" ")}`, class: "centers" }),
       ...line.points.map((point) => s("circle", { cx: point.at_mm[0], cy: point.at_mm[1], r: size / 16, class: "mark" })),
@@ -95,7 +103,7 @@ export class Drawing {
 
   /** An arrow for each pair of teeth that carries load, as long as its share. */
   #drawForces() {
-    if (!this.#outline || !this.forces) return;
+    if (!this.#outline) return;
     const curve = this.#curve;
     if (!curve) return this.forces.replaceChildren();
     const { points, from_mm, to_mm } = this.#outline.line_of_action;

@@ -14,6 +14,7 @@ export async function preview(submission, signal) {
  */
 export class Follower {
   #running = false;
+  #drawn = "";
   #next = null;
 
   constructor({ onResults, onOutline, onProblem, onBusy }) {
@@ -21,7 +22,7 @@ export class Follower {
   }
 
   follow(submission) {
-    this.#next = submission;
+    this.#next = { submission, since: performance.now() };
     if (!this.#running) this.#run();
   }
 
@@ -29,28 +30,32 @@ export class Follower {
     this.#running = true;
     this.onBusy(true);
     while (this.#next) {
-      const submission = this.#next;
+      const { submission, since } = this.#next;
       this.#next = null;
-      await Promise.allSettled([this.#outline(submission), this.#results(submission)]);
+      await Promise.allSettled([this.#outline(submission), this.#results(submission, since)]);
     }
     this.#running = false;
     this.onBusy(false);
   }
 
+  /** Holes are drawn from the design itself: an outline is asked for where something else has changed. */
   async #outline(submission) {
+    const shape = JSON.stringify(submission.pair, (name, value) => (name === "holes" ? undefined : value));
+    if (shape === this.#drawn) return;
     try {
       this.onOutline(await post("v1/outline", submission));
+      this.#drawn = shape;
     } catch (error) {
       // The preview of the same submission tells why.
       if (!(error instanceof ProblemError)) throw error;
     }
   }
 
-  async #results(submission) {
+  async #results(submission, since) {
     const begun = performance.now();
     try {
       const results = await preview(submission);
-      this.onResults(results, submission, performance.now() - begun);
+      this.onResults(results, submission, { took: performance.now() - begun, since });
     } catch (error) {
       if (!(error instanceof ProblemError)) throw error;
       if (error.problem.code !== "preview_superseded") this.onProblem(error.problem, submission);

@@ -1,11 +1,14 @@
 // What a visitor does with the page, step by step.
 
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { createServer } from "node:http";
 import { AxeBuilder } from "@axe-core/playwright";
 import { chromium } from "playwright-core";
 import { start } from "./service.mjs";
 
 const PATIENCE = 20_000;
+const DRAGS = 200;
 const WIDTHS = [[400, 900], [1280, 900], [3840, 2160]];
 
 const browser = await chromium.launch({ executablePath: process.env.BROWSER, args: ["--no-sandbox"] });
@@ -13,7 +16,7 @@ let passed = 0;
 let failed = 0;
 
 /** Runs a step in a page of its own, which must neither log an error nor ask another host. */
-async function step(name, service, work, options = {}) {
+async function step(name, service, work, options = {}, others = []) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 1000 }, acceptDownloads: true, ...options });
   const page = await context.newPage();
   page.setDefaultTimeout(PATIENCE);
@@ -24,7 +27,7 @@ async function step(name, service, work, options = {}) {
   });
   page.on("pageerror", (error) => faults.push(error.stack));
   page.on("request", (request) => {
-    if (!request.url().startsWith(service.url) && !/^(blob|data):/.test(request.url())) faults.push(`asks ${request.url()}`);
+    if (![service.url, ...others].some((known) => request.url().startsWith(known)) && !/^(blob|data):/.test(request.url())) faults.push(`asks ${request.url()}`);
   });
   try {
     await work(page, context);
@@ -195,6 +198,33 @@ await step("keys alone do: a hole moves by arrows", service, async (page) => {
   await page.waitForFunction(() => document.querySelector('[id="field-/pair/driven/blank/holes/circle_radius_mm"]').value === "33");
 });
 
+await step("200 drags are followed in order", service, async (page) => {
+  await open(page, service);
+  await page.evaluate(() => {
+    window.drawn = [];
+    document.addEventListener("drawn", ({ detail }) => window.drawn.push([detail.submission.pair.driven.blank.holes.circle_radius_mm, detail.milliseconds]));
+  });
+  const box = await page.locator(".rotor.driven .hole").nth(5).boundingBox();
+  const gear = await page.locator(".rotor.driven .opening").boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  const [dx, dy] = [gear.x + gear.width / 2 - x, gear.y + gear.height / 2 - y];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let i = 1; i <= DRAGS; i += 1) {
+    await page.mouse.move(x + (dx * 0.12 * i) / DRAGS, y + (dy * 0.12 * i) / DRAGS);
+    await page.waitForTimeout(16);
+  }
+  await page.mouse.up();
+  await page.waitForFunction(() => document.querySelector("body").className !== "busy");
+  const drawn = await page.evaluate(() => window.drawn);
+  const radii = drawn.map(([radius]) => radius);
+  assert.deepEqual(radii, [...radii].sort((a, b) => b - a), "none out of order");
+  assert.ok(drawn.length >= 10, `${drawn.length} curves were drawn`);
+  const times = drawn.map(([, milliseconds]) => milliseconds).sort((a, b) => a - b);
+  const at = (part) => times[Math.floor(part * (times.length - 1))].toFixed(0);
+  console.log(`page: ${DRAGS} drags, ${drawn.length} curves drawn; from change to curve ${at(0.5)} ms median, ${at(0.95)} ms p95.`);
+});
+
 const locked = await start();
 const key = locked.key("visitor");
 await step("a key is asked for, and used", locked, async (page) => {
@@ -207,6 +237,19 @@ await step("a key is asked for, and used", locked, async (page) => {
   assert.ok(Math.abs((await cell(page, MEAN)) - 13.8) < 0.1);
 });
 await locked.stop();
+
+const portal = createServer((_, answer) => answer.setHeader("content-type", "text/html").end(readFileSync(process.env.PORTAL)));
+await new Promise((resolve) => portal.listen(0, "127.0.0.1", resolve));
+const origin = `http://127.0.0.1:${portal.address().port}`;
+const shared = await start({ MESHWRIGHT_CORS_ORIGIN: origin });
+await step("a portal on another origin submits, follows and draws", shared, async (page) => {
+  await page.goto(`${origin}/?service=${shared.url.replace(/\/$/, "")}`);
+  await page.locator("button").click();
+  await page.locator("#curve polyline").waitFor();
+  assert.match(await page.locator("#state").innerText(), /^Mean 13\.\d+ µm/);
+}, {}, [origin]);
+await shared.stop();
+portal.close();
 
 for (const [width, height] of WIDTHS) {
   for (const colorScheme of ["light", "dark"]) {

@@ -71,6 +71,39 @@ def test_a_study_is_a_frame(service):
     assert table.pareto() == [frame.label[0]]
 
 
+def solved(service):
+    job = service.submit(service.example("test-case-2"))
+    while job["status"] not in ("successful", "failed"):
+        job = service.job(job["id"])
+    return job["id"], service.results(job["id"]).curves[0]
+
+
+def test_a_look_up_table_has_the_curve_over_the_angle_and_closes(service):
+    job, curve = solved(service)
+    table = service.look_up_table(job)
+    assert np.allclose(table.transmission_error_m[:-1] * 1e6, curve.transmission_error_um, rtol=1e-9)
+    assert np.isclose(table.driving_angle_rad[-1], np.deg2rad(5 * 360 / 50))
+    assert table.mesh_stiffness_n_per_m[0] == table.mesh_stiffness_n_per_m[-1]
+    assert table.head["period_mesh_periods"] == "5"
+    assert table.head["signs"]
+
+
+def test_ross_interpolates_our_stiffness(service):
+    ross_gears = pytest.importorskip("ross.gear_element", reason="ROSS is not installed")
+    from ross.materials import steel
+
+    job, curve = solved(service)
+    table = service.look_up_table(job)
+    gear = {"material": steel, "width": 0.02, "bore_diameter": 0.032, "module": 0.002, "n_teeth": 50, "pr_angle": np.deg2rad(20)}
+    driving, driven = (ross_gears.GearElementTVMS(n=node, **gear) for node in (0, 1))
+    mesh = table.to_ross(ross_gears.Mesh(driving, driven, gear_mesh_stiffness=1e8))
+    # Over several periods, at the positions computed: ROSS wraps where the table ends.
+    angles = np.deg2rad(curve["driving_angle_deg"])
+    again = [mesh.interpolate_stiffness(angle + table.driving_angle_rad[-1]) for angle in angles[1:]]
+    assert np.allclose(again, curve.mesh_stiffness_tangent_n_per_m[1:], rtol=1e-6)
+    assert np.isclose(np.mean(curve.mesh_stiffness_tangent_n_per_m), mesh.stiffness, rtol=1e-9)
+
+
 def test_results_are_plotted(service):
     import matplotlib
 

@@ -7,7 +7,8 @@ export type Submission = Schemas["Submission"];
 export type Results = Schemas["Results"];
 export type Job = Schemas["Job"];
 export type Problem = Schemas["Problem"];
-export type Study = Schemas["Study"];
+/** The base may lack what every design gives. */
+export type Study = Omit<Schemas["Study"], "base"> & { base: Partial<Submission> | Record<string, unknown> };
 export type StudyState = Schemas["StudyState"];
 export type StudyResults = Schemas["StudyResults"];
 export type Validation = Schemas["Validation"];

@@ -9,6 +9,7 @@ from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
+from .look_up import LookUpTable
 from .problem import ProblemError
 from .results import Results
 from .study import StudyTable
@@ -32,6 +33,7 @@ class Call:
     body: Mapping[str, Any] | None = None
     headers: Mapping[str, str] = field(default_factory=dict)
     pause: float = 0.0
+    as_text: bool = False
 
 
 Flow = Generator[Call, Any, T]
@@ -43,6 +45,11 @@ def get(path: str) -> Flow[Any]:
 
 def post(path: str, body: Mapping[str, Any] | None = None) -> Flow[Any]:
     return (yield Call("POST", path, body))
+
+
+def look_up_table(job_id: str, torque: float | None) -> Flow[LookUpTable]:
+    query = "" if torque is None else f"?torque={torque}"
+    return LookUpTable.parse((yield Call("GET", f"/v1/jobs/{job_id}/results/look-up-table.csv{query}", as_text=True)))
 
 
 def preview(submission: Submission) -> Flow[Results]:

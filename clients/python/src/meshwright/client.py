@@ -14,6 +14,7 @@ import httpx
 from . import _flows
 from ._flows import Call, Flow, Json, Report, Submission
 from ._progress import reporter
+from .look_up import LookUpTable
 from .problem import ProblemError
 from .results import Results
 from .study import StudyTable
@@ -33,9 +34,9 @@ def _settings(url: str | None, key: str | None) -> dict[str, Any]:
     return {"base_url": url or os.environ.get("MESHWRIGHT_URL", _USUAL_URL), "headers": headers, "timeout": _TIMEOUT}
 
 
-def _answer(response: httpx.Response) -> Any:
+def _answer(call: Call, response: httpx.Response) -> Any:
     if response.is_success:
-        return response.json()
+        return response.text if call.as_text else response.json()
     try:
         problem = response.json()
     except ValueError:
@@ -103,6 +104,10 @@ class Client:
         """The results of a job that has ended."""
         return self._run(_flows.results(job_id))
 
+    def look_up_table(self, job_id: str, torque: float | None = None) -> LookUpTable:
+        """One curve over the angle in SI units, for rotor dynamics: the first, or that of a torque."""
+        return self._run(_flows.look_up_table(job_id, torque))
+
     def study(self, document: Mapping[str, Any], progress: bool | Report = False) -> StudyTable:
         """Submits a study and gives its table when all designs have ended."""
         return self._run(_flows.study(document, reporter(progress)))
@@ -133,11 +138,11 @@ class Client:
             if pause is None:
                 break
             time.sleep(pause)
-        return _answer(response)
+        return _answer(call, response)
 
 
 class AsyncClient:
-    """The calls of [`Client`], to be awaited."""
+    """The calls of `Client`, to be awaited."""
 
     def __init__(self, url: str | None = None, key: str | None = None) -> None:
         self._http = httpx.AsyncClient(**_settings(url, key))
@@ -175,6 +180,9 @@ class AsyncClient:
     async def results(self, job_id: str) -> Results:
         return await self._run(_flows.results(job_id))
 
+    async def look_up_table(self, job_id: str, torque: float | None = None) -> LookUpTable:
+        return await self._run(_flows.look_up_table(job_id, torque))
+
     async def study(self, document: Mapping[str, Any], progress: bool | Report = False) -> StudyTable:
         return await self._run(_flows.study(document, reporter(progress)))
 
@@ -202,4 +210,4 @@ class AsyncClient:
             if pause is None:
                 break
             await asyncio.sleep(pause)
-        return _answer(response)
+        return _answer(call, response)
