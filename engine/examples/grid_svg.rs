@@ -2,7 +2,7 @@
 //! `-- blank BORE INTERFACE TEETH [COUNT CIRCLE RADIUS]`, with lengths in millimeters.
 
 use meshwright_engine::gear::{
-    Blank, GearData, HolePattern, Material, Rack, SpurGear, TipEdge, ToothDeviations,
+    BlankRegion, GearData, HolePattern, Material, Rack, SpurGear, TipEdge, ToothDeviations,
 };
 use meshwright_engine::grid::blank::ELEMENTS_PER_TOOTH;
 use meshwright_engine::grid::{BlankGrid, Grid, GridLevel, ToothGrid};
@@ -80,10 +80,7 @@ fn gear(tooth_count: u32, profile_shift: f64) -> Result<SpurGear, Box<dyn std::e
             poisson_ratio: 0.3,
             density: 7850.0,
         },
-        blank: Blank {
-            bore_radius: 1e-3,
-            holes: None,
-        },
+        blank: BlankRegion::solid(1e-3),
     })?)
 }
 

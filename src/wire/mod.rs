@@ -24,6 +24,7 @@ pub mod problem;
 pub mod status;
 
 pub mod gear;
+mod interface;
 pub mod pair;
 pub mod resolution;
 pub mod submission;

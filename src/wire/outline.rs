@@ -1,6 +1,6 @@
 //! The outline of a pair, for those who draw it: teeth, holes, circles and the line of action, in one frame.
 
-use meshwright_engine::gear::{GearPair, Member, SpurGear, Vector, radial, tangential};
+use meshwright_engine::gear::{GearPair, Hole, HoleShape, Member, Vector, radial, tangential};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -52,15 +52,18 @@ pub struct GearOutline {
     pub circles: Circles,
 }
 
-/// A hole.
+/// A hole: round, or a slot along its circle with round ends.
 #[derive(Debug, Clone, Serialize, ToSchema)]
 #[schema(title = "Hole outline")]
 pub struct HoleOutline {
     /// Its center, in mm.
     #[schema(value_type = Vec<f64>, min_items = 2, max_items = 2)]
     pub at_mm: Point,
-    /// Its radius, in mm.
+    /// The radius of a round hole, or of the ends of a slot, in mm.
     pub radius_mm: f64,
+    /// The angle between the centers of the ends of a slot, about the center of the gear, in degrees; absent for a round hole.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slot_angle_deg: Option<f64>,
 }
 
 /// The circles of a gear, in mm.
@@ -159,7 +162,7 @@ impl GearOutline {
             tooth_count: gear.tooth_count(),
             tooth_mm: outline.into_iter().map(point).collect(),
             bore_radius_mm: to_mm(gear.bore_radius()),
-            holes: holes(gear),
+            holes: gear.holes().iter().map(hole).collect(),
             circles: Circles {
                 tip_mm: to_mm(gear.tip_radius()),
                 reference_mm: to_mm(gear.reference_radius()),
@@ -171,16 +174,16 @@ impl GearOutline {
     }
 }
 
-fn holes(gear: &SpurGear) -> Vec<HoleOutline> {
-    let Some(holes) = gear.holes() else {
-        return Vec::new();
+fn hole(hole: &Hole) -> HoleOutline {
+    let slot_angle_deg = match hole.shape {
+        HoleShape::Round { .. } => None,
+        HoleShape::Slot { angle, .. } => Some(angle.to_degrees()),
     };
-    let spacing = std::f64::consts::TAU / f64::from(holes.count);
-    let hole = |i: u32| HoleOutline {
-        at_mm: point(holes.circle_radius * radial(holes.phase + f64::from(i) * spacing)),
-        radius_mm: to_mm(holes.radius),
-    };
-    (0..holes.count).map(hole).collect()
+    HoleOutline {
+        at_mm: point(hole.circle_radius * radial(hole.angle)),
+        radius_mm: to_mm(hole.half_width()),
+        slot_angle_deg,
+    }
 }
 
 impl LineOfAction {

@@ -120,8 +120,13 @@ impl PairDocument {
             GearPairError::NegativeBacklash { backlash, smallest } => (
                 Code::NegativeBacklash,
                 if backlash.is_finite() {
+                    let worst = if deviates(driving) || deviates(driven) {
+                        " at the worst of the deviations"
+                    } else {
+                        ""
+                    };
                     format!(
-                        "At the center distance {a} mm the normal backlash is {} mm",
+                        "At the center distance {a} mm the normal backlash is {} mm{worst}",
                         mm(backlash)
                     )
                 } else {
@@ -187,6 +192,11 @@ impl PairDocument {
         }
         errors
     }
+}
+
+/// Whether the teeth of `gear` take from the backlash what its drawing leaves.
+fn deviates(gear: &SpurGear) -> bool {
+    !gear.deviations().is_none()
 }
 
 /// The first center distance in mm, from `bound` inward in units of the fifth digit, at which the gears mesh.

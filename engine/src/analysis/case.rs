@@ -142,7 +142,7 @@ impl Case {
     pub(super) fn holed(&self) -> Vec<Member> {
         Member::BOTH
             .into_iter()
-            .filter(|&member| self.pair.gear(member).holes().is_some())
+            .filter(|&member| !self.pair.gear(member).holes().is_empty())
             .collect()
     }
 }

@@ -71,8 +71,21 @@ pub struct BlankFit {
     pub amplitude: f64,
     /// The phase in radians.
     pub phase: f64,
+    /// Amplitude and phase of the harmonics 2, 3, … of holes that are not equal or not equally spaced; the paper has none.
+    pub higher: Vec<(f64, f64)>,
     /// The samples that were fitted.
     pub samples: Vec<BlankSample>,
+}
+
+impl BlankFit {
+    /// The fitted rotation R_b θ_gb at the angle `angle` = N θ, in meters.
+    pub fn at(&self, angle: f64) -> f64 {
+        let first = self.amplitude * (angle + self.phase).cos();
+        let higher = self.higher.iter().zip(2_u32..);
+        let higher =
+            higher.map(|((amplitude, phase), k)| amplitude * (f64::from(k) * angle + phase).cos());
+        self.mean + first + higher.sum::<f64>()
+    }
 }
 
 /// The parts that the decomposition adds up, eq. 15.

@@ -141,11 +141,10 @@ impl Terms {
         let mut sum = self.of_rigid_blank(case);
         for fit in &self.fits {
             let gear = case.pair.gear(fit.member);
-            let n = gear.holes().map_or(0.0, |holes| f64::from(holes.count));
+            let n = f64::from(gear.hole_repeats());
             for (delta, eta) in sum.iter_mut().zip(case.mesh_positions()) {
                 // Eq. (13) has 2πθ and N; with θ in radians, a period of 2π/N is cos(Nθ).
-                *delta +=
-                    fit.mean + fit.amplitude * (n * eta * gear.pitch_angle() + fit.phase).cos();
+                *delta += fit.at(n * eta * gear.pitch_angle());
             }
         }
         sum
@@ -165,9 +164,11 @@ impl HoledBlank<'_> {
     fn fit(&self, load: f64) -> Result<BlankFit, AnalysisError> {
         let Setup { case, run, .. } = self.rigid.setup;
         let gear = case.pair.gear(self.member);
-        let count = case.resolution.blank_positions;
-        let holes = gear.holes().map_or(1, |holes| holes.count);
-        let period = f64::from(gear.tooth_count()) / f64::from(holes);
+        let repeats = gear.hole_repeats().max(1);
+        // Holes that are not all equal, or not equally spaced, make more than one harmonic, and need as many more samples.
+        let unlike = gear.holes().len() as u32 / repeats;
+        let count = case.resolution.blank_positions * unlike.max(1);
+        let period = f64::from(gear.tooth_count()) / f64::from(repeats);
         let positions: Vec<f64> = (0..count)
             .map(|j| f64::from(j) * period / f64::from(count))
             .collect();
@@ -181,20 +182,34 @@ impl HoledBlank<'_> {
                 rotation: whole.transmission_error - without.transmission_error,
             })
             .collect();
-        let (mut mean, mut cosine, mut sine) = (0.0, 0.0, 0.0);
-        for (j, sample) in samples.iter().enumerate() {
-            let (sin, cos) = (2.0 * PI * j as f64 / f64::from(count)).sin_cos();
-            mean += sample.rotation / f64::from(count);
-            cosine += 2.0 * sample.rotation * cos / f64::from(count);
-            sine += 2.0 * sample.rotation * sin / f64::from(count);
-        }
+        let rotations: Vec<f64> = samples.iter().map(|sample| sample.rotation).collect();
+        let harmonic = |k: u32| harmonic(&rotations, k);
+        let (amplitude, phase) = harmonic(1);
+        let higher = if unlike > 1 {
+            (2..count.div_ceil(2)).map(harmonic).collect()
+        } else {
+            Vec::new()
+        };
         Ok(BlankFit {
             member: self.member,
             interface_radius: self.interface_radius,
-            mean,
-            amplitude: cosine.hypot(sine),
-            phase: (-sine).atan2(cosine),
+            mean: rotations.iter().sum::<f64>() / f64::from(count),
+            amplitude,
+            phase,
+            higher,
             samples,
         })
     }
+}
+
+/// Amplitude and phase of the harmonic `k` ≥ 1 of evenly spaced `values` over one period.
+fn harmonic(values: &[f64], k: u32) -> (f64, f64) {
+    let count = values.len() as f64;
+    let (mut cosine, mut sine) = (0.0, 0.0);
+    for (j, value) in values.iter().enumerate() {
+        let (sin, cos) = (2.0 * PI * f64::from(k) * j as f64 / count).sin_cos();
+        cosine += 2.0 * value * cos / count;
+        sine += 2.0 * value * sin / count;
+    }
+    (cosine.hypot(sine), (-sine).atan2(cosine))
 }

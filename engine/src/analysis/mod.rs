@@ -14,6 +14,7 @@ pub mod evidence;
 mod flexible;
 mod light;
 mod load_distribution;
+mod orders;
 mod projected;
 mod rigid_blank;
 mod setup;
@@ -26,6 +27,7 @@ pub use error::AnalysisError;
 pub use estimate::{Estimate, estimate};
 pub use evidence::{ErrorEstimate, Evidence};
 pub use load_distribution::{Formula, FormulaQuantity, FormulaRange};
+pub use orders::{OrderCause, OrderKind};
 pub use warning::{Warning, warnings};
 
 pub use crate::contact::ContactSolver;

@@ -153,12 +153,13 @@ mod tests {
     /// Holes in both gears, without relief, on coarse grids.
     fn holed_pair() -> Case {
         let mut data = paper_gear(50);
-        data.blank.holes = Some(HolePattern {
+        data.blank.holes = HolePattern {
             count: 8,
             circle_radius: 34e-3,
             radius: 8e-3,
             phase: 0.02,
-        });
+        }
+        .holes();
         let gear = SpurGear::new(data).expect("a gear that can be made");
         Case {
             pair: GearPair::new(gear.clone(), gear, 100.5e-3).expect("a pair that meshes"),

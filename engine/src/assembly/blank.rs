@@ -67,7 +67,7 @@ impl BlankSpec {
     }
 }
 
-/// The grid of one sector of the blank of `gear`, fine enough on the interface circle for the orders that it carries.
+/// The grid of the blank of `gear`, or of one of its equal sectors, fine enough on the interface circle for the orders that it carries.
 ///
 /// # Errors
 ///
@@ -82,13 +82,24 @@ pub fn blank_grid(
     // Seven nodes, three and a half elements, for two wavelengths of the highest order.
     let of_orders = 1.75 * orders as f64 / z;
     // Holes are as large as their gear and not as its teeth.
-    let least = gear.holes().map_or(ELEMENTS_PER_TOOTH, |_| {
+    let least = if gear.holes().is_empty() {
+        ELEMENTS_PER_TOOTH
+    } else {
         ELEMENTS_PER_TOOTH.min(ELEMENTS_AROUND_HOLES / z)
-    });
-    BlankGrid::new(
-        gear.bore_radius(),
+    };
+    let region = &gear.data().blank;
+    if let Some(web) = region.web_in(gear.face_width())
+        && web.outer_radius > interface_radius
+    {
+        return Err(GridError::WebAboveInterface {
+            web_radius: web.outer_radius,
+            interface_radius,
+        });
+    }
+    BlankGrid::of_region(
+        region,
+        gear.face_width(),
         interface_radius,
-        gear.holes(),
         gear.tooth_count(),
         of_orders.clamp(least, MOST_ELEMENTS_PER_TOOTH),
         level,

@@ -70,7 +70,7 @@ impl GearSpec {
             teeth: TeethSpec::new(gear, interface_radius, level),
             carrier: Some(Carrier {
                 blank: BlankSpec::new(gear, interface_radius, level),
-                hole_angle: gear.holes().map_or(0.0, |holes| holes.phase),
+                hole_angle: gear.hole_angle(),
                 farthest,
             }),
         }

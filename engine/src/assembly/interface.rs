@@ -1,7 +1,7 @@
 //! The interface circle, on which teeth and blank meet: where it lies, and the orders that it carries.
 
 use crate::fem::cyclic::Harmonics;
-use crate::gear::{HolePattern, SpurGear};
+use crate::gear::SpurGear;
 use crate::grid::GridLevel;
 
 /// Orders on the interface circle for each tooth, at most: beyond, the grids do not follow.
@@ -10,16 +10,19 @@ const MOST_ORDERS_PER_TOOTH: usize = 8;
 /// The interface radius R_w of `gear`: the one `asked` for where it has holes, else [`default_interface_radius`].
 pub fn interface_radius(gear: &SpurGear, asked: Option<f64>) -> f64 {
     asked
-        .filter(|_| gear.holes().is_some())
+        .filter(|_| !gear.holes().is_empty())
         .unwrap_or_else(|| default_interface_radius(gear))
 }
 
-/// The interface radius R_w of `gear`: one module below the root circle, or halfway to the holes or the bore where they
-/// come closer.
+/// The interface radius R_w of `gear`: one module below the root circle, or halfway to the holes, the web or the bore where
+/// they come closer.
 pub fn default_interface_radius(gear: &SpurGear) -> f64 {
-    let inner = gear
-        .holes()
-        .map_or(gear.bore_radius(), HolePattern::outer_reach);
+    let blank = &gear.data().blank;
+    let web = blank.web_in(gear.face_width());
+    let inner = blank
+        .outer_reach()
+        .unwrap_or(blank.bore_radius)
+        .max(web.map_or(0.0, |web| web.outer_radius));
     let r_f = gear.root_radius();
     (r_f - gear.data().rack.module).max(f64::midpoint(r_f, inner))
 }
@@ -43,8 +46,8 @@ pub fn harmonics(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Ha
 /// field falls as well. Without holes all orders find the blank alike.
 pub fn orders_of_blank(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Harmonics {
     let all = harmonics(gear, interface_radius, level);
-    gear.holes().map_or(all, |holes| {
-        let depth = interface_radius - holes.outer_reach();
+    gear.data().blank.outer_reach().map_or(all, |reach| {
+        let depth = interface_radius - reach;
         let largest = orders_within(depth, interface_radius, level).min(all.largest);
         Harmonics { largest }
     })

@@ -52,7 +52,7 @@ impl PairSpec {
         let gears = Member::BOTH.map(|member| {
             let gear = pair.gear(member);
             let radius = interface_radius(gear, interface_radii[member.index()]);
-            if gear.holes().is_none() || blanks.take_holed(member) {
+            if gear.holes().is_empty() || blanks.take_holed(member) {
                 GearSpec::on_own_blank(gear, radius, level, farthest)
             } else {
                 GearSpec::on_rigid_blank(gear, radius, level)

@@ -1,25 +1,33 @@
 //! Mass and inertia of a gear, from its true profile.
 
-use std::f64::consts::PI;
-
-use super::{HolePattern, SpurGear};
+use super::{Moments, SpurGear, Vector};
 use crate::quadrature::gauss_legendre_panels;
 
 impl SpurGear {
     /// The mass in kg, from the true profile.
     pub fn mass(&self) -> f64 {
         let (area, _) = self.profile_moments();
-        let holes = self.holes().map_or(0.0, HolePattern::area);
-        let bore = PI * self.bore_radius().powi(2);
-        self.material().density * self.face_width() * (area - bore - holes)
+        let volume = area * self.face_width() - self.taken_away().area;
+        self.material().density * volume
     }
 
     /// The polar moment of inertia about the axis in kg m², from the true profile.
     pub fn polar_inertia(&self) -> f64 {
         let (_, moment) = self.profile_moments();
-        let holes = self.holes().map_or(0.0, HolePattern::polar_moment);
-        let bore = PI / 2.0 * self.bore_radius().powi(4);
-        self.material().density * self.face_width() * (moment - bore - holes)
+        let volume = moment * self.face_width() - self.taken_away().polar;
+        self.material().density * volume
+    }
+
+    /// The imbalance U in kg m: the mass times the place of its center, from the gear's own axis, in the frame of tooth 0. An eccentricity
+    /// adds the mass times itself.
+    pub fn imbalance(&self) -> Vector {
+        let own = -self.material().density * self.taken_away().first;
+        own + self.mass() * self.deviations().displacement(0.0)
+    }
+
+    /// What bore, holes and web take from the body inside the profile.
+    fn taken_away(&self) -> Moments {
+        self.data().blank.taken_away(self.face_width())
     }
 
     /// The area and the second polar moment inside the tooth profile, by Green's theorem along one half tooth:
@@ -64,9 +72,31 @@ impl SpurGear {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
-    use crate::gear::TipEdge;
     use crate::gear::spur::tests::paper_gear;
+    use crate::gear::{HolePattern, TipEdge, radial};
+
+    #[test]
+    fn a_single_hole_draws_the_center_of_mass_away_from_it() {
+        let mut data = paper_gear(50);
+        let pattern = |count| HolePattern {
+            count,
+            circle_radius: 30e-3,
+            radius: 5e-3,
+            phase: 0.5,
+        };
+        data.blank.holes = pattern(1).holes();
+        let gear = SpurGear::new(data.clone()).expect("one hole");
+        // 7850 kg/m3 by 20 mm by pi 25 mm2 at 30 mm.
+        let expected = 7850.0 * 20e-3 * PI * 25e-6 * 30e-3;
+        let imbalance = gear.imbalance();
+        assert!((imbalance + expected * radial(0.5)).norm() < 1e-12 * expected);
+        data.blank.holes = pattern(2).holes();
+        let pair_of_holes = SpurGear::new(data).expect("two holes");
+        assert_eq!(pair_of_holes.imbalance(), Vector::zeros());
+    }
 
     #[test]
     fn the_profile_area_agrees_with_a_polygon_through_the_true_profile() {

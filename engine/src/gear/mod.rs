@@ -20,9 +20,7 @@ pub mod rack;
 pub mod spur;
 pub mod tip;
 
-pub use blank::{
-    Blank, BlankRegion, Hole, HolePattern, HoleShape, Ligament, Moments, Symmetry, Web,
-};
+pub use blank::{BlankRegion, Hole, HolePattern, HoleShape, Ligament, Moments, Symmetry, Web};
 pub use data::{DeviationList, GearData, GearError};
 pub use deviation::{Eccentricity, ToothDeviations};
 pub use involute::Involute;

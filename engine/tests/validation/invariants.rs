@@ -31,13 +31,13 @@ fn whole_gear(gear: &SpurGear, level: GridLevel) -> WholeGear {
     let blank = BlankGrid::new(
         gear.bore_radius(),
         r_w,
-        gear.holes(),
+        gear.hole_pattern().as_ref(),
         gear.tooth_count(),
         6.0,
         level,
     )
     .expect("a blank");
-    let phase = gear.holes().map_or(0.0, |holes| holes.phase);
+    let phase = gear.hole_angle();
     let properties = (gear.material(), gear.face_width());
     WholeGear::new(
         tooth,
@@ -411,7 +411,14 @@ fn couplings(gear: &SpurGear, level: GridLevel) -> [Coupling; 2] {
     let teeth = TeethSpec::new(gear, r_w, level);
     let teeth = library().teeth(&teeth, &run).expect("teeth");
     let (bore, z) = (gear.bore_radius(), gear.tooth_count());
-    let grid = BlankGrid::new(bore, r_w, gear.holes(), z, ELEMENTS_PER_TOOTH, level);
+    let grid = BlankGrid::new(
+        bore,
+        r_w,
+        gear.hole_pattern().as_ref(),
+        z,
+        ELEMENTS_PER_TOOTH,
+        level,
+    );
     let blank = BlankSubstructure::new(
         &grid.expect("a grid"),
         r_w,
@@ -421,7 +428,7 @@ fn couplings(gear: &SpurGear, level: GridLevel) -> [Coupling; 2] {
         &run,
     )
     .expect("a blank");
-    let phase = gear.holes().map_or(0.0, |holes| holes.phase);
+    let phase = gear.hole_angle();
     let tooth_by_tooth = Coupling::tooth_by_tooth(&teeth.ring, &blank, phase, 4, &run);
     let on_blank = Coupling::on_blank(&teeth.ring, &blank, phase, 4, &run);
     [tooth_by_tooth, on_blank].map(|coupling| coupling.expect("a gear"))
@@ -446,7 +453,7 @@ fn rows_that_symmetry_leaves_are_the_rows_of_all_teeth() {
             let (a, b) = (block(&all), block(&some));
             largest = largest.max((&a - &b).norm_max() / a.norm_max());
         }
-        let holes = gear.holes().map_or(0, |holes| holes.count);
+        let holes = gear.hole_repeats();
         println!(
             "{holes} holes: {largest:.1e}, {} entries of {}",
             some.entries(),

@@ -39,7 +39,7 @@ fn blank_grid(gear: &SpurGear, level: GridLevel) -> BlankGrid {
     BlankGrid::new(
         gear.bore_radius(),
         r_w,
-        gear.holes(),
+        gear.hole_pattern().as_ref(),
         gear.tooth_count(),
         6.0,
         level,
@@ -124,7 +124,7 @@ fn answers_of_substructures(
         &Run::unattended(),
     )
     .expect("a blank");
-    let phase = gear.holes().map_or(0.0, |holes| holes.phase);
+    let phase = gear.hole_angle();
     let coupling = Coupling::on_blank(&ring, &blank, phase, 4, &Run::unattended()).expect("a gear");
     let unknowns = loaded_unknowns(substructure.roll_lengths.len());
     let v = &substructure.modes;

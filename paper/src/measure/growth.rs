@@ -2,7 +2,7 @@
 
 use anyhow::Context;
 use meshwright_engine::analysis::{Case, Method, pair_model};
-use meshwright_engine::gear::{Blank, GearData, GearPair, HolePattern, SpurGear};
+use meshwright_engine::gear::{BlankRegion, GearData, GearPair, HolePattern, SpurGear};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use serde::Serialize;
@@ -179,7 +179,10 @@ fn of_teeth(count: u32) -> anyhow::Result<Case> {
     let of = |holes| {
         SpurGear::new(GearData {
             tooth_count: count,
-            blank: Blank { bore_radius, holes },
+            blank: match holes {
+                Some(pattern) => BlankRegion::with_pattern(bore_radius, pattern),
+                None => BlankRegion::solid(bore_radius),
+            },
             ..data.clone()
         })
     };

@@ -91,13 +91,13 @@ pub(super) fn answer(case: &Case, library: &Library) -> anyhow::Result<Analysis>
 /// `case` with its hole circles a little larger; nothing for a pair without holes.
 fn with_moved_holes(case: &Case) -> anyhow::Result<Option<Case>> {
     let pair = &case.pair;
-    if pair.driving().holes().is_none() && pair.driven().holes().is_none() {
+    if pair.driving().holes().is_empty() && pair.driven().holes().is_empty() {
         return Ok(None);
     }
     let moved = |gear: &SpurGear| {
         let mut data = gear.data().clone();
-        if let Some(holes) = &mut data.blank.holes {
-            holes.circle_radius += MOVE;
+        for hole in &mut data.blank.holes {
+            hole.circle_radius += MOVE;
         }
         SpurGear::new(data)
     };

@@ -172,7 +172,7 @@ impl Computed {
     pub(super) fn holed_kept(&self) -> impl Iterator<Item = &Design> {
         self.designs
             .iter()
-            .filter(|design| design.kept && design.case.pair.driven().holes().is_some())
+            .filter(|design| design.kept && design.case.pair.driven().has_holes())
     }
 }
 

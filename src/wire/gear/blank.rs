@@ -1,6 +1,6 @@
 //! What carries the teeth: the bore and the holes.
 
-use meshwright_engine::gear::{Blank, HolePattern};
+use meshwright_engine::gear::{BlankRegion, HolePattern};
 use serde::Serialize;
 
 use crate::wire::quantity;
@@ -73,10 +73,12 @@ impl BlankDocument {
         })
     }
 
-    pub(super) fn data(&self) -> Blank {
-        Blank {
+    pub(super) fn data(&self) -> BlankRegion {
+        let holes = self.holes.as_ref().map(HolesDocument::data);
+        BlankRegion {
             bore_radius: from_mm(self.bore_radius_mm),
-            holes: self.holes.as_ref().map(HolesDocument::data),
+            holes: holes.map_or_else(Vec::new, |pattern| pattern.holes()),
+            web: None,
         }
     }
 }

@@ -1,13 +1,13 @@
 //! What prevents a gear, told by field, with the bound beyond which it could be made.
 
 use meshwright_engine::gear::data::{LEAST_LIGAMENT, LEAST_RIM, LEAST_TIP_THICKNESS};
-use meshwright_engine::gear::{GearError, Relief, SpurGear};
+use meshwright_engine::gear::{DeviationList, GearError};
 
 use super::GearDocument;
-use super::field::Field;
-use super::relief::StartWay;
+use super::field::{Field, ReliefPlace};
+use super::relief::{ReliefEnd, StartWay};
 use crate::wire::problem::Code;
-use crate::wire::units::{Side, from_mm, plain, rounded_inward, to_mm};
+use crate::wire::units::{Side, from_mm, plain, rounded_inward, to_mm, to_um};
 
 /// Why a gear cannot be made, and the bound beyond which it could, in the unit of the field.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +21,12 @@ pub(super) struct Fault {
 }
 
 impl Fault {
-    fn new(field: Field, code: Code, detail: String, bound: Option<(f64, Side)>) -> Self {
+    pub(super) fn new(
+        field: Field,
+        code: Code,
+        detail: String,
+        bound: Option<(f64, Side)>,
+    ) -> Self {
         Self {
             field,
             code,
@@ -45,81 +50,7 @@ impl Fault {
 }
 
 impl GearDocument {
-    /// Makes the gear, or tells the first thing that prevents it.
-    pub(super) fn made(&self) -> Result<SpurGear, Fault> {
-        self.check_proportions()?;
-        let gear = SpurGear::new(self.data()).map_err(|error| self.fault(&error))?;
-        // A relief that begins and ends at the tip is a step, which no grid and no contact search can follow.
-        match gear.tip_relief().map(Relief::start_radius) {
-            Some(start) if start > gear.tip_radius() - self.least_relief() => {
-                Err(self.relief_fault(start, gear.form_radius(), gear.tip_radius()))
-            }
-            _ => Ok(gear),
-        }
-    }
-
-    /// The least radial length of a relief, in meters.
-    fn least_relief(&self) -> f64 {
-        0.01 * from_mm(self.module_mm)
-    }
-
-    /// Bounds that depend on the other fields, so that nothing degenerate reaches the grids.
-    fn check_proportions(&self) -> Result<(), Fault> {
-        let m = self.module_mm;
-        for (field, least, most) in [
-            (Field::Addendum, 0.2, 2.0),
-            (Field::Dedendum, 0.5, 2.5),
-            (Field::RackTipRadius, 0.05, 2.0),
-        ] {
-            self.check_between(
-                field,
-                least * m,
-                most * m,
-                &format!("{least} and {most} modules"),
-            )?;
-        }
-        // A bore or a hole that is a mere point has a logarithmically singular compliance.
-        let least_bore = 0.05 * self.root_radius_mm();
-        self.check_between(
-            Field::Bore,
-            least_bore,
-            f64::INFINITY,
-            "5 % of the root radius and more",
-        )?;
-        if self.blank.holes.is_some() {
-            self.check_between(
-                Field::HoleRadius,
-                self.least_hole_mm(),
-                f64::INFINITY,
-                "1 % of the root radius and more",
-            )?;
-        }
-        Ok(())
-    }
-
-    fn check_between(&self, field: Field, least: f64, most: f64, said: &str) -> Result<(), Fault> {
-        let value = self.value(field);
-        let bound = if value < least * (1.0 - 1e-12) {
-            (least, Side::AtLeast)
-        } else if value > most * (1.0 + 1e-12) {
-            (most, Side::AtMost)
-        } else {
-            return Ok(());
-        };
-        let detail = format!("{} mm is outside {said}.", plain(value));
-        Err(Fault::new(field, Code::OutOfRange, detail, Some(bound)))
-    }
-
-    fn least_hole_mm(&self) -> f64 {
-        0.01 * self.root_radius_mm()
-    }
-
-    fn root_radius_mm(&self) -> f64 {
-        self.module_mm * f64::from(self.tooth_count) / 2.0 - self.dedendum_mm
-            + self.profile_shift * self.module_mm
-    }
-
-    fn fault(&self, error: &GearError) -> Fault {
+    pub(super) fn fault(&self, error: &GearError) -> Fault {
         let mm = |value: f64| plain(to_mm(value));
         match *error {
             GearError::RackTipRadius {
@@ -153,7 +84,7 @@ impl GearDocument {
                 thickness,
                 largest_addendum,
             } => Fault::new(
-                Field::Addendum,
+                Field::Tip,
                 Code::PointedTip,
                 if thickness < 0.0 {
                     format!(
@@ -167,13 +98,13 @@ impl GearDocument {
                         mm(largest_addendum)
                     )
                 },
-                Some((to_mm(largest_addendum), Side::AtMost)),
+                Some((self.tip_said(to_mm(largest_addendum)), Side::AtMost)),
             ),
             GearError::NoFlank {
                 tip_radius,
                 form_radius,
             } => Fault::new(
-                Field::Addendum,
+                Field::Tip,
                 Code::OutOfRange,
                 format!(
                     "The tip radius {} mm leaves no flank above the form radius {} mm.",
@@ -181,16 +112,22 @@ impl GearDocument {
                     mm(form_radius)
                 ),
                 Some((
-                    self.addendum_mm + to_mm(form_radius - tip_radius) + 0.1 * self.module_mm,
+                    self.tip_said(
+                        to_mm(form_radius) - self.shifted_radius_mm() + 0.1 * self.module_mm,
+                    ),
                     Side::AtLeast,
                 )),
             ),
             GearError::ReliefTooLong {
-                modification: _,
+                modification,
                 start_radius,
                 form_radius,
                 tip_radius,
-            } => self.relief_fault(start_radius, form_radius, tip_radius),
+            } => self.relief_fault(
+                self.place_of(modification),
+                start_radius,
+                [form_radius, tip_radius],
+            ),
             GearError::BoreTooLarge {
                 bore_radius,
                 largest,
@@ -204,20 +141,62 @@ impl GearDocument {
                 ),
                 Some((to_mm(largest), Side::AtMost)),
             ),
-            GearError::TeethTooThick { .. }
-            | GearError::TipEdgeTooLarge { .. }
-            | GearError::TableDoesNotRise { .. }
-            | GearError::DeviationCount { .. } => Fault::new(
-                Field::ProfileShift,
-                Code::OutOfRange,
-                error.to_string(),
+            GearError::TeethTooThick { deviation, largest } => Fault::new(
+                Field::ThicknessDeviation,
+                Code::TeethTooThick,
+                format!(
+                    "Teeth thicker by {} um leave no space between their fillets; at most {} um.",
+                    plain(to_um(deviation)),
+                    plain(to_um(largest))
+                ),
+                Some((to_um(largest), Side::AtMost)),
+            ),
+            GearError::TipEdgeTooLarge { amount, largest } => Fault::new(
+                Field::TipEdge,
+                Code::TipEdgeTooLarge,
+                format!(
+                    "Tip edges broken by {} mm leave no tip or no flank; at most {} mm.",
+                    mm(amount),
+                    mm(largest)
+                ),
+                Some((to_mm(largest), Side::AtMost)),
+            ),
+            // The lists were looked at before; what differs is the engine's own rounding.
+            GearError::TableDoesNotRise {
+                modification,
+                entry,
+            } => Fault::new(
+                Field::Modification(self.place_of(modification)),
+                Code::TableDoesNotRise,
+                format!("Entry {entry} of the table does not stand beyond the one before it."),
                 None,
             ),
+            GearError::DeviationCount {
+                list,
+                given,
+                needed,
+            } => Fault::new(
+                Field::Deviations,
+                Code::WrongLength,
+                format!(
+                    "The {} deviations are {given}; {needed} are needed, one for each tooth.",
+                    match list {
+                        DeviationList::Pitch => "pitch",
+                        DeviationList::ProfileSlope => "profile slope",
+                    }
+                ),
+                None,
+            ),
+            GearError::WebOutside { .. } => {
+                Fault::new(Field::Bore, Code::OutOfRange, error.to_string(), None)
+            }
             GearError::HolesOverlap {
+                holes: _,
                 ligament,
                 largest_radius,
             } => self.hole_fault(Code::HolesOverlap, "between them", ligament, largest_radius),
             GearError::HolesBreachRim {
+                hole: _,
                 ligament,
                 largest_radius,
             } => self.hole_fault(
@@ -227,6 +206,7 @@ impl GearDocument {
                 largest_radius,
             ),
             GearError::HolesBreachBore {
+                hole: _,
                 ligament,
                 largest_radius,
             } => self.hole_fault(
@@ -238,35 +218,63 @@ impl GearDocument {
         }
     }
 
-    fn relief_fault(&self, start_radius: f64, form_radius: f64, tip_radius: f64) -> Fault {
-        let highest = tip_radius - self.least_relief();
+    /// What the tip circle's own field would say of another addendum, in mm.
+    fn tip_said(&self, addendum: f64) -> f64 {
+        self.tip_circle.said(addendum, self.shifted_radius_mm())
+    }
+
+    /// The radii at which a relief with its amount at `end` can start, of a flank between these radii.
+    pub(super) fn relief_range(&self, end: ReliefEnd, [form, tip]: [f64; 2]) -> (f64, f64) {
+        match end {
+            ReliefEnd::Tip => (form, tip - self.least_relief()),
+            ReliefEnd::Form => (form + self.least_relief(), tip),
+        }
+    }
+
+    /// The relief at `place` starts at a radius outside its range on the flank between `ends`, all in meters.
+    pub(super) fn relief_fault(
+        &self,
+        place: ReliefPlace,
+        start_radius: f64,
+        ends: [f64; 2],
+    ) -> Fault {
+        let start = self.relief(place).map(|relief| relief.start);
+        let end = start.map_or(ReliefEnd::Tip, |start| start.end);
+        let (lowest, highest) = self.relief_range(end, ends);
         let detail = format!(
             "The relief starts at radius {} mm; on this flank it can start from {} mm to {} mm.",
             plain(to_mm(start_radius)),
-            plain(to_mm(form_radius)),
+            plain(to_mm(lowest)),
             plain(to_mm(highest))
         );
-        let r_b = from_mm(self.module_mm * f64::from(self.tooth_count) / 2.0)
-            * self.pressure_angle_deg.to_radians().cos();
+        let r_b = from_mm(self.base_radius_mm());
         let roll = |radius: f64| (radius.powi(2) - r_b.powi(2)).max(0.0).sqrt();
         // The radius that is nearest, and on which side of it the flank is.
-        let (nearest, above) = if start_radius > highest {
+        let (nearest, side) = if start_radius > highest {
             (highest, Side::AtMost)
         } else {
-            (form_radius, Side::AtLeast)
+            (lowest, Side::AtLeast)
         };
-        let below = match above {
-            Side::AtMost => Side::AtLeast,
-            Side::AtLeast => Side::AtMost,
+        let from_end = |tip: f64, form: f64| match end {
+            ReliefEnd::Tip => (to_mm(tip), side.other()),
+            ReliefEnd::Form => (to_mm(form), side),
         };
-        let way = self.tip_relief.as_ref().map(|relief| relief.start.way);
-        let bound = match way {
-            Some(StartWay::RadialLength) => (to_mm(tip_radius - nearest), below),
-            Some(StartWay::RollLengthFromTip) => (to_mm(roll(tip_radius) - roll(nearest)), below),
-            Some(StartWay::Diameter) | None => (to_mm(2.0 * nearest), above),
-            Some(StartWay::RollAngle) => ((roll(nearest) / r_b).to_degrees(), above),
+        let [form_radius, tip_radius] = ends;
+        let bound = match start.map(|start| start.way) {
+            Some(StartWay::RadialLength) => from_end(tip_radius - nearest, nearest - form_radius),
+            Some(StartWay::RollLength) => from_end(
+                roll(tip_radius) - roll(nearest),
+                roll(nearest) - roll(form_radius),
+            ),
+            Some(StartWay::Diameter) | None => (to_mm(2.0 * nearest), side),
+            Some(StartWay::RollAngle) => ((roll(nearest) / r_b).to_degrees(), side),
         };
-        Fault::new(Field::ReliefStart, Code::ReliefTooLong, detail, Some(bound))
+        Fault::new(
+            Field::ReliefStart(place),
+            Code::ReliefTooLong,
+            detail,
+            Some(bound),
+        )
     }
 
     /// The radius of the holes is to blame, unless no radius would do: then it is their circle.

@@ -1,16 +1,21 @@
-//! A tip relief: how much, in what shape, and from where.
+//! Reliefs of tip and root: how much, in what shape, and from where.
 
-use meshwright_engine::gear::{ReliefData, ReliefShape, ReliefStart};
+use meshwright_engine::gear::{
+    ModificationData, ReliefData, ReliefShape, ReliefStart, RootReliefData, RootReliefStart,
+    SpurGear,
+};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
+use utoipa::openapi::RefOr;
+use utoipa::openapi::schema::Schema;
 
 use crate::wire::problem::{Code, FieldError};
 use crate::wire::quantity::{self, Quantity};
-use crate::wire::schema::{self, documented};
+use crate::wire::schema::{self, Property, documented};
 use crate::wire::tree::{Choice, Node, ObjectReader, as_word};
 use crate::wire::units::{from_mm, from_um};
 
-/// A tip relief.
+/// A relief of the tip or of the root.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ReliefDocument {
     amount_um: f64,
@@ -26,16 +31,7 @@ documented!(
     schema::object(
         "Tip relief",
         "c(r) = amount ((r - r_s)/(r_a - r_s))^n, normal to the flank, in the radius however the start r_s is given.",
-        vec![
-            schema::number(&quantity::RELIEF_AMOUNT),
-            schema::choice(
-                "shape",
-                "Shape",
-                "How the relief grows towards the tip.",
-                Some(ReliefShape::Linear)
-            ),
-            schema::document::<StartDocument>("start", true),
-        ]
+        ReliefDocument::properties(ReliefEnd::Tip)
     )
 );
 
@@ -46,9 +42,19 @@ impl Choice for ReliefShape {
     ];
 }
 
+/// Where a relief has its amount.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ReliefEnd {
+    /// At the tip circle.
+    Tip,
+    /// At the form circle.
+    Form,
+}
+
 /// Where a relief starts: exactly one of four ways to say it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StartDocument {
+    pub(super) end: ReliefEnd,
     pub(super) way: StartWay,
     pub(super) value: f64,
 }
@@ -56,7 +62,7 @@ pub struct StartDocument {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum StartWay {
     RadialLength,
-    RollLengthFromTip,
+    RollLength,
     Diameter,
     RollAngle,
 }
@@ -64,17 +70,19 @@ pub(super) enum StartWay {
 impl StartWay {
     const ALL: [Self; 4] = [
         Self::RadialLength,
-        Self::RollLengthFromTip,
+        Self::RollLength,
         Self::Diameter,
         Self::RollAngle,
     ];
 
-    pub(super) fn quantity(self) -> &'static Quantity {
-        match self {
-            Self::RadialLength => &quantity::RELIEF_RADIAL_LENGTH,
-            Self::RollLengthFromTip => &quantity::RELIEF_ROLL_LENGTH,
-            Self::Diameter => &quantity::RELIEF_DIAMETER,
-            Self::RollAngle => &quantity::RELIEF_ROLL_ANGLE,
+    fn quantity(self, end: ReliefEnd) -> &'static Quantity {
+        match (self, end) {
+            (Self::RadialLength, ReliefEnd::Tip) => &quantity::RELIEF_RADIAL_LENGTH,
+            (Self::RadialLength, ReliefEnd::Form) => &quantity::ROOT_RELIEF_RADIAL_LENGTH,
+            (Self::RollLength, ReliefEnd::Tip) => &quantity::RELIEF_ROLL_LENGTH,
+            (Self::RollLength, ReliefEnd::Form) => &quantity::ROOT_RELIEF_ROLL_LENGTH,
+            (Self::Diameter, _) => &quantity::RELIEF_DIAMETER,
+            (Self::RollAngle, _) => &quantity::RELIEF_ROLL_ANGLE,
         }
     }
 }
@@ -83,40 +91,70 @@ documented!(
     StartDocument,
     "ReliefStart",
     [],
+    start_schema(ReliefEnd::Tip)
+);
+
+fn start_schema(end: ReliefEnd) -> RefOr<Schema> {
+    let ways = StartWay::ALL.iter().map(|way| {
+        let quantity = way.quantity(end);
+        schema::object(
+            quantity.title,
+            quantity.description,
+            vec![schema::number(quantity)],
+        )
+    });
     schema::one_of(
         "Start of the relief",
         "Where the relief starts: exactly one of the four. A bare length is not accepted, because drawings mean different ones by it.",
         None,
-        StartWay::ALL
-            .iter()
-            .map(|way| {
-                let quantity = way.quantity();
-                schema::object(
-                    quantity.title,
-                    quantity.description,
-                    vec![schema::number(quantity)],
-                )
-            })
-            .collect()
+        ways.collect(),
     )
-);
+}
 
 impl Serialize for StartDocument {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(1))?;
-        map.serialize_entry(self.way.quantity().name, &self.value)?;
+        map.serialize_entry(self.quantity().name, &self.value)?;
         map.end()
     }
 }
 
 impl ReliefDocument {
-    pub(super) fn read(mut reader: ObjectReader<'_>) -> Option<Self> {
-        let amount_um = reader.number(&quantity::RELIEF_AMOUNT, None);
+    /// What the schema says of its fields.
+    pub(super) fn properties(end: ReliefEnd) -> Vec<Property> {
+        let (amount, grows, start) = match end {
+            ReliefEnd::Tip => (
+                &quantity::RELIEF_AMOUNT,
+                "How the relief grows towards the tip.",
+                schema::document::<StartDocument>("start", true),
+            ),
+            ReliefEnd::Form => (
+                &quantity::ROOT_RELIEF_AMOUNT,
+                "How the relief grows towards the form circle.",
+                ("start", start_schema(end), true),
+            ),
+        };
+        let shape = schema::choice("shape", "Shape", grows, Some(ReliefShape::Linear));
+        vec![schema::number(amount), shape, start]
+    }
+
+    pub(super) fn read(mut reader: ObjectReader<'_>, end: ReliefEnd) -> Option<Self> {
+        let relief = Self::read_fields(&mut reader, end);
+        reader.finish();
+        relief
+    }
+
+    /// Reads its fields, beside which there may be others.
+    pub(super) fn read_fields(reader: &mut ObjectReader<'_>, end: ReliefEnd) -> Option<Self> {
+        let amount = match end {
+            ReliefEnd::Tip => &quantity::RELIEF_AMOUNT,
+            ReliefEnd::Form => &quantity::ROOT_RELIEF_AMOUNT,
+        };
+        let amount_um = reader.number(amount, None);
         let shape = reader.choice("shape", Some(ReliefShape::Linear));
         let start = reader
             .needed("start")
-            .and_then(|node| StartDocument::read(node, &reader));
-        reader.finish();
+            .and_then(|node| StartDocument::read(node, reader, end));
         Some(Self {
             amount_um: amount_um?,
             shape: shape?,
@@ -124,37 +162,81 @@ impl ReliefDocument {
         })
     }
 
-    pub(super) fn data(&self) -> ReliefData {
-        let value = self.start.value;
-        ReliefData {
-            amount: from_um(self.amount_um),
-            shape: self.shape,
-            start: match self.start.way {
-                StartWay::RadialLength => ReliefStart::RadialLength(from_mm(value)),
-                StartWay::RollLengthFromTip => ReliefStart::RollLengthFromTip(from_mm(value)),
-                StartWay::Diameter => ReliefStart::Diameter(from_mm(value)),
-                StartWay::RollAngle => ReliefStart::RollAngle(value.to_radians()),
-            },
+    /// Whether it takes anything off.
+    pub(super) fn is_there(&self) -> bool {
+        self.amount_um != 0.0
+    }
+
+    /// What the engine is told.
+    pub(super) fn data(&self) -> ModificationData {
+        let (amount, shape) = (from_um(self.amount_um), self.shape);
+        match self.start.data() {
+            Start::Tip(start) => ModificationData::TipRelief(ReliefData {
+                amount,
+                shape,
+                start,
+            }),
+            Start::Root(start) => ModificationData::RootRelief(RootReliefData {
+                amount,
+                shape,
+                start,
+            }),
         }
     }
 }
 
+/// Where a relief starts, as the engine is told.
+enum Start {
+    Tip(ReliefStart),
+    Root(RootReliefStart),
+}
+
 impl StartDocument {
-    fn read(node: &Node, parent: &ObjectReader<'_>) -> Option<Self> {
+    pub(super) fn quantity(self) -> &'static Quantity {
+        self.way.quantity(self.end)
+    }
+
+    /// The radius in meters at which it starts on the flank of `gear`.
+    pub(super) fn radius(self, gear: &SpurGear) -> f64 {
+        match self.data() {
+            Start::Tip(start) => start.radius(gear.flank(), gear.tip_radius()),
+            Start::Root(start) => start.radius(gear.flank(), gear.form_radius()),
+        }
+    }
+
+    fn data(self) -> Start {
+        let (length, angle) = (from_mm(self.value), self.value.to_radians());
+        match self.end {
+            ReliefEnd::Tip => Start::Tip(match self.way {
+                StartWay::RadialLength => ReliefStart::RadialLength(length),
+                StartWay::RollLength => ReliefStart::RollLengthFromTip(length),
+                StartWay::Diameter => ReliefStart::Diameter(length),
+                StartWay::RollAngle => ReliefStart::RollAngle(angle),
+            }),
+            ReliefEnd::Form => Start::Root(match self.way {
+                StartWay::RadialLength => RootReliefStart::RadialLength(length),
+                StartWay::RollLength => RootReliefStart::RollLengthFromForm(length),
+                StartWay::Diameter => RootReliefStart::Diameter(length),
+                StartWay::RollAngle => RootReliefStart::RollAngle(angle),
+            }),
+        }
+    }
+
+    fn read(node: &Node, parent: &ObjectReader<'_>, end: ReliefEnd) -> Option<Self> {
         let pointer = parent.pointer_to("start");
         let mut reader = parent.object(node, pointer.clone())?;
         let mut found = Vec::new();
         let mut wrong = false;
         for way in StartWay::ALL {
-            match reader.optional_number(way.quantity()) {
-                Some(Some(value)) => found.push(Self { way, value }),
+            match reader.optional_number(way.quantity(end)) {
+                Some(Some(value)) => found.push(Self { end, way, value }),
                 Some(None) => {}
                 None => wrong = true,
             }
         }
         let names: Vec<_> = StartWay::ALL
             .iter()
-            .map(|way| way.quantity().name)
+            .map(|way| way.quantity(end).name)
             .collect();
         let names = names.join(", ");
         let one = match (found.as_slice(), wrong) {

@@ -16,6 +16,17 @@ impl GearDocument {
     /// Every field that has to change, each with a value such that all these values together make a gear, where there
     /// are such values.
     pub(in crate::wire) fn to_gear(&self, pointer: &str) -> Result<SpurGear, Vec<FieldError>> {
+        let lists = self.list_faults(pointer);
+        if lists.is_empty() {
+            return self.with_numbers(pointer);
+        }
+        // What else is wrong is told together with the lists.
+        let others = self.without_lists().with_numbers(pointer).err();
+        let others = others.into_iter().flatten();
+        Err(lists.into_iter().chain(others).collect())
+    }
+
+    fn with_numbers(&self, pointer: &str) -> Result<SpurGear, Vec<FieldError>> {
         const MOST_REPAIRS: usize = 12;
         let mut repaired = self.clone();
         let mut faults: Vec<Fault> = Vec::new();

@@ -16,7 +16,7 @@ use utoipa::ToSchema;
 pub use curve::{CurveDocument, LoadShareDocument, StatisticsDocument, StatisticsValues};
 pub use decomposition::{BlankFitDocument, BlankSampleDocument, DecompositionDocument};
 pub use evidence::{Definition, ErrorEstimateDocument, EvidenceDocument};
-pub use spectrum::{NamedOrderDocument, SpectrumDocument};
+pub use spectrum::{NamedOrderDocument, OrderKindName, SpectrumDocument};
 
 use super::geometry::{Frequencies, PairGeometry};
 use super::problem::{Code, Problem};

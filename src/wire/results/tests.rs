@@ -59,6 +59,7 @@ fn analysis(case: &Case) -> Analysis {
                     mean: 2e-6,
                     amplitude: 0.1e-6,
                     phase: 1.0,
+                    higher: Vec::new(),
                     samples: vec![BlankSample {
                         mesh_position: 0.25,
                         rotation: 2.05e-6,

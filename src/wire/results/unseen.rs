@@ -1,13 +1,14 @@
 //! What each method leaves out.
 
 use meshwright_engine::analysis::{BodyFormula, Case, Formulas, Method, ToothFormula};
+use meshwright_engine::gear::{SpurGear, TipEdge};
 
 /// What the method of `case` leaves out.
 pub(super) fn does_not_see(case: &Case) -> Vec<&'static str> {
     const ALWAYS: [&str; 4] = [
         "inertia and damping: the analysis is quasi-static",
         "friction between the flanks",
-        "anything that varies across the face width: misalignment, crowning, helix; the model is plane",
+        "anything that varies across the face width: misalignment, lead crowning, helix; the model is plane",
         "shafts, bearings and housing: both hubs are rigid and their axes fixed",
     ];
     let own: Vec<&str> = match case.method {
@@ -21,7 +22,38 @@ pub(super) fn does_not_see(case: &Case) -> Vec<&'static str> {
         ],
         Method::LoadDistribution => formulas_do_not_see(case.resolution.formulas),
     };
-    ALWAYS.into_iter().chain(own).collect()
+    ALWAYS
+        .into_iter()
+        .chain(real_teeth_do_not_see(case))
+        .chain(own)
+        .collect()
+}
+
+/// What is left out of modified, broken and deviating teeth, as far as the gears of `case` have them.
+fn real_teeth_do_not_see(case: &Case) -> Vec<&'static str> {
+    let gears = [case.pair.driving(), case.pair.driven()];
+    let any = |has: fn(&SpurGear) -> bool| gears.into_iter().any(has);
+    let mut unseen = Vec::new();
+    if any(|gear| !gear.data().modifications.is_empty() || !gear.deviations().is_none()) {
+        unseen
+            .push("the unloaded flanks: modifications and deviations are those of the loaded ones");
+    }
+    if any(|gear| !gear.deviations().are_teeth_alike()) {
+        unseen.push("that a tooth which stands out is thicker, and stiffer, by what it stands out: every tooth yields as drawn");
+    }
+    let by_formula = case.method == Method::LoadDistribution;
+    if by_formula && any(|gear| gear.data().tip_edge != TipEdge::Sharp) {
+        unseen.push("contact on broken tip edges: a pair is taken to part where they begin");
+    }
+    if by_formula && any(|gear| gear.deviations().eccentricity.is_some()) {
+        unseen.push("what an eccentricity changes in the lines of contact: it moves the flanks along them, and their ends stay");
+    }
+    if case.output_torques.contains(&0.0) {
+        unseen.push(
+            "at the torque 0, the deformation: the flanks are rigid, and the first of them touch",
+        );
+    }
+    unseen
 }
 
 /// What the load distribution by `formulas` leaves out.

@@ -17,6 +17,7 @@ pub(super) const MASS_REMOVED: Quantity = Quantity {
     bounds: (0.01, 99.0),
     preset: Preset::Needed,
     whole: false,
+    or_zero: false,
 };
 
 impl Choice for Member {
@@ -87,20 +88,21 @@ impl ConstantMass {
 /// The area between the bore and the mean of tip and root circle, in mm².
 fn blank_area(gear: &Node) -> Option<f64> {
     let given = |quantity: &Quantity| {
-        gear.at(&[quantity.name])
-            .map(|_| gear.number_at(&[quantity.name]))
+        let node = gear
+            .at(&[quantity.name])
+            .filter(|node| **node != Node::Null);
+        node.map(|_| gear.number_at(&[quantity.name]))
     };
     let m = given(&quantity::MODULE)??;
     let z = given(&quantity::TOOTH_COUNT)??;
-    let or_preset = |quantity: &Quantity| match (given(quantity), quantity.preset) {
-        (Some(value), _) => value,
-        (None, Preset::Value(value)) => Some(value),
-        (None, Preset::Modules(modules)) => Some(modules * m),
-        (None, Preset::Needed | Preset::Absent(_)) => None,
+    let or_preset =
+        |quantity: &Quantity| given(quantity).unwrap_or_else(|| quantity.preset_for(Some(m)));
+    let shifted = m * z / 2.0 + or_preset(&quantity::PROFILE_SHIFT)? * m;
+    let r_a = match given(&quantity::TIP_DIAMETER) {
+        Some(diameter) => diameter? / 2.0,
+        None => shifted + or_preset(&quantity::ADDENDUM)?,
     };
-    let shift = or_preset(&quantity::PROFILE_SHIFT)? * m;
-    let r_a = m * z / 2.0 + or_preset(&quantity::ADDENDUM)? + shift;
-    let r_f = m * z / 2.0 - or_preset(&quantity::DEDENDUM)? + shift;
+    let r_f = shifted - or_preset(&quantity::DEDENDUM)?;
     let bore = gear.number_at(&["blank", quantity::BORE_RADIUS.name])?;
     Some(PI * (((r_a + r_f) / 2.0).powi(2) - bore.powi(2)))
 }

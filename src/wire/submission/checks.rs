@@ -1,13 +1,13 @@
 //! Whether the fields of a submission go together: torques, interface, span and size.
 
-use meshwright_engine::gear::{GearPair, Member, SpurGear};
+use meshwright_engine::gear::{GearPair, SpurGear};
 
 use super::Purpose;
 use super::document::Document;
 use crate::wire::problem::{Code, FieldError};
 use crate::wire::quantity::{self, MOST_POSITIONS};
 use crate::wire::tree::Errors;
-use crate::wire::units::{Side, plain, rounded_inward, to_mm};
+use crate::wire::units::{Side, plain, rounded_inward};
 
 impl Document {
     /// Refuses torques that would deflect the teeth by more than about a quarter of a module: small displacements and a
@@ -36,46 +36,10 @@ impl Document {
         }
     }
 
-    /// The interface has to stay clear of the holes and of the roots by a quarter of the material between them, or of a
-    /// module where that is less.
     pub(super) fn check_interface(&self, pair: &GearPair, errors: &Errors) {
-        let Some(radius) = self.resolution.interface_radius_mm else {
-            return;
-        };
-        let mut range = (0.0_f64, f64::INFINITY);
-        for member in [Member::Driving, Member::Driven] {
-            let gear = pair.gear(member);
-            if let Some(holes) = gear.holes() {
-                let (inner, outer) = (to_mm(holes.outer_reach()), to_mm(gear.root_radius()));
-                let margin = 0.25 * (outer - inner).min(to_mm(gear.data().rack.module));
-                range = (range.0.max(inner + margin), range.1.min(outer - margin));
-            }
-        }
-        let (least, most) = range;
-        if (least..=most).contains(&radius) {
-            return;
-        }
-        let nearest = if least > most {
-            None
-        } else if radius < least {
-            Some(rounded_inward(least, Side::AtLeast, 0))
-        } else {
-            Some(rounded_inward(most, Side::AtMost, 0))
-        };
         let pointer = format!("/resolution/{}", quantity::INTERFACE_RADIUS.name);
-        let said = match nearest {
-            Some(_) => format!(
-                "it has to lie between {} mm and {} mm, between the holes and the root circle",
-                plain(least),
-                plain(most)
-            ),
-            None => {
-                "no one radius lies between holes and roots of both gears; leave it out".to_owned()
-            }
-        };
-        let detail = format!("{pointer} is {} mm; {said}.", plain(radius));
-        let nearest = nearest.filter(|nearest| (least..=most).contains(nearest));
-        errors.push(FieldError::new(pointer, Code::OutOfRange, detail).nearest(nearest));
+        let faults = self.resolution.interface_radius_mm.faults(pair, &pointer);
+        faults.into_iter().for_each(|fault| errors.push(fault));
     }
 
     pub(super) fn check_span(&self, pair: &GearPair, errors: &Errors) {

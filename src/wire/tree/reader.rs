@@ -5,7 +5,6 @@ use super::errors::Errors;
 use super::node::{Node, joined, shortened};
 use crate::wire::problem::{Code, FieldError};
 use crate::wire::quantity::{Preset, Quantity};
-use crate::wire::units::significant;
 
 /// One object of the document, and which of its fields have been asked for.
 ///
@@ -106,15 +105,11 @@ impl<'a> ObjectReader<'a> {
         module: Option<f64>,
     ) -> Option<f64> {
         let Some(node) = self.get(quantity.name) else {
-            return match quantity.preset {
-                Preset::Value(value) => Some(value),
-                Preset::Modules(modules) => module.map(|module| significant(modules * module, 12)),
-                Preset::Needed | Preset::Absent(_) => {
-                    let detail = format!("{} is needed.", place(&self.pointer_to(quantity.name)));
-                    self.wrong(quantity.name, Code::MissingField, detail, None);
-                    None
-                }
-            };
+            if let Preset::Needed | Preset::Absent(_) = quantity.preset {
+                let detail = format!("{} is needed.", place(&self.pointer_to(quantity.name)));
+                self.wrong(quantity.name, Code::MissingField, detail, None);
+            }
+            return quantity.preset_for(module);
         };
         self.checked_number(node, &self.pointer_to(quantity.name), quantity)
     }
@@ -127,6 +122,99 @@ impl<'a> ObjectReader<'a> {
                 .checked_number(node, &self.pointer_to(quantity.name), quantity)
                 .map(Some),
         }
+    }
+
+    /// A list of at most so many numbers, each within the bounds of `quantity`, that may be absent or null.
+    pub(in crate::wire) fn optional_numbers(
+        &mut self,
+        quantity: &Quantity,
+        most: usize,
+    ) -> Option<Option<Vec<f64>>> {
+        match self.present(quantity.name) {
+            None => Some(None),
+            Some(node) => self.numbers_of(node, quantity, most).map(Some),
+        }
+    }
+
+    /// A list of at most so many numbers, each within the bounds of `quantity`, that has to be given.
+    pub(in crate::wire) fn needed_numbers(
+        &mut self,
+        quantity: &Quantity,
+        most: usize,
+    ) -> Option<Vec<f64>> {
+        let node = self.needed(quantity.name)?;
+        self.numbers_of(node, quantity, most)
+    }
+
+    fn numbers_of(&self, node: &Node, quantity: &Quantity, most: usize) -> Option<Vec<f64>> {
+        let Node::List(items) = node else {
+            self.wrong_kind(quantity.name, node, "a list of numbers");
+            return None;
+        };
+        let pointer = self.pointer_to(quantity.name);
+        if items.len() > most {
+            let detail = format!("{pointer} has {} numbers; at most {most} fit.", items.len());
+            let error = FieldError::new(pointer, Code::TooLarge, detail);
+            self.errors.push(error.nearest(most as f64));
+            return None;
+        }
+        // All of them are looked at, so that all that are wrong are told.
+        let numbers: Vec<_> = items
+            .iter()
+            .enumerate()
+            .map(|(i, item)| self.checked_number(item, &format!("{pointer}/{i}"), quantity))
+            .collect();
+        numbers.into_iter().collect()
+    }
+
+    /// Reads the items of the list `name` as objects; absent or null, none of them.
+    pub(in crate::wire) fn objects(
+        &mut self,
+        name: &'static str,
+        most: usize,
+    ) -> Option<Vec<ObjectReader<'a>>> {
+        let items = match self.present(name) {
+            None => return Some(Vec::new()),
+            Some(Node::List(items)) => items,
+            Some(node) => {
+                self.wrong_kind(name, node, "a list of objects");
+                return None;
+            }
+        };
+        let pointer = self.pointer_to(name);
+        if items.len() > most {
+            let detail = format!("{pointer} has {} items; at most {most} fit.", items.len());
+            let error = FieldError::new(pointer, Code::TooLarge, detail);
+            self.errors.push(error.nearest(most as f64));
+            return None;
+        }
+        let readers: Vec<_> = items
+            .iter()
+            .enumerate()
+            .map(|(i, item)| ObjectReader::new(item, format!("{pointer}/{i}"), self.errors))
+            .collect();
+        readers.into_iter().collect()
+    }
+
+    /// Reports that one of these fields is needed and none is there.
+    pub(in crate::wire) fn missing_one_of(&self, names: &[&str]) {
+        let here = place(&self.pointer);
+        let detail = format!("{here} needs one of {}; it has none.", names.join(", "));
+        let error = FieldError::new(&*self.pointer, Code::MissingField, detail);
+        self.errors.push(error);
+    }
+
+    /// Refuses two fields of which one stands in place of the other, and says whether both are there.
+    pub(in crate::wire) fn conflict(&mut self, one: &'static str, other: &'static str) -> bool {
+        let both = self.present(one).is_some() && self.present(other).is_some();
+        if both {
+            let detail = format!(
+                "{} stands beside {one}; only one of them can be given.",
+                self.pointer_to(other)
+            );
+            self.wrong(other, Code::ConflictingFields, detail, None);
+        }
+        both
     }
 
     /// `node` as a number within the bounds of `quantity`.
