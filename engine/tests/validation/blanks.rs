@@ -139,7 +139,7 @@ fn triangles_agree_with_quadrilaterals_on_a_pattern_of_holes() {
     for (orders, bounds) in [
         (8, [1e-2, 1e-3, 2e-4]),
         (16, [2e-2, 2e-3, 3e-4]),
-        (32, [6e-2, 8e-3, 2e-3]),
+        (24, [6e-2, 1e-2, 1e-3]),
     ] {
         let reference = BlankGrid::new(15e-3, INTERFACE, Some(&holes), TEETH, 4.0, GridLevel::Fine);
         let reference = condensed(&reference.expect("a sector"), orders);
@@ -223,8 +223,8 @@ fn a_web_of_the_face_width_is_no_web() {
         let nearly = of_region(&with(FACE_WIDTH * (1.0 + 1e-9)), GridLevel::Standard);
         assert_ne!(nearly.grid.elements, none.grid.elements);
         let apart = apart(
-            &condensed(&nearly, 40).stiffness,
-            &condensed(&none, 40).stiffness,
+            &condensed(&nearly, 12).stiffness,
+            &condensed(&none, 12).stiffness,
         );
         println!("{} holes: apart by {apart:.1e}", holes.len());
         assert!(apart < 4e-3, "two grids of the standard level");
