@@ -232,6 +232,33 @@ fn a_web_of_the_face_width_is_no_web() {
 }
 
 #[test]
+fn a_pattern_is_divided_in_the_frame_of_its_hole_0_and_turned_by_its_phase() {
+    let phase = 0.4;
+    let turned = HolePattern {
+        phase,
+        ..pattern(6, 30e-3, 7e-3)
+    };
+    // The second web ends across the holes, so that the blank is divided as a whole.
+    for outer_radius in [40e-3, 33e-3] {
+        let web = Some(Web {
+            inner_radius: 19e-3,
+            outer_radius,
+            thickness: 6e-3,
+        });
+        let region = region(turned.holes(), web);
+        let by_pattern = of_region(&region, GridLevel::Standard);
+        let found = condensed(&by_pattern, 12).stiffness_at(region.phase());
+        let expected = condensed(&whole(&region, GridLevel::Standard), 12).stiffness;
+        let apart = apart(&found, &expected);
+        println!(
+            "web to {outer_radius} m, {} sectors: apart by {apart:.1e}",
+            by_pattern.sector_count
+        );
+        assert!(apart < 4e-3, "two grids of the standard level");
+    }
+}
+
+#[test]
 fn slots_of_no_angle_are_round_holes() {
     let slot = |hole: Hole| Hole {
         shape: HoleShape::Slot {
