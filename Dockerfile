@@ -1,15 +1,35 @@
-# The service in a small image: built with the toolchain, run by a user who owns nothing but /data.
-FROM rust:1.95-slim-bookworm AS build
-WORKDIR /source
-COPY . .
-RUN cargo build --release --locked --bin meshwright
+# The service in a small image: built with the toolchain, run by a user who owns nothing but /data. Other bases can be given, as
+# tests/container/run does where no registry of images is reached.
+ARG BUILD_IMAGE=rust:1.95-slim-bookworm
+ARG RUN_IMAGE=debian:bookworm-slim
 
-FROM debian:bookworm-slim
+FROM ${BUILD_IMAGE} AS build
+WORKDIR /source
+# Names of functions stay for backtraces; lines of sources would be most of the image.
+ENV CARGO_PROFILE_RELEASE_STRIP=debuginfo
+# First the dependencies, in a layer that stays as long as the manifests do: the sources are empty, so that nothing else is built.
+COPY Cargo.toml Cargo.lock build.rs ./
+COPY engine/Cargo.toml engine/
+COPY paper/Cargo.toml paper/build.rs paper/
+COPY plot/Cargo.toml plot/
+COPY migrations migrations
+RUN mkdir -p src benches engine/src engine/benches paper/src plot/src \
+    && touch src/lib.rs engine/src/lib.rs plot/src/lib.rs \
+    && for file in src/main benches/process benches/load engine/benches/jobs engine/benches/parts paper/src/main; do \
+         echo 'fn main() {}' > "$file.rs"; done \
+    && cargo build --release --locked --bin meshwright
+COPY . .
+# The empty sources were newer than these.
+RUN touch src/lib.rs src/main.rs engine/src/lib.rs && cargo build --release --locked --bin meshwright
+
+FROM ${RUN_IMAGE}
+# The certificates are for webhooks.
+RUN apt-get update && apt-get install --yes --no-install-recommends ca-certificates && rm -rf /var/lib/apt/lists/*
 RUN useradd --system --no-create-home meshwright && install --directory --owner=meshwright /data
 COPY --from=build /source/target/release/meshwright /usr/local/bin/meshwright
 USER meshwright
 VOLUME /data
-# Inside a container the loopback would reach nobody; outside, publish the port where it should be seen.
+# Inside a container the loopback would reach nobody. The service asks for keys there: docker exec ... meshwright keys create NAME
 ENV MESHWRIGHT_LISTEN=0.0.0.0:8080 MESHWRIGHT_DATABASE=/data/meshwright.db
 EXPOSE 8080
 HEALTHCHECK --interval=30s --timeout=5s --start-period=5s CMD ["meshwright", "health"]

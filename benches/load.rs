@@ -19,9 +19,10 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, ensure};
 use clap::Parser;
 use meshwright::config::Config;
-use meshwright::serve::{Compute, serve};
+use meshwright::jobs::{Clock, HookRules};
+use meshwright::serve::{Compute, World, serve};
 use meshwright::wire::{self, Code, Problem, Submission};
-use meshwright_engine::analysis::Library;
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -151,7 +152,12 @@ fn run_stub(arguments: StubArguments) -> anyhow::Result<()> {
         .with_ansi(false)
         .init();
     tokio::runtime::Runtime::new()?.block_on(async {
-        let service = serve(&arguments.config, compute, Arc::new(jiff::Timestamp::now)).await?;
+        let world = World {
+            compute,
+            clock: Clock::system(),
+            hooks: HookRules::to_public(Vec::new()),
+        };
+        let service = serve(&arguments.config, world).await?;
         println!(
             "Meshwright serves http://{}; its engine is {}.",
             service.address(),
@@ -635,7 +641,9 @@ impl Served {
             .enable_all()
             .build()?
             .block_on(async {
-                let response = reqwest::get(format!("http://{}{path}", self.address)).await?;
+                let client = meshwright::client().build()?;
+                let url = format!("http://{}{path}", self.address);
+                let response = client.get(url).send().await?;
                 Ok(response.error_for_status()?.text().await?)
             })
     }

@@ -3,18 +3,19 @@
 use std::net::SocketAddr;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use std::thread;
 use std::time::Duration;
 
 use axum::http::{HeaderValue, Uri};
+use jiff::SignedDuration;
 
-use crate::jobs::PreviewRules;
+use crate::http::{Bounds, DoorRules};
+use crate::jobs::{Cores, HookTarget, Keep, PreviewRules, Rules};
 use crate::wire;
 
 /// Where and how the service runs. Every option has its variable of the environment.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Config {
-    /// Address to listen on; port 0 takes a free one.
+    /// Address to listen on; port 0 takes a free one. Where others than this machine can call, keys are needed.
     #[arg(
         long,
         env = "MESHWRIGHT_LISTEN",
@@ -32,7 +33,7 @@ pub struct Config {
     )]
     pub database: PathBuf,
 
-    /// Jobs computed at the same time; each may use every core [default: one for each core].
+    /// Jobs computed at the same time, each by up to eight threads [default: one for each core, fewer on large machines].
     #[arg(long, env = "MESHWRIGHT_WORKERS", value_name = "NUMBER")]
     pub workers: Option<NonZeroUsize>,
 
@@ -68,6 +69,11 @@ pub struct Config {
           value_parser = clap::value_parser!(u32).range(0..=1 << 20))]
     pub cache_mb: u32,
 
+    /// Memory that one job or preview may take, by the estimate that /v1/validate tells; larger ones are refused.
+    #[arg(long, env = "MESHWRIGHT_JOB_MEMORY_MB", default_value_t = 2048, value_name = "MB",
+          value_parser = clap::value_parser!(u64).range(1..=1 << 20))]
+    pub job_memory_mb: u64,
+
     /// Previews that requests may wait for at the same time; further ones are refused.
     #[arg(long, env = "MESHWRIGHT_PREVIEWS", default_value_t = 8, value_name = "NUMBER",
           value_parser = clap::value_parser!(u32).range(1..=1000))]
@@ -82,14 +88,109 @@ pub struct Config {
     #[arg(long, env = "MESHWRIGHT_PREVIEW_TIME_LIMIT_SECONDS", default_value_t = 10, value_name = "SECONDS",
           value_parser = clap::value_parser!(u64).range(1..=60))]
     pub preview_time_limit_seconds: u64,
+
+    /// What is kept, and how long.
+    #[command(flatten)]
+    pub keep: KeepOptions,
+
+    /// Who gets in, and how much of the service each gets.
+    #[command(flatten)]
+    pub door: DoorOptions,
+}
+
+/// What is kept, and how long.
+#[derive(Debug, Clone, clap::Args)]
+pub struct KeepOptions {
+    /// Time that jobs and studies are kept after their end, such as 30d or 12h; 0 keeps them for good.
+    #[arg(long, env = "MESHWRIGHT_KEEP_RESULTS", default_value = "30d", value_parser = span, value_name = "TIME")]
+    pub keep_results: Duration,
+
+    /// Size of the database beyond which the jobs and studies that ended first are removed, in GB; 0 for any size.
+    #[arg(
+        long,
+        env = "MESHWRIGHT_KEEP_GB",
+        default_value_t = 10.0,
+        value_name = "GB"
+    )]
+    pub keep_gb: f64,
+
+    /// Time between two looks at what is old.
+    #[arg(long, env = "MESHWRIGHT_KEEP_EVERY", default_value = "5m", value_parser = span, value_name = "TIME", hide = true)]
+    pub keep_every: Duration,
+}
+
+/// Who gets in, and how much of the service each gets.
+#[derive(Debug, Clone, clap::Args)]
+pub struct DoorOptions {
+    /// Names under which clients call the service, beside localhost, its addresses and the public one; separated by commas.
+    #[arg(
+        long = "allowed-host",
+        env = "MESHWRIGHT_ALLOWED_HOSTS",
+        value_delimiter = ',',
+        value_name = "NAME"
+    )]
+    pub allowed_hosts: Vec<String>,
+
+    /// Address of a listener of its own for /metrics and health; /metrics is served only there then.
+    #[arg(long, env = "MESHWRIGHT_METRICS_LISTEN", value_name = "ADDRESS")]
+    pub metrics_listen: Option<SocketAddr>,
+
+    /// Requests a second that one client may send; 0 for any number.
+    #[arg(
+        long,
+        env = "MESHWRIGHT_REQUESTS_PER_SECOND",
+        default_value_t = 0,
+        value_name = "NUMBER"
+    )]
+    pub requests_per_second: u32,
+
+    /// Jobs of one client that may wait, designs of studies aside [default: half of --queue-limit].
+    #[arg(long, env = "MESHWRIGHT_CLIENT_QUEUE_LIMIT", value_name = "NUMBER")]
+    pub client_queue_limit: Option<u32>,
+
+    /// Designs of studies of one client that may wait.
+    #[arg(long, env = "MESHWRIGHT_CLIENT_DESIGN_LIMIT", default_value_t = 20_000, value_name = "NUMBER",
+          value_parser = clap::value_parser!(i64).range(1..))]
+    pub client_design_limit: i64,
+
+    /// Streams of events and waiting requests that one client may have open; all together may have eight times as many.
+    #[arg(
+        long,
+        env = "MESHWRIGHT_CLIENT_STREAMS",
+        default_value_t = 64,
+        value_name = "NUMBER"
+    )]
+    pub client_streams: usize,
+
+    /// Connections at the same time; idle ones give way to new ones.
+    #[arg(
+        long,
+        env = "MESHWRIGHT_CONNECTIONS",
+        default_value_t = 1024,
+        value_name = "NUMBER"
+    )]
+    pub connections: usize,
+
+    /// Time for the head of a request to come, and for an idle connection to stay.
+    #[arg(long, env = "MESHWRIGHT_IDLE_TIME", default_value = "20s", value_parser = span, value_name = "TIME")]
+    pub idle_time: Duration,
+
+    /// Hosts that clients may be told at by webhooks, separated by commas: hooks.example.com, *.example.com. Without any,
+    /// webhooks are off.
+    #[arg(
+        long = "webhook-host",
+        env = "MESHWRIGHT_WEBHOOK_HOSTS",
+        value_delimiter = ',',
+        value_name = "HOST"
+    )]
+    pub webhook_hosts: Vec<HookTarget>,
 }
 
 impl Config {
-    /// The number of workers: as given, or one for each core.
+    /// The number of workers: as given, or as many as the machine is good for.
     pub fn worker_count(&self) -> usize {
         self.workers
-            .or_else(|| thread::available_parallelism().ok())
-            .map_or(1, NonZeroUsize::get)
+            .map_or_else(|| Cores::here().workers(), NonZeroUsize::get)
     }
 
     /// The time for one job.
@@ -113,6 +214,109 @@ impl Config {
     }
 }
 
+impl Config {
+    /// What the queue allows.
+    pub fn rules(&self) -> Rules {
+        Rules {
+            queue_limit: self.queue_limit,
+            client_queue_limit: self
+                .door
+                .client_queue_limit
+                .unwrap_or(self.queue_limit.div_ceil(2)),
+            client_design_limit: self.door.client_design_limit,
+            job_memory_mb: self.job_memory_mb,
+        }
+    }
+
+    /// What is kept, and how long.
+    pub fn keep(&self) -> Keep {
+        let options = &self.keep;
+        let bytes = options.keep_gb * 1e9;
+        Keep {
+            results_for: SignedDuration::try_from(options.keep_results)
+                .ok()
+                .filter(|time| !time.is_zero()),
+            bytes: (bytes > 0.0).then_some(bytes as u64),
+            first: options.keep_every.min(FIRST_LOOK),
+            every: options.keep_every,
+        }
+    }
+
+    /// What is allowed to whom.
+    pub fn door_rules(&self) -> DoorRules {
+        let public = self.public_url.iter().filter_map(|url| {
+            let uri: Uri = url.parse().ok()?;
+            uri.host().map(str::to_owned)
+        });
+        let hosts: Vec<String> = public
+            .chain(self.door.allowed_hosts.iter().cloned())
+            .collect();
+        let loopback = self.listen.ip().is_loopback();
+        DoorRules {
+            loopback,
+            // Elsewhere the names of the service are known only if they are told; there, keys are needed anyway.
+            strict_hosts: loopback || !hosts.is_empty(),
+            hosts,
+            requests_per_second: self.door.requests_per_second,
+            waiting_per_client: self.door.client_streams,
+            waiting: self.door.client_streams.saturating_mul(8),
+        }
+    }
+
+    /// How connections are bounded.
+    pub fn bounds(&self) -> Bounds {
+        Bounds {
+            connections: self.door.connections.min(descriptors_for_connections()),
+            head: self.door.idle_time,
+            stall: self.door.idle_time.max(LEAST_STALL),
+        }
+    }
+}
+
+/// The first look at what is old comes no sooner after the start: a clock that was wrong then is right by then.
+const FIRST_LOOK: Duration = Duration::from_secs(600);
+
+/// A client that takes nothing of its answer is given at least so long.
+const LEAST_STALL: Duration = Duration::from_secs(20);
+
+/// Descriptors that the process needs for itself: the database, its log, files, and requests of its own.
+const OWN_DESCRIPTORS: u64 = 64;
+
+/// So many connections have descriptors, of those that the system grants the process.
+fn descriptors_for_connections() -> usize {
+    #[cfg(unix)]
+    {
+        let granted = rustix::process::getrlimit(rustix::process::Resource::Nofile).current;
+        let left = granted.map_or(u64::MAX, |granted| granted.saturating_sub(OWN_DESCRIPTORS));
+        usize::try_from(left).unwrap_or(usize::MAX).max(8)
+    }
+    #[cfg(not(unix))]
+    usize::MAX
+}
+
+/// Reads a span of time: 30d, 12h, 5m, 20s, or 0.
+fn span(text: &str) -> Result<Duration, String> {
+    if text == "0" {
+        return Ok(Duration::ZERO);
+    }
+    let wrong = || "expected a number and d, h, m or s, such as 30d; or 0".to_owned();
+    let unit = text.chars().last().ok_or_else(wrong)?;
+    let seconds: u64 = match unit {
+        'd' => 24 * 3600,
+        'h' => 3600,
+        'm' => 60,
+        's' => 1,
+        _ => return Err(wrong()),
+    };
+    let number: u64 = text[..text.len() - unit.len_utf8()]
+        .parse()
+        .map_err(|_| wrong())?;
+    const LONGEST: u64 = 100 * 366 * 24 * 3600;
+    let all = number.checked_mul(seconds).filter(|all| *all <= LONGEST);
+    all.map(Duration::from_secs)
+        .ok_or_else(|| "a century is the longest".to_owned())
+}
+
 /// Checks a public address, and takes the slash from its end.
 fn public_url(text: &str) -> Result<String, String> {
     let uri: Uri = text.parse().map_err(|error| format!("{error}"))?;
@@ -126,6 +330,22 @@ fn public_url(text: &str) -> Result<String, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_span_of_time_has_a_unit() {
+        for (text, seconds) in [
+            ("30d", 30 * 86_400),
+            ("12h", 43_200),
+            ("5m", 300),
+            ("20s", 20),
+            ("0", 0),
+        ] {
+            assert_eq!(span(text), Ok(Duration::from_secs(seconds)));
+        }
+        for text in ["", "30", "d", "-1d", "1.5h", "1 d", "99999999999d", "5é"] {
+            assert!(span(text).is_err(), "{text}");
+        }
+    }
 
     #[test]
     fn a_public_address_has_a_scheme_and_a_host_and_ends_without_a_slash() {

@@ -2,12 +2,22 @@
 //!
 //! The parts, in the order to read them; each knows only those above it, and `serve` puts them together.
 
+mod client;
+mod hash;
+mod private;
+
 pub mod wire;
 
 pub mod jobs;
+
+pub mod keys;
 
 pub mod http;
 
 pub mod config;
 
+mod lock;
+
 pub mod serve;
+
+pub use client::client;

@@ -17,17 +17,17 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     /// Serve jobs over HTTP.
-    Serve(commands::serve::Serve),
+    Serve(Box<commands::serve::Serve>),
     /// Compute one submission.
     Solve(commands::solve::Solve),
     /// Compute a study: many variants of one submission, and their table.
     Study(commands::study::Study),
+    /// Make, list and revoke API keys.
+    Keys(commands::keys::Keys),
+    /// Copy the database, while the service runs or not.
+    Backup(commands::backup::Backup),
     /// Ask a running service whether it is ready; exit code 1 if not.
     Health(commands::health::Health),
-    /// Measure how fast this machine computes, and how time grows with what is asked.
-    Measure(commands::measure::Measure),
-    /// Recompute the paper's tables, figures and study.
-    Reproduce(commands::reproduce::Reproduce),
 }
 
 /// Every position of a curve makes and drops matrices of a hundred kilobytes: an allocator that gives such memory back to
@@ -40,14 +40,8 @@ fn main() -> anyhow::Result<ExitCode> {
         Command::Serve(serve) => serve.run(),
         Command::Solve(solve) => solve.run(),
         Command::Study(study) => study.run(),
+        Command::Keys(keys) => keys.run(),
+        Command::Backup(backup) => backup.run(),
         Command::Health(health) => health.run(),
-        Command::Measure(measure) => {
-            measure.run()?;
-            Ok(ExitCode::SUCCESS)
-        }
-        Command::Reproduce(reproduce) => {
-            reproduce.run()?;
-            Ok(ExitCode::SUCCESS)
-        }
     }
 }

@@ -1,100 +1,157 @@
 //! The service as a whole: its start, its end, and nothing else.
 
-use std::fs::{File, OpenOptions, TryLockError};
 use std::net::SocketAddr;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use anyhow::{Context, bail};
-use meshwright_engine::analysis::Library;
+use anyhow::Context;
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use tokio::net::TcpListener;
-use tokio::task::JoinHandle;
 use tokio_util::sync::CancellationToken;
 use tracing::{info, warn};
 
 use crate::config::Config;
-use crate::http::{App, Edge, router};
-use crate::jobs::{Clock, Jobs, Pace, Previews, Rules, Solve, Store, Workers};
+use crate::http::{App, Door, Edge, Readings, Server, router, router_of_metrics};
+use crate::jobs::{
+    Clock, Deliveries, HookRules, Jobs, Keeper, OpenError, Pace, Previews, Solve, Store, Workers,
+};
+use crate::lock::DatabaseLock;
 use crate::wire::{Problem, Submission};
 
-/// At a shutdown, running work and open answers get so long to end.
-const GRACE: Duration = Duration::from_secs(10);
+/// At a shutdown, running work and open answers get so long to end. A container gives ten seconds for all of it.
+const GRACE: Duration = Duration::from_secs(8);
 
 /// How a submission is computed with the substructures that all computations share, as by
 /// [`wire::solve`](fn@crate::wire::solve).
 pub type Compute =
     Arc<dyn Fn(&Submission, &Library, &Run) -> Result<String, Problem> + Send + Sync>;
 
+/// What the service has from outside, beside its configuration.
+pub struct World {
+    /// How a submission is computed.
+    pub compute: Compute,
+    /// What time it is.
+    pub clock: Clock,
+    /// Where messages may be sent.
+    pub hooks: HookRules,
+}
+
 /// A service that runs.
 pub struct Service {
     address: SocketAddr,
+    metrics_address: Option<SocketAddr>,
     stop: CancellationToken,
-    server: JoinHandle<std::io::Result<()>>,
+    server: Server,
+    metrics_server: Option<Server>,
     workers: Workers,
+    keeper: Keeper,
+    deliveries: Deliveries,
     store: Store,
-    _lock: DatabaseLock,
+    lock: DatabaseLock,
 }
 
-/// Starts the service: the database, the workers, the listener. It computes with `compute` and reads the time from `clock`.
+/// The database cannot be used.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot use the database {path}")]
+pub struct UnusableDatabase {
+    path: String,
+    #[source]
+    cause: OpenError,
+}
+
+/// Starts the service: the database, the workers, the listeners.
 ///
 /// # Errors
 ///
-/// When the database cannot be opened, belongs to another process, or the address cannot be taken.
-pub async fn serve(config: &Config, compute: Compute, clock: Clock) -> anyhow::Result<Service> {
+/// [`UnusableDatabase`] when the database cannot be opened; others when it belongs to another process, or an address cannot
+/// be taken.
+pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
     let lock = DatabaseLock::take(&config.database)?;
-    let store = Store::open(&config.database)
-        .await
-        .with_context(|| format!("cannot use the database {}", config.database.display()))?;
-    let listener = TcpListener::bind(config.listen)
-        .await
-        .with_context(|| format!("cannot listen on {}", config.listen))?;
+    let opened = Store::open(&config.database).await;
+    let store = opened.map_err(|cause| UnusableDatabase {
+        path: config.database.display().to_string(),
+        cause,
+    })?;
+    let listener = listen(config.listen).await?;
     let address = listener
         .local_addr()
         .context("the listener has no address")?;
+    let metrics_listener = match config.door.metrics_listen {
+        Some(address) => Some(listen(address).await?),
+        None => None,
+    };
+    let metrics_address = metrics_listener
+        .as_ref()
+        .and_then(|it| it.local_addr().ok());
 
     let stop = CancellationToken::new();
     let library = Library::with_capacity(config.cache_bytes());
     let solve: Solve = {
-        let library = library.clone();
+        let (library, compute) = (library.clone(), world.compute);
         Arc::new(move |submission, run| compute(submission, &library, run))
     };
     let previews = Previews::new(Arc::clone(&solve), config.preview_rules(), stop.clone())?;
-    let jobs = Jobs::new(
-        store.clone(),
-        Rules {
-            queue_limit: config.queue_limit,
-        },
-        clock,
-        stop.clone(),
-    );
+    let jobs = Jobs::new(store.clone(), config.rules(), world.clock, stop.clone());
     let pace = Pace::with_time_limit(config.time_limit());
-    let workers = Workers::start(jobs.clone(), solve, config.worker_count(), pace).await?;
+    let in_order = lock.ended_in_order();
+    let workers =
+        Workers::start(jobs.clone(), solve, config.worker_count(), pace, in_order).await?;
+    let keeper = Keeper::start(jobs.clone(), config.keep());
+    let deliveries =
+        Deliveries::start(jobs.clone(), world.hooks.clone()).context("webhooks cannot be sent")?;
 
+    let door = Door::new(config.door_rules());
+    let asks_for_keys = !config.listen.ip().is_loopback() || store.has_keys().await?;
+    if asks_for_keys && !store.has_keys().await? {
+        warn!(
+            "nobody gets in without a key, and there is none yet: make one with `meshwright keys create`"
+        );
+    }
     let edge = Edge {
         public_url: config.public_url.clone().unwrap_or_default(),
         cors_origins: config.cors_origin.clone(),
+        asks_for_keys,
+        metrics_here: metrics_listener.is_none(),
     };
     let app = App {
         jobs,
         previews,
         library,
         workers_alive: workers.alive(),
+        hooks: world.hooks,
+        door: Arc::new(door),
         edge: Arc::new(edge),
+        readings: Arc::new(Readings::default()),
     };
-    let server =
-        axum::serve(listener, router(app)).with_graceful_shutdown(stop.clone().cancelled_owned());
-    let server = tokio::spawn(server.into_future());
+    let bounds = config.bounds();
+    let metrics_server = metrics_listener.map(|listener| {
+        Server::start(
+            listener,
+            router_of_metrics(app.clone()),
+            bounds,
+            stop.clone(),
+        )
+    });
+    let server = Server::start(listener, router(app), bounds, stop.clone());
     info!(%address, database = %config.database.display(), workers = config.worker_count(), "serving");
     Ok(Service {
         address,
+        metrics_address,
         stop,
         server,
+        metrics_server,
         workers,
+        keeper,
+        deliveries,
         store,
-        _lock: lock,
+        lock,
     })
+}
+
+async fn listen(address: SocketAddr) -> anyhow::Result<TcpListener> {
+    let listener = TcpListener::bind(address).await;
+    listener.with_context(|| format!("cannot listen on {address}"))
 }
 
 impl Service {
@@ -103,63 +160,47 @@ impl Service {
         self.address
     }
 
+    /// The address at which its numbers are, if that is another one.
+    pub fn metrics_address(&self) -> Option<SocketAddr> {
+        self.metrics_address
+    }
+
     /// Ends in order: takes no more work, returns running jobs to the queue, stops previews, ends open streams, closes the
     /// database.
     pub async fn shut_down(mut self) {
         info!("shutting down");
         self.stop.cancel();
-        if tokio::time::timeout(GRACE, self.workers.ended())
-            .await
-            .is_err()
-        {
+        let work = async {
+            self.workers.ended().await;
+            self.keeper.ended().await;
+            self.deliveries.ended().await;
+        };
+        let (workers, answers) =
+            tokio::join!(tokio::time::timeout(GRACE, work), self.server.ended(GRACE));
+        if workers.is_err() {
             // Its job stands in the queue already, or is recovered at the next start.
             warn!("the engine did not stop in time");
         }
-        if tokio::time::timeout(GRACE, &mut self.server).await.is_err() {
+        if !answers {
             warn!("some answers did not end in time");
-            self.server.abort();
         }
+        if let Some(server) = self.metrics_server {
+            server.ended(Duration::from_secs(1)).await;
+        }
+        // What is still said to run was not lost by a crash.
+        self.lock.end_in_order();
         self.store.close().await;
     }
 
     /// Ends as a crash would: nothing is returned to the queue, nobody is told.
     pub async fn kill(self) {
-        self.server.abort();
+        self.server.kill();
+        if let Some(server) = self.metrics_server {
+            server.kill();
+        }
         self.workers.kill().await;
         // Streams that are open would keep their connections beyond this; in a crash they end with the process.
         self.stop.cancel();
         self.store.close().await;
-    }
-}
-
-/// One process works on a database. That makes it certain, at the start, that a job that is said to run has lost its
-/// worker; without it, two services would take each other's jobs for lost.
-struct DatabaseLock {
-    // The lock is the system's, and ends with the file or the process, however that ends.
-    _file: File,
-}
-
-impl DatabaseLock {
-    fn take(database: &Path) -> anyhow::Result<Self> {
-        let mut name = database.as_os_str().to_owned();
-        name.push(".lock");
-        let path = PathBuf::from(name);
-        let file = OpenOptions::new()
-            .create(true)
-            .truncate(false)
-            .write(true)
-            .open(&path)
-            .with_context(|| format!("cannot write {}", path.display()))?;
-        match file.try_lock() {
-            Ok(()) => Ok(Self { _file: file }),
-            Err(TryLockError::WouldBlock) => {
-                bail!("another process serves the database {}", database.display())
-            }
-            // Some file systems have no locks; there the operator vouches for it.
-            Err(TryLockError::Error(error)) => {
-                warn!(%error, "the database cannot be locked: make sure that no other process serves it");
-                Ok(Self { _file: file })
-            }
-        }
     }
 }

@@ -1,7 +1,9 @@
 //! Draws a grid: `cargo run --release -p meshwright-engine --example grid_svg -- tooth 50 45.5 > tooth.svg`, or
 //! `-- blank BORE INTERFACE TEETH [COUNT CIRCLE RADIUS]`, with lengths in millimeters.
 
-use meshwright_engine::gear::{Blank, GearData, HolePattern, Material, Rack, SpurGear};
+use meshwright_engine::gear::{
+    BlankRegion, GearData, HolePattern, Material, Rack, SpurGear, TipEdge, ToothDeviations,
+};
 use meshwright_engine::grid::blank::ELEMENTS_PER_TOOTH;
 use meshwright_engine::grid::{BlankGrid, Grid, GridLevel, ToothGrid};
 
@@ -68,17 +70,17 @@ fn gear(tooth_count: u32, profile_shift: f64) -> Result<SpurGear, Box<dyn std::e
             tip_radius: 0.76e-3,
         },
         profile_shift,
+        thickness_deviation: 0.0,
+        tip_edge: TipEdge::Sharp,
         face_width: 20e-3,
-        tip_relief: None,
+        modifications: Vec::new(),
+        deviations: ToothDeviations::default(),
         material: Material {
             youngs_modulus: 210e9,
             poisson_ratio: 0.3,
             density: 7850.0,
         },
-        blank: Blank {
-            bore_radius: 1e-3,
-            holes: None,
-        },
+        blank: BlankRegion::solid(1e-3),
     })?)
 }
 

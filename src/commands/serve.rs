@@ -6,11 +6,15 @@ use std::sync::Arc;
 
 use anyhow::Context;
 use meshwright::config::Config;
-use meshwright::serve::serve;
+use meshwright::jobs::{Clock, HookRules};
+use meshwright::serve::{UnusableDatabase, World, serve};
 use meshwright::wire;
 use tracing_subscriber::EnvFilter;
 
 use super::demo;
+
+/// The exit code for a database that cannot be used: to start again does not help.
+const EXIT_DATABASE: u8 = 3;
 
 /// Serve jobs over HTTP.
 #[derive(Debug, clap::Args)]
@@ -20,6 +24,9 @@ pub(crate) struct Serve {
     /// Submit test case 2 of the paper to the service once it runs, show what comes of it, and go on serving.
     #[arg(long)]
     demo: bool,
+    /// Write the log as JSON, one object to a line.
+    #[arg(long, env = "MESHWRIGHT_LOG_JSON")]
+    log_json: bool,
 }
 
 impl Serve {
@@ -30,8 +37,17 @@ impl Serve {
     /// If the service cannot start, or the demo gets an answer that it cannot read.
     pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
         let runtime = tokio::runtime::Runtime::new().context("the runtime cannot be started")?;
-        runtime.block_on(self.until_signal())?;
-        Ok(ExitCode::SUCCESS)
+        let ended = runtime.block_on(self.until_signal());
+        // Work that nobody waits for any more does not hold the process up.
+        runtime.shutdown_background();
+        match ended {
+            Ok(()) => Ok(ExitCode::SUCCESS),
+            Err(error) if error.is::<UnusableDatabase>() => {
+                eprintln!("Error: {error:#}.");
+                Ok(ExitCode::from(EXIT_DATABASE))
+            }
+            Err(error) => Err(error),
+        }
     }
 
     async fn until_signal(&self) -> anyhow::Result<()> {
@@ -39,18 +55,22 @@ impl Serve {
         let quiet = if self.demo { "warn" } else { "info" };
         let filter =
             EnvFilter::try_from_env("MESHWRIGHT_LOG").unwrap_or_else(|_| EnvFilter::new(quiet));
-        tracing_subscriber::fmt()
+        let log = tracing_subscriber::fmt()
             .with_env_filter(filter)
             .with_writer(std::io::stderr)
-            .with_ansi(std::io::stderr().is_terminal())
-            .init();
+            .with_ansi(std::io::stderr().is_terminal());
+        if self.log_json {
+            log.json().init();
+        } else {
+            log.init();
+        }
 
-        let service = serve(
-            &self.config,
-            Arc::new(wire::solve),
-            Arc::new(jiff::Timestamp::now),
-        )
-        .await?;
+        let world = World {
+            compute: Arc::new(wire::solve),
+            clock: Clock::system(),
+            hooks: HookRules::to_public(self.config.door.webhook_hosts.clone()),
+        };
+        let service = serve(&self.config, world).await?;
         println!(
             "Meshwright serves http://{}; its documentation is at /docs.",
             service.address()

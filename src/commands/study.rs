@@ -10,9 +10,9 @@ use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
 use meshwright::wire::study_table::{TableRow, csv, table};
 use meshwright::wire::{
-    Code, Design, Problem, RowState, Study as StudyDocument, StudyResults, Summary, solve,
+    Code, Design, Problem, RowState, Status, Study as StudyDocument, StudyResults, Summary, solve,
 };
-use meshwright_engine::analysis::Library;
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use rayon::prelude::*;
 
@@ -47,7 +47,7 @@ impl Study {
     /// code 2.
     pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
         let document = read(&self.study)?;
-        let study = match StudyDocument::parse(&document) {
+        let study = match StudyDocument::parse(&document, &Run::unattended()) {
             Ok(study) => study,
             Err(problem) => {
                 eprint!("{}", told(&problem));
@@ -148,9 +148,9 @@ fn row_state(design: Design, outcome: Option<Outcome>) -> RowState {
         changes: design.changes,
         job: None,
         status: if summary.is_some() {
-            "successful"
+            Status::Successful
         } else {
-            "failed"
+            Status::Failed
         },
         summary,
         problem: problem.map(|problem| {
@@ -161,7 +161,7 @@ fn row_state(design: Design, outcome: Option<Outcome>) -> RowState {
 
 fn results(study: &StudyDocument, states: Vec<RowState>) -> StudyResults {
     let rows = table(study.gear(), states);
-    let failed = rows.iter().all(|row| row.status == "failed");
+    let failed = rows.iter().all(|row| row.status == Status::Failed);
     let problem = failed.then(|| {
         let detail = format!(
             "None of the {} designs could be computed; each row of the table has its problem.",
@@ -172,7 +172,11 @@ fn results(study: &StudyDocument, states: Vec<RowState>) -> StudyResults {
     });
     StudyResults {
         id: None,
-        status: if failed { "failed" } else { "successful" },
+        status: if failed {
+            Status::Failed
+        } else {
+            Status::Successful
+        },
         done: rows.len() as u64,
         total: rows.len() as u64,
         gear: study.gear(),
@@ -339,7 +343,7 @@ mod tests {
         designs.push(json!({ "label": "8R34 again", "changes": designs[1]["changes"] }));
         designs.push(json!({ "label": "14R34", "changes": {
             "/pair/driven/blank/holes": { "count": 14, "circle_radius_mm": 45 } } }));
-        StudyDocument::parse(study.to_string().as_bytes()).unwrap()
+        StudyDocument::parse(study.to_string().as_bytes(), &Run::unattended()).unwrap()
     }
 
     #[test]
@@ -365,7 +369,7 @@ mod tests {
             ]
         );
         assert_eq!(results.rows[1].curves, results.rows[6].curves);
-        assert_eq!(results.rows[7].status, "failed");
+        assert_eq!(results.rows[7].status, Status::Failed);
         assert_eq!(
             results.rows[7].problem.as_ref().unwrap()["code"],
             "holes_breach_rim"

@@ -4,9 +4,11 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
 
 use axum::http::header::HeaderValue;
-use meshwright_engine::analysis::Library;
+use meshwright_engine::library::Library;
 
-use crate::jobs::{Jobs, Previews};
+use super::door::Door;
+use super::health::Readings;
+use crate::jobs::{HookRules, Jobs, Previews};
 
 /// What handlers work with.
 #[derive(Clone)]
@@ -19,8 +21,14 @@ pub struct App {
     pub library: Library,
     /// The number of workers that live.
     pub workers_alive: Arc<AtomicUsize>,
+    /// Where messages may be sent.
+    pub hooks: HookRules,
+    /// Who gets in, and how much of the service each gets.
+    pub door: Arc<Door>,
     /// How the service looks from outside.
     pub edge: Arc<Edge>,
+    /// What the last look at the database said.
+    pub readings: Arc<Readings>,
 }
 
 /// How the service looks from outside.
@@ -30,4 +38,8 @@ pub struct Edge {
     pub public_url: String,
     /// The origins whose pages may call the service; `*` for all.
     pub cors_origins: Vec<HeaderValue>,
+    /// Whether keys are needed from the start, for the OpenAPI document.
+    pub asks_for_keys: bool,
+    /// Whether the numbers of the service are served beside everything else.
+    pub metrics_here: bool,
 }

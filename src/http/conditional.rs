@@ -1,22 +1,37 @@
 //! Entity tags: a client that has the answer already is told so (RFC 9110, section 13).
 
-use axum::http::header::{ETAG, HeaderValue, IF_NONE_MATCH};
+use axum::http::header::{CACHE_CONTROL, ETAG, HeaderValue, IF_NONE_MATCH};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
-use sha2::{Digest, Sha256};
+
+use crate::hash::sha256_hex_of;
+
+/// How long an answer may be kept by who asked for it.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Keep {
+    /// It may change: ask again, with the tag.
+    AskAgain,
+    /// It never changes under its address.
+    ForGood,
+}
+
+impl Keep {
+    fn value(self) -> &'static str {
+        match self {
+            Self::AskAgain => "private, no-cache",
+            Self::ForGood => "private, max-age=31536000, immutable",
+        }
+    }
+}
 
 /// A strong entity tag.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Tag(String);
 
 impl Tag {
-    /// The tag of a body.
-    pub(super) fn of(body: &[u8]) -> Self {
-        let hash: String = Sha256::digest(body)[..16]
-            .iter()
-            .map(|byte| format!("{byte:02x}"))
-            .collect();
-        Self(format!("\"{hash}\""))
+    /// The tag of an answer that is the same as long as these parts are.
+    pub(super) fn of(parts: &[&str]) -> Self {
+        Self(format!("\"{}\"", &sha256_hex_of(parts)[..32]))
     }
 
     /// The tag of what a hash stands for, in one of its forms.
@@ -25,7 +40,7 @@ impl Tag {
     }
 
     /// Whether the client says that it has this.
-    pub(super) fn is_known(&self, request: &HeaderMap) -> bool {
+    fn is_known(&self, request: &HeaderMap) -> bool {
         let values = request
             .get_all(IF_NONE_MATCH)
             .iter()
@@ -39,19 +54,27 @@ impl Tag {
             })
     }
 
-    /// Puts the tag on an answer.
-    pub(super) fn mark(&self, headers: &mut HeaderMap) {
-        headers.insert(
-            ETAG,
-            HeaderValue::from_str(&self.0).expect("a hash in quotes is visible ASCII"),
-        );
-    }
-
-    /// The answer to a client that has this already.
-    pub(super) fn not_modified(&self) -> Response {
-        let mut response = StatusCode::NOT_MODIFIED.into_response();
-        self.mark(response.headers_mut());
-        response
+    /// The answer: that the client has it already, or what `make` gives, with the tag on it.
+    ///
+    /// # Errors
+    ///
+    /// What `make` meets.
+    pub(super) async fn answer<E>(
+        &self,
+        keep: Keep,
+        request: &HeaderMap,
+        make: impl Future<Output = Result<Response, E>>,
+    ) -> Result<Response, E> {
+        let mut response = if self.is_known(request) {
+            StatusCode::NOT_MODIFIED.into_response()
+        } else {
+            make.await?
+        };
+        let headers = response.headers_mut();
+        let tag = HeaderValue::from_str(&self.0).expect("a hash in quotes is visible ASCII");
+        headers.insert(ETAG, tag);
+        headers.insert(CACHE_CONTROL, HeaderValue::from_static(keep.value()));
+        Ok(response)
     }
 }
 

@@ -5,11 +5,16 @@ use axum::body::Bytes;
 use axum::http::header::CONTENT_TYPE;
 use axum::routing::get;
 use utoipa::OpenApi as _;
-use utoipa::openapi::{OpenApi, Server, ServerBuilder};
+use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityRequirement, SecurityScheme};
+use utoipa::openapi::{
+    ContentBuilder, OpenApi, Ref, RefOr, ResponseBuilder, Server, ServerBuilder,
+};
 use utoipa_swagger_ui::{Config, SwaggerUi};
 
 use super::app::App;
+use super::events::ProgressView;
 use super::router::routes;
+use super::studies::StudyProgressView;
 
 /// What stands before the paths.
 #[derive(utoipa::OpenApi)]
@@ -19,23 +24,98 @@ use super::router::routes;
         description = "Static transmission error and mesh stiffness of spur gear pairs, with tip relief and lightening holes.\n\nSubmit a job, look until it is `successful`, get its results. Units stand in the names of fields. Every error is a problem document (RFC 9457) with a stable `code`.",
         license(name = "MIT", identifier = "MIT"),
     ),
+    components(schemas(ProgressView, StudyProgressView)),
     tags(
         (name = "Jobs", description = "Computations, from submission to end."),
         (name = "Results", description = "What was computed."),
         (name = "Studies", description = "Many variants of a submission at once, and their table."),
+        (name = "Webhooks", description = "Where a client is told that its jobs and studies have ended."),
         (name = "Reference", description = "What can be known without a job."),
         (name = "Operation", description = "For those who run the service."),
     ),
 )]
 struct Introduction;
 
+/// The name of the security scheme.
+const KEY: &str = "key";
+
 pub(super) fn introduction() -> OpenApi {
-    Introduction::openapi()
+    let mut openapi = Introduction::openapi();
+    let scheme = HttpBuilder::new()
+        .scheme(HttpAuthScheme::Bearer)
+        .bearer_format("mw_ID_SECRET")
+        .description(Some("A key that the operator of the service made (`meshwright keys create`). Needed as soon as there is one, and wherever others than this machine can call."))
+        .build();
+    openapi
+        .components
+        .get_or_insert_default()
+        .add_security_scheme(KEY, SecurityScheme::Http(scheme));
+    say_whether_keys_are_needed(&mut openapi, false);
+    openapi
+}
+
+/// Adds to every operation what may be answered whatever it is: by who asks, by its bounds, by the state of the service.
+pub(super) fn add_common_answers(openapi: &mut OpenApi) {
+    const WITH_KEY: [(&str, &str); 4] = [
+        (
+            "401",
+            "A key is needed, and there is none, or it is not known.",
+        ),
+        ("403", "The key may not do this."),
+        (
+            "429",
+            "More is asked by this client than one may ask. Try again after `Retry-After` seconds.",
+        ),
+        (
+            "503",
+            "Nothing can be stored or read now, or too much comes at once. Try again after `Retry-After` seconds.",
+        ),
+    ];
+    const ALWAYS: [(&str, &str); 3] = [
+        ("400", "The request is not understood."),
+        ("408", "The request was not over in time."),
+        ("421", "The service is not called so."),
+    ];
+    for item in openapi.paths.paths.values_mut() {
+        let operations = [&mut item.get, &mut item.post, &mut item.delete];
+        for operation in operations.into_iter().flatten() {
+            let is_public = operation.security.is_some();
+            let with_key = WITH_KEY.iter().filter(|_| !is_public);
+            for (status, description) in with_key.chain(&ALWAYS) {
+                let responses = &mut operation.responses.responses;
+                responses
+                    .entry((*status).to_owned())
+                    .or_insert_with(|| problem(description));
+            }
+        }
+    }
+}
+
+fn problem(description: &str) -> RefOr<utoipa::openapi::Response> {
+    let content = ContentBuilder::new()
+        .schema(Some(Ref::from_schema_name("Problem")))
+        .build();
+    ResponseBuilder::new()
+        .description(description)
+        .content("application/problem+json", content)
+        .build()
+        .into()
+}
+
+/// Says whether requests need a key, those aside that never do.
+pub(super) fn say_whether_keys_are_needed(openapi: &mut OpenApi, needed: bool) {
+    let with_key = SecurityRequirement::new(KEY, Vec::<String>::new());
+    openapi.security = Some(if needed {
+        vec![with_key]
+    } else {
+        vec![SecurityRequirement::default(), with_key]
+    });
 }
 
 /// The OpenAPI document of the service, as it is without a public address.
 pub fn openapi() -> OpenApi {
     let mut openapi = routes().into_openapi();
+    add_common_answers(&mut openapi);
     openapi.servers = Some(vec![server("")]);
     openapi
 }

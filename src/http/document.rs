@@ -1,5 +1,6 @@
 //! The body of a request: a JSON document of bounded size.
 
+use std::error::Error;
 use std::time::Duration;
 
 use axum::body::{Body, Bytes};
@@ -7,14 +8,15 @@ use axum::extract::{FromRequest, Request};
 use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_ENCODING, CONTENT_TYPE};
 use futures_util::StreamExt;
+use tower_http::timeout::TimeoutError;
 
 use crate::wire::{Code, Problem};
 
 /// So many times the limit is read and thrown away, because a client that is still sending does not see the answer.
 const DRAINED: usize = 64;
 
-/// The body is here within this time.
-const PATIENCE: Duration = Duration::from_secs(30);
+/// The body is here within this time; a layer of the router sees to it.
+pub(super) const PATIENCE: Duration = Duration::from_secs(30);
 
 /// The bytes of a request's JSON document, so many MiB at most. The largest submission has a few thousand bytes.
 pub(super) struct Document<const MIB: usize = 1>(pub(super) Bytes);
@@ -24,16 +26,9 @@ impl<const MIB: usize, S: Send + Sync> FromRequest<S> for Document<MIB> {
 
     async fn from_request(request: Request, _: &S) -> Result<Self, Problem> {
         let media_type = check_media_type(request.headers());
-        let body = tokio::time::timeout(PATIENCE, read(request.into_body(), MIB * 1024 * 1024))
-            .await
-            .map_err(|_| {
-                Problem::new(
-                    Code::RequestTimeout,
-                    format!("The body was not here within {} s.", PATIENCE.as_secs()),
-                )
-            })?;
+        let body = read(request.into_body(), MIB * 1024 * 1024).await?;
         media_type?;
-        body.map(Self)
+        Ok(Self(body))
     }
 }
 
@@ -69,12 +64,7 @@ fn check_media_type(headers: &HeaderMap) -> Result<(), Problem> {
 async fn read(body: Body, limit: usize) -> Result<Bytes, Problem> {
     let (mut stream, mut bytes, mut length) = (body.into_data_stream(), Vec::new(), 0_usize);
     while let Some(chunk) = stream.next().await {
-        let chunk = chunk.map_err(|_| {
-            Problem::new(
-                Code::MalformedJson,
-                "The body ended before it was complete.",
-            )
-        })?;
+        let chunk = chunk.map_err(|error| broken(&error))?;
         length = length.saturating_add(chunk.len());
         if length > DRAINED * limit {
             break;
@@ -90,4 +80,22 @@ async fn read(body: Body, limit: usize) -> Result<Bytes, Problem> {
         ));
     }
     Ok(bytes.into())
+}
+
+/// Why a body is not complete.
+fn broken(error: &axum::Error) -> Problem {
+    let mut cause: Option<&(dyn Error + 'static)> = Some(error);
+    while let Some(error) = cause {
+        if error.is::<TimeoutError>() {
+            return Problem::new(
+                Code::RequestTimeout,
+                format!("The body was not here within {} s.", PATIENCE.as_secs()),
+            );
+        }
+        cause = error.source();
+    }
+    Problem::new(
+        Code::MalformedJson,
+        "The body ended before it was complete.",
+    )
 }

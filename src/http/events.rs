@@ -6,17 +6,18 @@ use std::time::Duration;
 use axum::extract::{Path, State};
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
-use futures_util::stream::{self, Stream};
+use futures_util::stream;
 use serde::Serialize;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
 use super::app::App;
 use super::client::Client;
+use super::door::PlaceToWait;
 use super::parameters::job_id;
 use super::view::JobView;
-use crate::jobs::{News, Progress, Status};
-use crate::wire::Problem;
+use crate::jobs::{News, Progress};
+use crate::wire::{Code, Problem, Status};
 
 /// Progress is told so often at most.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
@@ -33,6 +34,31 @@ pub(super) struct ProgressView {
     positions_total: u64,
 }
 
+/// An event of a job.
+#[derive(ToSchema)]
+#[schema(title = "JobEvent")]
+#[expect(dead_code, reason = "it stands for the events in the OpenAPI document")]
+pub(super) struct JobEvent {
+    /// The number of the event in the stream.
+    id: String,
+    /// `status` at the start of the stream and whenever the state changes, else `progress`.
+    event: EventName,
+    /// JSON: of `status` a `Job`, of `progress` a `Progress`.
+    #[schema(content_media_type = "application/json")]
+    data: String,
+}
+
+/// The name of an event.
+#[derive(ToSchema)]
+#[schema(title = "EventName", rename_all = "snake_case")]
+#[expect(dead_code, reason = "it stands for the names in the OpenAPI document")]
+pub(super) enum EventName {
+    /// What is watched, as it stands.
+    Status,
+    /// How far it has come.
+    Progress,
+}
+
 /// Watch a job
 ///
 /// A stream of server-sent events: `status` with the job as data, at the start and whenever its state changes, and
@@ -45,38 +71,53 @@ pub(super) struct ProgressView {
         ("Last-Event-ID" = Option<String>, Header, description = "Sent by a client that comes back; every stream starts with the present state."),
     ),
     responses(
-        (status = 200, description = "Events: `status` (a job) and `progress`.", body = ProgressView, content_type = "text/event-stream"),
+        (status = 200, description = "Events: `status` with a Job as data, and `progress` with a Progress.", body = JobEvent, content_type = "text/event-stream"),
         (status = 404, description = "There is no such job.", body = Problem, content_type = "application/problem+json"),
+        (status = 429, description = "As many streams are open as one client may have.", body = Problem, content_type = "application/problem+json"),
     ),
 )]
 pub(super) async fn events(
     State(app): State<App>,
-    Client(client): Client,
+    client: Client,
     Path(id): Path<String>,
 ) -> Result<Response, Problem> {
     let id = job_id(&id)?;
-    app.jobs.find(&client, id).await?;
-
+    app.jobs.find(client.name(), id).await?;
+    let place = place(&app, client.name())?;
     let watch = Watch {
         news: app.jobs.news(id),
         app,
-        client,
+        client: client.0.client,
         id,
         count: 0,
         status: None,
         progress: None,
     };
-    let events = stream::unfold(watch, async |mut watch| {
-        let event = watch.next().await?;
-        Some((Ok::<_, Infallible>(event), watch))
-    });
-    Ok(answer(events))
+    Ok(answer(watch, place))
 }
 
-/// The answer that streams `events`.
-pub(super) fn answer(
-    events: impl Stream<Item = Result<Event, Infallible>> + Send + 'static,
-) -> Response {
+/// One who watches until there is nothing more to see.
+pub(super) trait Watching: Send + 'static {
+    /// The next event; none at the end.
+    fn next(&mut self) -> impl Future<Output = Option<Event>> + Send;
+}
+
+/// A place among those who wait.
+pub(super) fn place(app: &App, client: &str) -> Result<PlaceToWait, Problem> {
+    app.door.place_to_wait(client).ok_or_else(|| {
+        Problem::new(
+            Code::RateLimited,
+            "As many streams of events and waiting requests are open as one client, or all together, may have.",
+        )
+    })
+}
+
+/// The answer that streams what `watch` sees, and keeps its place as long as that lasts.
+pub(super) fn answer(watch: impl Watching, place: PlaceToWait) -> Response {
+    let events = stream::unfold((watch, place), async |(mut watch, place)| {
+        let event = watch.next().await?;
+        Some((Ok::<_, Infallible>(event), (watch, place)))
+    });
     // A proxy that collects the answer before it passes it on would spoil the stream.
     (
         [("x-accel-buffering", "no")],
@@ -107,7 +148,7 @@ struct Watch {
     progress: Option<Progress>,
 }
 
-impl Watch {
+impl Watching for Watch {
     /// The next event; none after the job has ended or vanished, or when the service shuts down.
     async fn next(&mut self) -> Option<Event> {
         if self.status.is_some_and(Status::has_ended) {
@@ -135,7 +176,9 @@ impl Watch {
             }
         }
     }
+}
 
+impl Watch {
     /// Leaves time between two reports of progress; none when the service shuts down.
     async fn pause(&self) -> Option<()> {
         if self.progress.is_none() {

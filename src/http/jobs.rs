@@ -3,7 +3,7 @@
 use axum::Json;
 use axum::extract::{Path, State};
 use axum::http::StatusCode;
-use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, HeaderMap, HeaderValue, LINK, RETRY_AFTER};
+use axum::http::header::{CONTENT_TYPE, HeaderMap, HeaderValue, RETRY_AFTER};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use utoipa::IntoParams;
@@ -11,17 +11,13 @@ use uuid::Uuid;
 
 use super::app::App;
 use super::client::Client;
-use super::conditional::Tag;
+use super::conditional::{Keep, Tag};
+use super::page::{self, LARGEST_LIMIT, Page, USUAL_LIMIT};
 use super::parameters::{Parameters, invalid, job_id};
 use super::prefer::Wait;
-use super::view::{JobView, ListView};
-use crate::jobs::{Filter, Membership, Status};
-use crate::wire::Problem;
-
-/// A list has so many jobs unless it is told.
-const USUAL_LIMIT: u32 = 50;
-/// A list has so many jobs at most, and names so many ids.
-const LARGEST_LIMIT: u32 = 200;
+use super::view::JobView;
+use crate::jobs::{Filter, Membership};
+use crate::wire::{Problem, Status};
 
 /// What to list.
 #[derive(Deserialize, IntoParams)]
@@ -29,40 +25,55 @@ const LARGEST_LIMIT: u32 = 200;
 #[into_params(parameter_in = Query)]
 pub(super) struct ListParameters {
     /// Jobs in this state, or in one of these, separated by commas.
-    #[param(example = "accepted,running")]
+    #[param(
+        example = "accepted,running",
+        pattern = "^((accepted|running|successful|failed|dismissed)(,(accepted|running|successful|failed|dismissed))*)?$"
+    )]
     status: Option<String>,
     /// Jobs with this tag.
     tag: Option<String>,
     /// Jobs of these ids, separated by commas; those that do not exist are left out. 200 at most.
+    #[param(
+        pattern = "^([0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}(,[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}){0,199})?$"
+    )]
     ids: Option<String>,
     /// Jobs of the study of this id; `none` for jobs that belong to no study.
+    #[param(
+        pattern = "^(none|[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12})$"
+    )]
     study: Option<String>,
+    /// Jobs from the first one on that was submitted at this instant or later (RFC 3339).
+    #[param(format = DateTime)]
+    submitted_since: Option<String>,
+    /// Jobs before the first one that was submitted at this instant or later (RFC 3339).
+    #[param(format = DateTime)]
+    submitted_before: Option<String>,
     /// So many jobs at most.
     #[param(minimum = 1, maximum = 200, default = 50)]
     limit: Option<u32>,
     /// Where to go on: `next` of the list before.
+    #[param(pattern = "^c[1-9a-f][0-9a-f]{0,14}$")]
     cursor: Option<String>,
 }
 
 impl ListParameters {
-    fn limit(&self, filter: &Filter) -> Result<u32, Problem> {
-        match (self.limit, &filter.ids) {
-            (Some(limit), _) if (1..=LARGEST_LIMIT).contains(&limit) => Ok(limit),
-            (Some(limit), _) => Err(invalid(format!(
-                "limit is {limit}; it lies between 1 and {LARGEST_LIMIT}."
-            ))),
-            // Who names jobs wants them all.
-            (None, Some(_)) => Ok(LARGEST_LIMIT),
-            (None, None) => Ok(USUAL_LIMIT),
-        }
+    fn limit(&self) -> Result<u32, Problem> {
+        // Who names jobs wants them all.
+        let usual = if self.ids.is_some() {
+            LARGEST_LIMIT
+        } else {
+            USUAL_LIMIT
+        };
+        page::limit(self.limit, usual)
     }
 
     fn filter(&self) -> Result<Filter, Problem> {
         let status = |word: &str| {
-            Status::ALL
-                .into_iter()
-                .find(|status| status.as_str() == word)
-                .ok_or_else(|| invalid(format!("status {word:?} is none of accepted, running, successful, failed, dismissed.")))
+            Status::of_word(word).ok_or_else(|| {
+                invalid(format!(
+                    "status {word:?} is none of accepted, running, successful, failed, dismissed."
+                ))
+            })
         };
         let id = |word: &str| {
             word.parse::<Uuid>()
@@ -90,34 +101,25 @@ impl ListParameters {
             tag: self.tag.clone(),
             ids,
             study: self.study.as_deref().map(membership).transpose()?,
-            after: self
-                .cursor
-                .as_ref()
-                .map(|cursor| cursor.parse())
-                .transpose()
-                .map_err(|_| {
-                    invalid(
-                        "cursor is not one that a list has given; take it from next as it stands.",
-                    )
-                })?,
+            span: page::span(
+                self.submitted_since.as_deref(),
+                self.submitted_before.as_deref(),
+            )?,
+            after: page::cursor(self.cursor.as_deref())?,
         })
     }
 
-    /// The address of the next page.
-    fn next(&self, cursor: &str, public_url: &str) -> String {
-        let mut query = url_encoded(&[
+    /// What the address of the next page has in common with this one's.
+    fn pairs<'a>(&'a self, limit: &'a str) -> [(&'static str, Option<&'a str>); 7] {
+        [
             ("status", self.status.as_deref()),
             ("tag", self.tag.as_deref()),
             ("ids", self.ids.as_deref()),
             ("study", self.study.as_deref()),
-            (
-                "limit",
-                self.limit.map(|limit| limit.to_string()).as_deref(),
-            ),
-            ("cursor", Some(cursor)),
-        ]);
-        query.insert_str(0, &format!("{public_url}/v1/jobs?"));
-        query
+            ("submitted_since", self.submitted_since.as_deref()),
+            ("submitted_before", self.submitted_before.as_deref()),
+            ("limit", Some(limit)),
+        ]
     }
 }
 
@@ -136,23 +138,6 @@ fn words(list: &str) -> impl Iterator<Item = &str> {
         .filter(|word| !word.is_empty())
 }
 
-fn url_encoded(pairs: &[(&str, Option<&str>)]) -> String {
-    let encode = |text: &str| {
-        text.bytes()
-            .map(|byte| match byte {
-                b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'_' | b'.' => {
-                    char::from(byte).to_string()
-                }
-                _ => format!("%{byte:02X}"),
-            })
-            .collect::<String>()
-    };
-    let given = pairs
-        .iter()
-        .filter_map(|(name, value)| value.map(|value| format!("{name}={}", encode(value))));
-    given.collect::<Vec<_>>().join("&")
-}
-
 /// List jobs
 ///
 /// Newest first, page by page. With `ids` it is the way to look at many jobs at once.
@@ -160,7 +145,7 @@ fn url_encoded(pairs: &[(&str, Option<&str>)]) -> String {
     get, path = "/v1/jobs", tag = "Jobs", operation_id = "list_jobs",
     params(ListParameters),
     responses(
-        (status = 200, description = "The jobs.", body = ListView, headers(
+        (status = 200, description = "The jobs.", body = Page<JobView>, headers(
             ("Link" = String, description = "With rel=next, the address of the next page; absent at the end."),
         )),
         (status = 400, description = "A parameter is not understood.", body = Problem, content_type = "application/problem+json"),
@@ -168,32 +153,26 @@ fn url_encoded(pairs: &[(&str, Option<&str>)]) -> String {
 )]
 pub(super) async fn list(
     State(app): State<App>,
-    Client(client): Client,
+    client: Client,
     Parameters(parameters): Parameters<ListParameters>,
 ) -> Result<Response, Problem> {
-    let filter = parameters.filter()?;
-    let page = app
+    let limit = parameters.limit()?;
+    let found = app
         .jobs
-        .list(&client, &filter, parameters.limit(&filter)?)
+        .list(client.name(), &parameters.filter()?, limit)
         .await?;
-
-    let items = page
-        .items
-        .iter()
-        .map(|job| JobView::new(job, &app.edge))
-        .collect();
-    let next = page.next.map(|cursor| cursor.to_string());
-    let link = next.as_ref().map(|cursor| {
-        format!(
-            "<{}>; rel=\"next\"",
-            parameters.next(cursor, &app.edge.public_url)
-        )
-    });
-    let mut response = Json(ListView { items, next }).into_response();
-    if let Some(link) = link.and_then(|link| HeaderValue::try_from(link).ok()) {
-        response.headers_mut().insert(LINK, link);
-    }
-    Ok(response)
+    let views = found.items.iter().map(|job| JobView::new(job, &app.edge));
+    let page = Page {
+        items: views.collect(),
+        next: found.next.map(|cursor| cursor.to_string()),
+    };
+    let limit = limit.to_string();
+    Ok(page::answer(
+        &app.edge,
+        "/v1/jobs",
+        &parameters.pairs(&limit),
+        page,
+    ))
 }
 
 /// Look at a job
@@ -217,28 +196,29 @@ pub(super) async fn list(
 )]
 pub(super) async fn show(
     State(app): State<App>,
-    Client(client): Client,
+    client: Client,
     wait: Wait,
     Path(id): Path<String>,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
     let id = job_id(&id)?;
-    let job = match wait.granted() {
-        Some(patience) => app.jobs.wait(&client, id, patience).await?,
-        None => app.jobs.find(&client, id).await?,
+    let wait = wait.grant(&app.door, client.name());
+    let job = match wait.patience() {
+        Some(patience) => app.jobs.wait(client.name(), id, patience).await?,
+        None => app.jobs.find(client.name(), id).await?,
     };
 
-    let body = JobView::whole(&job, &app.edge).to_json();
-    let tag = Tag::of(&body);
-    let mut response = if tag.is_known(&request) {
-        tag.not_modified()
-    } else {
-        ([(CONTENT_TYPE, "application/json")], body).into_response()
+    // The submission never changes; what has not changed is answered without reading it.
+    let small = JobView::new(&job, &app.edge).to_json();
+    let tag = Tag::of(&["job", &String::from_utf8_lossy(&small)]);
+    let whole = async {
+        let submission = app.jobs.submission(id).await?;
+        let body = JobView::whole(&job, &submission, &app.edge).to_json();
+        Ok::<_, Problem>(([(CONTENT_TYPE, "application/json")], body).into_response())
     };
+    let mut response = tag.answer(Keep::AskAgain, &request, whole).await?;
     let headers = response.headers_mut();
-    tag.mark(headers);
     wait.acknowledge(headers);
-    headers.insert(CACHE_CONTROL, HeaderValue::from_static("private, no-cache"));
     if !job.status.has_ended() {
         headers.insert(RETRY_AFTER, HeaderValue::from_static("1"));
     }
@@ -260,10 +240,10 @@ pub(super) async fn show(
 )]
 pub(super) async fn cancel(
     State(app): State<App>,
-    Client(client): Client,
+    client: Client,
     Path(id): Path<String>,
 ) -> Result<Response, Problem> {
-    let job = app.jobs.cancel(&client, job_id(&id)?).await?;
+    let job = app.jobs.cancel(client.name(), job_id(&id)?).await?;
     Ok((StatusCode::ACCEPTED, Json(JobView::new(&job, &app.edge))).into_response())
 }
 
@@ -281,9 +261,9 @@ pub(super) async fn cancel(
 )]
 pub(super) async fn delete(
     State(app): State<App>,
-    Client(client): Client,
+    client: Client,
     Path(id): Path<String>,
 ) -> Result<StatusCode, Problem> {
-    app.jobs.delete(&client, job_id(&id)?).await?;
+    app.jobs.delete(client.name(), job_id(&id)?).await?;
     Ok(StatusCode::NO_CONTENT)
 }

@@ -1,17 +1,20 @@
 //! Numbers for Prometheus.
 
 use std::sync::OnceLock;
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use axum::extract::{MatchedPath, Request, State};
 use axum::http::header::CONTENT_TYPE;
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
-use meshwright_engine::analysis::Library;
+use meshwright_engine::library::Library;
 use metrics_exporter_prometheus::{Matcher, PrometheusBuilder, PrometheusHandle};
 
 use super::app::App;
-use crate::wire::Problem;
+use super::client::Operator;
+use crate::jobs::JobError;
+use crate::wire::{Code, Problem};
 
 /// The numbers of this process. One recorder serves all parts of it, as the `metrics` facade wants.
 fn recorder() -> &'static PrometheusHandle {
@@ -19,12 +22,19 @@ fn recorder() -> &'static PrometheusHandle {
     RECORDER.get_or_init(|| {
         let requests = Matcher::Full("meshwright_http_request_duration_seconds".to_owned());
         let jobs = Matcher::Full("meshwright_job_wall_time_seconds".to_owned());
+        let waiting = Matcher::Full("meshwright_job_waiting_time_seconds".to_owned());
         let previews = Matcher::Full("meshwright_preview_engine_seconds".to_owned());
         let recorder = PrometheusBuilder::new()
             .set_buckets_for_metric(requests, &[0.001, 0.005, 0.02, 0.1, 0.5, 2.0, 10.0, 60.0])
             .and_then(|builder| {
                 builder
                     .set_buckets_for_metric(jobs, &[0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 600.0])
+            })
+            .and_then(|builder| {
+                builder.set_buckets_for_metric(
+                    waiting,
+                    &[0.01, 0.1, 1.0, 10.0, 60.0, 600.0, 3600.0, 21_600.0],
+                )
             })
             .and_then(|builder| {
                 builder.set_buckets_for_metric(
@@ -50,7 +60,49 @@ fn recorder() -> &'static PrometheusHandle {
             "meshwright_job_wall_time_seconds",
             "Time that a job was computed."
         );
-        metrics::describe_gauge!("meshwright_jobs_waiting", "Jobs in the queue.");
+        metrics::describe_histogram!(
+            "meshwright_job_waiting_time_seconds",
+            "Time from the submission of a job to its last begin."
+        );
+        metrics::describe_gauge!(
+            "meshwright_oldest_waiting_seconds",
+            "Age of the job alone that has waited longest."
+        );
+        metrics::describe_gauge!("meshwright_workers", "Workers that live.");
+        metrics::describe_gauge!(
+            "meshwright_storage_writable",
+            "1 if something can be stored, 0 if not."
+        );
+        metrics::describe_gauge!(
+            "meshwright_database_bytes",
+            "Size of the database, its journal aside."
+        );
+        metrics::describe_gauge!(
+            "meshwright_database_free_bytes",
+            "Of these, bytes that nothing occupies."
+        );
+        metrics::describe_gauge!("meshwright_database_journal_bytes", "Size of the journal.");
+        metrics::describe_gauge!("meshwright_connections", "Connections of clients.");
+        metrics::describe_counter!(
+            "meshwright_connections_evicted_total",
+            "Idle connections that gave way to new ones."
+        );
+        metrics::describe_counter!(
+            "meshwright_removed_jobs_total",
+            "Jobs removed because they were old or there was no room."
+        );
+        metrics::describe_counter!(
+            "meshwright_removed_studies_total",
+            "Studies removed because they were old or there was no room."
+        );
+        metrics::describe_counter!(
+            "meshwright_webhook_attempts_total",
+            "Messages to webhooks, by what came of them."
+        );
+        metrics::describe_gauge!(
+            "meshwright_jobs_waiting",
+            "Jobs in the queue, alone or of studies."
+        );
         metrics::describe_gauge!("meshwright_jobs_running", "Jobs that are being computed.");
         metrics::describe_gauge!(
             "meshwright_previews_running",
@@ -107,15 +159,43 @@ pub(super) async fn count(request: Request, next: Next) -> Response {
 
 /// Get metrics
 ///
-/// Numbers of requests, jobs, previews and of the cache in the Prometheus text format.
+/// Numbers of requests, jobs, previews, storage and of the cache in the Prometheus text format. Where keys are needed, that
+/// of an operator. A service may keep them for a listener of their own (`--metrics-listen`).
 #[utoipa::path(
     get, path = "/metrics", tag = "Operation", operation_id = "metrics",
-    responses((status = 200, description = "The numbers.", body = String, content_type = "text/plain")),
+    responses(
+        (status = 200, description = "The numbers.", body = String, content_type = "text/plain"),
+        (status = 404, description = "The numbers have a listener of their own.", body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The database cannot be read now.", body = Problem, content_type = "application/problem+json"),
+    ),
 )]
-pub(super) async fn metrics(State(app): State<App>) -> Result<Response, Problem> {
-    let (waiting, running) = app.jobs.depth().await?;
-    metrics::gauge!("meshwright_jobs_waiting").set(gauge(waiting));
-    metrics::gauge!("meshwright_jobs_running").set(gauge(running));
+pub(super) async fn metrics(State(app): State<App>, _: Operator) -> Result<Response, Problem> {
+    if !app.edge.metrics_here {
+        let detail = "The numbers of this service have a listener of their own.";
+        return Err(Problem::new(Code::NotFound, detail));
+    }
+    render(&app).await
+}
+
+/// The same on a listener of its own, which the operator keeps to himself.
+pub(super) async fn metrics_apart(State(app): State<App>) -> Result<Response, Problem> {
+    render(&app).await
+}
+
+async fn render(app: &App) -> Result<Response, Problem> {
+    let depth = app.jobs.depth().await?;
+    metrics::gauge!("meshwright_jobs_waiting", "kind" => "alone").set(gauge(depth.alone));
+    metrics::gauge!("meshwright_jobs_waiting", "kind" => "study").set(gauge(depth.in_studies));
+    metrics::gauge!("meshwright_jobs_running").set(gauge(depth.running));
+    let oldest = depth.oldest.map_or(0.0, |at| {
+        at.duration_until(app.jobs.clock().now())
+            .as_secs_f64()
+            .max(0.0)
+    });
+    metrics::gauge!("meshwright_oldest_waiting_seconds").set(oldest);
+    tell_storage(app).await?;
+    let workers = app.workers_alive.load(Ordering::Relaxed);
+    metrics::gauge!("meshwright_workers").set(workers as f64);
     metrics::gauge!("meshwright_previews_running").set(app.previews.count() as f64);
     tell_cache(&app.library);
     recorder().run_upkeep();
@@ -124,6 +204,17 @@ pub(super) async fn metrics(State(app): State<App>) -> Result<Response, Problem>
         recorder().render(),
     )
         .into_response())
+}
+
+async fn tell_storage(app: &App) -> Result<(), Problem> {
+    let store = app.jobs.store();
+    let space = store.space().await.map_err(JobError::from)?;
+    metrics::gauge!("meshwright_database_bytes").set(space.file as f64);
+    metrics::gauge!("meshwright_database_free_bytes").set(space.free as f64);
+    metrics::gauge!("meshwright_database_journal_bytes").set(store.journal_bytes() as f64);
+    let writable = if store.fault().is_none() { 1.0 } else { 0.0 };
+    metrics::gauge!("meshwright_storage_writable").set(writable);
+    Ok(())
 }
 
 /// The cache counts for itself; what it has counted is copied when somebody looks.

@@ -1,17 +1,23 @@
 //! The jobs over HTTP. A handler takes a document, hands it on, and answers; all work is done below.
 //!
-//! In reading order: what handlers work with; the router and its layers; how errors become problem documents; what requests are made of
-//! (body, client, parameters, preferences); what answers are made of (entity tags, the view of a job); the handlers.
+//! In reading order: what handlers work with; how connections are served; the router and its layers; who gets in; how errors
+//! become problem documents; what requests are made of (body, client, parameters, preferences); what answers are made of
+//! (entity tags, pages, the view of a job); the handlers.
 
 mod app;
+mod aside;
+mod batch;
 mod client;
 mod conditional;
 mod docs;
 mod document;
+mod door;
 mod events;
+mod headers;
 mod health;
 mod jobs;
 mod metrics;
+mod page;
 mod parameters;
 mod prefer;
 mod previews;
@@ -20,11 +26,16 @@ mod problem_pages;
 mod reference;
 mod results;
 mod router;
+mod server;
 mod studies;
 mod submit;
 mod tables;
 mod view;
+mod webhooks;
 
 pub use app::{App, Edge};
 pub use docs::openapi;
-pub use router::router;
+pub use door::{Door, DoorRules};
+pub use health::Readings;
+pub use router::{router, router_of_metrics};
+pub use server::{Bounds, Server};

@@ -31,7 +31,14 @@ impl<S: Sync> FromRequestParts<S> for IdempotencyKey {
             return Ok(Self(None));
         };
         match key.to_str() {
-            Ok(key) if (1..=255).contains(&key.len()) => Ok(Self(Some(key.to_owned()))),
+            Ok(key)
+                if (1..=255).contains(&key.len())
+                    && key
+                        .bytes()
+                        .all(|byte| byte == b' ' || byte.is_ascii_graphic()) =>
+            {
+                Ok(Self(Some(key.to_owned())))
+            }
             _ => Err(invalid(
                 "Idempotency-Key has 1 to 255 visible ASCII characters.",
             )),

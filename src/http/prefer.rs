@@ -8,6 +8,8 @@ use axum::http::HeaderMap;
 use axum::http::header::HeaderValue;
 use axum::http::request::Parts;
 
+use super::door::{Door, PlaceToWait};
+
 /// Nobody waits longer than this, in seconds.
 pub(super) const LONGEST_WAIT_S: u64 = 60;
 
@@ -15,19 +17,23 @@ pub(super) const LONGEST_WAIT_S: u64 = 60;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Wait(Option<u64>);
 
-impl Wait {
-    /// The time that is granted.
-    pub(super) fn granted(self) -> Option<Duration> {
-        self.0
-            .map(|seconds| Duration::from_secs(seconds.min(LONGEST_WAIT_S)))
-    }
+/// So long it may wait, and its place among those who do. Who finds no place is answered at once.
+#[derive(Debug)]
+pub(super) struct Granted {
+    seconds: Option<u64>,
+    _place: Option<PlaceToWait>,
+}
 
-    /// Says in an answer what was granted.
-    pub(super) fn acknowledge(self, headers: &mut HeaderMap) {
-        if let Some(granted) = self.granted() {
-            let value = HeaderValue::from_str(&format!("wait={}", granted.as_secs()))
-                .expect("digits are visible ASCII");
-            headers.insert("preference-applied", value);
+impl Wait {
+    /// What is granted to `client`.
+    pub(super) fn grant(self, door: &Door, client: &str) -> Granted {
+        let place = self.0.and_then(|_| door.place_to_wait(client));
+        Granted {
+            seconds: self.0.map(|seconds| match place {
+                Some(_) => seconds.min(LONGEST_WAIT_S),
+                None => 0,
+            }),
+            _place: place,
         }
     }
 
@@ -41,6 +47,24 @@ impl Wait {
             }
             seconds.trim().trim_matches('"').parse().ok()
         }))
+    }
+}
+
+impl Granted {
+    /// The time to wait.
+    pub(super) fn patience(&self) -> Option<Duration> {
+        self.seconds.map(Duration::from_secs)
+    }
+
+    /// Says in an answer what was granted.
+    pub(super) fn acknowledge(&self, headers: &mut HeaderMap) {
+        if let Some(seconds) = self.seconds {
+            let value = HeaderValue::from_str(&format!("wait={seconds}"));
+            headers.insert(
+                "preference-applied",
+                value.expect("digits are visible ASCII"),
+            );
+        }
     }
 }
 
@@ -65,9 +89,5 @@ mod tests {
         assert_eq!(read(&["respond-async", "wait=7"]), Some(7));
         assert_eq!(read(&["wait=soon"]), None);
         assert_eq!(read(&["wait", "wait=-1", ""]), None);
-        assert_eq!(
-            Wait(Some(u64::MAX)).granted(),
-            Some(Duration::from_secs(LONGEST_WAIT_S))
-        );
     }
 }

@@ -40,11 +40,12 @@ use crate::wire::{Preview, Problem};
 )]
 pub(super) async fn preview(
     State(app): State<App>,
-    Client(client): Client,
+    client: Client,
     Document(document): Document,
 ) -> Result<Response, Problem> {
     let preview = Preview::parse(&document, app.previews.rules().most_positions)?;
-    let previewed = app.previews.compute(&client, preview).await?;
+    app.jobs.check_memory(&preview.submission)?;
+    let previewed = app.previews.compute(client.name(), preview).await?;
     let headers = [
         (CONTENT_TYPE, "application/json".to_owned()),
         (CACHE_CONTROL, "no-store".to_owned()),

@@ -5,15 +5,17 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use axum::extract::{Request, State};
-use axum::http::header::{CONTENT_LENGTH, CONTENT_TYPE, HeaderValue, RETRY_AFTER};
+use axum::http::header::{
+    CONTENT_LENGTH, CONTENT_TYPE, HeaderValue, RETRY_AFTER, WWW_AUTHENTICATE,
+};
 use axum::http::{HeaderMap, StatusCode};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use tracing::error;
 
 use super::app::Edge;
-use crate::jobs::{JobError, PreviewError, Status};
-use crate::wire::{Code, Problem};
+use crate::jobs::{JobError, PreviewError};
+use crate::wire::{Code, Problem, Status, too_much_memory};
 
 const PROBLEM_JSON: HeaderValue = HeaderValue::from_static("application/problem+json");
 
@@ -26,11 +28,60 @@ impl IntoResponse for Problem {
     }
 }
 
+/// A problem, and when it may be over.
+pub(super) struct Refusal {
+    problem: Problem,
+    retry_after: Option<Duration>,
+}
+
+impl Refusal {
+    /// The client comes too often, and may come again after `wait`.
+    pub(super) fn too_often(wait: Duration) -> Self {
+        Self {
+            problem: Problem::new(
+                Code::RateLimited,
+                format!(
+                    "More requests came from you than one client may send; the next is taken in {:.1} s.",
+                    wait.as_secs_f64()
+                ),
+            ),
+            retry_after: Some(wait),
+        }
+    }
+}
+
+impl From<Problem> for Refusal {
+    fn from(problem: Problem) -> Self {
+        Self {
+            problem,
+            retry_after: None,
+        }
+    }
+}
+
+impl IntoResponse for Refusal {
+    fn into_response(self) -> Response {
+        let mut response = self.problem.into_response();
+        if let Some(wait) = self.retry_after {
+            // Whole seconds, never before the time.
+            let seconds = wait.as_secs_f64().ceil().max(1.0) as u64;
+            response.headers_mut().insert(RETRY_AFTER, seconds.into());
+        }
+        response
+    }
+}
+
 fn render(problem: &Problem, mut headers: HeaderMap) -> Response {
     headers.insert(CONTENT_TYPE, PROBLEM_JSON);
     headers.remove(CONTENT_LENGTH);
-    if let Some(seconds) = retry_after(problem.code) {
+    if let Some(seconds) = retry_after(problem.code)
+        && !headers.contains_key(RETRY_AFTER)
+    {
         headers.insert(RETRY_AFTER, HeaderValue::from_static(seconds));
+    }
+    if problem.code == Code::Unauthorized {
+        let asked = HeaderValue::from_static("Bearer realm=\"meshwright\"");
+        headers.insert(WWW_AUTHENTICATE, asked);
     }
     let status = StatusCode::from_u16(problem.status).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
     let body = serde_json::to_vec(problem).expect("a problem is plain data");
@@ -43,7 +94,10 @@ fn retry_after(code: Code) -> Option<&'static str> {
         Code::ResultNotReady => Some("1"),
         // Previews take a fraction of a second each.
         Code::PreviewsFull => Some("1"),
-        Code::QueueFull | Code::Unavailable => Some("5"),
+        Code::Overloaded | Code::RateLimited => Some("1"),
+        Code::QueueFull | Code::ClientQueueFull | Code::Unavailable | Code::StorageUnavailable => {
+            Some("5")
+        }
         _ => None,
     }
 }
@@ -55,6 +109,20 @@ impl From<JobError> for Problem {
                 Code::QueueFull,
                 format!("{}. Try again later.", sentence(&error)),
             ),
+            JobError::ClientQueueFull { .. } => Problem::new(
+                Code::ClientQueueFull,
+                format!("{}. Try again when some have ended.", sentence(&error)),
+            ),
+            JobError::TooMuchMemory {
+                needed_mb,
+                limit_mb,
+            } => too_much_memory(*needed_mb, *limit_mb),
+            JobError::HookNotFound(_) => {
+                Problem::new(Code::WebhookNotFound, format!("{}.", sentence(&error)))
+            }
+            JobError::HookRefused(_) | JobError::TooManyHooks(_) => {
+                Problem::new(Code::WebhookRefused, sentence(&error))
+            }
             JobError::KeyConflict => Problem::new(
                 Code::IdempotencyConflict,
                 "The Idempotency-Key was used for another submission within the last day. Use a new key.",
@@ -83,11 +151,20 @@ impl From<JobError> for Problem {
             ),
             // To the client it is the same: no job was taken, and the next process will take one.
             JobError::ShuttingDown => Problem::new(
-                Code::QueueFull,
+                Code::Unavailable,
                 "The service is shutting down and takes no more jobs.",
             ),
+            JobError::Unavailable(_) => Problem::new(
+                Code::StorageUnavailable,
+                "Nothing can be stored or read now. Nothing was changed; what was taken before is safe.",
+            ),
             JobError::Database(source) => {
-                error!(error = %source, "the database failed");
+                let cause = std::error::Error::source(source).map(ToString::to_string);
+                error!(error = cause, "the database failed");
+                internal()
+            }
+            JobError::Damaged(damage) => {
+                error!(error = %damage, "the database is damaged");
                 internal()
             }
         }
@@ -164,15 +241,6 @@ pub(super) fn of_missing_results(
     }
 }
 
-/// The answer to a request that took too long.
-pub(super) fn too_slow(limit: Duration) -> Response {
-    Problem::new(
-        Code::RequestTimeout,
-        format!("The request was not over within {} s.", limit.as_secs()),
-    )
-    .into_response()
-}
-
 /// The answer when a handler panics: a fault of ours that ends this request only.
 pub(super) fn of_panic(panic: Box<dyn Any + Send>) -> Response {
     let message = panic
@@ -223,6 +291,9 @@ fn of_status(status: StatusCode) -> Problem {
         ),
         StatusCode::PAYLOAD_TOO_LARGE => {
             Problem::new(Code::PayloadTooLarge, "The body is too large.")
+        }
+        StatusCode::REQUEST_TIMEOUT => {
+            Problem::new(Code::RequestTimeout, "The request was not over in time.")
         }
         StatusCode::UNSUPPORTED_MEDIA_TYPE => {
             Problem::new(Code::UnsupportedMediaType, "The body is not JSON.")

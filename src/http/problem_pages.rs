@@ -10,6 +10,7 @@ use crate::wire::{Code, Problem};
 /// A page with every kind of problem that the service reports.
 #[utoipa::path(
     get, path = "/problems", tag = "Reference", operation_id = "list_problems",
+    security(()),
     responses((status = 200, description = "The page.", body = String, content_type = "text/html")),
 )]
 pub(super) async fn index() -> Html<String> {
@@ -33,6 +34,7 @@ pub(super) async fn index() -> Html<String> {
 /// A page that explains one kind of problem; the `type` of a problem document links to it.
 #[utoipa::path(
     get, path = "/problems/{slug}", tag = "Reference", operation_id = "get_problem",
+    security(()),
     params(("slug" = String, Path, description = "The code of the problem, with hyphens.")),
     responses(
         (status = 200, description = "The page.", body = String, content_type = "text/html"),

@@ -7,7 +7,11 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::app::App;
+use super::aside::aside;
+use super::batch::MOST_IN_BATCH;
+use super::client::Onlooker;
 use super::document::Document;
+use crate::jobs::most_webhooks;
 use crate::wire::{self, Limits, Problem, Submission, Validation};
 
 /// Check a submission
@@ -24,11 +28,16 @@ use crate::wire::{self, Limits, Problem, Submission, Validation};
         (status = 413, description = "The body has more than 1 MiB.", body = Problem, content_type = "application/problem+json"),
         (status = 415, description = "The body is not declared as JSON.", body = Problem, content_type = "application/problem+json"),
         (status = 422, description = "The submission cannot be computed; `errors` says which field is why.", body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "Too many submissions are checked at once. Try again after `Retry-After` seconds.", body = Problem, content_type = "application/problem+json"),
     ),
 )]
-pub(super) async fn validate(Document(document): Document) -> Result<Json<Validation>, Problem> {
-    let submission = Submission::parse(&document)?;
-    Ok(Json(wire::validate(&submission)))
+pub(super) async fn validate(
+    _: Onlooker,
+    Document(document): Document,
+) -> Result<Json<Validation>, Problem> {
+    // The estimate divides both gears into elements.
+    let validation = aside(move |_| Submission::parse(&document).map(|it| wire::validate(&it)));
+    Ok(Json(validation.await??))
 }
 
 /// A submission to start from.
@@ -41,7 +50,7 @@ pub(super) struct Example {
     /// Whether it can be computed. One cannot, on purpose: it shows what a refusal looks like.
     valid: bool,
     /// The submission, ready for `POST /v1/jobs`.
-    #[schema(value_type = Object)]
+    #[schema(value_type = Submission)]
     submission: Value,
 }
 
@@ -57,6 +66,7 @@ pub(super) struct Examples {
 /// Submissions to start from: the test cases of the paper and its study.
 #[utoipa::path(
     get, path = "/v1/examples", tag = "Reference", operation_id = "get_examples",
+    security(()),
     responses((status = 200, description = "The examples.", body = Examples)),
 )]
 pub(super) async fn examples() -> Json<Examples> {
@@ -79,11 +89,29 @@ pub(super) struct ServiceLimits {
     submission: Limits,
     /// What previews are allowed.
     previews: PreviewLimits,
+    /// What one client is allowed.
+    client: ClientLimits,
+}
+
+/// What one client is allowed, unless its key says otherwise.
+#[derive(Serialize, ToSchema)]
+#[schema(title = "ClientLimits")]
+struct ClientLimits {
+    /// The most jobs that may wait, those of studies aside.
+    jobs_waiting: u32,
+    /// The most designs of studies that may wait.
+    designs_waiting: i64,
+    /// The most memory that one job may take, in MB.
+    job_memory_mb: u64,
+    /// The most submissions of a batch.
+    batch: usize,
+    /// The most webhooks.
+    webhooks: i64,
 }
 
 /// What previews are allowed.
 #[derive(Serialize, ToSchema)]
-#[schema(title = "Limits of previews")]
+#[schema(title = "PreviewLimits")]
 struct PreviewLimits {
     /// The most positions times torques of one.
     positions: u64,
@@ -98,6 +126,7 @@ struct PreviewLimits {
 /// The bounds that submissions must keep, and those of previews.
 #[utoipa::path(
     get, path = "/v1/limits", tag = "Reference", operation_id = "get_limits",
+    security(()),
     responses((status = 200, description = "The limits.", body = ServiceLimits)),
 )]
 pub(super) async fn limits(State(app): State<App>) -> Json<ServiceLimits> {
@@ -108,6 +137,13 @@ pub(super) async fn limits(State(app): State<App>) -> Json<ServiceLimits> {
             positions: rules.most_positions,
             at_once: rules.at_once,
             time_limit_seconds: rules.time_limit.as_secs(),
+        },
+        client: ClientLimits {
+            jobs_waiting: app.jobs.rules().client_queue_limit,
+            designs_waiting: app.jobs.rules().client_design_limit,
+            job_memory_mb: app.jobs.rules().job_memory_mb,
+            batch: MOST_IN_BATCH,
+            webhooks: most_webhooks(),
         },
     })
 }

@@ -2,15 +2,18 @@
 
 use axum::extract::{Path, State};
 use axum::http::HeaderMap;
-use axum::http::header::{CACHE_CONTROL, CONTENT_LOCATION, CONTENT_TYPE, HeaderValue};
+use axum::http::header::{
+    ACCEPT_ENCODING, CONTENT_ENCODING, CONTENT_LOCATION, CONTENT_TYPE, HeaderValue, VARY,
+};
 use axum::response::{IntoResponse, Response};
 
 use super::app::App;
+use super::aside::aside;
 use super::client::Client;
-use super::conditional::Tag;
+use super::conditional::{Keep, Tag};
 use super::parameters::job_id;
 use super::problem::of_missing_results;
-use crate::jobs::Job;
+use crate::jobs::{Document, Job, JobError};
 use crate::wire::Problem;
 
 /// Get the results
@@ -33,11 +36,11 @@ use crate::wire::Problem;
 )]
 pub(super) async fn results(
     State(app): State<App>,
-    Client(client): Client,
+    client: Client,
     Path(id): Path<String>,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
-    let job = app.jobs.find(&client, job_id(&id)?).await?;
+    let job = app.jobs.find(client.name(), job_id(&id)?).await?;
     answer(&app, &job, &request).await
 }
 
@@ -46,25 +49,64 @@ pub(super) async fn answer(app: &App, job: &Job, request: &HeaderMap) -> Result<
     let Some(hash) = &job.document else {
         return Err(of_missing_results(job.status, job.problem.as_ref()));
     };
-    let tag = Tag::of_hash(hash, "");
-    let mut response = if tag.is_known(request) {
-        tag.not_modified()
-    } else {
+    let stored = async {
         let document = app.jobs.document(job).await?;
-        ([(CONTENT_TYPE, "application/json")], document).into_response()
+        packed_or_plain(document, request).await
     };
-    keep_for_good(&tag, response.headers_mut());
+    let mut response = Tag::of_hash(hash, "")
+        .answer(Keep::ForGood, request, stored)
+        .await?;
     if let Ok(address) = HeaderValue::try_from(format!("{}/results", app.edge.job(job.id))) {
         response.headers_mut().insert(CONTENT_LOCATION, address);
     }
     Ok(response)
 }
 
-/// Results never change under their address.
-pub(super) fn keep_for_good(tag: &Tag, headers: &mut HeaderMap) {
-    tag.mark(headers);
-    headers.insert(
-        CACHE_CONTROL,
-        HeaderValue::from_static("private, max-age=31536000, immutable"),
-    );
+/// A document is kept packed, and sent so to those who can unpack it: nobody packs it again.
+async fn packed_or_plain(document: Document, request: &HeaderMap) -> Result<Response, Problem> {
+    let json = [(CONTENT_TYPE, "application/json")];
+    if let Some(packed) = document.gzip().filter(|_| takes_gzip(request)) {
+        let packing = [(CONTENT_ENCODING, "gzip"), (VARY, "accept-encoding")];
+        return Ok((json, packing, packed).into_response());
+    }
+    let text = aside(move |_| document.text())
+        .await?
+        .map_err(JobError::from)?;
+    Ok((json, text).into_response())
+}
+
+/// Whether the client says that it unpacks gzip.
+fn takes_gzip(request: &HeaderMap) -> bool {
+    let values = request.get_all(ACCEPT_ENCODING).iter();
+    let mut codings = values
+        .filter_map(|value| value.to_str().ok())
+        .flat_map(|value| value.split(','));
+    codings.any(|coding| {
+        let (name, parameters) = coding.split_once(';').unwrap_or((coding, ""));
+        let refused = parameters.trim().strip_prefix("q=").is_some_and(|weight| {
+            weight
+                .trim()
+                .parse::<f32>()
+                .is_ok_and(|weight| weight <= 0.0)
+        });
+        name.trim().eq_ignore_ascii_case("gzip") && !refused
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gzip_is_sent_to_those_who_name_it_and_do_not_refuse_it() {
+        let takes = |accepted: &str| {
+            takes_gzip(&HeaderMap::from_iter([(
+                ACCEPT_ENCODING,
+                HeaderValue::from_str(accepted).unwrap(),
+            )]))
+        };
+        assert!(takes("gzip") && takes("br, GZIP;q=0.5") && takes("gzip ; q=1"));
+        assert!(!takes("gzip;q=0") && !takes("br") && !takes("") && !takes("gzip;q=0.0, br"));
+        assert!(!takes_gzip(&HeaderMap::new()));
+    }
 }

@@ -3,64 +3,98 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use axum::Router;
+use axum::error_handling::HandleErrorLayer;
 use axum::extract::Request;
 use axum::http::header::{
     ACCEPT, AUTHORIZATION, CONTENT_TYPE, ETAG, HeaderName, HeaderValue, IF_NONE_MATCH, LINK,
-    LOCATION, RETRY_AFTER,
+    LOCATION, RETRY_AFTER, WWW_AUTHENTICATE,
 };
-use axum::http::{Method, Uri};
-use axum::middleware::{Next, from_fn, from_fn_with_state};
-use axum::response::{Redirect, Response};
+use axum::http::{Method, StatusCode, Uri};
+use axum::middleware::{from_fn, from_fn_with_state};
+use axum::response::Redirect;
 use axum::routing::get;
+use axum::{BoxError, Router};
+use tower::ServiceBuilder;
+use tower::limit::GlobalConcurrencyLimitLayer;
+use tower::load_shed::LoadShedLayer;
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::compression::CompressionLayer;
 use tower_http::cors::{AllowOrigin, CorsLayer};
-use tower_http::request_id::{MakeRequestUuid, PropagateRequestIdLayer, SetRequestIdLayer};
+use tower_http::timeout::{RequestBodyDeadlineLayer, TimeoutLayer};
 use tower_http::trace::{DefaultOnResponse, TraceLayer};
 use tracing::Level;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::app::App;
+use super::headers::Trace;
 use super::{
-    docs, events, health, jobs, metrics, previews, problem, problem_pages, reference, results,
-    studies, submit, tables,
+    batch, docs, document, door, events, headers, health, jobs, metrics, previews, problem,
+    problem_pages, reference, results, studies, submit, tables, webhooks,
 };
 use crate::wire::{Code, Problem};
 
 /// A request has its answer's head within this time. Longer than the longest wait that a client may ask for.
 const REQUEST_TIMEOUT: Duration = Duration::from_secs(90);
 
+/// So many studies and batches are taken in at the same time: each holds megabytes meanwhile.
+const LARGE_AT_ONCE: usize = 32;
+
 /// The service.
 pub fn router(app: App) -> Router {
     let edge = Arc::clone(&app.edge);
     let (router, mut openapi) = routes().split_for_parts();
     openapi.servers = Some(vec![docs::server(&edge.public_url)]);
+    docs::add_common_answers(&mut openapi);
+    docs::say_whether_keys_are_needed(&mut openapi, edge.asks_for_keys);
+    let is_https = edge.public_url.starts_with("https://");
+    let door = Arc::clone(&app.door);
 
-    let router = router
-        .merge(docs::routes_of_docs(&openapi))
-        .route("/", get(|| async { Redirect::to("/docs/") }))
-        .fallback(nothing_here)
-        .method_not_allowed_fallback(not_that_method)
-        .layer(CatchPanicLayer::custom(problem::of_panic))
-        .layer(from_fn(limit_time))
-        .layer(from_fn_with_state(Arc::clone(&edge), problem::shape))
-        .layer(CompressionLayer::new().gzip(true));
-    let router = if edge.cors_origins.is_empty() {
-        router
-    } else {
-        router.layer(cors(&edge.cors_origins))
-    };
-    router
-        .layer(PropagateRequestIdLayer::x_request_id())
-        .layer(from_fn(metrics::count))
+    // The outermost layer stands first.
+    let layers = ServiceBuilder::new()
+        .layer(from_fn(headers::name))
         .layer(
             TraceLayer::new_for_http()
                 .make_span_with(span)
                 .on_response(DefaultOnResponse::new().level(Level::INFO)),
         )
-        .layer(SetRequestIdLayer::x_request_id(MakeRequestUuid))
+        .layer(from_fn(metrics::count))
+        .layer(from_fn_with_state(is_https, headers::secure))
+        .option_layer((!edge.cors_origins.is_empty()).then(|| cors(&edge.cors_origins)))
+        .layer(CompressionLayer::new().gzip(true))
+        .layer(from_fn_with_state(Arc::clone(&edge), problem::shape))
+        .layer(from_fn_with_state(door, door::check_host))
+        .layer(TimeoutLayer::with_status_code(
+            StatusCode::REQUEST_TIMEOUT,
+            REQUEST_TIMEOUT,
+        ))
+        .layer(RequestBodyDeadlineLayer::new(document::PATIENCE))
+        .layer(CatchPanicLayer::custom(problem::of_panic));
+    router
+        .merge(docs::routes_of_docs(&openapi))
+        .route("/", get(|| async { Redirect::to("/docs/") }))
+        .route("/v1/studies/{id}/results.csv", get(studies::old_csv))
+        .fallback(nothing_here)
+        .method_not_allowed_fallback(not_that_method)
+        .layer(layers)
+        .with_state(app)
+}
+
+/// Health and numbers alone, for a listener that the operator keeps to himself.
+pub fn router_of_metrics(app: App) -> Router {
+    Router::new()
+        .route("/metrics", get(metrics::metrics_apart))
+        .route("/health/live", get(health::live))
+        .route("/health/ready", get(health::ready))
+        .fallback(nothing_here)
+        .layer(
+            ServiceBuilder::new()
+                .layer(TimeoutLayer::with_status_code(
+                    StatusCode::REQUEST_TIMEOUT,
+                    REQUEST_TIMEOUT,
+                ))
+                .layer(CatchPanicLayer::custom(problem::of_panic)),
+        )
         .with_state(app)
 }
 
@@ -71,16 +105,15 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(jobs::show, jobs::delete))
         .routes(routes!(jobs::cancel))
         .routes(routes!(results::results))
-        .routes(routes!(tables::table))
         .routes(routes!(events::events))
         .routes(routes!(previews::preview))
-        .routes(routes!(studies::submit, studies::list))
+        .routes(routes!(studies::list))
         .routes(routes!(studies::show, studies::delete))
-        .routes(routes!(studies::results))
-        .routes(routes!(studies::results_csv))
+        .routes(routes!(studies::document))
         .routes(routes!(studies::events))
         .routes(routes!(studies::cancel))
-        .routes(routes!(reference::validate))
+        .routes(routes!(webhooks::make, webhooks::list))
+        .routes(routes!(webhooks::delete))
         .routes(routes!(reference::examples))
         .routes(routes!(reference::limits))
         .routes(routes!(problem_pages::index))
@@ -88,6 +121,32 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(health::live))
         .routes(routes!(health::ready))
         .routes(routes!(metrics::metrics))
+        .routes(routes!(reference::validate))
+        .routes(routes!(tables::table))
+        .routes(routes!(studies::results))
+        .routes(routes!(studies::file))
+        .merge(shedding(
+            OpenApiRouter::new()
+                .routes(routes!(studies::submit))
+                .routes(routes!(batch::submit)),
+            LARGE_AT_ONCE,
+        ))
+}
+
+/// Routes of which so many requests are worked on at the same time; others are told to come again.
+fn shedding(routes: OpenApiRouter<App>, at_once: usize) -> OpenApiRouter<App> {
+    let layers = ServiceBuilder::new()
+        .layer(HandleErrorLayer::new(overloaded))
+        .layer(LoadShedLayer::new())
+        .layer(GlobalConcurrencyLimitLayer::new(at_once));
+    routes.layer(layers)
+}
+
+async fn overloaded(_: BoxError) -> Problem {
+    Problem::new(
+        Code::Overloaded,
+        "More requests of this kind came at once than are worked on. Try again in a moment.",
+    )
 }
 
 async fn nothing_here(uri: Uri) -> Problem {
@@ -110,13 +169,6 @@ async fn not_that_method(method: Method, uri: Uri) -> Problem {
     )
 }
 
-async fn limit_time(request: Request, next: Next) -> Response {
-    match tokio::time::timeout(REQUEST_TIMEOUT, next.run(request)).await {
-        Ok(response) => response,
-        Err(_) => problem::too_slow(REQUEST_TIMEOUT),
-    }
-}
-
 fn cors(origins: &[HeaderValue]) -> CorsLayer {
     let name = HeaderName::from_static;
     let origin = if origins.iter().any(|origin| origin == "*") {
@@ -135,6 +187,7 @@ fn cors(origins: &[HeaderValue]) -> CorsLayer {
             name("idempotency-key"),
             name("last-event-id"),
             name("prefer"),
+            name("traceparent"),
             name("x-request-id"),
         ])
         .expose_headers([
@@ -142,9 +195,11 @@ fn cors(origins: &[HeaderValue]) -> CorsLayer {
             LINK,
             LOCATION,
             RETRY_AFTER,
+            WWW_AUTHENTICATE,
             name("content-location"),
             name("preference-applied"),
             name("server-timing"),
+            name("traceparent"),
             name("x-request-id"),
         ])
         .max_age(Duration::from_secs(3600))
@@ -157,5 +212,7 @@ fn span(request: &Request) -> tracing::Span {
         .get("x-request-id")
         .and_then(|id| id.to_str().ok())
         .unwrap_or_default();
-    tracing::info_span!("request", method = %request.method(), path = request.uri().path(), request_id = id)
+    let trace = request.extensions().get::<Trace>();
+    let trace = trace.map_or("", |trace| trace.id.as_str());
+    tracing::info_span!("request", method = %request.method(), path = request.uri().path(), request_id = id, trace_id = trace)
 }

@@ -1,9 +1,10 @@
 //! Submitting a job.
 
 use axum::extract::State;
-use axum::http::header::{CONTENT_TYPE, HeaderValue, LOCATION, RETRY_AFTER};
+use axum::http::header::{ACCEPT_ENCODING, CONTENT_TYPE, HeaderValue, LOCATION, RETRY_AFTER};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
+use utoipa::ToSchema;
 
 use super::app::App;
 use super::client::Client;
@@ -13,7 +14,19 @@ use super::prefer::Wait;
 use super::results;
 use super::view::JobView;
 use crate::jobs::{Job, Submitted};
-use crate::wire::{Problem, Submission};
+use crate::wire::{Problem, Results, Submission};
+
+/// What a submission is answered with when the job has ended: its results, or the job.
+#[derive(ToSchema)]
+#[schema(title = "SubmitAnswer")]
+#[serde(untagged)]
+#[expect(dead_code, reason = "it stands for the two in the OpenAPI document")]
+pub(super) enum SubmitAnswer<'a> {
+    /// The results of the job.
+    Results(Box<Results>),
+    /// The job.
+    Job(Box<JobView<'a>>),
+}
 
 /// Submit a job
 ///
@@ -23,7 +36,7 @@ use crate::wire::{Problem, Submission};
     post, path = "/v1/jobs", tag = "Jobs", operation_id = "submit_job",
     request_body(content = Submission, content_type = "application/json", description = "The submission."),
     params(
-        ("Idempotency-Key" = Option<String>, Header, description = "A word of the client's choice, 1 to 255 characters, kept for a day: the same key and submission get the same job, however often they are sent."),
+        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[!-~]([ -~]*[!-~])?$", description = "A word of the client's choice, 1 to 255 characters, kept for a day: the same key and submission get the same job, however often they are sent."),
         ("Prefer" = Option<String>, Header, description = "`wait=N`: answer with the results if the job ends within N seconds (60 at most)."),
     ),
     responses(
@@ -31,30 +44,39 @@ use crate::wire::{Problem, Submission};
             ("Location" = String, description = "The address of the job."),
             ("Retry-After" = u32, description = "Seconds after which it is worth looking."),
         )),
-        (status = 200, description = "With `Prefer: wait`, the results of a job that ended in time. With a repeated `Idempotency-Key`, the job that has ended meanwhile.", body = serde_json::Value),
+        (status = 200, description = "With `Prefer: wait`, the results of a job that ended in time. With a repeated `Idempotency-Key`, the job that has ended meanwhile.", body = SubmitAnswer),
         (status = 400, description = "The body is no JSON, or a header is not understood.", body = Problem, content_type = "application/problem+json"),
         (status = 408, description = "The body came too slowly.", body = Problem, content_type = "application/problem+json"),
         (status = 409, description = "With `Prefer: wait`: the job failed or was cancelled in time.", body = Problem, content_type = "application/problem+json"),
         (status = 413, description = "The body has more than 1 MiB.", body = Problem, content_type = "application/problem+json"),
         (status = 415, description = "The body is not declared as JSON.", body = Problem, content_type = "application/problem+json"),
         (status = 422, description = "The submission cannot be computed; `errors` says which field is why. Or the key was used for another submission.", body = Problem, content_type = "application/problem+json"),
-        (status = 503, description = "The queue is full, or the service is shutting down. Try again after `Retry-After` seconds.", body = Problem, content_type = "application/problem+json"),
+        (status = 429, description = "More jobs of this client wait than may.", body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The queue is full, nothing can be stored, or the service is shutting down. Try again after `Retry-After` seconds.", body = Problem, content_type = "application/problem+json"),
     ),
 )]
 pub(super) async fn submit(
     State(app): State<App>,
-    Client(client): Client,
+    client: Client,
     IdempotencyKey(key): IdempotencyKey,
     wait: Wait,
+    headers: HeaderMap,
     Document(document): Document,
 ) -> Result<Response, Problem> {
+    // A condition would be about an answer that the client had before it submitted.
+    let headers: HeaderMap = headers
+        .get(ACCEPT_ENCODING)
+        .map(|accepted| (ACCEPT_ENCODING, accepted.clone()))
+        .into_iter()
+        .collect();
     let submission = Submission::parse(&document)?;
-    let Submitted { mut job, repeated } = app.jobs.submit(&client, &submission, key).await?;
+    let Submitted { mut job, repeated } = app.jobs.submit(&client.0, &submission, key).await?;
 
-    let mut response = if let Some(patience) = wait.granted() {
-        job = app.jobs.wait(&client, job.id, patience).await?;
+    let wait = wait.grant(&app.door, client.name());
+    let mut response = if let Some(patience) = wait.patience() {
+        job = app.jobs.wait(client.name(), job.id, patience).await?;
         if job.status.has_ended() {
-            results::answer(&app, &job, &HeaderMap::new())
+            results::answer(&app, &job, &headers)
                 .await
                 .unwrap_or_else(Problem::into_response)
         } else {
@@ -72,7 +94,7 @@ pub(super) async fn submit(
     Ok(response)
 }
 
-fn small_view(app: &App, job: &Job, status: StatusCode) -> Response {
+pub(super) fn small_view(app: &App, job: &Job, status: StatusCode) -> Response {
     let body = JobView::new(job, &app.edge).to_json();
     let mut response = (status, [(CONTENT_TYPE, "application/json")], body).into_response();
     if !job.status.has_ended() {
@@ -83,7 +105,7 @@ fn small_view(app: &App, job: &Job, status: StatusCode) -> Response {
     response
 }
 
-fn address(url: &str) -> HeaderValue {
+pub(super) fn address(url: &str) -> HeaderValue {
     HeaderValue::from_str(url)
         .expect("the public address was checked at the start, an id is hexadecimal")
 }

@@ -6,15 +6,18 @@ use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
-use serde_json::{Map, Value};
-use utoipa::IntoParams;
+use serde_json::{Map, Value, json};
+use utoipa::{IntoParams, ToSchema};
 
 use super::app::App;
+use super::aside::aside;
 use super::client::Client;
-use super::conditional::Tag;
+use super::conditional::{Keep, Tag};
 use super::parameters::{Parameters, job_id};
 use super::problem::of_missing_results;
-use super::results::keep_for_good;
+use crate::jobs::{Document, JobError};
+use crate::wire::csv::CsvWriter;
+use crate::wire::results::NamedOrderDocument;
 use crate::wire::{Code, Problem};
 
 /// What a table shows: where in a curve its columns stand, and which they are.
@@ -68,6 +71,47 @@ const TABLES: [Table; 3] = [
     },
 ];
 
+/// A table of the results as JSON: for each curve its torque, and the columns of the table, which have one value for each
+/// position or order. A column that the results do not have is absent.
+#[derive(ToSchema)]
+#[schema(title = "CurveTable")]
+#[expect(dead_code, reason = "it stands for the table in the OpenAPI document")]
+pub(super) struct CurveTable {
+    /// One entry for each output torque.
+    curves: Vec<CurveColumns>,
+}
+
+/// The columns of one curve.
+#[derive(ToSchema)]
+#[schema(title = "CurveColumns")]
+#[expect(dead_code, reason = "it stands for the table in the OpenAPI document")]
+struct CurveColumns {
+    /// The output torque, in N m.
+    output_torque_n_m: f64,
+    /// The position in mesh periods.
+    mesh_position: Option<Vec<f64>>,
+    /// The angle of the driving gear, in degrees.
+    driving_angle_deg: Option<Vec<f64>>,
+    /// The angle of the driven gear, in degrees.
+    driven_angle_deg: Option<Vec<f64>>,
+    /// The transmission error, in um; in the spectrum its amplitude.
+    transmission_error_um: Option<Vec<f64>>,
+    /// The tangent mesh stiffness, in N/m; in the spectrum its amplitude.
+    mesh_stiffness_tangent_n_per_m: Option<Vec<f64>>,
+    /// The secant mesh stiffness, in N/m.
+    mesh_stiffness_secant_n_per_m: Option<Vec<f64>>,
+    /// The order, for each revolution of the driven gear.
+    order: Option<Vec<f64>>,
+    /// The frequency of the order, in Hz.
+    frequency_hz: Option<Vec<f64>>,
+    /// The phase of the transmission error, in degrees.
+    transmission_error_phase_deg: Option<Vec<f64>>,
+    /// The phase of the tangent mesh stiffness, in degrees.
+    mesh_stiffness_tangent_phase_deg: Option<Vec<f64>>,
+    /// The orders that have names.
+    named: Option<Vec<NamedOrderDocument>>,
+}
+
 /// Which curve.
 #[derive(Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
@@ -92,7 +136,7 @@ pub(super) struct TableParameters {
     ),
     responses(
         (status = 200, description = "The table.", content(
-            (serde_json::Value = "application/json"),
+            (CurveTable = "application/json"),
             (String = "text/csv"),
         ), headers(("ETag" = String, description = "Stands for this table."))),
         (status = 304, description = "The client has this table."),
@@ -103,39 +147,49 @@ pub(super) struct TableParameters {
 )]
 pub(super) async fn table(
     State(app): State<App>,
-    Client(client): Client,
+    client: Client,
     Path((id, file)): Path<(String, String)>,
     Parameters(TableParameters { torque }): Parameters<TableParameters>,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
     let (table, form) = find_table(&file)?;
-    let job = app.jobs.find(&client, job_id(&id)?).await?;
+    let job = app.jobs.find(client.name(), job_id(&id)?).await?;
     let Some(hash) = &job.document else {
         return Err(of_missing_results(job.status, job.problem.as_ref()));
     };
-
     let part = torque.map_or_else(|| format!("/{file}"), |torque| format!("/{file}/{torque}"));
-    let tag = Tag::of_hash(hash, &part);
-    let mut response = if tag.is_known(&request) {
-        tag.not_modified()
-    } else {
-        let results: Value =
-            serde_json::from_str(&app.jobs.document(&job).await?).map_err(|_| no_table(table))?;
-        let curves = select(table, &results, torque)?;
-        match form {
-            Form::Json => Json(serde_json::json!({ "curves": curves })).into_response(),
-            Form::Csv => {
-                let name = format!("attachment; filename=\"{id}-{file}\"");
-                let headers = [
-                    (CONTENT_TYPE, "text/csv; charset=utf-8"),
-                    (CONTENT_DISPOSITION, name.as_str()),
-                ];
-                (headers, csv(table, &curves)).into_response()
-            }
-        }
+    let made = async {
+        let document = app.jobs.document(&job).await?;
+        let name = format!("{id}-{file}");
+        aside(move |_| make(&document, table, form, torque, &name)).await?
     };
-    keep_for_good(&tag, response.headers_mut());
-    Ok(response)
+    Tag::of_hash(hash, &part)
+        .answer(Keep::ForGood, &request, made)
+        .await
+}
+
+/// The table of a results document.
+fn make(
+    document: &Document,
+    table: &'static Table,
+    form: Form,
+    torque: Option<f64>,
+    name: &str,
+) -> Result<Response, Problem> {
+    let text = document.text().map_err(JobError::from)?;
+    let results: Value = serde_json::from_str(&text).map_err(|_| no_table(table))?;
+    let curves = select(table, &results, torque)?;
+    Ok(match form {
+        Form::Json => Json(json!({ "curves": curves })).into_response(),
+        Form::Csv => {
+            let file = format!("attachment; filename=\"{name}\"");
+            let headers = [
+                (CONTENT_TYPE, "text/csv; charset=utf-8"),
+                (CONTENT_DISPOSITION, file.as_str()),
+            ];
+            (headers, csv(table, &curves)).into_response()
+        }
+    })
 }
 
 #[derive(Clone, Copy)]
@@ -226,7 +280,12 @@ fn select_columns(table: &Table, curve: &Value) -> Option<Map<String, Value>> {
 fn csv(table: &Table, curves: &[Map<String, Value>]) -> String {
     let present = |name: &&&str| curves.iter().any(|curve| curve.contains_key(**name));
     let columns: Vec<&str> = table.columns.iter().filter(present).copied().collect();
-    let mut text = format!("output_torque_n_m,{}\r\n", columns.join(","));
+    let mut text = CsvWriter::new();
+    text.text("output_torque_n_m");
+    for name in &columns {
+        text.text(name);
+    }
+    text.end_line();
     for curve in curves {
         let column = |name: &&str| {
             curve
@@ -236,17 +295,14 @@ fn csv(table: &Table, curves: &[Map<String, Value>]) -> String {
         };
         let cells: Vec<&[Value]> = columns.iter().map(column).collect();
         for row in 0..cells.iter().map(|cells| cells.len()).max().unwrap_or(0) {
-            text.push_str(&curve["output_torque_n_m"].to_string());
+            text.value(curve.get("output_torque_n_m"));
             for column in &cells {
-                text.push(',');
-                if let Some(value) = column.get(row).filter(|value| !value.is_null()) {
-                    text.push_str(&value.to_string());
-                }
+                text.value(column.get(row));
             }
-            text.push_str("\r\n");
+            text.end_line();
         }
     }
-    text
+    text.into_text()
 }
 
 fn no_table(table: &Table) -> Problem {

@@ -9,7 +9,8 @@ use utoipa::ToSchema;
 use uuid::Uuid;
 
 use super::app::Edge;
-use crate::jobs::{Job, Status};
+use crate::jobs::Job;
+use crate::wire::{Status, method_schema};
 
 /// A job: one submission, where it stands, and where to find what belongs to it.
 #[derive(Serialize, ToSchema)]
@@ -27,10 +28,12 @@ pub(super) struct JobView<'a> {
     /// Mesh positions to solve, over all torques.
     positions_total: u64,
     /// The method of the submission.
+    #[schema(schema_with = method_schema)]
     method: &'a str,
     /// The tags of the submission.
     tags: &'a [String],
-    /// How often the job was begun. A job whose process died is begun again, three times at most.
+    /// How often the job was begun, attempts that ended by no fault of its own aside. A job that ends its process is begun
+    /// three times at most.
     attempt: i64,
     /// When the job was submitted (UTC).
     #[schema(value_type = String, format = DateTime)]
@@ -75,16 +78,6 @@ pub(super) struct Links {
     study: Option<String>,
 }
 
-/// Some jobs, newest first.
-#[derive(Serialize, ToSchema)]
-#[schema(as = JobList)]
-pub(super) struct ListView<'a> {
-    /// The jobs.
-    pub(super) items: Vec<JobView<'a>>,
-    /// The value of `cursor` that gives the next jobs; null at the end of the list.
-    pub(super) next: Option<String>,
-}
-
 impl<'a> JobView<'a> {
     /// The small view, for lists and answers to a submission.
     pub(super) fn new(job: &'a Job, edge: &Edge) -> Self {
@@ -100,21 +93,21 @@ impl<'a> JobView<'a> {
             submitted_at: job.submitted_at,
             started_at: job.started_at,
             finished_at: job.finished_at,
-            wall_time_seconds: job.wall_time().map(|time| time.as_secs_f64()),
+            wall_time_seconds: job.elapsed.map(|time| time.as_secs_f64()),
             problem: job
                 .problem
                 .clone()
-                .map(|problem| with_public_type(problem, edge)),
+                .map(|problem| with_public_type(problem, &edge.public_url)),
             links: Links::new(job, edge),
             submission: None,
         }
     }
 
-    /// The whole view, with the submission.
-    pub(super) fn whole(job: &'a Job, edge: &Edge) -> Self {
+    /// The whole view, with the submission, which is JSON.
+    pub(super) fn whole(job: &'a Job, submission: &'a str, edge: &Edge) -> Self {
         Self {
             // It is JSON as it stands: a look at a job need not take it apart and put it together again.
-            submission: serde_json::from_str(&job.submission).ok(),
+            submission: serde_json::from_str(submission).ok(),
             ..Self::new(job, edge)
         }
     }
@@ -149,9 +142,9 @@ impl Edge {
 }
 
 /// A stored problem knows no address; its link gets one when it is served.
-pub(super) fn with_public_type(mut problem: Value, edge: &Edge) -> Value {
+pub(super) fn with_public_type(mut problem: Value, public_url: &str) -> Value {
     if let Some(Value::String(type_)) = problem.get_mut("type") {
-        type_.insert_str(0, &edge.public_url);
+        type_.insert_str(0, public_url);
     }
     problem
 }

@@ -79,6 +79,11 @@ impl Live {
         }
     }
 
+    /// The jobs that this process runs.
+    pub(super) fn ids(&self) -> Vec<Uuid> {
+        self.lock().keys().copied().collect()
+    }
+
     pub(super) fn running(&self, id: Uuid) -> Option<Running> {
         self.lock().get(&id).cloned()
     }
@@ -124,6 +129,47 @@ impl Drop for Entered {
             .is_some_and(|entry| Arc::ptr_eq(&entry.stop, &self.running.stop))
         {
             running.remove(&self.id);
+        }
+    }
+}
+
+/// What happens to one job.
+pub struct News {
+    pub(super) id: Uuid,
+    pub(super) live: Arc<Live>,
+    pub(super) changes: broadcast::Receiver<Uuid>,
+}
+
+impl News {
+    /// Comes back when the state of the job may have changed.
+    pub async fn changed_state(&mut self) {
+        loop {
+            match self.changes.recv().await {
+                Ok(id) if id != self.id => {}
+                // One who lags has missed news, perhaps of this job.
+                Ok(_) | Err(broadcast::error::RecvError::Lagged(_)) => return,
+                Err(broadcast::error::RecvError::Closed) => std::future::pending().await,
+            }
+        }
+    }
+
+    /// Comes back when the state or the progress of the job may have changed, `seen` being the progress known.
+    pub async fn changed(&mut self, seen: Option<Progress>) {
+        let progress = self.live.running(self.id).map(|running| running.watch());
+        let moved = async {
+            match progress {
+                Some(mut progress) => {
+                    // An attempt that ends drops its sender; the change of state follows.
+                    if progress.wait_for(|now| Some(*now) != seen).await.is_err() {
+                        std::future::pending::<()>().await;
+                    }
+                }
+                None => std::future::pending().await,
+            }
+        };
+        tokio::select! {
+            () = self.changed_state() => {}
+            () = moved => {}
         }
     }
 }

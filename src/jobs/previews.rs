@@ -9,7 +9,6 @@ use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
-use std::thread;
 use std::time::Duration;
 
 use meshwright_engine::run::Run;
@@ -19,8 +18,9 @@ use tokio::time::{Instant, sleep_until};
 use tokio_util::sync::CancellationToken;
 use tracing::error;
 
-use super::threads::{Work, engine_threads};
-use super::worker::{Solve, StartError, message_of};
+use super::attempt::message_of;
+use super::threads::{Cores, Work, engine_threads};
+use super::worker::{Solve, StartError};
 use crate::wire::{Code, Preview, Problem, Submission};
 
 /// Rooms that there are at least, so that a newer preview begins while the one that it replaces winds down.
@@ -126,12 +126,12 @@ impl Previews {
         rules: PreviewRules,
         stop: CancellationToken,
     ) -> Result<Self, StartError> {
-        let cores = thread::available_parallelism().map_or(1, usize::from);
-        let rooms = rules.at_once.min(cores.max(FEWEST_ROOMS));
+        let cores = Cores::here();
+        let rooms = rules.at_once.min(cores.rooms().max(FEWEST_ROOMS));
         let free: Result<_, _> = (0..rooms)
             .map(|room| {
                 let name = move |index| format!("preview-{room}-{index}");
-                engine_threads(name, Work::Preview).map(Arc::new)
+                engine_threads(name, Work::Preview, cores.for_one()).map(Arc::new)
             })
             .collect();
         Ok(Self(Arc::new(Desk {

@@ -4,18 +4,18 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use jiff::Timestamp;
-use tokio::sync::{broadcast, mpsc, oneshot};
+use tokio::sync::{mpsc, oneshot};
 use tokio_util::sync::CancellationToken;
 use uuid::Uuid;
 
-use super::job::{Job, Progress, Status};
-use super::live::Live;
-use super::store::{Cursor, Filter, Store};
-use super::transitions::{NewJob, Outcome};
-use crate::wire::{SOLVER_VERSION, Submission};
-
-/// The time of day, given so that tests can set it.
-pub type Clock = Arc<dyn Fn() -> Timestamp + Send + Sync>;
+use super::clock::Clock;
+use super::error::JobError;
+use super::job::Job;
+use super::live::{Live, News};
+use super::store::{
+    Cursor, Depth, Document, Filter, NewJob, Outcome, QueueBounds, Store, StoreError,
+};
+use crate::wire::{SOLVER_VERSION, Status, Submission};
 
 /// So long a repeated request is recognized by its key.
 pub(super) const KEY_LIFETIME: jiff::SignedDuration = jiff::SignedDuration::from_hours(24);
@@ -28,49 +28,30 @@ const BATCH: usize = 64;
 pub struct Rules {
     /// So many jobs may wait, those of studies aside.
     pub queue_limit: u32,
+    /// So many of them may be of one client.
+    pub client_queue_limit: u32,
+    /// So many designs of studies of one client may wait.
+    pub client_design_limit: i64,
+    /// A job whose computation is estimated to take more memory is refused, in MB.
+    pub job_memory_mb: u64,
 }
 
-/// Why something cannot be done with a job.
-#[derive(Debug, Clone, thiserror::Error)]
-pub enum JobError {
-    /// So many jobs wait that no more are taken.
-    #[error("{waiting} jobs wait, which is the limit")]
-    QueueFull {
-        /// Jobs that wait.
-        waiting: i64,
-    },
-    /// The idempotency key was used for another submission.
-    #[error("the idempotency key was used for another submission")]
-    KeyConflict,
-    /// The client has no such job.
-    #[error("there is no job {0}")]
-    NotFound(Uuid),
-    /// The client has no such study.
-    #[error("there is no study {0}")]
-    StudyNotFound(Uuid),
-    /// The study is to be deleted, but has not ended.
-    #[error("the study has not ended")]
-    StudyRunning,
-    /// The study is to be cancelled, but has ended.
-    #[error("the study is {}", .0.as_str())]
-    StudyEnded(Status),
-    /// The job runs.
-    #[error("the job is running")]
-    Running,
-    /// The job has ended.
-    #[error("the job is {}", .0.as_str())]
-    Ended(Status),
-    /// The service is shutting down.
-    #[error("the service is shutting down")]
-    ShuttingDown,
-    /// The database did not do its part.
-    #[error("the database failed")]
-    Database(#[source] Arc<sqlx::Error>),
+/// Who submits, and what it may.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Member {
+    /// The name that its jobs bear.
+    pub client: String,
+    /// So many jobs of it may wait, where that is not the usual number.
+    pub queue_limit: Option<u32>,
 }
 
-impl From<sqlx::Error> for JobError {
-    fn from(error: sqlx::Error) -> Self {
-        Self::Database(Arc::new(error))
+impl Member {
+    /// Somebody with the usual bounds.
+    pub fn usual(client: &str) -> Self {
+        Self {
+            client: client.to_owned(),
+            queue_limit: None,
+        }
     }
 }
 
@@ -98,6 +79,7 @@ pub struct Jobs {
     pub(super) store: Store,
     pub(super) live: Arc<Live>,
     pub(super) clock: Clock,
+    pub(super) rules: Rules,
     submissions: mpsc::Sender<Pending>,
     stop: CancellationToken,
 }
@@ -117,12 +99,13 @@ impl Jobs {
             store.clone(),
             Arc::clone(&live),
             rules,
-            Arc::clone(&clock),
+            clock.clone(),
         ));
         Self {
             store,
             live,
             clock,
+            rules,
             submissions,
             stop,
         }
@@ -132,24 +115,21 @@ impl Jobs {
     ///
     /// # Errors
     ///
-    /// [`JobError::QueueFull`], [`JobError::KeyConflict`], [`JobError::ShuttingDown`], [`JobError::Database`].
+    /// [`JobError::QueueFull`], [`JobError::ClientQueueFull`], [`JobError::TooMuchMemory`], [`JobError::KeyConflict`],
+    /// [`JobError::ShuttingDown`], [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn submit(
         &self,
-        client: &str,
+        member: &Member,
         submission: &Submission,
         idempotency_key: Option<String>,
     ) -> Result<Submitted, JobError> {
+        self.refuse_if_failing()?;
+        self.check_memory(submission)?;
+        let client_limit = member.queue_limit.unwrap_or(self.rules.client_queue_limit);
         let job = NewJob {
-            id: Uuid::now_v7(),
-            client: client.to_owned(),
-            method: submission.method().to_owned(),
-            tags: submission.tags().to_vec(),
-            submission: submission.canonical_json(),
-            input_hash: submission.input_hash(),
-            positions_total: submission.positions_total(),
-            submitted_at: (self.clock)(),
             idempotency_key,
-            study: None,
+            client_limit,
+            ..NewJob::of(submission, &member.client, self.clock.now())
         };
         let (answer, outcome) = oneshot::channel();
         self.submissions
@@ -167,14 +147,60 @@ impl Jobs {
             }),
             Outcome::KeyConflict => Err(JobError::KeyConflict),
             Outcome::QueueFull { waiting } => Err(JobError::QueueFull { waiting }),
+            Outcome::ClientQueueFull { waiting } => Err(JobError::ClientQueueFull {
+                waiting,
+                limit: client_limit.into(),
+            }),
         }
+    }
+
+    /// Says no at once while nothing can be stored: each try would wait for the disk, or for a lock, behind all others.
+    pub(super) fn refuse_if_failing(&self) -> Result<(), JobError> {
+        match self.store.fault() {
+            None => Ok(()),
+            Some(cause) => {
+                let cause = sqlx::Error::Io(std::io::Error::other(cause));
+                Err(JobError::Unavailable(StoreError::from(cause)))
+            }
+        }
+    }
+
+    /// Refuses what would take more memory than a job may.
+    ///
+    /// # Errors
+    ///
+    /// [`JobError::TooMuchMemory`].
+    pub fn check_memory(&self, submission: &Submission) -> Result<(), JobError> {
+        let limit_mb = self.rules.job_memory_mb;
+        match crate::wire::memory_above(submission, limit_mb) {
+            None => Ok(()),
+            Some(needed_mb) => Err(JobError::TooMuchMemory {
+                needed_mb,
+                limit_mb,
+            }),
+        }
+    }
+
+    /// What new rows are measured against.
+    pub(super) fn bounds(&self) -> QueueBounds<'static> {
+        bounds(&self.rules, &self.clock)
+    }
+
+    /// The submission of a job that was found, JSON.
+    ///
+    /// # Errors
+    ///
+    /// [`JobError::NotFound`] if it has been deleted since, [`JobError::Unavailable`], [`JobError::Database`].
+    pub async fn submission(&self, id: Uuid) -> Result<String, JobError> {
+        let text = self.store.submission(id).await?;
+        text.ok_or(JobError::NotFound(id))
     }
 
     /// A job as it stands now.
     ///
     /// # Errors
     ///
-    /// [`JobError::NotFound`], [`JobError::Database`].
+    /// [`JobError::NotFound`], [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn find(&self, client: &str, id: Uuid) -> Result<Job, JobError> {
         let job = self
             .store
@@ -188,7 +214,7 @@ impl Jobs {
     ///
     /// # Errors
     ///
-    /// [`JobError::NotFound`], [`JobError::Database`].
+    /// [`JobError::NotFound`], [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn wait(&self, client: &str, id: Uuid, patience: Duration) -> Result<Job, JobError> {
         let ended = async {
             let mut news = self.news(id);
@@ -220,11 +246,8 @@ impl Jobs {
             .await?;
         let goes_on = items.len() > limit as usize;
         items.truncate(limit as usize);
-        let next = if goes_on {
-            items.last().map(Cursor::behind)
-        } else {
-            None
-        };
+        let next = items.last().filter(|_| goes_on);
+        let next = next.map(|job| Cursor(job.sequence));
         Ok(Page {
             items: items
                 .into_iter()
@@ -234,12 +257,13 @@ impl Jobs {
         })
     }
 
-    /// The text of the results of a job that was found successful.
+    /// The results of a job that was found successful.
     ///
     /// # Errors
     ///
-    /// [`JobError::NotFound`] if it has been deleted since, [`JobError::Database`].
-    pub async fn document(&self, job: &Job) -> Result<String, JobError> {
+    /// [`JobError::NotFound`] if it has been deleted since, [`JobError::Ended`] if it has none, [`JobError::Unavailable`],
+    /// [`JobError::Database`].
+    pub async fn document(&self, job: &Job) -> Result<Document, JobError> {
         let Some(hash) = &job.document else {
             return Err(JobError::Ended(job.status));
         };
@@ -256,12 +280,12 @@ impl Jobs {
     /// [`JobError::Ended`] if it is successful or failed, [`JobError::NotFound`], [`JobError::Database`].
     pub async fn cancel(&self, client: &str, id: Uuid) -> Result<Job, JobError> {
         let running = self.live.running(id);
-        if let Some(job) = self.store.cancel(client, id, (self.clock)()).await? {
+        if let Some(job) = self.store.cancel(client, id, self.clock.now()).await? {
             // If this future is dropped before the stop, the worker's next report finds out.
             if let Some(running) = running.or_else(|| self.live.running(id)) {
                 running.stop();
             }
-            self.live.changed(id);
+            self.live.changed_job(&job);
             return Ok(job);
         }
         let job = self.find(client, id).await?;
@@ -286,22 +310,45 @@ impl Jobs {
         Err(JobError::Running)
     }
 
-    /// Numbers of jobs that wait and that run.
+    /// The queue as an operator sees it.
     ///
     /// # Errors
     ///
-    /// [`JobError::Database`].
-    pub async fn depth(&self) -> Result<(i64, i64), JobError> {
+    /// [`JobError::Unavailable`], [`JobError::Database`].
+    pub async fn depth(&self) -> Result<Depth, JobError> {
         Ok(self.store.depth().await?)
     }
 
-    /// Whether the database takes writes.
+    /// Whether the database takes writes: what it said last, or what it says now.
     ///
     /// # Errors
     ///
-    /// [`JobError::Database`].
+    /// [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn check(&self) -> Result<(), JobError> {
-        Ok(self.store.check().await?)
+        self.refuse_if_failing()?;
+        Ok(self.store.probe().await?)
+    }
+
+    /// Forgets idempotency keys that are a day old, also when nobody submits.
+    pub(super) async fn forget_keys(&self) -> Result<(), StoreError> {
+        self.store
+            .forget_keys(self.bounds().forget_keys_before)
+            .await
+    }
+
+    /// Where everything is kept.
+    pub fn store(&self) -> &Store {
+        &self.store
+    }
+
+    /// The clocks of the service.
+    pub fn clock(&self) -> &Clock {
+        &self.clock
+    }
+
+    /// What the queue allows.
+    pub fn rules(&self) -> &Rules {
+        &self.rules
     }
 
     /// What happens to a job from now on.
@@ -329,44 +376,43 @@ impl Jobs {
     }
 }
 
-/// What happens to one job.
-pub struct News {
-    id: Uuid,
-    live: Arc<Live>,
-    changes: broadcast::Receiver<Uuid>,
-}
-
-impl News {
-    /// Comes back when the state of the job may have changed.
-    pub async fn changed_state(&mut self) {
-        loop {
-            match self.changes.recv().await {
-                Ok(id) if id != self.id => {}
-                // One who lags has missed news, perhaps of this job.
-                Ok(_) | Err(broadcast::error::RecvError::Lagged(_)) => return,
-                Err(broadcast::error::RecvError::Closed) => std::future::pending().await,
-            }
+impl NewJob {
+    /// A job that stands alone, with the usual bounds.
+    pub(super) fn of(submission: &Submission, client: &str, now: Timestamp) -> Self {
+        Self {
+            id: Uuid::now_v7(),
+            client: client.to_owned(),
+            method: submission.method().to_owned(),
+            tags: submission.tags().to_vec(),
+            submission: submission.canonical_json(),
+            input_hash: submission.input_hash(),
+            cost: rough_cost(submission),
+            positions_total: submission.positions_total(),
+            submitted_at: now,
+            idempotency_key: None,
+            study: None,
+            client_limit: u32::MAX,
         }
     }
+}
 
-    /// Comes back when the state or the progress of the job may have changed, `seen` being the progress known.
-    pub async fn changed(&mut self, seen: Option<Progress>) {
-        let progress = self.live.running(self.id).map(|running| running.watch());
-        let moved = async {
-            match progress {
-                Some(mut progress) => {
-                    // An attempt that ends drops its sender; the change of state follows.
-                    if progress.wait_for(|now| Some(*now) != seen).await.is_err() {
-                        std::future::pending::<()>().await;
-                    }
-                }
-                None => std::future::pending().await,
-            }
-        };
-        tokio::select! {
-            () = self.changed_state() => {}
-            () = moved => {}
-        }
+/// What a submission takes of a core, in microseconds, as far as its size tells. The engine's own estimate is better, and
+/// takes a tenth of a job; for fair shares the order of magnitude is enough.
+fn rough_cost(submission: &Submission) -> u64 {
+    const FIXED: u64 = 20_000;
+    const PER_POSITION: u64 = 50;
+    FIXED.saturating_add(submission.positions_total().saturating_mul(PER_POSITION))
+}
+
+fn bounds(rules: &Rules, clock: &Clock) -> QueueBounds<'static> {
+    let steady = clock.steady();
+    QueueBounds {
+        queue_limit: rules.queue_limit,
+        forget_keys_before: steady
+            .saturating_sub(KEY_LIFETIME)
+            .unwrap_or(Timestamp::MIN),
+        steady,
+        solver_version: SOLVER_VERSION,
     }
 }
 
@@ -384,14 +430,8 @@ async fn write_submissions(
             .drain(..)
             .map(|Pending { job, answer }| (job, answer))
             .unzip();
-        let forget_before = clock()
-            .saturating_sub(KEY_LIFETIME)
-            .unwrap_or(Timestamp::MIN);
         // A client that has gone no longer listens; its job stands all the same.
-        match store
-            .submit(&jobs, rules.queue_limit, forget_before, SOLVER_VERSION)
-            .await
-        {
+        match store.submit(&jobs, bounds(&rules, &clock)).await {
             Ok(outcomes) => {
                 live.work.notify_one();
                 for (answer, outcome) in answers.into_iter().zip(outcomes) {

@@ -4,20 +4,26 @@
 use std::time::Duration;
 
 use jiff::Timestamp;
-use sha2::{Digest, Sha256};
 use tracing::{error, info};
 use uuid::Uuid;
 
-use super::job::Status;
-use super::queue::{JobError, Jobs, KEY_LIFETIME};
-use super::store::Cursor;
+use meshwright_engine::run::Run;
+
+use super::error::JobError;
+use super::queue::{Jobs, Member};
+use super::store::{
+    Cursor, Document, NewJob, NewRow, NewStudy, StoreError, StoredRow, StudyFilter, StudyOutcome,
+};
 use super::study::StudyRecord;
-use super::study_transitions::{NewRow, NewStudy, StoredRow, StudyOutcome};
-use super::transitions::NewJob;
-use crate::wire::{RowState, SOLVER_VERSION, Study};
+use crate::hash::sha256_hex;
+use crate::wire::{Design, RowState, SOLVER_VERSION, Status, Study, memory_above, too_much_memory};
 
 /// So many designs are expanded and written in one transaction. Others write in between.
 const CHUNK: usize = 500;
+
+/// So many rows of a table are read at a time, and so many documents.
+const ROWS_AT_ONCE: u32 = 500;
+const DOCUMENTS_AT_ONCE: u32 = 8;
 
 /// A study that answers a submission.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,47 +43,58 @@ pub struct StudyPage {
     pub next: Option<Cursor>,
 }
 
+/// The results of a design.
+#[derive(Debug, Clone)]
+pub struct DocumentLine {
+    /// Its place in the table, from 0.
+    pub position: i64,
+    /// What the design is called.
+    pub label: String,
+    /// The job that computed it.
+    pub job: String,
+    /// Its results.
+    pub document: Document,
+}
+
 impl Jobs {
     /// Takes a study: it and its first designs are on the disk when this comes back.
     ///
     /// # Errors
     ///
-    /// [`JobError::QueueFull`], [`JobError::KeyConflict`], [`JobError::ShuttingDown`], [`JobError::Database`].
+    /// [`JobError::QueueFull`], [`JobError::ClientQueueFull`], [`JobError::KeyConflict`], [`JobError::ShuttingDown`],
+    /// [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn submit_study(
         &self,
-        client: &str,
+        member: &Member,
         study: Study,
         idempotency_key: Option<String>,
     ) -> Result<StudySubmitted, JobError> {
-        let now = (self.clock)();
-        let document = study.document().to_string();
+        self.refuse_if_failing()?;
+        let now = self.clock.now();
         let new = NewStudy {
             id: Uuid::now_v7(),
-            client: client.to_owned(),
-            body_hash: Sha256::digest(&document)
-                .iter()
-                .map(|byte| format!("{byte:02x}"))
-                .collect(),
-            document,
+            client: member.client.clone(),
+            name: study.name().map(str::to_owned),
+            tags: study.tags().to_vec(),
+            body_hash: sha256_hex(study.document()),
+            document: study.document().to_owned(),
             gear: study.gear(),
             total: study.total() as u64,
             submitted_at: now,
             idempotency_key,
+            client_limit: self.rules.client_design_limit,
         };
         let owner = Owner {
             study: new.id,
-            client: client.to_owned(),
+            client: member.client.clone(),
             submitted_at: now,
+            memory_mb: self.rules.job_memory_mb,
         };
         let (study, rows, owner) = expand(study, 0, owner).await?;
-        let forget_before = now.saturating_sub(KEY_LIFETIME).unwrap_or(Timestamp::MIN);
-        let outcome = self
-            .store
-            .begin_study(&new, &rows, forget_before, SOLVER_VERSION)
-            .await?;
+        let outcome = self.store.begin_study(&new, &rows, self.bounds()).await?;
         let (id, repeated) = match outcome {
             StudyOutcome::Taken => {
-                info!(study = %new.id, designs = new.total, "study taken");
+                info!(study = %new.id, client = new.client, designs = new.total, "study taken");
                 self.live.work.notify_one();
                 if rows.len() < study.total() {
                     self.continue_in_background(study, rows.len(), owner);
@@ -87,24 +104,36 @@ impl Jobs {
             StudyOutcome::Repeated(id) => (id, true),
             StudyOutcome::KeyConflict => return Err(JobError::KeyConflict),
             StudyOutcome::QueueFull { waiting } => return Err(JobError::QueueFull { waiting }),
+            StudyOutcome::ClientQueueFull { waiting } => {
+                return Err(JobError::ClientQueueFull {
+                    waiting,
+                    limit: new.client_limit,
+                });
+            }
         };
-        let study = self.find_study(client, id).await?;
+        let study = self.find_study(&member.client, id).await?;
         Ok(StudySubmitted { study, repeated })
     }
 
     /// Goes on with the expansion of studies that an earlier process has left.
-    pub(super) async fn resume_studies(&self) -> Result<(), sqlx::Error> {
+    pub(super) async fn resume_studies(&self) -> Result<(), StoreError> {
         for (id, client) in self.store.unfinished_expansions().await? {
             let Some(record) = self.store.find_study(&client, id).await? else {
                 continue;
             };
-            match Study::parse(record.document.as_bytes()) {
+            let document = self
+                .store
+                .study_text(id, u64::MAX)
+                .await?
+                .unwrap_or_default();
+            match Study::parse(document.as_bytes(), &Run::unattended()) {
                 Ok(study) => {
                     info!(study = %id, expanded = record.expanded, designs = record.total, "study resumed");
                     let owner = Owner {
                         study: id,
                         client,
                         submitted_at: record.submitted_at,
+                        memory_mb: self.rules.job_memory_mb,
                     };
                     let expanded = usize::try_from(record.expanded).unwrap_or(usize::MAX);
                     self.continue_in_background(study, expanded, owner);
@@ -112,7 +141,8 @@ impl Jobs {
                 // An earlier version took it; what it has of rows is kept.
                 Err(problem) => {
                     error!(study = %id, %problem, "a study is no longer understood, and cancelled");
-                    self.store.cancel_study(&client, id, (self.clock)()).await?;
+                    let now = self.clock.now();
+                    self.store.cancel_study(&client, id, now).await?;
                 }
             }
         }
@@ -142,10 +172,32 @@ impl Jobs {
             (study, rows, owner) = expand(study, expanded, owner).await?;
             let stands = self
                 .store
-                .continue_study(owner.study, expanded as u64, &rows, SOLVER_VERSION)
-                .await?;
+                .continue_study(
+                    owner.study,
+                    expanded as u64,
+                    &rows,
+                    self.clock.now(),
+                    SOLVER_VERSION,
+                )
+                .await;
+            // What the disk does not take now it takes later; the study is not given up for that.
+            let stands = match stands {
+                Err(error) if error.may_pass() => {
+                    self.wait_for_storage().await;
+                    continue;
+                }
+                stands => stands?,
+            };
             if !stands {
-                break;
+                // It is cancelled or deleted; or a commit has lasted that was said to have failed.
+                let now = self.store.find_study(&owner.client, owner.study).await?;
+                let now = now.filter(|study| study.cancelled_at.is_none());
+                let stored = now.map_or(0, |study| study.expanded as usize);
+                if stored <= expanded {
+                    break;
+                }
+                expanded = stored;
+                continue;
             }
             expanded += rows.len();
             self.live.work.notify_one();
@@ -154,11 +206,24 @@ impl Jobs {
         Ok(())
     }
 
+    /// Comes back when it is worth writing again, or the service stops.
+    pub(super) async fn wait_for_storage(&self) {
+        const PAUSE: Duration = Duration::from_millis(100);
+        let writable = async {
+            tokio::time::sleep(PAUSE).await;
+            self.store.writable().await;
+        };
+        tokio::select! {
+            () = writable => {}
+            () = self.stop().cancelled() => {}
+        }
+    }
+
     /// A study as it stands now.
     ///
     /// # Errors
     ///
-    /// [`JobError::StudyNotFound`], [`JobError::Database`].
+    /// [`JobError::StudyNotFound`], [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn find_study(&self, client: &str, id: Uuid) -> Result<StudyRecord, JobError> {
         self.store
             .find_study(client, id)
@@ -170,7 +235,7 @@ impl Jobs {
     ///
     /// # Errors
     ///
-    /// [`JobError::StudyNotFound`], [`JobError::Database`].
+    /// [`JobError::StudyNotFound`], [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn wait_for_study(
         &self,
         client: &str,
@@ -201,36 +266,75 @@ impl Jobs {
     ///
     /// # Errors
     ///
-    /// [`JobError::Database`].
+    /// [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn list_studies(
         &self,
         client: &str,
-        after: Option<Cursor>,
+        filter: &StudyFilter,
         limit: u32,
     ) -> Result<StudyPage, JobError> {
         // One more than asked for tells whether the list goes on.
         let mut items = self
             .store
-            .list_studies(client, after, limit.saturating_add(1))
+            .list_studies(client, filter, limit.saturating_add(1))
             .await?;
         let goes_on = items.len() > limit as usize;
         items.truncate(limit as usize);
-        let next = items.last().filter(|_| goes_on).map(|study| Cursor {
-            submitted_at: study.submitted_at,
-            id: study.id,
-        });
+        let next = items.last().filter(|_| goes_on);
+        let next = next.map(|study| Cursor(study.sequence));
         Ok(StudyPage { items, next })
     }
 
-    /// The rows of a study that was found, with what has come of each so far.
+    /// The study that was found, as it was sent, JSON.
     ///
     /// # Errors
     ///
-    /// [`JobError::Database`].
-    pub async fn study_rows(&self, study: &StudyRecord) -> Result<Vec<RowState>, JobError> {
-        let rows = self.store.study_rows(study.id).await?;
-        // Thousands of small documents are read here, which is more than a thread that answers requests should do.
+    /// [`JobError::StudyNotFound`] if it has been deleted since, [`JobError::Unavailable`], [`JobError::Database`].
+    pub async fn study_text(&self, id: Uuid) -> Result<String, JobError> {
+        let text = self.store.study_text(id, u64::MAX).await?;
+        text.ok_or(JobError::StudyNotFound(id))
+    }
+
+    /// The same, if it has no more characters than `most`.
+    ///
+    /// # Errors
+    ///
+    /// [`JobError::Unavailable`], [`JobError::Database`].
+    pub async fn short_study_text(&self, id: Uuid, most: u64) -> Result<Option<String>, JobError> {
+        Ok(self.store.study_text(id, most).await?)
+    }
+
+    /// Some rows of a study that was found, behind the first `after` ones, with what has come of each so far. None left:
+    /// the table is at its end.
+    ///
+    /// # Errors
+    ///
+    /// [`JobError::Unavailable`], [`JobError::Database`].
+    pub async fn study_rows(&self, id: Uuid, after: u64) -> Result<Vec<RowState>, JobError> {
+        let rows = self
+            .store
+            .study_rows(id, position_before(after), ROWS_AT_ONCE)
+            .await?;
+        // Hundreds of small documents are read here, which is more than a thread that answers requests should do.
         blocking(move || rows.into_iter().map(row_state).collect()).await
+    }
+
+    /// Some results of a study that was found, of the designs behind the position `after` that have results. None left:
+    /// there are no more now.
+    ///
+    /// # Errors
+    ///
+    /// [`JobError::Unavailable`], [`JobError::Database`].
+    pub async fn study_documents(
+        &self,
+        id: Uuid,
+        after: Option<i64>,
+    ) -> Result<Vec<DocumentLine>, JobError> {
+        let after = after.unwrap_or(-1);
+        Ok(self
+            .store
+            .study_documents(id, after, DOCUMENTS_AT_ONCE)
+            .await?)
     }
 
     /// Ends a study: what waits or runs of it is dismissed, what has results keeps them. A study that was cancelled
@@ -238,9 +342,12 @@ impl Jobs {
     ///
     /// # Errors
     ///
-    /// [`JobError::StudyEnded`], [`JobError::StudyNotFound`], [`JobError::Database`].
+    /// [`JobError::StudyEnded`], [`JobError::StudyNotFound`], [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn cancel_study(&self, client: &str, id: Uuid) -> Result<StudyRecord, JobError> {
-        let dismissed = self.store.cancel_study(client, id, (self.clock)()).await?;
+        let dismissed = self
+            .store
+            .cancel_study(client, id, self.clock.now())
+            .await?;
         let cancelled = dismissed.is_some();
         for job in dismissed.into_iter().flatten() {
             // One that enters only now finds at its first report that it is dismissed.
@@ -262,7 +369,7 @@ impl Jobs {
     ///
     /// # Errors
     ///
-    /// [`JobError::StudyRunning`], [`JobError::StudyNotFound`], [`JobError::Database`].
+    /// [`JobError::StudyRunning`], [`JobError::StudyNotFound`], [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn delete_study(&self, client: &str, id: Uuid) -> Result<(), JobError> {
         if self.store.delete_study(client, id).await? {
             self.live.changed(id);
@@ -278,22 +385,22 @@ struct Owner {
     study: Uuid,
     client: String,
     submitted_at: Timestamp,
+    /// So much memory may a design take.
+    memory_mb: u64,
 }
 
 impl Owner {
-    fn row(&self, design: crate::wire::Design) -> NewRow {
-        let job = match design.submission {
+    fn row(&self, design: Design) -> NewRow {
+        let submission = design.submission.and_then(|submission| {
+            match memory_above(&submission, self.memory_mb) {
+                None => Ok(submission),
+                Some(needed_mb) => Err(too_much_memory(needed_mb, self.memory_mb)),
+            }
+        });
+        let job = match submission {
             Ok(submission) => Ok(NewJob {
-                id: Uuid::now_v7(),
-                client: self.client.clone(),
-                method: submission.method().to_owned(),
-                tags: submission.tags().to_vec(),
-                submission: submission.canonical_json(),
-                input_hash: submission.input_hash(),
-                positions_total: submission.positions_total(),
-                submitted_at: self.submitted_at,
-                idempotency_key: None,
                 study: Some(self.study),
+                ..NewJob::of(&submission, &self.client, self.submitted_at)
             }),
             Err(problem) => Err(problem.to_json()),
         };
@@ -333,11 +440,16 @@ async fn blocking<T: Send + 'static>(
     }
 }
 
+/// The position before the first one behind `count` rows.
+fn position_before(count: u64) -> i64 {
+    i64::try_from(count).unwrap_or(i64::MAX) - 1
+}
+
 fn row_state(row: StoredRow) -> RowState {
     let problem: Option<serde_json::Value> = row
         .problem
         .and_then(|text| serde_json::from_str(&text).ok());
-    let status = match (row.status, &problem) {
+    let status = match (row.status.as_deref().and_then(Status::of_word), &problem) {
         (Some(status), _) => status,
         (None, Some(_)) => Status::Failed,
         // The client has deleted the job.
@@ -347,7 +459,7 @@ fn row_state(row: StoredRow) -> RowState {
         label: row.label,
         changes: serde_json::from_str(&row.changes).unwrap_or_default(),
         job: row.job.and_then(|id| id.parse().ok()),
-        status: status.as_str(),
+        status,
         summary: row
             .summary
             .and_then(|text| serde_json::from_str(&text).ok()),

@@ -1,11 +1,9 @@
-//! A study as it is kept: what was sent, and how far its jobs have come.
+//! A study: how far its jobs have come.
 
 use jiff::Timestamp;
-use sqlx::sqlite::SqliteRow;
-use sqlx::{FromRow, Row};
 use uuid::Uuid;
 
-use super::job::{Status, count, instant, optional_instant, uuid};
+use crate::wire::Status;
 use crate::wire::warning::GearName;
 
 /// A study and how far it has come. Where it stands follows from where its jobs stand.
@@ -13,16 +11,20 @@ use crate::wire::warning::GearName;
 pub struct StudyRecord {
     /// The id on the wire, a UUID of version 7.
     pub id: Uuid,
-    /// The study as it was sent, JSON.
-    pub document: String,
+    /// Its place in the order of arrival.
+    pub sequence: i64,
+    /// What the client calls it.
+    pub name: Option<String>,
+    /// Short words of the client.
+    pub tags: Vec<String>,
     /// The gear whose mass and holes the table tells.
     pub gear: GearName,
     /// Number of designs.
     pub total: u64,
     /// Designs that have their row.
     pub(super) expanded: u64,
-    /// Designs that came to an end without a job.
-    pub without_job: u64,
+    /// Designs that could not be built.
+    pub unbuildable: u64,
     /// Designs that wait.
     pub accepted: u64,
     /// Designs that are being computed.
@@ -31,20 +33,22 @@ pub struct StudyRecord {
     pub successful: u64,
     /// Designs whose computation failed.
     pub failed: u64,
-    /// Designs whose job was cancelled.
+    /// Designs whose job was cancelled or deleted.
     pub dismissed: u64,
+    /// Grows with every change of the study, its rows or its jobs.
+    pub version: i64,
     /// When it was submitted.
     pub submitted_at: Timestamp,
     /// When it was cancelled.
     pub cancelled_at: Option<Timestamp>,
     /// When the last of its jobs ended, of those that have.
-    last_end: Option<Timestamp>,
+    pub(super) last_end: Option<Timestamp>,
 }
 
 impl StudyRecord {
     /// Designs that have come to an end, whichever.
     pub fn done(&self) -> u64 {
-        self.without_job + self.successful + self.failed + self.dismissed
+        self.unbuildable + self.successful + self.failed + self.dismissed
     }
 
     /// Where it stands.
@@ -80,29 +84,6 @@ impl StudyRecord {
     }
 }
 
-impl FromRow<'_, SqliteRow> for StudyRecord {
-    fn from_row(row: &SqliteRow) -> Result<Self, sqlx::Error> {
-        Ok(Self {
-            id: uuid("id", &row.try_get::<String, _>("id")?)?,
-            document: row.try_get("document")?,
-            gear: row
-                .try_get::<String, _>("gear")
-                .map(|word| GearName::of_word(&word).unwrap_or(GearName::Driven))?,
-            total: count(row, "total")?,
-            expanded: count(row, "expanded")?,
-            without_job: count(row, "without_job")?,
-            accepted: count(row, "accepted")?,
-            running: count(row, "running")?,
-            successful: count(row, "successful")?,
-            failed: count(row, "failed")?,
-            dismissed: count(row, "dismissed")?,
-            submitted_at: instant("submitted_at", row.try_get("submitted_at")?)?,
-            cancelled_at: optional_instant(row, "cancelled_at")?,
-            last_end: optional_instant(row, "last_end")?,
-        })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -111,16 +92,19 @@ mod tests {
     fn where_a_study_stands_follows_from_its_jobs() {
         let study = StudyRecord {
             id: Uuid::nil(),
-            document: String::new(),
+            sequence: 1,
+            name: None,
+            tags: Vec::new(),
             gear: GearName::Driven,
             total: 4,
             expanded: 4,
-            without_job: 1,
+            unbuildable: 1,
             accepted: 3,
             running: 0,
             successful: 0,
             failed: 0,
             dismissed: 0,
+            version: 0,
             submitted_at: Timestamp::UNIX_EPOCH,
             cancelled_at: None,
             last_end: None,
@@ -150,7 +134,7 @@ mod tests {
         assert_eq!(cancelled.status(), Status::Dismissed);
         assert_eq!(cancelled.finished_at(), Some(Timestamp::UNIX_EPOCH));
         let impossible = StudyRecord {
-            without_job: 4,
+            unbuildable: 4,
             accepted: 0,
             ..study
         };

@@ -1,4 +1,4 @@
-//! Submissions to start from: the paper's test cases and the designs of its study.
+//! Submissions to start from: the paper's test cases, the designs of its study, and one for each thing that real drawings say.
 
 /// A submission that ships with the service.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,6 +34,13 @@ const EXAMPLES: &[Example] = examples! {
     "design-6r30" true "Design 6R30 of the study: six holes at 30 mm, a quarter of the blank removed."
     "design-8r30" true "Design 8R30 of the study: eight holes at 30 mm, a quarter of the blank removed."
     "design-8r27" true "Design 8R27 of the study: eight holes at 27 mm, a quarter of the blank removed."
+    "tip-diameter" true "Tip circles given by their diameters, and teeth made thinner for their backlash, at the reference center distance."
+    "tip-edges" true "Rounded tip edges on the driving gear, chamfered ones on the driven gear."
+    "profile-modifications" true "Root relief, crowning and slope beside the tip relief of the driving gear; a measured table on the driven gear."
+    "pitch-deviations" true "Measured teeth: single pitch deviations of the driving gear, cumulative ones and profile slopes of the driven gear. The true period is a revolution."
+    "eccentricity" true "A driven gear that turns 20 um beside its own axis, at a speed that gives frequencies."
+    "light-load" true "The limit of light load, the torque 0, beside two loaded curves."
+    "interface-radii" true "The decomposition of two holed gears that are cut at radii of their own."
     "bad-case-3-as-printed" false "Test case 3 with the center distance that the paper prints, 118.5 mm: its teeth do not reach each other, and it is refused."
 };
 
@@ -55,6 +62,53 @@ mod tests {
         for example in examples() {
             let read = Submission::parse(example.json.as_bytes());
             assert_eq!(read.is_ok(), example.valid, "{}: {read:?}", example.name);
+        }
+    }
+
+    #[test]
+    fn the_examples_of_real_drawings_say_what_their_names_say() {
+        for (name, place) in [
+            ("tip-diameter", "/pair/driving/tip_diameter_mm"),
+            ("tip-diameter", "/pair/driven/tooth_thickness_deviation_um"),
+            ("tip-edges", "/pair/driving/tip_rounding_mm"),
+            ("tip-edges", "/pair/driven/tip_chamfer_mm"),
+            (
+                "profile-modifications",
+                "/pair/driving/profile_modifications/2/amount_um",
+            ),
+            (
+                "profile-modifications",
+                "/pair/driven/profile_modifications/0/removed_um/5",
+            ),
+            (
+                "pitch-deviations",
+                "/pair/driving/tooth_deviations/pitch_single_um/49",
+            ),
+            (
+                "pitch-deviations",
+                "/pair/driven/tooth_deviations/pitch_cumulative_um/49",
+            ),
+            (
+                "pitch-deviations",
+                "/pair/driven/tooth_deviations/profile_slope_um/49",
+            ),
+            (
+                "eccentricity",
+                "/pair/driven/tooth_deviations/eccentricity/amount_um",
+            ),
+            ("light-load", "/output_torques_n_m/2"),
+            ("interface-radii", "/resolution/interface_radius_mm/driving"),
+        ] {
+            let example = examples().iter().find(|example| example.name == name);
+            let json = example.expect("ships").json;
+            let submission = Submission::parse(json.as_bytes()).expect("valid");
+            let echo: serde_json::Value =
+                serde_json::from_str(&submission.canonical_json()).expect("JSON");
+            let said = echo.pointer(place).and_then(serde_json::Value::as_f64);
+            assert!(
+                said.is_some_and(|said| said != 0.0),
+                "{name}: {place} is {said:?}"
+            );
         }
     }
 

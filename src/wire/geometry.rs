@@ -21,8 +21,10 @@ pub struct PairGeometry {
     pub base_pitch_mm: f64,
     /// The number of mesh periods after which the contact repeats.
     pub period_mesh_periods: u32,
-    /// The normal backlash, along the line of action, in mm.
+    /// The normal backlash, along the line of action, in mm, of teeth as drawn.
     pub backlash_mm: f64,
+    /// The least normal backlash, in mm: what pitch and slope deviations that stand out and eccentricity leave of it.
+    pub least_backlash_mm: f64,
     /// The face width on which the gears touch, in mm: the smaller of the two.
     pub contact_width_mm: f64,
     /// The path of contact along the theoretical line of action.
@@ -67,6 +69,9 @@ pub struct PathPoint {
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 #[schema(title = "Gear geometry")]
 pub struct GearGeometry {
+    /// The number of mesh periods after which this gear stands alike again: 1 for a solid blank, fewer than its teeth for holes that
+    /// repeat, all of its teeth where they deviate.
+    pub period_mesh_periods: u32,
     /// The reference radius, in mm.
     pub reference_radius_mm: f64,
     /// The base radius, in mm.
@@ -77,6 +82,8 @@ pub struct GearGeometry {
     pub root_radius_mm: f64,
     /// The form radius, in mm, where the involute ends and the fillet begins.
     pub form_radius_mm: f64,
+    /// The radius at which the involute ends, in mm: the tip radius, or less where the tip edge is broken.
+    pub tip_form_radius_mm: f64,
     /// The working pitch radius, in mm.
     pub working_pitch_radius_mm: f64,
     /// The thickness of a tooth along its tip circle, in mm.
@@ -94,6 +101,12 @@ pub struct GearGeometry {
     pub mass_removed_percent: f64,
     /// The polar moment of inertia of the true profile, in kg m2.
     pub polar_inertia_kg_m2: f64,
+    /// The imbalance, in kg mm: mass times the distance of its center from the axis of rotation.
+    pub imbalance_kg_mm: f64,
+    /// The direction of the center of mass from the axis of rotation, in degrees from the centerline of tooth 0, positive towards its
+    /// loaded flank; absent without imbalance.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub imbalance_angle_deg: Option<f64>,
 }
 
 /// The frequencies of eq. 2 at the speed given.
@@ -120,6 +133,7 @@ impl PairGeometry {
             base_pitch_mm: to_mm(pair.base_pitch()),
             period_mesh_periods: pair.period(),
             backlash_mm: to_mm(pair.backlash()),
+            least_backlash_mm: to_mm(pair.least_backlash()),
             contact_width_mm: to_mm(pair.common_face_width()),
             path_of_contact: PathOfContact::of(pair),
             driving: GearGeometry::of(pair, Member::Driving),
@@ -151,12 +165,16 @@ impl PathOfContact {
 impl GearGeometry {
     fn of(pair: &GearPair, member: Member) -> Self {
         let gear = pair.gear(member);
+        let imbalance = gear.imbalance();
+        let is_balanced = imbalance.norm() == 0.0;
         Self {
+            period_mesh_periods: pair.period_of(member),
             reference_radius_mm: to_mm(gear.reference_radius()),
             base_radius_mm: to_mm(gear.base_radius()),
             tip_radius_mm: to_mm(gear.tip_radius()),
             root_radius_mm: to_mm(gear.root_radius()),
             form_radius_mm: to_mm(gear.form_radius()),
+            tip_form_radius_mm: to_mm(gear.flank().radius(gear.tip_form_roll_length())),
             working_pitch_radius_mm: to_mm(pair.working_radius(member)),
             tip_thickness_mm: to_mm(gear.tip_thickness()),
             relief_start_radius_mm: gear.tip_relief().map(|relief| to_mm(relief.start_radius())),
@@ -164,6 +182,9 @@ impl GearGeometry {
             mass_kg: gear.mass(),
             mass_removed_percent: 100.0 * gear.removed_fraction(),
             polar_inertia_kg_m2: gear.polar_inertia(),
+            imbalance_kg_mm: to_mm(imbalance.norm()),
+            imbalance_angle_deg: (!is_balanced)
+                .then(|| imbalance.y.atan2(imbalance.x).to_degrees()),
         }
     }
 }
@@ -218,6 +239,30 @@ mod tests {
             assert!((value - printed).abs() <= half_digit, "{value} {printed}");
         }
         assert_eq!(pair.driving.least_ligament_mm, None);
+    }
+
+    #[test]
+    fn an_eccentric_gear_is_out_of_balance_by_its_mass_times_its_eccentricity() {
+        let balanced = geometry("standard-pair");
+        assert_eq!(balanced.driven.imbalance_kg_mm, 0.0);
+        assert_eq!(balanced.driven.imbalance_angle_deg, None);
+        let eccentric = geometry("eccentricity");
+        let driven = &eccentric.driven;
+        // 20 um at 30 degrees, as the example says.
+        assert!((driven.imbalance_kg_mm / (driven.mass_kg * 0.02) - 1.0).abs() < 1e-12);
+        let angle = driven.imbalance_angle_deg.expect("an angle");
+        assert!((angle - 30.0).abs() < 1e-9, "{angle}");
+        assert_eq!(
+            (
+                driven.period_mesh_periods,
+                eccentric.driving.period_mesh_periods
+            ),
+            (50, 1)
+        );
+        assert_eq!(eccentric.period_mesh_periods, 50);
+        // Nearer by e, both flanks close up by e sin alpha_w.
+        let taken = 2.0 * 0.02 * eccentric.working_pressure_angle_deg.to_radians().sin();
+        assert!((eccentric.backlash_mm - eccentric.least_backlash_mm - taken).abs() < 1e-12);
     }
 
     #[test]

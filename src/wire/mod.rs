@@ -4,20 +4,27 @@
 //! [`resolution`] (what is asked), [`geometry`], [`warning`] and [`results`] (what is answered), [`solve`](mod@solve)
 //! (what leads from the one to the other) and [`examples`](mod@examples); [`preview`], a submission that is answered at
 //! once; then [`study`] and [`study_table`], many
-//! submissions at once. `units`, `quantity`, `tree`, `schema` and
-//! `pointer` carry them: conversions, the table of bounds, JSON with its places, OpenAPI, and places in a submission.
+//! submissions at once. `units`, `quantity`, `size`, `tree`, `edit`, `schema`, `tags` and `pointer` carry them: conversions,
+//! the table of bounds, how much is read at all, JSON with its places, changes in place, OpenAPI, and places in a
+//! submission.
 //!
 //! This is the only place where domain data meets serde, and where mm, um, degrees, GPa and MPa meet SI.
 
+pub(crate) mod csv;
+mod edit;
 mod pointer;
 mod quantity;
 mod schema;
+mod size;
+mod tags;
 mod tree;
 mod units;
 
 pub mod problem;
+pub mod status;
 
 pub mod gear;
+mod interface;
 pub mod pair;
 pub mod resolution;
 pub mod submission;
@@ -27,6 +34,7 @@ pub mod results;
 pub mod warning;
 
 pub mod examples;
+mod memory;
 pub mod solve;
 
 pub mod preview;
@@ -35,10 +43,13 @@ pub mod study;
 pub mod study_table;
 
 pub use examples::{Example, examples};
+pub use memory::{memory_above, too_much_memory};
 pub use preview::Preview;
 pub use problem::{Code, FieldError, Problem};
 pub use results::Results;
+pub use schema::method_schema;
 pub use solve::{Limits, Validation, limits, solve, validate};
+pub use status::Status;
 pub use study::{Design, Study};
 pub use study_table::{RowState, StudyResults, Summary};
 pub use submission::{SOLVER_VERSION, Submission};

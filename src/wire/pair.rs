@@ -67,7 +67,11 @@ impl PairDocument {
         if !matched {
             return None;
         }
-        match GearPair::new(driving, driven, from_mm(self.center_distance_mm)) {
+        match GearPair::new(
+            driving.clone(),
+            driven.clone(),
+            from_mm(self.center_distance_mm),
+        ) {
             Ok(pair) => Some(pair),
             Err(error) => {
                 self.told(&driving, &driven, &error)
@@ -116,8 +120,13 @@ impl PairDocument {
             GearPairError::NegativeBacklash { backlash, smallest } => (
                 Code::NegativeBacklash,
                 if backlash.is_finite() {
+                    let worst = if deviates(driving) || deviates(driven) {
+                        " at the worst of the deviations"
+                    } else {
+                        ""
+                    };
                     format!(
-                        "At the center distance {a} mm the normal backlash is {} mm",
+                        "At the center distance {a} mm the normal backlash is {} mm{worst}",
                         mm(backlash)
                     )
                 } else {
@@ -185,10 +194,15 @@ impl PairDocument {
     }
 }
 
+/// Whether the teeth of `gear` take from the backlash what its drawing leaves.
+fn deviates(gear: &SpurGear) -> bool {
+    !gear.deviations().is_none()
+}
+
 /// The first center distance in mm, from `bound` inward in units of the fifth digit, at which the gears mesh.
 fn nearest_distance(driving: &SpurGear, driven: &SpurGear, bound: f64, side: Side) -> Option<f64> {
     const MOST_STEPS: u32 = 3;
     (0..MOST_STEPS)
         .map(|steps| rounded_inward(bound, side, steps))
-        .find(|&distance| GearPair::new(*driving, *driven, from_mm(distance)).is_ok())
+        .find(|&distance| GearPair::new(driving.clone(), driven.clone(), from_mm(distance)).is_ok())
 }

@@ -1,8 +1,8 @@
-//! JSON pointers (RFC 6901) into a submission: whether they name a field that there is, and how a value gets there.
+//! JSON pointers (RFC 6901) into a submission: whether they name a field that there is.
 
 use std::sync::LazyLock;
 
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 use utoipa::{PartialSchema, ToSchema};
 
 use super::problem::Code;
@@ -13,11 +13,6 @@ use super::submission::Submission;
 pub(super) struct Pointer {
     text: String,
     steps: Vec<String>,
-}
-
-/// A pointer's step as it is written: the key with `~` and `/` escaped.
-pub(super) fn escaped(key: &str) -> String {
-    key.replace('~', "~0").replace('/', "~1")
 }
 
 impl Pointer {
@@ -62,6 +57,11 @@ impl Pointer {
         &self.text
     }
 
+    /// Its steps, unescaped.
+    pub(super) fn steps(&self) -> &[String] {
+        &self.steps
+    }
+
     /// The number of its steps.
     pub(super) fn len(&self) -> usize {
         self.steps.len()
@@ -79,9 +79,12 @@ impl Pointer {
 
     /// Whether it names what `pointer` names, or something that contains it.
     pub(super) fn covers(&self, pointer: &str) -> bool {
-        pointer
-            .strip_prefix(self.text.as_str())
-            .is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+        is_within(pointer, &self.text)
+    }
+
+    /// Whether it names something within what `pointer` names.
+    pub(super) fn is_below(&self, pointer: &str) -> bool {
+        is_within(&self.text, pointer)
     }
 
     /// Whether the schema of a submission has a field at this place.
@@ -120,29 +123,12 @@ impl Pointer {
         }
         Ok(())
     }
+}
 
-    /// Puts `value` at this place of `document`. Objects on the way that are absent or null are made. False if something
-    /// on the way is no object, or a list without this place.
-    pub(super) fn put(&self, document: &mut Value, value: Value) -> bool {
-        let mut here = document;
-        for step in &self.steps {
-            if here.is_null() {
-                *here = json!({});
-            }
-            here = match here {
-                Value::Object(fields) => fields.entry(step.as_str()).or_insert(Value::Null),
-                Value::Array(items) => {
-                    match step.parse::<usize>().ok().and_then(|i| items.get_mut(i)) {
-                        Some(item) => item,
-                        None => return false,
-                    }
-                }
-                _ => return false,
-            };
-        }
-        *here = value;
-        true
-    }
+fn is_within(inner: &str, outer: &str) -> bool {
+    inner
+        .strip_prefix(outer)
+        .is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
 }
 
 /// The schema of a submission, with those that it refers to.
@@ -242,26 +228,6 @@ mod tests {
         let (code, detail) = pointer.check_named().unwrap_err();
         assert_eq!(code, Code::UnknownField);
         assert!(detail.contains("bore_radius_mm, holes"), "{detail}");
-    }
-
-    #[test]
-    fn a_value_is_put_where_it_belongs_and_absent_objects_are_made() {
-        let mut document = json!({ "pair": { "driven": { "blank": { "holes": null } } }, "output_torques_n_m": [1] });
-        let put = |document: &mut Value, text: &str, value: Value| {
-            Pointer::parse(text).unwrap().put(document, value)
-        };
-        assert!(put(
-            &mut document,
-            "/pair/driven/blank/holes/count",
-            json!(8)
-        ));
-        assert!(put(&mut document, "/output_torques_n_m/0", json!(2)));
-        assert!(!put(&mut document, "/output_torques_n_m/1", json!(2)));
-        assert!(!put(&mut document, "/output_torques_n_m/0/x", json!(2)));
-        assert_eq!(
-            document,
-            json!({ "pair": { "driven": { "blank": { "holes": { "count": 8 } } } }, "output_torques_n_m": [2] })
-        );
     }
 
     #[test]

@@ -6,7 +6,9 @@ use super::pair::PairDocument;
 use super::problem::{Code, FieldError, Problem};
 use super::resolution::ResolutionDocument;
 use super::schema::{self, documented};
+use super::size::{MOST_VALUES, refuse_many_values};
 use super::submission::{Purpose, Submission};
+use super::tags::is_short_text;
 use super::tree::{Errors, Node, ObjectReader};
 
 /// The field beside those of the submission.
@@ -57,6 +59,7 @@ impl Preview {
     ///
     /// As for [`Submission::parse`], with the bounds of a preview.
     pub fn parse(document: &[u8], most_positions: u64) -> Result<Self, Problem> {
+        refuse_many_values(document, MOST_VALUES)?;
         let node = Node::parse(document)?;
         let errors = Errors::default();
         let read = || {
@@ -80,12 +83,7 @@ impl Preview {
 fn read_id(reader: &mut ObjectReader<'_>) -> Option<Option<String>> {
     match reader.present(PREVIEW_ID) {
         None => Some(None),
-        Some(Node::Text(id))
-            if (1..=LONGEST_ID).contains(&id.chars().count())
-                && !id.chars().any(char::is_control) =>
-        {
-            Some(Some(id.clone()))
-        }
+        Some(Node::Text(id)) if is_short_text(id, LONGEST_ID) => Some(Some(id.clone())),
         Some(Node::Text(id)) => {
             let pointer = reader.pointer_to(PREVIEW_ID);
             let detail = format!(

@@ -8,11 +8,12 @@ use meshwright_engine::grid::GridLevel;
 use serde::Serialize;
 use serde_json::json;
 
+use super::interface::{self, InterfaceRadii};
 use super::problem::{Code, FieldError};
 use super::quantity;
 use super::schema::{self, documented};
 use super::tree::{Choice, Node, ObjectReader, OptionalObject, as_word};
-use super::units::{from_mm, from_um};
+use super::units::from_um;
 
 impl Choice for Method {
     const OPTIONS: &'static [(&'static str, Self, &'static str)] = &[
@@ -97,7 +98,7 @@ pub struct ResolutionDocument {
     #[serde(serialize_with = "as_word")]
     grid: GridLevel,
     blank_positions: u32,
-    pub(super) interface_radius_mm: Option<f64>,
+    pub(super) interface_radius_mm: InterfaceRadii,
     contact_solver: ContactSolverDocument,
     stiffness: StiffnessDocument,
     load_distribution: LoadDistributionDocument,
@@ -125,7 +126,7 @@ documented!(
                 Some(GridLevel::Standard)
             ),
             schema::number(&quantity::BLANK_POSITIONS),
-            schema::number(&quantity::INTERFACE_RADIUS),
+            interface::property(),
             schema::document::<ContactSolverDocument>("contact_solver", false),
             schema::document::<StiffnessDocument>("stiffness", false),
             schema::document::<LoadDistributionDocument>("load_distribution", false),
@@ -157,29 +158,49 @@ pub enum ContactSolverDocument {
 documented!(
     ContactSolverDocument,
     "ContactSolver",
-    [],
+    [AugmentedLagrangianSchema, AugmentedLagrangianSettingsSchema],
     schema::one_of(
         "Contact solver",
         "The solver of the contact conditions: the exact active set, or the augmented Lagrangian of the paper (eq. 7). They agree to the gap tolerance.",
         Some(json!("active_set")),
         vec![
             schema::word("Active set", "Exact.", "active_set"),
-            schema::object(
-                "Augmented Lagrangian",
-                "The solver of the paper, eq. 7.",
-                vec![(
-                    "augmented_lagrangian",
-                    schema::object(
-                        "Augmented Lagrangian",
-                        "Its penalty and its tolerance.",
-                        vec![
-                            schema::number(&quantity::PENALTY),
-                            schema::number(&quantity::GAP_TOLERANCE)
-                        ]
-                    ),
-                    true
-                )]
-            ),
+            schema::reference::<AugmentedLagrangianSchema>(),
+        ]
+    )
+);
+
+/// Names the choice of the augmented Lagrangian in the contract, so that generators of clients need not.
+enum AugmentedLagrangianSchema {}
+
+documented!(
+    AugmentedLagrangianSchema,
+    "AugmentedLagrangian",
+    [],
+    schema::object(
+        "Augmented Lagrangian",
+        "The solver of the paper, eq. 7.",
+        vec![(
+            "augmented_lagrangian",
+            schema::reference::<AugmentedLagrangianSettingsSchema>(),
+            true
+        )]
+    )
+);
+
+/// Names its settings.
+enum AugmentedLagrangianSettingsSchema {}
+
+documented!(
+    AugmentedLagrangianSettingsSchema,
+    "AugmentedLagrangianSettings",
+    [],
+    schema::object(
+        "Settings of the augmented Lagrangian",
+        "Its penalty and its tolerance.",
+        vec![
+            schema::number(&quantity::PENALTY),
+            schema::number(&quantity::GAP_TOLERANCE)
         ]
     )
 );
@@ -270,7 +291,7 @@ impl ResolutionDocument {
         let span_mesh_periods = reader.optional_number(&quantity::SPAN);
         let grid = reader.choice("grid", Some(Self::USUAL.grid));
         let blank_positions = reader.count(&quantity::BLANK_POSITIONS);
-        let interface_radius_mm = reader.optional_number(&quantity::INTERFACE_RADIUS);
+        let interface_radius_mm = InterfaceRadii::read(&mut reader);
         let contact_solver = match reader.get("contact_solver") {
             None => Some(Self::USUAL.contact_solver),
             Some(node) => ContactSolverDocument::read(node, &reader),
@@ -304,7 +325,7 @@ impl ResolutionDocument {
         span_mesh_periods: None,
         grid: GridLevel::Standard,
         blank_positions: 16,
-        interface_radius_mm: None,
+        interface_radius_mm: InterfaceRadii::Common(None),
         contact_solver: ContactSolverDocument::ActiveSet,
         stiffness: StiffnessDocument::Tangent,
         load_distribution: LoadDistributionDocument {
@@ -340,7 +361,7 @@ impl ResolutionDocument {
                 },
             },
             blank_positions: self.blank_positions,
-            interface_radius: self.interface_radius_mm.map(from_mm),
+            interface_radii: self.interface_radius_mm.data(),
             formulas: Formulas {
                 tooth: self.load_distribution.tooth,
                 body: self.load_distribution.body,

@@ -1,5 +1,6 @@
 //! OpenAPI schemas built from the same tables as the checks.
 
+use meshwright_engine::analysis::Method;
 use serde_json::{Value, json};
 use utoipa::ToSchema;
 use utoipa::openapi::extensions::ExtensionsBuilder;
@@ -55,13 +56,21 @@ pub(super) fn number_schema(quantity: &Quantity) -> RefOr<Schema> {
             String::new(),
         ),
         Preset::Modules(modules) => (base.into(), None, format!(" Default: {modules} modules.")),
+        Preset::ModulesUnless(modules, other) => (
+            [base, Type::Null].into_iter().collect(),
+            None,
+            format!(" Default: {modules} modules, unless {other} is given."),
+        ),
         Preset::Absent(meaning) => (
             [base, Type::Null].into_iter().collect(),
             Some(Value::Null),
             format!(" Default: {meaning}."),
         ),
     };
-    let (least, most) = quantity.bounds;
+    let (mut least, most) = quantity.bounds;
+    if quantity.or_zero {
+        least = least.min(0.0);
+    }
     let bounds = ObjectBuilder::new();
     let bounds = if quantity.whole {
         bounds
@@ -108,6 +117,11 @@ pub(super) fn choice<C: Choice>(
     )
 }
 
+/// The schema of the word of a method.
+pub fn method_schema() -> RefOr<Schema> {
+    choice_schema::<Method>("Method", "How the curves are computed.", None)
+}
+
 /// The schema of one of several words.
 pub(super) fn choice_schema<C: Choice>(
     title: &str,
@@ -149,7 +163,16 @@ pub(super) fn flag(name: &'static str, title: &str, description: &str, default: 
 
 /// A property that is the document `T`.
 pub(super) fn document<T: ToSchema>(name: &'static str, needed: bool) -> Property {
-    (name, reference::<T>(), needed)
+    if needed {
+        return (name, reference::<T>(), true);
+    }
+    // Null is as good as absent.
+    let null = ObjectBuilder::new().schema_type(Type::Null);
+    let either = OneOfBuilder::new()
+        .title(Some(T::name()))
+        .item(reference::<T>())
+        .item(null);
+    (name, either.into(), false)
 }
 
 /// A property that is the document `T` or null, which is its default.
@@ -201,6 +224,23 @@ pub(super) fn list(
         .items(items)
         .min_items(Some(least))
         .max_items(Some(most))
+}
+
+/// The property that is a list of numbers with these bounds on its length, or null where the list is `quantity`'s own choice.
+pub(super) fn numbers(quantity: &Quantity, lengths: (usize, usize), needed: bool) -> Property {
+    let item = ObjectBuilder::new()
+        .schema_type(Type::Number)
+        .minimum(Some(quantity.bounds.0))
+        .maximum(Some(quantity.bounds.1));
+    let said = format!("{} Unit: {}.", quantity.description, quantity.unit);
+    let unit = ExtensionsBuilder::new().add("x-unit", quantity.unit);
+    let array = list(quantity.title, &said, item.into(), lengths).extensions(Some(unit.build()));
+    if needed {
+        return (quantity.name, array.into(), true);
+    }
+    let types: SchemaType = [Type::Array, Type::Null].into_iter().collect();
+    let array = array.schema_type(types).default(Some(Value::Null));
+    (quantity.name, array.into(), false)
 }
 
 /// Implements the schema of a document by its `schema()` function, and names the documents that it refers to.

@@ -1,6 +1,7 @@
 //! From a submission to its results, or to what it would come to.
 
-use meshwright_engine::analysis::{self, AnalysisError, Library};
+use meshwright_engine::analysis::{self, AnalysisError};
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -193,6 +194,6 @@ pub fn limits() -> Limits {
         tags: MOST_TAGS.0,
         tag_length: MOST_TAGS.1,
         designs: super::study::MOST_DESIGNS,
-        least_ligament_mm: super::units::to_mm(meshwright_engine::gear::spur::LEAST_LIGAMENT),
+        least_ligament_mm: super::units::to_mm(meshwright_engine::gear::data::LEAST_LIGAMENT),
     }
 }

@@ -70,6 +70,16 @@ pub(super) enum Side {
     AtLeast,
 }
 
+impl Side {
+    /// The other side.
+    pub(super) fn other(self) -> Self {
+        match self {
+            Self::AtMost => Self::AtLeast,
+            Self::AtLeast => Self::AtMost,
+        }
+    }
+}
+
 /// The value of five significant digits next to `bound` on its working side, `steps` units of the last digit further in.
 pub(super) fn rounded_inward(bound: f64, side: Side, steps: u32) -> f64 {
     if bound == 0.0 || !bound.is_finite() {

@@ -1,11 +1,12 @@
 //! The test bench: a service on a free port, a client, and an engine whose work the test steers.
 
+use std::path::Path;
 use std::sync::{Arc, mpsc as blocking};
 use std::time::Duration;
 
 use meshwright::config::Config;
-use meshwright::jobs::Solve;
-use meshwright::serve::{Compute, Service, serve};
+use meshwright::jobs::{Clock, HookRules, Solve};
+use meshwright::serve::{Compute, Service, World, serve};
 use meshwright::wire::{self, Code, Problem, Submission};
 use meshwright_engine::run::Run;
 use reqwest::{Client, RequestBuilder, Response, StatusCode};
@@ -24,10 +25,38 @@ pub(crate) const RESULTS: &str = r#"{ "method": "flexible",  "curves": [
     "spectrum": { "order": [10], "transmission_error_um": [0.1], "named": [ { "order": 10, "label": "H_N", "transmission_error_um": 0.1 } ] } },
   { "output_torque_n_m": 20.0, "mesh_position": [0.0, 0.5], "transmission_error_um": [5.0, 6.0] } ] }"#;
 
+/// The usual configuration, with one worker, few places and a free port.
+pub(crate) fn config(database: &Path) -> Config {
+    #[derive(clap::Parser)]
+    struct Arguments {
+        #[command(flatten)]
+        config: Config,
+    }
+    let database = database.to_str().unwrap();
+    let arguments = [
+        "test",
+        "--listen",
+        "127.0.0.1:0",
+        "--database",
+        database,
+        "--workers",
+        "1",
+        "--queue-limit",
+        "100",
+        "--previews",
+        "4",
+        "--preview-time-limit-seconds",
+        "20",
+    ];
+    <Arguments as clap::Parser>::parse_from(arguments).config
+}
+
 /// A service and a client of it.
 pub(crate) struct Bench {
     pub(crate) config: Config,
     compute: Compute,
+    pub(crate) clock: Clock,
+    pub(crate) hooks: HookRules,
     service: Option<Service>,
     pub(crate) base: String,
     pub(crate) client: Client,
@@ -81,26 +110,17 @@ impl Bench {
         .await
     }
 
-    async fn start_with(adjust: impl FnOnce(&mut Config), compute: Compute) -> Self {
+    pub(crate) async fn start_with(adjust: impl FnOnce(&mut Config), compute: Compute) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let mut config = Config {
-            listen: "127.0.0.1:0".parse().unwrap(),
-            database: folder.path().join("meshwright.db"),
-            workers: Some(1.try_into().unwrap()),
-            cors_origin: Vec::new(),
-            public_url: None,
-            queue_limit: 100,
-            time_limit_seconds: 600,
-            cache_mb: 256,
-            previews: 4,
-            preview_positions: 4000,
-            preview_time_limit_seconds: 20,
-        };
+        let mut config = config(&folder.path().join("meshwright.db"));
         adjust(&mut config);
-        let client = Client::builder().timeout(PATIENCE).build().unwrap();
+        let client = meshwright::client().timeout(PATIENCE).build().unwrap();
+        let hooks = HookRules::to_public(config.door.webhook_hosts.clone());
         let mut bench = Self {
             config,
             compute,
+            clock: Clock::system(),
+            hooks,
             service: None,
             base: String::new(),
             client,
@@ -119,12 +139,26 @@ impl Bench {
 
     /// A second service on the same database.
     pub(crate) async fn another(&self) -> anyhow::Result<Service> {
-        serve(
-            &self.config,
-            Arc::clone(&self.compute),
-            Arc::new(jiff::Timestamp::now),
-        )
-        .await
+        self.another_on(&self.config.database).await
+    }
+
+    /// A service like this one on the database at `path`.
+    pub(crate) async fn another_on(&self, path: &Path) -> anyhow::Result<Service> {
+        let config = Config {
+            database: path.to_owned(),
+            ..self.config.clone()
+        };
+        let world = World {
+            compute: Arc::clone(&self.compute),
+            clock: self.clock.clone(),
+            hooks: self.hooks.clone(),
+        };
+        serve(&config, world).await
+    }
+
+    /// The service, to ask what HTTP does not tell.
+    pub(crate) fn service(&self) -> &Service {
+        self.service.as_ref().unwrap()
     }
 
     /// Ends the service as a crash would.
@@ -185,6 +219,50 @@ impl Bench {
             "{job}"
         );
         job
+    }
+}
+
+/// The events of a stream, one after the other.
+pub(crate) struct Events {
+    response: Response,
+    text: String,
+}
+
+impl Events {
+    pub(crate) async fn of(bench: &Bench, path: &str) -> Self {
+        let request = bench
+            .get(&format!("{path}/events"))
+            .header("last-event-id", "7")
+            .timeout(PATIENCE);
+        let response = request.send().await.unwrap();
+        assert_eq!(response.status(), StatusCode::OK);
+        assert_eq!(response.headers()["content-type"], "text/event-stream");
+        Self {
+            response,
+            text: String::new(),
+        }
+    }
+
+    /// The name and data of the next event; none at the end of the stream.
+    pub(crate) async fn next(&mut self) -> Option<(String, Value)> {
+        loop {
+            if let Some((event, rest)) = self.text.split_once("\n\n") {
+                let field = |name: &str| {
+                    event
+                        .lines()
+                        .find_map(|line| line.strip_prefix(name))
+                        .map(str::to_owned)
+                };
+                let found = field("event: ").zip(field("data: "));
+                self.text = rest.to_owned();
+                if let Some((name, data)) = found {
+                    return Some((name, serde_json::from_str(&data).unwrap()));
+                }
+            } else {
+                let chunk = self.response.chunk().await.unwrap()?;
+                self.text.push_str(std::str::from_utf8(&chunk).unwrap());
+            }
+        }
     }
 }
 

@@ -233,7 +233,7 @@ async fn the_service_tells_its_health_and_numbers() {
         assert!(numbers.contains(name), "{name}");
     }
     assert!(
-        numbers.contains("meshwright_jobs_ended_total{status=\"successful\",method=\"flexible\"}"),
+        numbers.contains("meshwright_jobs_ended_total{status=\"successful\",method=\"flexible\""),
         "{numbers}"
     );
     assert!(

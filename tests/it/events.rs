@@ -1,53 +1,10 @@
 //! The stream of a job's events.
 
-use reqwest::{Response, StatusCode};
 use serde_json::Value;
 
-use crate::bench::{Bench, PATIENCE, submission};
-
-/// The events of a stream, one after the other.
-struct Events {
-    response: Response,
-    text: String,
-}
+use crate::bench::{Bench, Events, submission};
 
 impl Events {
-    async fn of(bench: &Bench, path: &str) -> Self {
-        let request = bench
-            .get(&format!("{path}/events"))
-            .header("last-event-id", "7")
-            .timeout(PATIENCE);
-        let response = request.send().await.unwrap();
-        assert_eq!(response.status(), StatusCode::OK);
-        assert_eq!(response.headers()["content-type"], "text/event-stream");
-        Self {
-            response,
-            text: String::new(),
-        }
-    }
-
-    /// The name and data of the next event; none at the end of the stream.
-    async fn next(&mut self) -> Option<(String, Value)> {
-        loop {
-            if let Some((event, rest)) = self.text.split_once("\n\n") {
-                let field = |name: &str| {
-                    event
-                        .lines()
-                        .find_map(|line| line.strip_prefix(name))
-                        .map(str::to_owned)
-                };
-                let found = field("event: ").zip(field("data: "));
-                self.text = rest.to_owned();
-                if let Some((name, data)) = found {
-                    return Some((name, serde_json::from_str(&data).unwrap()));
-                }
-            } else {
-                let chunk = self.response.chunk().await.unwrap()?;
-                self.text.push_str(std::str::from_utf8(&chunk).unwrap());
-            }
-        }
-    }
-
     async fn status(&mut self) -> String {
         let (name, data) = self.next().await.unwrap();
         assert_eq!(name, "status", "{data}");

@@ -7,17 +7,27 @@
 
 mod bench;
 
+mod batch;
+mod chaos;
+mod connections;
 mod contract;
+mod disk;
+mod door;
 mod edge;
 mod events;
+mod growth;
 mod life;
 mod lists;
 mod previews;
+mod process;
 mod real;
 mod recovery;
 mod refusals;
 mod repeats;
+mod shares;
 mod sigkill;
+mod strain;
 mod studies;
 mod tables;
 mod time;
+mod webhooks;

@@ -90,3 +90,45 @@ async fn a_database_is_served_by_one_process_only() {
     bench.shut_down().await;
     bench.another().await.unwrap().shut_down().await;
 }
+
+#[cfg(unix)]
+#[tokio::test]
+async fn links_of_both_kinds_lead_to_the_same_lock() {
+    let bench = Bench::quick().await;
+    let folder = tempfile::tempdir_in(bench.config.database.parent().unwrap()).unwrap();
+    let symbolic = folder.path().join("symbolic.db");
+    let hard = folder.path().join("hard.db");
+    std::os::unix::fs::symlink(&bench.config.database, &symbolic).unwrap();
+    std::fs::hard_link(&bench.config.database, &hard).unwrap();
+    for path in [symbolic, hard] {
+        let refusal = bench.another_on(&path).await.err().unwrap();
+        assert!(refusal.to_string().contains("another process"), "{refusal}");
+    }
+}
+
+#[tokio::test]
+async fn a_job_beside_one_that_kills_the_process_loses_no_attempt() {
+    let (mut bench, mut engine) =
+        Bench::steered_with(|config| config.workers = Some(2.try_into().unwrap())).await;
+    let poison = bench.submit(&submission(1.0)).await;
+    let _first = engine.next().await;
+    let innocent = bench.submit(&submission(2.0)).await;
+    let _second = engine.next().await;
+    // Both run; then each is run alone, and the first kills the process each time.
+    for _ in 0..4 {
+        bench.kill().await;
+        bench.start_again().await;
+        if bench.job(&poison).await["status"] == "failed" {
+            break;
+        }
+        let work = engine.next().await;
+        assert_eq!(work.submission["output_torques_n_m"][0], 1.0);
+        assert!(engine.is_idle(), "alone");
+    }
+    let job = bench.job(&poison).await;
+    assert_eq!(job["problem"]["code"], "attempts_exhausted");
+    let work = engine.next().await;
+    assert_eq!(bench.job(&innocent).await["attempt"], 1);
+    work.finish();
+    assert_eq!(bench.ended(&innocent).await["status"], "successful");
+}

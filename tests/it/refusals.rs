@@ -197,3 +197,33 @@ async fn a_method_that_is_not_taken_is_told_which_are() {
         problem(response, 405, "method_not_allowed").await;
     }
 }
+
+#[tokio::test]
+async fn a_job_that_needs_more_memory_than_it_may_have_is_refused_wherever_it_comes_from() {
+    let bench = Bench::start(
+        |config| config.job_memory_mb = 1,
+        std::sync::Arc::new(|_, _| unreachable!("nothing is computed")),
+    )
+    .await;
+    let document = submission(115.0);
+    let answer = bench.post("/v1/jobs", &document).send().await.unwrap();
+    let told = problem(answer, 422, "too_large").await;
+    assert!(told["detail"].as_str().unwrap().contains("1 MB"), "{told}");
+
+    let batch = serde_json::json!({ "submissions": [document] });
+    let answer = bench.post("/v1/jobs/batch", &batch).send().await.unwrap();
+    let answer: Value = answer.json().await.unwrap();
+    assert_eq!(answer["items"][0]["problem"]["code"], "too_large");
+
+    let study = serde_json::json!({
+        "base": document,
+        "axes": [{ "path": "/pair/driven/blank/bore_radius_mm", "values": [15.0, 16.0] }],
+    });
+    let answer = bench.post("/v1/studies", &study).send().await.unwrap();
+    let path = answer.headers()["location"].to_str().unwrap().to_owned();
+    let table = bench.get(&format!("{path}/results")).send().await.unwrap();
+    let table: Value = table.json().await.unwrap();
+    for row in table["rows"].as_array().unwrap() {
+        assert_eq!(row["problem"]["code"], "too_large", "{row}");
+    }
+}

@@ -2,94 +2,11 @@
 //!
 //! The large one is ignored, because it takes a minute or more: `./test it -- --ignored --nocapture thousand`.
 
-use std::io::{BufRead, BufReader};
-use std::path::Path;
-use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use reqwest::Client;
 use serde_json::{Value, json};
 
-/// A service in a process of its own.
-struct Process {
-    child: Child,
-    base: String,
-}
-
-impl Process {
-    fn start(database: &Path) -> Self {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_meshwright"))
-            .args(["serve", "--listen", "127.0.0.1:0", "--database"])
-            .arg(database)
-            .env("MESHWRIGHT_LOG", "warn")
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
-        // The first line says where it listens.
-        let output = BufReader::new(child.stdout.take().unwrap());
-        let line = output.lines().next().unwrap().unwrap();
-        let base = line
-            .split_whitespace()
-            .find(|word| word.starts_with("http://"))
-            .unwrap();
-        let base = base.trim_end_matches(';').to_owned();
-        Self { child, base }
-    }
-
-    /// SIGKILL: nothing is written, nobody is told.
-    fn kill(mut self) {
-        self.child.kill().unwrap();
-        self.child.wait().unwrap();
-    }
-
-    async fn get(&self, client: &Client, path: &str) -> Value {
-        let response = client
-            .get(format!("{}{path}", self.base))
-            .send()
-            .await
-            .unwrap();
-        assert_eq!(response.status(), 200, "{path}");
-        response.json().await.unwrap()
-    }
-
-    async fn submit(&self, client: &Client, study: &Value) -> String {
-        let response = client
-            .post(format!("{}/v1/studies", self.base))
-            .json(study)
-            .send()
-            .await
-            .unwrap();
-        assert_eq!(response.status(), 202);
-        response.headers()["location"].to_str().unwrap().to_owned()
-    }
-
-    /// Looks at the study until so many designs are done.
-    async fn done(&self, client: &Client, path: &str, count: u64) -> Value {
-        loop {
-            let study = self.get(client, path).await;
-            if study["done"].as_u64().unwrap() >= count {
-                return study;
-            }
-            tokio::time::sleep(Duration::from_millis(20)).await;
-        }
-    }
-
-    /// The most memory that the process has had, in MB, where the system tells.
-    fn peak_memory_mb(&self) -> Option<u64> {
-        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).ok()?;
-        let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
-        let kilobytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
-        Some(kilobytes / 1000)
-    }
-}
-
-impl Drop for Process {
-    fn drop(&mut self) {
-        // A test that fails leaves no process behind; one that was killed before is no error.
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
+use crate::process::Process;
 
 /// Hole patterns of the standard pair: different blanks on the same teeth.
 fn patterns(method: &str, counts: &[u32], radii: &[f64], circles: &[f64]) -> Value {
@@ -140,7 +57,7 @@ fn check_table(table: &Value, total: usize) {
 async fn a_study_killed_half_way_is_finished_by_the_next_process_with_every_design() {
     let folder = tempfile::tempdir().unwrap();
     let database = folder.path().join("meshwright.db");
-    let client = Client::new();
+    let client = meshwright::client().build().unwrap();
     let study = patterns(
         "load_distribution",
         &[6, 8, 10],
@@ -176,7 +93,7 @@ async fn a_thousand_decomposition_designs_straight_through_and_killed_half_way()
         &spread(4.0, 7.0, 20),
         &spread(29.0, 34.0, 10),
     );
-    let client = Client::new();
+    let client = meshwright::client().build().unwrap();
     for kill in [false, true] {
         let folder = tempfile::tempdir().unwrap();
         let database = folder.path().join("meshwright.db");

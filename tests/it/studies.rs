@@ -7,7 +7,7 @@ use meshwright::wire::{Code, Problem};
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
-use crate::bench::{Bench, Engine, RESULTS, Work, problem, submission};
+use crate::bench::{Bench, Engine, Events, RESULTS, Work, problem, submission};
 
 /// A study of torques: as many designs, all of which can be built.
 fn torques(values: &[f64]) -> Value {
@@ -403,23 +403,25 @@ async fn the_events_of_a_study_tell_its_progress_and_end_with_it() {
     let (bench, mut engine) = Bench::steered().await;
     let path = submit(&bench, &torques(&[1.0, 2.0])).await;
     let work = engine.next().await;
-    let stream = bench.get(&format!("{path}/events")).send().await.unwrap();
-    assert_eq!(stream.headers()["content-type"], "text/event-stream");
-    let finish = async {
-        // The stream is open, so it sees this.
-        work.finish();
-        let work = engine.next().await;
-        tokio::time::sleep(std::time::Duration::from_millis(400)).await;
-        work.finish();
-    };
-    let (text, ()) = tokio::join!(stream.text(), finish);
-    let text = text.unwrap();
-    assert!(text.contains(r#"data: {"done":1,"total":2}"#), "{text}");
-    let last = text.trim_end().rsplit("\n\n").next().unwrap();
-    assert!(
-        last.contains("event: status") && last.contains(r#""status":"successful""#),
-        "{text}"
+    let mut events = Events::of(&bench, &path).await;
+    let (name, study) = events.next().await.unwrap();
+    assert_eq!(
+        (name.as_str(), &study["status"], &study["done"]),
+        ("status", &json!("running"), &json!(0))
     );
+    // What the stream tells next can only be what happens from here on.
+    work.finish();
+    assert_eq!(
+        events.next().await.unwrap(),
+        ("progress".to_owned(), json!({ "done": 1, "total": 2 }))
+    );
+    engine.next().await.finish();
+    let (name, study) = events.next().await.unwrap();
+    assert_eq!(
+        (name.as_str(), &study["status"], &study["done"]),
+        ("status", &json!("successful"), &json!(2))
+    );
+    assert_eq!(events.next().await, None);
 }
 
 #[tokio::test]

@@ -5,8 +5,8 @@ use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
 use jiff::Timestamp;
-use meshwright::jobs::{Clock, Job, Jobs, Pace, Rules, Solve, Status, Store, Workers};
-use meshwright::wire::{Code, Problem, Submission};
+use meshwright::jobs::{Clock, Filter, Job, Jobs, Member, Pace, Rules, Solve, Store, Workers};
+use meshwright::wire::{Code, Problem, Status, Submission};
 use tempfile::TempDir;
 use tokio_util::sync::CancellationToken;
 
@@ -14,35 +14,60 @@ use crate::bench::{PATIENCE, RESULTS, submission};
 
 const CLIENT: &str = "anonymous";
 
-/// A clock that stands until it is set.
-struct Hand(Arc<AtomicI64>);
+/// Two clocks that stand until they are set.
+#[derive(Clone, Default)]
+struct Hands {
+    wall: Arc<AtomicI64>,
+    steady: Arc<AtomicI64>,
+}
 
-impl Hand {
-    fn new() -> (Self, Clock) {
-        let seconds = Arc::new(AtomicI64::new(1_000_000));
-        let read = Arc::clone(&seconds);
-        (
-            Self(seconds),
-            Arc::new(move || Timestamp::from_second(read.load(Ordering::Relaxed)).unwrap()),
-        )
+const ORIGIN: i64 = 1_000_000;
+
+impl Hands {
+    fn clock(&self) -> Clock {
+        let read = |hand: &Arc<AtomicI64>| {
+            let hand = Arc::clone(hand);
+            move || Timestamp::from_second(ORIGIN + hand.load(Ordering::Relaxed)).unwrap()
+        };
+        Clock::given(read(&self.wall), read(&self.steady))
     }
 
+    /// Time passes.
     fn advance(&self, seconds: i64) {
-        self.0.fetch_add(seconds, Ordering::Relaxed);
+        self.steady.fetch_add(seconds, Ordering::Relaxed);
+        self.jump(seconds);
     }
+
+    /// Somebody sets the clock, and no time passes.
+    fn jump(&self, seconds: i64) {
+        self.wall.fetch_add(seconds, Ordering::Relaxed);
+    }
+}
+
+fn rules() -> Rules {
+    Rules {
+        queue_limit: 100,
+        client_queue_limit: 100,
+        client_design_limit: 1000,
+        job_memory_mb: 1000,
+    }
+}
+
+async fn open(folder: &TempDir) -> Store {
+    Store::open(&folder.path().join("meshwright.db"))
+        .await
+        .unwrap()
 }
 
 async fn jobs(clock: Clock) -> (Jobs, CancellationToken, TempDir) {
     let folder = tempfile::tempdir().unwrap();
-    let store = Store::open(&folder.path().join("meshwright.db"))
-        .await
-        .unwrap();
     let stop = CancellationToken::new();
-    (
-        Jobs::new(store, Rules { queue_limit: 100 }, clock, stop.clone()),
-        stop,
-        folder,
-    )
+    let jobs = Jobs::new(open(&folder).await, rules(), clock, stop.clone());
+    (jobs, stop, folder)
+}
+
+fn member() -> Member {
+    Member::usual(CLIENT)
 }
 
 fn case(torque: f64) -> Submission {
@@ -57,7 +82,7 @@ async fn ended(jobs: &Jobs, job: &Job) -> Job {
 
 #[tokio::test]
 async fn a_job_that_takes_longer_than_the_limit_is_stopped_and_fails() {
-    let (jobs, stop, _folder) = jobs(Arc::new(Timestamp::now)).await;
+    let (jobs, stop, _folder) = jobs(Clock::system()).await;
     let (stopped, was_stopped) = mpsc::channel();
     let solve: Solve = Arc::new(move |_, run| {
         while run.check().is_ok() {
@@ -70,11 +95,13 @@ async fn a_job_that_takes_longer_than_the_limit_is_stopped_and_fails() {
         heartbeat: Duration::from_millis(5),
         ..Pace::with_time_limit(Duration::from_millis(20))
     };
-    let mut workers = Workers::start(jobs.clone(), solve, 1, pace).await.unwrap();
+    let mut workers = Workers::start(jobs.clone(), solve, 1, pace, false)
+        .await
+        .unwrap();
 
     let job = ended(
         &jobs,
-        &jobs.submit(CLIENT, &case(1.0), None).await.unwrap().job,
+        &jobs.submit(&member(), &case(1.0), None).await.unwrap().job,
     )
     .await;
     assert_eq!(
@@ -86,63 +113,139 @@ async fn a_job_that_takes_longer_than_the_limit_is_stopped_and_fails() {
     workers.ended().await;
 }
 
-#[tokio::test]
-async fn a_job_whose_lease_ran_out_runs_again_and_the_late_results_are_not_kept() {
-    let (hand, clock) = Hand::new();
-    let (jobs, stop, _folder) = jobs(clock).await;
+/// An engine whose computations wait for a text to give.
+fn waiting_engine() -> (Solve, impl AsyncFn() -> mpsc::Sender<&'static str>) {
     let (begun, begins) = mpsc::channel();
     let begins = Arc::new(std::sync::Mutex::new(begins));
     let solve: Solve = Arc::new(move |_, _| {
         let (order, orders) = mpsc::channel::<&'static str>();
         begun.send(order).unwrap();
-        orders
-            .recv()
-            .map(str::to_owned)
-            .map_err(|_| Problem::new(Code::InternalError, "dropped"))
+        let text = orders.recv().map(str::to_owned);
+        text.map_err(|_| Problem::new(Code::InternalError, "dropped"))
     });
-    // The heart beats at the start of an attempt and not again: the worker seems lost when the clock moves on.
-    let pace = Pace {
-        lease: Duration::from_millis(20),
-        heartbeat: Duration::from_secs(3600),
-        ..Pace::with_time_limit(Duration::from_secs(3600))
-    };
-    let mut workers = Workers::start(jobs.clone(), solve, 2, pace).await.unwrap();
-    let begin = async || {
+    let next = async move || {
         let begins = Arc::clone(&begins);
         tokio::task::spawn_blocking(move || begins.lock().unwrap().recv_timeout(PATIENCE).unwrap())
             .await
             .unwrap()
     };
+    (solve, next)
+}
 
-    let job = jobs.submit(CLIENT, &case(1.0), None).await.unwrap().job;
+#[tokio::test]
+async fn a_job_whose_lease_ran_out_runs_again_elsewhere_and_the_late_results_are_not_kept() {
+    let hands = Hands::default();
+    let (jobs, stop, folder) = jobs(hands.clock()).await;
+    let (solve, begin) = waiting_engine();
+    // The heart beats at the start of an attempt and not again: the worker seems lost when time goes on.
+    let pace = Pace {
+        lease: Duration::from_millis(20),
+        heartbeat: Duration::from_secs(3600),
+        ..Pace::with_time_limit(Duration::from_secs(3600))
+    };
+    let mut workers = Workers::start(jobs.clone(), Arc::clone(&solve), 1, pace, false)
+        .await
+        .unwrap();
+    let job = jobs.submit(&member(), &case(1.0), None).await.unwrap().job;
     let first = begin().await;
-    hand.advance(1);
+
+    // As it would be in another process on the same database, whose start recovers nothing of the living.
+    let others = Jobs::new(open(&folder).await, rules(), hands.clock(), stop.clone());
+    let mut other_workers = Workers::beside(others.clone(), solve, 1, pace)
+        .await
+        .unwrap();
+    hands.advance(1);
     let second = begin().await;
     assert_eq!(jobs.find(CLIENT, job.id).await.unwrap().attempt, 2);
     first.send("{ \"late\": true }").unwrap();
     second.send(RESULTS).unwrap();
-    let job = ended(&jobs, &job).await;
-    assert_eq!(
-        (job.status, jobs.document(&job).await.unwrap().as_str()),
-        (Status::Successful, RESULTS)
+    let job = ended(&others, &job).await;
+    let text = jobs.document(&job).await.unwrap().text().unwrap();
+    assert_eq!((job.status, text.as_str()), (Status::Successful, RESULTS));
+    stop.cancel();
+    workers.ended().await;
+    other_workers.ended().await;
+}
+
+#[tokio::test]
+async fn a_clock_that_is_set_forward_takes_no_job_from_its_worker_nor_a_key_from_its_client() {
+    let hands = Hands::default();
+    let (jobs, stop, _folder) = jobs(hands.clock()).await;
+    let (solve, begin) = waiting_engine();
+    let pace = Pace {
+        lease: Duration::from_millis(20),
+        heartbeat: Duration::from_secs(3600),
+        ..Pace::with_time_limit(Duration::from_secs(3600))
+    };
+    let mut workers = Workers::start(jobs.clone(), solve, 1, pace, false)
+        .await
+        .unwrap();
+    let key = || Some("k".to_owned());
+    let job = jobs.submit(&member(), &case(1.0), key()).await.unwrap().job;
+    let order = begin().await;
+    hands.jump(10 * 365 * 24 * 3600);
+    // The watch over leases looks every 20 ms; a job that it takes away is begun again by the worker that is free.
+    tokio::time::sleep(Duration::from_millis(100)).await;
+    let running = jobs.find(CLIENT, job.id).await.unwrap();
+    assert_eq!((running.status, running.attempt), (Status::Running, 1));
+    let again = jobs.submit(&member(), &case(1.0), key()).await.unwrap();
+    assert!(again.repeated, "the key is a moment old");
+    order.send(RESULTS).unwrap();
+    assert_eq!(ended(&jobs, &job).await.status, Status::Successful);
+    stop.cancel();
+    workers.ended().await;
+}
+
+#[tokio::test]
+async fn a_clock_that_is_set_back_gives_no_negative_times_and_lists_new_jobs_first() {
+    let hands = Hands::default();
+    let (jobs, stop, _folder) = jobs(hands.clock()).await;
+    let (solve, begin) = waiting_engine();
+    let pace = Pace::with_time_limit(Duration::from_secs(3600));
+    let mut workers = Workers::start(jobs.clone(), solve, 1, pace, false)
+        .await
+        .unwrap();
+    let first = jobs.submit(&member(), &case(1.0), None).await.unwrap().job;
+    let order = begin().await;
+    hands.advance(3);
+    hands.jump(-3600);
+    order.send(RESULTS).unwrap();
+    let first = ended(&jobs, &first).await;
+    assert_eq!(first.elapsed.unwrap().as_secs(), 3, "what it took");
+    assert!(first.finished_at >= first.started_at && first.started_at >= Some(first.submitted_at));
+
+    let second = jobs.submit(&member(), &case(2.0), None).await.unwrap().job;
+    assert!(
+        second.submitted_at < first.submitted_at,
+        "as the clock says"
     );
+    let order = begin().await;
+    let page = jobs.list(CLIENT, &Filter::default(), 9).await.unwrap();
+    let ids: Vec<_> = page.items.iter().map(|job| job.id).collect();
+    assert_eq!(
+        ids,
+        [second.id, first.id],
+        "the one that came last stands first"
+    );
+    order.send("{}").unwrap();
+    ended(&jobs, &second).await;
     stop.cancel();
     workers.ended().await;
 }
 
 #[tokio::test]
 async fn a_key_is_forgotten_after_a_day() {
-    let (hand, clock) = Hand::new();
-    let (jobs, _stop, _folder) = jobs(clock).await;
+    let hands = Hands::default();
+    let (jobs, _stop, _folder) = jobs(hands.clock()).await;
     let submit = async |torque| {
-        jobs.submit(CLIENT, &case(torque), Some("k".to_owned()))
+        jobs.submit(&member(), &case(torque), Some("k".to_owned()))
             .await
     };
     let first = submit(1.0).await.unwrap();
-    hand.advance(24 * 3600);
+    hands.advance(24 * 3600);
     assert!(submit(1.0).await.unwrap().repeated);
     assert!(submit(2.0).await.is_err());
-    hand.advance(1);
+    hands.advance(1);
     let next = submit(2.0).await.unwrap();
     assert!(!next.repeated && next.job.id != first.job.id);
 }

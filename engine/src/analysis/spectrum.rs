@@ -2,6 +2,7 @@
 
 use realfft::RealFftPlanner;
 
+use super::orders::{KnownOrder, OrderKind, Orders};
 use crate::gear::GearPair;
 
 /// A speed of rotation, in revolutions per second.
@@ -13,8 +14,10 @@ pub struct RotationSpeed(pub f64);
 pub struct NamedOrder {
     /// The order per revolution of the driven gear.
     pub order: f64,
-    /// For example `H_Z2`, `H_N`, `H_(Z2+N2)`.
+    /// For example `H_Z2`, `H_N`, `H_Z2+N2`, `H_1`, `H_Z2-1(2)`.
     pub label: String,
+    /// What it is.
+    pub kind: OrderKind,
     /// The amplitude of δ in meters.
     pub transmission_error: f64,
     /// The amplitude of k in N/m.
@@ -40,11 +43,8 @@ pub struct Spectrum {
     pub frequency: Option<Vec<f64>>,
 }
 
-/// Mesh harmonics that get a name.
-const NAMED_MESH_HARMONICS: u32 = 10;
-
-/// Mesh harmonics around which sidebands get a name, and sidebands to either side.
-const SIDEBANDS: (u32, u32) = (4, 2);
+/// Lines that get a name because they stand out, and the least part of the largest line that does.
+const STANDING_OUT: (usize, f64) = (10, 0.01);
 
 impl Spectrum {
     /// The spectrum of one curve of `pair` over `span` mesh periods, which are whole true periods.
@@ -60,21 +60,7 @@ impl Spectrum {
         let order: Vec<f64> = (1..=ste.len())
             .map(|bin| bin as f64 * z_2 / f64::from(span))
             .collect();
-        let named = named_orders(pair)
-            .into_iter()
-            .filter_map(|(order, label)| {
-                let bin = order * f64::from(span) / z_2;
-                let index = (bin.round() as usize)
-                    .checked_sub(1)
-                    .filter(|&index| index < ste.len())?;
-                ((bin - bin.round()).abs() < 1e-9).then(|| NamedOrder {
-                    order,
-                    label,
-                    transmission_error: ste[index].0,
-                    mesh_stiffness_tangent: k[index].0,
-                })
-            })
-            .collect();
+        let named = named(&Orders::of(pair), &order, &ste, &k);
         let f_2 = speed.map(|speed| speed.0 * f64::from(pair.driving().tooth_count()) / z_2);
         Self {
             frequency: f_2.map(|f_2| order.iter().map(|order| order * f_2).collect()),
@@ -91,6 +77,54 @@ impl Spectrum {
     pub fn line(&self, label: &str) -> Option<&NamedOrder> {
         self.named.iter().find(|line| line.label == label)
     }
+}
+
+/// The lines that have names, by rising order: those that have one whatever their amplitude, and those that stand out of the others.
+fn named(
+    orders: &Orders,
+    places: &[f64],
+    ste: &[(f64, f64)],
+    stiffness: &[(f64, f64)],
+) -> Vec<NamedOrder> {
+    let Some(first) = places.first() else {
+        return Vec::new();
+    };
+    let known = orders.known().into_iter().filter_map(|known| {
+        let bin = known.order / first;
+        let index = (bin.round() as usize).checked_sub(1)?;
+        let is_a_line = index < places.len() && (bin - bin.round()).abs() < 1e-9;
+        is_a_line.then_some((index, known))
+    });
+    let mut lines: Vec<(usize, KnownOrder)> = known.collect();
+    let others = standing_out(ste, |index| lines.iter().all(|(known, _)| *known != index));
+    let others: Vec<_> = others
+        .into_iter()
+        .filter_map(|index| Some((index, orders.describe(places[index])?)))
+        .collect();
+    lines.extend(others);
+    lines.sort_by_key(|(index, _)| *index);
+    let line = |(index, known): (usize, KnownOrder)| NamedOrder {
+        order: known.order,
+        label: known.label,
+        kind: known.kind,
+        transmission_error: ste[index].0,
+        mesh_stiffness_tangent: stiffness[index].0,
+    };
+    lines.into_iter().map(line).collect()
+}
+
+/// The largest lines among the `others`, as far as they are a part of the largest of all.
+fn standing_out(lines: &[(f64, f64)], others: impl Fn(usize) -> bool) -> Vec<usize> {
+    let largest = lines
+        .iter()
+        .fold(0.0_f64, |largest, line| largest.max(line.0));
+    let (most, part) = STANDING_OUT;
+    let mut found: Vec<usize> = (0..lines.len())
+        .filter(|&index| lines[index].0 > part * largest && others(index))
+        .collect();
+    found.sort_by(|&a, &b| lines[b].0.total_cmp(&lines[a].0));
+    found.truncate(most);
+    found
 }
 
 /// Amplitude and phase of the bins 1 … n/2 of `values`: 2|X|/n, and |X|/n at Nyquist.
@@ -114,49 +148,6 @@ pub fn harmonics(values: &[f64]) -> Vec<(f64, f64)> {
     output.iter().enumerate().skip(1).map(line).collect()
 }
 
-/// Orders per revolution of the driven gear that have names, each once: the mesh and its multiples, the holes, and the
-/// sidebands that holes make about the mesh.
-fn named_orders(pair: &GearPair) -> Vec<(f64, String)> {
-    let (z_1, z_2) = (
-        f64::from(pair.driving().tooth_count()),
-        f64::from(pair.driven().tooth_count()),
-    );
-    let multiple = |k: u32| if k == 1 { String::new() } else { k.to_string() };
-    let mut names: Vec<(f64, String)> = Vec::new();
-    let mut add = |order: f64, label: String| {
-        if order > 0.0 && names.iter().all(|(known, _)| (known - order).abs() > 1e-9) {
-            names.push((order, label));
-        }
-    };
-    for k in 1..=NAMED_MESH_HARMONICS {
-        add(f64::from(k) * z_2, format!("H_{}Z2", multiple(k)));
-    }
-    let hole_order = |count: Option<u32>, scale: f64| count.map(|count| f64::from(count) * scale);
-    let n_1 = hole_order(pair.driving().holes().map(|holes| holes.count), z_2 / z_1);
-    let n_2 = hole_order(pair.driven().holes().map(|holes| holes.count), 1.0);
-    // One family of hole lines is simply N; two different ones need their gear's number.
-    let families: Vec<(f64, &str)> = match (n_1, n_2) {
-        (Some(n_1), Some(n_2)) if (n_1 - n_2).abs() > 1e-9 => vec![(n_1, "N1"), (n_2, "N2")],
-        (_, Some(n)) | (Some(n), None) => vec![(n, "N")],
-        (None, None) => Vec::new(),
-    };
-    for (n, name) in &families {
-        add(*n, format!("H_{name}"));
-    }
-    for (n, name) in &families {
-        for k in 1..=SIDEBANDS.0 {
-            for l in 1..=SIDEBANDS.1 {
-                for (sign, mark) in [(-1.0, '-'), (1.0, '+')] {
-                    let label = format!("H_{}Z2{mark}{}{name}", multiple(k), multiple(l));
-                    add(f64::from(k) * z_2 + sign * f64::from(l) * n, label);
-                }
-            }
-        }
-    }
-    names.sort_by(|a, b| a.0.total_cmp(&b.0));
-    names
-}
-
 #[cfg(test)]
 mod tests {
     use std::f64::consts::PI;
@@ -168,12 +159,13 @@ mod tests {
     fn case_2() -> GearPair {
         let solid = SpurGear::new(paper_gear(50)).expect("a gear");
         let mut data = paper_gear(50);
-        data.blank.holes = Some(HolePattern {
+        data.blank.holes = HolePattern {
             count: 10,
             circle_radius: 34e-3,
             radius: 7.5e-3,
             phase: 0.0,
-        });
+        }
+        .holes();
         GearPair::new(solid, SpurGear::new(data).expect("a gear"), 100.5e-3).expect("meshes")
     }
 
@@ -196,6 +188,20 @@ mod tests {
                     && (lines[bin - 1].1 - phase).abs() < 1e-12
             );
         }
+    }
+
+    #[test]
+    fn a_line_that_stands_out_is_named_by_what_it_is() {
+        let wave = |j: u32, bin: f64| (2.0 * PI * bin * f64::from(j) / 200.0).cos();
+        let values: Vec<f64> = (0..200)
+            .map(|j| wave(j, 5.0) + 0.5 * wave(j, 2.0) + 0.005 * wave(j, 3.0))
+            .collect();
+        let spectrum = Spectrum::of(&case_2(), 5, &values, &values, None);
+        let twice = spectrum.line("H_2N").expect("it stands out");
+        assert!((twice.transmission_error - 0.5).abs() < 1e-13 && twice.order == 20.0);
+        // Half a percent of the largest line is the third multiple, and a sideband that is named anyway.
+        assert!(spectrum.line("H_3N").is_none());
+        assert!(spectrum.named.is_sorted_by(|a, b| a.order < b.order));
     }
 
     #[test]

@@ -3,33 +3,30 @@
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 
-use super::facing::{Facing, RangeEnd};
-use super::flank_table::FlankPoint;
-use super::model::{ContactSolver, PairModel, PositionError, WarmStart, teeth_on};
+use super::facing::RangeEnd;
+use super::model::{ContactSolver, PairModel, PositionError, WarmStart};
+use super::pair_cells::PairCells;
 use super::patch::Patch;
 use super::penetration::Found;
 use super::{
     AugmentedLagrangian, ContactProblem, ContactSolution, solve_active_set,
     solve_augmented_lagrangian,
 };
-use crate::gear::Member;
+use crate::gear::{Member, teeth_on};
 
 /// Updates of the multipliers after which the augmented Lagrangian gives up.
 const MULTIPLIER_UPDATES: u32 = 2000;
 
-/// Contact cells at one fraction of the mesh period, and all of their contact that does not depend on the period.
+/// The contact cells of all pairs in reach of each other, with the teeth that stand there in one mesh period.
 ///
-/// Cells are numbered patch after patch, pairs from the reference pair of the period.
-pub struct ContactCells {
-    pub(super) patches: Vec<Patch>,
-    /// Pairs on which cells were to be laid.
-    pair_count: usize,
-    /// Where the cells of each patch begin.
-    pub(super) starts: Vec<usize>,
-    /// W V of each gear and patch: how the flank follows its interface there.
-    pub(super) shapes: [Vec<Mat<f64>>; 2],
-    /// The compliance of the teeth with their interfaces held; its lower triangle.
-    held: Mat<f64>,
+/// Cells are numbered pair after pair, pairs from the reference pair of the period.
+pub struct ContactCells<'a> {
+    model: &'a PairModel,
+    period: i64,
+    pub(super) pairs: Vec<&'a PairCells>,
+    /// Where the cells of each pair begin.
+    starts: Vec<usize>,
+    /// With the deviations of these very teeth.
     gaps: Vec<f64>,
     arms: Vec<f64>,
 }
@@ -102,105 +99,87 @@ impl MeshContact {
     }
 }
 
-impl ContactCells {
-    /// Lays cells on the flanks of `facings`, in patches `widening` times as wide as `load` needs.
+impl<'a> ContactCells<'a> {
+    /// Those of `pairs`, in mesh period `period`.
     ///
     /// # Errors
     ///
     /// [`PositionError::TooFarApart`] if the model does not couple all of their teeth.
     pub(super) fn new(
-        model: &PairModel,
-        facings: &[Facing<'_>],
-        load: f64,
-        widening: f64,
+        model: &'a PairModel,
+        period: i64,
+        mut pairs: Vec<&'a PairCells>,
     ) -> Result<Self, PositionError> {
-        let mut patches: Vec<Patch> = facings
-            .iter()
-            .map(|facing| Patch::new(facing, load, model.cells_per_patch, widening))
-            .filter(|patch| !patch.cells.is_empty())
-            .collect();
-        patches.sort_by_key(|patch| patch.pair);
-        let (Some(first), Some(last)) = (patches.first(), patches.last()) else {
+        pairs.sort_by_key(|pair| pair.patch.pair);
+        let (Some(first), Some(last)) = (pairs.first(), pairs.last()) else {
             return Err(PositionError::NoContact);
         };
-        let apart = last.pair.abs_diff(first.pair) as usize;
+        let apart = last.patch.pair.abs_diff(first.patch.pair) as usize;
         let coupled = model.coupled_teeth();
         if apart > coupled {
             return Err(PositionError::TooFarApart { apart, coupled });
         }
         let mut starts = vec![0];
-        for patch in &patches {
+        let (mut gaps, mut arms) = (Vec::new(), Vec::new());
+        for PairCells { patch, .. } in &pairs {
             starts.push(starts[starts.len() - 1] + patch.cells.len());
-        }
-        let count = starts[patches.len()];
-        let mut held = Mat::zeros(count, count);
-        let mut shapes = [Vec::new(), Vec::new()];
-        for (patch, &start) in patches.iter().zip(&starts) {
-            let here = patch.cells.len();
-            let mut block = held.as_mut().submatrix_mut(start, start, here, here);
-            for (gear, shapes) in shapes.iter_mut().enumerate() {
-                let flank = &model.gears[gear].flank;
-                let points: Vec<FlankPoint> = patch
+            let teeth = model.pair.teeth(period + patch.pair);
+            gaps.extend(
+                patch
                     .cells
                     .iter()
-                    .map(|cell| flank.point(cell.roll_lengths[gear], cell.directions[gear]))
-                    .collect();
-                block += flank.smooth_compliance(&points, &points);
-                shapes.push(flank.shapes_at(&points));
-            }
-            let near: Vec<f64> = (0..here)
-                .map(|distance| {
-                    let fields = patch.near_fields.iter();
-                    fields
-                        .map(|field| {
-                            field.between(distance as f64 * patch.cell_width, patch.cell_width)
-                        })
-                        .sum()
-                })
-                .collect();
-            for j in 0..here {
-                for i in j..here {
-                    block[(i, j)] += near[i - j];
-                }
-            }
+                    .map(|cell| cell.gap_between(&model.pair, teeth)),
+            );
+            arms.extend(patch.cells.iter().map(|cell| cell.arm));
         }
-        let cells = || patches.iter().flat_map(|patch| &patch.cells);
         Ok(Self {
-            pair_count: facings.len(),
-            held,
-            shapes,
-            gaps: cells().map(|cell| cell.gap).collect(),
-            arms: cells().map(|cell| cell.arm).collect(),
-            patches,
+            model,
+            period,
+            pairs,
             starts,
+            gaps,
+            arms,
         })
     }
 
-    /// The number of pairs with cells.
-    pub(super) fn pair_count(&self) -> usize {
-        self.pair_count
-    }
-
-    /// The patches, and the cells of each.
-    pub(super) fn ranges(&self) -> impl Iterator<Item = (&Patch, std::ops::Range<usize>)> {
+    /// The pairs, and the cells of each.
+    pub(super) fn ranges(&self) -> impl Iterator<Item = (&'a PairCells, std::ops::Range<usize>)> {
         let ranges = self.starts.windows(2).map(|range| range[0]..range[1]);
-        self.patches.iter().zip(ranges)
+        self.pairs.iter().copied().zip(ranges)
     }
 
-    /// The contact under `load` of the teeth that mesh in `period`.
+    /// How the interface of `member` in `pair` moves under what loads the interfaces of all pairs.
+    pub(super) fn moved(&self, member: Member, pair: i64, loads: &[PairLoads]) -> Mat<f64> {
+        let gear = member.index();
+        let coupling = &self.model.gears[gear].coupling;
+        let mut moved = Mat::zeros(coupling.shape_count(), 1);
+        for other in loads {
+            let (x, transposed) = coupling.block(
+                self.model.pair.tooth(member, self.period + pair),
+                teeth_on(member, other.pair - pair),
+            );
+            let force = &other.loads[gear];
+            moved += if transposed {
+                x.transpose() * force
+            } else {
+                x * force
+            };
+        }
+        moved
+    }
+
+    /// The contact under `load`.
     pub(super) fn solve(
         &self,
-        model: &PairModel,
-        period: i64,
         load: f64,
         warm: &WarmStart,
     ) -> Result<(ContactProblem, ContactSolution), PositionError> {
         let problem = ContactProblem::of_lower_triangle(
-            self.compliance(model, period),
+            self.compliance(),
             self.gaps.clone(),
             self.arms.clone(),
         )?;
-        let solution = match model.solver {
+        let solution = match self.model.solver {
             ContactSolver::ActiveSet => {
                 solve_active_set(&problem, load, self.touching(warm).as_deref())?
             }
@@ -219,29 +198,37 @@ impl ContactCells {
         Ok((problem, solution))
     }
 
-    /// H of both gears with the teeth that mesh in `period`; its lower triangle.
-    fn compliance(&self, model: &PairModel, period: i64) -> Mat<f64> {
-        let mut h = self.held.clone();
+    /// H of both gears with these teeth; its lower triangle.
+    fn compliance(&self) -> Mat<f64> {
+        let model = self.model;
+        let count = self.gaps.len();
+        let mut h = Mat::zeros(count, count);
+        for (pair, range) in self.ranges() {
+            let here = range.len();
+            h.as_mut()
+                .submatrix_mut(range.start, range.start, here, here)
+                .copy_from(&pair.held);
+        }
         for member in Member::BOTH {
             let gear = member.index();
-            for (b, other) in self.patches.iter().enumerate() {
-                let of_other = self.shapes[gear][b].transpose();
-                for (a, patch) in self.patches.iter().enumerate().skip(b) {
+            for (b, other) in self.pairs.iter().enumerate() {
+                let of_other = other.shapes[gear].transpose();
+                for (a, pair) in self.pairs.iter().enumerate().skip(b) {
                     let (x, transposed) = model.gears[gear].coupling.block(
-                        model.tooth(member, period + patch.pair),
-                        teeth_on(member, other.pair - patch.pair),
+                        model.pair.tooth(member, self.period + pair.patch.pair),
+                        teeth_on(member, other.patch.pair - pair.patch.pair),
                     );
                     let half = if transposed {
                         x.transpose() * of_other
                     } else {
                         x * of_other
                     };
-                    let (rows, columns) = (patch.cells.len(), other.cells.len());
+                    let (rows, columns) = (pair.patch.cells.len(), other.patch.cells.len());
                     matmul(
                         h.as_mut()
                             .submatrix_mut(self.starts[a], self.starts[b], rows, columns),
                         Accum::Add,
-                        &self.shapes[gear][a],
+                        &pair.shapes[gear],
                         half,
                         1.0,
                         Par::Seq,
@@ -254,17 +241,15 @@ impl ContactCells {
 
     pub(super) fn mesh_contact(
         &self,
-        model: &PairModel,
-        period: i64,
         load: f64,
         solution: &ContactSolution,
         found: &Found,
     ) -> MeshContact {
-        let width = model.pair.common_face_width();
+        let width = self.model.pair.common_face_width();
         let mut peak_pressure = Some(0.0_f64);
         let pairs = self
             .ranges()
-            .map(|(patch, range)| {
+            .map(|(PairCells { patch, .. }, range)| {
                 let (forces, active) = (&solution.forces[range.clone()], &solution.active[range]);
                 let cells = patch.cells.iter().zip(forces);
                 let share = cells.map(|(cell, p)| cell.arm * p).sum::<f64>() / load;
@@ -277,7 +262,7 @@ impl ContactCells {
                     .filter(|_| !at_corner)
                     .map(|peak| pressures.fold(peak, f64::max));
                 PairContact {
-                    pair: period + patch.pair,
+                    pair: self.period + patch.pair,
                     share,
                     tip_corner: (patch.off_path && share > 0.0).then_some(patch.seat),
                     fillet: ended
@@ -314,19 +299,18 @@ impl ContactCells {
         }
     }
 
-    /// The contact of `period` cell by cell.
-    pub(super) fn into_mesh_cells(
-        self,
-        period: i64,
+    /// The contact cell by cell.
+    pub(super) fn mesh_cells(
+        &self,
         problem: ContactProblem,
         solution: ContactSolution,
     ) -> MeshCells {
-        let mut patches = self.patches;
-        for patch in &mut patches {
-            patch.pair += period;
-        }
+        let patches = self.pairs.iter().map(|pair| Patch {
+            pair: pair.patch.pair + self.period,
+            ..pair.patch.clone()
+        });
         MeshCells {
-            patches,
+            patches: patches.collect(),
             problem,
             solution,
         }
@@ -335,36 +319,22 @@ impl ContactCells {
     /// What the `forces` on all cells load the interfaces of each pair with, one column each.
     pub fn loads(&self, forces: &[&[f64]]) -> Vec<PairLoads> {
         self.ranges()
-            .enumerate()
-            .map(|(a, (patch, range))| {
+            .map(|(pair, range)| {
                 let forces =
                     Mat::from_fn(range.len(), forces.len(), |i, j| forces[j][range.start + i]);
                 PairLoads {
-                    pair: patch.pair,
-                    loads: std::array::from_fn(|gear| self.shapes[gear][a].transpose() * &forces),
+                    pair: pair.patch.pair,
+                    loads: std::array::from_fn(|gear| pair.shapes[gear].transpose() * &forces),
                 }
             })
             .collect()
-    }
-
-    /// Whether wider patches would have more room.
-    pub(super) fn can_widen(&self) -> bool {
-        self.patches.iter().any(|patch| patch.ends.contains(&None))
-    }
-
-    /// Whether contact reaches an end of a patch beyond which the flanks still face each other.
-    pub(super) fn overflows(&self, active: &[bool]) -> bool {
-        self.ranges().any(|(patch, range)| {
-            (active[range.start] && patch.ends[0].is_none())
-                || (active[range.end - 1] && patch.ends[1].is_none())
-        })
     }
 
     /// The cells that touched before; cells move with the contact, so that they mostly still do. A pair that was not there before starts
     /// open.
     fn touching(&self, warm: &WarmStart) -> Option<Vec<bool>> {
         warm.transmission_error?;
-        let touching = self.patches.iter().flat_map(|patch| {
+        let touching = self.pairs.iter().flat_map(|PairCells { patch, .. }| {
             let before = warm
                 .active
                 .iter()
@@ -380,7 +350,7 @@ impl ContactCells {
     pub(super) fn warm_start(&self, solution: &ContactSolution) -> WarmStart {
         let active = self
             .ranges()
-            .map(|(patch, range)| (patch.pair, solution.active[range].to_vec()));
+            .map(|(pair, range)| (pair.patch.pair, solution.active[range].to_vec()));
         WarmStart {
             transmission_error: Some(solution.transmission_error),
             active: active.collect(),

@@ -45,10 +45,13 @@ pub struct Facing<'a> {
     pub nearest: f64,
     /// The least gap.
     pub gap: f64,
+    /// The arm of a force there about the driven axis, over r_b2.
+    arm: f64,
     /// Whether the nominal contact lies past the seat's tip, off the path of contact.
     pub off_path: bool,
     gears: &'a GearPair,
     eta: f64,
+    home: i64,
     placement: Placement<'a>,
 }
 
@@ -63,8 +66,8 @@ pub(super) struct FacingPoint {
 
 impl<'a> Facing<'a> {
     /// How the flanks of pair `n` of `gears` face each other at the mesh position `eta`, told on the gear whose tip is nearer;
-    /// `None` where they do not.
-    pub fn of(gears: &'a GearPair, eta: f64, n: i64) -> Option<Self> {
+    /// `None` where they do not. `home` whole mesh periods later they do so again, but for eccentric gears.
+    pub fn of(gears: &'a GearPair, eta: f64, n: i64, home: i64) -> Option<Self> {
         let (s_a, s_e) = gears.path_of_contact();
         let s_1 = gears.roll_length_of(eta - n as f64);
         // Past the middle of the path of contact the contact is nearer to the driving tip, which leaves it at E. A pair that stands
@@ -75,11 +78,17 @@ impl<'a> Facing<'a> {
         } else {
             Member::Driven
         };
-        Self::from_seat(gears, eta, n, seat)
+        Self::from_seat(gears, eta, n, home, seat)
     }
 
     /// As [`Facing::of`], told on the flank of `seat`.
-    pub fn from_seat(gears: &'a GearPair, eta: f64, n: i64, seat: Member) -> Option<Self> {
+    pub fn from_seat(
+        gears: &'a GearPair,
+        eta: f64,
+        n: i64,
+        home: i64,
+        seat: Member,
+    ) -> Option<Self> {
         let s_1 = gears.roll_length_of(eta - n as f64);
         let nominal = match seat {
             Member::Driving => s_1,
@@ -95,20 +104,29 @@ impl<'a> Facing<'a> {
             },
             nearest: 0.0,
             gap: f64::INFINITY,
-            off_path: nominal > gears.gear(seat).tip_roll_length(),
+            arm: 1.0,
+            off_path: nominal > gears.gear(seat).tip_form_roll_length(),
             gears,
             eta,
-            placement: Placement::new(gears, eta, n),
+            home,
+            placement: Placement::new(gears, eta, n, home),
         };
         facing.range = facing.facing_range()?;
         facing.nearest = facing.nearest_point();
         facing.gap = facing.point(facing.nearest)?.gap;
+        facing.arm = facing.cell(facing.nearest, 0.0)?.arm;
         Some(facing)
     }
 
     /// The same flanks, told on the other gear.
     pub(super) fn told_on_mate(&self) -> Option<Self> {
-        Self::from_seat(self.gears, self.eta, self.pair, self.seat.other())
+        Self::from_seat(
+            self.gears,
+            self.eta,
+            self.pair,
+            self.home,
+            self.seat.other(),
+        )
     }
 
     /// The gears.
@@ -130,12 +148,11 @@ impl<'a> Facing<'a> {
         let s = gear.flank().roll_length_at_arc(arc);
         let place = self.placement.place(self.seat, s);
         let sight = self.placement.sight(self.seat.other(), place.point)?;
-        let relief = gear.relief_depth(gear.flank().radius(s))
-            + mate.relief_depth(mate.flank().radius(sight.roll_length));
+        let removed = gear.removed(s) + mate.removed(sight.roll_length);
         Some(FacingPoint {
             roll_length: s,
             place,
-            gap: sight.gap + relief,
+            gap: sight.gap + removed,
             sight,
         })
     }
@@ -183,10 +200,29 @@ impl<'a> Facing<'a> {
     /// The arc length at which the gap is least.
     ///
     /// The gap is a parabola about the nominal contact plus reliefs that grow towards either tip: it is convex, and least where its
-    /// slope changes sign, or at an end.
+    /// slope changes sign, or at an end. A profile table may give it several hollows: of many places the least tells where to look.
     fn nearest_point(&self) -> f64 {
+        const PLACES: u32 = 128;
         let FlankRange { from, to, .. } = self.range;
-        let closes = |arc: f64| self.slope(arc) < 0.0;
+        if self.gears.driving().is_convex() && self.gears.driven().is_convex() {
+            return self.least_within(from, to, [0.0; 2]);
+        }
+        let at = |i: u32| from + (to - from) * f64::from(i) / f64::from(PLACES);
+        let gap = |i: u32| self.point(at(i)).map_or(f64::INFINITY, |point| point.gap);
+        let least = (0..=PLACES)
+            .min_by(|&i, &j| gap(i).total_cmp(&gap(j)))
+            .unwrap_or(0);
+        self.least_within(
+            at(least.saturating_sub(1)),
+            at((least + 1).min(PLACES)),
+            [0.0; 2],
+        )
+    }
+
+    /// Where the gap is least between two arc lengths, where the flanks of the driving and of the driven tooth are inclined by
+    /// `slopes`: what stands out for each roll length.
+    fn least_within(&self, from: f64, to: f64, slopes: [f64; 2]) -> f64 {
+        let closes = |arc: f64| self.slope(arc) < self.inclination(arc, slopes);
         if closes(to) {
             to
         } else if closes(from) {
@@ -194,6 +230,50 @@ impl<'a> Facing<'a> {
         } else {
             from
         }
+    }
+
+    /// How fast flanks inclined by `slopes` close the gap along the seat's flank.
+    fn inclination(&self, arc: f64, slopes: [f64; 2]) -> f64 {
+        if slopes == [0.0; 2] {
+            return 0.0;
+        }
+        let (gear, mate) = (
+            self.gears.gear(self.seat),
+            self.gears.gear(self.seat.other()),
+        );
+        self.point(arc).map_or(0.0, |point| {
+            let (_, seen) = point.sight.change(mate.base_radius(), point.place.to_tip);
+            let rolled = gear.base_radius() / point.roll_length.max(1e-9 * gear.base_radius());
+            slopes[self.seat.index()] * rolled + slopes[self.seat.other().index()] * seen
+        })
+    }
+
+    /// The δ at which `teeth`, the driving and the driven one, touch with their deviations from the drawing: their least gap over its
+    /// arm.
+    pub(super) fn touch_of(&self, teeth: [usize; 2]) -> f64 {
+        if self.gears.driving().deviations().are_without_lists()
+            && self.gears.driven().deviations().are_without_lists()
+        {
+            return self.gap / self.arm;
+        }
+        let of = |member: Member| (self.gears.gear(member), teeth[member.index()]);
+        let slopes = Member::BOTH.map(|member| {
+            let (gear, tooth) = of(member);
+            gear.deviation_slope(tooth)
+        });
+        let nearest = if slopes == [0.0; 2] {
+            self.nearest
+        } else {
+            self.least_within(self.range.from, self.range.to, slopes)
+        };
+        self.point(nearest).map_or(f64::INFINITY, |point| {
+            let rolls = self.on_both(point.roll_length, point.sight.roll_length);
+            let deviations = Member::BOTH.map(|member| {
+                let (gear, tooth) = of(member);
+                gear.deviation(tooth, rolls[member.index()])
+            });
+            (point.gap - deviations[0] - deviations[1]) / self.arm
+        })
     }
 
     /// The least distance between the tip of the seat, as far as it stands below the flank of the other gear, and the fillet there;
@@ -242,13 +322,9 @@ impl<'a> Facing<'a> {
             return 0.0;
         };
         let (gap, seen) = sight.change(mate.base_radius(), place.to_tip);
-        let (r, r_mate) = (
-            gear.flank().radius(s),
-            mate.flank().radius(sight.roll_length),
-        );
-        // A radius grows by r_b/r along an arc, and by s/r along a roll length.
-        gap + gear.relief_slope(r) * gear.base_radius() / r
-            + mate.relief_slope(r_mate) * sight.roll_length / r_mate * seen
+        // An arc grows by s/r_b along a roll length.
+        gap + gear.removed_slope(s) * gear.base_radius() / s.max(1e-9 * gear.base_radius())
+            + mate.removed_slope(sight.roll_length) * seen
     }
 }
 
@@ -256,17 +332,19 @@ impl<'a> Facing<'a> {
 mod tests {
     use super::*;
     use crate::gear::spur::tests::paper_gear;
-    use crate::gear::{ReliefData, ReliefShape, ReliefStart, SpurGear};
+    use crate::gear::{ModificationData, ReliefData, ReliefShape, ReliefStart, SpurGear};
 
     fn pair(relief: Option<ReliefShape>) -> GearPair {
         let mut data = paper_gear(50);
-        data.tip_relief = relief.map(|shape| ReliefData {
+        let relief = relief.map(|shape| ReliefData {
             amount: 5e-6,
             shape,
             start: ReliefStart::RadialLength(1.75e-3),
         });
+        data.modifications
+            .extend(relief.map(ModificationData::TipRelief));
         let gear = SpurGear::new(data).expect("the standard gear");
-        GearPair::new(gear, gear, 100.5e-3).expect("meshes")
+        GearPair::new(gear.clone(), gear, 100.5e-3).expect("meshes")
     }
 
     /// 40 and 80 teeth with shifts ±1.1: the path of contact lies beside the pitch point.
@@ -288,7 +366,7 @@ mod tests {
                 let s = s_a + (s_e - s_a) * f64::from(i) / 40.0;
                 let eta = (s - pair.pitch_roll_length()) / pair.base_pitch();
                 for seat in Member::BOTH {
-                    let facing = Facing::from_seat(&pair, eta, 0, seat).expect("they touch");
+                    let facing = Facing::from_seat(&pair, eta, 0, 0, seat).expect("they touch");
                     assert!(facing.gap.abs() < 1e-15, "{seat} at {s}: {}", facing.gap);
                 }
             }
@@ -307,7 +385,7 @@ mod tests {
             (s_e - 0.2e-3, Member::Driving, false),
             (s_e + 0.2e-3, Member::Driving, true),
         ] {
-            let facing = Facing::of(&pair, periods(s), 0).expect("they face each other");
+            let facing = Facing::of(&pair, periods(s), 0, 0).expect("they face each other");
             assert_eq!((facing.seat, facing.off_path), (seat, off_path));
             assert_eq!(
                 facing.nearest == facing.range.to,
@@ -325,7 +403,7 @@ mod tests {
                 let (_, s_e) = pair.path_of_contact();
                 let s = s_e + 0.2e-3 * f64::from(*i);
                 let eta = (s - pair.pitch_roll_length()) / pair.base_pitch();
-                Facing::of(&pair, eta, 0).is_some_and(|facing| {
+                Facing::of(&pair, eta, 0, 0).is_some_and(|facing| {
                     assert!(facing.gap >= last);
                     last = facing.gap;
                     true
@@ -339,10 +417,10 @@ mod tests {
     #[test]
     fn reliefs_add_to_the_gap() {
         let (plain, relieved) = (pair(None), pair(Some(ReliefShape::Linear)));
-        let gap = |pair: &GearPair| Facing::of(pair, 0.5, 0).expect("near").gap;
+        let gap = |pair: &GearPair| Facing::of(pair, 0.5, 0, 0).expect("near").gap;
         let s = plain.roll_length_of(0.5);
         let radius = relieved.driving().flank().radius(s);
-        let depth = relieved.driving().relief_depth(radius);
+        let depth = relieved.driving().removed(s);
         // A slope σ beside a parabola of radius ρ lowers its minimum by σ² ρ/2.
         let slope = 5e-6 / 1.75e-3 * plain.driving().base_radius() / radius;
         let rho = s * (plain.line_of_action() - s) / plain.line_of_action();
@@ -358,7 +436,7 @@ mod tests {
             let pair = pair(Some(shape));
             for i in 0..60 {
                 let eta = -0.9 + 0.03 * f64::from(i);
-                let Some(facing) = Facing::of(&pair, eta, 0) else {
+                let Some(facing) = Facing::of(&pair, eta, 0, 0) else {
                     continue;
                 };
                 let FlankRange { from, to, .. } = facing.range;

@@ -1,12 +1,15 @@
 //! Frictionless contact between the flanks of two gears.
 //!
 //! In reading order:
-//! - [`placement`] and [`facing`]: where flanks stand and how they face each other, from the true geometry,
+//! - [`placement`], [`facing`] and `facings`: where flanks stand, how two of them face each other, and which pairs come near,
 //! - [`patch`]: cells about the places where they are nearest,
 //! - [`flank_table`], [`half_plane`] and `corner`: the compliance of the cells, smooth part, logarithm, and near a sharp tip,
-//! - [`cells`]: the cells of all pairs of one mesh position, H on them, and what their solution says of the mesh,
+//! - [`pair_cells`] and [`cells`]: the cells of one pair, and of all pairs of one mesh position with the deviations of the teeth that
+//!   stand there; H on them, and what their solution says of the mesh,
 //! - [`stage`]: one fraction of the mesh period, from laying the cells to a solution that nothing penetrates,
+//! - `light`: what is left of it as the load vanishes,
 //! - `penetration`: the look over the whole flanks that proves it,
+//! - [`positions`]: many positions of one load, in parallel,
 //! - [`model`]: what all of this is asked of,
 //! - [`ContactProblem`]: compliance, gaps and arms; and [`ContactSolution`]: forces, delta, stiffness, residuals,
 //! - [`solve_active_set`]: the exact solver, for every position of a mesh,
@@ -30,18 +33,23 @@ mod augmented_lagrangian;
 pub mod cells;
 mod corner;
 pub mod facing;
+mod facings;
 pub mod flank_table;
 pub mod half_plane;
+mod light;
 pub mod model;
+pub mod pair_cells;
 pub mod patch;
 mod penetration;
 pub mod placement;
+pub mod positions;
 mod problem;
 pub mod stage;
 
 pub use active_set::solve_active_set;
 pub use augmented_lagrangian::{AugmentedLagrangian, solve_augmented_lagrangian};
 pub use cells::{ContactCells, MeshCells, MeshContact, PairContact, PairLoads};
+pub use light::light_contact;
 pub use model::{ContactSolver, GearModel, PairModel, PositionError, WarmStart};
 pub use problem::{ContactError, ContactProblem, ContactQuantity, ContactSolution};
 pub use stage::Stage;

@@ -6,7 +6,7 @@ use super::flank_table::FlankTable;
 use super::stage::Stage;
 use super::{ContactError, MeshCells, MeshContact};
 use crate::fem::body::Coupling;
-use crate::gear::{GearPair, Member};
+use crate::gear::GearPair;
 
 /// The solver of the contact conditions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,9 +88,8 @@ impl PairModel {
         load: f64,
         warm: &mut WarmStart,
     ) -> Result<MeshContact, PositionError> {
-        let period = eta.floor();
-        let mut stage = Stage::new(self, eta - period, load)?;
-        let (contact, ()) = stage.contact(period as i64, warm, |_, _| ())?;
+        let mut stage = Stage::new(self, eta, load)?;
+        let (contact, ()) = stage.contact(eta.floor() as i64, warm, |_, _| ())?;
         Ok(contact)
     }
 
@@ -105,30 +104,12 @@ impl PairModel {
         load: f64,
         warm: &mut WarmStart,
     ) -> Result<MeshCells, PositionError> {
-        let period = eta.floor();
-        Stage::new(self, eta - period, load)?.cells(period as i64, warm)
-    }
-
-    /// The tooth of `member` in pair n.
-    pub fn tooth(&self, member: Member, n: i64) -> usize {
-        let z = i64::from(self.pair.gear(member).tooth_count());
-        teeth_on(member, n).rem_euclid(z) as usize
+        Stage::new(self, eta, load)?.cells(eta.floor() as i64, warm)
     }
 
     /// How far apart coupled teeth of either gear stand at most.
     pub fn coupled_teeth(&self) -> usize {
         let [one, other] = [0, 1].map(|gear| self.gears[gear].coupling.farthest());
         one.min(other)
-    }
-}
-
-/// The teeth counter-clockwise, in the frame of `member`, from the tooth of one pair to that of the pair `pairs` later.
-///
-/// The next tooth counter-clockwise of the driving gear is ahead and meshes before, that of the driven gear is behind and
-/// meshes after.
-pub fn teeth_on(member: Member, pairs: i64) -> i64 {
-    match member {
-        Member::Driving => -pairs,
-        Member::Driven => pairs,
     }
 }

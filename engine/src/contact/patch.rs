@@ -6,7 +6,7 @@
 
 use super::facing::{Facing, RangeEnd};
 use super::half_plane::{NearField, logarithm_factor};
-use crate::gear::Member;
+use crate::gear::{GearPair, Member};
 
 /// Half the width of a patch, in half-widths of the contact under the whole load: the contact and a quarter beside it, so that one that
 /// a relief shifts still fits.
@@ -93,6 +93,17 @@ impl Patch {
     }
 }
 
+impl Cell {
+    /// The gap between `teeth` of `pair`, the driving and the driven one, with their deviations from the drawing.
+    pub(super) fn gap_between(&self, pair: &GearPair, teeth: [usize; 2]) -> f64 {
+        let deviations = Member::BOTH.map(|member| {
+            let g = member.index();
+            pair.gear(member).deviation(teeth[g], self.roll_lengths[g])
+        });
+        self.gap - deviations[0] - deviations[1]
+    }
+}
+
 impl Patch {
     /// Where the cells begin and end, by arc length on the seat's flank.
     pub fn reach(&self) -> (f64, f64) {
@@ -122,7 +133,7 @@ fn contact_width(indentation: f64, radius: f64, angle: f64) -> f64 {
 
 impl Facing<'_> {
     /// What belongs to the seat and to the other gear, as driving and driven.
-    fn on_both<T: Copy>(&self, seat: T, other: T) -> [T; 2] {
+    pub(super) fn on_both<T: Copy>(&self, seat: T, other: T) -> [T; 2] {
         match self.seat {
             Member::Driving => [seat, other],
             Member::Driven => [other, seat],
@@ -157,16 +168,16 @@ impl Facing<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gear::SpurGear;
     use crate::gear::spur::tests::paper_gear;
-    use crate::gear::{GearPair, SpurGear};
 
     fn pair() -> GearPair {
         let gear = SpurGear::new(paper_gear(50)).expect("the standard gear");
-        GearPair::new(gear, gear, 100.5e-3).expect("meshes")
+        GearPair::new(gear.clone(), gear, 100.5e-3).expect("meshes")
     }
 
     fn patch(pair: &GearPair, eta: f64, n: i64, count: usize) -> Patch {
-        let facing = Facing::of(pair, eta, n).expect("flanks that face each other");
+        let facing = Facing::of(pair, eta, n, 0).expect("flanks that face each other");
         Patch::new(&facing, 2447.61, count, 1.0)
     }
 

@@ -8,29 +8,23 @@
 use faer::Mat;
 
 use super::ContactSolution;
-use super::cells::{ContactCells, PairLoads};
+use super::cells::ContactCells;
 use super::facing::Facing;
-use super::model::{PairModel, teeth_on};
+use super::model::PairModel;
+use super::pair_cells::PairCells;
 use super::patch::{Cell, Patch};
 use crate::gear::Member;
 
 /// Stretches on the flank of the seat and on that of its mate.
 const STRETCHES: [usize; 2] = [32, 16];
 
-/// The stretches that may penetrate at one fraction of the mesh period.
-pub(super) struct Penetration {
-    reach: f64,
-    /// By patch.
-    pairs: Vec<Stretches>,
-}
-
 /// What was found.
 #[derive(Default)]
 pub(super) struct Found {
     /// The largest penetration of the flanks, in meters; zero if everything is open.
     pub(super) largest: f64,
-    /// The largest beside the patches.
-    pub(super) beside: f64,
+    /// Pairs that penetrate beside their patches.
+    pub(super) beside: Vec<i64>,
     /// Pairs in which the tip of one gear is pressed into the fillet of the other, and that other gear; cells do not follow there.
     pub(super) fillets: Vec<(i64, Member)>,
 }
@@ -46,77 +40,67 @@ enum Place {
     Fillet(Member),
 }
 
-/// The stretches of one pair.
-struct Stretches {
-    /// Gap, arm and place of each.
-    stretches: Vec<(f64, f64, Place)>,
+/// The stretches of one pair that may penetrate, at one fraction of the mesh period.
+pub(super) struct Stretches {
+    /// As cells, and where they lie.
+    stretches: Vec<(Cell, Place)>,
     /// What unit forces on the cells of the pair do to each, with the interfaces held.
     held: Mat<f64>,
     /// W V of each gear.
     shapes: [Mat<f64>; 2],
 }
 
-impl Penetration {
-    /// The stretches of `facings` whose gap is within `reach`, for the pairs of `cells`; pairs without cells are farther apart.
-    pub(super) fn new(
-        model: &PairModel,
-        cells: &ContactCells,
-        facings: &[Facing<'_>],
-        reach: f64,
-    ) -> Self {
-        let of = |patch: &Patch| {
-            let mut found = Vec::new();
-            for facing in facings.iter().filter(|facing| facing.pair == patch.pair) {
-                on_flanks(facing, patch, reach, &mut found);
-            }
-            Stretches::new(model, patch, &found)
-        };
-        Self {
-            reach,
-            pairs: cells.patches.iter().map(of).collect(),
+/// What penetrates under the forces of `solution` on `cells`, by their `stretches`, pair by pair.
+pub(super) fn found(
+    model: &PairModel,
+    period: i64,
+    cells: &ContactCells<'_>,
+    stretches: &[&Stretches],
+    solution: &ContactSolution,
+) -> Found {
+    let mut found = Found::default();
+    let loads = cells.loads(&[&solution.forces]);
+    for (looks, (pair, range)) in stretches.iter().zip(cells.ranges()) {
+        if looks.stretches.is_empty() {
+            continue;
         }
-    }
-
-    /// The largest δ for which these are all stretches that may penetrate.
-    pub(super) fn reach(&self) -> f64 {
-        self.reach
-    }
-
-    /// What penetrates under the forces of `solution` with the teeth that mesh in `period`.
-    pub(super) fn of(
-        &self,
-        model: &PairModel,
-        cells: &ContactCells,
-        period: i64,
-        solution: &ContactSolution,
-    ) -> Found {
-        let mut found = Found::default();
-        let loads = cells.loads(&[&solution.forces]);
-        for (pair, (patch, range)) in self.pairs.iter().zip(cells.ranges()) {
-            if pair.stretches.is_empty() {
+        let number = pair.patch.pair;
+        let moved = Member::BOTH.map(|member| cells.moved(member, number, &loads));
+        let yielded = looks.yielded(&solution.forces[range], &moved);
+        let teeth = model.pair.teeth(period + number);
+        for ((cell, place), yielded) in looks.stretches.iter().zip(yielded) {
+            let depth = solution.transmission_error * cell.arm
+                - cell.gap_between(&model.pair, teeth)
+                - yielded;
+            if depth <= 0.0 {
                 continue;
             }
-            let moved = Member::BOTH.map(|member| moved(model, member, period, patch.pair, &loads));
-            let yielded = pair.yielded(&solution.forces[range], &moved);
-            for (&(gap, arm, place), yielded) in pair.stretches.iter().zip(yielded) {
-                let depth = solution.transmission_error * arm - gap - yielded;
-                match place {
-                    Place::Fillet(member) if depth > 0.0 => {
-                        found.fillets.push((patch.pair, member))
+            match place {
+                Place::Fillet(member) => found.fillets.push((number, *member)),
+                Place::OnPatch => found.largest = found.largest.max(depth),
+                Place::Beside => {
+                    found.largest = found.largest.max(depth);
+                    if !found.beside.contains(&number) {
+                        found.beside.push(number);
                     }
-                    Place::Fillet(_) => {}
-                    Place::Beside => found.beside = found.beside.max(depth),
-                    Place::OnPatch => found.largest = found.largest.max(depth),
                 }
             }
         }
-        found.largest = found.largest.max(found.beside);
-        found
     }
+    found
 }
 
 impl Stretches {
-    fn new(model: &PairModel, patch: &Patch, found: &[(Cell, Place)]) -> Self {
+    /// Those over both flanks of `facing` whose gap as drawn is within `reach`.
+    pub(super) fn new(
+        model: &PairModel,
+        pair: &PairCells,
+        facing: &Facing<'_>,
+        reach: f64,
+    ) -> Self {
+        let patch = &pair.patch;
+        let mut found = Vec::new();
+        on_flanks(facing, patch, reach, &mut found);
         let arcs: Vec<f64> = found
             .iter()
             .map(|(cell, _)| {
@@ -141,10 +125,7 @@ impl Stretches {
             flank.shapes_at(&here)
         });
         Self {
-            stretches: found
-                .iter()
-                .map(|(cell, place)| (cell.gap, cell.arm, *place))
-                .collect(),
+            stretches: found,
             held,
             shapes,
         }
@@ -203,30 +184,4 @@ fn on_flanks(facing: &Facing<'_>, patch: &Patch, reach: f64, found: &mut Vec<(Ce
             found.extend(lowest.map(|cell| (Cell { gap, ..cell }, place)));
         }
     }
-}
-
-/// X Σ Vᵀp of the tooth of `member` in `pair`: how its interface moves under the loads of all pairs.
-fn moved(
-    model: &PairModel,
-    member: Member,
-    period: i64,
-    pair: i64,
-    loads: &[PairLoads],
-) -> Mat<f64> {
-    let gear = member.index();
-    let coupling = &model.gears[gear].coupling;
-    let mut moved = Mat::zeros(coupling.shape_count(), 1);
-    for other in loads {
-        let (x, transposed) = coupling.block(
-            model.tooth(member, period + pair),
-            teeth_on(member, other.pair - pair),
-        );
-        let force = &other.loads[gear];
-        moved += if transposed {
-            x.transpose() * force
-        } else {
-            x * force
-        };
-    }
-    moved
 }

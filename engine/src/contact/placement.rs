@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::gear::{GearPair, Member, SpurGear, Vector, radial, tangential};
+use crate::gear::{GearPair, Member, SpurGear, Vector, radial, tangential, teeth_on};
 
 /// Both gears at one mesh position, as one tooth pair sees them.
 ///
@@ -10,7 +10,10 @@ use crate::gear::{GearPair, Member, SpurGear, Vector, radial, tangential};
 #[derive(Debug, Clone, Copy)]
 pub struct Placement<'a> {
     pair: &'a GearPair,
+    /// Where the gears' own axes stand: beside the axes of rotation where they are eccentric.
     centers: [Vector; 2],
+    /// The driven axis of rotation.
+    driven_axis: Vector,
     /// The angle of each tooth's centerline.
     angles: [f64; 2],
 }
@@ -42,20 +45,35 @@ pub(super) struct Sight {
 }
 
 impl<'a> Placement<'a> {
-    /// The teeth of pair `n` at the mesh position `eta`.
-    pub fn new(pair: &'a GearPair, eta: f64, n: i64) -> Self {
+    /// The teeth of pair `n` at the mesh position `eta`, `home` whole mesh periods later.
+    ///
+    /// Those periods turn both gears by whole teeth, which shows only where a gear is eccentric.
+    pub fn new(pair: &'a GearPair, eta: f64, n: i64, home: i64) -> Self {
         let alpha_w = pair.working_pressure_angle();
         let s_1 = pair.roll_length_of(eta - n as f64);
         let angle = |gear: &SpurGear, tangent: f64, s: f64| {
             tangent - gear.flank().base_half_angle() + s / gear.base_radius()
         };
+        let angles = [
+            angle(pair.driving(), -alpha_w, s_1),
+            angle(pair.driven(), PI - alpha_w, pair.line_of_action() - s_1),
+        ];
+        let driven_axis = Vector::new(pair.center_distance(), 0.0);
+        let center = |member: Member, axis: Vector| {
+            let gear = pair.gear(member);
+            // From the tooth in mesh back to tooth 0.
+            let teeth = teeth_on(member, n + home) as f64;
+            let tooth_0 = angles[member.index()] - teeth * gear.pitch_angle();
+            axis + gear.deviations().displacement(tooth_0)
+        };
         Self {
             pair,
-            centers: [Vector::zeros(), Vector::new(pair.center_distance(), 0.0)],
-            angles: [
-                angle(pair.driving(), -alpha_w, s_1),
-                angle(pair.driven(), PI - alpha_w, pair.line_of_action() - s_1),
+            centers: [
+                center(Member::Driving, Vector::zeros()),
+                center(Member::Driven, driven_axis),
             ],
+            driven_axis,
+            angles,
         }
     }
 
@@ -118,7 +136,7 @@ impl<'a> Placement<'a> {
 
     /// The arm about the driven axis, over r_b2, of a force that presses the driven gear along `direction` at `point`.
     pub(super) fn arm(&self, point: Vector, direction: Vector) -> f64 {
-        let d = point - self.centers[1];
+        let d = point - self.driven_axis;
         -(d.x * direction.y - d.y * direction.x) / self.pair.driven().base_radius()
     }
 }

@@ -6,15 +6,16 @@
 
 use super::cells::{ContactCells, MeshCells, MeshContact};
 use super::facing::Facing;
+use super::facings::Facings;
 use super::model::{PairModel, PositionError, WarmStart};
-use super::penetration::{Found, Penetration};
+use super::pair_cells::PairCells;
+use super::penetration::{Found, Stretches, found};
 use super::{ContactProblem, ContactSolution};
-use crate::gear::GearPair;
 
 /// By how much patches are widened at a time where the contact does not fit inside them.
 const WIDENING: f64 = 1.5;
 
-/// Pairs are solved together whose gap is within this much of δ: a little more than touch.
+/// Pairs are solved together whose gap is within this much of what load brings together: a little more than touch.
 const REACH: f64 = 1.1;
 
 /// What a guess of the reach leaves for the solution to move.
@@ -25,32 +26,45 @@ pub struct Stage<'a> {
     model: &'a PairModel,
     load: f64,
     facings: Facings<'a>,
-    /// The cells that have been laid so far: one entry at most stages.
-    layouts: Vec<Layout>,
+    /// The cells that have been laid so far, of each pair.
+    laid: Vec<Laid>,
+    /// Where penetration was looked for, on each of them.
+    looks: Vec<Look>,
 }
 
-struct Layout {
+/// The cells of one pair, and how wide they were laid.
+struct Laid {
     widening: f64,
-    cells: ContactCells,
-    penetration: Option<Penetration>,
+    cells: PairCells,
+}
+
+/// The stretches of one pair whose gap as drawn is within `reach`.
+struct Look {
+    pair: i64,
+    reach: f64,
+    stretches: Stretches,
 }
 
 impl<'a> Stage<'a> {
-    /// The mesh of `model` at `fraction` of its period under `load`.
+    /// The mesh of `model` at the mesh position `eta` and whole mesh periods from there, under `load`.
     ///
     /// # Errors
     ///
     /// [`PositionError::NoContact`] if no flanks face each other.
-    pub fn new(model: &'a PairModel, fraction: f64, load: f64) -> Result<Self, PositionError> {
+    pub fn new(model: &'a PairModel, eta: f64, load: f64) -> Result<Self, PositionError> {
+        let home = eta.floor();
         Ok(Self {
             model,
             load,
-            facings: Facings::new(&model.pair, fraction).ok_or(PositionError::NoContact)?,
-            layouts: Vec::new(),
+            facings: Facings::new(&model.pair, eta - home, home as i64)
+                .ok_or(PositionError::NoContact)?,
+            laid: Vec::new(),
+            looks: Vec::new(),
         })
     }
 
-    /// The contact in mesh period `period`, summed up pair by pair, and what `keep` takes of it beside.
+    /// The contact in mesh period `period`, summed up pair by pair, and what `keep` takes of it beside. Eccentric gears stand elsewhere in
+    /// any other period than that of the stage's own position.
     ///
     /// # Errors
     ///
@@ -59,17 +73,13 @@ impl<'a> Stage<'a> {
         &mut self,
         period: i64,
         warm: &mut WarmStart,
-        keep: impl FnOnce(&ContactCells, &ContactSolution) -> T,
+        keep: impl FnOnce(&ContactCells<'_>, &ContactSolution) -> T,
     ) -> Result<(MeshContact, T), PositionError> {
-        let Solved {
-            layout,
-            solution,
-            found,
-            ..
-        } = self.solve(period, warm)?;
-        let cells = &self.layouts[layout].cells;
-        let contact = cells.mesh_contact(self.model, period, self.load, &solution, &found);
-        Ok((contact, keep(cells, &solution)))
+        let load = self.load;
+        self.solved(period, warm, |cells, _, solution, found| {
+            let contact = cells.mesh_contact(load, &solution, &found);
+            (contact, keep(cells, &solution))
+        })
     }
 
     /// The contact in mesh period `period`, cell by cell.
@@ -78,143 +88,126 @@ impl<'a> Stage<'a> {
     ///
     /// [`PositionError`].
     pub fn cells(mut self, period: i64, warm: &mut WarmStart) -> Result<MeshCells, PositionError> {
-        let Solved {
-            layout,
-            problem,
-            solution,
-            ..
-        } = self.solve(period, warm)?;
-        let cells = self.layouts.swap_remove(layout).cells;
-        Ok(cells.into_mesh_cells(period, problem, solution))
-    }
-
-    /// The solution in one period and the cells on which it was found.
-    ///
-    /// Cells are laid on more pairs, and patches widened, until nothing that faces penetrates beside them.
-    fn solve(&mut self, period: i64, warm: &mut WarmStart) -> Result<Solved, PositionError> {
-        let guess = warm.transmission_error.map_or(0.0, |delta| GUESS * delta);
-        let mut pairs = self.facings.within(guess);
-        let mut widening = 1.0;
-        loop {
-            let index = self.lay(pairs, widening)?;
-            let Layout {
-                cells, penetration, ..
-            } = &mut self.layouts[index];
-            let (problem, solution) = cells.solve(self.model, period, self.load, warm)?;
-            let delta = solution.transmission_error;
-            if cells.pair_count() < self.facings.within(REACH * delta) {
-                pairs = self.facings.within(GUESS * delta);
-                continue;
-            }
-            let points = match penetration.take() {
-                Some(points) if points.reach() >= delta => points,
-                _ => Penetration::new(self.model, cells, self.facings.all(), GUESS * delta),
-            };
-            let found = points.of(self.model, cells, period, &solution);
-            *penetration = Some(points);
-            if cells.can_widen() && (found.beside > 0.0 || cells.overflows(&solution.active)) {
-                widening *= WIDENING;
-                continue;
-            }
-            *warm = cells.warm_start(&solution);
-            return Ok(Solved {
-                layout: index,
-                problem,
-                solution,
-                found,
-            });
-        }
-    }
-
-    /// Where cells on at least `pairs` pairs, widened by `widening`, are laid.
-    fn lay(&mut self, pairs: usize, widening: f64) -> Result<usize, PositionError> {
-        let enough =
-            |layout: &Layout| layout.cells.pair_count() >= pairs && layout.widening == widening;
-        if let Some(index) = self.layouts.iter().position(enough) {
-            return Ok(index);
-        }
-        let facings = &self.facings.all()[..pairs];
-        self.layouts.push(Layout {
-            widening,
-            cells: ContactCells::new(self.model, facings, self.load, widening)?,
-            penetration: None,
-        });
-        Ok(self.layouts.len() - 1)
-    }
-}
-
-struct Solved {
-    layout: usize,
-    problem: ContactProblem,
-    solution: ContactSolution,
-    /// What penetrates over the whole flanks of all pairs.
-    found: Found,
-}
-
-/// The pairs whose flanks face each other at one fraction of the mesh period, by rising gap; numbered from the reference pair of the
-/// period. They are looked for outward from the path of contact, as far as is asked.
-struct Facings<'a> {
-    gears: &'a GearPair,
-    fraction: f64,
-    found: Vec<Facing<'a>>,
-    /// The next pairs to look at, before and after those found, and the gap of the last one there.
-    frontier: [Frontier; 2],
-}
-
-struct Frontier {
-    next: i64,
-    step: i64,
-    last_gap: f64,
-}
-
-impl<'a> Facings<'a> {
-    /// The pairs on the path of contact and those beside it; `None` if no flanks face each other at all.
-    fn new(gears: &'a GearPair, fraction: f64) -> Option<Self> {
-        let (s_a, s_e) = gears.path_of_contact();
-        // Pair n touches at the roll length of η − n periods.
-        let periods = |s: f64| (s - gears.roll_length_of(0.0)) / gears.base_pitch();
-        let first = (fraction - periods(s_e)).floor() as i64;
-        let last = (fraction - periods(s_a)).ceil() as i64;
-        let mut found: Vec<Facing<'a>> = (first..=last)
-            .filter_map(|n| Facing::of(gears, fraction, n))
-            .collect();
-        let frontier = |last: i64, step| Frontier {
-            next: last + step,
-            step,
-            last_gap: found
-                .iter()
-                .find(|facing| facing.pair == last)
-                .map_or(f64::INFINITY, |facing| facing.gap),
-        };
-        let frontier = [frontier(first, -1), frontier(last, 1)];
-        found.sort_by(|a, b| a.gap.total_cmp(&b.gap));
-        (!found.is_empty()).then_some(Self {
-            gears,
-            fraction,
-            frontier,
-            found,
+        self.solved(period, warm, |cells, problem, solution, _| {
+            cells.mesh_cells(problem, solution)
         })
     }
 
-    /// The number of pairs whose gap is within `reach`; at least the one that touches first.
-    fn within(&mut self, reach: f64) -> usize {
-        // Beyond the path of contact gaps grow from pair to pair.
-        for frontier in &mut self.frontier {
-            while frontier.last_gap <= reach {
-                let facing = Facing::of(self.gears, self.fraction, frontier.next);
-                frontier.last_gap = facing.map_or(f64::INFINITY, |facing| facing.gap);
-                frontier.next += frontier.step;
-                if let Some(facing) = facing {
-                    let place = self.found.partition_point(|known| known.gap <= facing.gap);
-                    self.found.insert(place, facing);
-                }
+    /// Solves mesh period `period` and lets `answer` see the cells, the problem stated on them, its solution, and what penetrates.
+    ///
+    /// Cells are laid on more pairs, and patches widened, until nothing that faces penetrates beside them.
+    fn solved<T>(
+        &mut self,
+        period: i64,
+        warm: &mut WarmStart,
+        answer: impl FnOnce(&ContactCells<'_>, ContactProblem, ContactSolution, Found) -> T,
+    ) -> Result<T, PositionError> {
+        let (model, load, facings) = (self.model, self.load, &mut self.facings);
+        let touch = facings.touch(period);
+        let beyond = |delta: f64, factor: f64| touch + factor * (delta - touch).max(0.0);
+        let mut reach = beyond(warm.transmission_error.unwrap_or(touch), GUESS);
+        loop {
+            let near = facings.within(period, reach);
+            let places: Vec<usize> = near
+                .iter()
+                .filter_map(|(i, _)| lay(&mut self.laid, model, &facings.all()[*i], load))
+                .collect();
+            let pairs = places.iter().map(|place| &self.laid[*place].cells);
+            let cells = ContactCells::new(model, period, pairs.collect())?;
+            let (problem, solution) = cells.solve(load, warm)?;
+            let delta = solution.transmission_error;
+            if facings.within(period, beyond(delta, REACH)).len() > near.len() {
+                reach = beyond(delta, GUESS);
+                continue;
+            }
+            let as_drawn = delta + facings.nearer();
+            for pair in &cells.pairs {
+                look(
+                    &mut self.looks,
+                    model,
+                    pair,
+                    facings,
+                    as_drawn,
+                    beyond(delta, GUESS),
+                );
+            }
+            let looks: Vec<&Stretches> = cells
+                .pairs
+                .iter()
+                .filter_map(|pair| self.looks.iter().find(|look| look.pair == pair.patch.pair))
+                .map(|look| &look.stretches)
+                .collect();
+            let found = found(model, period, &cells, &looks, &solution);
+            let wider: Vec<i64> = cells
+                .ranges()
+                .filter(|(pair, range)| {
+                    let beside = found.beside.contains(&pair.patch.pair);
+                    pair.can_widen() && (beside || pair.overflows(&solution.active[range.clone()]))
+                })
+                .map(|(pair, _)| pair.patch.pair)
+                .collect();
+            if wider.is_empty() {
+                *warm = cells.warm_start(&solution);
+                return Ok(answer(&cells, problem, solution, found));
+            }
+            for pair in wider {
+                widen(&mut self.laid, model, facings, pair, load);
+                self.looks.retain(|look| look.pair != pair);
             }
         }
-        let count = self.found.partition_point(|facing| facing.gap <= reach);
-        count.max(1)
     }
+}
 
-    fn all(&self) -> &[Facing<'a>] {
-        &self.found
+/// Where in `laid` the cells of `facing` are, laid now if they never were; `None` where there is no room for any.
+fn lay(laid: &mut Vec<Laid>, model: &PairModel, facing: &Facing<'_>, load: f64) -> Option<usize> {
+    let known = laid
+        .iter()
+        .position(|laid| laid.cells.patch.pair == facing.pair);
+    if known.is_some() {
+        return known;
+    }
+    laid.push(Laid {
+        widening: 1.0,
+        cells: PairCells::new(model, facing, load, 1.0)?,
+    });
+    Some(laid.len() - 1)
+}
+
+/// Lays the cells of `pair` anew, wider.
+fn widen(laid: &mut [Laid], model: &PairModel, facings: &Facings<'_>, pair: i64, load: f64) {
+    let known = laid.iter_mut().find(|laid| laid.cells.patch.pair == pair);
+    if let (Some(laid), Some(facing)) = (known, facings.of_pair(pair)) {
+        laid.widening *= WIDENING;
+        if let Some(cells) = PairCells::new(model, facing, load, laid.widening) {
+            laid.cells = cells;
+        }
+    }
+}
+
+/// Sees to it that `looks` has the stretches of `pair` whose gap as drawn is within `least`; those of a new look within `reach` and what
+/// deviations bring nearer.
+fn look(
+    looks: &mut Vec<Look>,
+    model: &PairModel,
+    pair: &PairCells,
+    facings: &Facings<'_>,
+    least: f64,
+    reach: f64,
+) {
+    let number = pair.patch.pair;
+    let known = looks.iter().position(|look| look.pair == number);
+    if known.is_some_and(|place| looks[place].reach >= least) {
+        return;
+    }
+    if let Some(facing) = facings.of_pair(number) {
+        if let Some(place) = known {
+            looks.swap_remove(place);
+        }
+        let reach = reach + facings.nearer();
+        looks.push(Look {
+            pair: number,
+            reach,
+            stretches: Stretches::new(model, pair, facing, reach),
+        });
     }
 }

@@ -10,7 +10,7 @@ pub fn involute_function(angle: f64) -> f64 {
 /// The loaded involute flank of tooth 0, in the frame of its gear.
 ///
 /// The point at roll length s has its tangent point on the base circle at the angle t = ψ_b − s/r_b; it stands at
-/// r_b e_r(t) + s e_t(t) and its outward normal is e_t(t) (DESIGN section 2).
+/// r_b e_r(t) + s e_t(t) and its outward normal is e_t(t).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Involute {
     base_radius: f64,

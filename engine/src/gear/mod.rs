@@ -1,28 +1,37 @@
-//! What the drawing says: racks, flanks, teeth, reliefs, blanks and the pair they make.
+//! What the drawing says: racks, flanks, teeth, their modifications and deviations, blanks and the pair they make.
 //!
-//! Read in this order: [`involute`] (one flank), [`rack`] (the tool and the fillet it leaves), [`relief`], [`blank`],
-//! [`material`], [`spur`] (a whole gear), [`pair`] (two of them at a center distance).
+//! Read in this order: [`involute`] (one flank), [`rack`] (the tool and the fillet it leaves), [`modification`]
+//! and [`tip`] (what is taken off it), [`deviation`] (what teeth differ by), [`blank`], [`material`], [`data`] (what a drawing says),
+//! [`spur`] and [`mass`] (a whole gear), [`pair`] (two of them at a center distance).
 //!
 //! Every gear is described in its own frame: the center of the gear is the origin, the centerline of tooth 0 is the
 //! x axis, and the loaded flank of each tooth lies on its counter-clockwise side.
 
 pub mod blank;
+pub mod data;
+pub mod deviation;
 pub mod involute;
+mod mass;
 pub mod material;
+pub mod modification;
 pub mod pair;
 pub mod rack;
-pub mod relief;
 pub mod spur;
+pub mod tip;
 
-pub use blank::{
-    Blank, BlankRegion, Hole, HolePattern, HoleShape, Ligament, Moments, Symmetry, Web,
-};
+pub use blank::{BlankRegion, Hole, HolePattern, HoleShape, Ligament, Moments, Symmetry, Web};
+pub use data::{DeviationList, GearData, GearError};
+pub use deviation::{Eccentricity, ToothDeviations};
 pub use involute::Involute;
 pub use material::{Material, PlaneState};
-pub use pair::{GearPair, GearPairError, Member};
+pub use modification::{
+    ModificationData, Relief, ReliefData, ReliefShape, ReliefStart, RootReliefData,
+    RootReliefStart, TablePlaces,
+};
+pub use pair::{GearPair, GearPairError, Member, teeth_on};
 pub use rack::Rack;
-pub use relief::{ReliefShape, ReliefStart, TipRelief};
-pub use spur::{GearData, GearError, ReliefData, SpurGear};
+pub use spur::SpurGear;
+pub use tip::TipEdge;
 
 /// A point or vector of the plane, in meters.
 pub type Vector = nalgebra::Vector2<f64>;

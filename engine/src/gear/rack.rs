@@ -62,10 +62,13 @@ pub struct Trochoid {
 
 impl Trochoid {
     /// The fillet left by `rack`, shifted outward by `shift` (x m), on a gear of `tooth_count` teeth.
-    pub fn new(rack: &Rack, tooth_count: u32, shift: f64) -> Self {
+    ///
+    /// A tooth that is thicker by `thickness` on the reference circle carries its fillet with its flank.
+    pub fn new(rack: &Rack, tooth_count: u32, shift: f64, thickness: f64) -> Self {
+        let reference_radius = rack.module * f64::from(tooth_count) / 2.0;
         Self {
-            reference_radius: rack.module * f64::from(tooth_count) / 2.0,
-            space_angle: PI / f64::from(tooth_count),
+            reference_radius,
+            space_angle: PI / f64::from(tooth_count) + thickness / (2.0 * reference_radius),
             half_tip_land: rack.half_tip_land(),
             center_depth: rack.dedendum - rack.tip_radius - shift,
             tip_radius: rack.tip_radius,
@@ -122,7 +125,7 @@ mod tests {
             (60, 1.4),
         ] {
             let shift = x * rack.module;
-            let fillet = Trochoid::new(&rack, z, shift);
+            let fillet = Trochoid::new(&rack, z, shift, 0.0);
             let r = rack.module * f64::from(z) / 2.0;
             let alpha = rack.pressure_angle;
             let psi_b = PI / (2.0 * f64::from(z))
@@ -156,7 +159,7 @@ mod tests {
         };
         for (z, x) in [(30_u32, 0.0), (40, 0.95), (40, 1.2)] {
             let (shift, r) = (x * rack.module, rack.module * f64::from(z) / 2.0);
-            let fillet = Trochoid::new(&rack, z, shift);
+            let fillet = Trochoid::new(&rack, z, shift, 0.0);
             let (start, end) = fillet.ends();
             let boundary: Vec<(f64, f64)> = (0..=2000)
                 .map(|i| fillet.point(start + (end - start) * f64::from(i) / 2000.0))

@@ -2,146 +2,28 @@
 
 use std::f64::consts::PI;
 
+use super::blank::Ligament;
+use super::data::{DeviationList, LEAST_LIGAMENT, LEAST_RIM, LEAST_TIP_THICKNESS, LEAST_WEB_RIM};
 use super::involute::involute_function;
+use super::modification::{Modification, Relief, TablePlaces};
 use super::rack::Trochoid;
-use super::{Blank, HolePattern, Involute, Material, Rack, ReliefShape, ReliefStart, TipRelief};
-use crate::quadrature::gauss_legendre_panels;
+use super::tip::BrokenEdge;
+use super::{
+    BlankRegion, GearData, GearError, Hole, HolePattern, Involute, Material, ModificationData,
+    TipEdge, ToothDeviations,
+};
 use crate::root_finding::bisect;
-
-/// The least material, in meters, between a hole and its neighbor, the bore or the root circle.
-pub const LEAST_LIGAMENT: f64 = 0.5e-3;
-
-/// The least thickness of a tooth at its tip circle, in modules; below it the tooth counts as pointed.
-pub const LEAST_TIP_THICKNESS: f64 = 0.05;
-
-/// The least rim between the bore and the root circle, in modules.
-pub const LEAST_RIM: f64 = 1.0;
-
-/// A tip relief as a drawing gives it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ReliefData {
-    /// The amount C_a at the tip.
-    pub amount: f64,
-    /// How it grows towards the tip.
-    pub shape: ReliefShape,
-    /// Where it starts.
-    pub start: ReliefStart,
-}
-
-/// What a drawing says of a spur gear; [`SpurGear::new`] checks it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GearData {
-    /// The number of teeth Z.
-    pub tooth_count: u32,
-    /// The basic rack.
-    pub rack: Rack,
-    /// The profile shift coefficient x.
-    pub profile_shift: f64,
-    /// The face width b.
-    pub face_width: f64,
-    /// The tip relief of the loaded flanks.
-    pub tip_relief: Option<ReliefData>,
-    /// The material of teeth and blank.
-    pub material: Material,
-    /// What carries the teeth.
-    pub blank: Blank,
-}
-
-/// Why a gear cannot be made as drawn. Lengths are in meters.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum GearError {
-    /// The rack's tip rounding does not fit between its flanks.
-    #[error("the rack's tip rounding of radius {tip_radius} m does not fit: at most {largest} m")]
-    RackTipRadius {
-        /// The radius asked for.
-        tip_radius: f64,
-        /// The largest that fits.
-        largest: f64,
-    },
-    /// The rack cuts into the involute.
-    #[error("the flank is undercut at profile shift {profile_shift}; {smallest} avoids it")]
-    Undercut {
-        /// The profile shift coefficient asked for.
-        profile_shift: f64,
-        /// The smallest that avoids undercut.
-        smallest: f64,
-    },
-    /// The flanks meet, or nearly, below the tip circle.
-    #[error(
-        "the tooth is {thickness} m thick at its tip; an addendum of {largest_addendum} m leaves enough"
-    )]
-    PointedTip {
-        /// The thickness at the tip circle, negative if the flanks cross.
-        thickness: f64,
-        /// The largest addendum of the rack that leaves [`LEAST_TIP_THICKNESS`].
-        largest_addendum: f64,
-    },
-    /// No involute is left between the form circle and the tip circle.
-    #[error("the tip radius {tip_radius} m leaves no flank above the form radius {form_radius} m")]
-    NoFlank {
-        /// The tip radius.
-        tip_radius: f64,
-        /// The form radius.
-        form_radius: f64,
-    },
-    /// The relief starts below the flank or at the tip.
-    #[error(
-        "the relief starts at radius {start_radius} m, outside the flank from {form_radius} m to {tip_radius} m"
-    )]
-    ReliefTooLong {
-        /// The radius at which it was to start.
-        start_radius: f64,
-        /// The form radius.
-        form_radius: f64,
-        /// The tip radius.
-        tip_radius: f64,
-    },
-    /// The bore leaves too thin a rim below the root circle.
-    #[error("the bore of radius {bore_radius} m leaves no rim; at most {largest} m")]
-    BoreTooLarge {
-        /// The bore radius asked for.
-        bore_radius: f64,
-        /// The largest that leaves [`LEAST_RIM`].
-        largest: f64,
-    },
-    /// Neighboring holes leave too little between them.
-    #[error("the holes leave {ligament} m between them; a radius of {largest_radius} m would do")]
-    HolesOverlap {
-        /// The material left, negative if they overlap.
-        ligament: f64,
-        /// The largest hole radius that leaves [`LEAST_LIGAMENT`].
-        largest_radius: f64,
-    },
-    /// The holes leave too little below the root circle.
-    #[error(
-        "the holes leave {ligament} m below the root circle; a radius of {largest_radius} m would do"
-    )]
-    HolesBreachRim {
-        /// The material left, negative if they cut through.
-        ligament: f64,
-        /// The largest hole radius that leaves [`LEAST_LIGAMENT`].
-        largest_radius: f64,
-    },
-    /// The holes leave too little around the bore.
-    #[error(
-        "the holes leave {ligament} m around the bore; a radius of {largest_radius} m would do"
-    )]
-    HolesBreachBore {
-        /// The material left, negative if they cut through.
-        ligament: f64,
-        /// The largest hole radius that leaves [`LEAST_LIGAMENT`].
-        largest_radius: f64,
-    },
-}
 
 /// A spur gear that can be made: neither undercut nor pointed, with its holes inside its blank.
 ///
 /// Lengths are in meters, angles in radians.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SpurGear {
     data: GearData,
     flank: Involute,
-    tip_relief: Option<TipRelief>,
+    broken_edge: Option<BrokenEdge>,
+    modifications: Vec<Modification>,
+    hole_repeats: u32,
 }
 
 impl SpurGear {
@@ -154,18 +36,25 @@ impl SpurGear {
         let rack = &data.rack;
         let (z, alpha) = (f64::from(data.tooth_count), rack.pressure_angle);
         let r = rack.module * z / 2.0;
-        let psi_b =
-            PI / (2.0 * z) + 2.0 * data.profile_shift * alpha.tan() / z + involute_function(alpha);
+        let psi_b = PI / (2.0 * z)
+            + 2.0 * data.profile_shift * alpha.tan() / z
+            + involute_function(alpha)
+            + data.thickness_deviation / (2.0 * r);
         let mut gear = Self {
             data,
             flank: Involute::new(r * alpha.cos(), psi_b),
-            tip_relief: None,
+            broken_edge: None,
+            modifications: Vec::new(),
+            hole_repeats: 0,
         };
 
         gear.check_rack()?;
         gear.check_tooth()?;
+        gear.broken_edge = gear.checked_edge()?;
         gear.check_blank()?;
-        gear.tip_relief = gear.checked_relief()?;
+        gear.hole_repeats = gear.data.blank.symmetry().count;
+        gear.modifications = gear.checked_modifications()?;
+        gear.check_deviations()?;
         Ok(gear)
     }
 
@@ -176,6 +65,14 @@ impl SpurGear {
             return Err(GearError::RackTipRadius {
                 tip_radius: rack.tip_radius,
                 largest,
+            });
+        }
+        let largest = 2.0 * rack.half_tip_land();
+        // Rounding of a full tip radius leaves a land of nothing, or a little less.
+        if self.data.thickness_deviation > largest.max(0.0) {
+            return Err(GearError::TeethTooThick {
+                deviation: self.data.thickness_deviation,
+                largest: largest.max(0.0),
             });
         }
         Ok(())
@@ -217,55 +114,253 @@ impl SpurGear {
                 largest,
             });
         }
-        let Some(holes) = self.data.blank.holes else {
-            return Ok(());
-        };
-        let too_thin = |ligament: f64| ligament < LEAST_LIGAMENT;
-        let largest_radius = |ligament: f64| holes.radius + ligament - LEAST_LIGAMENT;
-        let ligament = holes.ligament_between();
-        if too_thin(ligament) {
-            let largest_radius = holes.radius + (ligament - LEAST_LIGAMENT) / 2.0;
-            return Err(GearError::HolesOverlap {
-                ligament,
-                largest_radius,
+        let blank = &self.data.blank;
+        for (place, ligament) in blank.ligaments(self.root_radius()) {
+            // Written so that a ligament that is not a number is refused as well.
+            if ligament >= LEAST_LIGAMENT {
+                continue;
+            }
+            let with = |hole: usize, gained: f64| {
+                blank.holes[hole].half_width() + gained * (ligament - LEAST_LIGAMENT)
+            };
+            return Err(match place {
+                Ligament::Between(one, other) => GearError::HolesOverlap {
+                    holes: [one, other],
+                    ligament,
+                    largest_radius: with(other, 0.5),
+                },
+                Ligament::WithinSlot(hole) => GearError::HolesOverlap {
+                    holes: [hole; 2],
+                    ligament,
+                    largest_radius: with(hole, 0.5),
+                },
+                Ligament::ToRim(hole) => GearError::HolesBreachRim {
+                    hole,
+                    ligament,
+                    largest_radius: with(hole, 1.0),
+                },
+                Ligament::ToBore(hole) => GearError::HolesBreachBore {
+                    hole,
+                    ligament,
+                    largest_radius: with(hole, 1.0),
+                },
             });
         }
-        let ligament = self.root_radius() - holes.outer_reach();
-        if too_thin(ligament) {
-            return Err(GearError::HolesBreachRim {
-                ligament,
-                largest_radius: largest_radius(ligament),
-            });
-        }
-        let ligament = holes.inner_reach() - bore_radius;
-        if too_thin(ligament) {
-            return Err(GearError::HolesBreachBore {
-                ligament,
-                largest_radius: largest_radius(ligament),
-            });
+        if let Some(web) = blank.web {
+            let largest = self.root_radius() - LEAST_WEB_RIM * self.data.rack.module;
+            let (inner_radius, outer_radius) = (web.inner_radius, web.outer_radius);
+            if !(inner_radius >= bore_radius
+                && outer_radius > inner_radius
+                && outer_radius <= largest)
+            {
+                return Err(GearError::WebOutside {
+                    inner_radius,
+                    outer_radius,
+                    least: bore_radius,
+                    largest,
+                });
+            }
         }
         Ok(())
     }
 
-    fn checked_relief(&self) -> Result<Option<TipRelief>, GearError> {
-        let Some(relief) = self.data.tip_relief.filter(|relief| relief.amount > 0.0) else {
-            return Ok(None);
+    fn checked_edge(&self) -> Result<Option<BrokenEdge>, GearError> {
+        let (amount, of): (f64, fn(f64) -> TipEdge) = match self.data.tip_edge {
+            TipEdge::Sharp => return Ok(None),
+            TipEdge::Rounded(radius) => (radius, TipEdge::Rounded),
+            TipEdge::Chamfered(depth) => (depth, TipEdge::Chamfered),
         };
-        let (r_form, r_a) = (self.form_radius(), self.tip_radius());
-        let r_s = relief.start.radius(&self.flank, r_a);
-        if !(r_s >= r_form && r_s < r_a) {
-            return Err(GearError::ReliefTooLong {
-                start_radius: r_s,
-                form_radius: r_form,
-                tip_radius: r_a,
+        let broken = |amount: f64| BrokenEdge::new(of(amount), &self.flank, self.tip_radius());
+        let fits = |amount: f64| {
+            broken(amount)
+                .is_some_and(|edge| edge.from > self.form_roll_length() && edge.half_angle() > 0.0)
+        };
+        if amount <= 0.0 {
+            return Ok(None);
+        }
+        if !fits(amount) {
+            let largest = bisect(0.0, amount, fits);
+            return Err(GearError::TipEdgeTooLarge { amount, largest });
+        }
+        Ok(broken(amount))
+    }
+
+    fn checked_modifications(&self) -> Result<Vec<Modification>, GearError> {
+        let (s_f, s_a) = (self.form_roll_length(), self.tip_roll_length());
+        let mut checked = Vec::new();
+        for (index, data) in self.data.modifications.iter().enumerate() {
+            checked.push(match data {
+                ModificationData::TipRelief(relief) => {
+                    let r_s = relief.start.radius(&self.flank, self.tip_radius());
+                    if relief.amount == 0.0 {
+                        continue;
+                    }
+                    self.check_start(index, r_s, self.tip_radius())?;
+                    Modification::Tip(Relief::new(
+                        relief.amount,
+                        relief.shape,
+                        r_s,
+                        self.tip_radius(),
+                    ))
+                }
+                ModificationData::RootRelief(relief) => {
+                    let r_s = relief.start.radius(&self.flank, self.form_radius());
+                    if relief.amount == 0.0 {
+                        continue;
+                    }
+                    self.check_start(index, r_s, self.form_radius())?;
+                    Modification::Root(Relief::new(
+                        relief.amount,
+                        relief.shape,
+                        r_s,
+                        self.form_radius(),
+                    ))
+                }
+                ModificationData::Crowning { amount } => Modification::Crowning {
+                    amount: *amount,
+                    middle: f64::midpoint(s_f, s_a),
+                    half: 0.5 * (s_a - s_f),
+                },
+                ModificationData::Slope { amount } => Modification::Slope {
+                    amount: *amount,
+                    from: s_f,
+                    length: s_a - s_f,
+                },
+                ModificationData::Table { places, removed } => {
+                    self.checked_table(index, places, removed)?
+                }
             });
         }
-        Ok(Some(TipRelief::new(relief.amount, relief.shape, r_s, r_a)))
+        Ok(checked)
+    }
+
+    /// Whether a relief that ends at `end_radius` starts elsewhere on the flank.
+    fn check_start(
+        &self,
+        modification: usize,
+        start_radius: f64,
+        end_radius: f64,
+    ) -> Result<(), GearError> {
+        let (form_radius, tip_radius) = (self.form_radius(), self.tip_radius());
+        if (form_radius..=tip_radius).contains(&start_radius) && start_radius != end_radius {
+            return Ok(());
+        }
+        Err(GearError::ReliefTooLong {
+            modification,
+            start_radius,
+            form_radius,
+            tip_radius,
+        })
+    }
+
+    fn checked_table(
+        &self,
+        modification: usize,
+        places: &TablePlaces,
+        removed: &[f64],
+    ) -> Result<Modification, GearError> {
+        let places: Vec<f64> = match places {
+            TablePlaces::RollLengths(lengths) => lengths.clone(),
+            TablePlaces::Diameters(diameters) => diameters
+                .iter()
+                .map(|diameter| self.flank.roll_length(diameter / 2.0))
+                .collect(),
+        };
+        let fault = |entry| {
+            Err(GearError::TableDoesNotRise {
+                modification,
+                entry,
+            })
+        };
+        if places.len() < 2 || places.len() != removed.len() {
+            return fault(places.len().min(removed.len()));
+        }
+        match places.windows(2).position(|pair| pair[0] >= pair[1]) {
+            Some(before) => fault(before + 1),
+            None => Ok(Modification::Table {
+                places,
+                removed: removed.to_vec(),
+            }),
+        }
+    }
+
+    fn check_deviations(&self) -> Result<(), GearError> {
+        let needed = self.data.tooth_count as usize;
+        let deviations = &self.data.deviations;
+        for (list, values) in [
+            (DeviationList::Pitch, &deviations.cumulative_pitch),
+            (DeviationList::ProfileSlope, &deviations.profile_slope),
+        ] {
+            if !values.is_empty() && values.len() != needed {
+                return Err(GearError::DeviationCount {
+                    list,
+                    given: values.len(),
+                    needed,
+                });
+            }
+        }
+        Ok(())
     }
 
     /// The drawing.
     pub fn data(&self) -> &GearData {
         &self.data
+    }
+
+    /// The same teeth on a blank without bore and holes: what is left to say where the blank does not matter.
+    pub fn without_blank(&self) -> Self {
+        self.on_blank(BlankRegion::solid(0.0))
+    }
+
+    /// The same gear without holes.
+    pub fn without_holes(&self) -> Self {
+        self.on_blank(BlankRegion {
+            holes: Vec::new(),
+            ..self.data.blank.clone()
+        })
+    }
+
+    /// The same gear with hole 0 at the angle 0.
+    pub fn with_holes_unturned(&self) -> Self {
+        self.on_blank(self.data.blank.turned(-self.hole_angle()))
+    }
+
+    /// The same gear with flanks as the rack cuts them, each like the other, up to a sharp tip.
+    pub fn with_plain_flanks(&self) -> Self {
+        Self {
+            data: GearData {
+                tip_edge: TipEdge::Sharp,
+                modifications: Vec::new(),
+                deviations: ToothDeviations::default(),
+                ..self.data.clone()
+            },
+            broken_edge: None,
+            modifications: Vec::new(),
+            ..self.clone()
+        }
+    }
+
+    /// The same gear with teeth that do not deviate.
+    pub fn as_drawn(&self) -> Self {
+        Self {
+            data: GearData {
+                deviations: ToothDeviations::default(),
+                ..self.data.clone()
+            },
+            ..self.clone()
+        }
+    }
+
+    /// The same gear on a `blank` that is known to fit.
+    fn on_blank(&self, blank: BlankRegion) -> Self {
+        Self {
+            hole_repeats: blank.symmetry().count,
+            data: GearData {
+                blank,
+                ..self.data.clone()
+            },
+            ..self.clone()
+        }
     }
 
     /// The number of teeth Z.
@@ -288,9 +383,29 @@ impl SpurGear {
         self.data.blank.bore_radius
     }
 
-    /// The holes of the blank, if there are any.
-    pub fn holes(&self) -> Option<&HolePattern> {
-        self.data.blank.holes.as_ref()
+    /// The holes of the blank.
+    pub fn holes(&self) -> &[Hole] {
+        &self.data.blank.holes
+    }
+
+    /// Whether it has holes.
+    pub fn has_holes(&self) -> bool {
+        !self.holes().is_empty()
+    }
+
+    /// The holes as one pattern of equal round ones, if that is what they are.
+    pub fn hole_pattern(&self) -> Option<HolePattern> {
+        self.data.blank.pattern()
+    }
+
+    /// The angle of hole 0 from the centerline of tooth 0; 0 without holes.
+    pub fn hole_angle(&self) -> f64 {
+        self.holes().first().map_or(0.0, |hole| hole.angle)
+    }
+
+    /// How often the holes repeat around the blank: N of a pattern; 0 without holes.
+    pub fn hole_repeats(&self) -> u32 {
+        self.hole_repeats
     }
 
     /// The loaded flank of tooth 0.
@@ -304,22 +419,94 @@ impl SpurGear {
             &self.data.rack,
             self.data.tooth_count,
             self.profile_shift_length(),
+            self.data.thickness_deviation,
         )
     }
 
-    /// The tip relief, if there is any.
-    pub fn tip_relief(&self) -> Option<&TipRelief> {
-        self.tip_relief.as_ref()
+    /// The first tip relief, if there is any.
+    pub fn tip_relief(&self) -> Option<&Relief> {
+        self.modifications.iter().find_map(|each| match each {
+            Modification::Tip(relief) => Some(relief),
+            _ => None,
+        })
     }
 
-    /// The material removed from the flank at `radius`, along the normal.
-    pub fn relief_depth(&self, radius: f64) -> f64 {
-        self.tip_relief.map_or(0.0, |relief| relief.depth(radius))
+    /// The material removed from every loaded flank at the roll length `s`, along the normal: modifications and the broken edge.
+    pub fn removed(&self, s: f64) -> f64 {
+        let modified = self
+            .modifications
+            .iter()
+            .map(|each| each.depth(&self.flank, s));
+        let edge = self
+            .broken_edge
+            .map_or(0.0, |edge| edge.depth_and_slope(&self.flank, s).0);
+        modified.sum::<f64>() + edge
     }
 
-    /// The slope of [`SpurGear::relief_depth`] by the radius.
-    pub fn relief_slope(&self, radius: f64) -> f64 {
-        self.tip_relief.map_or(0.0, |relief| relief.slope(radius))
+    /// The slope of [`SpurGear::removed`] by the roll length.
+    pub fn removed_slope(&self, s: f64) -> f64 {
+        let modified = self
+            .modifications
+            .iter()
+            .map(|each| each.slope(&self.flank, s));
+        let edge = self
+            .broken_edge
+            .map_or(0.0, |edge| edge.depth_and_slope(&self.flank, s).1);
+        modified.sum::<f64>() + edge
+    }
+
+    /// Whether the modifications only ever bend the flank away from its mate.
+    pub fn is_convex(&self) -> bool {
+        self.modifications.iter().all(Modification::is_convex)
+    }
+
+    /// How the teeth deviate from each other.
+    pub fn deviations(&self) -> &ToothDeviations {
+        &self.data.deviations
+    }
+
+    /// How far the loaded flank of `tooth` stands towards its mate at the roll length `s`, along the normal, beyond the drawing.
+    ///
+    /// An arc f on the reference circle turns the flank by f/r, which is f cos α along the base tangent.
+    pub fn deviation(&self, tooth: usize, s: f64) -> f64 {
+        let ToothDeviations {
+            cumulative_pitch,
+            profile_slope,
+            ..
+        } = &self.data.deviations;
+        let pitch = cumulative_pitch
+            .get(tooth)
+            .map_or(0.0, |arc| arc * self.data.rack.pressure_angle.cos());
+        let slope = profile_slope.get(tooth).map_or(0.0, |amount| {
+            let (from, to) = (self.form_roll_length(), self.tip_roll_length());
+            amount * (s - from) / (to - from)
+        });
+        pitch + slope
+    }
+
+    /// How far the eccentricity moves the loaded flank of `tooth` along its normal at the roll length `s`, to the first order in it.
+    pub fn runout(&self, tooth: usize, s: f64) -> f64 {
+        let normal = tooth as f64 * self.pitch_angle() + self.flank.tangent_angle(s) + PI / 2.0;
+        let moved = self.data.deviations.displacement(0.0);
+        moved.x * normal.cos() + moved.y * normal.sin()
+    }
+
+    /// The slope of [`SpurGear::deviation`] by the roll length.
+    pub fn deviation_slope(&self, tooth: usize) -> f64 {
+        let amount = self.data.deviations.profile_slope.get(tooth);
+        amount.map_or(0.0, |amount| {
+            amount / (self.tip_roll_length() - self.form_roll_length())
+        })
+    }
+
+    /// The largest and the smallest [`SpurGear::deviation`] of any point of any flank.
+    pub fn deviation_range(&self) -> [f64; 2] {
+        let ends = [self.form_roll_length(), self.tip_roll_length()];
+        let all = (0..self.data.tooth_count as usize)
+            .flat_map(|tooth| ends.map(|s| self.deviation(tooth, s)));
+        all.fold([0.0, 0.0], |[high, low], each| {
+            [high.max(each), low.min(each)]
+        })
     }
 
     /// The flank from the form circle to the tip circle, by arc length from the base circle.
@@ -375,7 +562,26 @@ impl SpurGear {
         self.flank.roll_length(self.tip_radius())
     }
 
-    /// The thickness of the tooth along its tip circle.
+    /// The roll length s_Fa at which the involute ends: at the tip circle, or at a broken edge.
+    pub fn tip_form_roll_length(&self) -> f64 {
+        self.broken_edge
+            .map_or_else(|| self.tip_roll_length(), |edge| edge.from)
+    }
+
+    /// Half the angle of the tip land between both edges.
+    pub fn tip_half_angle(&self) -> f64 {
+        self.broken_edge.map_or_else(
+            || self.flank.half_angle(self.tip_radius()),
+            |edge| edge.half_angle(),
+        )
+    }
+
+    /// The edge between flank and tip circle, if it is broken.
+    pub(super) fn broken_edge(&self) -> Option<&BrokenEdge> {
+        self.broken_edge.as_ref()
+    }
+
+    /// The thickness of the tooth along its tip circle, were its edges sharp.
     pub fn tip_thickness(&self) -> f64 {
         let r_a = self.tip_radius();
         2.0 * r_a * self.flank.half_angle(r_a)
@@ -383,34 +589,15 @@ impl SpurGear {
 
     /// The thinnest material around the holes: between them, above them and below them. `None` without holes.
     pub fn least_ligament(&self) -> Option<f64> {
-        self.holes().map(|holes| {
-            let above = self.root_radius() - holes.outer_reach();
-            let below = holes.inner_reach() - self.bore_radius();
-            holes.ligament_between().min(above).min(below)
-        })
-    }
-
-    /// The mass in kg, from the true profile.
-    pub fn mass(&self) -> f64 {
-        let (area, _) = self.profile_moments();
-        let holes = self.holes().map_or(0.0, HolePattern::area);
-        let bore = PI * self.bore_radius().powi(2);
-        self.data.material.density * self.data.face_width * (area - bore - holes)
-    }
-
-    /// The polar moment of inertia about the axis in kg m², from the true profile.
-    pub fn polar_inertia(&self) -> f64 {
-        let (_, moment) = self.profile_moments();
-        let holes = self.holes().map_or(0.0, HolePattern::polar_moment);
-        let bore = PI / 2.0 * self.bore_radius().powi(4);
-        self.data.material.density * self.data.face_width * (moment - bore - holes)
+        let blank = &self.data.blank;
+        let least = blank.least_ligament(self.root_radius());
+        least.map(|(_, ligament)| ligament)
     }
 
     /// The share of the blank that the holes remove; the blank is the ring between the bore and the mean of tip and root
-    /// circle (DESIGN section 4).
+    /// circle.
     pub fn removed_fraction(&self) -> f64 {
-        self.holes()
-            .map_or(0.0, |holes| holes.area() / self.nominal_blank_area())
+        self.data.blank.hole_area() / self.nominal_blank_area()
     }
 
     /// The area π (((r_a + r_f)/2)² − r_bore²) to which removed mass is referred.
@@ -442,42 +629,12 @@ impl SpurGear {
             thick_enough,
         )
     }
-
-    /// The area and the second polar moment inside the tooth profile, by Green's theorem along one half tooth:
-    /// A = ½∮ r² dθ and J = ¼∮ r⁴ dθ, with r² dθ = x dy − y dx.
-    fn profile_moments(&self) -> (f64, f64) {
-        let (s_form, s_tip) = (self.form_roll_length(), self.tip_roll_length());
-        let fillet = self.fillet();
-        let (gamma_0, gamma_1) = fillet.ends();
-        let (r_a, r_f) = (self.tip_radius(), self.root_radius());
-        let tip_angle = self.flank.half_angle(r_a);
-        let root_end = fillet.point(gamma_1);
-        let root_angle = self.pitch_angle() / 2.0 - root_end.y.atan2(root_end.x);
-
-        let mut area = r_a.powi(2) * tip_angle + r_f.powi(2) * root_angle;
-        let mut moment = r_a.powi(4) * tip_angle + r_f.powi(4) * root_angle;
-        for (s, weight) in gauss_legendre_panels(s_form, s_tip, 8) {
-            // From the tip down the involute, x dy − y dx = (s²/r_b) |ds|.
-            let swept = s * s / self.flank.base_radius();
-            area += weight * swept;
-            moment += weight * swept * self.flank.radius(s).powi(2);
-        }
-        let step = 1e-5;
-        for (gamma, weight) in gauss_legendre_panels(gamma_0, gamma_1, 8) {
-            let p = fillet.point(gamma);
-            let d = (fillet.point(gamma + step) - fillet.point(gamma - step)) / (2.0 * step);
-            let swept = p.x * d.y - p.y * d.x;
-            area += weight * swept;
-            moment += weight * swept * p.norm_squared();
-        }
-        let halves = 2.0 * f64::from(self.data.tooth_count);
-        (halves * area / 2.0, halves * moment / 4.0)
-    }
 }
 
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::gear::{Rack, ReliefData, ReliefShape, ReliefStart};
 
     /// The paper's gears (Table 1): module 2 mm, 20 degrees, addendum 2 mm, dedendum 2.5 mm, width 20 mm, steel.
     pub(crate) fn paper_gear(tooth_count: u32) -> GearData {
@@ -491,28 +648,29 @@ pub(crate) mod tests {
                 tip_radius: 0.76e-3,
             },
             profile_shift: 0.0,
+            thickness_deviation: 0.0,
+            tip_edge: TipEdge::Sharp,
             face_width: 20e-3,
-            tip_relief: None,
+            modifications: Vec::new(),
+            deviations: ToothDeviations::default(),
             material: Material {
                 youngs_modulus: 210e9,
                 poisson_ratio: 0.3,
                 density: 7850.0,
             },
-            blank: Blank {
-                bore_radius: 15e-3,
-                holes: None,
-            },
+            blank: BlankRegion::solid(15e-3),
         }
     }
 
     fn with_holes(count: u32, circle_radius: f64, radius: f64) -> Result<SpurGear, GearError> {
         let mut data = paper_gear(50);
-        data.blank.holes = Some(HolePattern {
+        data.blank.holes = HolePattern {
             count,
             circle_radius,
             radius,
             phase: 0.0,
-        });
+        }
+        .holes();
         SpurGear::new(data)
     }
 
@@ -553,7 +711,7 @@ pub(crate) mod tests {
         data.rack.addendum = 4e-3;
         let Err(GearError::PointedTip {
             largest_addendum, ..
-        }) = SpurGear::new(data)
+        }) = SpurGear::new(data.clone())
         else {
             panic!("pointed")
         };
@@ -563,7 +721,7 @@ pub(crate) mod tests {
 
     #[test]
     fn holes_are_refused_where_they_touch_and_the_named_radius_cures_each() {
-        // Touching limits R sin(π/N) of FIELD section 3.1, less half the least ligament.
+        // Touching limits R sin(π/N) , less half the least ligament.
         let Err(GearError::HolesOverlap { largest_radius, .. }) = with_holes(8, 27e-3, 10.5e-3)
         else {
             panic!("overlap")
@@ -585,55 +743,26 @@ pub(crate) mod tests {
     #[test]
     fn a_relief_must_start_on_the_flank() {
         let mut data = paper_gear(50);
-        let relief = |length| ReliefData {
-            amount: 5e-6,
-            shape: ReliefShape::Linear,
-            start: ReliefStart::RadialLength(length),
+        let relief = |length| {
+            ModificationData::TipRelief(ReliefData {
+                amount: 5e-6,
+                shape: ReliefShape::Linear,
+                start: ReliefStart::RadialLength(length),
+            })
         };
-        data.tip_relief = Some(relief(3.7e-3));
+        data.modifications = vec![relief(3.7e-3)];
         assert!(matches!(
-            SpurGear::new(data),
+            SpurGear::new(data.clone()),
             Err(GearError::ReliefTooLong { .. })
         ));
-        data.tip_relief = Some(relief(1.75e-3));
-        assert!((SpurGear::new(data).expect("fits").relief_depth(52e-3) - 5e-6).abs() < 1e-18);
-    }
-
-    #[test]
-    fn the_profile_area_agrees_with_a_polygon_through_the_true_profile() {
-        let gear = SpurGear::new(paper_gear(50)).expect("the standard gear");
-        let (s_0, s_1) = (gear.form_roll_length(), gear.tip_roll_length());
-        let (gamma_0, gamma_1) = gear.fillet().ends();
-        let n = 4000;
-        let half: Vec<_> = (0..=n)
-            .map(|i| {
-                gear.flank()
-                    .point(s_1 + (s_0 - s_1) * f64::from(i) / f64::from(n))
-            })
-            .chain((1..=n).map(|i| {
-                gear.fillet()
-                    .point(gamma_0 + (gamma_1 - gamma_0) * f64::from(i) / f64::from(n))
-            }))
-            .collect();
-        let swept: f64 = half
-            .windows(2)
-            .map(|p| (p[0].x * p[1].y - p[0].y * p[1].x) / 2.0)
-            .sum();
-        let first = half[0].y.atan2(half[0].x);
-        let last = gear.pitch_angle() / 2.0 - half[half.len() - 1].y.atan2(half[half.len() - 1].x);
-        let area =
-            100.0 * (swept + 52e-3_f64.powi(2) * first / 2.0 + 47.5e-3_f64.powi(2) * last / 2.0);
-        let mass = 7850.0 * 20e-3 * (area - PI * 15e-3_f64.powi(2));
-        assert!(
-            (gear.mass() / mass - 1.0).abs() < 1e-6,
-            "polygon {mass}, quadrature {}",
-            gear.mass()
-        );
+        data.modifications = vec![relief(1.75e-3)];
+        let gear = SpurGear::new(data).expect("fits");
+        assert!((gear.removed(gear.tip_roll_length()) - 5e-6).abs() < 1e-18);
     }
 
     #[test]
     fn a_quarter_of_the_blank_goes_with_the_papers_hole_radii() {
-        // DESIGN section 4: bore 15 mm and 25 % give r = 7.500 (10 holes), 8.385 (8), 9.683 (6) mm.
+        // Bore 15 mm and 25 % give r = 7.500 (10 holes), 8.385 (8), 9.683 (6) mm.
         for (count, circle_radius, radius) in [
             (10, 34e-3, 7.5e-3),
             (8, 34e-3, 8.385e-3),

@@ -54,6 +54,16 @@ pub enum GridError {
         /// The bore radius.
         bore_radius: f64,
     },
+    /// A web reaches beyond the interface circle, where teeth stand that are as thick as the face is wide.
+    #[error(
+        "the web reaches out to {web_radius} m, beyond the interface radius {interface_radius} m"
+    )]
+    WebAboveInterface {
+        /// Where the web ends.
+        web_radius: f64,
+        /// The interface radius.
+        interface_radius: f64,
+    },
     /// A hole reaches its neighbor, the bore or the interface circle.
     #[error(
         "the holes leave {beside} m between them, {above} m below the interface circle and {below} m around the bore"

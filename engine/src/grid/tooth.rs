@@ -101,14 +101,14 @@ mod tests {
                 data.rack.pressure_angle = f64::to_radians(alpha);
                 (data.rack.addendum, data.rack.dedendum, data.rack.tip_radius) =
                     (addendum, dedendum, tip_radius);
-                gears.extend(SpurGear::new(data).ok());
+                gears.extend(SpurGear::new(data.clone()).ok());
                 data.rack.tip_radius = data.rack.largest_tip_radius();
                 gears.extend(SpurGear::new(data).ok());
             }
         }
         gears
             .into_iter()
-            .flat_map(|gear| [0.1, 0.25, 0.5, 1.0, 1.5, 3.0].map(|depth| (gear, depth)))
+            .flat_map(|gear| [0.1, 0.25, 0.5, 1.0, 1.5, 3.0].map(|depth| (gear.clone(), depth)))
             .collect()
     }
 

@@ -7,8 +7,8 @@ use meshwright_engine::analysis::{
     ToothFormula,
 };
 use meshwright_engine::gear::{
-    Blank, GearData, GearPair, HolePattern, Material, Rack, ReliefData, ReliefShape, ReliefStart,
-    SpurGear,
+    BlankRegion, GearData, GearPair, HolePattern, Material, ModificationData, Rack, ReliefData,
+    ReliefShape, ReliefStart, SpurGear, TipEdge, ToothDeviations,
 };
 use meshwright_engine::grid::GridLevel;
 
@@ -31,24 +31,24 @@ pub(crate) fn gear(tooth_count: u32, bore_radius: f64) -> GearData {
             tip_radius: 0.76e-3,
         },
         profile_shift: 0.0,
+        thickness_deviation: 0.0,
+        tip_edge: TipEdge::Sharp,
         face_width: 20e-3,
-        tip_relief: None,
+        modifications: Vec::new(),
+        deviations: ToothDeviations::default(),
         material: STEEL,
-        blank: Blank {
-            bore_radius,
-            holes: None,
-        },
+        blank: BlankRegion::solid(bore_radius),
     }
 }
 
 /// The relief of the paper: 5 µm, linear, from 1.75 mm below the tip circle.
 pub(crate) fn relieved(data: GearData) -> GearData {
     GearData {
-        tip_relief: Some(ReliefData {
+        modifications: vec![ModificationData::TipRelief(ReliefData {
             amount: 5e-6,
             shape: ReliefShape::Linear,
             start: ReliefStart::RadialLength(1.75e-3),
-        }),
+        })],
         ..data
     }
 }
@@ -61,12 +61,13 @@ pub(crate) fn holed(
     radius: f64,
     phase: f64,
 ) -> GearData {
-    data.blank.holes = Some(HolePattern {
+    data.blank.holes = HolePattern {
         count,
         circle_radius,
         radius,
         phase,
-    });
+    }
+    .holes();
     data
 }
 
@@ -80,7 +81,7 @@ pub(crate) fn pair(driving: GearData, driven: GearData, center_distance: f64) ->
 pub(crate) fn standard_pair(with_relief: bool) -> GearPair {
     let data = gear(50, 15e-3);
     let data = if with_relief { relieved(data) } else { data };
-    pair(data, data, 100.5e-3)
+    pair(data.clone(), data, 100.5e-3)
 }
 
 /// Test case `number` of the paper with what it leaves open filled in, and its output torque.
@@ -89,7 +90,7 @@ pub(crate) fn paper_case(number: u32) -> (GearPair, f64) {
     match number {
         1 => {
             let data = holed(blank(50, 16e-3), 8, 31.5e-3, 10e-3, 0.0);
-            (pair(data, data, 100.5e-3), 115.0)
+            (pair(data.clone(), data, 100.5e-3), 115.0)
         }
         2 => {
             let driven = holed(blank(50, 16e-3), 10, 34e-3, 7.5e-3, 0.0);
@@ -117,7 +118,7 @@ pub(crate) fn case(pair: GearPair, output_torques: &[f64]) -> Case {
             contact_solver: ContactSolver::ActiveSet,
             stiffness: StiffnessRule::Tangent,
             blank_positions: 16,
-            interface_radius: None,
+            interface_radii: [None; 2],
             formulas: Formulas {
                 tooth: ToothFormula::WeberBanaschek,
                 body: BodyFormula::Sainsot,
@@ -138,8 +139,8 @@ pub(crate) fn test_case(number: u32) -> Case {
 /// A design of section 5: the standard pair with holes (N, R, r) in its driven gear.
 pub(crate) fn study_design(holes: Option<(u32, f64, f64)>, output_torques: &[f64]) -> Case {
     let solid = relieved(gear(50, 15e-3));
-    let driven = holes.map_or(solid, |(count, circle_radius, radius)| {
-        holed(solid, count, circle_radius, radius, 0.0)
+    let driven = holes.map_or(solid.clone(), |(count, circle_radius, radius)| {
+        holed(solid.clone(), count, circle_radius, radius, 0.0)
     });
     case(pair(solid, driven, 100.5e-3), output_torques)
 }

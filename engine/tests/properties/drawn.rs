@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use meshwright_engine::gear::{
-    Blank, GearData, GearPair, HolePattern, Material, Rack, ReliefData, ReliefShape, ReliefStart,
-    SpurGear,
+    BlankRegion, GearData, GearPair, HolePattern, Material, ModificationData, Rack, ReliefData,
+    ReliefShape, ReliefStart, SpurGear, TipEdge, ToothDeviations,
 };
 
 /// A stream of pseudo-random numbers (xorshift*), so that a seed names a draw forever.
@@ -99,9 +99,9 @@ fn relief(draw: &mut Draw, module: f64, data: &GearData) -> Option<ReliefData> {
     })
 }
 
-fn blank(draw: &mut Draw, root_radius: f64, module: f64) -> Blank {
+fn blank(draw: &mut Draw, root_radius: f64, module: f64) -> BlankRegion {
     let bore_radius = root_radius * draw.between(0.15, 0.7);
-    let holes = draw.chance(0.5).then(|| {
+    let pattern = draw.chance(0.5).then(|| {
         let room = root_radius - module - bore_radius;
         let circle_radius = bore_radius + room * draw.between(0.35, 0.65);
         let count = draw.one_of(&[1, 2, 3, 4, 5, 6, 7, 8, 10, 12]);
@@ -120,7 +120,11 @@ fn blank(draw: &mut Draw, root_radius: f64, module: f64) -> Blank {
             phase: draw.between(-PI, PI),
         }
     });
-    Blank { bore_radius, holes }
+    BlankRegion {
+        bore_radius,
+        holes: pattern.map_or_else(Vec::new, |pattern| pattern.holes()),
+        web: None,
+    }
 }
 
 impl DrawnPair {
@@ -168,21 +172,23 @@ impl DrawnPair {
                 tooth_count: tooth_count(draw),
                 rack,
                 profile_shift,
+                thickness_deviation: 0.0,
+                tip_edge: TipEdge::Sharp,
                 face_width: if draw.chance(0.3) {
                     width * draw.between(1.0, 2.0)
                 } else {
                     width
                 },
-                tip_relief: None,
+                modifications: Vec::new(),
+                deviations: ToothDeviations::default(),
                 material: material(draw),
-                blank: Blank {
-                    bore_radius: 1e-6,
-                    holes: None,
-                },
+                blank: BlankRegion::solid(1e-6),
             };
-            let bare = SpurGear::new(data).ok()?;
+            let bare = SpurGear::new(data.clone()).ok()?;
             data.blank = blank(draw, bare.root_radius(), module);
-            data.tip_relief = relief(draw, module, &data);
+            let relief = relief(draw, module, &data);
+            data.modifications
+                .extend(relief.map(ModificationData::TipRelief));
             gears.push(SpurGear::new(data).ok()?);
         }
         let driven = gears.pop()?;
@@ -190,15 +196,19 @@ impl DrawnPair {
         // From the distance without backlash, found by what the pair says of a near one.
         let sum = f64::from(driving.tooth_count() + driven.tooth_count());
         let near = module * (sum / 2.0 + shifts[0] + shifts[1]);
-        let distance = match GearPair::new(driving, driven, near * 0.98) {
+        let distance = match GearPair::new(driving.clone(), driven.clone(), near * 0.98) {
             Ok(_) => near,
             Err(meshwright_engine::gear::GearPairError::NegativeBacklash { smallest, .. }) => {
                 smallest
             }
             Err(_) => near,
         };
-        let pair =
-            GearPair::new(driving, driven, distance + module * draw.between(0.0, 0.15)).ok()?;
+        let pair = GearPair::new(
+            driving.clone(),
+            driven.clone(),
+            distance + module * draw.between(0.0, 0.15),
+        )
+        .ok()?;
         // A line load that strains the softer gear as steel is strained by 5 to 300 N/mm.
         let softer = driving
             .material()

@@ -1,8 +1,8 @@
 //! Pairs on which a defect was once seen, each the instance of a class; what must hold of drawn pairs must hold of them.
 
 use meshwright_engine::gear::{
-    Blank, GearData, GearPair, HolePattern, Material, Rack, ReliefData, ReliefShape, ReliefStart,
-    SpurGear,
+    BlankRegion, GearData, GearPair, HolePattern, Material, ModificationData, Rack, ReliefData,
+    ReliefShape, ReliefStart, SpurGear, TipEdge, ToothDeviations,
 };
 
 use crate::drawn::DrawnPair;
@@ -28,39 +28,40 @@ fn gear(
             tip_radius: tip_radius * 1e-3,
         },
         profile_shift,
+        thickness_deviation: 0.0,
+        tip_edge: TipEdge::Sharp,
         face_width: face_width * 1e-3,
-        tip_relief: None,
+        modifications: Vec::new(),
+        deviations: ToothDeviations::default(),
         material: Material {
             youngs_modulus: youngs_modulus * 1e9,
             poisson_ratio,
             density,
         },
-        blank: Blank {
-            bore_radius: bore_radius * 1e-3,
-            holes: None,
-        },
+        blank: BlankRegion::solid(bore_radius * 1e-3),
     }
 }
 
 fn relieved(data: GearData, amount_um: f64, shape: ReliefShape, start: ReliefStart) -> GearData {
     GearData {
-        tip_relief: Some(ReliefData {
+        modifications: vec![ModificationData::TipRelief(ReliefData {
             amount: amount_um * 1e-6,
             shape,
             start,
-        }),
+        })],
         ..data
     }
 }
 
 /// With N holes of the radius r on the circle R, in millimeters, hole 0 at an angle in degrees.
 fn holed(mut data: GearData, count: u32, [circle, radius, phase]: [f64; 3]) -> GearData {
-    data.blank.holes = Some(HolePattern {
+    data.blank.holes = HolePattern {
         count,
         circle_radius: circle * 1e-3,
         radius: radius * 1e-3,
         phase: phase.to_radians(),
-    });
+    }
+    .holes();
     data
 }
 

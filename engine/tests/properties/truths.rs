@@ -4,13 +4,16 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use meshwright_engine::analysis::{
-    Analysis, BodyFormula, Case, ContactSolver, Curve, Formulas, Library, Method, PlaneState,
-    Resolution, StiffnessRule, ToothFormula, analyze, pair_model,
+    Analysis, BodyFormula, Case, ContactSolver, Curve, Formulas, Method, PlaneState, Resolution,
+    StiffnessRule, ToothFormula, analyze, pair_model,
 };
 use meshwright_engine::contact::half_plane::{hertz, logarithm_factor};
 use meshwright_engine::contact::{MeshContact, PairModel, WarmStart};
-use meshwright_engine::gear::{GearData, GearPair, Member, ReliefStart, SpurGear, Vector};
+use meshwright_engine::gear::{
+    GearData, GearPair, HoleShape, Member, ModificationData, ReliefStart, SpurGear, Vector,
+};
 use meshwright_engine::grid::GridLevel;
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
 use crate::drawn::DrawnPair;
@@ -99,7 +102,7 @@ const POSITIONS: u32 = 8;
 
 fn case(pair: &GearPair, output_torques: &[f64]) -> Case {
     Case {
-        pair: *pair,
+        pair: pair.clone(),
         method: Method::Flexible,
         output_torques: output_torques.to_vec(),
         resolution: Resolution {
@@ -109,7 +112,7 @@ fn case(pair: &GearPair, output_torques: &[f64]) -> Case {
             contact_solver: ContactSolver::ActiveSet,
             stiffness: StiffnessRule::Tangent,
             blank_positions: 16,
-            interface_radius: None,
+            interface_radii: [None; 2],
             formulas: Formulas {
                 tooth: ToothFormula::WeberBanaschek,
                 body: BodyFormula::Sainsot,
@@ -150,7 +153,7 @@ fn changed(
     change: impl Fn(&mut GearData, Member),
 ) -> Result<GearPair, String> {
     let gear = |member: Member| {
-        let mut data = *pair.gear(member).data();
+        let mut data = pair.gear(member).data().clone();
         change(&mut data, member);
         SpurGear::new(data).map_err(|error| error.to_string())
     };
@@ -160,7 +163,7 @@ fn changed(
 
 fn unrelieved(pair: &GearPair) -> Result<GearPair, String> {
     changed(pair, pair.center_distance(), |data, _| {
-        data.tip_relief = None
+        data.modifications.clear()
     })
 }
 
@@ -205,8 +208,7 @@ fn polygon_gap(pair: &GearPair, eta: f64, n: i64) -> Option<f64> {
             .map(|i| {
                 let s = from + (to - from) * i as f64 / POINTS as f64;
                 // Relief moves the point inward along the normal.
-                let point = gear.flank().point(s)
-                    - gear.relief_depth(gear.flank().radius(s)) * gear.flank().normal(s);
+                let point = gear.flank().point(s) - gear.removed(s) * gear.flank().normal(s);
                 let (sin, cos) = angle.sin_cos();
                 Vector::new(
                     cos * point.x - sin * point.y + center,
@@ -293,7 +295,7 @@ fn scale(data: &mut GearData, s: f64) {
     ] {
         *length *= s;
     }
-    if let Some(relief) = &mut data.tip_relief {
+    if let [ModificationData::TipRelief(relief)] = &mut data.modifications[..] {
         relief.amount *= s;
         match &mut relief.start {
             ReliefStart::RadialLength(length)
@@ -302,9 +304,12 @@ fn scale(data: &mut GearData, s: f64) {
             ReliefStart::RollAngle(_) => {}
         }
     }
-    if let Some(holes) = &mut data.blank.holes {
-        holes.circle_radius *= s;
-        holes.radius *= s;
+    for hole in &mut data.blank.holes {
+        hole.circle_radius *= s;
+        match &mut hole.shape {
+            HoleShape::Round { radius } => *radius *= s,
+            HoleShape::Slot { width, .. } => *width *= s,
+        }
     }
 }
 
@@ -391,8 +396,12 @@ fn swapped(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     let plain = unrelieved(&drawn.pair)?;
     let pair = &plain;
     // Seen from behind and run backward, the same flanks touch: hole angles, told from the loaded flank, stay as they are.
-    let other = GearPair::new(*pair.driven(), *pair.driving(), pair.center_distance())
-        .map_err(|error| error.to_string())?;
+    let other = GearPair::new(
+        pair.driven().clone(),
+        pair.driving().clone(),
+        pair.center_distance(),
+    )
+    .map_err(|error| error.to_string())?;
     let load = pair.load(drawn.output_torque);
     let (here, there) = (model(pair)?, model(&other)?);
     let mut worst = None;
@@ -411,14 +420,13 @@ fn turned_by_hole_pitch(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     let pair = &drawn.pair;
     if Member::BOTH
         .iter()
-        .all(|&member| pair.gear(member).holes().is_none())
+        .all(|&member| pair.gear(member).holes().is_empty())
     {
         return Ok(None);
     }
     let turned = changed(pair, pair.center_distance(), |data, _| {
-        if let Some(holes) = &mut data.blank.holes {
-            holes.phase += 2.0 * PI / f64::from(holes.count);
-        }
+        let repeats = data.blank.symmetry().count.max(1);
+        data.blank = data.blank.turned(2.0 * PI / f64::from(repeats));
     })?;
     let one = curve(pair, drawn.output_torque)?;
     let other = curve(&turned, drawn.output_torque)?;
@@ -432,19 +440,17 @@ fn turned_by_tooth(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     let pair = &drawn.pair;
     if Member::BOTH
         .iter()
-        .all(|&member| pair.gear(member).holes().is_none())
+        .all(|&member| pair.gear(member).holes().is_empty())
     {
         return Ok(None);
     }
     // The next tooth of the driving gear is behind the reference tooth, that of the driven gear is ahead of it.
     let turned = changed(pair, pair.center_distance(), |data, member| {
         let pitch = 2.0 * PI / f64::from(data.tooth_count);
-        if let Some(holes) = &mut data.blank.holes {
-            holes.phase += match member {
-                Member::Driving => pitch,
-                Member::Driven => -pitch,
-            };
-        }
+        data.blank = data.blank.turned(match member {
+            Member::Driving => pitch,
+            Member::Driven => -pitch,
+        });
     })?;
     let load = pair.load(drawn.output_torque);
     let (here, there) = (model(pair)?, model(&turned)?);

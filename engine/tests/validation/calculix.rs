@@ -8,7 +8,10 @@
 
 use meshwright_engine::analysis::pair_model;
 use meshwright_engine::contact::{MeshContact, WarmStart};
-use meshwright_engine::gear::{GearData, GearPair, Material, ReliefData, ReliefShape, ReliefStart};
+use meshwright_engine::gear::{
+    GearData, GearPair, Material, ModificationData, ReliefData, ReliefShape, ReliefStart,
+    TablePlaces, TipEdge,
+};
 use meshwright_engine::run::Run;
 use serde_json::Value;
 
@@ -108,7 +111,8 @@ fn reference_pairs(
 /// Solves `pair` at all positions of `file`, each torque and its step.
 fn compare(file: &str, pair: &GearPair) -> Vec<Compared> {
     let document = reference(file);
-    let model = pair_model(&case(*pair, &[1.0]), library(), &Run::unattended()).expect("a model");
+    let model =
+        pair_model(&case(pair.clone(), &[1.0]), library(), &Run::unattended()).expect("a model");
     let at = |eta: f64, load: f64| -> MeshContact {
         model
             .contact(eta, load, &mut WarmStart::default())
@@ -263,7 +267,7 @@ fn the_standard_pair_without_relief_follows_calculix_into_its_tip_corners() {
 fn eight_holes_in_the_driven_gear_follow_calculix_over_one_hole_period() {
     // A hole lies on the line of centers at mesh position 0; positions are 6.25/16 mesh periods apart.
     let solid = relieved(gear(50, 15e-3));
-    let driven = holed(solid, 8, 34e-3, 8.39e-3, 1.6938_f64.to_radians());
+    let driven = holed(solid.clone(), 8, 34e-3, 8.39e-3, 1.6938_f64.to_radians());
     check(
         "calculix-s3.json",
         pair(solid, driven, 100.5e-3),
@@ -304,11 +308,11 @@ fn a_steel_gear_that_drives_a_polymer_follows_calculix() {
             poisson_ratio,
             ..data.material
         };
-        data.tip_relief = Some(ReliefData {
+        data.modifications = vec![ModificationData::TipRelief(ReliefData {
             amount: 30e-6,
             shape: ReliefShape::Linear,
             start: ReliefStart::RadialLength(1.2e-3),
-        });
+        })];
         data
     };
     let pair = pair(
@@ -325,13 +329,64 @@ fn two_or_three_pairs_at_a_contact_ratio_of_2_09_follow_calculix() {
         let mut data = gear(tooth_count, 15e-3);
         data.rack.pressure_angle = 17.5_f64.to_radians();
         (data.rack.addendum, data.rack.dedendum) = (2.3e-3, 2.6e-3);
-        data.tip_relief = Some(ReliefData {
+        data.modifications = vec![ModificationData::TipRelief(ReliefData {
             amount: 6e-6,
             shape: ReliefShape::Linear,
             start: ReliefStart::RadialLength(0.8e-3),
-        });
+        })];
         data
     };
     let pair = pair(toothed(60), toothed(61), 121.2e-3);
     check("calculix-contact-ratio.json", pair, Corners::Settled, 11);
+}
+
+#[test]
+fn a_tooth_that_stands_out_by_6_micrometers_follows_calculix() {
+    let mut data = relieved(gear(50, 15e-3));
+    let plain = data.clone();
+    data.deviations.cumulative_pitch = vec![0.0; 50];
+    data.deviations.cumulative_pitch[3] = 6e-6;
+    check(
+        "calculix-pitch-error.json",
+        pair(plain, data, 100.5e-3),
+        Corners::Settled,
+        7,
+    );
+}
+
+#[test]
+fn a_crowned_profile_given_as_a_table_follows_calculix() {
+    let document = reference("calculix-crowning.json");
+    let gears = &document["inputs"]["submission"]["pair"];
+    let numbers = |table: &Value, name: &str, unit: f64| -> Vec<f64> {
+        let entries = table[name].as_array().expect("a list");
+        let numbers = entries
+            .iter()
+            .map(|entry| entry.as_f64().expect("a number"));
+        numbers.map(|number| number * unit).collect()
+    };
+    let crowned = |name: &str| {
+        let table = &gears[name]["profile_modifications"][0];
+        let mut data = gear(50, 15e-3);
+        data.modifications = vec![ModificationData::Table {
+            places: TablePlaces::RollLengths(numbers(table, "roll_length_mm", 1e-3)),
+            removed: numbers(table, "removed_um", 1e-6),
+        }];
+        data
+    };
+    let tabled = pair(crowned("driving"), crowned("driven"), 100.5e-3);
+    check("calculix-crowning.json", tabled, Corners::Settled, 5);
+    // The table is that of a crowning by 8 µm.
+    let mut data = gear(50, 15e-3);
+    data.modifications = vec![ModificationData::Crowning { amount: 8e-6 }];
+    let pair = pair(data.clone(), data, 100.5e-3);
+    check("calculix-crowning.json", pair, Corners::Settled, 5);
+}
+
+#[test]
+fn a_rounded_tip_that_carries_follows_calculix() {
+    let mut data = gear(50, 15e-3);
+    data.tip_edge = TipEdge::Rounded(0.2e-3);
+    let pair = pair(data.clone(), data, 100.5e-3);
+    check("calculix-rounding.json", pair, Corners::Settled, 6);
 }

@@ -88,7 +88,7 @@ fn compare(name: &str, curve: &Curve, fine: &Curve, bounds: &Bounds) {
 
 fn check(name: &str, pair: GearPair, torques: &[f64]) {
     let [coarse, standard, fine] = [GridLevel::Coarse, GridLevel::Standard, GridLevel::Fine]
-        .map(|level| at(pair, torques, level));
+        .map(|level| at(pair.clone(), torques, level));
     for (i, torque) in torques.iter().enumerate() {
         let name = format!("{name}, T {torque}");
         compare(&format!("{name}, coarse"), &coarse[i], &fine[i], &COARSE);

@@ -1,6 +1,6 @@
 //! Stresses inside a whole gear by recovery rows against the same gear solved whole, and settled with the grid.
 
-use meshwright_engine::analysis::library::default_interface_radius;
+use meshwright_engine::assembly::interface::default_interface_radius;
 use meshwright_engine::fem::blank::BlankSubstructure;
 use meshwright_engine::fem::cyclic::Harmonics;
 use meshwright_engine::fem::motion::InterfaceMotion;
@@ -47,7 +47,7 @@ fn grids(gear: &SpurGear, level: GridLevel) -> (ToothGrid, BlankGrid) {
     let blank = BlankGrid::new(
         gear.bore_radius(),
         r_w,
-        gear.holes(),
+        gear.hole_pattern().as_ref(),
         gear.tooth_count(),
         6.0,
         level,

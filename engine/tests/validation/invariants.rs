@@ -3,14 +3,16 @@
 
 use std::sync::Arc;
 
-use meshwright_engine::analysis::library::{Library, default_interface_radius};
 use meshwright_engine::analysis::{Case, ContactSolver, Curve, StiffnessRule, analyze, pair_model};
+use meshwright_engine::assembly::interface::{default_interface_radius, harmonics};
+use meshwright_engine::assembly::{Parts, TeethSpec};
 use meshwright_engine::contact::{MeshCells, WarmStart};
 use meshwright_engine::fem::blank::BlankSubstructure;
 use meshwright_engine::fem::body::{Coupling, tooth_angle};
 use meshwright_engine::gear::{GearPair, Member, SpurGear, Vector, radial, tangential};
 use meshwright_engine::grid::blank::ELEMENTS_PER_TOOTH;
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
+use meshwright_engine::library::Library;
 use meshwright_engine::quadrature::GAUSS_3;
 use meshwright_engine::run::Run;
 use nalgebra::DMatrix;
@@ -24,27 +26,25 @@ use crate::whole::WholeGear;
 /// A gear of a case as a whole, on the grids and with the orders that the engine takes.
 fn whole_gear(gear: &SpurGear, level: GridLevel) -> WholeGear {
     let r_w = default_interface_radius(gear);
-    let teeth = library()
-        .teeth(gear, Member::Driving, r_w, level, &Run::unattended())
-        .expect("teeth");
+    let orders = harmonics(gear, r_w, level);
     let tooth = ToothGrid::new(gear, r_w, level).expect("a tooth");
     let blank = BlankGrid::new(
         gear.bore_radius(),
         r_w,
-        gear.holes(),
+        gear.hole_pattern().as_ref(),
         gear.tooth_count(),
         6.0,
         level,
     )
     .expect("a blank");
-    let phase = gear.holes().map_or(0.0, |holes| holes.phase);
+    let phase = gear.hole_angle();
     let properties = (gear.material(), gear.face_width());
     WholeGear::new(
         tooth,
         gear.tooth_count() as usize,
         &blank,
         phase,
-        teeth.ring.harmonics.largest,
+        orders.largest,
         properties,
     )
 }
@@ -248,6 +248,8 @@ fn check_on_whole_gears(case: &Case, positions: &[f64], gap_bound: f64) {
             pressed / delta,
             penetration / delta
         );
+        // The elements of the whole gear know nothing of the wedge's law at a corner, which the compliance of cells follows.
+        let gap_bound = if on_path { gap_bound } else { 1.25 * gap_bound };
         assert!(pressed < gap_bound * delta && penetration < gap_bound * delta);
         // With the logarithm they are exact.
         assert!(solution.gaps.iter().all(|gap| *gap > -1e-10 * delta));
@@ -309,7 +311,7 @@ fn moments_about_both_axes_are_in_the_ratio_of_the_base_radii_and_the_compliance
     for (name, (pair, torque)) in
         cases.chain([("no relief".to_owned(), (standard_pair(false), 115.0))])
     {
-        let case = case(pair, &[torque]);
+        let case = case(pair.clone(), &[torque]);
         let load = pair.load(torque);
         let model = pair_model(&case, library(), &Run::unattended()).expect("a model");
         for eta in [0.0, 0.3, 0.5, 0.85, 4.4] {
@@ -406,11 +408,17 @@ fn more_load_means_more_transmission_error_and_the_tangent_is_its_slope() {
 fn couplings(gear: &SpurGear, level: GridLevel) -> [Coupling; 2] {
     let run = Run::unattended();
     let r_w = default_interface_radius(gear);
-    let teeth = library()
-        .teeth(gear, Member::Driven, r_w, level, &run)
-        .expect("teeth");
+    let teeth = TeethSpec::new(gear, r_w, level);
+    let teeth = library().teeth(&teeth, &run).expect("teeth");
     let (bore, z) = (gear.bore_radius(), gear.tooth_count());
-    let grid = BlankGrid::new(bore, r_w, gear.holes(), z, ELEMENTS_PER_TOOTH, level);
+    let grid = BlankGrid::new(
+        bore,
+        r_w,
+        gear.hole_pattern().as_ref(),
+        z,
+        ELEMENTS_PER_TOOTH,
+        level,
+    );
     let blank = BlankSubstructure::new(
         &grid.expect("a grid"),
         r_w,
@@ -420,7 +428,7 @@ fn couplings(gear: &SpurGear, level: GridLevel) -> [Coupling; 2] {
         &run,
     )
     .expect("a blank");
-    let phase = gear.holes().map_or(0.0, |holes| holes.phase);
+    let phase = gear.hole_angle();
     let tooth_by_tooth = Coupling::tooth_by_tooth(&teeth.ring, &blank, phase, 4, &run);
     let on_blank = Coupling::on_blank(&teeth.ring, &blank, phase, 4, &run);
     [tooth_by_tooth, on_blank].map(|coupling| coupling.expect("a gear"))
@@ -431,9 +439,9 @@ fn rows_that_symmetry_leaves_are_the_rows_of_all_teeth() {
     // 50 teeth: all alike on a solid blank, every fifth on 10 holes, every twenty-fifth on 8, none on 7.
     let data = gear(50, 15e-3);
     let gears = [
-        data,
-        holed(data, 10, 34e-3, 7.5e-3, 0.03),
-        holed(data, 8, 34e-3, 8e-3, 0.1),
+        data.clone(),
+        holed(data.clone(), 10, 34e-3, 7.5e-3, 0.03),
+        holed(data.clone(), 8, 34e-3, 8e-3, 0.1),
         holed(data, 7, 34e-3, 8e-3, 0.0),
     ];
     for data in gears {
@@ -445,7 +453,7 @@ fn rows_that_symmetry_leaves_are_the_rows_of_all_teeth() {
             let (a, b) = (block(&all), block(&some));
             largest = largest.max((&a - &b).norm_max() / a.norm_max());
         }
-        let holes = gear.holes().map_or(0, |holes| holes.count);
+        let holes = gear.hole_repeats();
         println!(
             "{holes} holes: {largest:.1e}, {} entries of {}",
             some.entries(),

@@ -6,7 +6,7 @@
 //! boundaries are alike and to the fourth order of the elements' length where they share no node. (A toothed ring has no field of constant strain without tractions on its flanks, and the blank's
 //! substructure holds its bore; so the linear field is imposed on two rings of the blank's own elements.)
 
-use meshwright_engine::analysis::library::default_interface_radius;
+use meshwright_engine::assembly::interface::default_interface_radius;
 use meshwright_engine::fem::cyclic::{Component, Harmonics};
 use meshwright_engine::fem::teeth::TeethRing;
 use meshwright_engine::fem::tooth::ToothSubstructure;
@@ -110,8 +110,15 @@ fn a_gear_with_teeth_and_holes_follows_its_bore_rigidly() {
     let gear = SpurGear::new(data).expect("a gear");
     let r_w = default_interface_radius(&gear);
     let tooth = ToothGrid::new(&gear, r_w, GridLevel::Coarse).expect("a tooth");
-    let blank =
-        BlankGrid::new(6e-3, r_w, gear.holes(), 18, 4.0, GridLevel::Coarse).expect("a blank");
+    let blank = BlankGrid::new(
+        6e-3,
+        r_w,
+        gear.hole_pattern().as_ref(),
+        18,
+        4.0,
+        GridLevel::Coarse,
+    )
+    .expect("a blank");
     let motion = |p: Vector| Vector::new(2e-6, -1e-6) + 1e-3 * Vector::new(-p.y, p.x);
     let mut assembly = WholeGear::new(tooth, 18, &blank, 0.21, 36, (&STEEL, 20e-3));
     let bore = assembly.bore.clone();

@@ -4,9 +4,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;
 
-use meshwright_engine::analysis::{Analysis, AnalysisError, Case, Curve, Library, Method, analyze};
+use meshwright_engine::analysis::{Analysis, AnalysisError, Case, Curve, Method, analyze};
 use meshwright_engine::gear::{GearData, GearPair, SpurGear};
 use meshwright_engine::grid::GridLevel;
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
 use crate::support::{case, gear, holed, paper_case, relieved, solve};
@@ -19,7 +20,7 @@ fn a_run_that_is_told_to_stop_solves_hardly_a_position_more() {
         Method::Decomposition,
         Method::ProjectedDecomposition,
     ] {
-        let mut case = case(pair, &[torque]);
+        let mut case = case(pair.clone(), &[torque]);
         case.method = method;
         let stop = Arc::new(AtomicBool::new(false));
         let seen = Arc::new(AtomicU64::new(0));
@@ -61,7 +62,7 @@ fn results_do_not_depend_on_the_number_of_threads_nor_on_the_run() {
         Method::Decomposition,
         Method::ProjectedDecomposition,
     ] {
-        let mut case = case(pair, &[torque, 20.0]);
+        let mut case = case(pair.clone(), &[torque, 20.0]);
         case.method = method;
         let on = |threads: usize| -> Analysis {
             let pool = rayon::ThreadPoolBuilder::new()
@@ -125,8 +126,9 @@ fn trouble(case: &Case) -> Option<String> {
 
 /// The pair of `driving` and `driven` with a backlash, or its refusal.
 fn meshed(driving: GearData, driven: GearData, center_distance: f64) -> GearPair {
-    let gear =
-        |data: GearData| SpurGear::new(data).unwrap_or_else(|error| panic!("{error}: {data:?}"));
+    let gear = |data: GearData| {
+        SpurGear::new(data.clone()).unwrap_or_else(|error| panic!("{error}: {data:?}"))
+    };
     GearPair::new(gear(driving), gear(driven), center_distance)
         .unwrap_or_else(|error| panic!("{error}"))
 }
@@ -252,7 +254,7 @@ fn gears_that_are_odd_but_can_be_made_are_solved() {
 #[test]
 fn three_hundred_teeth_on_either_side_are_solved() {
     let data = gear(300, 60e-3);
-    let pair = meshed(data, data, 600.5e-3);
+    let pair = meshed(data.clone(), data, 600.5e-3);
     let trouble = trouble(&case(pair, &[2000.0]));
     assert!(trouble.is_none(), "{trouble:?}");
 }

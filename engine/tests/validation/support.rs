@@ -5,8 +5,9 @@ mod cases;
 
 use std::sync::OnceLock;
 
-use meshwright_engine::analysis::{Analysis, Case, Library, analyze};
+use meshwright_engine::analysis::{Analysis, Case, analyze};
 use meshwright_engine::gear::GearPair;
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
 pub(crate) use cases::*;
@@ -14,7 +15,7 @@ pub(crate) use cases::*;
 /// A small pair for whole grids: 18/18 at 36.3 mm, bore 6 mm, three holes in the driven gear, out of line with its teeth.
 pub(crate) fn small_pair() -> GearPair {
     let data = gear(18, 6e-3);
-    pair(data, holed(data, 3, 10.5e-3, 2e-3, 0.21), 36.3e-3)
+    pair(data.clone(), holed(data, 3, 10.5e-3, 2e-3, 0.21), 36.3e-3)
 }
 
 /// The teeth and blanks that the tests share.

@@ -162,7 +162,7 @@ mod tests {
             (drawn(29, 0.2), drawn(85, -0.1), 114.4e-3),
             (drawn(50, 0.0), drawn(50, 0.3), 100.9e-3),
         ] {
-            let [forward, backward] = [pair(one, other, a), pair(other, one, a)];
+            let [forward, backward] = [pair(one.clone(), other.clone(), a), pair(other, one, a)];
             assert_eq!(single_stiffness(&forward), single_stiffness(&backward));
             assert_eq!(out_of_range(&forward, 500.0), []);
             assert_eq!(out_of_range(&backward, 500.0), []);
@@ -172,15 +172,15 @@ mod tests {
     #[test]
     fn unlike_gears_have_the_mean_of_their_rack_factors_and_their_moduli_in_series() {
         let standard = drawn(50, 0.0);
-        let c = |other| single_stiffness(&pair(standard, other, 100.5e-3));
+        let c = |other| single_stiffness(&pair(standard.clone(), other, 100.5e-3));
         // h_fP = 1.4 alone makes C_B = 0.9; with 1.2 on the other gear 0.95.
-        let mut deep = standard;
+        let mut deep = standard.clone();
         deep.rack.dedendum = 2.8e-3;
-        assert!((c(deep) / c(standard) - 0.95).abs() < 1e-12);
+        assert!((c(deep) / c(standard.clone()) - 0.95).abs() < 1e-12);
         // E = 2/(1 + 1/3) = 1.5 of the softer of two moduli that are as one to three.
-        let mut stiff = standard;
+        let mut stiff = standard.clone();
         stiff.material.youngs_modulus *= 3.0;
-        assert!((c(stiff) / c(standard) - 1.5).abs() < 1e-12);
+        assert!((c(stiff) / c(standard.clone()) - 1.5).abs() < 1e-12);
     }
 
     #[test]

@@ -257,7 +257,7 @@ mod tests {
         let full = data.rack.largest_tip_radius();
         for tip_radius in [1e-9, full] {
             data.rack.tip_radius = tip_radius;
-            let ring = Ring::of(&SpurGear::new(data).expect("a gear of 50 teeth"));
+            let ring = Ring::of(&SpurGear::new(data.clone()).expect("a gear of 50 teeth"));
             let (alpha, rho) = (20_f64.to_radians(), tip_radius);
             let along = PI * 2e-3 / 4.0 + (2.5e-3 - rho) * alpha.tan() + rho / alpha.cos();
             assert!((ring.root_half_angle - along / 50e-3).abs() < 1e-12);

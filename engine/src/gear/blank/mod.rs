@@ -57,12 +57,3 @@ impl HolePattern {
         self.area() * (self.radius.powi(2) / 2.0 + self.circle_radius.powi(2))
     }
 }
-
-/// What carries the teeth: everything between the rigid bore and the root circle.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Blank {
-    /// The radius of the bore, on which the hub is rigid.
-    pub bore_radius: f64,
-    /// The holes, if there are any.
-    pub holes: Option<HolePattern>,
-}

@@ -1,8 +1,8 @@
 //! A whole blank: any plane region between the bore and a circle, with a thickness by region.
 
+use super::HolePattern;
 use super::hole::{Hole, HoleShape};
 use super::moments::Moments;
-use super::{Blank, HolePattern};
 
 /// A ring of its own thickness within a blank. Lengths are in meters.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,16 +40,6 @@ pub enum Ligament {
     ToRim(usize),
 }
 
-impl From<&Blank> for BlankRegion {
-    fn from(blank: &Blank) -> Self {
-        Self {
-            bore_radius: blank.bore_radius,
-            holes: blank.holes.iter().flat_map(HolePattern::holes).collect(),
-            web: None,
-        }
-    }
-}
-
 impl HolePattern {
     /// The holes of the pattern, hole 0 first, counter-clockwise.
     pub fn holes(&self) -> Vec<Hole> {
@@ -66,6 +56,23 @@ impl HolePattern {
 }
 
 impl BlankRegion {
+    /// A blank with nothing but its bore.
+    pub fn solid(bore_radius: f64) -> Self {
+        Self {
+            bore_radius,
+            holes: Vec::new(),
+            web: None,
+        }
+    }
+
+    /// A blank with a pattern of holes.
+    pub fn with_pattern(bore_radius: f64, pattern: HolePattern) -> Self {
+        Self {
+            holes: pattern.holes(),
+            ..Self::solid(bore_radius)
+        }
+    }
+
     /// The largest radius that any hole reaches; `None` without holes.
     pub fn outer_reach(&self) -> Option<f64> {
         self.holes.iter().map(Hole::outer_reach).reduce(f64::max)
@@ -244,10 +251,7 @@ mod tests {
             radius: 8e-3,
             phase: 0.3,
         };
-        let region = BlankRegion::from(&Blank {
-            bore_radius: 15e-3,
-            holes: Some(pattern),
-        });
+        let region = BlankRegion::with_pattern(15e-3, pattern);
         let taken = region.taken_away(20e-3);
         let area = pattern.area() + PI * 225e-6;
         let polar = pattern.polar_moment() + PI / 2.0 * 15e-3_f64.powi(4);

@@ -117,7 +117,6 @@ impl HoleShape {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gear::Blank;
 
     fn pattern(count: u32, circle_radius: f64, radius: f64, phase: f64) -> HolePattern {
         HolePattern {
@@ -140,10 +139,7 @@ mod tests {
     fn equal_holes_in_any_order_are_the_pattern() {
         for count in [1, 2, 3, 7, 8, 60] {
             let drawn = pattern(count, 30e-3, 1e-3, 0.4);
-            let mut region = BlankRegion::from(&Blank {
-                bore_radius: 10e-3,
-                holes: Some(drawn),
-            });
+            let mut region = BlankRegion::with_pattern(10e-3, drawn);
             assert_eq!(region.pattern(), Some(drawn));
             region.holes[1..].reverse();
             // Degrees and whole turns leave roundings.

@@ -1,0 +1,194 @@
+//! What a drawing says of a spur gear, and why it cannot be made.
+
+use super::{BlankRegion, Material, ModificationData, Rack, TipEdge, ToothDeviations};
+
+/// The least material, in meters, between a hole and its neighbor, the bore or the root circle.
+pub const LEAST_LIGAMENT: f64 = 0.5e-3;
+
+/// The least thickness of a tooth at its tip circle, in modules; below it the tooth counts as pointed.
+pub const LEAST_TIP_THICKNESS: f64 = 0.05;
+
+/// The least rim between the bore and the root circle, in modules.
+pub const LEAST_RIM: f64 = 1.0;
+
+/// What a drawing says of a spur gear; [`SpurGear::new`] checks it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GearData {
+    /// The number of teeth Z.
+    pub tooth_count: u32,
+    /// The basic rack.
+    pub rack: Rack,
+    /// The profile shift coefficient x.
+    pub profile_shift: f64,
+    /// The deviation A_s of the tooth thickness, a transverse arc on the reference circle; negative is thinner.
+    pub thickness_deviation: f64,
+    /// The edge between flanks and tip circle.
+    pub tip_edge: TipEdge,
+    /// The face width b.
+    pub face_width: f64,
+    /// What is removed from the loaded flanks.
+    pub modifications: Vec<ModificationData>,
+    /// How teeth deviate from each other.
+    pub deviations: ToothDeviations,
+    /// The material of teeth and blank.
+    pub material: Material,
+    /// What carries the teeth.
+    pub blank: BlankRegion,
+}
+
+/// The least rim between a web and the root circle, in modules: less is no rim that teeth could stand on.
+pub const LEAST_WEB_RIM: f64 = 0.5;
+
+/// A list of deviations, one a tooth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DeviationList {
+    /// The pitch.
+    Pitch,
+    /// The profile slope.
+    ProfileSlope,
+}
+
+/// Why a gear cannot be made as drawn. Lengths are in meters.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum GearError {
+    /// The rack's tip rounding does not fit between its flanks.
+    #[error("the rack's tip rounding of radius {tip_radius} m does not fit: at most {largest} m")]
+    RackTipRadius {
+        /// The radius asked for.
+        tip_radius: f64,
+        /// The largest that fits.
+        largest: f64,
+    },
+    /// The rack cuts into the involute.
+    #[error("the flank is undercut at profile shift {profile_shift}; {smallest} avoids it")]
+    Undercut {
+        /// The profile shift coefficient asked for.
+        profile_shift: f64,
+        /// The smallest that avoids undercut.
+        smallest: f64,
+    },
+    /// The flanks meet, or nearly, below the tip circle.
+    #[error(
+        "the tooth is {thickness} m thick at its tip; an addendum of {largest_addendum} m leaves enough"
+    )]
+    PointedTip {
+        /// The thickness at the tip circle, negative if the flanks cross.
+        thickness: f64,
+        /// The largest addendum of the rack that leaves [`LEAST_TIP_THICKNESS`].
+        largest_addendum: f64,
+    },
+    /// No involute is left between the form circle and the tip circle.
+    #[error("the tip radius {tip_radius} m leaves no flank above the form radius {form_radius} m")]
+    NoFlank {
+        /// The tip radius.
+        tip_radius: f64,
+        /// The form radius.
+        form_radius: f64,
+    },
+    /// The thicker teeth leave no space between their fillets.
+    #[error(
+        "teeth thicker by {deviation} m leave no space between their fillets; at most {largest} m"
+    )]
+    TeethTooThick {
+        /// The thickness deviation asked for.
+        deviation: f64,
+        /// The largest that leaves a root.
+        largest: f64,
+    },
+    /// The broken edges of the tip meet, or leave no involute.
+    #[error("a tip edge broken by {amount} m leaves no tip; at most {largest} m")]
+    TipEdgeTooLarge {
+        /// The rounding radius or chamfer asked for.
+        amount: f64,
+        /// The largest that leaves a tip and a flank.
+        largest: f64,
+    },
+    /// A relief starts off the flank, or at the end where it should be largest.
+    #[error(
+        "the relief starts at radius {start_radius} m, outside the flank from {form_radius} m to {tip_radius} m"
+    )]
+    ReliefTooLong {
+        /// Which of the modifications.
+        modification: usize,
+        /// The radius at which it was to start.
+        start_radius: f64,
+        /// The form radius.
+        form_radius: f64,
+        /// The tip radius.
+        tip_radius: f64,
+    },
+    /// A profile table has fewer than two entries, or as many places as it has no values for, or does not rise.
+    #[error("entry {entry} of the profile table does not follow the one before it")]
+    TableDoesNotRise {
+        /// Which of the modifications.
+        modification: usize,
+        /// The first entry that is missing or not larger than the one before.
+        entry: usize,
+    },
+    /// A list of deviations has not one entry for each tooth.
+    #[error("{given} deviations for {needed} teeth")]
+    DeviationCount {
+        /// Which list.
+        list: DeviationList,
+        /// Its length.
+        given: usize,
+        /// The number of teeth.
+        needed: usize,
+    },
+    /// The web does not lie between the bore and the rim under the teeth.
+    #[error(
+        "the web from {inner_radius} m to {outer_radius} m must lie between {least} m and {largest} m"
+    )]
+    WebOutside {
+        /// Where it was to begin.
+        inner_radius: f64,
+        /// Where it was to end.
+        outer_radius: f64,
+        /// The bore radius.
+        least: f64,
+        /// The largest radius that leaves [`LEAST_WEB_RIM`].
+        largest: f64,
+    },
+    /// The bore leaves too thin a rim below the root circle.
+    #[error("the bore of radius {bore_radius} m leaves no rim; at most {largest} m")]
+    BoreTooLarge {
+        /// The bore radius asked for.
+        bore_radius: f64,
+        /// The largest that leaves [`LEAST_RIM`].
+        largest: f64,
+    },
+    /// Holes leave too little between them, or a slot between its ends.
+    #[error("the holes leave {ligament} m between them; a radius of {largest_radius} m would do")]
+    HolesOverlap {
+        /// Their places in the list; twice the same for the ends of one slot.
+        holes: [usize; 2],
+        /// The material left, negative if they overlap.
+        ligament: f64,
+        /// The largest radius, or half width of a slot, that leaves [`LEAST_LIGAMENT`].
+        largest_radius: f64,
+    },
+    /// A hole leaves too little below the root circle.
+    #[error(
+        "the holes leave {ligament} m below the root circle; a radius of {largest_radius} m would do"
+    )]
+    HolesBreachRim {
+        /// Its place in the list.
+        hole: usize,
+        /// The material left, negative if they cut through.
+        ligament: f64,
+        /// The largest radius, or half width of a slot, that leaves [`LEAST_LIGAMENT`].
+        largest_radius: f64,
+    },
+    /// A hole leaves too little around the bore.
+    #[error(
+        "the holes leave {ligament} m around the bore; a radius of {largest_radius} m would do"
+    )]
+    HolesBreachBore {
+        /// Its place in the list.
+        hole: usize,
+        /// The material left, negative if they cut through.
+        ligament: f64,
+        /// The largest radius, or half width of a slot, that leaves [`LEAST_LIGAMENT`].
+        largest_radius: f64,
+    },
+}

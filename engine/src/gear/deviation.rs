@@ -1,0 +1,51 @@
+//! How the teeth of a gear deviate from each other, and their circle from the axis of rotation.
+
+use super::{Vector, radial};
+
+/// The gear's own axis beside the axis about which it turns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Eccentricity {
+    /// The distance e of both axes.
+    pub amount: f64,
+    /// The direction of the gear's axis from the axis of rotation: the angle from the centerline of tooth 0, positive towards its
+    /// loaded flank, in radians.
+    pub direction: f64,
+}
+
+/// What each tooth deviates from its drawing, as measured. Lengths in meters, positive where the loaded flank stands farther towards its
+/// mate, so that it touches earlier. Empty lists are teeth without deviation.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ToothDeviations {
+    /// The cumulative pitch deviation F_p of each loaded flank, tooth 0 first: a transverse arc on the reference circle (ISO 1328-1).
+    pub cumulative_pitch: Vec<f64>,
+    /// The profile slope deviation f_Hα of each loaded flank: nothing at the form circle, this at the tip circle.
+    pub profile_slope: Vec<f64>,
+    /// The eccentricity of the teeth.
+    pub eccentricity: Option<Eccentricity>,
+}
+
+impl ToothDeviations {
+    /// Whether every tooth stands as drawn, about the axis of rotation.
+    pub fn is_none(&self) -> bool {
+        self.are_teeth_alike() && self.displacement(0.0) == Vector::zeros()
+    }
+
+    /// Whether no list of teeth was given.
+    pub fn are_without_lists(&self) -> bool {
+        self.cumulative_pitch.is_empty() && self.profile_slope.is_empty()
+    }
+
+    /// Whether every tooth is like every other.
+    pub fn are_teeth_alike(&self) -> bool {
+        let lists = self.cumulative_pitch.iter().chain(&self.profile_slope);
+        lists.into_iter().all(|deviation| *deviation == 0.0)
+    }
+
+    /// Where the gear's own axis stands from the axis of rotation while the centerline of tooth 0 points along `angle`.
+    pub fn displacement(&self, angle: f64) -> Vector {
+        self.eccentricity
+            .map_or_else(Vector::zeros, |eccentricity| {
+                eccentricity.amount * radial(angle + eccentricity.direction)
+            })
+    }
+}

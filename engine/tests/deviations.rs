@@ -1,0 +1,321 @@
+//! Teeth that deviate and gears that run out, against what their geometry says in closed form.
+
+mod cases;
+
+use std::f64::consts::PI;
+
+use cases::{case, gear};
+use meshwright_engine::analysis::{Method, analyze, pair_model};
+use meshwright_engine::contact::{WarmStart, light_contact};
+use meshwright_engine::gear::{
+    Eccentricity, GearData, GearPair, Member, ModificationData, SpurGear,
+};
+use meshwright_engine::library::Library;
+use meshwright_engine::run::Run;
+
+fn pair(driving: GearData, driven: GearData) -> GearPair {
+    let distance = 1e-3 * f64::from(driving.tooth_count + driven.tooth_count) + 0.5e-3;
+    let made = |data| SpurGear::new(data).expect("a gear that can be made");
+    GearPair::new(made(driving), made(driven), distance).expect("a pair that meshes")
+}
+
+/// δ of rigid flanks over the revolution of `member`, at `per_period` positions a mesh period.
+fn light(pair: &GearPair, member: Member, per_period: u32) -> Vec<f64> {
+    let teeth = pair.gear(member).tooth_count();
+    (0..teeth * per_period)
+        .map(|i| {
+            let eta = f64::from(i) / f64::from(per_period);
+            light_contact(pair, eta)
+                .expect("flanks that face each other")
+                .transmission_error
+        })
+        .collect()
+}
+
+/// Amplitude of the order `n` of evenly spaced values.
+fn amplitude(values: &[f64], n: usize) -> f64 {
+    let count = values.len() as f64;
+    let (mut cosine, mut sine) = (0.0, 0.0);
+    for (i, value) in values.iter().enumerate() {
+        let angle = 2.0 * PI * (n * i) as f64 / count;
+        cosine += value * angle.cos();
+        sine += value * angle.sin();
+    }
+    2.0 * cosine.hypot(sine) / count
+}
+
+#[test]
+fn an_eccentricity_makes_an_order_of_one_a_revolution_with_its_own_amplitude() {
+    for (member, teeth) in [(Member::Driving, [23, 50]), (Member::Driven, [31, 20])] {
+        for direction in [0.0, 1.0, -2.5] {
+            let amount = 20e-6;
+            let mut data = teeth.map(|count| gear(count, 5e-3));
+            data[member.index()].deviations.eccentricity = Some(Eccentricity { amount, direction });
+            let [driving, driven] = data;
+            let pair = pair(driving, driven);
+            let curve = light(&pair, member, 4);
+            // The line of centers turns by e/a: terms of the second order.
+            let second = amount * amount / pair.center_distance();
+            let found = amplitude(&curve, 1);
+            println!(
+                "{member}, {direction}: {found:e} of {amount:e}, order 2 {:e}",
+                amplitude(&curve, 2)
+            );
+            assert!((found - amount).abs() < 10.0 * second, "{found:e}");
+            assert!(amplitude(&curve, 2) < 10.0 * second);
+        }
+    }
+}
+
+#[test]
+fn an_eccentric_gear_pushes_its_mate_ahead_while_it_stands_out_along_the_line_of_action() {
+    // The driving gear's axis moved along the normal of its loaded flanks closes gaps: δ is −e there, and +e half a turn later.
+    let amount = 20e-6;
+    let mut driving = gear(20, 5e-3);
+    let driven = gear(31, 5e-3);
+    let base = pair(driving.clone(), driven.clone());
+    // At η = 0 tooth 0 touches at the pitch point: its normal points along the line of action, and its centerline lies where its flank says.
+    let flank = base.driving().flank();
+    let s = base.pitch_roll_length();
+    let normal = flank.tangent_angle(s) + PI / 2.0;
+    driving.deviations.eccentricity = Some(Eccentricity {
+        amount,
+        direction: normal,
+    });
+    let pair = pair(driving, driven);
+    let delta = |eta| {
+        light_contact(&pair, eta)
+            .expect("contact")
+            .transmission_error
+    };
+    assert!(
+        (delta(0.0) + amount).abs() < 1e-3 * amount,
+        "{:e}",
+        delta(0.0)
+    );
+    assert!(
+        (delta(10.0) - amount).abs() < 1e-3 * amount,
+        "{:e}",
+        delta(10.0)
+    );
+}
+
+#[test]
+fn a_lone_pitch_error_moves_nearly_rigid_gears_by_f_cos_alpha_over_its_engagement_and_nowhere_else()
+{
+    let f = 8e-6;
+    for (member, tooth) in [(Member::Driving, 7_usize), (Member::Driven, 3)] {
+        for sign in [1.0, -1.0] {
+            let mut data = [gear(25, 8e-3), gear(31, 8e-3)];
+            // So stiff and so lightly loaded that nothing bends.
+            let plain = pair(data[0].clone(), data[1].clone());
+            let mut arcs = vec![0.0; data[member.index()].tooth_count as usize];
+            arcs[tooth] = sign * f;
+            data[member.index()].deviations.cumulative_pitch = arcs;
+            let [driving, driven] = data;
+            let pair = pair(driving, driven);
+            let moved = -sign * f * 20_f64.to_radians().cos();
+            let (s_a, s_e) = pair.path_of_contact();
+            for i in 0..25 * 31 {
+                let eta = f64::from(i) * 0.5 + 0.13;
+                let delta = light_contact(&pair, eta)
+                    .expect("contact")
+                    .transmission_error;
+                let unmoved = light_contact(&plain, eta)
+                    .expect("contact")
+                    .transmission_error;
+                // The pairs on the path of contact, and those with the tooth in question.
+                let on_path = |n: &i64| {
+                    let s = pair.roll_length_of(eta - *n as f64);
+                    s > s_a && s < s_e
+                };
+                let first = eta.floor() as i64;
+                let pairs: Vec<i64> = (first - 2..=first + 3).filter(on_path).collect();
+                let with = pairs
+                    .iter()
+                    .filter(|n| pair.tooth(member, **n) == tooth)
+                    .count();
+                let expected = if with > 0 && (sign > 0.0 || pairs.len() == 1) {
+                    // A tooth that stands back is felt only where no other pair carries.
+                    moved
+                } else {
+                    0.0
+                };
+                let beyond = |n: &i64| {
+                    let s = pair.roll_length_of(eta - *n as f64);
+                    pair.tooth(member, *n) == tooth
+                        && !on_path(n)
+                        && s > s_a - 2e-3
+                        && s < s_e + 2e-3
+                };
+                // A tip that stands out touches a little beyond the path of contact.
+                if (first - 4..=first + 5).any(|n| beyond(&n))
+                    || (with > 0 && pairs.len() == 1 && sign < 0.0)
+                {
+                    assert!(
+                        delta - unmoved > moved.min(0.0) - 1e-9
+                            && delta - unmoved < moved.max(0.0) + 1e-9
+                    );
+                } else {
+                    assert!(
+                        (delta - unmoved - expected).abs() < 1e-9,
+                        "{member} {sign} {eta}: {delta:e} {expected:e}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn teeth_renumbered_by_one_move_the_curve_by_one_mesh_period() {
+    let arcs: Vec<f64> = (0..25).map(|i| 1e-6 * f64::from(i * 7 % 11)).collect();
+    let slopes: Vec<f64> = (0..25)
+        .map(|i| 1e-6 * (f64::from(i * 5 % 7) - 3.0))
+        .collect();
+    let solve = |turn: usize, eta: f64| {
+        let mut data = gear(25, 8e-3);
+        data.deviations.cumulative_pitch = (0..25).map(|i| arcs[(i + turn) % 25]).collect();
+        data.deviations.profile_slope = (0..25).map(|i| slopes[(i + turn) % 25]).collect();
+        let pair = pair(data, gear(31, 8e-3));
+        let load = pair.load(30.0);
+        let model = pair_model(
+            &case(pair, &[30.0]),
+            &Library::default(),
+            &Run::unattended(),
+        )
+        .expect("a model");
+        model
+            .contact(eta, load, &mut WarmStart::default())
+            .expect("contact")
+            .transmission_error
+    };
+    for eta in [0.2, 3.6, 7.85] {
+        // Driving teeth mesh in falling order.
+        let (one, other) = (solve(0, eta), solve(1, eta + 1.0));
+        assert!((one / other - 1.0).abs() < 1e-9, "{eta}: {one:e} {other:e}");
+    }
+}
+
+#[test]
+fn deviations_of_all_teeth_alike_are_a_turn_of_the_gear() {
+    let plain = pair(gear(25, 8e-3), gear(31, 8e-3));
+    let mut data = gear(25, 8e-3);
+    data.deviations.cumulative_pitch = vec![5e-6; 25];
+    let turned = pair(data.clone(), gear(31, 8e-3));
+    let solve = |pair: &GearPair, eta: f64| {
+        let model = pair_model(
+            &case(pair.clone(), &[30.0]),
+            &Library::default(),
+            &Run::unattended(),
+        )
+        .expect("a model");
+        model
+            .contact(eta, pair.load(30.0), &mut WarmStart::default())
+            .expect("contact")
+    };
+    for eta in [0.1, 0.5, 0.8] {
+        let (one, other) = (solve(&plain, eta), solve(&turned, eta));
+        let moved =
+            one.transmission_error - other.transmission_error - 5e-6 * 20_f64.to_radians().cos();
+        // Where a tip corner carries the arm is not quite one.
+        assert!(moved.abs() < 2e-8, "{eta}: {moved:e}");
+        assert!((one.stiffness / other.stiffness - 1.0).abs() < 1e-2);
+    }
+}
+
+#[test]
+fn a_slope_of_every_tooth_is_the_slope_of_the_drawing() {
+    // Nothing at the form circle, the amount at the tip, once as modification and once as deviation of the opposite sign.
+    let mut drawn = gear(25, 8e-3);
+    drawn.modifications = vec![ModificationData::Slope { amount: 6e-6 }];
+    let mut measured = gear(25, 8e-3);
+    measured.deviations.profile_slope = vec![-6e-6; 25];
+    let solve = |data: GearData, eta: f64| {
+        let pair = pair(data, gear(31, 8e-3));
+        let load = pair.load(30.0);
+        let model = pair_model(
+            &case(pair, &[30.0]),
+            &Library::default(),
+            &Run::unattended(),
+        )
+        .expect("a model");
+        model
+            .contact(eta, load, &mut WarmStart::default())
+            .expect("contact")
+            .transmission_error
+    };
+    for eta in [0.1, 0.4, 0.5, 0.8] {
+        let (one, other) = (solve(drawn.clone(), eta), solve(measured.clone(), eta));
+        // Cells are laid about other places.
+        assert!((one / other - 1.0).abs() < 1e-3, "{eta}: {one:e} {other:e}");
+    }
+}
+
+#[test]
+fn formulas_on_the_line_of_contact_see_deviations_as_rigid_flanks_do() {
+    // So light a load that nothing bends: δ is what the geometry says, to the first order in the eccentricity.
+    let mut driving = gear(25, 8e-3);
+    driving.deviations.cumulative_pitch = (0..25).map(|i| 1e-6 * f64::from(i * 7 % 11)).collect();
+    driving.deviations.eccentricity = Some(Eccentricity {
+        amount: 5e-6,
+        direction: 0.7,
+    });
+    let mut case = case(pair(driving, gear(31, 8e-3)), &[0.0, 1e-6]);
+    case.method = Method::LoadDistribution;
+    case.resolution.span_mesh_periods = Some(25);
+    case.resolution.positions_per_mesh_period = 10;
+    let analysis = analyze(&case, &Library::default(), &Run::unattended()).expect("curves");
+    let [light, formula] = &analysis.curves[..] else {
+        panic!("two curves")
+    };
+    // Tips that touch beside the line of contact are not seen by formulas: look where one pair alone is on it.
+    let mut seen = 0;
+    for (i, eta) in light.mesh_position.iter().enumerate() {
+        let fraction = eta - eta.floor();
+        if fraction < 0.15 || fraction > 0.85 {
+            let apart = formula.transmission_error[i] - light.transmission_error[i];
+            assert!(apart.abs() < 2e-8, "{eta}: {apart:e}");
+            seen += 1;
+        }
+    }
+    assert!(seen > 50);
+}
+
+#[test]
+fn every_method_sees_what_teeth_deviate() {
+    let mut driven = gear(24, 8e-3);
+    driven.deviations.cumulative_pitch = (0..24).map(|i| 1e-6 * f64::from(i * 5 % 7)).collect();
+    let pair = pair(gear(25, 8e-3), driven);
+    let curve = |method| {
+        let mut case = case(pair.clone(), &[0.0, 40.0]);
+        case.method = method;
+        case.resolution.span_mesh_periods = Some(24);
+        case.resolution.positions_per_mesh_period = 8;
+        let analysis = analyze(&case, &Library::default(), &Run::unattended()).expect("curves");
+        analysis
+            .curves
+            .into_iter()
+            .nth(1)
+            .expect("a curve")
+            .transmission_error
+    };
+    let flexible = curve(Method::Flexible);
+    // Without holes all three say the same.
+    for method in [Method::Decomposition, Method::ProjectedDecomposition] {
+        for (one, other) in flexible.iter().zip(curve(method)) {
+            assert!((one / other - 1.0).abs() < 1e-9);
+        }
+    }
+    let formulas = curve(Method::LoadDistribution);
+    let correlation = {
+        let centered = |values: &[f64]| -> Vec<f64> {
+            let mean = values.iter().sum::<f64>() / values.len() as f64;
+            values.iter().map(|value| value - mean).collect()
+        };
+        let (a, b) = (centered(&flexible), centered(&formulas));
+        let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
+        dot(&a, &b) / (dot(&a, &a) * dot(&b, &b)).sqrt()
+    };
+    assert!(correlation > 0.9, "{correlation}");
+}

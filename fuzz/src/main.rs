@@ -1,0 +1,51 @@
+//! Bytes as a submission, a preview and a study: whatever they are, reading ends in a document or a problem, and what was read is
+//! read again from its echo. Guided by coverage (libFuzzer); `fuzz/run` builds and runs it.
+
+#![no_main]
+#![allow(dead_code, unused_imports, unreachable_pub, missing_docs)]
+
+// The documents alone, without the service around them, which would take minutes to build.
+#[path = "../../src/hash.rs"]
+mod hash;
+#[path = "../../src/wire/mod.rs"]
+mod wire;
+
+use libfuzzer_sys::fuzz_target;
+use meshwright_engine::run::Run;
+use wire::{Preview, Problem, Study, Submission};
+
+/// So many designs of a study are expanded.
+const DESIGNS: usize = 8;
+
+fn check(problem: &Problem) {
+    assert!([400, 422].contains(&problem.status), "{problem:?}");
+    assert!(!problem.detail.contains("NaN"), "{problem:?}");
+    for error in &problem.errors {
+        assert!(error.nearest.is_none_or(f64::is_finite), "{error:?}");
+    }
+}
+
+fuzz_target!(|bytes: &[u8]| {
+    match Submission::parse(bytes) {
+        Ok(submission) => {
+            let again = Submission::parse(submission.canonical_json().as_bytes()).expect("an echo is valid");
+            assert_eq!(again.input_hash(), submission.input_hash());
+        }
+        Err(problem) => check(&problem),
+    }
+    if let Err(problem) = Preview::parse(bytes, 4000) {
+        check(&problem);
+    }
+    match Study::parse(bytes, &Run::unattended()) {
+        Ok(study) => {
+            for row in 0..study.total().min(DESIGNS) {
+                let design = study.design(row).expect("there are so many");
+                if let Err(problem) = &design.submission {
+                    check(problem);
+                }
+            }
+            assert!(study.design(study.total()).is_none());
+        }
+        Err(problem) => check(&problem),
+    }
+});

@@ -1,0 +1,106 @@
+//! `meshwright-paper measure`: how fast this machine computes, and how the time grows with what is asked.
+//!
+//! Read in this order: [`stopwatch`] (what a time is here), [`jobs`] (the paper's cases), [`growth`] (one thing varied at a
+//! time), [`levels`] (what a finer grid costs and gains), [`report`] (the tables and figures of it).
+
+mod growth;
+mod jobs;
+mod levels;
+mod report;
+mod stopwatch;
+
+use std::fs;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use anyhow::Context;
+use serde::Serialize;
+
+use growth::Growth;
+use jobs::JobTime;
+use levels::LevelRow;
+
+/// Measure how fast this machine computes, and how time grows with what is asked: a table, four figures and the numbers
+/// behind them. It takes a minute or two; other work on the machine makes its numbers worse.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Measure {
+    /// The folder to write measured.md, measured.json and the figures to.
+    #[arg(long, short, default_value = "measured")]
+    output: PathBuf,
+}
+
+/// Everything that is measured, as measured.json has it.
+#[derive(Debug, Serialize)]
+struct Measured {
+    machine: Machine,
+    jobs: Vec<JobTime>,
+    growth: Vec<Growth>,
+    grid_levels: Vec<LevelRow>,
+}
+
+/// Where it was measured, and what.
+#[derive(Debug, Serialize)]
+struct Machine {
+    processor: String,
+    threads: usize,
+    version: &'static str,
+    compiler: &'static str,
+}
+
+impl Machine {
+    fn this() -> Self {
+        // Only Linux tells without asking the processor itself.
+        let told = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+        let model = told
+            .lines()
+            .find(|line| line.starts_with("model name"))
+            .and_then(|line| line.split_once(':'));
+        Self {
+            processor: model
+                .map_or(std::env::consts::ARCH, |(_, name)| name.trim())
+                .to_owned(),
+            threads: rayon::current_num_threads(),
+            version: env!("CARGO_PKG_VERSION"),
+            compiler: env!("MESHWRIGHT_COMPILER"),
+        }
+    }
+}
+
+impl Measure {
+    /// Runs the command.
+    ///
+    /// # Errors
+    ///
+    /// If a case cannot be computed or a file cannot be written.
+    pub(crate) fn run(&self) -> anyhow::Result<()> {
+        let started = Instant::now();
+        let tell = |what: &str| println!("{:5.1} s  {what}", started.elapsed().as_secs_f64());
+        tell("The paper's cases by every method.");
+        let jobs = jobs::measured()?;
+        let growth = growth::measured(&|what| tell(what))?;
+        tell("Grid levels.");
+        let measured = Measured {
+            machine: Machine::this(),
+            jobs,
+            growth,
+            grid_levels: levels::measured()?,
+        };
+        fs::create_dir_all(&self.output)
+            .with_context(|| format!("{} cannot be created", self.output.display()))?;
+        self.write(
+            "measured.json",
+            &(serde_json::to_string_pretty(&measured)? + "\n"),
+        )?;
+        self.write("measured.md", &report::text(&measured))?;
+        for growth in &measured.growth {
+            self.write(&growth.file(), &report::figure(growth).to_svg()?)?;
+        }
+        tell(&format!("{} is complete.", self.output.display()));
+        Ok(())
+    }
+
+    fn write(&self, file: &str, text: &str) -> anyhow::Result<()> {
+        let path = self.output.join(file);
+        fs::write(&path, text).with_context(|| format!("{} cannot be written", path.display()))
+    }
+}

@@ -1,0 +1,165 @@
+//! Shapes to scale, and gears as they are cut.
+
+use meshwright_engine::gear::{Hole, HoleShape, SpurGear, Vector, radial};
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
+
+use super::{Area, INK, Look, at, thickness, write};
+
+/// The points of one flank and of one fillet.
+const FLANK_POINTS: u32 = 5;
+const FILLET_POINTS: u32 = 4;
+
+/// A shape, in meters.
+#[derive(Debug, Clone)]
+pub enum Shape {
+    /// A filled region with a thin border.
+    Region(Vec<Vector>, RGBColor),
+    /// A filled disk with a thin border.
+    Disk(Vector, f64, RGBColor),
+    /// A circle.
+    Circle(Vector, f64, RGBColor),
+    /// A line.
+    Line(Vector, Vector, RGBColor),
+}
+
+/// Shapes under a title, in one scale.
+#[derive(Debug, Clone)]
+pub struct Drawing {
+    /// The title of the panel.
+    pub title: String,
+    /// The corners of what is shown, in meters.
+    pub window: (Vector, Vector),
+    /// The shapes, each over those before it.
+    pub shapes: Vec<Shape>,
+    /// What the fills and the circles mean.
+    pub legend: Vec<(String, RGBColor, Look)>,
+}
+
+impl Drawing {
+    pub(crate) fn draw(&self, area: &Area<'_>, size: (u32, u32)) -> anyhow::Result<()> {
+        const TITLE: f64 = 20.0;
+        write(area, &self.title, (12.0, 9.0), 12.0, (HPos::Left, true))?;
+        let (width, height) = (f64::from(size.0), f64::from(size.1) - TITLE);
+        let (low, high) = self.window;
+        let scale = (width / (high.x - low.x)).min(height / (high.y - low.y));
+        let middle = (low + high) / 2.0;
+        let place = |p: Vector| {
+            at(
+                width / 2.0 + (p.x - middle.x) * scale,
+                TITLE + height / 2.0 - (p.y - middle.y) * scale,
+            )
+        };
+        let border = RGBColor(85, 85, 85).stroke_width(thickness(1.0));
+        let reach = |radius: f64| at(radius * scale, 0.0).0;
+        for shape in &self.shapes {
+            match shape {
+                Shape::Region(points, fill) => {
+                    let points: Vec<_> = points.iter().map(|&p| place(p)).collect();
+                    area.draw(&Polygon::new(points, fill.filled()))?;
+                }
+                Shape::Disk(center, radius, fill) => {
+                    area.draw(&Circle::new(place(*center), reach(*radius), fill.filled()))?;
+                    area.draw(&Circle::new(place(*center), reach(*radius), border))?;
+                }
+                Shape::Circle(center, radius, color) => {
+                    let line = color.stroke_width(thickness(1.0));
+                    area.draw(&Circle::new(place(*center), reach(*radius), line))?;
+                }
+                Shape::Line(from, to, color) => {
+                    let line = color.stroke_width(thickness(1.0));
+                    area.draw(&PathElement::new([place(*from), place(*to)], line))?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Where a gear stands: its center, and the angle of the centerline of tooth 0.
+#[derive(Debug, Clone, Copy)]
+pub struct Placement {
+    /// The center in meters.
+    pub center: Vector,
+    /// The angle in radians.
+    pub angle: f64,
+}
+
+/// The gear with its teeth, bore and holes, filled with `fill`.
+pub fn gear(gear: &SpurGear, place: Placement, fill: RGBColor) -> Vec<Shape> {
+    let mut shapes = vec![Shape::Region(outline(gear, place), fill)];
+    shapes.extend(openings(gear, place));
+    shapes
+}
+
+/// The bore and the holes of a gear, and a mark on tooth 0's centerline at the bore.
+pub fn openings(gear: &SpurGear, place: Placement) -> Vec<Shape> {
+    let mut shapes = vec![Shape::Disk(place.center, gear.bore_radius(), WHITE)];
+    shapes.extend(gear.holes().iter().map(|hole| opening(hole, place)));
+    let arm = 0.12 * gear.bore_radius();
+    for direction in [Vector::x(), Vector::y()] {
+        let (from, to) = (
+            place.center - arm * direction,
+            place.center + arm * direction,
+        );
+        shapes.push(Shape::Line(from, to, INK));
+    }
+    shapes
+}
+
+/// A hole: a disk, or a slot along its circle with round ends.
+fn opening(hole: &Hole, place: Placement) -> Shape {
+    let at = |angle: f64| place.center + hole.circle_radius * radial(place.angle + angle);
+    match hole.shape {
+        HoleShape::Round { radius } => Shape::Disk(at(hole.angle), radius, WHITE),
+        HoleShape::Slot { width, angle } => {
+            const POINTS: i32 = 24;
+            let half = 0.5 * width;
+            let part = |i: i32| f64::from(i) / f64::from(POINTS);
+            let along = |radius: f64, t: f64| {
+                place.center + radius * radial(place.angle + hole.angle + (t - 0.5) * angle)
+            };
+            let end = |side: f64, i: i32| {
+                let middle = hole.angle + side * 0.5 * angle;
+                let turn = side * std::f64::consts::PI * part(i);
+                at(middle) + half * radial(place.angle + middle + turn)
+            };
+            let outer = (0..=POINTS).map(|i| along(hole.circle_radius + half, part(i)));
+            let inner = (0..=POINTS)
+                .rev()
+                .map(|i| along(hole.circle_radius - half, part(i)));
+            let far = (0..=POINTS).map(|i| end(1.0, i));
+            let near = (0..=POINTS).rev().map(|i| end(-1.0, i));
+            Shape::Region(outer.chain(far).chain(inner).chain(near).collect(), WHITE)
+        }
+    }
+}
+
+/// The outline of all teeth: involutes and trochoids as the rack cuts them, tip and root lands.
+pub fn outline(gear: &SpurGear, place: Placement) -> Vec<Vector> {
+    let half = half_tooth(gear);
+    let mirrored = half.iter().rev().map(|p| Vector::new(p.x, -p.y));
+    let tooth: Vec<Vector> = mirrored.chain(half.iter().copied()).collect();
+    (0..gear.tooth_count())
+        .flat_map(|i| {
+            let angle = place.angle + f64::from(i) * gear.pitch_angle();
+            let (e_r, e_t) = (radial(angle), radial(angle + std::f64::consts::FRAC_PI_2));
+            tooth
+                .iter()
+                .map(move |p| place.center + p.x * e_r + p.y * e_t)
+        })
+        .collect()
+}
+
+/// The loaded half of tooth 0 from its tip corner to the end of its fillet.
+fn half_tooth(gear: &SpurGear) -> Vec<Vector> {
+    let between =
+        |from: f64, to: f64, i: u32, n: u32| from + (to - from) * f64::from(i) / f64::from(n);
+    let (tip, form) = (gear.tip_roll_length(), gear.form_roll_length());
+    let fillet = gear.fillet();
+    let (first, last) = fillet.ends();
+    let flank = (0..=FLANK_POINTS).map(|i| gear.flank().point(between(tip, form, i, FLANK_POINTS)));
+    flank
+        .chain((1..=FILLET_POINTS).map(|i| fillet.point(between(first, last, i, FILLET_POINTS))))
+        .collect()
+}

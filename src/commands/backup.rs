@@ -1,0 +1,45 @@
+//! `meshwright backup`: a copy of the database while it is served.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Context, bail};
+use meshwright::jobs::Store;
+
+/// Copy the database, while the service runs or not.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Backup {
+    /// File of the database.
+    #[arg(
+        long,
+        env = "MESHWRIGHT_DATABASE",
+        default_value = "./meshwright.db",
+        value_name = "FILE"
+    )]
+    database: PathBuf,
+    /// Where the copy goes; nothing is there yet.
+    target: PathBuf,
+}
+
+impl Backup {
+    /// Runs the command.
+    ///
+    /// # Errors
+    ///
+    /// If there is no database, something is at the target, or the copy cannot be made; then nothing is left there.
+    pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
+        if !self.database.exists() {
+            bail!("there is no database {}", self.database.display());
+        }
+        let runtime = tokio::runtime::Runtime::new().context("the runtime cannot be started")?;
+        runtime
+            .block_on(Store::backup(&self.database, &self.target))
+            .with_context(|| format!("cannot back up {}", self.database.display()))?;
+        let bytes = std::fs::metadata(&self.target).map_or(0, |data| data.len());
+        println!(
+            "{} has {bytes} bytes, and was checked.",
+            self.target.display()
+        );
+        Ok(ExitCode::SUCCESS)
+    }
+}

@@ -1,0 +1,147 @@
+//! `meshwright keys`: who may use the service.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Context, bail};
+use jiff::Timestamp;
+use meshwright::jobs::{KeyRecord, Role, Store};
+use meshwright::keys::Key;
+
+/// Make, list and revoke API keys.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Keys {
+    /// File of the database; the service may be running on it.
+    #[arg(
+        long,
+        env = "MESHWRIGHT_DATABASE",
+        default_value = "./meshwright.db",
+        value_name = "FILE",
+        global = true
+    )]
+    database: PathBuf,
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum What {
+    /// Make a key and print it. It is told this once and kept nowhere.
+    Create(Create),
+    /// List the keys, without their secrets.
+    List,
+    /// Revoke a key at once; its jobs stay.
+    Revoke {
+        /// The public part of the key: what stands between the underscores.
+        id: String,
+    },
+}
+
+#[derive(Debug, clap::Args)]
+struct Create {
+    /// What you call the key.
+    name: String,
+    /// Whose jobs it makes and sees; several keys may have one client. "anonymous" has the jobs from before there were keys
+    /// [default: the name].
+    #[arg(long, value_name = "NAME")]
+    client: Option<String>,
+    /// What its bearer may do.
+    #[arg(long, value_enum, default_value = "client")]
+    role: Role,
+    /// Requests a second; 0 for any number [default: that of the service].
+    #[arg(long, value_name = "NUMBER")]
+    requests_per_second: Option<u32>,
+    /// Jobs that may wait, designs of studies aside [default: that of the service].
+    #[arg(long, value_name = "NUMBER")]
+    queue_limit: Option<u32>,
+}
+
+impl Keys {
+    /// Runs the command.
+    ///
+    /// # Errors
+    ///
+    /// If the database cannot be used, or there is no such key.
+    pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
+        let runtime = tokio::runtime::Runtime::new().context("the runtime cannot be started")?;
+        runtime.block_on(async {
+            let store = Store::open(&self.database).await;
+            let store = store
+                .with_context(|| format!("cannot use the database {}", self.database.display()))?;
+            let done = self.act(&store).await;
+            store.close().await;
+            done
+        })?;
+        Ok(ExitCode::SUCCESS)
+    }
+
+    async fn act(&self, store: &Store) -> anyhow::Result<()> {
+        match &self.what {
+            What::Create(create) => create.run(store).await,
+            What::List => list(store).await,
+            What::Revoke { id } => {
+                if !store.revoke_key(id, Timestamp::now()).await? {
+                    bail!("there is no key {id} that is not revoked already");
+                }
+                println!("{id} is revoked.");
+                Ok(())
+            }
+        }
+    }
+}
+
+impl Create {
+    async fn run(&self, store: &Store) -> anyhow::Result<()> {
+        let client = self.client.as_ref().unwrap_or(&self.name);
+        for (what, text) in [("name", &self.name), ("client", client)] {
+            let is_plain =
+                (1..=100).contains(&text.chars().count()) && !text.chars().any(char::is_control);
+            if !is_plain {
+                bail!(
+                    "the {what} has to have 1 to 100 characters, none of them a control character"
+                );
+            }
+        }
+        let key = Key::random().context("the system has no source of chance")?;
+        let record = KeyRecord {
+            id: key.id().to_owned(),
+            client: client.clone(),
+            name: self.name.clone(),
+            role: self.role,
+            secret_hash: key.secret_hash(),
+            requests_per_second: self.requests_per_second,
+            queue_limit: self.queue_limit,
+            created_at: Timestamp::now(),
+            revoked_at: None,
+        };
+        store.add_key(&record).await?;
+        // The key alone on standard output, for a script; the rest beside it.
+        println!("{}", key.reveal());
+        eprintln!(
+            "Send it as `Authorization: Bearer {}...`. It is kept nowhere and cannot be shown again. From now on the service asks for keys.",
+            &key.reveal()[..20]
+        );
+        Ok(())
+    }
+}
+
+async fn list(store: &Store) -> anyhow::Result<()> {
+    println!(
+        "{:<18}{:<10}{:<20}{:<20}{:<22}state",
+        "id", "role", "client", "name", "made"
+    );
+    for key in store.list_keys().await? {
+        let state = key
+            .revoked_at
+            .map_or_else(|| "valid".to_owned(), |at| format!("revoked {at:.0}"));
+        println!(
+            "{:<18}{:<10}{:<20}{:<20}{:<22}{state}",
+            key.id,
+            key.role.word(),
+            key.client,
+            key.name,
+            format!("{:.0}", key.created_at)
+        );
+    }
+    Ok(())
+}

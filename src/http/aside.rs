@@ -1,0 +1,67 @@
+//! Work of some milliseconds or more that no request should hold others up with.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, LazyLock};
+use std::thread;
+
+use meshwright_engine::run::Run;
+use tokio::sync::Semaphore;
+
+use super::problem::internal;
+use crate::wire::Problem;
+
+/// So many pieces of such work are done at the same time; others wait for their turn. It is the cores that are short.
+static ROOM: LazyLock<Semaphore> =
+    LazyLock::new(|| Semaphore::new(2 * thread::available_parallelism().map_or(1, usize::from)));
+
+/// Does work where it holds nobody up. The work is told to stop when nobody waits for it any more.
+pub(super) async fn aside<T: Send + 'static>(
+    work: impl FnOnce(&Run) -> T + Send + 'static,
+) -> Result<T, Problem> {
+    let _permit = ROOM.acquire().await.expect("the semaphore is never closed");
+    let stop = StopOnDrop::default();
+    let run = Run::new(Arc::clone(&stop.0), |_, _| {});
+    let done = tokio::task::spawn_blocking(move || work(&run)).await;
+    done.map_err(|error| {
+        tracing::error!(%error, "work beside the requests failed");
+        internal()
+    })
+}
+
+/// Tells work to stop when the request that wanted it ends, however it ends.
+#[derive(Default)]
+struct StopOnDrop(Arc<AtomicBool>);
+
+impl Drop for StopOnDrop {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc;
+    use std::time::Duration;
+
+    use super::*;
+
+    #[tokio::test]
+    async fn work_stops_when_nobody_waits_for_it() {
+        let (begun, begins) = mpsc::channel();
+        let (ended, ends) = mpsc::channel();
+        let work = aside(move |run: &Run| {
+            begun.send(()).unwrap();
+            while run.check().is_ok() {
+                std::thread::yield_now();
+            }
+            ended.send(()).unwrap();
+        });
+        let request = tokio::spawn(work);
+        tokio::task::spawn_blocking(move || begins.recv().unwrap())
+            .await
+            .unwrap();
+        request.abort();
+        let end = tokio::task::spawn_blocking(move || ends.recv_timeout(Duration::from_secs(20)));
+        assert!(end.await.unwrap().is_ok());
+    }
+}

@@ -1,0 +1,161 @@
+//! Many submissions in one request.
+
+use axum::Json;
+use axum::extract::State;
+use axum::http::StatusCode;
+use axum::response::{IntoResponse, Response};
+use futures_util::future::join_all;
+use serde::{Deserialize, Serialize};
+use serde_json::value::RawValue;
+use utoipa::ToSchema;
+
+use super::app::App;
+use super::aside::aside;
+use super::client::Client;
+use super::document::Document;
+use super::parameters::IdempotencyKey;
+use super::view::{JobView, with_public_type};
+use crate::jobs::Submitted;
+use crate::wire::{Code, FieldError, Problem, Submission};
+
+/// The most submissions of a batch.
+pub(super) const MOST_IN_BATCH: usize = 100;
+
+/// Errors beyond this number are not told.
+const MOST_ERRORS: usize = 50;
+
+/// Submissions that stand side by side. Unlike the designs of a study they have nothing in common.
+#[derive(Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(title = "Batch")]
+pub(super) struct Batch<'a> {
+    /// The submissions, each as for `POST /v1/jobs`.
+    #[serde(borrow)]
+    #[schema(value_type = Vec<Submission>, min_items = 1, max_items = 100)]
+    submissions: Vec<&'a RawValue>,
+}
+
+/// What came of the submissions of a batch, in their order.
+#[derive(Serialize, ToSchema)]
+#[schema(title = "BatchAnswer")]
+pub(super) struct BatchAnswer<'a> {
+    /// Jobs that were taken, those of an earlier batch with the same key among them.
+    taken: usize,
+    /// One item for each submission.
+    items: Vec<BatchItem<'a>>,
+}
+
+/// What came of one submission: a job, or a problem.
+#[derive(Serialize, ToSchema)]
+#[schema(title = "BatchItem")]
+pub(super) struct BatchItem<'a> {
+    /// The job, if it was taken.
+    job: Option<JobView<'a>>,
+    /// Why it was not taken; its pointers lead into the submission.
+    #[schema(value_type = Option<Problem>)]
+    problem: Option<serde_json::Value>,
+}
+
+/// Submit a batch of jobs
+///
+/// Up to 100 submissions at once. A batch with a field that no submission may have is refused as a whole, with its place.
+/// Otherwise each submission is taken or refused by itself, as if it had been sent alone: teeth that do not reach each other,
+/// a queue that is full. The answer says what came of each, in their order. With an `Idempotency-Key` the batch may be repeated: what was taken is not taken twice.
+#[utoipa::path(
+    post, path = "/v1/jobs/batch", tag = "Jobs", operation_id = "submit_batch",
+    request_body(content = Batch, content_type = "application/json", description = "The submissions."),
+    params(
+        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[!-~]([ -~]*[!-~])?$", description = "A word of the client's choice, 1 to 250 characters, kept for a day: the same key and submission at the same place get the same job."),
+    ),
+    responses(
+        (status = 202, description = "What came of each submission. None may have been taken.", body = BatchAnswer),
+        (status = 400, description = "The body is no JSON, or a header is not understood.", body = Problem, content_type = "application/problem+json"),
+        (status = 408, description = "The body came too slowly.", body = Problem, content_type = "application/problem+json"),
+        (status = 413, description = "The body has more than 4 MiB.", body = Problem, content_type = "application/problem+json"),
+        (status = 415, description = "The body is not declared as JSON.", body = Problem, content_type = "application/problem+json"),
+        (status = 422, description = "The body is no batch, has more than 100 submissions, or fields that no submission may have; `errors` says which.", body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "Too many batches come at once. Try again after `Retry-After` seconds.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(super) async fn submit(
+    State(app): State<App>,
+    client: Client,
+    IdempotencyKey(key): IdempotencyKey,
+    Document(document): Document<4>,
+) -> Result<Response, Problem> {
+    let read = aside(move |_| read(&document)).await??;
+    let jobs = read.into_iter().enumerate().map(|(i, submission)| {
+        let key = key.as_ref().map(|key| format!("{key}/{i}"));
+        let (app, client) = (&app, &client);
+        async move {
+            let submission = submission?;
+            let submitted = app.jobs.submit(&client.0, &submission, key).await;
+            submitted.map_err(Problem::from)
+        }
+    });
+    // Submissions that arrive together share a commit.
+    let outcomes: Vec<Result<Submitted, Problem>> = join_all(jobs).await;
+
+    let item = |outcome: &'_ Result<Submitted, Problem>| match outcome {
+        Ok(submitted) => (Some(submitted.job.clone()), None),
+        Err(problem) => (None, Some(problem.clone())),
+    };
+    let outcomes: Vec<_> = outcomes.iter().map(item).collect();
+    let items: Vec<BatchItem<'_>> = outcomes
+        .iter()
+        .map(|(job, problem)| BatchItem {
+            job: job.as_ref().map(|job| JobView::new(job, &app.edge)),
+            problem: problem.as_ref().map(|problem| {
+                let problem = serde_json::to_value(problem).expect("a problem is plain data");
+                with_public_type(problem, &app.edge.public_url)
+            }),
+        })
+        .collect();
+    let taken = items.iter().filter(|item| item.job.is_some()).count();
+    Ok((StatusCode::ACCEPTED, Json(BatchAnswer { taken, items })).into_response())
+}
+
+fn read(document: &[u8]) -> Result<Vec<Result<Submission, Problem>>, Problem> {
+    let batch: Batch<'_> = serde_json::from_slice(document).map_err(|error| {
+        let code = if error.is_data() {
+            Code::WrongType
+        } else {
+            Code::MalformedJson
+        };
+        Problem::new(code, format!("This is no batch of submissions: {error}."))
+    })?;
+    let count = batch.submissions.len();
+    if !(1..=MOST_IN_BATCH).contains(&count) {
+        let detail = format!(
+            "/submissions has {count} submissions; a batch has 1 to {MOST_IN_BATCH}. POST /v1/studies takes thousands of variants of one."
+        );
+        let nearest = count.clamp(1, MOST_IN_BATCH) as f64;
+        let code = if count == 0 {
+            Code::OutOfRange
+        } else {
+            Code::TooLarge
+        };
+        let error = FieldError::new("/submissions", code, detail).nearest(nearest);
+        return Err(Problem::of_fields(vec![error]));
+    }
+    let wrong: Vec<FieldError> = batch
+        .submissions
+        .iter()
+        .enumerate()
+        .flat_map(|(i, submission)| {
+            let errors = Submission::field_errors(submission.get().as_bytes());
+            errors.into_iter().map(move |error| FieldError {
+                pointer: format!("/submissions/{i}{}", error.pointer),
+                ..error
+            })
+        })
+        .take(MOST_ERRORS)
+        .collect();
+    if !wrong.is_empty() {
+        return Err(Problem::of_fields(wrong));
+    }
+    let submissions = batch.submissions.iter();
+    Ok(submissions
+        .map(|submission| Submission::parse(submission.get().as_bytes()))
+        .collect())
+}

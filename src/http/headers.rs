@@ -1,0 +1,181 @@
+//! Headers that every answer bears: what a browser may not do with it, and under what name it stands in the log.
+
+use axum::extract::{Request, State};
+use axum::http::header::{
+    CACHE_CONTROL, CONTENT_SECURITY_POLICY, HeaderName, HeaderValue, REFERRER_POLICY,
+    STRICT_TRANSPORT_SECURITY, X_CONTENT_TYPE_OPTIONS, X_FRAME_OPTIONS,
+};
+use axum::middleware::Next;
+use axum::response::Response;
+use uuid::Uuid;
+
+/// Pages have no scripts but those of the documentation, which brings its own.
+const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+const POLICY_OF_DOCS: &str = "default-src 'self'; script-src 'self' 'unsafe-inline'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
+const TRACE_PARENT: HeaderName = HeaderName::from_static("traceparent");
+const RESOURCE_POLICY: HeaderName = HeaderName::from_static("cross-origin-resource-policy");
+
+/// The most characters of a request's id that a client gives.
+const LONGEST_ID: usize = 128;
+
+/// Says what browsers may not do with answers, and that what is private is not to be kept by others.
+pub(super) async fn secure(
+    State(public_url_is_https): State<bool>,
+    request: Request,
+    next: Next,
+) -> Response {
+    let is_docs = request.uri().path().starts_with("/docs");
+    let mut response = next.run(request).await;
+    let headers = response.headers_mut();
+    let policy = if is_docs { POLICY_OF_DOCS } else { POLICY };
+    for (name, value) in [
+        (X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        (X_FRAME_OPTIONS, "DENY"),
+        (REFERRER_POLICY, "no-referrer"),
+        (RESOURCE_POLICY, "same-site"),
+        (CONTENT_SECURITY_POLICY, policy),
+    ] {
+        headers.insert(name, HeaderValue::from_static(value));
+    }
+    if public_url_is_https {
+        let value = HeaderValue::from_static("max-age=31536000");
+        headers.insert(STRICT_TRANSPORT_SECURITY, value);
+    }
+    headers
+        .entry(CACHE_CONTROL)
+        .or_insert(HeaderValue::from_static("no-store"));
+    response
+}
+
+/// Gives every request an id and a place in a trace: those that it came with, if they are such, or new ones. They stand in
+/// the log and on the answer.
+pub(super) async fn name(mut request: Request, next: Next) -> Response {
+    let id = request
+        .headers()
+        .get(REQUEST_ID)
+        .filter(|id| is_id(id))
+        .cloned()
+        .unwrap_or_else(|| value(&Uuid::new_v4().to_string()));
+    let parent = request
+        .headers()
+        .get(TRACE_PARENT)
+        .and_then(|parent| Trace::parse(parent.to_str().ok()?));
+    let trace = parent.unwrap_or_else(Trace::begin).step();
+    request.headers_mut().insert(REQUEST_ID, id.clone());
+    request.extensions_mut().insert(trace.clone());
+    let mut response = next.run(request).await;
+    response.headers_mut().insert(REQUEST_ID, id);
+    response
+        .headers_mut()
+        .insert(TRACE_PARENT, value(&trace.to_header()));
+    response
+}
+
+fn is_id(id: &HeaderValue) -> bool {
+    // What stands in a log is not to look like another line of it.
+    let is_plain = |byte: &u8| byte.is_ascii_alphanumeric() || b"-_.:/+=".contains(byte);
+    (1..=LONGEST_ID).contains(&id.len()) && id.as_bytes().iter().all(is_plain)
+}
+
+fn value(text: &str) -> HeaderValue {
+    HeaderValue::from_str(text).expect("hexadecimal digits are visible ASCII")
+}
+
+/// A place in a trace (W3C Trace Context).
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Trace {
+    /// The id of the whole trace.
+    pub(super) id: String,
+    span: String,
+    flags: String,
+}
+
+impl Trace {
+    fn begin() -> Self {
+        Self {
+            id: Uuid::new_v4().simple().to_string(),
+            span: String::new(),
+            flags: "00".to_owned(),
+        }
+    }
+
+    /// Reads a `traceparent`; `None` if it is none.
+    fn parse(text: &str) -> Option<Self> {
+        let mut parts = text.split('-');
+        let mut part = |length: usize| {
+            let is_hex = |part: &&str| {
+                part.len() == length
+                    && part
+                        .bytes()
+                        .all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
+            };
+            parts.next().filter(is_hex).map(str::to_owned)
+        };
+        let (version, id, span, flags) = (part(2)?, part(32)?, part(16)?, part(2)?);
+        let is_zero = |text: &str| text.bytes().all(|byte| byte == b'0');
+        // A later version may have more parts behind these.
+        let known = version != "ff" && (version != "00" || parts.next().is_none());
+        (known && !is_zero(&id) && !is_zero(&span)).then_some(Self { id, span, flags })
+    }
+
+    /// A step of its own in the same trace.
+    fn step(self) -> Self {
+        let span = Uuid::new_v4().simple().to_string();
+        Self {
+            span: span[..16].to_owned(),
+            ..self
+        }
+    }
+
+    fn to_header(&self) -> String {
+        format!("00-{}-{}-{}", self.id, self.span, self.flags)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_trace_goes_on_with_a_step_of_its_own() {
+        // The example of the recommendation.
+        let parent = "00-0af7651916cd43dd8448eb211c80319c-b7ad6b7169203331-01";
+        let trace = Trace::parse(parent).unwrap().step();
+        let header = trace.to_header();
+        assert!(
+            header.starts_with("00-0af7651916cd43dd8448eb211c80319c-") && header.ends_with("-01")
+        );
+        assert!(!header.contains("b7ad6b7169203331"));
+        assert!(Trace::parse(&header).is_some());
+        assert!(
+            Trace::parse("01-0af7651916cd43dd8448eb211c80319c-b7ad6b7169203331-01-more").is_some()
+        );
+        for text in [
+            "",
+            "00",
+            "ff-0af7651916cd43dd8448eb211c80319c-b7ad6b7169203331-01",
+            "00-00000000000000000000000000000000-b7ad6b7169203331-01",
+            "00-0af7651916cd43dd8448eb211c80319c-0000000000000000-01",
+            "00-0AF7651916CD43DD8448EB211C80319C-b7ad6b7169203331-01",
+            "00-0af7651916cd43dd8448eb211c80319c-b7ad6b7169203331-01-more",
+        ] {
+            assert_eq!(Trace::parse(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn an_id_that_could_pass_for_a_line_of_the_log_is_none() {
+        for (id, good) in [
+            ("abc-1", true),
+            ("a b", false),
+            ("a\"b", false),
+            ("", false),
+            ("a{b}", false),
+        ] {
+            assert_eq!(is_id(&HeaderValue::from_str(id).unwrap()), good, "{id}");
+        }
+        assert!(!is_id(&HeaderValue::from_str(&"a".repeat(200)).unwrap()));
+    }
+}

@@ -1,0 +1,129 @@
+//! The events of a study as they happen.
+
+use std::time::Duration;
+
+use axum::extract::{Path, State};
+use axum::response::Response;
+use axum::response::sse::Event;
+use serde::Serialize;
+use utoipa::ToSchema;
+use uuid::Uuid;
+
+use super::study_id;
+use super::view::StudyView;
+use crate::http::app::App;
+use crate::http::client::Client;
+use crate::http::events::{self, EventName, Watching};
+use crate::jobs::News;
+use crate::wire::{Problem, Status};
+
+/// The progress of a study is told so often at most.
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
+
+/// The data of a `progress` event of a study.
+#[derive(Serialize, ToSchema)]
+#[schema(as = StudyProgress)]
+pub(in crate::http) struct StudyProgressView {
+    /// Designs that have come to an end, whichever.
+    done: u64,
+    /// Designs in all.
+    total: u64,
+}
+
+/// An event of a study.
+#[derive(ToSchema)]
+#[schema(title = "StudyEvent")]
+#[expect(dead_code, reason = "it stands for the events in the OpenAPI document")]
+pub(in crate::http) struct StudyEvent {
+    /// The number of the event in the stream.
+    id: String,
+    /// `status` at the start of the stream and whenever the state changes, else `progress`.
+    event: EventName,
+    /// JSON: of `status` a `StudyState`, of `progress` a `StudyProgress`.
+    #[schema(content_media_type = "application/json")]
+    data: String,
+}
+
+/// Watch a study
+///
+/// A stream of server-sent events: `status` with the study as data, at the start and whenever its state changes, and
+/// `progress` with the designs that are done, four times a second at most. It ends when the study has ended.
+#[utoipa::path(
+    get, path = "/v1/studies/{id}/events", tag = "Studies", operation_id = "watch_study",
+    params(("id" = String, Path, format = "uuid", description = "The id of the study.")),
+    responses(
+        (status = 200, description = "Events: `status` with a StudyState as data, and `progress` with a StudyProgress.", body = StudyEvent, content_type = "text/event-stream"),
+        (status = 404, description = "There is no such study.", body = Problem, content_type = "application/problem+json"),
+        (status = 429, description = "As many streams are open as one client may have.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(in crate::http) async fn events(
+    State(app): State<App>,
+    client: Client,
+    Path(id): Path<String>,
+) -> Result<Response, Problem> {
+    let id = study_id(&id)?;
+    app.jobs.find_study(client.name(), id).await?;
+    let place = events::place(&app, client.name())?;
+    let watch = Watch {
+        news: app.jobs.news(id),
+        app,
+        client: client.0.client,
+        id,
+        count: 0,
+        known: None,
+    };
+    Ok(events::answer(watch, place))
+}
+
+/// One client that watches one study.
+struct Watch {
+    app: App,
+    client: String,
+    id: Uuid,
+    news: News,
+    /// Events sent.
+    count: u64,
+    /// What the client knows: the state, and the designs done.
+    known: Option<(Status, u64)>,
+}
+
+impl Watching for Watch {
+    /// The next event; none after the study has ended or vanished, or when the service shuts down.
+    async fn next(&mut self) -> Option<Event> {
+        if self.known.is_some_and(|(status, _)| status.has_ended()) {
+            return None;
+        }
+        loop {
+            let study = self.app.jobs.find_study(&self.client, self.id).await.ok()?;
+            let now = (study.status(), study.done());
+            let before = self.known.replace(now);
+            if before.map(|(status, _)| status) != Some(now.0) {
+                return Some(self.event("status", &StudyView::new(&study, &self.app.edge)));
+            }
+            if before != Some(now) {
+                let view = StudyProgressView {
+                    done: study.done(),
+                    total: study.total,
+                };
+                return Some(self.event("progress", &view));
+            }
+            // The pause comes after the news, so that many of them cost one look.
+            let news = async {
+                self.news.changed_state().await;
+                tokio::time::sleep(PROGRESS_INTERVAL).await;
+            };
+            tokio::select! {
+                () = news => {}
+                () = self.app.jobs.stop().cancelled() => return None,
+            }
+        }
+    }
+}
+
+impl Watch {
+    fn event(&mut self, name: &str, data: &impl Serialize) -> Event {
+        self.count += 1;
+        events::event(self.count, name, data)
+    }
+}

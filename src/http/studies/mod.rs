@@ -1,0 +1,297 @@
+//! Studies: many variants of a submission at once, and the table that they come to.
+
+mod events;
+mod table;
+mod view;
+
+use axum::Json;
+use axum::extract::{Path, State};
+use axum::http::StatusCode;
+use axum::http::header::{CONTENT_TYPE, HeaderMap, HeaderValue, LOCATION, RETRY_AFTER};
+use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+use utoipa::IntoParams;
+use uuid::Uuid;
+
+use super::app::{App, Edge};
+use super::aside::aside;
+use super::client::Client;
+use super::conditional::{Keep, Tag};
+use super::document::Document;
+use super::page::{self, Page, USUAL_LIMIT};
+use super::parameters::{IdempotencyKey, Parameters};
+use super::prefer::Wait;
+use crate::jobs::{StudyFilter, StudyRecord, StudySubmitted};
+use crate::wire::{Code, Problem, Study};
+use view::StudyView;
+
+pub(super) use events::*;
+pub(super) use table::*;
+
+/// A study may have so many MiB: ten thousand designs, each listed with a few changes, have one or two.
+const MIB: usize = 4;
+
+/// The document of a study is told with its state if it has no more bytes than this.
+const LONGEST_IN_VIEW: u64 = 64 << 10;
+
+/// The id in a path. What is no id names no study.
+fn study_id(text: &str) -> Result<Uuid, Problem> {
+    text.parse()
+        .map_err(|_| Problem::new(Code::StudyNotFound, "There is no study of this id."))
+}
+
+/// Submit a study
+///
+/// Takes one submission in many variants and answers at once. Each variant that can be built becomes a job of the same
+/// queue, which takes turns with the jobs that stand alone; the others stand in the table with their problem. The study is on the disk
+/// when it is answered. Equal designs are computed once.
+#[utoipa::path(
+    post, path = "/v1/studies", tag = "Studies", operation_id = "submit_study",
+    request_body(content = Study, content_type = "application/json", description = "The study."),
+    params(
+        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[!-~]([ -~]*[!-~])?$", description = "A word of the client's choice, 1 to 255 characters, kept for a day: the same key and study get the same study, however often they are sent."),
+    ),
+    responses(
+        (status = 202, description = "The study is taken.", body = StudyView, headers(
+            ("Location" = String, description = "The address of the study."),
+            ("Retry-After" = u32, description = "Seconds after which it is worth looking."),
+        )),
+        (status = 200, description = "With a repeated `Idempotency-Key`, the study that has ended meanwhile.", body = StudyView),
+        (status = 400, description = "The body is no JSON, or a header is not understood.", body = Problem, content_type = "application/problem+json"),
+        (status = 408, description = "The body came too slowly.", body = Problem, content_type = "application/problem+json"),
+        (status = 413, description = "The body has more than 4 MiB.", body = Problem, content_type = "application/problem+json"),
+        (status = 415, description = "The body is not declared as JSON.", body = Problem, content_type = "application/problem+json"),
+        (status = 422, description = "The study is not understood, or has more than 10,000 designs; `errors` says which field is why. Or the key was used for another study.", body = Problem, content_type = "application/problem+json"),
+        (status = 429, description = "More designs of this client wait than may.", body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "Too many designs wait, nothing can be stored, or the service is shutting down. Try again after `Retry-After` seconds.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(in crate::http) async fn submit(
+    State(app): State<App>,
+    client: Client,
+    IdempotencyKey(key): IdempotencyKey,
+    Document(document): Document<MIB>,
+) -> Result<Response, Problem> {
+    let study = aside(move |run| Study::parse(&document, run)).await??;
+    let StudySubmitted { study, repeated } = app.jobs.submit_study(&client.0, study, key).await?;
+
+    let ended = study.status().has_ended();
+    let status = if repeated && ended {
+        StatusCode::OK
+    } else {
+        StatusCode::ACCEPTED
+    };
+    let body = StudyView::new(&study, &app.edge).to_json();
+    let mut response = (status, [(CONTENT_TYPE, "application/json")], body).into_response();
+    let headers = response.headers_mut();
+    if let Ok(address) = HeaderValue::try_from(app.edge.study(study.id)) {
+        headers.insert(LOCATION, address);
+    }
+    if !ended {
+        headers.insert(RETRY_AFTER, HeaderValue::from_static("1"));
+    }
+    Ok(response)
+}
+
+/// What to list.
+#[derive(Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub(in crate::http) struct StudyListParameters {
+    /// Studies of this name.
+    name: Option<String>,
+    /// Studies with this tag.
+    tag: Option<String>,
+    /// Studies from the first one on that was submitted at this instant or later (RFC 3339).
+    #[param(format = DateTime)]
+    submitted_since: Option<String>,
+    /// Studies before the first one that was submitted at this instant or later (RFC 3339).
+    #[param(format = DateTime)]
+    submitted_before: Option<String>,
+    /// So many studies at most.
+    #[param(minimum = 1, maximum = 200, default = 50)]
+    limit: Option<u32>,
+    /// Where to go on: `next` of the list before.
+    #[param(pattern = "^c[1-9a-f][0-9a-f]{0,14}$")]
+    cursor: Option<String>,
+}
+
+/// List studies
+///
+/// Newest first, page by page.
+#[utoipa::path(
+    get, path = "/v1/studies", tag = "Studies", operation_id = "list_studies",
+    params(StudyListParameters),
+    responses(
+        (status = 200, description = "The studies.", body = Page<StudyView>, headers(
+            ("Link" = String, description = "With rel=next, the address of the next page; absent at the end."),
+        )),
+        (status = 400, description = "A parameter is not understood.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(in crate::http) async fn list(
+    State(app): State<App>,
+    client: Client,
+    Parameters(parameters): Parameters<StudyListParameters>,
+) -> Result<Response, Problem> {
+    let limit = page::limit(parameters.limit, USUAL_LIMIT)?;
+    let (since, before) = (&parameters.submitted_since, &parameters.submitted_before);
+    let filter = StudyFilter {
+        name: parameters.name.clone(),
+        tag: parameters.tag.clone(),
+        span: page::span(since.as_deref(), before.as_deref())?,
+        after: page::cursor(parameters.cursor.as_deref())?,
+    };
+    let found = app.jobs.list_studies(client.name(), &filter, limit).await?;
+    let views = found
+        .items
+        .iter()
+        .map(|study| StudyView::new(study, &app.edge));
+    let page = Page {
+        items: views.collect(),
+        next: found.next.map(|cursor| cursor.to_string()),
+    };
+    let pairs = [
+        ("name", parameters.name.as_deref()),
+        ("tag", parameters.tag.as_deref()),
+        ("submitted_since", since.as_deref()),
+        ("submitted_before", before.as_deref()),
+        ("limit", Some(&*limit.to_string())),
+    ];
+    Ok(page::answer(&app.edge, "/v1/studies", &pairs, page))
+}
+
+/// Look at a study
+///
+/// Its state, its progress and the study as it was sent. With `If-None-Match` it costs nothing while nothing changes.
+#[utoipa::path(
+    get, path = "/v1/studies/{id}", tag = "Studies", operation_id = "get_study",
+    params(
+        ("id" = String, Path, format = "uuid", description = "The id of the study."),
+        ("Prefer" = Option<String>, Header, description = "`wait=N`: answer when the study has ended, or after N seconds (60 at most)."),
+        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
+    ),
+    responses(
+        (status = 200, description = "The study.", body = StudyView, headers(
+            ("ETag" = String, description = "Stands for this answer."),
+            ("Retry-After" = u32, description = "Until the study has ended: seconds after which it is worth looking again."),
+        )),
+        (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
+        (status = 404, description = "There is no such study.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(in crate::http) async fn show(
+    State(app): State<App>,
+    client: Client,
+    wait: Wait,
+    Path(id): Path<String>,
+    request: HeaderMap,
+) -> Result<Response, Problem> {
+    let id = study_id(&id)?;
+    let wait = wait.grant(&app.door, client.name());
+    let study = match wait.patience() {
+        Some(patience) => app.jobs.wait_for_study(client.name(), id, patience).await?,
+        None => app.jobs.find_study(client.name(), id).await?,
+    };
+    // What has not changed is answered without reading the document.
+    let tag = tag_of(&study, "state", &app.edge);
+    let whole = async {
+        let document = app.jobs.short_study_text(id, LONGEST_IN_VIEW).await?;
+        let body = StudyView::whole(&study, document, &app.edge).to_json();
+        Ok::<_, Problem>(([(CONTENT_TYPE, "application/json")], body).into_response())
+    };
+    let mut response = tag.answer(Keep::AskAgain, &request, whole).await?;
+    wait.acknowledge(response.headers_mut());
+    tell_when_to_return(&study, &mut response);
+    Ok(response)
+}
+
+/// The tag of what is told of a study, in one form, as long as the study does not change.
+fn tag_of(study: &StudyRecord, form: &str, edge: &Edge) -> Tag {
+    let (id, version) = (study.id.to_string(), study.version.to_string());
+    Tag::of(&["study", &id, &version, form, &edge.public_url])
+}
+
+/// Until the study has ended it is worth looking again.
+fn tell_when_to_return(study: &StudyRecord, response: &mut Response) {
+    if !study.status().has_ended() {
+        response
+            .headers_mut()
+            .insert(RETRY_AFTER, HeaderValue::from_static("1"));
+    }
+}
+
+/// Get a study as it was sent
+///
+/// The document that was submitted, without its white space. It never changes.
+#[utoipa::path(
+    get, path = "/v1/studies/{id}/document", tag = "Studies", operation_id = "get_study_document",
+    params(
+        ("id" = String, Path, format = "uuid", description = "The id of the study."),
+        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
+    ),
+    responses(
+        (status = 200, description = "The study.", body = Study, headers(
+            ("ETag" = String, description = "Stands for this document."),
+        )),
+        (status = 304, description = "The client has this document."),
+        (status = 404, description = "There is no such study.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(in crate::http) async fn document(
+    State(app): State<App>,
+    client: Client,
+    Path(id): Path<String>,
+    request: HeaderMap,
+) -> Result<Response, Problem> {
+    let study = app.jobs.find_study(client.name(), study_id(&id)?).await?;
+    let text = async {
+        let text = app.jobs.study_text(study.id).await?;
+        Ok::<_, Problem>(([(CONTENT_TYPE, "application/json")], text).into_response())
+    };
+    let tag = Tag::of(&["study document", &study.id.to_string()]);
+    tag.answer(Keep::ForGood, &request, text).await
+}
+
+/// Cancel a study
+///
+/// Dismisses what waits or runs of it; what has results keeps them. Cancelling again changes nothing.
+#[utoipa::path(
+    post, path = "/v1/studies/{id}/cancel", tag = "Studies", operation_id = "cancel_study",
+    params(("id" = String, Path, format = "uuid", description = "The id of the study.")),
+    responses(
+        (status = 202, description = "The study is dismissed.", body = StudyView),
+        (status = 404, description = "There is no such study.", body = Problem, content_type = "application/problem+json"),
+        (status = 409, description = "The study has ended already.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(in crate::http) async fn cancel(
+    State(app): State<App>,
+    client: Client,
+    Path(id): Path<String>,
+) -> Result<Response, Problem> {
+    let study = app.jobs.cancel_study(client.name(), study_id(&id)?).await?;
+    let view = StudyView::new(&study, &app.edge);
+    Ok((StatusCode::ACCEPTED, Json(view)).into_response())
+}
+
+/// Delete a study
+///
+/// Removes a study that has ended, with its jobs and their results.
+#[utoipa::path(
+    delete, path = "/v1/studies/{id}", tag = "Studies", operation_id = "delete_study",
+    params(("id" = String, Path, format = "uuid", description = "The id of the study.")),
+    responses(
+        (status = 204, description = "The study is gone."),
+        (status = 404, description = "There is no such study.", body = Problem, content_type = "application/problem+json"),
+        (status = 409, description = "The study has not ended; cancel it first.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(in crate::http) async fn delete(
+    State(app): State<App>,
+    client: Client,
+    Path(id): Path<String>,
+) -> Result<StatusCode, Problem> {
+    app.jobs.delete_study(client.name(), study_id(&id)?).await?;
+    Ok(StatusCode::NO_CONTENT)
+}

@@ -1,0 +1,363 @@
+//! The table of a study, and the results behind it. Both are sent as they are read, some rows at a time, so that a table of
+//! ten thousand rows takes the memory of five hundred.
+
+use std::sync::Arc;
+
+use axum::body::{Body, Bytes};
+use axum::extract::{Path, State};
+use axum::http::HeaderMap;
+use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE, HeaderName, HeaderValue, LINK};
+use axum::response::{IntoResponse, Response};
+use futures_util::stream;
+use serde::Serialize;
+use serde_json::Value;
+use serde_json::value::RawValue;
+use utoipa::ToSchema;
+
+use super::view::why_failed;
+use super::{study_id, tag_of, tell_when_to_return};
+use crate::http::app::App;
+use crate::http::aside::aside;
+use crate::http::client::Client;
+use crate::http::conditional::Keep;
+use crate::http::view::with_public_type;
+use crate::jobs::{DocumentLine, JobError, StudyRecord};
+use crate::wire::study_table::{CsvTable, Outline, TableRow};
+use crate::wire::{Code, Problem, Results, RowState, StudyResults};
+
+/// Get the table of a study
+///
+/// A row for each design, filled as far as the study has come; it can be read at any time. Rows have their place when the
+/// study is taken, those beyond the first 500 a moment later.
+#[utoipa::path(
+    get, path = "/v1/studies/{id}/results", tag = "Studies", operation_id = "get_study_results",
+    params(
+        ("id" = String, Path, format = "uuid", description = "The id of the study."),
+        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
+    ),
+    responses(
+        (status = 200, description = "The table.", body = StudyResults, headers(
+            ("ETag" = String, description = "Stands for this answer."),
+            ("Retry-After" = u32, description = "Until the study has ended: seconds after which it is worth looking again."),
+        )),
+        (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
+        (status = 404, description = "There is no such study.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(in crate::http) async fn results(
+    State(app): State<App>,
+    client: Client,
+    Path(id): Path<String>,
+    request: HeaderMap,
+) -> Result<Response, Problem> {
+    send(app, client, &id, &request, Form::Json).await
+}
+
+/// Get the table of a study, or its results, as a file
+///
+/// `table.json` and `table.csv` are the table: in CSV one line for each row and torque, the columns named as in the JSON
+/// with dots between the names. `documents.ndjson` has the results of every design that has some, as
+/// `/v1/jobs/{id}/results` gives them: one object to a line, with the place of the design in the table, its label and its
+/// job. All are sent as they are read.
+#[utoipa::path(
+    get, path = "/v1/studies/{id}/results/{file}", tag = "Studies", operation_id = "get_study_file",
+    params(
+        ("id" = String, Path, format = "uuid", description = "The id of the study."),
+        ("file" = inline(StudyFile), Path, description = "`table.json`, `table.csv` or `documents.ndjson`."),
+        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
+    ),
+    responses(
+        (status = 200, description = "The table, or the results: of NDJSON, the schema is that of a line.", content(
+            (StudyResults = "application/json"),
+            (String = "text/csv"),
+            (DesignResults = "application/x-ndjson"),
+        ), headers(("ETag" = String, description = "Stands for this answer."))),
+        (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
+        (status = 404, description = "There is no such study, or no such file.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(in crate::http) async fn file(
+    State(app): State<App>,
+    client: Client,
+    Path((id, file)): Path<(String, String)>,
+    request: HeaderMap,
+) -> Result<Response, Problem> {
+    let form = match file.as_str() {
+        "table.json" => Form::Json,
+        "table.csv" => Form::Csv,
+        "documents.ndjson" => Form::Documents,
+        _ => {
+            return Err(Problem::new(
+                Code::NotFound,
+                "The files are table.json, table.csv and documents.ndjson.",
+            ));
+        }
+    };
+    send(app, client, &id, &request, form).await
+}
+
+/// The table as CSV at the address that it had first.
+pub(in crate::http) async fn old_csv(
+    State(app): State<App>,
+    client: Client,
+    Path(id): Path<String>,
+    request: HeaderMap,
+) -> Result<Response, Problem> {
+    let address = format!(
+        "<{}/v1/studies/{id}/results/table.csv>; rel=\"successor-version\"",
+        app.edge.public_url
+    );
+    let mut response = send(app, client, &id, &request, Form::Csv).await?;
+    let headers = response.headers_mut();
+    // 2026-11-21, as RFC 9745 wants it.
+    headers.insert(
+        HeaderName::from_static("deprecation"),
+        HeaderValue::from_static("@1795219200"),
+    );
+    if let Ok(address) = HeaderValue::try_from(address) {
+        headers.insert(LINK, address);
+    }
+    Ok(response)
+}
+
+/// A file of a study.
+#[derive(ToSchema)]
+#[schema(title = "StudyFile")]
+#[expect(dead_code, reason = "it stands for the names in the OpenAPI document")]
+pub(in crate::http) enum StudyFile {
+    /// The table.
+    #[serde(rename = "table.json")]
+    Json,
+    /// The table as CSV.
+    #[serde(rename = "table.csv")]
+    Csv,
+    /// The results, one to a line.
+    #[serde(rename = "documents.ndjson")]
+    Documents,
+}
+
+/// A line of `documents.ndjson`: the results of a design.
+#[derive(Serialize, ToSchema)]
+#[schema(title = "DesignResults")]
+pub(in crate::http) struct DesignResults<'a> {
+    /// The place of the design in the table, from 0.
+    row: i64,
+    /// What the design is called.
+    label: &'a str,
+    /// The job that computed it.
+    #[schema(format = "uuid")]
+    job: &'a str,
+    /// The results.
+    #[schema(value_type = Results)]
+    results: &'a RawValue,
+}
+
+#[derive(Clone, Copy)]
+enum Form {
+    Json,
+    Csv,
+    Documents,
+}
+
+impl Form {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Json => "table.json",
+            Self::Csv => "table.csv",
+            Self::Documents => "documents.ndjson",
+        }
+    }
+
+    fn content_type(self) -> &'static str {
+        match self {
+            Self::Json => "application/json",
+            Self::Csv => "text/csv; charset=utf-8",
+            Self::Documents => "application/x-ndjson",
+        }
+    }
+}
+
+async fn send(
+    app: App,
+    client: Client,
+    id: &str,
+    request: &HeaderMap,
+    form: Form,
+) -> Result<Response, Problem> {
+    let study = app.jobs.find_study(client.name(), study_id(id)?).await?;
+    let tag = tag_of(&study, form.word(), &app.edge);
+    let made = async {
+        let body = match form {
+            Form::Json | Form::Csv => table(app, &study, form).await?,
+            Form::Documents => documents(app, &study).await?,
+        };
+        let mut response = ([(CONTENT_TYPE, form.content_type())], body).into_response();
+        if !matches!(form, Form::Json) {
+            let name = format!(
+                "attachment; filename=\"study-{}-{}\"",
+                study.id,
+                form.word()
+            );
+            if let Ok(name) = HeaderValue::try_from(name) {
+                response.headers_mut().insert(CONTENT_DISPOSITION, name);
+            }
+        }
+        Ok::<_, Problem>(response)
+    };
+    let mut response = tag.answer(Keep::AskAgain, request, made).await?;
+    tell_when_to_return(&study, &mut response);
+    Ok(response)
+}
+
+/// The table, read twice: first for what has to be known before the first row, then row by row.
+async fn table(app: App, study: &StudyRecord, form: Form) -> Result<Body, Problem> {
+    let mut outline = Outline::default();
+    let mut read = 0;
+    loop {
+        let rows = app.jobs.study_rows(study.id, read).await?;
+        if rows.is_empty() {
+            break;
+        }
+        read += rows.len() as u64;
+        for row in &rows {
+            outline.add(row);
+        }
+    }
+    let csv = CsvTable::new(outline.pointers().to_vec());
+    let (head, foot) = match form {
+        Form::Csv => (csv.header(), ""),
+        Form::Json | Form::Documents => (head_of_json(study, &app), "]}"),
+    };
+    let writer = RowWriter {
+        study: study.clone(),
+        front: outline.front(),
+        csv: matches!(form, Form::Csv).then_some(csv),
+        public_url: Arc::from(app.edge.public_url.as_str()),
+    };
+    let rows = stream::unfold(Some((app, Arc::new(writer), 0)), async |at| {
+        let (app, writer, read) = at?;
+        match page(&app, &writer, read).await {
+            Ok(Some((text, count))) => Some((Ok(text), Some((app, writer, read + count)))),
+            Ok(None) => None,
+            // The head has been sent; the connection is cut, so that nobody takes this for the whole table.
+            Err(problem) => Some((Err(problem), None)),
+        }
+    });
+    let head = stream::iter([Ok(Bytes::from(head))]);
+    let foot = stream::iter([Ok(Bytes::from_static(foot.as_bytes()))]);
+    use futures_util::StreamExt;
+    Ok(Body::from_stream(head.chain(rows).chain(foot)))
+}
+
+/// Everything before the rows.
+fn head_of_json(study: &StudyRecord, app: &App) -> String {
+    let empty = StudyResults {
+        id: Some(study.id),
+        status: study.status(),
+        done: study.done(),
+        total: study.total,
+        gear: study.gear,
+        problem: why_failed(study, &app.edge),
+        rows: Vec::new(),
+    };
+    let mut text = serde_json::to_string(&empty).expect("a table is plain data");
+    // The rows come last.
+    let end = text.rfind("]}").expect("a table ends with its rows");
+    text.truncate(end);
+    text
+}
+
+/// How rows are written.
+struct RowWriter {
+    study: StudyRecord,
+    front: Vec<bool>,
+    csv: Option<CsvTable>,
+    public_url: Arc<str>,
+}
+
+impl RowWriter {
+    /// The rows behind the first `read` ones, as text.
+    fn write(&self, read: u64, states: Vec<RowState>) -> String {
+        let mut text = String::new();
+        for (i, state) in (read..).zip(states) {
+            let best = usize::try_from(i).ok().and_then(|i| self.front.get(i));
+            let mut row = TableRow::new(self.study.gear, state, best.copied().unwrap_or(false));
+            row.problem = row.problem.map(|problem| self.with_address(problem));
+            match &self.csv {
+                Some(csv) => text.push_str(&csv.lines([&row])),
+                None => {
+                    if i > 0 {
+                        text.push(',');
+                    }
+                    let row = serde_json::to_string(&row);
+                    text.push_str(&row.expect("a row is plain data"));
+                }
+            }
+        }
+        text
+    }
+
+    fn with_address(&self, problem: Value) -> Value {
+        with_public_type(problem, &self.public_url)
+    }
+}
+
+/// The text of the rows behind the first `read` ones, and how many they are.
+async fn page(
+    app: &App,
+    writer: &Arc<RowWriter>,
+    read: u64,
+) -> Result<Option<(Bytes, u64)>, Problem> {
+    let rows = app.jobs.study_rows(writer.study.id, read).await?;
+    if rows.is_empty() {
+        return Ok(None);
+    }
+    let (count, writer) = (rows.len() as u64, Arc::clone(writer));
+    let text = aside(move |_| writer.write(read, rows)).await?;
+    Ok(Some((text.into(), count)))
+}
+
+/// The results of every design that has some.
+async fn documents(app: App, study: &StudyRecord) -> Result<Body, Problem> {
+    let id = study.id;
+    // The first lines are read before anything is sent, so that what fails at once is told as a problem.
+    let first = app.jobs.study_documents(id, None).await?;
+    let lines = stream::unfold(Some((app, Some(first), None)), move |at| async move {
+        let (app, ready, after) = at?;
+        let lines = match ready {
+            Some(lines) => Ok(lines),
+            None => app.jobs.study_documents(id, after).await,
+        };
+        let text = match lines {
+            Ok(lines) if lines.is_empty() => return None,
+            Ok(lines) => {
+                let last = lines.last().map(|line| line.position);
+                let text = aside(move |_| lines.iter().map(line).collect::<Result<String, _>>());
+                (text.await, last)
+            }
+            Err(error) => (Err(error.into()), None),
+        };
+        match text {
+            (Ok(Ok(text)), last) => Some((Ok(Bytes::from(text)), Some((app, None, last)))),
+            (Ok(Err(problem)) | Err(problem), _) => Some((Err(problem), None)),
+        }
+    });
+    Ok(Body::from_stream(lines))
+}
+
+fn line(line: &DocumentLine) -> Result<String, Problem> {
+    let text = line.document.text().map_err(JobError::from)?;
+    // In JSON a line can only end between values.
+    let text = text.replace(['\n', '\r'], " ");
+    let results: &RawValue =
+        serde_json::from_str(&text).map_err(|_| crate::http::problem::internal())?;
+    let line = DesignResults {
+        row: line.position,
+        label: &line.label,
+        job: &line.job,
+        results,
+    };
+    let mut text = serde_json::to_string(&line).expect("a line is plain data");
+    text.push('\n');
+    Ok(text)
+}

@@ -1,0 +1,85 @@
+//! Why something cannot be done with a job or a study.
+
+use uuid::Uuid;
+
+use super::store::{Damaged, StoreError};
+use crate::wire::Status;
+
+/// Why something cannot be done with a job or a study.
+#[derive(Debug, Clone, thiserror::Error)]
+pub enum JobError {
+    /// So many jobs wait that no more are taken.
+    #[error("{waiting} jobs wait, which is the limit")]
+    QueueFull {
+        /// Jobs that wait.
+        waiting: i64,
+    },
+    /// So many jobs of this client wait that no more are taken from it.
+    #[error("{waiting} jobs of yours wait; at most {limit} may")]
+    ClientQueueFull {
+        /// Jobs of the client that wait.
+        waiting: i64,
+        /// So many may.
+        limit: i64,
+    },
+    /// The computation would take more memory than a job may.
+    #[error("the job needs about {needed_mb} MB; a job may take {limit_mb} MB here")]
+    TooMuchMemory {
+        /// Memory that it is estimated to take.
+        needed_mb: u64,
+        /// The bound.
+        limit_mb: u64,
+    },
+    /// The idempotency key was used for another submission.
+    #[error("the idempotency key was used for another submission")]
+    KeyConflict,
+    /// The client has no such job.
+    #[error("there is no job {0}")]
+    NotFound(Uuid),
+    /// The client has no such study.
+    #[error("there is no study {0}")]
+    StudyNotFound(Uuid),
+    /// The study is to be deleted, but has not ended.
+    #[error("the study has not ended")]
+    StudyRunning,
+    /// The study is to be cancelled, but has ended.
+    #[error("the study is {}", .0.as_str())]
+    StudyEnded(Status),
+    /// The job runs.
+    #[error("the job is running")]
+    Running,
+    /// The job has ended.
+    #[error("the job is {}", .0.as_str())]
+    Ended(Status),
+    /// The client has no such webhook.
+    #[error("there is no webhook {0}")]
+    HookNotFound(Uuid),
+    /// The client has as many webhooks as it may.
+    #[error("a client has {0} webhooks at most")]
+    TooManyHooks(i64),
+    /// Webhooks are not served here, or not to this address.
+    #[error("{0}")]
+    HookRefused(String),
+    /// The service is shutting down.
+    #[error("the service is shutting down")]
+    ShuttingDown,
+    /// Nothing can be stored or read now.
+    #[error("nothing can be stored now")]
+    Unavailable(#[source] StoreError),
+    /// The database did not do its part.
+    #[error("the database failed")]
+    Database(#[source] StoreError),
+    /// What was stored is not what was read.
+    #[error(transparent)]
+    Damaged(#[from] Damaged),
+}
+
+impl From<StoreError> for JobError {
+    fn from(error: StoreError) -> Self {
+        if error.may_pass() {
+            Self::Unavailable(error)
+        } else {
+            Self::Database(error)
+        }
+    }
+}

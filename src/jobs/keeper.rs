@@ -1,0 +1,126 @@
+//! The keeper: removes what has been kept long enough, gives space back, and keeps the journal short.
+
+use std::time::Duration;
+
+use jiff::{SignedDuration, Timestamp};
+use tokio::task::JoinHandle;
+use tokio::time::{Instant, interval_at, sleep};
+use tracing::{info, warn};
+
+use super::queue::Jobs;
+use super::store::{Removed, StoreError};
+
+/// The journal is emptied when it has grown beyond this.
+const LONG_JOURNAL: u64 = 64 << 20;
+
+/// Between two commits of the keeper others write.
+const BREATH: Duration = Duration::from_millis(5);
+
+/// What is kept, and how often it is looked after.
+#[derive(Debug, Clone, Copy)]
+pub struct Keep {
+    /// Jobs and studies are kept so long after their end; without, for good.
+    pub results_for: Option<SignedDuration>,
+    /// The file may hold so many bytes; beyond that, what ended first is removed. Without, any number.
+    pub bytes: Option<u64>,
+    /// The first look comes so long after the start: by then a clock that was wrong at the start is mostly right.
+    pub first: Duration,
+    /// Between two looks.
+    pub every: Duration,
+}
+
+/// The task that looks after what is kept.
+pub struct Keeper(JoinHandle<()>);
+
+impl Keeper {
+    /// Starts to look after what `jobs` keeps, until their stop comes.
+    pub fn start(jobs: Jobs, keep: Keep) -> Self {
+        Self(tokio::spawn(async move {
+            let mut tick = interval_at(Instant::now() + keep.first, keep.every);
+            loop {
+                tokio::select! {
+                    _ = tick.tick() => {}
+                    () = jobs.stop().cancelled() => return,
+                }
+                if let Err(error) = jobs.look_after(keep).await {
+                    warn!(%error, "what is old cannot be removed now");
+                }
+            }
+        }))
+    }
+
+    /// Comes back when it has ended.
+    pub async fn ended(self) {
+        // It neither panics nor is aborted.
+        let _ = self.0.await;
+    }
+}
+
+impl Jobs {
+    /// Removes what has been kept long enough or does not fit, and gives the space back.
+    ///
+    /// # Errors
+    ///
+    /// [`StoreError`]; the next look goes on where this one ends.
+    pub async fn look_after(&self, keep: Keep) -> Result<(), StoreError> {
+        if let Some(before) = self.kept_since(keep) {
+            let removed = self.remove_while(before, None).await?;
+            tell("kept long enough", removed);
+        }
+        if keep.bytes.is_some() {
+            let removed = self.remove_while(Timestamp::MAX, keep.bytes).await?;
+            tell("no room for it", removed);
+        }
+        while !self.stop().is_cancelled() && self.store.shrink().await? {
+            sleep(BREATH).await;
+        }
+        if self.store.journal_bytes() > LONG_JOURNAL {
+            self.store.empty_journal().await?;
+        }
+        self.forget_keys().await
+    }
+
+    /// What ended before this is old. The earlier of the two clocks decides: one that was set forward by mistake, at the
+    /// start or later, removes nothing as long as the other one is right.
+    fn kept_since(&self, keep: Keep) -> Option<Timestamp> {
+        let now = self.clock.now().min(self.clock.steady());
+        now.checked_sub(keep.results_for?).ok()
+    }
+
+    /// Removes what ended before a time, the oldest first, as long as the file holds more than so many bytes.
+    async fn remove_while(
+        &self,
+        before: Timestamp,
+        more_than: Option<u64>,
+    ) -> Result<Removed, StoreError> {
+        let mut all = Removed::default();
+        while !self.stop().is_cancelled() {
+            if let Some(most) = more_than
+                && self.store.space().await?.used() <= most
+            {
+                break;
+            }
+            let removed = self.store.remove_old(before).await?;
+            if removed.is_nothing() {
+                break;
+            }
+            all.jobs += removed.jobs;
+            all.studies += removed.studies;
+            sleep(BREATH).await;
+        }
+        Ok(all)
+    }
+}
+
+fn tell(why: &'static str, removed: Removed) {
+    if !removed.is_nothing() {
+        metrics::counter!("meshwright_removed_jobs_total").increment(removed.jobs);
+        metrics::counter!("meshwright_removed_studies_total").increment(removed.studies);
+        info!(
+            jobs = removed.jobs,
+            studies = removed.studies,
+            why,
+            "removed"
+        );
+    }
+}

@@ -1,0 +1,164 @@
+//! What comes of a job that runs: running -> running, successful, failed, or accepted again.
+
+use jiff::{SignedDuration, Timestamp};
+use uuid::Uuid;
+
+use super::documents::Packed;
+use super::endings::tell_end;
+use super::{Store, StoreError, column, shares};
+use crate::jobs::job::{Job, Progress};
+
+/// A word for one attempt at one job: only the latest claim may report or finish.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::jobs) struct Claim {
+    pub(in crate::jobs) id: Uuid,
+    pub(in crate::jobs) attempt: i64,
+}
+
+/// When an attempt ended, and what it took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::jobs) struct End {
+    /// The time of day.
+    pub(in crate::jobs) at: Timestamp,
+    /// What the attempt took, by the steady clock.
+    pub(in crate::jobs) elapsed: SignedDuration,
+}
+
+impl End {
+    fn columns(self) -> (i64, i64) {
+        let elapsed = i64::try_from(self.elapsed.as_micros()).unwrap_or(i64::MAX);
+        (self.at.as_microsecond(), elapsed.max(0))
+    }
+}
+
+impl Store {
+    /// Whether a claim holds: the job runs, and nobody has claimed it since.
+    pub(in crate::jobs) async fn holds(&self, claim: Claim) -> Result<bool, StoreError> {
+        let found: Option<i64> = sqlx::query_scalar(
+            "select 1 from jobs where id = ?1 and attempt = ?2 and status = 'running'",
+        )
+        .bind(claim.id.to_string())
+        .bind(claim.attempt)
+        .fetch_optional(&self.readers)
+        .await?;
+        Ok(found.is_some())
+    }
+
+    /// Running -> running: how far the job has come, and a longer lease. False if the claim holds no more.
+    pub(in crate::jobs) async fn report(
+        &self,
+        claim: Claim,
+        progress: Progress,
+        lease_until: Timestamp,
+    ) -> Result<bool, StoreError> {
+        let mut write = self.begin().await?;
+        let updated = sqlx::query(
+            "update jobs set positions_done = ?3, positions_total = ?4, lease_until = ?5
+             where id = ?1 and attempt = ?2 and status = 'running'",
+        )
+        .bind(claim.id.to_string())
+        .bind(claim.attempt)
+        .bind(column(progress.done))
+        .bind(column(progress.total))
+        .bind(lease_until.as_microsecond())
+        .execute(&mut *write)
+        .await?;
+        write.commit().await?;
+        Ok(updated.rows_affected() == 1)
+    }
+
+    /// Running -> successful, with the results document and what the tables of studies show of it. False if the claim
+    /// holds no more; then nothing is kept.
+    pub(in crate::jobs) async fn succeed(
+        &self,
+        claim: Claim,
+        end: End,
+        document: &Packed,
+        summary: Option<&str>,
+        solver_version: &str,
+    ) -> Result<bool, StoreError> {
+        let (at, elapsed) = end.columns();
+        let mut write = self.begin().await?;
+        document.insert(&mut write).await?;
+        if let Some(summary) = summary {
+            sqlx::query(
+                "insert into summaries (document, body) values (?1, ?2) on conflict (document) do nothing",
+            )
+            .bind(document.hash())
+            .bind(summary)
+            .execute(&mut *write)
+            .await?;
+        }
+        let job: Option<Job> = sqlx::query_as(
+            "update jobs
+             set status = 'successful', finished_at = max(?3, started_at), elapsed = ?4, lease_until = null,
+                 document = ?5, solver_version = ?6, positions_done = positions_total
+             where id = ?1 and attempt = ?2 and status = 'running'
+             returning *",
+        )
+        .bind(claim.id.to_string())
+        .bind(claim.attempt)
+        .bind(at)
+        .bind(elapsed)
+        .bind(document.hash())
+        .bind(solver_version)
+        .fetch_optional(&mut *write)
+        .await?;
+        let Some(job) = job else {
+            write.rollback().await?;
+            return Ok(false);
+        };
+        tell_end(&mut write, &job, end.at).await?;
+        write.commit().await?;
+        Ok(true)
+    }
+
+    /// Running -> failed, with the problem document. False if the claim holds no more.
+    pub(in crate::jobs) async fn fail(
+        &self,
+        claim: Claim,
+        end: End,
+        problem: &str,
+    ) -> Result<bool, StoreError> {
+        let (at, elapsed) = end.columns();
+        let mut write = self.begin().await?;
+        let job: Option<Job> = sqlx::query_as(
+            "update jobs
+             set status = 'failed', finished_at = max(?3, started_at), elapsed = ?4, lease_until = null, problem = ?5
+             where id = ?1 and attempt = ?2 and status = 'running'
+             returning *",
+        )
+        .bind(claim.id.to_string())
+        .bind(claim.attempt)
+        .bind(at)
+        .bind(elapsed)
+        .bind(problem)
+        .fetch_optional(&mut *write)
+        .await?;
+        if let Some(job) = &job {
+            tell_end(&mut write, job, end.at).await?;
+        }
+        write.commit().await?;
+        Ok(job.is_some())
+    }
+
+    /// Running -> accepted, because the worker shuts down: this claim does not count as an attempt.
+    pub(in crate::jobs) async fn release(&self, claim: Claim) -> Result<bool, StoreError> {
+        let mut write = self.begin().await?;
+        let job: Option<Job> = sqlx::query_as(
+            "update jobs
+             set status = 'accepted', returned = returned + 1, started_at = null, lease_until = null, positions_done = 0
+             where id = ?1 and attempt = ?2 and status = 'running'
+             returning *",
+        )
+        .bind(claim.id.to_string())
+        .bind(claim.attempt)
+        .fetch_optional(&mut *write)
+        .await?;
+        if let Some(job) = &job {
+            shares::activate(&mut write, &job.client, job.study).await?;
+        }
+        write.commit().await?;
+        Ok(job.is_some())
+    }
+}

@@ -1,0 +1,141 @@
+//! Results documents: packed, and named by the hash of their text.
+
+use std::io::{Read, Write};
+
+use bytes::Bytes;
+use flate2::Compression;
+use flate2::read::GzDecoder;
+use flate2::write::GzEncoder;
+use sqlx::SqliteConnection;
+
+use super::{Store, StoreError};
+use crate::hash::sha256_hex;
+
+/// Documents are numbers in decimal; a higher level packs them no smaller and takes longer.
+const LEVEL: Compression = Compression::new(6);
+
+/// A text, packed.
+#[derive(Debug, Clone)]
+pub(in crate::jobs) struct Packed {
+    hash: String,
+    body: Vec<u8>,
+    size: u64,
+}
+
+impl Packed {
+    /// Packs a text. It takes a core for some milliseconds.
+    pub(in crate::jobs) fn of(text: &str) -> Self {
+        let mut encoder = GzEncoder::new(Vec::with_capacity(text.len() / 2), LEVEL);
+        let written = encoder.write_all(text.as_bytes());
+        let body = written.and_then(|()| encoder.finish());
+        Self {
+            hash: sha256_hex(text),
+            body: body.expect("memory takes every byte"),
+            size: text.len() as u64,
+        }
+    }
+
+    #[cfg(test)]
+    pub(super) fn for_tests(&self) -> &[u8] {
+        &self.body
+    }
+
+    /// The hash of the text.
+    pub(super) fn hash(&self) -> &str {
+        &self.hash
+    }
+
+    /// Keeps the document, unless it is kept already.
+    pub(super) async fn insert(
+        &self,
+        connection: &mut SqliteConnection,
+    ) -> Result<(), sqlx::Error> {
+        sqlx::query(
+            "insert into documents (hash, encoding, body, size) values (?1, 'gzip', ?2, ?3) on conflict (hash) do nothing",
+        )
+        .bind(&self.hash)
+        .bind(&self.body)
+        .bind(super::column(self.size))
+        .execute(connection)
+        .await?;
+        Ok(())
+    }
+}
+
+/// A document as it is kept.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Document {
+    hash: String,
+    gzip: bool,
+    body: Bytes,
+}
+
+/// What was read is not what was written.
+#[derive(Debug, Clone, thiserror::Error)]
+#[error("the document {0} is damaged")]
+pub struct Damaged(String);
+
+impl Document {
+    pub(super) fn kept(hash: String, encoding: &str, body: Vec<u8>) -> Self {
+        Self {
+            hash,
+            gzip: encoding == "gzip",
+            body: body.into(),
+        }
+    }
+
+    /// The bytes of a gzip file (RFC 1952), if it is kept as one.
+    pub fn gzip(&self) -> Option<Bytes> {
+        self.gzip.then(|| self.body.clone())
+    }
+
+    /// The very text that was written.
+    ///
+    /// # Errors
+    ///
+    /// [`Damaged`], if its hash is another one.
+    pub fn text(&self) -> Result<String, Damaged> {
+        let damaged = || Damaged(self.hash.clone());
+        let mut text = String::new();
+        if self.gzip {
+            let read = GzDecoder::new(&*self.body).read_to_string(&mut text);
+            read.map_err(|_| damaged())?;
+        } else {
+            text = String::from_utf8(self.body.to_vec()).map_err(|_| damaged())?;
+        }
+        if sha256_hex(&text) == self.hash {
+            Ok(text)
+        } else {
+            Err(damaged())
+        }
+    }
+}
+
+impl Store {
+    /// A results document.
+    pub(in crate::jobs) async fn document(
+        &self,
+        hash: &str,
+    ) -> Result<Option<Document>, StoreError> {
+        let found: Option<(String, Vec<u8>)> =
+            sqlx::query_as("select encoding, body from documents where hash = ?1")
+                .bind(hash)
+                .fetch_optional(&self.readers)
+                .await?;
+        Ok(found.map(|(encoding, body)| Document::kept(hash.to_owned(), &encoding, body)))
+    }
+}
+
+/// Removes a document unless a job needs it.
+pub(super) async fn forget_document(
+    connection: &mut SqliteConnection,
+    hash: &str,
+) -> Result<(), sqlx::Error> {
+    sqlx::query(
+        "delete from documents where hash = ?1 and not exists (select 1 from jobs where document = ?1)",
+    )
+    .bind(hash)
+    .execute(connection)
+    .await?;
+    Ok(())
+}

@@ -1,0 +1,52 @@
+//! What follows when a job ends: its study may have ended with it, and somebody may want to be told.
+
+use jiff::Timestamp;
+use sqlx::SqliteConnection;
+use uuid::Uuid;
+
+use super::webhooks::{EventKind, queue_messages};
+use crate::jobs::job::Job;
+use crate::jobs::study::StudyRecord;
+
+/// Notes that `job` has ended, in the same transaction.
+pub(super) async fn tell_end(
+    connection: &mut SqliteConnection,
+    job: &Job,
+    now: Timestamp,
+) -> Result<(), sqlx::Error> {
+    match job.study {
+        // The designs of a study end by the thousand; the study is what its client waits for.
+        Some(study) => note_study(connection, study, now).await,
+        None if job.status.has_ended() => {
+            let kind = EventKind::JobEnded;
+            queue_messages(connection, &job.client, kind, job.id, job.status, now).await
+        }
+        None => Ok(()),
+    }
+}
+
+/// Notes that a study has ended, if it has, once.
+pub(super) async fn note_study(
+    connection: &mut SqliteConnection,
+    id: Uuid,
+    now: Timestamp,
+) -> Result<(), sqlx::Error> {
+    let ended: Option<StudyRecord> = sqlx::query_as(
+        "update studies set ended_at = max(coalesce(cancelled_at, last_end, submitted_at), submitted_at)
+         where id = ?1 and ended_at is null
+           and (cancelled_at is not null or unbuildable + successful + failed + dismissed = total)
+         returning *",
+    )
+    .bind(id.to_string())
+    .fetch_optional(&mut *connection)
+    .await?;
+    if let Some(study) = ended {
+        let client: String = sqlx::query_scalar("select client from studies where id = ?1")
+            .bind(id.to_string())
+            .fetch_one(&mut *connection)
+            .await?;
+        let kind = EventKind::StudyEnded;
+        queue_messages(connection, &client, kind, id, study.status(), now).await?;
+    }
+    Ok(())
+}

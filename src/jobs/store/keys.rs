@@ -1,0 +1,139 @@
+//! API keys as they are kept: who has them and what they may do. Of the secret part only the hash is kept.
+
+use jiff::Timestamp;
+use sqlx::FromRow;
+use sqlx::Row;
+use sqlx::sqlite::SqliteRow;
+
+use super::rows::{instant, optional_instant};
+use super::{Store, StoreError};
+
+/// What the bearer of a key may do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Role {
+    /// Everything with the jobs of its client.
+    Client,
+    /// Look at the jobs of its client, and change nothing.
+    Reader,
+    /// As client, and read the numbers of the whole service.
+    Operator,
+}
+
+impl Role {
+    /// Its word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Client => "client",
+            Self::Reader => "reader",
+            Self::Operator => "operator",
+        }
+    }
+
+    fn of_word(word: &str) -> Self {
+        match word {
+            "client" => Self::Client,
+            "operator" => Self::Operator,
+            // A word of a later version gives the least that there is.
+            _ => Self::Reader,
+        }
+    }
+}
+
+/// A key as it is kept.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct KeyRecord {
+    /// Its public part.
+    pub id: String,
+    /// Whose jobs it reads and makes.
+    pub client: String,
+    /// What the operator calls it.
+    pub name: String,
+    /// What its bearer may do.
+    pub role: Role,
+    /// SHA-256 of its secret part, in hexadecimal.
+    pub secret_hash: String,
+    /// Requests a second, where they are not the usual ones.
+    pub requests_per_second: Option<u32>,
+    /// Jobs that may wait, where they are not the usual ones.
+    pub queue_limit: Option<u32>,
+    /// When it was made.
+    pub created_at: Timestamp,
+    /// When it was revoked.
+    pub revoked_at: Option<Timestamp>,
+}
+
+impl FromRow<'_, SqliteRow> for KeyRecord {
+    fn from_row(row: &SqliteRow) -> Result<Self, sqlx::Error> {
+        Ok(Self {
+            id: row.try_get("id")?,
+            client: row.try_get("client")?,
+            name: row.try_get("name")?,
+            role: Role::of_word(&row.try_get::<String, _>("role")?),
+            secret_hash: row.try_get("secret_hash")?,
+            requests_per_second: row.try_get("requests_per_second")?,
+            queue_limit: row.try_get("queue_limit")?,
+            created_at: instant(row, "created_at")?,
+            revoked_at: optional_instant(row, "revoked_at")?,
+        })
+    }
+}
+
+impl Store {
+    /// Keeps a key.
+    pub async fn add_key(&self, key: &KeyRecord) -> Result<(), StoreError> {
+        let mut write = self.begin().await?;
+        sqlx::query(
+            "insert into keys (id, client, name, role, secret_hash, requests_per_second, queue_limit, created_at)
+             values (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
+        )
+        .bind(&key.id)
+        .bind(&key.client)
+        .bind(&key.name)
+        .bind(key.role.word())
+        .bind(&key.secret_hash)
+        .bind(key.requests_per_second)
+        .bind(key.queue_limit)
+        .bind(key.created_at.as_microsecond())
+        .execute(&mut *write)
+        .await?;
+        write.commit().await
+    }
+
+    /// Revokes a key. False if there is none of this id that was not revoked before.
+    pub async fn revoke_key(&self, id: &str, now: Timestamp) -> Result<bool, StoreError> {
+        let mut write = self.begin().await?;
+        let revoked =
+            sqlx::query("update keys set revoked_at = ?2 where id = ?1 and revoked_at is null")
+                .bind(id)
+                .bind(now.as_microsecond())
+                .execute(&mut *write)
+                .await?;
+        write.commit().await?;
+        Ok(revoked.rows_affected() == 1)
+    }
+
+    /// A key that was not revoked.
+    pub async fn find_key(&self, id: &str) -> Result<Option<KeyRecord>, StoreError> {
+        let key = sqlx::query_as("select * from keys where id = ?1 and revoked_at is null")
+            .bind(id)
+            .fetch_optional(&self.readers)
+            .await?;
+        Ok(key)
+    }
+
+    /// All keys, the oldest first.
+    pub async fn list_keys(&self) -> Result<Vec<KeyRecord>, StoreError> {
+        let keys = sqlx::query_as("select * from keys order by created_at, id")
+            .fetch_all(&self.readers)
+            .await?;
+        Ok(keys)
+    }
+
+    /// Whether a key was ever made. One that was revoked does not open the door to everybody again.
+    pub async fn has_keys(&self) -> Result<bool, StoreError> {
+        let found: Option<i64> = sqlx::query_scalar("select 1 from keys limit 1")
+            .fetch_optional(&self.readers)
+            .await?;
+        Ok(found.is_some())
+    }
+}

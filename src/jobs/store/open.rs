@@ -1,0 +1,233 @@
+//! Opening the database: what it has to be, and what it is brought to.
+
+use std::io::Read;
+use std::path::Path;
+use std::time::Duration;
+
+use sqlx::migrate::{MigrateError, Migrator};
+use sqlx::sqlite::{
+    SqliteAutoVacuum, SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous,
+};
+use sqlx::{ConnectOptions, Connection, SqliteConnection};
+use tracing::{info, warn};
+
+use super::error::primary_code;
+use super::write::Health;
+use super::{Store, StoreError};
+use crate::private::open_or_make;
+
+static MIGRATIONS: Migrator = sqlx::migrate!();
+
+/// What every SQLite database begins with.
+const MAGIC: &[u8; 16] = b"SQLite format 3\0";
+
+/// The journal is cut to this length when it has been emptied.
+const MOST_JOURNAL_BYTES: u32 = 64 << 20;
+
+/// Another program that has the lock is waited for so long.
+const BUSY: Duration = Duration::from_secs(5);
+
+/// Files of more bytes are not read through at the start; `meshwright backup` checks them.
+const LARGEST_CHECKED: u64 = 256 << 20;
+
+/// Why a database cannot be opened. Nothing was changed in it.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenError {
+    /// The file is something else.
+    #[error("it is no SQLite database; nothing was changed in it")]
+    NotADatabase,
+    /// The file is damaged.
+    #[error(
+        "it is damaged ({0}); nothing was changed in it. Restore a backup, or copy what can be read with the sqlite3 program's .recover"
+    )]
+    Damaged(String),
+    /// A later version of this program made it.
+    #[error("it was made by a later version of Meshwright (schema {0}); nothing was changed in it")]
+    Newer(i64),
+    /// The file or its folder cannot be written.
+    #[error(
+        "it cannot be written: the file, its folder or the file system is read-only, or this user may not"
+    )]
+    ReadOnly,
+    /// The disk is full.
+    #[error("the disk is full")]
+    Full,
+    /// Another program has it.
+    #[error("another program has locked it")]
+    Locked,
+    /// The system does not open it.
+    #[error("the system does not open it")]
+    Connect(#[source] sqlx::Error),
+    /// Its tables cannot be brought up to date.
+    #[error("its tables cannot be brought up to date")]
+    Migrate(#[source] MigrateError),
+}
+
+impl From<sqlx::Error> for OpenError {
+    fn from(error: sqlx::Error) -> Self {
+        let code = match &error {
+            sqlx::Error::Database(error) => primary_code(error.as_ref()),
+            _ => None,
+        };
+        match code {
+            Some(5 | 6) => Self::Locked,
+            Some(8) => Self::ReadOnly,
+            Some(11) => Self::Damaged(error.to_string()),
+            Some(13) => Self::Full,
+            Some(26) => Self::NotADatabase,
+            _ => Self::Connect(error),
+        }
+    }
+}
+
+impl From<StoreError> for OpenError {
+    fn from(error: StoreError) -> Self {
+        let (StoreError::Unavailable(source) | StoreError::Broken(source)) = error;
+        match std::sync::Arc::try_unwrap(source) {
+            Ok(error) => error.into(),
+            Err(shared) => Self::Damaged(shared.to_string()),
+        }
+    }
+}
+
+impl From<MigrateError> for OpenError {
+    fn from(error: MigrateError) -> Self {
+        match error {
+            MigrateError::VersionMissing(version) => Self::Newer(version),
+            MigrateError::Execute(error) | MigrateError::ExecuteMigration(error, _) => error.into(),
+            other => Self::Migrate(other),
+        }
+    }
+}
+
+impl Store {
+    /// Opens the database at `path`, creates it if it is absent, brings its tables up to date and looks for damage.
+    ///
+    /// # Errors
+    ///
+    /// [`OpenError`].
+    pub async fn open(path: &Path) -> Result<Self, OpenError> {
+        refuse_other_files(path)?;
+        let options = options(path);
+        bring_up_to_date(&options).await?;
+        // From here on the file is there. Made anew behind our back, it would be an empty one.
+        let options = options.create_if_missing(false).foreign_keys(true);
+        let pool = || {
+            SqlitePoolOptions::new()
+                .idle_timeout(None)
+                .max_lifetime(None)
+                // A connection to a file does not break while it lies idle; the look would double the way of a query.
+                .test_before_acquire(false)
+        };
+        let writer = pool()
+            .max_connections(1)
+            .connect_with(options.clone())
+            .await?;
+        let readers = pool()
+            .max_connections(4)
+            .connect_with(options.read_only(true))
+            .await?;
+        let store = Self {
+            path: path.to_owned(),
+            writer,
+            readers,
+            health: Health::new(),
+        };
+        store.look_for_damage().await?;
+        store.probe().await?;
+        store.watch_writing();
+        Ok(store)
+    }
+
+    /// Reads through the file, unless it is so large that it would take seconds; then what is damaged is met when it is read.
+    async fn look_for_damage(&self) -> Result<(), OpenError> {
+        if self.space().await?.file > LARGEST_CHECKED {
+            return Ok(());
+        }
+        let found: Vec<String> = sqlx::query_scalar("pragma quick_check(1)")
+            .fetch_all(&self.readers)
+            .await?;
+        match found.into_iter().find(|line| line != "ok") {
+            Some(first) => Err(OpenError::Damaged(first)),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A file that is there and not empty has to be a database; SQLite would say so later, and less clearly. One that is absent is
+/// made.
+fn refuse_other_files(path: &Path) -> Result<(), OpenError> {
+    let mut head = [0; MAGIC.len()];
+    let Ok(mut file) = std::fs::File::open(path) else {
+        // What may not be read or made is told by SQLite.
+        let _ = open_or_make(path);
+        return Ok(());
+    };
+    match file.read_exact(&mut head) {
+        Ok(()) if head == *MAGIC => Ok(()),
+        Ok(()) => Err(OpenError::NotADatabase),
+        Err(_) if file.metadata().is_ok_and(|data| data.len() == 0) => Ok(()),
+        Err(_) => Err(OpenError::NotADatabase),
+    }
+}
+
+fn options(path: &Path) -> SqliteConnectOptions {
+    SqliteConnectOptions::new()
+        .filename(path)
+        .create_if_missing(true)
+        .journal_mode(SqliteJournalMode::Wal)
+        .pragma("journal_size_limit", MOST_JOURNAL_BYTES.to_string())
+        // A 202 is a promise: the commit is on the disk before it is given.
+        .synchronous(SqliteSynchronous::Full)
+        .busy_timeout(BUSY)
+}
+
+/// Migrates on a connection of its own: tables are made anew, which foreign keys would take for deletions.
+async fn bring_up_to_date(options: &SqliteConnectOptions) -> Result<(), OpenError> {
+    // In a new file space of what was deleted can be given back a little at a time. (The statement writes, so it is not for
+    // readers.)
+    let options = options.clone().auto_vacuum(SqliteAutoVacuum::Incremental);
+    let mut connection = options.foreign_keys(false).connect().await?;
+    let before = version(&mut connection).await;
+    let migrated = MIGRATIONS.run_direct(None, &mut connection, false).await;
+    let migrated = migrated.map_err(OpenError::from);
+    if migrated.is_ok() {
+        // Looking through everything takes as long as there is much of it; only tables made anew can have lost a row.
+        if version(&mut connection).await != before {
+            let dangling = sqlx::query("pragma foreign_key_check")
+                .fetch_optional(&mut connection)
+                .await?;
+            if dangling.is_some() {
+                return Err(OpenError::Damaged("rows that belong to nothing".to_owned()));
+            }
+        }
+        make_shrinkable(&mut connection).await;
+    }
+    connection.close().await?;
+    migrated
+}
+
+/// The last migration that was applied; none in a database that is new.
+async fn version(connection: &mut SqliteConnection) -> Option<i64> {
+    let version = sqlx::query_scalar("select max(version) from _sqlx_migrations");
+    version.fetch_one(connection).await.ok().flatten()
+}
+
+/// A database of an earlier version keeps the space of what is deleted until it is made anew, which takes as much space
+/// again. It works without; only the file stays as large as it once was.
+async fn make_shrinkable(connection: &mut SqliteConnection) {
+    let mode: Result<i64, _> = sqlx::query_scalar("pragma auto_vacuum")
+        .fetch_one(&mut *connection)
+        .await;
+    const INCREMENTAL: i64 = 2;
+    if mode.is_ok_and(|mode| mode == INCREMENTAL) {
+        return;
+    }
+    info!("the database is made anew, so that it can shrink");
+    let vacuum = sqlx::raw_sql("pragma auto_vacuum = incremental; vacuum")
+        .execute(connection)
+        .await;
+    if let Err(error) = vacuum {
+        warn!(%error, "the database cannot be made anew now, and will not shrink");
+    }
+}

@@ -1,0 +1,161 @@
+//! What is kept how long, and the space that is given back.
+
+use jiff::Timestamp;
+use uuid::Uuid;
+
+use super::documents::forget_document;
+use super::{Store, StoreError};
+use crate::jobs::job::Job;
+
+/// So many jobs are removed in one commit.
+const REMOVED_AT_ONCE: u32 = 100;
+
+/// So many pages of the file are given back in one commit.
+const PAGES_AT_ONCE: u32 = 1000;
+
+/// What the file holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Space {
+    /// Bytes of the file, the journal aside.
+    pub file: u64,
+    /// Of these, bytes that nothing occupies.
+    pub free: u64,
+}
+
+impl Space {
+    /// Bytes that something occupies.
+    pub fn used(self) -> u64 {
+        self.file.saturating_sub(self.free)
+    }
+}
+
+/// What was removed, or whether anything was.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Removed {
+    /// Jobs that stood alone.
+    pub jobs: u64,
+    /// Studies, with all their jobs.
+    pub studies: u64,
+}
+
+impl Removed {
+    /// Whether there was nothing to remove.
+    pub fn is_nothing(self) -> bool {
+        self == Self::default()
+    }
+}
+
+impl Store {
+    /// Removes some of the jobs and studies that ended before `before`, the oldest first: a hundred jobs, or one study.
+    pub async fn remove_old(&self, before: Timestamp) -> Result<Removed, StoreError> {
+        let before = before.as_microsecond();
+        let study: Option<(String, i64)> = sqlx::query_as(
+            "select id, ended_at from studies where ended_at < ?1 order by ended_at limit 1",
+        )
+        .bind(before)
+        .fetch_optional(&self.readers)
+        .await?;
+        // A study that is older than the oldest jobs goes first.
+        let oldest_job: Option<i64> = sqlx::query_scalar(
+            "select finished_at from jobs where study is null and finished_at < ?1 order by finished_at limit 1",
+        )
+        .bind(before)
+        .fetch_optional(&self.readers)
+        .await?;
+        match (study, oldest_job) {
+            (Some((id, ended_at)), oldest) if oldest.is_none_or(|oldest| ended_at <= oldest) => {
+                let id: Option<Uuid> = id.parse().ok();
+                let removed = match id {
+                    Some(id) => self.delete_ended_study(id).await?,
+                    None => false,
+                };
+                Ok(Removed {
+                    jobs: 0,
+                    studies: removed.into(),
+                })
+            }
+            (study, Some(_)) => {
+                let until = study.map_or(before, |(_, ended_at)| ended_at.min(before));
+                let jobs = self.remove_old_jobs(until.max(1)).await?;
+                Ok(Removed { jobs, studies: 0 })
+            }
+            (_, None) => Ok(Removed::default()),
+        }
+    }
+
+    async fn remove_old_jobs(&self, before: i64) -> Result<u64, StoreError> {
+        let mut write = self.begin().await?;
+        let jobs: Vec<Job> = sqlx::query_as(
+            "delete from jobs where id in
+               (select id from jobs where study is null and finished_at < ?1 order by finished_at limit ?2)
+             returning *",
+        )
+        .bind(before)
+        .bind(REMOVED_AT_ONCE)
+        .fetch_all(&mut *write)
+        .await?;
+        for hash in jobs.iter().filter_map(|job| job.document.as_deref()) {
+            forget_document(&mut write, hash).await?;
+        }
+        write.commit().await?;
+        Ok(jobs.len() as u64)
+    }
+
+    /// What the file holds.
+    pub async fn space(&self) -> Result<Space, StoreError> {
+        let (page, pages, free): (i64, i64, i64) = sqlx::query_as(
+            "select (select page_size from pragma_page_size), (select page_count from pragma_page_count),
+                    (select freelist_count from pragma_freelist_count)",
+        )
+        .fetch_one(&self.readers)
+        .await?;
+        let bytes = |pages: i64| u64::try_from(pages.saturating_mul(page)).unwrap_or(0);
+        Ok(Space {
+            file: bytes(pages),
+            free: bytes(free),
+        })
+    }
+
+    /// Gives some of the space back that nothing occupies. False if there is none left.
+    pub async fn shrink(&self) -> Result<bool, StoreError> {
+        if self.space().await?.free == 0 {
+            return Ok(false);
+        }
+        let before = self.space().await?;
+        let mut connection = self.writer.acquire().await?;
+        sqlx::raw_sql(sqlx::AssertSqlSafe(format!(
+            "pragma incremental_vacuum({PAGES_AT_ONCE})"
+        )))
+        .execute(&mut *connection)
+        .await?;
+        drop(connection);
+        // A file of an earlier version cannot shrink page by page.
+        Ok(self.space().await?.file < before.file)
+    }
+
+    /// Bytes of the journal.
+    pub fn journal_bytes(&self) -> u64 {
+        let mut name = self.path.as_os_str().to_owned();
+        name.push("-wal");
+        std::fs::metadata(name).map_or(0, |data| data.len())
+    }
+
+    /// Moves what stands in the journal to the file, and empties the journal, if no reader needs it.
+    pub async fn empty_journal(&self) -> Result<(), StoreError> {
+        let mut connection = self.writer.acquire().await?;
+        sqlx::raw_sql("pragma wal_checkpoint(truncate)")
+            .execute(&mut *connection)
+            .await?;
+        Ok(())
+    }
+
+    /// Forgets the word under which a study was submitted, and those of jobs, if they are older.
+    pub(in crate::jobs) async fn forget_keys(&self, before: Timestamp) -> Result<(), StoreError> {
+        let mut write = self.begin().await?;
+        sqlx::query("delete from idempotency_keys where created_at < ?1")
+            .bind(before.as_microsecond())
+            .execute(&mut *write)
+            .await?;
+        write.commit().await
+    }
+}

@@ -1,0 +1,120 @@
+//! Whose turn it is: clients share the service, and the lanes of a client share its part.
+//!
+//! A lane is a study, or the jobs that stand alone. Each client and each lane has a time at which its next job is due, which
+//! moves on by what its jobs cost; the least is served next (start-time fair queueing, Goyal et al. 1996). Who begins to
+//! wait starts where those are that are being served: nobody saves up a claim, and nobody pays for having been alone. So
+//! while a client has work to do, no other one gets more than its share, however many jobs or studies it brings.
+
+use sqlx::SqliteConnection;
+use uuid::Uuid;
+
+/// Jobs that stand alone have so many times the part of a study: somebody waits for them, but a study is not to starve.
+const WEIGHT_ALONE: i64 = 3;
+
+/// The lane of jobs that stand alone.
+const ALONE: &str = "";
+
+/// Makes sure that a lane in which a job waits is looked at.
+pub(super) async fn activate(
+    connection: &mut SqliteConnection,
+    client: &str,
+    study: Option<Uuid>,
+) -> Result<(), sqlx::Error> {
+    sqlx::query(
+        "insert into shares (client, lane, due, active) values (?1, '*', (select due from served), 1)
+         on conflict do update set active = 1, due = iif(active = 1, due, max(due, excluded.due))",
+    )
+    .bind(client)
+    .execute(&mut *connection)
+    .await?;
+    sqlx::query(
+        "insert into shares (client, lane, due, active)
+         values (?1, ?2, (select served from shares where client = ?1 and lane = '*'), 1)
+         on conflict do update set active = 1, due = iif(active = 1, due, max(due, excluded.due))",
+    )
+    .bind(client)
+    .bind(study.map_or_else(|| ALONE.to_owned(), |study| study.to_string()))
+    .execute(connection)
+    .await?;
+    Ok(())
+}
+
+/// A lane with work to do.
+#[derive(Debug, Clone, sqlx::FromRow)]
+pub(super) struct Lane {
+    pub(super) client: String,
+    /// The id of the study; empty for jobs that stand alone.
+    pub(super) lane: String,
+    client_due: i64,
+    lane_due: i64,
+}
+
+/// The lanes with work to do, in the order in which they are due.
+pub(super) async fn lanes(connection: &mut SqliteConnection) -> Result<Vec<Lane>, sqlx::Error> {
+    sqlx::query_as(
+        "select own.client, own.lane, whole.due as client_due, own.due as lane_due
+         from shares as whole join shares as own on own.client = whole.client and own.lane <> '*' and own.active = 1
+         where whole.lane = '*' and whole.active = 1
+         order by whole.due, whole.client, own.due, own.lane",
+    )
+    .fetch_all(connection)
+    .await
+}
+
+impl Lane {
+    /// Charges it with a job that is begun.
+    pub(super) async fn charge(
+        &self,
+        connection: &mut SqliteConnection,
+        cost: i64,
+    ) -> Result<(), sqlx::Error> {
+        let cost = cost.max(1);
+        let of_lane = if self.lane == ALONE {
+            (cost / WEIGHT_ALONE).max(1)
+        } else {
+            cost
+        };
+        sqlx::query("update shares set due = due + ?3 where client = ?1 and lane = ?2")
+            .bind(&self.client)
+            .bind(&self.lane)
+            .bind(of_lane)
+            .execute(&mut *connection)
+            .await?;
+        sqlx::query("update shares set due = due + ?2, served = max(served, ?3) where client = ?1 and lane = '*'")
+            .bind(&self.client)
+            .bind(cost)
+            .bind(self.lane_due)
+            .execute(&mut *connection)
+            .await?;
+        sqlx::query("update served set due = max(due, ?1)")
+            .bind(self.client_due)
+            .execute(connection)
+            .await?;
+        Ok(())
+    }
+
+    /// Takes it out of the turn, because nothing waits in it. What it has had is remembered while that can matter.
+    pub(super) async fn rest(&self, connection: &mut SqliteConnection) -> Result<(), sqlx::Error> {
+        sqlx::query("update shares set active = 0 where client = ?1 and lane = ?2")
+            .bind(&self.client)
+            .bind(&self.lane)
+            .execute(&mut *connection)
+            .await?;
+        sqlx::query(
+            "update shares set active = 0 where client = ?1 and lane = '*'
+               and not exists (select 1 from shares where client = ?1 and lane <> '*' and active = 1)",
+        )
+        .bind(&self.client)
+        .execute(&mut *connection)
+        .await?;
+        // A lane that others have caught up with begins anew where they are, remembered or not.
+        sqlx::query(
+            "delete from shares where client = ?1 and lane not in ('*', '') and active = 0
+               and due <= (select served from shares where client = ?1 and lane = '*')",
+        )
+        .bind(&self.client)
+        .execute(connection)
+        .await?;
+        Ok(())
+    }
+}

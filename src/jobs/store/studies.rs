@@ -1,0 +1,349 @@
+//! The transitions of a study. Its designs are jobs, whose own transitions stand elsewhere; here is what concerns many of
+//! them at once: their beginning, chunk after chunk, and their end when the study is cancelled or deleted.
+
+use jiff::Timestamp;
+use sqlx::SqliteConnection;
+use uuid::Uuid;
+
+use super::documents::forget_document;
+use super::endings::note_study;
+use super::submit::{QueueBounds, insert_known, insert_waiting, words};
+use super::{NewJob, Store, StoreError, column};
+use crate::wire::warning::GearName;
+
+/// So many jobs of studies may wait; further studies are refused.
+pub(in crate::jobs) const MOST_WAITING_DESIGNS: i64 = 50_000;
+
+/// So many jobs are deleted in one commit.
+const DELETED_AT_ONCE: u32 = 200;
+
+/// A study to be kept.
+#[derive(Debug, Clone)]
+pub(in crate::jobs) struct NewStudy {
+    pub(in crate::jobs) id: Uuid,
+    pub(in crate::jobs) client: String,
+    pub(in crate::jobs) name: Option<String>,
+    pub(in crate::jobs) tags: Vec<String>,
+    pub(in crate::jobs) document: String,
+    pub(in crate::jobs) body_hash: String,
+    pub(in crate::jobs) gear: GearName,
+    pub(in crate::jobs) total: u64,
+    pub(in crate::jobs) submitted_at: Timestamp,
+    /// The word under which the client may ask again and get this study.
+    pub(in crate::jobs) idempotency_key: Option<String>,
+    /// So many designs of the client may wait.
+    pub(in crate::jobs) client_limit: i64,
+}
+
+/// A row to be kept.
+#[derive(Debug, Clone)]
+pub(in crate::jobs) struct NewRow {
+    pub(in crate::jobs) label: String,
+    /// JSON.
+    pub(in crate::jobs) changes: String,
+    /// The job, or the problem document of a design that cannot be built.
+    pub(in crate::jobs) job: Result<NewJob, String>,
+}
+
+/// What came of a study.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::jobs) enum StudyOutcome {
+    /// It stands, with its first rows.
+    Taken,
+    /// The study that the same key and document got before.
+    Repeated(Uuid),
+    /// The key was used for another study.
+    KeyConflict,
+    /// So many designs wait already.
+    QueueFull { waiting: i64 },
+    /// So many designs of this client wait already.
+    ClientQueueFull { waiting: i64 },
+}
+
+impl Store {
+    /// Nothing -> a study with its first rows.
+    pub(in crate::jobs) async fn begin_study(
+        &self,
+        study: &NewStudy,
+        rows: &[NewRow],
+        bounds: QueueBounds<'_>,
+    ) -> Result<StudyOutcome, StoreError> {
+        let mut write = self.begin().await?;
+        sqlx::query(
+            "update studies set idempotency_key = null where idempotency_key is not null and submitted_at < ?1",
+        )
+        .bind(bounds.forget_keys_before.as_microsecond())
+        .execute(&mut *write)
+        .await?;
+        if let Some(refusal) = refusal(&mut write, study).await? {
+            write.rollback().await?;
+            return Ok(refusal);
+        }
+        insert_study(&mut write, study).await?;
+        append(&mut write, study.id, 0, rows, bounds.solver_version).await?;
+        note_study(&mut write, study.id, study.submitted_at).await?;
+        write.commit().await?;
+        Ok(StudyOutcome::Taken)
+    }
+
+    /// The rows behind the first `expanded` ones. False if the study has not just so many rows, or wants no more.
+    pub(in crate::jobs) async fn continue_study(
+        &self,
+        id: Uuid,
+        expanded: u64,
+        rows: &[NewRow],
+        now: Timestamp,
+        solver_version: &str,
+    ) -> Result<bool, StoreError> {
+        let mut write = self.begin().await?;
+        let stands: Option<i64> = sqlx::query_scalar(
+            "select 1 from studies where id = ?1 and expanded = ?2 and cancelled_at is null",
+        )
+        .bind(id.to_string())
+        .bind(column(expanded))
+        .fetch_optional(&mut *write)
+        .await?;
+        if stands.is_none() {
+            write.rollback().await?;
+            return Ok(false);
+        }
+        append(&mut write, id, expanded, rows, solver_version).await?;
+        note_study(&mut write, id, now).await?;
+        write.commit().await?;
+        Ok(true)
+    }
+
+    /// The studies that do not have all their rows: ids and clients.
+    pub(in crate::jobs) async fn unfinished_expansions(
+        &self,
+    ) -> Result<Vec<(Uuid, String)>, StoreError> {
+        let found: Vec<(String, String)> = sqlx::query_as(
+            "select id, client from studies where expanded < total and cancelled_at is null order by sequence",
+        )
+        .fetch_all(&self.readers)
+        .await?;
+        Ok(found
+            .into_iter()
+            .filter_map(|(id, client)| Some((id.parse().ok()?, client)))
+            .collect())
+    }
+
+    /// Accepted or running -> dismissed, for a study and its jobs. Gives back the ids of the jobs; none if the client
+    /// has no such study in these states.
+    pub(in crate::jobs) async fn cancel_study(
+        &self,
+        client: &str,
+        id: Uuid,
+        now: Timestamp,
+    ) -> Result<Option<Vec<Uuid>>, StoreError> {
+        let mut write = self.begin().await?;
+        let cancelled = sqlx::query(
+            "update studies set cancelled_at = max(?3, submitted_at), version = version + 1
+             where id = ?1 and client = ?2 and cancelled_at is null and (expanded < total or accepted + running > 0)",
+        )
+        .bind(id.to_string())
+        .bind(client)
+        .bind(now.as_microsecond())
+        .execute(&mut *write)
+        .await?;
+        if cancelled.rows_affected() == 0 {
+            write.rollback().await?;
+            return Ok(None);
+        }
+        let jobs: Vec<String> = sqlx::query_scalar(
+            "update jobs set status = 'dismissed', finished_at = max(?2, submitted_at, coalesce(started_at, 0)),
+                             lease_until = null
+             where study = ?1 and status in ('accepted', 'running')
+             returning id",
+        )
+        .bind(id.to_string())
+        .bind(now.as_microsecond())
+        .fetch_all(&mut *write)
+        .await?;
+        note_study(&mut write, id, now).await?;
+        write.commit().await?;
+        Ok(Some(jobs.iter().filter_map(|id| id.parse().ok()).collect()))
+    }
+
+    /// Ended -> nothing, for a study, its jobs, and their results unless another job has the same. False if the client
+    /// has no such study, or it has not ended.
+    pub(in crate::jobs) async fn delete_study(
+        &self,
+        client: &str,
+        id: Uuid,
+    ) -> Result<bool, StoreError> {
+        match self.find_study(client, id).await? {
+            Some(_) => self.delete_ended_study(id).await,
+            None => Ok(false),
+        }
+    }
+
+    /// The same, whoever the client is. Commits some jobs at a time, so that others may write meanwhile.
+    pub(in crate::jobs) async fn delete_ended_study(&self, id: Uuid) -> Result<bool, StoreError> {
+        loop {
+            let mut write = self.begin().await?;
+            let ended: Option<i64> = sqlx::query_scalar(
+                "select 1 from studies where id = ?1 and (cancelled_at is not null or expanded = total)
+                   and accepted + running = 0",
+            )
+            .bind(id.to_string())
+            .fetch_optional(&mut *write)
+            .await?;
+            if ended.is_none() {
+                write.rollback().await?;
+                return Ok(false);
+            }
+            let documents: Vec<Option<String>> = sqlx::query_scalar(
+                "delete from jobs where id in (select id from jobs where study = ?1 limit ?2) returning document",
+            )
+            .bind(id.to_string())
+            .bind(DELETED_AT_ONCE)
+            .fetch_all(&mut *write)
+            .await?;
+            for hash in documents.iter().flatten() {
+                forget_document(&mut write, hash).await?;
+            }
+            let last = documents.is_empty();
+            if last {
+                sqlx::query("delete from studies where id = ?1")
+                    .bind(id.to_string())
+                    .execute(&mut *write)
+                    .await?;
+                sqlx::query("delete from shares where lane = ?1")
+                    .bind(id.to_string())
+                    .execute(&mut *write)
+                    .await?;
+            }
+            write.commit().await?;
+            if last {
+                return Ok(true);
+            }
+        }
+    }
+}
+
+/// Why the study is not taken, or which one was before.
+async fn refusal(
+    connection: &mut SqliteConnection,
+    study: &NewStudy,
+) -> Result<Option<StudyOutcome>, sqlx::Error> {
+    if let Some(key) = &study.idempotency_key {
+        let earlier: Option<(String, String)> = sqlx::query_as(
+            "select id, body_hash from studies where client = ?1 and idempotency_key = ?2",
+        )
+        .bind(&study.client)
+        .bind(key)
+        .fetch_optional(&mut *connection)
+        .await?;
+        if let Some((id, body_hash)) = earlier {
+            return Ok(Some(match id.parse() {
+                Ok(id) if body_hash == study.body_hash => StudyOutcome::Repeated(id),
+                _ => StudyOutcome::KeyConflict,
+            }));
+        }
+    }
+    // Those that have no row yet will wait, too.
+    let (own, all): (i64, i64) = sqlx::query_as(
+        "select coalesce(sum(iif(client = ?1, open, 0)), 0), coalesce(sum(open), 0)
+         from (select client, accepted + iif(cancelled_at is null, total - expanded, 0) as open
+               from studies where ended_at is null)",
+    )
+    .bind(&study.client)
+    .fetch_one(connection)
+    .await?;
+    let more = column(study.total);
+    Ok(if own.saturating_add(more) > study.client_limit {
+        Some(StudyOutcome::ClientQueueFull { waiting: own })
+    } else if all.saturating_add(more) > MOST_WAITING_DESIGNS {
+        Some(StudyOutcome::QueueFull { waiting: all })
+    } else {
+        None
+    })
+}
+
+async fn insert_study(
+    connection: &mut SqliteConnection,
+    study: &NewStudy,
+) -> Result<(), sqlx::Error> {
+    let id = study.id.to_string();
+    let sequence: i64 = sqlx::query_scalar(
+        "insert into studies (id, sequence, client, name, tags, body_hash, gear, total, expanded, submitted_at,
+                              idempotency_key)
+         values (?1, (select coalesce(max(sequence), 0) + 1 from studies), ?2, ?3, ?4, ?5, ?6, ?7, 0, ?8, ?9)
+         returning sequence",
+    )
+    .bind(&id)
+    .bind(&study.client)
+    .bind(&study.name)
+    .bind(words(&study.tags))
+    .bind(&study.body_hash)
+    .bind(study.gear.word())
+    .bind(column(study.total))
+    .bind(study.submitted_at.as_microsecond())
+    .bind(&study.idempotency_key)
+    .fetch_one(&mut *connection)
+    .await?;
+    sqlx::query("insert into study_documents (study, body) values (?1, ?2)")
+        .bind(&id)
+        .bind(&study.document)
+        .execute(&mut *connection)
+        .await?;
+    for tag in &study.tags {
+        sqlx::query("insert or ignore into study_tags (client, tag, sequence, study) values (?1, ?2, ?3, ?4)")
+            .bind(&study.client)
+            .bind(tag)
+            .bind(sequence)
+            .bind(&id)
+            .execute(&mut *connection)
+            .await?;
+    }
+    Ok(())
+}
+
+/// Adds rows behind the first `expanded` ones, with their jobs.
+async fn append(
+    connection: &mut SqliteConnection,
+    study: Uuid,
+    expanded: u64,
+    rows: &[NewRow],
+    solver_version: &str,
+) -> Result<(), sqlx::Error> {
+    let mut unbuildable = 0_i64;
+    for (position, row) in (expanded..).zip(rows) {
+        let (job, problem) = match &row.job {
+            Ok(new) => {
+                if insert_known(connection, new, solver_version)
+                    .await?
+                    .is_none()
+                {
+                    insert_waiting(connection, new).await?;
+                }
+                (Some(new.id.to_string()), None)
+            }
+            Err(problem) => {
+                unbuildable += 1;
+                (None, Some(problem))
+            }
+        };
+        sqlx::query(
+            "insert into study_rows (study, position, label, changes, job, problem) values (?1, ?2, ?3, ?4, ?5, ?6)",
+        )
+        .bind(study.to_string())
+        .bind(column(position))
+        .bind(&row.label)
+        .bind(&row.changes)
+        .bind(job)
+        .bind(problem)
+        .execute(&mut *connection)
+        .await?;
+    }
+    sqlx::query(
+        "update studies set expanded = ?2, unbuildable = unbuildable + ?3, version = version + 1 where id = ?1",
+    )
+    .bind(study.to_string())
+    .bind(column(expanded + rows.len() as u64))
+    .bind(unbuildable)
+    .execute(connection)
+    .await?;
+    Ok(())
+}

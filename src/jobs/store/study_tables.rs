@@ -1,0 +1,75 @@
+//! The rows of studies, some at a time: a table of any length is read by short looks, each of which sees the last commit.
+
+use uuid::Uuid;
+
+use super::{Document, Store, StoreError};
+use crate::jobs::studies::DocumentLine;
+
+/// A row as it is read.
+#[derive(Debug, Clone, sqlx::FromRow)]
+pub(in crate::jobs) struct StoredRow {
+    pub(in crate::jobs) label: String,
+    pub(in crate::jobs) changes: String,
+    pub(in crate::jobs) job: Option<String>,
+    pub(in crate::jobs) status: Option<String>,
+    pub(in crate::jobs) summary: Option<String>,
+    pub(in crate::jobs) problem: Option<String>,
+}
+
+/// Position, label, job; hash, encoding and body of its document.
+type StoredDocument = (i64, String, String, String, String, Vec<u8>);
+
+impl Store {
+    /// At most `limit` rows of a study behind the position `after`, in their order.
+    pub(in crate::jobs) async fn study_rows(
+        &self,
+        id: Uuid,
+        after: i64,
+        limit: u32,
+    ) -> Result<Vec<StoredRow>, StoreError> {
+        let rows = sqlx::query_as(
+            "select r.label, r.changes, r.job, j.status, s.body as summary,
+                    coalesce(r.problem, j.problem) as problem
+             from study_rows r
+             left join jobs j on j.id = r.job
+             left join summaries s on s.document = j.document
+             where r.study = ?1 and r.position > ?2
+             order by r.position limit ?3",
+        )
+        .bind(id.to_string())
+        .bind(after)
+        .bind(limit)
+        .fetch_all(&self.readers)
+        .await?;
+        Ok(rows)
+    }
+
+    /// At most `limit` rows of a study that have results, behind the position `after`, with their documents.
+    pub(in crate::jobs) async fn study_documents(
+        &self,
+        id: Uuid,
+        after: i64,
+        limit: u32,
+    ) -> Result<Vec<DocumentLine>, StoreError> {
+        let rows: Vec<StoredDocument> = sqlx::query_as(
+            "select r.position, r.label, r.job, d.hash, d.encoding, d.body
+             from study_rows r
+             join jobs j on j.id = r.job
+             join documents d on d.hash = j.document
+             where r.study = ?1 and r.position > ?2
+             order by r.position limit ?3",
+        )
+        .bind(id.to_string())
+        .bind(after)
+        .bind(limit)
+        .fetch_all(&self.readers)
+        .await?;
+        let row = |(position, label, job, hash, encoding, body): StoredDocument| DocumentLine {
+            position,
+            label,
+            job,
+            document: Document::kept(hash, &encoding, body),
+        };
+        Ok(rows.into_iter().map(row).collect())
+    }
+}

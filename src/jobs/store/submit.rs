@@ -1,0 +1,318 @@
+//! Nothing -> accepted, or -> successful at once where the same has been computed before.
+
+use jiff::Timestamp;
+use sqlx::SqliteConnection;
+use uuid::Uuid;
+
+use super::{Store, StoreError, column, shares};
+use crate::hash::sha256_hex;
+use crate::jobs::job::Job;
+
+/// A job to be queued.
+#[derive(Debug, Clone)]
+pub(in crate::jobs) struct NewJob {
+    pub(in crate::jobs) id: Uuid,
+    pub(in crate::jobs) client: String,
+    pub(in crate::jobs) method: String,
+    pub(in crate::jobs) tags: Vec<String>,
+    pub(in crate::jobs) submission: String,
+    pub(in crate::jobs) input_hash: String,
+    /// What it will take of a core, in microseconds.
+    pub(in crate::jobs) cost: u64,
+    pub(in crate::jobs) positions_total: u64,
+    pub(in crate::jobs) submitted_at: Timestamp,
+    /// The word under which the client may ask again and get this job.
+    pub(in crate::jobs) idempotency_key: Option<String>,
+    /// The study that it computes a design of.
+    pub(in crate::jobs) study: Option<Uuid>,
+    /// So many jobs of the client may wait, those of studies aside.
+    pub(in crate::jobs) client_limit: u32,
+}
+
+/// What came of a submission.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::jobs) enum Outcome {
+    /// A job waits in the queue.
+    Queued(Job),
+    /// A job that had its results at once, those of an equal one.
+    Known(Job),
+    /// The job that the same key and submission got before.
+    Repeated(Job),
+    /// The key was used for another submission.
+    KeyConflict,
+    /// So many jobs wait already.
+    QueueFull { waiting: i64 },
+    /// So many jobs of this client wait already.
+    ClientQueueFull { waiting: i64 },
+}
+
+/// What a submission is measured against.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::jobs) struct QueueBounds<'a> {
+    /// So many jobs may wait, those of studies aside.
+    pub(in crate::jobs) queue_limit: u32,
+    /// Keys that are older than this are forgotten.
+    pub(in crate::jobs) forget_keys_before: Timestamp,
+    /// Now, by the steady clock: the age of keys.
+    pub(in crate::jobs) steady: Timestamp,
+    /// Only results of this version are given again.
+    pub(in crate::jobs) solver_version: &'a str,
+}
+
+impl Store {
+    /// Nothing -> accepted, for several submissions in one commit. (A commit waits for the disk; submissions that
+    /// arrive together share the wait.)
+    pub(in crate::jobs) async fn submit(
+        &self,
+        batch: &[NewJob],
+        bounds: QueueBounds<'_>,
+    ) -> Result<Vec<Outcome>, StoreError> {
+        let mut write = self.begin().await?;
+        sqlx::query("delete from idempotency_keys where created_at < ?1")
+            .bind(bounds.forget_keys_before.as_microsecond())
+            .execute(&mut *write)
+            .await?;
+        let mut room = Room::new(bounds.queue_limit);
+        let mut outcomes = Vec::with_capacity(batch.len());
+        for job in batch {
+            outcomes.push(submit_one(&mut write, job, &mut room, bounds).await?);
+        }
+        write.commit().await?;
+        Ok(outcomes)
+    }
+}
+
+/// The room in the queue, within one transaction: nobody else writes meanwhile, so that one count serves all of it.
+struct Room {
+    limit: i64,
+    waiting: Option<i64>,
+}
+
+impl Room {
+    fn new(limit: u32) -> Self {
+        Self {
+            limit: i64::from(limit),
+            waiting: None,
+        }
+    }
+
+    /// Takes one place, or tells how many jobs wait if there is none.
+    async fn take(
+        &mut self,
+        connection: &mut SqliteConnection,
+    ) -> Result<Result<(), i64>, sqlx::Error> {
+        let waiting = match self.waiting {
+            Some(waiting) => waiting,
+            None => sqlx::query_scalar(
+                "select count(*) from jobs where status = 'accepted' and coalesce(study, '') = ''",
+            )
+            .fetch_one(connection)
+            .await?,
+        };
+        let has_room = waiting < self.limit;
+        self.waiting = Some(waiting + i64::from(has_room));
+        Ok(if has_room { Ok(()) } else { Err(waiting) })
+    }
+
+    /// Gives a place back that was taken.
+    fn give_back(&mut self) {
+        self.waiting = self.waiting.map(|waiting| waiting - 1);
+    }
+}
+
+async fn submit_one(
+    connection: &mut SqliteConnection,
+    new: &NewJob,
+    room: &mut Room,
+    bounds: QueueBounds<'_>,
+) -> Result<Outcome, sqlx::Error> {
+    let body_hash = sha256_hex(&new.submission);
+    if let Some(key) = &new.idempotency_key
+        && let Some(outcome) = earlier_answer(connection, &new.client, key, &body_hash).await?
+    {
+        return Ok(outcome);
+    }
+
+    let outcome = if let Some(job) = insert_known(connection, new, bounds.solver_version).await? {
+        Outcome::Known(job)
+    } else {
+        if let Err(waiting) = room.take(connection).await? {
+            return Ok(Outcome::QueueFull { waiting });
+        }
+        let own: i64 = sqlx::query_scalar(
+            "select count(*) from jobs where client = ?1 and status = 'accepted' and coalesce(study, '') = ''",
+        )
+        .bind(&new.client)
+        .fetch_one(&mut *connection)
+        .await?;
+        if own >= i64::from(new.client_limit) {
+            room.give_back();
+            return Ok(Outcome::ClientQueueFull { waiting: own });
+        }
+        Outcome::Queued(insert_waiting(connection, new).await?)
+    };
+
+    if let Some(key) = &new.idempotency_key {
+        sqlx::query("insert into idempotency_keys (client, key, body_hash, job, created_at) values (?1, ?2, ?3, ?4, ?5)")
+            .bind(&new.client)
+            .bind(key)
+            .bind(&body_hash)
+            .bind(new.id.to_string())
+            .bind(bounds.steady.as_microsecond())
+            .execute(&mut *connection)
+            .await?;
+    }
+    Ok(outcome)
+}
+
+/// What the key was answered with before.
+async fn earlier_answer(
+    connection: &mut SqliteConnection,
+    client: &str,
+    key: &str,
+    body_hash: &str,
+) -> Result<Option<Outcome>, sqlx::Error> {
+    let earlier: Option<(String, String)> = sqlx::query_as(
+        "select body_hash, job from idempotency_keys where client = ?1 and key = ?2",
+    )
+    .bind(client)
+    .bind(key)
+    .fetch_optional(&mut *connection)
+    .await?;
+    let Some((earlier_hash, job)) = earlier else {
+        return Ok(None);
+    };
+    if earlier_hash != body_hash {
+        return Ok(Some(Outcome::KeyConflict));
+    }
+    let job = sqlx::query_as("select * from jobs where id = ?1")
+        .bind(job)
+        .fetch_one(connection)
+        .await?;
+    Ok(Some(Outcome::Repeated(job)))
+}
+
+/// Finished work that an equal submission can be answered with.
+pub(super) struct Known {
+    pub(super) job: String,
+    pub(super) document: String,
+    pub(super) positions: i64,
+}
+
+/// What the client has had computed of the same input by this version.
+pub(super) async fn find_known(
+    connection: &mut SqliteConnection,
+    client: &str,
+    input_hash: &str,
+    solver_version: &str,
+) -> Result<Option<Known>, sqlx::Error> {
+    // The one that was computed comes before those that were given its results.
+    let earlier: Option<(String, String, i64)> = sqlx::query_as(
+        "select id, document, positions_total from jobs
+         where client = ?1 and input_hash = ?2 and solver_version = ?3 and status = 'successful'
+         order by same_as is not null, sequence limit 1",
+    )
+    .bind(client)
+    .bind(input_hash)
+    .bind(solver_version)
+    .fetch_optional(connection)
+    .await?;
+    Ok(earlier.map(|(job, document, positions)| Known {
+        job,
+        document,
+        positions,
+    }))
+}
+
+/// A job that is successful at once, if the client has had the same input computed by this version.
+pub(super) async fn insert_known(
+    connection: &mut SqliteConnection,
+    new: &NewJob,
+    solver_version: &str,
+) -> Result<Option<Job>, sqlx::Error> {
+    let known = find_known(connection, &new.client, &new.input_hash, solver_version).await?;
+    let Some(known) = known else {
+        return Ok(None);
+    };
+    let job: Job = sqlx::query_as(
+        "insert into jobs (id, sequence, client, method, tags, input_hash, cost, status, positions_done, positions_total,
+                           submitted_at, started_at, finished_at, elapsed, document, solver_version, same_as, study)
+         values (?1, (select coalesce(max(sequence), 0) + 1 from jobs), ?2, ?3, ?4, ?5, ?6, 'successful', ?7, ?7,
+                 ?8, ?8, ?8, 0, ?9, ?10, ?11, ?12)
+         returning *",
+    )
+    .bind(new.id.to_string())
+    .bind(&new.client)
+    .bind(&new.method)
+    .bind(words(&new.tags))
+    .bind(&new.input_hash)
+    .bind(column(new.cost))
+    .bind(known.positions)
+    .bind(new.submitted_at.as_microsecond())
+    .bind(known.document)
+    .bind(solver_version)
+    .bind(known.job)
+    .bind(new.study.map(|study| study.to_string()))
+    .fetch_one(&mut *connection)
+    .await?;
+    insert_beside(connection, new, job.sequence).await?;
+    Ok(Some(job))
+}
+
+/// A job that waits.
+pub(super) async fn insert_waiting(
+    connection: &mut SqliteConnection,
+    new: &NewJob,
+) -> Result<Job, sqlx::Error> {
+    let job: Job = sqlx::query_as(
+        "insert into jobs (id, sequence, client, method, tags, input_hash, cost, status, positions_total, submitted_at, study)
+         values (?1, (select coalesce(max(sequence), 0) + 1 from jobs), ?2, ?3, ?4, ?5, ?6, 'accepted', ?7, ?8, ?9)
+         returning *",
+    )
+    .bind(new.id.to_string())
+    .bind(&new.client)
+    .bind(&new.method)
+    .bind(words(&new.tags))
+    .bind(&new.input_hash)
+    .bind(column(new.cost))
+    .bind(column(new.positions_total))
+    .bind(new.submitted_at.as_microsecond())
+    .bind(new.study.map(|study| study.to_string()))
+    .fetch_one(&mut *connection)
+    .await?;
+    insert_beside(connection, new, job.sequence).await?;
+    shares::activate(connection, &new.client, new.study).await?;
+    Ok(job)
+}
+
+/// What of a job stands in other tables: its submission and its tags.
+async fn insert_beside(
+    connection: &mut SqliteConnection,
+    new: &NewJob,
+    sequence: i64,
+) -> Result<(), sqlx::Error> {
+    let id = new.id.to_string();
+    sqlx::query("insert into submissions (job, body) values (?1, ?2)")
+        .bind(&id)
+        .bind(&new.submission)
+        .execute(&mut *connection)
+        .await?;
+    for tag in &new.tags {
+        // A tag may stand twice in a submission.
+        sqlx::query(
+            "insert or ignore into job_tags (client, tag, sequence, job) values (?1, ?2, ?3, ?4)",
+        )
+        .bind(&new.client)
+        .bind(tag)
+        .bind(sequence)
+        .bind(&id)
+        .execute(&mut *connection)
+        .await?;
+    }
+    Ok(())
+}
+
+/// A list of words as a column.
+pub(super) fn words(words: &[String]) -> String {
+    serde_json::to_string(words).expect("a list of strings is JSON")
+}

@@ -1,0 +1,119 @@
+//! The store: what each transition does, whose turn it is, what is damaged, what is old.
+
+mod faults;
+mod keeping;
+mod lists;
+mod migration;
+mod transitions;
+mod turns;
+
+use jiff::{SignedDuration, Timestamp};
+use tempfile::TempDir;
+use uuid::Uuid;
+
+use super::{Claim, End, Lost, NewJob, Outcome, Packed, QueueBounds, Store};
+use crate::jobs::job::Job;
+
+const VERSION: &str = "1.0";
+const CLIENT: &str = "portal";
+
+async fn store() -> (Store, TempDir) {
+    let folder = tempfile::tempdir().unwrap();
+    (open(&folder).await, folder)
+}
+
+async fn open(folder: &TempDir) -> Store {
+    Store::open(&folder.path().join("jobs.db")).await.unwrap()
+}
+
+fn at(seconds: i64) -> Timestamp {
+    Timestamp::from_second(seconds).unwrap()
+}
+
+/// The end of an attempt that took three seconds.
+fn end(seconds: i64) -> End {
+    End {
+        at: at(seconds),
+        elapsed: SignedDuration::from_secs(3),
+    }
+}
+
+fn expired(seconds: i64) -> Lost<'static> {
+    Lost::Lease {
+        steady: at(seconds),
+        alive: &[],
+    }
+}
+
+fn bounds(seconds: i64, queue_limit: u32) -> QueueBounds<'static> {
+    QueueBounds {
+        queue_limit,
+        forget_keys_before: at(0),
+        steady: at(seconds),
+        solver_version: VERSION,
+    }
+}
+
+/// A submission at a second; equal inputs are equal work.
+fn new(second: i64, input: &str) -> NewJob {
+    NewJob {
+        id: Uuid::now_v7(),
+        client: CLIENT.to_owned(),
+        method: "flexible".to_owned(),
+        tags: vec![input.to_owned()],
+        submission: format!("{{\"input\":\"{input}\"}}"),
+        input_hash: input.to_owned(),
+        cost: 1000,
+        positions_total: 200,
+        submitted_at: at(second),
+        idempotency_key: None,
+        study: None,
+        client_limit: u32::MAX,
+    }
+}
+
+async fn submit(store: &Store, job: NewJob) -> Outcome {
+    let bounds = bounds(job.submitted_at.as_second(), 10_000);
+    store.submit(&[job], bounds).await.unwrap().remove(0)
+}
+
+async fn queued(store: &Store, second: i64, input: &str) -> Job {
+    match submit(store, new(second, input)).await {
+        Outcome::Queued(job) => job,
+        other => panic!("{other:?}"),
+    }
+}
+
+async fn next(store: &Store, second: i64) -> Option<Job> {
+    let claimed = store.claim(at(second), at(second + 30), VERSION).await;
+    claimed.unwrap().started.map(|started| started.job)
+}
+
+async fn claim(store: &Store, second: i64) -> Claim {
+    of(&next(store, second).await.unwrap())
+}
+
+fn of(job: &Job) -> Claim {
+    Claim {
+        id: job.id,
+        attempt: job.attempt,
+    }
+}
+
+async fn find(store: &Store, id: Uuid) -> Job {
+    store.find(CLIENT, id).await.unwrap().unwrap()
+}
+
+/// A job that has ended with results of its own at a second.
+async fn ended(store: &Store, second: i64, input: &str) -> Job {
+    let job = queued(store, second, input).await;
+    let claim = claim(store, second).await;
+    let text = format!("{{\"of\":\"{input}\"}}");
+    assert!(
+        store
+            .succeed(claim, end(second), &Packed::of(&text), None, VERSION)
+            .await
+            .unwrap()
+    );
+    find(store, job.id).await
+}

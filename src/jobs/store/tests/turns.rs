@@ -1,0 +1,332 @@
+//! Whose turn it is: clients, studies and jobs alone, equal jobs, and jobs that may have brought a process down.
+
+use super::*;
+use crate::jobs::store::claim::NEXT_WAITING;
+use crate::jobs::store::{NewRow, NewStudy, StudyOutcome};
+use crate::wire::Status;
+use crate::wire::warning::GearName;
+
+fn of_client(client: &str, input: &str) -> NewJob {
+    NewJob {
+        client: client.to_owned(),
+        ..new(1, input)
+    }
+}
+
+/// A study of as many designs, and its id.
+async fn study(store: &Store, client: &str, designs: u32) -> Uuid {
+    let id = Uuid::now_v7();
+    let study = NewStudy {
+        id,
+        client: client.to_owned(),
+        name: None,
+        tags: Vec::new(),
+        document: "{}".to_owned(),
+        body_hash: String::new(),
+        gear: GearName::Driven,
+        total: designs.into(),
+        submitted_at: at(1),
+        idempotency_key: None,
+        client_limit: i64::MAX,
+    };
+    let row = |i: u32| NewRow {
+        label: i.to_string(),
+        changes: "{}".to_owned(),
+        job: Ok(NewJob {
+            study: Some(id),
+            ..of_client(client, &format!("{id} {i}"))
+        }),
+    };
+    let rows: Vec<NewRow> = (0..designs).map(row).collect();
+    let outcome = store
+        .begin_study(&study, &rows, bounds(1, 10))
+        .await
+        .unwrap();
+    assert_eq!(outcome, StudyOutcome::Taken);
+    id
+}
+
+/// Whose jobs are served, in this order, when one worker computes one after the other: client, and whether of a study.
+async fn served(store: &Store, count: usize) -> Vec<(String, Option<Uuid>)> {
+    let mut served = Vec::new();
+    for i in 0..count {
+        let job = next(store, 10).await.unwrap();
+        let text = format!("{{\"number\":{i},\"id\":\"{}\"}}", job.id);
+        let claim = of(&job);
+        assert!(
+            store
+                .succeed(claim, end(11), &Packed::of(&text), None, VERSION)
+                .await
+                .unwrap()
+        );
+        served.push((job.client, job.study));
+    }
+    served
+}
+
+fn count<T: PartialEq>(items: &[T], of: &T) -> usize {
+    items.iter().filter(|item| *item == of).count()
+}
+
+#[tokio::test]
+async fn clients_take_turns_however_many_jobs_each_brings() {
+    let (store, _folder) = store().await;
+    for i in 0..40 {
+        submit(&store, of_client("many", &format!("m{i}"))).await;
+    }
+    for i in 0..4 {
+        submit(&store, of_client("few", &format!("f{i}"))).await;
+    }
+    let clients: Vec<String> = served(&store, 8)
+        .await
+        .into_iter()
+        .map(|(client, _)| client)
+        .collect();
+    assert_eq!(
+        (
+            count(&clients, &"few".to_owned()),
+            count(&clients, &"many".to_owned())
+        ),
+        (4, 4)
+    );
+}
+
+#[tokio::test]
+async fn two_studies_of_two_clients_advance_together() {
+    let (store, _folder) = store().await;
+    let first = study(&store, "a", 50).await;
+    let second = study(&store, "b", 50).await;
+    let studies: Vec<_> = served(&store, 20)
+        .await
+        .into_iter()
+        .map(|(_, study)| study.unwrap())
+        .collect();
+    assert_eq!(
+        (count(&studies, &first), count(&studies, &second)),
+        (10, 10)
+    );
+}
+
+#[tokio::test]
+async fn neither_a_study_nor_jobs_alone_starve_when_both_always_wait() {
+    let (store, _folder) = store().await;
+    let id = study(&store, CLIENT, 100).await;
+    let mut order = Vec::new();
+    for i in 0..40 {
+        // Six submitters, who send another job as soon as one is taken.
+        while store.depth().await.unwrap().alone < 6 {
+            let n = order.len() * 10 + usize::try_from(store.depth().await.unwrap().alone).unwrap();
+            submit(&store, of_client(CLIENT, &format!("alone {i} {n}"))).await;
+        }
+        order.extend(served(&store, 1).await);
+    }
+    let of_study = order.iter().filter(|(_, study)| *study == Some(id)).count();
+    // Jobs alone have three times the part of a study: somebody waits for each.
+    assert_eq!((of_study, order.len() - of_study), (10, 30));
+}
+
+#[tokio::test]
+async fn a_client_that_sends_one_job_after_the_other_gets_no_more_than_its_share() {
+    let (store, _folder) = store().await;
+    for i in 0..20 {
+        submit(&store, of_client("patient", &format!("p{i}"))).await;
+    }
+    let mut order = Vec::new();
+    for i in 0..10 {
+        // Never two at once, but always one.
+        submit(&store, of_client("quick", &format!("q{i}"))).await;
+        order.extend(
+            served(&store, 2)
+                .await
+                .into_iter()
+                .map(|(client, _)| client),
+        );
+    }
+    assert_eq!(count(&order, &"patient".to_owned()), 10);
+}
+
+#[tokio::test]
+async fn who_was_alone_for_long_does_not_pay_for_it_and_who_was_away_has_saved_nothing() {
+    let (store, _folder) = store().await;
+    for i in 0..30 {
+        submit(&store, of_client("early", &format!("e{i}"))).await;
+    }
+    served(&store, 20).await;
+    for i in 0..10 {
+        submit(&store, of_client("late", &format!("l{i}"))).await;
+    }
+    let clients: Vec<String> = served(&store, 10)
+        .await
+        .into_iter()
+        .map(|(client, _)| client)
+        .collect();
+    assert_eq!(count(&clients, &"early".to_owned()), 5);
+}
+
+#[tokio::test]
+async fn long_jobs_are_charged_with_their_length() {
+    let (store, _folder) = store().await;
+    for i in 0..20 {
+        submit(
+            &store,
+            NewJob {
+                cost: 9000,
+                ..of_client("long", &format!("l{i}"))
+            },
+        )
+        .await;
+        submit(&store, of_client("short", &format!("s{i}"))).await;
+    }
+    let clients: Vec<String> = served(&store, 20)
+        .await
+        .into_iter()
+        .map(|(client, _)| client)
+        .collect();
+    let long = count(&clients, &"long".to_owned());
+    assert!((2..=3).contains(&long), "one for nine short ones: {long}");
+}
+
+#[tokio::test]
+async fn equal_jobs_are_computed_once_and_block_nobody() {
+    let (store, _folder) = store().await;
+    queued(&store, 1, "same").await;
+    queued(&store, 2, "same").await;
+    let other = queued(&store, 3, "other").await;
+    let first = claim(&store, 4).await;
+    assert_eq!(
+        next(&store, 5).await.unwrap().id,
+        other.id,
+        "the equal one is passed over"
+    );
+    assert!(
+        store
+            .succeed(first, end(6), &Packed::of("{}"), None, VERSION)
+            .await
+            .unwrap()
+    );
+    let claimed = store.claim(at(7), at(40), VERSION).await.unwrap();
+    assert!(claimed.started.is_none());
+    assert_eq!(
+        (claimed.given.len(), claimed.given[0].same_as),
+        (1, Some(first.id))
+    );
+}
+
+#[tokio::test]
+async fn a_claim_looks_at_no_job_that_has_ended() {
+    let (store, _folder) = store().await;
+    let plan = sqlx::AssertSqlSafe(format!("explain query plan {NEXT_WAITING}"));
+    let steps: Vec<(i64, i64, i64, String)> = sqlx::query_as(plan)
+        .bind(CLIENT)
+        .bind("")
+        .fetch_all(&store.readers)
+        .await
+        .unwrap();
+    // Both indexes leave out what has ended, and the first one has the order of the lane: nothing is sorted.
+    let uses = |index: &str| steps.iter().filter(|step| step.3.contains(index)).count();
+    assert_eq!(
+        (
+            uses("jobs_waiting"),
+            uses("jobs_running"),
+            uses("TEMP B-TREE")
+        ),
+        (1, 1, 0),
+        "{steps:?}"
+    );
+}
+
+#[tokio::test]
+async fn a_job_that_kills_its_process_is_found_and_those_beside_it_lose_no_attempt() {
+    let (store, _folder) = store().await;
+    let poison = queued(&store, 1, "poison").await;
+    let innocent = queued(&store, 2, "innocent").await;
+    let waiting = queued(&store, 3, "waiting").await;
+    assert_eq!(claim(&store, 4).await.id, poison.id);
+    assert_eq!(claim(&store, 4).await.id, innocent.id);
+    let die = async || {
+        store
+            .recover(at(5), Lost::Process, 3, r#"{"code":"lost"}"#)
+            .await
+            .unwrap()
+    };
+
+    assert_eq!(die().await.len(), 2, "nobody knows which of the two it was");
+    for death in 1..=3 {
+        assert_eq!(claim(&store, 6).await.id, poison.id, "alone: death {death}");
+        assert_eq!(next(&store, 6).await, None, "nothing begins beside it");
+        assert_eq!(die().await, [poison.id]);
+    }
+    let poison = find(&store, poison.id).await;
+    assert_eq!(
+        (poison.status, poison.attempt),
+        (Status::Failed, 4),
+        "once with others, three times alone"
+    );
+
+    let held = claim(&store, 7).await;
+    assert_eq!(held.id, innocent.id, "it is run alone, too");
+    assert_eq!(find(&store, innocent.id).await.attempts_counted, 1);
+    assert_eq!(next(&store, 7).await, None);
+    assert!(
+        store
+            .succeed(held, end(8), &Packed::of("{}"), None, VERSION)
+            .await
+            .unwrap()
+    );
+    assert_eq!(next(&store, 9).await.unwrap().id, waiting.id);
+    assert_eq!(find(&store, waiting.id).await.attempts_counted, 1);
+}
+
+#[tokio::test]
+async fn what_runs_comes_to_its_end_before_a_job_is_run_alone() {
+    let (store, _folder) = store().await;
+    queued(&store, 1, "a").await;
+    queued(&store, 2, "b").await;
+    claim(&store, 3).await;
+    claim(&store, 3).await;
+    store.recover(at(4), Lost::Process, 3, "{}").await.unwrap();
+    let first = claim(&store, 5).await;
+    assert_eq!(next(&store, 5).await, None);
+    assert!(
+        store.release(first).await.unwrap(),
+        "a shutdown is no death"
+    );
+    let again = claim(&store, 6).await;
+    assert_eq!(again.id, first.id);
+    assert_eq!(find(&store, again.id).await.attempts_counted, 1);
+}
+
+#[tokio::test]
+async fn a_process_that_ended_in_order_charges_nobody() {
+    let (store, _folder) = store().await;
+    let job = queued(&store, 1, "a").await;
+    for _ in 0..5 {
+        claim(&store, 2).await;
+        store.recover(at(3), Lost::InOrder, 3, "{}").await.unwrap();
+    }
+    let job = find(&store, job.id).await;
+    assert_eq!((job.status, job.attempts_counted), (Status::Accepted, 0));
+}
+
+#[tokio::test]
+async fn a_full_lane_of_one_client_leaves_room_for_the_others() {
+    let (store, _folder) = store().await;
+    let limited = |client: &str, input: &str| NewJob {
+        client_limit: 2,
+        ..of_client(client, input)
+    };
+    assert!(matches!(
+        submit(&store, limited("a", "1")).await,
+        Outcome::Queued(_)
+    ));
+    assert!(matches!(
+        submit(&store, limited("a", "2")).await,
+        Outcome::Queued(_)
+    ));
+    let third = submit(&store, limited("a", "3")).await;
+    assert_eq!(third, Outcome::ClientQueueFull { waiting: 2 });
+    assert!(matches!(
+        submit(&store, limited("b", "1")).await,
+        Outcome::Queued(_)
+    ));
+}

@@ -1,0 +1,200 @@
+//! Writing: one transaction after the other, on one connection that is given up when anything about it is in doubt.
+
+use std::ops::{Deref, DerefMut};
+use std::sync::Arc;
+use std::time::Duration;
+
+use sqlx::pool::PoolConnection;
+use sqlx::{Sqlite, SqliteConnection, SqlitePool};
+use tokio::sync::{Notify, watch};
+use tracing::{error, info};
+
+use super::{Store, StoreError};
+
+/// While nothing can be stored, it is tried so often.
+const BETWEEN_TRIES: Duration = Duration::from_millis(500);
+
+/// Whether what is written arrives.
+#[derive(Debug)]
+pub(super) struct Health {
+    /// Why nothing can be stored, if so.
+    fault: watch::Sender<Option<String>>,
+    /// Rung when a transaction came to no end.
+    doubt: Notify,
+}
+
+impl Health {
+    pub(super) fn new() -> Arc<Self> {
+        Arc::new(Self {
+            fault: watch::Sender::new(None),
+            doubt: Notify::new(),
+        })
+    }
+
+    fn found(&self, result: Result<&(), &StoreError>) {
+        let now = result.err().map(cause);
+        self.fault.send_if_modified(|fault| {
+            match (&*fault, &now) {
+                (None, Some(cause)) => error!(cause, "nothing can be stored"),
+                (Some(_), None) => info!("storing works again"),
+                _ => {}
+            }
+            let changed = fault.is_some() != now.is_some();
+            *fault = now;
+            changed
+        });
+    }
+}
+
+/// The cause as the system words it.
+fn cause(error: &StoreError) -> String {
+    std::error::Error::source(error).map_or_else(|| error.to_string(), ToString::to_string)
+}
+
+/// A transaction that has the write lock. Dropped without an end, it takes its connection with it: what SQLite, the
+/// driver and this program believe of the transaction need not agree any more, after an error least of all.
+pub(super) struct Write {
+    connection: PoolConnection<Sqlite>,
+    health: Arc<Health>,
+    ended: bool,
+}
+
+impl Store {
+    /// Begins a transaction that writes.
+    pub(super) async fn begin(&self) -> Result<Write, StoreError> {
+        let begun = begin(&self.writer, &self.health).await;
+        if let Err(error) = &begun {
+            self.health.found(Err(error));
+        }
+        begun
+    }
+
+    /// Why nothing can be stored now; `None` if it can.
+    pub fn fault(&self) -> Option<String> {
+        self.health.fault.borrow().clone()
+    }
+
+    /// Comes back when something can be stored, as far as is known.
+    pub async fn writable(&self) {
+        let mut fault = self.health.fault.subscribe();
+        // The sender lives as long as the store.
+        let _ = fault.wait_for(Option::is_none).await;
+    }
+
+    /// Finds out whether something can be stored, by storing something.
+    ///
+    /// # Errors
+    ///
+    /// [`StoreError`] if not.
+    pub async fn probe(&self) -> Result<(), StoreError> {
+        let mut write = self.begin().await?;
+        sqlx::query("update served set due = due")
+            .execute(&mut *write)
+            .await?;
+        write.commit().await
+    }
+
+    /// Watches over the writing: where it failed it is tried again, until the store is dropped or closed.
+    pub(super) fn watch_writing(&self) {
+        let (health, writer) = (Arc::downgrade(&self.health), self.writer.clone());
+        let mut fault = self.health.fault.subscribe();
+        tokio::spawn(async move {
+            loop {
+                let failing = fault.borrow_and_update().is_some();
+                let Some(held) = health.upgrade() else {
+                    return;
+                };
+                if failing {
+                    tokio::time::sleep(BETWEEN_TRIES).await;
+                } else {
+                    tokio::select! {
+                        changed = fault.changed() => {
+                            if changed.is_err() { return; }
+                        }
+                        () = held.doubt.notified() => {}
+                        () = writer.close_event() => return,
+                    }
+                }
+                if writer.is_closed() {
+                    return;
+                }
+                try_out(&writer, &held).await;
+            }
+        });
+    }
+}
+
+async fn try_out(writer: &SqlitePool, health: &Arc<Health>) {
+    let tried = async {
+        let mut write = begin(writer, health).await?;
+        sqlx::query("update served set due = due")
+            .execute(&mut *write)
+            .await?;
+        write.commit().await
+    };
+    let result = tried.await;
+    // Damage is no matter of trying again; whoever meets it says so.
+    if !matches!(result, Err(StoreError::Broken(_))) {
+        health.found(result.as_ref());
+    }
+}
+
+async fn begin(writer: &SqlitePool, health: &Arc<Health>) -> Result<Write, StoreError> {
+    let mut connection = writer.acquire().await?;
+    // In plain SQL, because the driver's count of open transactions survives an error that SQLite's does not.
+    if let Err(error) = sqlx::raw_sql("begin immediate")
+        .execute(&mut *connection)
+        .await
+    {
+        connection.close_on_drop();
+        return Err(error.into());
+    }
+    Ok(Write {
+        connection,
+        health: Arc::clone(health),
+        ended: false,
+    })
+}
+
+impl Write {
+    /// Makes the changes last.
+    pub(super) async fn commit(mut self) -> Result<(), StoreError> {
+        let committed = sqlx::raw_sql("commit").execute(&mut *self.connection).await;
+        let committed = committed.map(|_| ()).map_err(StoreError::from);
+        self.ended = committed.is_ok();
+        self.health.found(committed.as_ref());
+        committed
+    }
+
+    /// Takes the changes back.
+    pub(super) async fn rollback(mut self) -> Result<(), StoreError> {
+        sqlx::raw_sql("rollback")
+            .execute(&mut *self.connection)
+            .await?;
+        self.ended = true;
+        Ok(())
+    }
+}
+
+impl Deref for Write {
+    type Target = SqliteConnection;
+
+    fn deref(&self) -> &SqliteConnection {
+        &self.connection
+    }
+}
+
+impl DerefMut for Write {
+    fn deref_mut(&mut self) -> &mut SqliteConnection {
+        &mut self.connection
+    }
+}
+
+impl Drop for Write {
+    fn drop(&mut self) {
+        if !self.ended {
+            self.connection.close_on_drop();
+            self.health.doubt.notify_one();
+        }
+    }
+}

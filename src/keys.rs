@@ -1,0 +1,124 @@
+//! API keys: how they look, how they are made, and how one is recognized without keeping it.
+
+use std::fmt;
+
+use subtle::ConstantTimeEq;
+
+use crate::hash::sha256_hex;
+use crate::jobs::{KeyRecord, Store, StoreError};
+
+/// What every key begins with, so that programs that look for leaked secrets know it.
+const PREFIX: &str = "mw";
+
+const ID_BYTES: usize = 8;
+const SECRET_BYTES: usize = 32;
+
+/// A key in full: `mw_ID_SECRET`, both parts hexadecimal. It shows itself to nobody by accident.
+pub struct Key {
+    id: String,
+    secret: String,
+}
+
+impl fmt::Debug for Key {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Key({})", self.id)
+    }
+}
+
+impl Key {
+    /// A new key, from the system's source of chance.
+    ///
+    /// # Errors
+    ///
+    /// When the system has none.
+    pub fn random() -> Result<Self, getrandom::Error> {
+        let (mut id, mut secret) = ([0; ID_BYTES], [0; SECRET_BYTES]);
+        getrandom::fill(&mut id)?;
+        getrandom::fill(&mut secret)?;
+        let hex = |bytes: &[u8]| bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+        Ok(Self {
+            id: hex(&id),
+            secret: hex(&secret),
+        })
+    }
+
+    /// Reads a key; `None` if it has not the form of one.
+    pub fn parse(text: &str) -> Option<Self> {
+        let (id, secret) = text
+            .strip_prefix(PREFIX)?
+            .strip_prefix('_')?
+            .split_once('_')?;
+        let is_hex = |text: &str, bytes: usize| {
+            text.len() == 2 * bytes
+                && text
+                    .bytes()
+                    .all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
+        };
+        (is_hex(id, ID_BYTES) && is_hex(secret, SECRET_BYTES)).then(|| Self {
+            id: id.to_owned(),
+            secret: secret.to_owned(),
+        })
+    }
+
+    /// Its public part.
+    pub fn id(&self) -> &str {
+        &self.id
+    }
+
+    /// What is kept of its secret part. The secret has 256 bits of chance: nobody finds it from the hash by trying, so that
+    /// a slow hash would only be slow.
+    pub fn secret_hash(&self) -> String {
+        sha256_hex(&self.secret)
+    }
+
+    /// The whole key, to be told once.
+    pub fn reveal(&self) -> String {
+        format!("{PREFIX}_{}_{}", self.id, self.secret)
+    }
+
+    /// The record of this key, if it is kept and was not revoked.
+    ///
+    /// # Errors
+    ///
+    /// [`StoreError`].
+    pub async fn find(&self, store: &Store) -> Result<Option<KeyRecord>, StoreError> {
+        let record = store.find_key(&self.id).await?;
+        // The time of the comparison tells nothing of how much of the secret was right.
+        Ok(record.filter(|record| {
+            let same = record
+                .secret_hash
+                .as_bytes()
+                .ct_eq(self.secret_hash().as_bytes());
+            bool::from(same)
+        }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_reads_what_it_reveals_and_shows_no_secret() {
+        let key = Key::random().unwrap();
+        let text = key.reveal();
+        let again = Key::parse(&text).unwrap();
+        assert_eq!(
+            (again.id(), again.secret_hash()),
+            (key.id(), key.secret_hash())
+        );
+        assert!(!format!("{key:?}").contains(&key.secret));
+        assert_ne!(Key::random().unwrap().reveal(), text);
+        for other in [
+            "",
+            "mw",
+            "mw__",
+            &text[1..],
+            &text[..text.len() - 1],
+            &text.to_uppercase(),
+            &format!("{text}0"),
+        ] {
+            assert!(Key::parse(other).is_none(), "{other}");
+        }
+    }
+}

@@ -1,0 +1,319 @@
+//! What prevents a gear, told by field, with the bound beyond which it could be made.
+
+use meshwright_engine::gear::data::{LEAST_LIGAMENT, LEAST_RIM, LEAST_TIP_THICKNESS};
+use meshwright_engine::gear::{DeviationList, GearError};
+
+use super::GearDocument;
+use super::field::{Field, ReliefPlace};
+use super::relief::{ReliefEnd, StartWay};
+use crate::wire::problem::Code;
+use crate::wire::units::{Side, from_mm, plain, rounded_inward, to_mm, to_um};
+
+/// Why a gear cannot be made, and the bound beyond which it could, in the unit of the field.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Fault {
+    pub(super) field: Field,
+    pub(super) code: Code,
+    pub(super) detail: String,
+    pub(super) bound: Option<(f64, Side)>,
+    pub(super) cure: Option<f64>,
+    pub(super) steps: u32,
+}
+
+impl Fault {
+    pub(super) fn new(
+        field: Field,
+        code: Code,
+        detail: String,
+        bound: Option<(f64, Side)>,
+    ) -> Self {
+        Self {
+            field,
+            code,
+            detail,
+            bound,
+            cure: None,
+            steps: 0,
+        }
+    }
+
+    /// How many units inward the next cure goes, where the field is still at fault after this one: a bound that has
+    /// not moved was met only up to the last bits.
+    pub(super) fn steps_after(&self, next: &Self) -> u32 {
+        match (self.bound, next.bound) {
+            (Some((before, _)), Some((now, _))) if (before - now).abs() <= 1e-6 * now.abs() => {
+                self.steps + 1
+            }
+            _ => 0,
+        }
+    }
+}
+
+impl GearDocument {
+    pub(super) fn fault(&self, error: &GearError) -> Fault {
+        let mm = |value: f64| plain(to_mm(value));
+        match *error {
+            GearError::RackTipRadius {
+                tip_radius,
+                largest,
+            } => Fault::new(
+                Field::RackTipRadius,
+                Code::OutOfRange,
+                format!(
+                    "A rack tip rounding of {} mm does not fit; at most {} mm does.",
+                    mm(tip_radius),
+                    mm(largest)
+                ),
+                Some((to_mm(largest), Side::AtMost)),
+            ),
+            GearError::Undercut {
+                profile_shift,
+                smallest,
+            } => Fault::new(
+                Field::ProfileShift,
+                Code::Undercut,
+                format!(
+                    "{} teeth are undercut at profile shift {}; it takes at least {}.",
+                    self.tooth_count,
+                    plain(profile_shift),
+                    plain(smallest)
+                ),
+                Some((smallest, Side::AtLeast)),
+            ),
+            GearError::PointedTip {
+                thickness,
+                largest_addendum,
+            } => Fault::new(
+                Field::Tip,
+                Code::PointedTip,
+                if thickness < 0.0 {
+                    format!(
+                        "The flanks of a tooth cross below the tip circle; an addendum of at most {} mm avoids it.",
+                        mm(largest_addendum)
+                    )
+                } else {
+                    format!(
+                        "The teeth are {} mm thick at the tip, less than {LEAST_TIP_THICKNESS} modules; an addendum of at most {} mm leaves enough.",
+                        mm(thickness),
+                        mm(largest_addendum)
+                    )
+                },
+                Some((self.tip_said(to_mm(largest_addendum)), Side::AtMost)),
+            ),
+            GearError::NoFlank {
+                tip_radius,
+                form_radius,
+            } => Fault::new(
+                Field::Tip,
+                Code::OutOfRange,
+                format!(
+                    "The tip radius {} mm leaves no flank above the form radius {} mm.",
+                    mm(tip_radius),
+                    mm(form_radius)
+                ),
+                Some((
+                    self.tip_said(
+                        to_mm(form_radius) - self.shifted_radius_mm() + 0.1 * self.module_mm,
+                    ),
+                    Side::AtLeast,
+                )),
+            ),
+            GearError::ReliefTooLong {
+                modification,
+                start_radius,
+                form_radius,
+                tip_radius,
+            } => self.relief_fault(
+                self.place_of(modification),
+                start_radius,
+                [form_radius, tip_radius],
+            ),
+            GearError::BoreTooLarge {
+                bore_radius,
+                largest,
+            } => Fault::new(
+                Field::Bore,
+                Code::BoreTooLarge,
+                format!(
+                    "A bore of radius {} mm leaves less than {LEAST_RIM} module below the root circle; at most {} mm.",
+                    mm(bore_radius),
+                    mm(largest)
+                ),
+                Some((to_mm(largest), Side::AtMost)),
+            ),
+            GearError::TeethTooThick { deviation, largest } => Fault::new(
+                Field::ThicknessDeviation,
+                Code::TeethTooThick,
+                format!(
+                    "Teeth thicker by {} um leave no space between their fillets; at most {} um.",
+                    plain(to_um(deviation)),
+                    plain(to_um(largest))
+                ),
+                Some((to_um(largest), Side::AtMost)),
+            ),
+            GearError::TipEdgeTooLarge { amount, largest } => Fault::new(
+                Field::TipEdge,
+                Code::TipEdgeTooLarge,
+                format!(
+                    "Tip edges broken by {} mm leave no tip or no flank; at most {} mm.",
+                    mm(amount),
+                    mm(largest)
+                ),
+                Some((to_mm(largest), Side::AtMost)),
+            ),
+            // The lists were looked at before; what differs is the engine's own rounding.
+            GearError::TableDoesNotRise {
+                modification,
+                entry,
+            } => Fault::new(
+                Field::Modification(self.place_of(modification)),
+                Code::TableDoesNotRise,
+                format!("Entry {entry} of the table does not stand beyond the one before it."),
+                None,
+            ),
+            GearError::DeviationCount {
+                list,
+                given,
+                needed,
+            } => Fault::new(
+                Field::Deviations,
+                Code::WrongLength,
+                format!(
+                    "The {} deviations are {given}; {needed} are needed, one for each tooth.",
+                    match list {
+                        DeviationList::Pitch => "pitch",
+                        DeviationList::ProfileSlope => "profile slope",
+                    }
+                ),
+                None,
+            ),
+            GearError::WebOutside { .. } => {
+                Fault::new(Field::Bore, Code::OutOfRange, error.to_string(), None)
+            }
+            GearError::HolesOverlap {
+                holes: _,
+                ligament,
+                largest_radius,
+            } => self.hole_fault(Code::HolesOverlap, "between them", ligament, largest_radius),
+            GearError::HolesBreachRim {
+                hole: _,
+                ligament,
+                largest_radius,
+            } => self.hole_fault(
+                Code::HolesBreachRim,
+                "below the root circle",
+                ligament,
+                largest_radius,
+            ),
+            GearError::HolesBreachBore {
+                hole: _,
+                ligament,
+                largest_radius,
+            } => self.hole_fault(
+                Code::HolesBreachBore,
+                "around the bore",
+                ligament,
+                largest_radius,
+            ),
+        }
+    }
+
+    /// What the tip circle's own field would say of another addendum, in mm.
+    fn tip_said(&self, addendum: f64) -> f64 {
+        self.tip_circle.said(addendum, self.shifted_radius_mm())
+    }
+
+    /// The radii at which a relief with its amount at `end` can start, of a flank between these radii.
+    pub(super) fn relief_range(&self, end: ReliefEnd, [form, tip]: [f64; 2]) -> (f64, f64) {
+        match end {
+            ReliefEnd::Tip => (form, tip - self.least_relief()),
+            ReliefEnd::Form => (form + self.least_relief(), tip),
+        }
+    }
+
+    /// The relief at `place` starts at a radius outside its range on the flank between `ends`, all in meters.
+    pub(super) fn relief_fault(
+        &self,
+        place: ReliefPlace,
+        start_radius: f64,
+        ends: [f64; 2],
+    ) -> Fault {
+        let start = self.relief(place).map(|relief| relief.start);
+        let end = start.map_or(ReliefEnd::Tip, |start| start.end);
+        let (lowest, highest) = self.relief_range(end, ends);
+        let detail = format!(
+            "The relief starts at radius {} mm; on this flank it can start from {} mm to {} mm.",
+            plain(to_mm(start_radius)),
+            plain(to_mm(lowest)),
+            plain(to_mm(highest))
+        );
+        let r_b = from_mm(self.base_radius_mm());
+        let roll = |radius: f64| (radius.powi(2) - r_b.powi(2)).max(0.0).sqrt();
+        // The radius that is nearest, and on which side of it the flank is.
+        let (nearest, side) = if start_radius > highest {
+            (highest, Side::AtMost)
+        } else {
+            (lowest, Side::AtLeast)
+        };
+        let from_end = |tip: f64, form: f64| match end {
+            ReliefEnd::Tip => (to_mm(tip), side.other()),
+            ReliefEnd::Form => (to_mm(form), side),
+        };
+        let [form_radius, tip_radius] = ends;
+        let bound = match start.map(|start| start.way) {
+            Some(StartWay::RadialLength) => from_end(tip_radius - nearest, nearest - form_radius),
+            Some(StartWay::RollLength) => from_end(
+                roll(tip_radius) - roll(nearest),
+                roll(nearest) - roll(form_radius),
+            ),
+            Some(StartWay::Diameter) | None => (to_mm(2.0 * nearest), side),
+            Some(StartWay::RollAngle) => ((roll(nearest) / r_b).to_degrees(), side),
+        };
+        Fault::new(
+            Field::ReliefStart(place),
+            Code::ReliefTooLong,
+            detail,
+            Some(bound),
+        )
+    }
+
+    /// The radius of the holes is to blame, unless no radius would do: then it is their circle.
+    fn hole_fault(&self, code: Code, place: &str, ligament: f64, largest_radius: f64) -> Fault {
+        let least = to_mm(LEAST_LIGAMENT);
+        let detail = if ligament < 0.0 {
+            format!(
+                "The holes leave nothing {place}: they cut {} mm too far.",
+                plain(to_mm(-ligament))
+            )
+        } else {
+            format!(
+                "The holes leave {} mm {place}; at least {least} mm has to stay.",
+                plain(to_mm(ligament))
+            )
+        };
+        let largest = rounded_inward(to_mm(largest_radius), Side::AtMost, 0);
+        if self.accepts(Field::HoleRadius, largest) && largest >= self.least_hole_mm() {
+            return Fault::new(
+                Field::HoleRadius,
+                code,
+                detail,
+                Some((to_mm(largest_radius), Side::AtMost)),
+            );
+        }
+        let missing = least - to_mm(ligament);
+        let circle = self.value(Field::HoleCircle);
+        let bound = match code {
+            Code::HolesBreachRim => (circle - missing, Side::AtMost),
+            Code::HolesBreachBore => (circle + missing, Side::AtLeast),
+            _ => {
+                let count = self.blank.holes.as_ref().map_or(1, |holes| holes.count);
+                let half_angle = std::f64::consts::PI / f64::from(count);
+                (
+                    (self.value(Field::HoleRadius) + least / 2.0) / half_angle.sin(),
+                    Side::AtLeast,
+                )
+            }
+        };
+        Fault::new(Field::HoleCircle, code, detail, Some(bound))
+    }
+}

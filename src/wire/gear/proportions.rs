@@ -1,0 +1,149 @@
+//! Bounds of a gear's numbers that depend on its other numbers, so that nothing degenerate reaches the grids.
+
+use meshwright_engine::gear::SpurGear;
+
+use super::GearDocument;
+use super::faults::Fault;
+use super::field::Field;
+use crate::wire::problem::{Code, FieldError};
+use crate::wire::units::{Side, from_mm, plain};
+
+impl GearDocument {
+    /// Makes the gear, or tells the first thing that prevents it.
+    pub(super) fn made(&self) -> Result<SpurGear, Fault> {
+        self.check_proportions()?;
+        let gear = SpurGear::new(self.data()).map_err(|error| self.fault(&error))?;
+        // A relief that begins where it ends is a step, which no grid and no contact search can follow.
+        let short = self.relief_places().find_map(|place| {
+            let relief = self.relief(place).filter(|relief| relief.is_there())?;
+            let start = relief.start.radius(&gear);
+            let (least, most) =
+                self.relief_range(relief.start.end, [gear.form_radius(), gear.tip_radius()]);
+            (!(least..=most).contains(&start)).then_some((place, start))
+        });
+        match short {
+            Some((place, start)) => {
+                let ends = [gear.form_radius(), gear.tip_radius()];
+                Err(self.relief_fault(place, start, ends))
+            }
+            None => Ok(gear),
+        }
+    }
+
+    fn check_proportions(&self) -> Result<(), Fault> {
+        let m = self.module_mm;
+        self.check_addendum()?;
+        for (field, least, most) in [
+            (Field::Dedendum, 0.5, 2.5),
+            (Field::RackTipRadius, 0.05, 2.0),
+        ] {
+            let said = format!("{least} and {most} modules");
+            self.check_between(field, least * m, most * m, &said)?;
+        }
+        let half = 500.0 * m;
+        self.check_between(
+            Field::ThicknessDeviation,
+            -half,
+            half,
+            "half a module to either side",
+        )?;
+        if self.tip_edge.value() > 0.0 {
+            self.check_between(
+                Field::TipEdge,
+                0.01 * m,
+                f64::INFINITY,
+                "0.01 modules and more",
+            )?;
+        }
+        // A bore or a hole that is a mere point has a logarithmically singular compliance.
+        let least_bore = 0.05 * self.root_radius_mm();
+        self.check_between(
+            Field::Bore,
+            least_bore,
+            f64::INFINITY,
+            "5 % of the root radius and more",
+        )?;
+        if self.blank.holes.is_some() {
+            self.check_between(
+                Field::HoleRadius,
+                self.least_hole_mm(),
+                f64::INFINITY,
+                "1 % of the root radius and more",
+            )?;
+        }
+        Ok(())
+    }
+
+    /// The addendum has its bounds in modules, and they are those of the tip diameter too.
+    fn check_addendum(&self) -> Result<(), Fault> {
+        let from_radius = self.shifted_radius_mm();
+        let said = |modules: f64| self.tip_circle.said(modules * self.module_mm, from_radius);
+        self.check_between(
+            Field::Tip,
+            said(0.2),
+            said(2.0),
+            "an addendum of 0.2 to 2 modules",
+        )
+    }
+
+    fn check_between(&self, field: Field, least: f64, most: f64, said: &str) -> Result<(), Fault> {
+        // What was computed from the other numbers is so up to the last bits.
+        const ROUNDING: f64 = 1e-12;
+        let value = self.value(field);
+        let bound = if value < least - ROUNDING * least.abs() {
+            (least, Side::AtLeast)
+        } else if value > most + ROUNDING * most.abs() {
+            (most, Side::AtMost)
+        } else {
+            return Ok(());
+        };
+        let unit = self.quantity(field).map_or("mm", |quantity| quantity.unit);
+        let detail = format!("{} {unit} is outside {said}.", plain(value));
+        Err(Fault::new(field, Code::OutOfRange, detail, Some(bound)))
+    }
+
+    pub(super) fn least_hole_mm(&self) -> f64 {
+        0.01 * self.root_radius_mm()
+    }
+
+    fn root_radius_mm(&self) -> f64 {
+        self.module_mm * f64::from(self.tooth_count) / 2.0 - self.dedendum_mm
+            + self.profile_shift * self.module_mm
+    }
+
+    /// The base radius, in mm.
+    pub(super) fn base_radius_mm(&self) -> f64 {
+        let reference = self.module_mm * f64::from(self.tooth_count) / 2.0;
+        reference * self.pressure_angle_deg.to_radians().cos()
+    }
+
+    /// The least radial length of a relief, in meters.
+    pub(super) fn least_relief(&self) -> f64 {
+        0.01 * from_mm(self.module_mm)
+    }
+
+    /// What is wrong with its lists, which no single number mends.
+    pub(super) fn list_faults(&self, pointer: &str) -> Vec<FieldError> {
+        let modifications = self.profile_modifications.iter().enumerate();
+        let tables = modifications.filter_map(|(i, modification)| Some((i, modification.table()?)));
+        let of_tables = tables.flat_map(|(i, table)| {
+            let place = format!("{pointer}/profile_modifications/{i}");
+            table.faults(&place, self.module_mm, self.base_radius_mm())
+        });
+        let of_deviations = self.tooth_deviations.iter().flat_map(|deviations| {
+            let place = format!("{pointer}/tooth_deviations");
+            deviations.faults(&place, self.tooth_count, self.module_mm)
+        });
+        of_tables.chain(of_deviations).collect()
+    }
+
+    /// The same gear without lists, its modifications in their places.
+    pub(super) fn without_lists(&self) -> Self {
+        let mut gear = self.clone();
+        gear.tooth_deviations = None;
+        for modification in &mut gear.profile_modifications {
+            modification.empty_table();
+        }
+        gear
+    }
+}

@@ -1,0 +1,92 @@
+//! The values that together would make a gear, where a submission's do not.
+
+use meshwright_engine::gear::SpurGear;
+
+use super::GearDocument;
+use super::faults::Fault;
+use crate::wire::problem::FieldError;
+use crate::wire::quantity::Quantity;
+use crate::wire::units::{plain, rounded_inward};
+
+impl GearDocument {
+    /// The gear, if it can be made.
+    ///
+    /// # Errors
+    ///
+    /// Every field that has to change, each with a value such that all these values together make a gear, where there
+    /// are such values.
+    pub(in crate::wire) fn to_gear(&self, pointer: &str) -> Result<SpurGear, Vec<FieldError>> {
+        let lists = self.list_faults(pointer);
+        if lists.is_empty() {
+            return self.with_numbers(pointer);
+        }
+        // What else is wrong is told together with the lists.
+        let others = self.without_lists().with_numbers(pointer).err();
+        let others = others.into_iter().flatten();
+        Err(lists.into_iter().chain(others).collect())
+    }
+
+    fn with_numbers(&self, pointer: &str) -> Result<SpurGear, Vec<FieldError>> {
+        const MOST_REPAIRS: usize = 12;
+        let mut repaired = self.clone();
+        let mut faults: Vec<Fault> = Vec::new();
+        for _ in 0..MOST_REPAIRS {
+            let mut fault = match repaired.made() {
+                Ok(gear) if faults.is_empty() => return Ok(gear),
+                Ok(_) => return Err(self.told(pointer, faults)),
+                Err(fault) => fault,
+            };
+            let index = faults.iter().position(|known| known.field == fault.field);
+            let steps = index.map_or(0, |index| faults[index].steps_after(&fault));
+            let cure = fault
+                .bound
+                .map(|(bound, side)| rounded_inward(bound, side, steps));
+            let cure = cure.filter(|&value| repaired.accepts(fault.field, value));
+            match index {
+                Some(index) => {
+                    let known = &mut faults[index];
+                    (known.cure, known.bound, known.steps) = (cure, fault.bound, steps);
+                }
+                None => {
+                    fault.cure = cure;
+                    faults.push(fault.clone());
+                }
+            }
+            match cure {
+                Some(value) => repaired.set(fault.field, value),
+                None => break,
+            }
+        }
+        // No set of values was found that works together, so none is promised for the last of them.
+        if let Some(last) = faults.last_mut() {
+            last.cure = None;
+        }
+        Err(self.told(pointer, faults))
+    }
+
+    fn told(&self, pointer: &str, faults: Vec<Fault>) -> Vec<FieldError> {
+        faults
+            .into_iter()
+            .map(|fault| {
+                let advice = fault.cure.map_or_else(String::new, |cure| {
+                    format!(
+                        " {} would do.",
+                        self.quantity(fault.field)
+                            .map_or_else(|| plain(cure), |q| spoken(cure, q))
+                    )
+                });
+                let place = format!("{pointer}/{}", self.pointer_within(fault.field));
+                FieldError::new(place, fault.code, format!("{}{advice}", fault.detail))
+                    .nearest(fault.cure)
+            })
+            .collect()
+    }
+}
+
+/// A value with its unit, as a sentence begins with it.
+fn spoken(value: f64, quantity: &Quantity) -> String {
+    match quantity.unit {
+        "1" => plain(value),
+        unit => format!("{} {unit}", plain(value)),
+    }
+}

@@ -1,0 +1,141 @@
+//! The curves at one output torque, and their statistics.
+
+use meshwright_engine::analysis::{Case, Curve, Statistics};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::decomposition::DecompositionDocument;
+use super::each;
+use super::spectrum::SpectrumDocument;
+use crate::wire::units::{or_null, to_mpa, to_um};
+
+/// The curves at one output torque. All lists, those of the spectrum aside, run over the same positions.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[schema(as = Curve, title = "Curve")]
+pub struct CurveDocument {
+    /// The output torque on the driven gear, in N m.
+    pub output_torque_n_m: f64,
+    /// The transmitted load on the line of action, in N: the torque over the driven base radius.
+    pub load_n: f64,
+    /// The mesh position, in mesh periods, end excluded; at 0 the reference pair touches at the pitch point.
+    pub mesh_position: Vec<f64>,
+    /// The rigid rotation of the driving gear, in degrees.
+    pub driving_angle_deg: Vec<f64>,
+    /// The rigid rotation of the driven gear, in degrees.
+    pub driven_angle_deg: Vec<f64>,
+    /// The static transmission error, in um, positive when load makes the driven gear lag.
+    pub transmission_error_um: Vec<f64>,
+    /// The tangent stiffness dF/d delta, in N/m.
+    pub mesh_stiffness_tangent_n_per_m: Vec<f64>,
+    /// The secant stiffness F/delta, in N/m.
+    pub mesh_stiffness_secant_n_per_m: Vec<f64>,
+    /// The number of tooth pairs that carry load.
+    pub pairs_in_contact: Vec<u32>,
+    /// The largest contact pressure, in MPa; null where a sharp tip corner carries, at which it has no limit.
+    #[serde(serialize_with = "or_null")]
+    pub peak_contact_pressure_mpa: Vec<Option<f64>>,
+    /// The share of the load on each pair that ever carries any, by rising offset.
+    pub load_shares: Vec<LoadShareDocument>,
+    /// Statistics over the span.
+    pub statistics: StatisticsDocument,
+    /// The order spectrum; absent for a partial span.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spectrum: Option<SpectrumDocument>,
+    /// What the decomposition adds up; absent for other methods.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub decomposition: Option<DecompositionDocument>,
+}
+
+impl CurveDocument {
+    pub(super) fn of(case: &Case, curve: &Curve) -> Self {
+        let turned = |tooth_count: u32| {
+            each(&curve.mesh_position, |eta| {
+                eta * 360.0 / f64::from(tooth_count)
+            })
+        };
+        Self {
+            output_torque_n_m: curve.output_torque,
+            load_n: curve.load,
+            mesh_position: curve.mesh_position.clone(),
+            driving_angle_deg: turned(case.pair.driving().tooth_count()),
+            driven_angle_deg: turned(case.pair.driven().tooth_count()),
+            transmission_error_um: each(&curve.transmission_error, to_um),
+            mesh_stiffness_tangent_n_per_m: curve.mesh_stiffness_tangent.clone(),
+            mesh_stiffness_secant_n_per_m: curve.mesh_stiffness_secant.clone(),
+            pairs_in_contact: curve.pairs_in_contact.clone(),
+            peak_contact_pressure_mpa: curve
+                .peak_contact_pressure
+                .iter()
+                .map(|pressure| pressure.map(to_mpa))
+                .collect(),
+            load_shares: curve
+                .load_shares
+                .iter()
+                .map(|share| LoadShareDocument {
+                    pair_offset: share.pair_offset,
+                    share: share.share.clone(),
+                })
+                .collect(),
+            statistics: StatisticsDocument {
+                partial: !case.covers_whole_periods(),
+                transmission_error_um: StatisticsValues::of(
+                    &curve.transmission_error_statistics,
+                    to_um,
+                ),
+                mesh_stiffness_tangent_n_per_m: StatisticsValues::of(
+                    &curve.mesh_stiffness_tangent_statistics,
+                    |value| value,
+                ),
+            },
+            spectrum: curve
+                .spectrum
+                .as_ref()
+                .map(|spectrum| SpectrumDocument::of(case, spectrum)),
+            decomposition: curve.decomposition.as_ref().map(DecompositionDocument::of),
+        }
+    }
+}
+
+/// The share of the load that the pairs at one offset carry.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[schema(as = LoadShare, title = "Load share")]
+pub struct LoadShareDocument {
+    /// 0 for the pair that passed the pitch point last, 1 for the next, -1 for the one before.
+    pub pair_offset: i32,
+    /// Its share of the load, from 0 to 1.
+    pub share: Vec<f64>,
+}
+
+/// Statistics over the span.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(as = Statistics, title = "Statistics")]
+pub struct StatisticsDocument {
+    /// Whether the span is less than whole true periods.
+    pub partial: bool,
+    /// Of the transmission error, in um.
+    pub transmission_error_um: StatisticsValues,
+    /// Of the tangent stiffness, in N/m.
+    pub mesh_stiffness_tangent_n_per_m: StatisticsValues,
+}
+
+/// Mean, fluctuation and range of a curve, in its unit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(title = "Statistics of a curve")]
+pub struct StatisticsValues {
+    /// The mean.
+    pub mean: f64,
+    /// The root mean square of the fluctuation, the mean removed.
+    pub rms: f64,
+    /// The largest less the smallest value.
+    pub peak_to_peak: f64,
+}
+
+impl StatisticsValues {
+    fn of(statistics: &Statistics, convert: impl Fn(f64) -> f64) -> Self {
+        Self {
+            mean: convert(statistics.mean),
+            rms: convert(statistics.rms),
+            peak_to_peak: convert(statistics.peak_to_peak),
+        }
+    }
+}

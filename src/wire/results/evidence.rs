@@ -1,0 +1,140 @@
+//! How good the numbers are, and what they mean.
+
+use meshwright_engine::analysis::Analysis;
+use meshwright_engine::analysis::ErrorEstimate;
+use serde::Serialize;
+use serde_json::{Map, Value};
+use utoipa::ToSchema;
+
+use super::unseen::does_not_see;
+use crate::wire::submission::{SOLVER_VERSION, Submission};
+use crate::wire::units::to_um;
+
+/// How well the equations are satisfied, what they are, and what they leave out.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[schema(as = Evidence, title = "Evidence")]
+pub struct EvidenceDocument {
+    /// The version of the solver.
+    pub solver_version: &'static str,
+    /// SHA-256 of what decides the result: the filled-in submission without its tags, and the solver's version.
+    pub input_hash: String,
+    /// Unknowns of both gears before condensation; zero for formulas.
+    pub degrees_of_freedom: u64,
+    /// The largest difference between the output torque by cross products and the one asked for, over the latter.
+    pub equilibrium_residual: f64,
+    /// The largest product of contact force and gap, over load times largest transmission error.
+    pub complementarity_residual: f64,
+    /// The largest penetration left, in um.
+    pub largest_penetration_um: f64,
+    /// Iterations of the contact solver over all positions and torques.
+    pub contact_iterations: u64,
+    /// How the tangent stiffness was obtained.
+    pub stiffness_rule: String,
+    /// How it was computed, with every default filled in.
+    #[schema(value_type = crate::wire::resolution::ResolutionDocument)]
+    pub resolution: Map<String, Value>,
+    /// What the numbers mean.
+    pub definitions: Vec<Definition>,
+    /// What the method leaves out.
+    pub does_not_see: Vec<&'static str>,
+    /// What a second grid level changes, where it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error_estimate: Option<ErrorEstimateDocument>,
+}
+
+impl EvidenceDocument {
+    pub(super) fn of(submission: &Submission, analysis: &Analysis) -> Self {
+        let evidence = &analysis.evidence;
+        Self {
+            solver_version: SOLVER_VERSION,
+            input_hash: submission.input_hash(),
+            degrees_of_freedom: evidence.degrees_of_freedom,
+            equilibrium_residual: evidence.equilibrium_residual,
+            complementarity_residual: evidence.complementarity_residual,
+            largest_penetration_um: to_um(evidence.largest_penetration),
+            contact_iterations: evidence.contact_iterations,
+            stiffness_rule: submission.resolution().stiffness_in_words(),
+            resolution: without_nulls(submission),
+            definitions: DEFINITIONS.to_vec(),
+            does_not_see: does_not_see(submission.case()),
+            error_estimate: evidence
+                .error_estimate
+                .as_ref()
+                .map(ErrorEstimateDocument::of),
+        }
+    }
+}
+
+/// The resolution as the submission echoes it; what is left to each gear's own default is left out.
+fn without_nulls(submission: &Submission) -> Map<String, Value> {
+    match serde_json::to_value(submission.resolution()) {
+        Ok(Value::Object(fields)) => fields
+            .into_iter()
+            .filter(|(_, value)| !value.is_null())
+            .collect(),
+        _ => Map::new(),
+    }
+}
+
+/// A term and what it means here.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
+#[schema(title = "Definition")]
+pub struct Definition {
+    /// The term.
+    pub term: &'static str,
+    /// What it means.
+    pub meaning: &'static str,
+}
+
+const DEFINITIONS: &[Definition] = &[
+    Definition {
+        term: "transmission_error",
+        meaning: "The driven base radius times the rotation of the driven hub away from its conjugate position, the driving hub held; positive when load makes the driven gear lag, zero for unmodified rigid involutes in contact.",
+    },
+    Definition {
+        term: "mesh_stiffness_tangent",
+        meaning: "dF/d delta at the load, eq. 3 of the paper; stiffness_rule says how it was obtained.",
+    },
+    Definition {
+        term: "mesh_stiffness_secant",
+        meaning: "F/delta.",
+    },
+    Definition {
+        term: "mesh_position",
+        meaning: "Counts mesh periods; at 0 the reference pair, tooth 0 of both gears, touches at the pitch point. Both gears have then turned by mesh_position times 2 pi/Z, rigidly.",
+    },
+    Definition {
+        term: "statistics",
+        meaning: "Over the span: mean, root mean square after the mean is removed, largest less smallest.",
+    },
+    Definition {
+        term: "order",
+        meaning: "Per revolution of the driven gear. Amplitudes are single-sided, y = sum of A cos(2 pi k j/n + phase), without window.",
+    },
+    Definition {
+        term: "pair_offset",
+        meaning: "n - floor(mesh_position) for the pair that passes the pitch point at mesh position n: 0 for the pair that passed it last, 1 for the next.",
+    },
+];
+
+/// What a second grid level changes, the largest over the torques.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[schema(as = ErrorEstimate, title = "Error estimate")]
+pub struct ErrorEstimateDocument {
+    /// In the mean transmission error, in um.
+    pub transmission_error_mean_um: f64,
+    /// In the peak-to-peak transmission error, in um.
+    pub transmission_error_peak_to_peak_um: f64,
+    /// In the mean tangent stiffness, in N/m.
+    pub mesh_stiffness_tangent_mean_n_per_m: f64,
+}
+
+impl ErrorEstimateDocument {
+    fn of(estimate: &ErrorEstimate) -> Self {
+        Self {
+            transmission_error_mean_um: to_um(estimate.mean),
+            transmission_error_peak_to_peak_um: to_um(estimate.peak_to_peak),
+            mesh_stiffness_tangent_mean_n_per_m: estimate.mean_stiffness,
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! The results document: curves over mesh position, their statistics and spectra, and the evidence for them.
+
+mod curve;
+mod decomposition;
+mod evidence;
+mod spectrum;
+mod unseen;
+
+#[cfg(test)]
+mod tests;
+
+use meshwright_engine::analysis::Analysis;
+use serde::Serialize;
+use utoipa::ToSchema;
+
+pub use curve::{CurveDocument, LoadShareDocument, StatisticsDocument, StatisticsValues};
+pub use decomposition::{BlankFitDocument, BlankSampleDocument, DecompositionDocument};
+pub use evidence::{Definition, ErrorEstimateDocument, EvidenceDocument};
+pub use spectrum::{NamedOrderDocument, OrderKindName, SpectrumDocument};
+
+use super::geometry::{Frequencies, PairGeometry};
+use super::problem::{Code, Problem};
+use super::submission::Submission;
+use super::units::rounded_json;
+use super::warning::WarningDocument;
+
+/// What a submission comes to. It is bit-identical for the same input and version.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[schema(title = "Results")]
+pub struct Results {
+    /// How the curves were computed.
+    pub method: &'static str,
+    /// The derived geometry.
+    pub pair: PairGeometry,
+    /// The frequencies at the speed given; absent without a speed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frequencies: Option<Frequencies>,
+    /// What to know beside the numbers.
+    pub warnings: Vec<WarningDocument>,
+    /// One curve for each output torque, in the order of the submission.
+    pub curves: Vec<CurveDocument>,
+    /// How good the numbers are, and what they mean.
+    pub evidence: EvidenceDocument,
+}
+
+impl Results {
+    /// The results of `submission`.
+    pub fn new(submission: &Submission, analysis: &Analysis) -> Self {
+        let case = submission.case();
+        Self {
+            method: submission.method(),
+            pair: PairGeometry::of(&case.pair),
+            frequencies: Frequencies::of(case),
+            warnings: analysis.warnings.iter().map(WarningDocument::of).collect(),
+            curves: analysis
+                .curves
+                .iter()
+                .map(|curve| CurveDocument::of(case, curve))
+                .collect(),
+            evidence: EvidenceDocument::of(submission, analysis),
+        }
+    }
+
+    /// The document as JSON, its numbers rounded to ten significant digits.
+    ///
+    /// # Errors
+    ///
+    /// `internal_error` if a number is not finite, which no valid case may come to.
+    pub fn to_json(&self) -> Result<String, Problem> {
+        rounded_json(self).map_err(|error| Problem::new(Code::InternalError, error.to_string()))
+    }
+}
+
+fn each(values: &[f64], convert: impl Fn(f64) -> f64) -> Vec<f64> {
+    values.iter().copied().map(convert).collect()
+}

@@ -1,0 +1,191 @@
+//! The document by hand-made curves: units, lengths, size, and the same bytes for the same numbers.
+
+use std::f64::consts::TAU;
+
+use meshwright_engine::analysis::curve::{BlankFit, BlankSample, DecompositionParts, LoadShare};
+use meshwright_engine::analysis::spectrum::Spectrum;
+use meshwright_engine::analysis::{Case, Curve, ErrorEstimate, Evidence, Statistics, Warning};
+use meshwright_engine::gear::Member;
+use serde_json::{Value, json};
+
+use super::*;
+use crate::wire::examples;
+
+fn submission(name: &str, speed: Option<f64>) -> Submission {
+    let example = examples()
+        .iter()
+        .find(|example| example.name == name)
+        .expect("ships");
+    let mut document: Value = serde_json::from_str(example.json).expect("JSON");
+    document["driving_speed_rpm"] = json!(speed);
+    Submission::parse(document.to_string().as_bytes()).expect("valid")
+}
+
+/// An analysis whose curves are a mean and two cosines, with digits down to the last bit as a real one has.
+fn analysis(case: &Case) -> Analysis {
+    let positions = case.positions();
+    let eta: Vec<f64> = (0..positions)
+        .map(|i| i as f64 / f64::from(case.resolution.positions_per_mesh_period))
+        .collect();
+    let wave = |mean: f64, swing: f64| -> Vec<f64> {
+        let swung = |&eta: &f64| mean + swing * ((TAU * eta).cos() + (TAU * eta / 7.0).sin() / 3.0);
+        eta.iter().map(swung).collect()
+    };
+    let curve = |&torque: &f64| {
+        let (delta, k) = (wave(14.118e-6, 0.4e-6), wave(2.19e8, 2.4e7));
+        let load = case.pair.load(torque);
+        Curve {
+            output_torque: torque,
+            load,
+            mesh_stiffness_secant: delta.iter().map(|delta| load / delta).collect(),
+            pairs_in_contact: vec![2; positions],
+            peak_contact_pressure: wave(600e6, 50e6).into_iter().map(Some).collect(),
+            load_shares: (-1..=2)
+                .map(|pair_offset| LoadShare {
+                    pair_offset,
+                    share: wave(0.25, 0.1),
+                })
+                .collect(),
+            transmission_error_statistics: Statistics::of(&delta),
+            mesh_stiffness_tangent_statistics: Statistics::of(&k),
+            spectrum: case
+                .covers_whole_periods()
+                .then(|| Spectrum::of(&case.pair, case.span(), &delta, &k, case.driving_speed)),
+            decomposition: Some(DecompositionParts {
+                rigid_blank_transmission_error: delta.clone(),
+                blanks: vec![BlankFit {
+                    member: Member::Driven,
+                    interface_radius: 45.5e-3,
+                    mean: 2e-6,
+                    amplitude: 0.1e-6,
+                    phase: 1.0,
+                    higher: Vec::new(),
+                    samples: vec![BlankSample {
+                        mesh_position: 0.25,
+                        rotation: 2.05e-6,
+                    }],
+                }],
+            }),
+            mesh_position: eta.clone(),
+            transmission_error: delta,
+            mesh_stiffness_tangent: k,
+        }
+    };
+    Analysis {
+        curves: case.output_torques.iter().map(curve).collect(),
+        evidence: Evidence {
+            degrees_of_freedom: 1000,
+            equilibrium_residual: 1e-13,
+            complementarity_residual: 1e-15,
+            largest_penetration: 1e-18,
+            contact_iterations: 7,
+            error_estimate: Some(ErrorEstimate {
+                mean: 1e-9,
+                peak_to_peak: 2e-9,
+                mean_stiffness: 1e5,
+            }),
+        },
+        warnings: vec![Warning::TipCornerContact {
+            member: Member::Driven,
+            largest_share: 0.125,
+        }],
+    }
+}
+
+#[test]
+fn the_document_speaks_the_units_of_its_names() {
+    let submission = submission("test-case-2", Some(600.0));
+    let text = Results::new(&submission, &analysis(submission.case()))
+        .to_json()
+        .expect("finite");
+    let document: Value = serde_json::from_str(&text).expect("JSON");
+    let curve = &document["curves"][0];
+    let near = |pointer: &str, expected: f64| {
+        let value = document
+            .pointer(pointer)
+            .and_then(Value::as_f64)
+            .expect(pointer);
+        assert!(
+            (value - expected).abs() <= 1e-9 * expected.abs(),
+            "{pointer}: {value} {expected}"
+        );
+    };
+    // The first sample is the mean and the whole swing; F = T/r_b2 with r_b2 = 50 cos 20 mm.
+    near("/curves/0/transmission_error_um/0", 14.518);
+    near("/curves/0/mesh_stiffness_tangent_n_per_m/0", 2.43e8);
+    near("/curves/0/peak_contact_pressure_mpa/0", 650.0);
+    near(
+        "/curves/0/load_n",
+        115.0 / (0.05 * 20_f64.to_radians().cos()),
+    );
+    near("/curves/0/driven_angle_deg/40", 7.2);
+    near("/curves/0/decomposition/blanks/0/interface_radius_mm", 45.5);
+    near(
+        "/curves/0/decomposition/blanks/0/phase_deg",
+        1_f64.to_degrees(),
+    );
+    near(
+        "/evidence/error_estimate/transmission_error_peak_to_peak_um",
+        2e-3,
+    );
+    near("/evidence/largest_penetration_um", 1e-12);
+    near("/warnings/0/value", 12.5);
+    // 600 rpm are 10 Hz; 50 teeth mesh at 500 Hz; the order counts turns of the driven gear, here 10 Hz too.
+    near("/frequencies/mesh_hz", 500.0);
+    near("/frequencies/period_hz", 100.0);
+    let order = curve["spectrum"]["order"][0].as_f64().expect("a number");
+    near("/curves/0/spectrum/frequency_hz/0", 10.0 * order);
+    assert_eq!(curve["decomposition"]["blanks"][0]["gear"], "driven");
+    assert_eq!(document["evidence"]["input_hash"], submission.input_hash());
+    assert_eq!(document["evidence"]["resolution"]["grid"], "standard");
+    assert_eq!(curve["statistics"]["partial"], false);
+    assert!(!text.contains("null"));
+}
+
+#[test]
+fn all_lists_of_a_curve_have_one_entry_a_position() {
+    let submission = submission("standard-pair", None);
+    let text = Results::new(&submission, &analysis(submission.case()))
+        .to_json()
+        .expect("finite");
+    let document: Value = serde_json::from_str(&text).expect("JSON");
+    let curves = document["curves"].as_array().expect("curves");
+    assert_eq!(curves.len(), 2);
+    for curve in curves {
+        for (name, list) in curve.as_object().expect("a curve") {
+            if let Some(list) = list.as_array().filter(|_| name != "load_shares") {
+                assert_eq!(list.len(), 40, "{name}");
+            }
+        }
+        for share in curve["load_shares"].as_array().expect("shares") {
+            assert_eq!(share["share"].as_array().expect("a list").len(), 40);
+        }
+        assert_eq!(
+            curve["spectrum"]["order"].as_array().expect("a list").len(),
+            20
+        );
+    }
+    assert!(document.get("frequencies").is_none());
+}
+
+#[test]
+fn the_results_of_case_3_stay_below_a_megabyte_and_a_half() {
+    let submission = submission("test-case-3", Some(1000.0));
+    let text = Results::new(&submission, &analysis(submission.case()))
+        .to_json()
+        .expect("finite");
+    assert!(text.len() < 1_500_000, "{} bytes", text.len());
+}
+
+#[test]
+fn the_same_numbers_give_the_same_bytes_and_a_number_that_is_not_finite_gives_none() {
+    let submission = submission("test-case-2", None);
+    let mut analysis = analysis(submission.case());
+    let write = |analysis: &Analysis| Results::new(&submission, analysis).to_json();
+    assert_eq!(write(&analysis), write(&analysis));
+    analysis.curves[0].mesh_stiffness_secant[3] = f64::INFINITY;
+    assert_eq!(
+        write(&analysis).expect_err("not finite").code,
+        Code::InternalError
+    );
+}

@@ -1,0 +1,52 @@
+//! Where a job or a study stands.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// Where a job stands. The words are those of OGC API Processes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Status {
+    /// Waits for a worker.
+    Accepted,
+    /// Is being computed.
+    Running,
+    /// Has results.
+    Successful,
+    /// Could not be computed; `problem` says why.
+    Failed,
+    /// Was cancelled.
+    Dismissed,
+}
+
+impl Status {
+    /// All states, in the order in which a job meets them.
+    pub const ALL: [Self; 5] = [
+        Self::Accepted,
+        Self::Running,
+        Self::Successful,
+        Self::Failed,
+        Self::Dismissed,
+    ];
+
+    /// The word on the wire and in the database.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Accepted => "accepted",
+            Self::Running => "running",
+            Self::Successful => "successful",
+            Self::Failed => "failed",
+            Self::Dismissed => "dismissed",
+        }
+    }
+
+    /// Whether nothing changes any more.
+    pub fn has_ended(self) -> bool {
+        matches!(self, Self::Successful | Self::Failed | Self::Dismissed)
+    }
+
+    /// The state that a word names.
+    pub fn of_word(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|status| status.as_str() == word)
+    }
+}

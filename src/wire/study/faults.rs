@@ -1,0 +1,178 @@
+//! What is wrong with a study wherever it stands: fields that there are not, values that no submission may have, in the
+//! base and in each change. Whether values go together is each design's own matter.
+
+use std::collections::BTreeMap;
+
+use meshwright_engine::run::Run;
+use serde_json::Value;
+
+use super::{Plan, Study};
+use crate::wire::pointer::Pointer;
+use crate::wire::problem::{Code, FieldError, Problem};
+use crate::wire::submission::Submission;
+use crate::wire::tree::{Errors, Node, escaped};
+
+/// Between so many designs it is asked whether anybody still waits.
+const BETWEEN_LOOKS: usize = 64;
+
+impl Study {
+    /// Reports every fault to `errors`.
+    ///
+    /// # Errors
+    ///
+    /// `stopped`, if `run` is.
+    pub(super) fn refuse_faults(&self, errors: &Errors, run: &Run) -> Result<(), Problem> {
+        self.check_constant_mass(errors);
+        self.check_base(errors);
+        if errors.count() > 0 {
+            return Ok(());
+        }
+        match &self.plan {
+            Plan::Axes(_) => self.check_axes(errors, run),
+            Plan::Designs(_) => self.check_designs(errors, run),
+        }
+    }
+
+    /// Refuses what is wrong with a field of the base and would be wrong in every design.
+    fn check_base(&self, errors: &Errors) {
+        // Thousands of designs change the same few places.
+        let places: BTreeMap<&str, &Pointer> =
+            self.paths().map(|path| (path.text(), path)).collect();
+        let mass = self.constant_mass.map(|rule| rule.radius_pointer());
+        let mended = |error: &FieldError| {
+            let pointer = &error.pointer;
+            // A list that is too long stays so whatever stands in it.
+            let may_be_completed = error.code != Code::TooLarge;
+            mass.as_ref() == Some(pointer)
+                || places.values().any(|path| {
+                    path.covers(pointer) || (may_be_completed && path.is_below(pointer))
+                })
+        };
+        for error in Submission::wrong_fields(&self.base) {
+            if !mended(&error) {
+                errors.push(FieldError {
+                    pointer: format!("/base{}", error.pointer),
+                    ..error
+                });
+            }
+        }
+    }
+
+    fn check_axes(&self, errors: &Errors, run: &Run) -> Result<(), Problem> {
+        let Plan::Axes(axes) = &self.plan else {
+            return Ok(());
+        };
+        // An axis may change a part of what an axis before it brings.
+        let mut before = self.base.clone();
+        for (i, axis) in axes.iter().enumerate() {
+            for (j, value) in axis.values.iter().enumerate() {
+                look_around(j, run)?;
+                let place = format!("/axes/{i}/values/{j}");
+                check_changes(&mut before, &[(&axis.path, value, place)], errors);
+            }
+            if errors.count() > 0 {
+                return Ok(());
+            }
+            before.put(axis.path.steps(), Node::of(&axis.values[0]));
+        }
+        Ok(())
+    }
+
+    fn check_designs(&self, errors: &Errors, run: &Run) -> Result<(), Problem> {
+        let Plan::Designs(designs) = &self.plan else {
+            return Ok(());
+        };
+        let mut submission = self.base.clone();
+        for (i, design) in designs.iter().enumerate() {
+            look_around(i, run)?;
+            let place = |path: &Pointer| format!("/designs/{i}/changes/{}", escaped(path.text()));
+            let changes: Vec<_> = design
+                .changes
+                .iter()
+                .map(|(path, value)| (path, value, place(path)))
+                .collect();
+            check_changes(&mut submission, &changes, errors);
+        }
+        Ok(())
+    }
+
+    /// A radius that is set twice would be one of them only.
+    fn check_constant_mass(&self, errors: &Errors) {
+        let Some(rule) = self.constant_mass else {
+            return;
+        };
+        let radius = rule.radius_pointer();
+        let refuse = |place: String| {
+            let detail = format!(
+                "{radius} is set by /constant_mass in every design that has holes; it cannot be changed as well."
+            );
+            errors.push(FieldError::new(place, Code::OutOfRange, detail));
+        };
+        match &self.plan {
+            Plan::Axes(axes) => {
+                for (i, axis) in axes.iter().enumerate() {
+                    if axis.path.text() == radius {
+                        refuse(format!("/axes/{i}/path"));
+                    }
+                }
+            }
+            Plan::Designs(designs) => {
+                for (i, design) in designs.iter().enumerate() {
+                    if design.changes.iter().any(|(path, _)| path.text() == radius) {
+                        refuse(format!("/designs/{i}/changes/{}", escaped(&radius)));
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn look_around(round: usize, run: &Run) -> Result<(), Problem> {
+    if round.is_multiple_of(BETWEEN_LOOKS) {
+        run.check()
+            .map_err(|_| Problem::new(Code::Stopped, "Nobody waits for this study any more."))?;
+    }
+    Ok(())
+}
+
+/// Reports fields that there are not and values of the wrong type, at or below the places that the changes bring; each is
+/// told at its own place. `submission` is as before afterwards.
+fn check_changes(submission: &mut Node, changes: &[(&Pointer, &Value, String)], errors: &Errors) {
+    let mut undo = Vec::with_capacity(changes.len());
+    for (path, value, place) in changes {
+        match submission.put(path.steps(), Node::of(value)) {
+            Some(done) => undo.push(done),
+            None => {
+                let detail = format!(
+                    "{} names nothing in the base: what stands above it is no object, or a list without this place.",
+                    path.text()
+                );
+                errors.push(FieldError::new(place, Code::UnknownField, detail));
+                break;
+            }
+        }
+    }
+    if undo.len() == changes.len() {
+        report_misread(submission, changes, errors);
+    }
+    for done in undo.into_iter().rev() {
+        submission.undo(done);
+    }
+}
+
+fn report_misread(submission: &Node, changes: &[(&Pointer, &Value, String)], errors: &Errors) {
+    for error in Submission::wrong_fields(submission) {
+        if !matches!(error.code, Code::UnknownField | Code::WrongType) {
+            continue;
+        }
+        let brought = changes
+            .iter()
+            .rfind(|(path, ..)| path.covers(&error.pointer));
+        if let Some((.., place)) = brought {
+            errors.push(FieldError {
+                pointer: place.clone(),
+                ..error
+            });
+        }
+    }
+}

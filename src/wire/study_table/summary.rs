@@ -1,0 +1,161 @@
+//! What of a results document the table shows, kept beside the document.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::pareto::Conditions;
+use crate::wire::results::StatisticsDocument;
+use crate::wire::units::significant;
+
+/// What of a results document a table shows. It is kept beside the document, so that a table of thousands of rows reads
+/// kilobytes where the documents have hundreds of megabytes.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    #[serde(default)]
+    pub(super) method: Option<String>,
+    #[serde(default)]
+    pub(super) driving: GearSummary,
+    #[serde(default)]
+    pub(super) driven: GearSummary,
+    #[serde(default)]
+    pub(super) curves: Vec<CurveSummary>,
+}
+
+/// The mass of a gear and what holes leave of it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(title = "Gear of a row")]
+pub(super) struct GearSummary {
+    /// The mass of the true profile, in kg.
+    pub mass_kg: Option<f64>,
+    /// The share of the blank that the holes remove, in percent.
+    pub mass_removed_percent: Option<f64>,
+    /// The least material around the holes, in mm; null without holes.
+    pub least_ligament_mm: Option<f64>,
+    /// The polar moment of inertia of the true profile, in kg m2.
+    pub polar_inertia_kg_m2: Option<f64>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct CurveSummary {
+    pub(super) output_torque_n_m: f64,
+    pub(super) statistics: Option<StatisticsDocument>,
+    /// Amplitudes of the transmission error, in um, by the names of their orders.
+    pub(super) orders: BTreeMap<String, f64>,
+}
+
+/// The names of orders that a table shows.
+const ORDERS: [&str; 4] = [
+    MESH_ORDER,
+    HOLE_ORDER,
+    DRIVING_HOLE_ORDER,
+    DRIVEN_HOLE_ORDER,
+];
+pub(super) const MESH_ORDER: &str = "H_Z2";
+/// The holes of the only holed gear, or of both if they make the same order.
+pub(super) const HOLE_ORDER: &str = "H_N";
+pub(super) const DRIVING_HOLE_ORDER: &str = "H_N1";
+pub(super) const DRIVEN_HOLE_ORDER: &str = "H_N2";
+
+impl Summary {
+    /// The summary of a results document. Its curves are passed over, not kept. None if it is no results document.
+    pub fn of_document(document: &str) -> Option<Self> {
+        #[derive(Deserialize)]
+        struct Glance {
+            method: Option<String>,
+            #[serde(default)]
+            pair: Pair,
+            #[serde(default)]
+            curves: Vec<Curve>,
+        }
+        #[derive(Default, Deserialize)]
+        #[serde(default)]
+        struct Pair {
+            driving: GearSummary,
+            driven: GearSummary,
+        }
+        #[derive(Deserialize)]
+        struct Curve {
+            output_torque_n_m: f64,
+            statistics: Option<StatisticsDocument>,
+            spectrum: Option<Spectrum>,
+        }
+        #[derive(Deserialize)]
+        struct Spectrum {
+            #[serde(default)]
+            named: Vec<Line>,
+        }
+        #[derive(Deserialize)]
+        struct Line {
+            label: String,
+            transmission_error_um: Option<f64>,
+        }
+
+        let Glance {
+            method,
+            pair,
+            curves,
+        } = serde_json::from_str(document).ok()?;
+        let curve = |curve: Curve| {
+            let named = curve
+                .spectrum
+                .map_or_else(Vec::new, |spectrum| spectrum.named);
+            let orders = named.into_iter().filter_map(|line| {
+                let shown = ORDERS.contains(&line.label.as_str());
+                line.transmission_error_um
+                    .filter(|_| shown)
+                    .map(|amplitude| (line.label, amplitude))
+            });
+            CurveSummary {
+                output_torque_n_m: curve.output_torque_n_m,
+                statistics: curve.statistics,
+                orders: orders.collect(),
+            }
+        };
+        Some(Self {
+            method,
+            driving: pair.driving,
+            driven: pair.driven,
+            curves: curves.into_iter().map(curve).collect(),
+        })
+    }
+}
+
+impl Summary {
+    pub(super) fn pair_mass(&self) -> Option<f64> {
+        let sum = self.driving.mass_kg? + self.driven.mass_kg?;
+        Some(significant(sum, 10))
+    }
+
+    /// What designs are compared by, each the less the better; none if a number is missing.
+    pub(super) fn objectives(&self) -> Option<[f64; 3]> {
+        let mut worst_range = f64::NEG_INFINITY;
+        let mut stiffness = 0.0;
+        for curve in &self.curves {
+            let statistics = curve.statistics.as_ref()?;
+            worst_range = worst_range.max(statistics.transmission_error_um.peak_to_peak);
+            stiffness += statistics.mesh_stiffness_tangent_n_per_m.mean;
+        }
+        if self.curves.is_empty() {
+            return None;
+        }
+        let objectives = [
+            self.pair_mass()?,
+            worst_range,
+            -stiffness / self.curves.len() as f64,
+        ];
+        // Six digits: what differs beyond them, as the masses of a study of constant mass do, is rounding and no merit.
+        Some(objectives.map(|objective| significant(objective, 6)))
+    }
+
+    pub(super) fn conditions(&self) -> Conditions {
+        let mut torques: Vec<u64> = self
+            .curves
+            .iter()
+            .map(|curve| curve.output_torque_n_m.to_bits())
+            .collect();
+        torques.sort_unstable();
+        (self.method.clone(), torques)
+    }
+}

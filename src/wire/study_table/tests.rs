@@ -1,0 +1,196 @@
+//! What a table shows, and which designs are best.
+
+use serde_json::json;
+
+use super::*;
+
+/// A results document with two torques, of which the second has no spectrum.
+fn document(mass: f64, ranges: [f64; 2], stiffness: f64) -> String {
+    let statistics = |range: f64| {
+        json!({
+            "partial": false,
+            "transmission_error_um": { "mean": 13.79, "rms": 0.38, "peak_to_peak": range },
+            "mesh_stiffness_tangent_n_per_m": { "mean": stiffness, "rms": 2.4e7, "peak_to_peak": 6.8e7 },
+        })
+    };
+    json!({
+        "method": "flexible",
+        "pair": {
+            "driving": { "mass_kg": 1.0, "mass_removed_percent": 0.0, "polar_inertia_kg_m2": 1e-3 },
+            "driven": {
+                "mass_kg": mass, "mass_removed_percent": 25.0, "least_ligament_mm": 5.5, "polar_inertia_kg_m2": 9e-4
+            }
+        },
+        "curves": [
+            {
+                "output_torque_n_m": 115.0, "transmission_error_um": [1.0, 2.0], "statistics": statistics(ranges[0]),
+                "spectrum": { "order": [10, 50], "named": [
+                    { "order": 10, "label": "H_N", "transmission_error_um": 0.31 },
+                    { "order": 50, "label": "H_Z2", "transmission_error_um": 0.42 },
+                    { "order": 60, "label": "H_Z2+N", "transmission_error_um": 0.01 },
+                ] }
+            },
+            { "output_torque_n_m": 20.0, "transmission_error_um": [1.0], "statistics": statistics(ranges[1]) },
+        ]
+    })
+    .to_string()
+}
+
+fn state(label: &str, mass: f64, ranges: [f64; 2], stiffness: f64) -> RowState {
+    let changes = json!({ "/pair/driven/blank/holes/count": 10, "/method": "flexible" });
+    RowState {
+        label: label.to_owned(),
+        changes: changes.as_object().unwrap().clone(),
+        job: Some(Uuid::nil()),
+        status: Status::Successful,
+        summary: Summary::of_document(&document(mass, ranges, stiffness)),
+        problem: None,
+    }
+}
+
+fn failed(label: &str) -> RowState {
+    RowState {
+        label: label.to_owned(),
+        changes: Map::new(),
+        job: None,
+        status: Status::Failed,
+        summary: None,
+        problem: Some(json!({ "code": "holes_overlap", "detail": "Too many, \"far\" too many." })),
+    }
+}
+
+#[test]
+fn a_summary_keeps_what_the_table_shows_and_survives_the_store() {
+    let summary = Summary::of_document(&document(0.9, [1.7, 2.5], 2.2e8)).unwrap();
+    let stored = serde_json::to_string(&summary).unwrap();
+    assert!(!stored.contains("[1.0,2.0]"), "no curve: {stored}");
+    assert_eq!(serde_json::from_str::<Summary>(&stored).unwrap(), summary);
+    assert_eq!(Summary::of_document("not JSON"), None);
+    // A document without any of it has a summary without any of it.
+    assert_eq!(Summary::of_document("{}"), Some(Summary::default()));
+}
+
+#[test]
+fn a_row_has_the_names_of_the_contract() {
+    let rows = table(
+        GearName::Driven,
+        vec![state("10R34", 0.9, [1.7, 2.5], 2.2e8)],
+    );
+    let row = serde_json::to_value(&rows[0]).unwrap();
+    for (pointer, value) in [
+        ("/label", json!("10R34")),
+        ("/status", json!("successful")),
+        ("/mass_kg", json!(0.9)),
+        ("/mass_removed_percent", json!(25.0)),
+        ("/least_ligament_mm", json!(5.5)),
+        ("/pareto", json!(true)),
+        ("/curves/0/output_torque_n_m", json!(115.0)),
+        (
+            "/curves/0/statistics/transmission_error_um/peak_to_peak",
+            json!(1.7),
+        ),
+        (
+            "/curves/0/statistics/mesh_stiffness_tangent_n_per_m/mean",
+            json!(2.2e8),
+        ),
+        ("/curves/0/hole_order_um", json!(0.31)),
+        ("/curves/0/mesh_order_um", json!(0.42)),
+        ("/curves/1/hole_order_um", Value::Null),
+        ("/problem", Value::Null),
+    ] {
+        assert_eq!(row.pointer(pointer), Some(&value), "{pointer}");
+    }
+    let driving = table(GearName::Driving, vec![state("x", 0.9, [1.7, 2.5], 2.2e8)]);
+    assert_eq!(
+        (driving[0].mass_kg, driving[0].least_ligament_mm),
+        (Some(1.0), None)
+    );
+}
+
+#[test]
+fn a_design_is_on_the_front_unless_another_is_as_good_in_all_and_better_in_one() {
+    let mut other_method = state("another method", 2.0, [9.0, 9.0], 1e8);
+    let summary = other_method.summary.as_mut().unwrap();
+    summary.method = Some("decomposition".to_owned());
+    let states = vec![
+        state("reference", 1.0, [1.0, 2.5], 2.0e8),
+        state("lighter", 0.9, [1.0, 2.6], 1.9e8),
+        state("worse in all", 1.1, [1.0, 2.7], 1.8e8),
+        state("same worst torque", 1.0, [2.4, 2.5], 2.0e8),
+        state("softer", 1.0, [1.0, 2.5], 1.9e8),
+        state("quieter and heavier", 1.2, [1.0, 2.0], 1.5e8),
+        failed("impossible"),
+        other_method,
+    ];
+    let front: Vec<bool> = table(GearName::Driven, states)
+        .iter()
+        .map(|row| row.pareto)
+        .collect();
+    assert_eq!(front, [true, true, false, true, false, true, false, true]);
+}
+
+#[test]
+fn the_front_of_thousands_is_that_of_the_definition() {
+    // A pseudorandom cloud, against the comparison of each with each.
+    let mut seed = 1_u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        ((seed >> 33) % 20) as f64
+    };
+    let states: Vec<RowState> = (0..400)
+        .map(|i| state(&i.to_string(), random(), [random(), 0.0], random()))
+        .collect();
+    let values: Vec<[f64; 3]> = states
+        .iter()
+        .map(|state| state.summary.as_ref().unwrap().objectives().unwrap())
+        .collect();
+    let by_definition = |own: &[f64; 3]| {
+        !values
+            .iter()
+            .any(|other| other != own && other.iter().zip(own).all(|(a, b)| a <= b))
+    };
+    let expected: Vec<bool> = values.iter().map(by_definition).collect();
+    let front: Vec<bool> = table(GearName::Driven, states)
+        .iter()
+        .map(|row| row.pareto)
+        .collect();
+    assert_eq!(front, expected);
+}
+
+#[test]
+fn the_csv_has_a_line_for_each_row_and_torque_and_names_joined_by_dots() {
+    let rows = table(
+        GearName::Driven,
+        vec![state("10R34", 0.9, [1.7, 2.5], 2.2e8), failed("a, \"b\"")],
+    );
+    let text = csv(&rows);
+    let lines: Vec<&str> = text.split("\r\n").collect();
+    assert_eq!(
+        lines,
+        [
+            "label,changes./pair/driven/blank/holes/count,changes./method,job,status,method,mass_kg,mass_removed_percent,\
+             least_ligament_mm,polar_inertia_kg_m2,pair_mass_kg,pareto,output_torque_n_m,\
+             statistics.transmission_error_um.mean,statistics.transmission_error_um.rms,\
+             statistics.transmission_error_um.peak_to_peak,statistics.mesh_stiffness_tangent_n_per_m.mean,\
+             statistics.mesh_stiffness_tangent_n_per_m.rms,statistics.mesh_stiffness_tangent_n_per_m.peak_to_peak,\
+             hole_order_um,mesh_order_um,problem.code,problem.detail",
+            "10R34,10,flexible,00000000-0000-0000-0000-000000000000,successful,flexible,0.9,25.0,5.5,0.0009,1.9,true,\
+             115.0,13.79,0.38,1.7,220000000.0,24000000.0,68000000.0,0.31,0.42,,",
+            "10R34,10,flexible,00000000-0000-0000-0000-000000000000,successful,flexible,0.9,25.0,5.5,0.0009,1.9,true,\
+             20.0,13.79,0.38,2.5,220000000.0,24000000.0,68000000.0,,,,",
+            "\"a, \"\"b\"\"\",,,,failed,,,,,,,false,,,,,,,,,,holes_overlap,\"Too many, \"\"far\"\" too many.\"",
+            "",
+        ]
+    );
+}
+
+#[test]
+fn a_label_that_begins_a_formula_comes_out_as_text() {
+    let rows = table(
+        GearName::Driven,
+        vec![failed("=HYPERLINK(\"http://x\")"), failed("+1+1")],
+    );
+    let text = csv(&rows);
+    let starts: Vec<&str> = text.lines().skip(1).map(|line| &line[..3]).collect();
+    assert_eq!(starts, ["\"'=", "'+1"], "{text}");
+}

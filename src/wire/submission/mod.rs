@@ -1,0 +1,202 @@
+//! A submission: what is asked, checked once, with every default filled in.
+
+use meshwright_engine::analysis::spectrum::RotationSpeed;
+use meshwright_engine::analysis::{Case, Method};
+use serde::Serialize;
+
+mod checks;
+mod document;
+
+use document::Document;
+
+use super::pair::PairDocument;
+use super::problem::{FieldError, Problem};
+use super::quantity::{self, MOST_TORQUES};
+use super::resolution::ResolutionDocument;
+use super::schema::{self, Property, documented};
+use super::size::{MOST_VALUES, refuse_many_values};
+use super::tags;
+use super::tree::{Choice, Errors, Node, ObjectReader};
+use crate::hash::sha256_hex;
+
+/// The version of the solver, which a result belongs to.
+pub const SOLVER_VERSION: &str = concat!("meshwright ", env!("CARGO_PKG_VERSION"));
+
+/// What is asked: a gear pair, torques, and how to compute.
+///
+/// A value of this type can be computed: its gears can be made and mesh, and the work is within the limits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Submission {
+    document: Document,
+    case: Case,
+}
+
+impl Serialize for Submission {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.document.serialize(serializer)
+    }
+}
+
+documented!(
+    Submission,
+    "Submission",
+    [PairDocument, ResolutionDocument],
+    schema::object(
+        "Submission",
+        "What is asked: a gear pair, torques, and how to compute. Unknown fields are refused.",
+        Submission::properties()
+    )
+);
+
+/// What a submission is for, which decides how large it may be.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Purpose {
+    /// A job, which is queued.
+    Job,
+    /// A preview, for which a request waits.
+    Preview {
+        /// The most positions times torques.
+        most_positions: u64,
+    },
+}
+
+impl Submission {
+    /// What the schema says of its fields.
+    pub(super) fn properties() -> Vec<Property> {
+        vec![
+            schema::choice::<Method>("method", "Method", "How the curves are computed.", None),
+            schema::document::<PairDocument>("pair", true),
+            (
+                quantity::OUTPUT_TORQUE.name,
+                schema::list(
+                    "Output torques",
+                    "The torques on the driven gear, each of which gives a curve. Unit: N m.",
+                    schema::number_schema(&quantity::OUTPUT_TORQUE),
+                    (1, MOST_TORQUES),
+                )
+                .unique_items(true)
+                .into(),
+                true,
+            ),
+            schema::number(&quantity::DRIVING_SPEED),
+            schema::document::<ResolutionDocument>("resolution", false),
+            tags::property("job"),
+        ]
+    }
+
+    /// Reads and checks a submission.
+    ///
+    /// # Errors
+    ///
+    /// A [`Problem`]: `malformed_json` (400) where the text is not JSON; else 422 with every field that is wrong, its
+    /// JSON pointer, and the nearest value that would do.
+    pub fn parse(document: &[u8]) -> Result<Self, Problem> {
+        refuse_many_values(document, MOST_VALUES)?;
+        Self::of_node(&Node::parse(document)?)
+    }
+
+    /// Reads and checks a submission that is taken apart already.
+    pub(super) fn of_node(node: &Node) -> Result<Self, Problem> {
+        let errors = Errors::default();
+        let read = ObjectReader::new(node, String::new(), &errors)
+            .and_then(|reader| Self::read(reader, Purpose::Job, &errors));
+        match read {
+            Some(submission) if errors.count() == 0 => Ok(submission),
+            _ => Err(errors.into_problem()),
+        }
+    }
+
+    /// What is wrong with the fields of a submission, each by itself.
+    pub fn field_errors(document: &[u8]) -> Vec<FieldError> {
+        let node = refuse_many_values(document, MOST_VALUES).and_then(|()| Node::parse(document));
+        match node {
+            Ok(node) => Self::wrong_fields(&node),
+            Err(problem) => problem.errors,
+        }
+    }
+
+    /// What is wrong with the fields of a submission, each by itself. Whether they go together is not looked at.
+    pub(super) fn wrong_fields(node: &Node) -> Vec<FieldError> {
+        let errors = Errors::default();
+        if let Some(reader) = ObjectReader::new(node, String::new(), &errors) {
+            Document::read(reader);
+        }
+        errors.into_errors()
+    }
+
+    /// Reads what is left of `reader`, and checks it.
+    pub(super) fn read(
+        reader: ObjectReader<'_>,
+        purpose: Purpose,
+        errors: &Errors,
+    ) -> Option<Self> {
+        let mut document = Document::read(reader)?;
+        if errors.count() > 0 {
+            return None;
+        }
+        let pair = document.pair.to_pair(errors)?;
+        document.check_torques(&pair, errors);
+        document.check_interface(&pair, errors);
+        document.check_span(&pair, errors);
+        document
+            .resolution
+            .span_mesh_periods
+            .get_or_insert(pair.period());
+        document.check_size(purpose, errors);
+        let case = Case {
+            pair,
+            method: document.method,
+            output_torques: document.output_torques_n_m.clone(),
+            resolution: document.resolution.data(),
+            driving_speed: document
+                .driving_speed_rpm
+                .map(|speed| RotationSpeed(speed / 60.0)),
+        };
+        Some(Self { document, case })
+    }
+
+    /// What the engine is asked.
+    pub fn case(&self) -> &Case {
+        &self.case
+    }
+
+    /// The document with every default filled in.
+    pub fn canonical_json(&self) -> String {
+        serde_json::to_string(&self.document).expect("a submission is words and finite numbers")
+    }
+
+    /// SHA-256, in hexadecimal, of what decides the result: the canonical document without its tags, and the solver's
+    /// version.
+    pub fn input_hash(&self) -> String {
+        let untagged = Document {
+            tags: Vec::new(),
+            ..self.document.clone()
+        };
+        let text =
+            serde_json::to_string(&untagged).expect("a submission is words and finite numbers");
+        sha256_hex(format!("{SOLVER_VERSION}\0{text}"))
+    }
+
+    /// Positions times torques.
+    pub fn positions_total(&self) -> u64 {
+        self.case.positions() as u64 * self.case.output_torques.len() as u64
+    }
+
+    /// The method's word.
+    pub fn method(&self) -> &'static str {
+        self.case.method.word()
+    }
+
+    /// The tags.
+    pub fn tags(&self) -> &[String] {
+        &self.document.tags
+    }
+
+    /// How it is computed, with every default filled in.
+    pub(super) fn resolution(&self) -> &ResolutionDocument {
+        &self.document.resolution
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,161 @@
+//! What a submission is read as, filled in with, and refused for.
+
+mod chance;
+mod refusals;
+mod schema;
+
+use serde_json::{Value, json};
+
+use super::*;
+use crate::wire::examples;
+
+/// Every needed field and nothing else.
+pub(super) fn least() -> Value {
+    json!({
+        "method": "flexible",
+        "pair": {
+            "center_distance_mm": 100.5,
+            "driving": { "tooth_count": 50, "module_mm": 2, "face_width_mm": 20, "blank": { "bore_radius_mm": 15 } },
+            "driven": { "tooth_count": 50, "module_mm": 2, "face_width_mm": 20, "blank": { "bore_radius_mm": 15 } }
+        },
+        "output_torques_n_m": [115]
+    })
+}
+
+pub(super) fn case_2() -> Value {
+    let example = examples()
+        .iter()
+        .find(|example| example.name == "test-case-2")
+        .expect("ships");
+    serde_json::from_str(example.json).expect("JSON")
+}
+
+pub(super) fn parse(document: &Value) -> Result<Submission, Problem> {
+    Submission::parse(document.to_string().as_bytes())
+}
+
+/// Puts `value` where `pointer` says, in objects that are there.
+pub(super) fn put(document: &mut Value, pointer: &str, value: Value) {
+    let (parent, key) = pointer.rsplit_once('/').expect("a pointer");
+    match document.pointer_mut(parent) {
+        Some(Value::Object(fields)) => {
+            fields.insert(key.to_owned(), value);
+        }
+        Some(Value::Array(items)) => {
+            if let Some(item) = key.parse::<usize>().ok().and_then(|i| items.get_mut(i)) {
+                *item = value;
+            }
+        }
+        _ => panic!("{pointer} has no parent"),
+    }
+}
+
+#[test]
+fn the_least_submission_is_echoed_with_every_default() {
+    let submission = parse(&least()).expect("valid");
+    let echo: Value = serde_json::from_str(&submission.canonical_json()).expect("JSON");
+    // The defaults are API.md's: ISO 53 rack, steel, 40 positions; the standard pair repeats every mesh period.
+    for gear in ["driving", "driven"] {
+        assert_eq!(
+            echo["pair"][gear],
+            json!({
+                "tooth_count": 50, "module_mm": 2.0, "pressure_angle_deg": 20.0, "profile_shift": 0.0,
+                "addendum_mm": 2.0, "tip_diameter_mm": null, "dedendum_mm": 2.5, "rack_tip_radius_mm": 0.76,
+                "tooth_thickness_deviation_um": 0.0, "tip_rounding_mm": null, "tip_chamfer_mm": null,
+                "face_width_mm": 20.0, "tip_relief": null, "profile_modifications": [], "tooth_deviations": null,
+                "material": { "youngs_modulus_gpa": 210.0, "poisson_ratio": 0.3, "density_kg_m3": 7850.0 },
+                "blank": { "bore_radius_mm": 15.0, "holes": null }
+            })
+        );
+    }
+    assert_eq!(
+        echo["resolution"],
+        json!({
+            "positions_per_mesh_period": 40, "span_mesh_periods": 1, "grid": "standard", "blank_positions": 16,
+            "interface_radius_mm": null, "contact_solver": "active_set", "stiffness": "tangent",
+            "load_distribution": { "tooth": "weber_banaschek", "body": "sainsot", "plane_state": "stress" },
+            "error_estimate": false
+        })
+    );
+    assert_eq!(
+        (&echo["tags"], &echo["driving_speed_rpm"]),
+        (&json!([]), &Value::Null)
+    );
+}
+
+#[test]
+fn an_echo_is_its_own_echo() {
+    for example in examples().iter().filter(|example| example.valid) {
+        let submission = Submission::parse(example.json.as_bytes()).expect("valid");
+        let again =
+            Submission::parse(submission.canonical_json().as_bytes()).expect("an echo is valid");
+        assert_eq!(again, submission, "{}", example.name);
+        assert_eq!(again.input_hash(), submission.input_hash());
+    }
+}
+
+#[test]
+fn the_hash_knows_what_decides_the_result_and_no_tags() {
+    let hash = |pointer: &str, value: Value| {
+        let mut document = least();
+        put(&mut document, pointer, value);
+        parse(&document).expect("valid").input_hash()
+    };
+    let plain = parse(&least()).expect("valid").input_hash();
+    assert_eq!(plain.len(), 64);
+    assert_eq!(hash("/tags", json!(["tuesday"])), plain);
+    assert_eq!(
+        hash("/resolution", json!({ "span_mesh_periods": 1 })),
+        plain,
+        "the default, said"
+    );
+    assert_ne!(hash("/output_torques_n_m", json!([116])), plain);
+    assert_ne!(hash("/resolution", json!({ "grid": "fine" })), plain);
+}
+
+#[test]
+fn the_choices_of_the_resolution_reach_the_engine() {
+    use meshwright_engine::analysis::{
+        BodyFormula, ContactSolver, PlaneState, StiffnessRule, ToothFormula,
+    };
+    let mut document = least();
+    document["method"] = json!("load_distribution");
+    document["driving_speed_rpm"] = json!(600);
+    document["resolution"] = json!({
+        "contact_solver": { "augmented_lagrangian": { "penalty_n_per_m": 1e10, "gap_tolerance_um": 0.01 } },
+        "stiffness": { "torque_step_percent": 1.0 },
+        "load_distribution": { "tooth": "iso_6336", "body": "half_plane", "plane_state": "strain" },
+        "span_mesh_periods": 3
+    });
+    let submission = parse(&document).expect("valid");
+    let case = submission.case();
+    let ContactSolver::AugmentedLagrangian {
+        penalty,
+        gap_tolerance,
+    } = case.resolution.contact_solver
+    else {
+        panic!("the solver")
+    };
+    assert_eq!((penalty, gap_tolerance), (1e10, 1e-8));
+    assert_eq!(
+        case.resolution.stiffness,
+        StiffnessRule::TorqueStep { fraction: 0.01 }
+    );
+    let formulas = case.resolution.formulas;
+    assert_eq!(
+        (formulas.tooth, formulas.body, formulas.plane_state),
+        (
+            ToothFormula::Iso6336,
+            BodyFormula::HalfPlane,
+            PlaneState::Strain
+        )
+    );
+    assert_eq!(
+        (case.driving_speed, case.span()),
+        (Some(RotationSpeed(10.0)), 3)
+    );
+    let echo: Value = serde_json::from_str(&submission.canonical_json()).expect("JSON");
+    for choice in ["contact_solver", "stiffness", "load_distribution"] {
+        assert_eq!(echo["resolution"][choice], document["resolution"][choice]);
+    }
+}

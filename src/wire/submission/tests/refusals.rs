@@ -1,0 +1,150 @@
+//! Each kind of bad value, and what is told of it.
+
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use super::{case_2, parse, put};
+use crate::wire::Code;
+
+/// A value that is refused: where it is sent, and what is told.
+#[derive(Deserialize)]
+struct Refused {
+    at: String,
+    value: Value,
+    told_at: String,
+    code: Code,
+    /// Whether a value that would do is told.
+    nearest: bool,
+}
+
+#[test]
+fn every_kind_of_bad_value_is_refused_with_its_place_and_a_value_that_works() {
+    let cases: Vec<Refused> = serde_json::from_str(include_str!("refused.json")).expect("JSON");
+    for case in cases {
+        let mut document = case_2();
+        put(&mut document, &case.at, case.value.clone());
+        let problem = parse(&document).expect_err(&case.at);
+        let said = format!("{} {}: {problem:?}", case.at, case.value);
+        assert_eq!(problem.status, 422, "{said}");
+        let error = &problem.errors[0];
+        assert_eq!(
+            (&error.pointer, error.code),
+            (&case.told_at, case.code),
+            "{said}"
+        );
+        assert_eq!(error.nearest.is_some(), case.nearest, "{said}");
+        assert!(
+            !error.detail.contains("NaN") && !error.detail.contains("inf"),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn the_nearest_values_together_make_a_submission() {
+    let changes: &[&[(&str, Value)]] = &[
+        &[
+            ("/pair/driving/tooth_count", json!(12)),
+            ("/pair/driving/blank/bore_radius_mm", json!(30)),
+        ],
+        &[
+            ("/pair/driven/blank/holes/radius_mm", json!(20)),
+            ("/pair/driven/addendum_mm", json!(3.9)),
+        ],
+        &[
+            ("/pair/driven/blank/holes/circle_radius_mm", json!(12)),
+            ("/output_torques_n_m/0", json!(-1)),
+        ],
+        &[
+            ("/pair/driven/blank/holes/circle_radius_mm", json!(5000)),
+            ("/pair/driven/tip_relief/amount_um", json!(-1)),
+        ],
+        &[
+            ("/resolution/positions_per_mesh_period", json!(400)),
+            ("/resolution/span_mesh_periods", json!(500)),
+        ],
+        &[("/pair/center_distance_mm", json!(1e9))],
+    ];
+    for change in changes {
+        let mut document = case_2();
+        for (pointer, value) in *change {
+            put(&mut document, pointer, value.clone());
+        }
+        assert!(parse(&document).is_err());
+        // What the first answer cannot know, because it needs a whole pair, comes with a later one.
+        for _ in 0..4 {
+            let Err(problem) = parse(&document) else {
+                break;
+            };
+            for error in &problem.errors {
+                let nearest = error
+                    .nearest
+                    .unwrap_or_else(|| panic!("{change:?}: {error:?}"));
+                put(&mut document, &error.pointer, json!(nearest));
+            }
+        }
+        assert!(
+            parse(&document).is_ok(),
+            "{change:?}: {:?}",
+            parse(&document)
+        );
+    }
+}
+
+#[test]
+fn the_wrong_fields_of_both_gears_are_told_together() {
+    let mut document = case_2();
+    for (pointer, value) in [
+        ("/pair/driving/tooth_count", json!(3)),
+        ("/pair/driven/face_width_mm", json!("wide")),
+        ("/resolution/grids", json!("fine")),
+        ("/method", json!(7)),
+    ] {
+        put(&mut document, pointer, value);
+    }
+    let problem = parse(&document).expect_err("four fields");
+    let mut pointers: Vec<_> = problem.errors.iter().map(|error| &*error.pointer).collect();
+    pointers.sort_unstable();
+    assert_eq!(
+        pointers,
+        [
+            "/method",
+            "/pair/driven/face_width_mm",
+            "/pair/driving/tooth_count",
+            "/resolution/grids"
+        ]
+    );
+
+    let mut document = case_2();
+    put(
+        &mut document,
+        "/pair/driving/blank/bore_radius_mm",
+        json!(50),
+    );
+    put(
+        &mut document,
+        "/pair/driven/blank/holes/radius_mm",
+        json!(15),
+    );
+    let problem = parse(&document).expect_err("both gears");
+    assert_eq!(problem.errors.len(), 2, "{problem:?}");
+}
+
+#[test]
+fn what_is_too_large_is_told_with_what_would_fit() {
+    let mut document = case_2();
+    document["output_torques_n_m"] = json!([1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]);
+    document["resolution"] = json!({ "positions_per_mesh_period": 400 });
+    let problem = parse(&document).expect_err("24,000 positions");
+    assert_eq!(problem.code, Code::TooLarge);
+    for part in [
+        "24000",
+        "20000",
+        "333 positions",
+        "10 torques",
+        "4 mesh periods",
+    ] {
+        assert!(problem.detail.contains(part), "{part}: {}", problem.detail);
+    }
+    assert_eq!(problem.errors[0].nearest, Some(333.0));
+}

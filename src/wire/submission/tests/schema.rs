@@ -1,0 +1,65 @@
+//! The schema of a submission against what is read and filled in.
+
+use serde_json::Value;
+
+use super::{Submission, least, parse};
+
+#[test]
+fn every_field_of_the_schema_has_a_title_and_the_defaults_are_those_that_are_filled_in() {
+    use utoipa::{PartialSchema, ToSchema};
+    let mut named = Vec::new();
+    Submission::schemas(&mut named);
+    named.push(("Submission".to_owned(), Submission::schema()));
+    let schemas: std::collections::HashMap<String, Value> = named
+        .into_iter()
+        .map(|(name, schema)| (name, serde_json::to_value(schema).expect("JSON")))
+        .collect();
+    let echo: Value =
+        serde_json::from_str(&parse(&least()).expect("valid").canonical_json()).expect("JSON");
+    for (name, place) in [
+        ("Submission", ""),
+        ("Pair", "/pair"),
+        ("Gear", "/pair/driven"),
+        ("Material", "/pair/driven/material"),
+        ("Blank", "/pair/driven/blank"),
+        ("Resolution", "/resolution"),
+        ("LoadDistribution", "/resolution/load_distribution"),
+    ] {
+        let schema = &schemas[name];
+        let fields = echo
+            .pointer(place)
+            .and_then(Value::as_object)
+            .expect("an object");
+        let properties = schema["properties"].as_object().expect("properties");
+        assert_eq!(
+            fields.keys().collect::<Vec<_>>(),
+            properties.keys().collect::<Vec<_>>(),
+            "{name} is echoed field by field"
+        );
+        for (field, property) in properties {
+            if property.get("$ref").is_none() {
+                assert!(property["title"].is_string(), "{name}.{field}");
+            }
+            // A span that is not given is filled in with the true period.
+            if let Some(default) = property
+                .get("default")
+                .filter(|_| field != "span_mesh_periods")
+            {
+                assert_eq!(default.as_f64(), fields[field].as_f64(), "{name}.{field}");
+                if !default.is_number() {
+                    assert_eq!(default, &fields[field], "{name}.{field}");
+                }
+            }
+            let number = ["number", "integer"]
+                .iter()
+                .any(|kind| property["type"] == **kind);
+            if number {
+                assert!(
+                    property["minimum"].is_number() && property["maximum"].is_number(),
+                    "{name}.{field}"
+                );
+                assert!(property["x-unit"].is_string(), "{name}.{field}");
+            }
+        }
+    }
+}

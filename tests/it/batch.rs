@@ -1,0 +1,177 @@
+//! Many submissions in one request, and many results in one answer.
+
+use reqwest::StatusCode;
+use serde_json::{Value, json};
+
+use crate::bench::{Bench, RESULTS, problem, submission};
+
+#[tokio::test]
+async fn each_submission_of_a_batch_is_taken_or_refused_by_itself() {
+    let bench = Bench::quick().await;
+    let mut wrong = submission(1.0);
+    wrong["pair"]["center_distance_mm"] = json!(118.5);
+    let batch = json!({ "submissions": [submission(1.0), wrong, submission(2.0)] });
+    let send = async || {
+        let request = bench
+            .post("/v1/jobs/batch", &batch)
+            .header("idempotency-key", "b");
+        request.send().await.unwrap()
+    };
+    let answer = send().await;
+    assert_eq!(answer.status(), StatusCode::ACCEPTED);
+    let answer: Value = answer.json().await.unwrap();
+    assert_eq!(answer["taken"], 2);
+    assert_eq!(answer["items"][1]["problem"]["code"], "teeth_do_not_reach");
+    assert_eq!(
+        answer["items"][1]["problem"]["errors"][0]["pointer"],
+        "/pair/center_distance_mm"
+    );
+    let again: Value = send().await.json().await.unwrap();
+    for i in [0, 2] {
+        assert_eq!(
+            answer["items"][i]["job"]["id"],
+            again["items"][i]["job"]["id"]
+        );
+        bench
+            .ended(answer["items"][i]["job"]["links"]["self"].as_str().unwrap())
+            .await;
+    }
+    let list = bench.job("/v1/jobs").await;
+    assert_eq!(list["items"].as_array().unwrap().len(), 2);
+}
+
+#[tokio::test]
+async fn what_is_no_batch_is_refused() {
+    let bench = Bench::quick().await;
+    let send = async |batch: Value| bench.post("/v1/jobs/batch", &batch).send().await.unwrap();
+    problem(send(json!([])).await, 422, "wrong_type").await;
+    problem(send(json!({ "submission": [] })).await, 422, "wrong_type").await;
+    problem(
+        send(json!({ "submissions": [] })).await,
+        422,
+        "out_of_range",
+    )
+    .await;
+    let many = vec![submission(1.0); 101];
+    problem(send(json!({ "submissions": many })).await, 422, "too_large").await;
+}
+
+#[tokio::test]
+async fn the_results_of_a_study_come_line_by_line_and_its_table_at_both_addresses() {
+    let bench = Bench::quick().await;
+    let mut study = json!({ "name": "torques", "tags": ["t"], "base": submission(1.0),
+        "axes": [{ "path": "/output_torques_n_m/0", "values": (1..=20).collect::<Vec<_>>() }] });
+    study["axes"][0]["values"]
+        .as_array_mut()
+        .unwrap()
+        .push(json!(-1));
+    let taken: Value = bench
+        .post("/v1/studies", &study)
+        .send()
+        .await
+        .unwrap()
+        .json()
+        .await
+        .unwrap();
+    let path = taken["links"]["self"].as_str().unwrap();
+    let ended = bench.ended(path).await;
+    assert_eq!(
+        (ended["successful"].as_u64(), ended["failed"].as_u64()),
+        (Some(20), Some(1))
+    );
+    assert_eq!(
+        (ended["name"].as_str(), &ended["tags"]),
+        (Some("torques"), &json!(["t"]))
+    );
+
+    let answer = bench
+        .get(ended["links"]["results_ndjson"].as_str().unwrap())
+        .send()
+        .await
+        .unwrap();
+    assert_eq!(answer.headers()["content-type"], "application/x-ndjson");
+    let text = answer.text().await.unwrap();
+    let lines: Vec<Value> = text
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    assert_eq!(lines.len(), 20);
+    let results: Value = serde_json::from_str(RESULTS).unwrap();
+    for (i, line) in lines.iter().enumerate() {
+        assert_eq!(
+            (line["row"].as_u64(), &line["results"]),
+            (Some(i as u64), &results)
+        );
+        assert!(
+            line["label"]
+                .as_str()
+                .unwrap()
+                .starts_with("output_torques_n_m.0=")
+        );
+    }
+
+    let csv = bench
+        .get(ended["links"]["results_csv"].as_str().unwrap())
+        .send()
+        .await
+        .unwrap();
+    let tag = csv.headers()["etag"].clone();
+    let csv = csv.text().await.unwrap();
+    let old = bench
+        .get(&format!("{path}/results.csv"))
+        .send()
+        .await
+        .unwrap();
+    assert!(old.headers().contains_key("deprecation"));
+    assert_eq!(old.text().await.unwrap(), csv);
+    let known = bench
+        .get(ended["links"]["results_csv"].as_str().unwrap())
+        .header("if-none-match", tag);
+    assert_eq!(
+        known.send().await.unwrap().status(),
+        StatusCode::NOT_MODIFIED
+    );
+    let json: Value = bench.document(&format!("{path}/results/table.json")).await;
+    assert_eq!(json, bench.document(&format!("{path}/results")).await);
+    assert_eq!(json["rows"].as_array().unwrap().len(), 21);
+    let document = bench
+        .document(ended["links"]["document"].as_str().unwrap())
+        .await;
+    assert_eq!((&document, &ended["study"]), (&study, &study));
+    problem(
+        bench
+            .get(&format!("{path}/results/table.xls"))
+            .send()
+            .await
+            .unwrap(),
+        404,
+        "not_found",
+    )
+    .await;
+
+    for (query, count) in [
+        ("tag=t", 1),
+        ("tag=u", 0),
+        ("name=torques", 1),
+        ("name=x", 0),
+        ("submitted_since=2020-01-01T00:00:00Z", 1),
+        ("submitted_before=2020-01-01T00:00:00Z", 0),
+    ] {
+        let list = bench.job(&format!("/v1/studies?{query}")).await;
+        assert_eq!(list["items"].as_array().unwrap().len(), count, "{query}");
+    }
+    let jobs = bench
+        .job("/v1/jobs?submitted_before=2020-01-01T00:00:00Z")
+        .await;
+    assert_eq!(jobs["items"], json!([]));
+    problem(
+        bench
+            .get("/v1/jobs?submitted_since=tuesday")
+            .send()
+            .await
+            .unwrap(),
+        400,
+        "invalid_parameter",
+    )
+    .await;
+}

@@ -1,0 +1,196 @@
+//! SIGKILL at random moments: no job that was taken is lost, none has two results, and all are equal to those of a run that
+//! nobody disturbed.
+//!
+//! Two rounds run with the tests; twenty of two hundred jobs by `./chaos`.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use meshwright::wire::{Submission, solve};
+use meshwright_engine::library::Library;
+use meshwright_engine::run::Run;
+use reqwest::Client;
+use serde_json::{Value, json};
+use tokio::sync::Mutex;
+
+use crate::process::Process;
+
+/// A generator of chance: the same numbers for the same seed.
+struct Chance(u64);
+
+impl Chance {
+    fn below(&mut self, end: u64) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0 % end
+    }
+}
+
+/// Jobs of a few milliseconds, each another one.
+fn job(number: u64) -> Value {
+    let gear = json!({
+        "tooth_count": 50, "module_mm": 2.0, "face_width_mm": 20.0, "blank": { "bore_radius_mm": 15.0 },
+        "tip_relief": { "amount_um": 5.0, "start": { "radial_length_mm": 1.75 } },
+    });
+    json!({
+        "method": "load_distribution",
+        "pair": { "center_distance_mm": 100.5, "driving": gear, "driven": gear },
+        "output_torques_n_m": [20.0 + number as f64 * 0.25],
+        "resolution": { "span_mesh_periods": 20 },
+    })
+}
+
+/// What a round came to.
+#[derive(Default)]
+struct Tally {
+    kills: u32,
+    ready: Vec<Duration>,
+}
+
+/// The address of the service, which is another one after each kill.
+type Base = Arc<Mutex<String>>;
+
+/// Submits jobs one after the other, each until it is taken. Gives back the ids.
+async fn submit_all(client: Client, base: Base, numbers: Vec<u64>) -> BTreeMap<u64, String> {
+    let mut taken = BTreeMap::new();
+    for number in numbers {
+        let id = loop {
+            let url = format!("{}/v1/jobs", base.lock().await);
+            let request = client
+                .post(url)
+                .header("idempotency-key", format!("job {number}"))
+                .json(&job(number));
+            if let Ok(answer) = request.send().await
+                // 200 where the answer to an earlier try was lost, and the job has ended meanwhile.
+                && answer.status().is_success()
+                && let Ok(job) = answer.json::<Value>().await
+            {
+                break job["id"].as_str().unwrap().to_owned();
+            }
+            tokio::time::sleep(Duration::from_millis(10)).await;
+        };
+        taken.insert(number, id);
+    }
+    taken
+}
+
+async fn round(seed: u64, jobs: u64, kills: u32, database: &Path) -> Tally {
+    const CLIENTS: u64 = 4;
+    let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+    let client = meshwright::client()
+        .timeout(Duration::from_secs(20))
+        .build()
+        .unwrap();
+    let mut tally = Tally::default();
+    let mut process = Process::start(database);
+    let base: Base = Arc::new(Mutex::new(process.base.clone()));
+    let submitters: Vec<_> = (0..CLIENTS)
+        .map(|which| {
+            let numbers = (0..jobs)
+                .filter(|number| number % CLIENTS == which)
+                .collect();
+            tokio::spawn(submit_all(client.clone(), Arc::clone(&base), numbers))
+        })
+        .collect();
+    for _ in 0..kills {
+        tokio::time::sleep(Duration::from_millis(30 + chance.below(400))).await;
+        process.kill();
+        tally.kills += 1;
+        let start = Instant::now();
+        process = Process::start(database);
+        let ready = client
+            .get(format!("{}/health/ready", process.base))
+            .send()
+            .await
+            .unwrap();
+        assert_eq!(ready.status(), 200);
+        tally.ready.push(start.elapsed());
+        *base.lock().await = process.base.clone();
+    }
+    let mut taken = BTreeMap::new();
+    for submitter in submitters {
+        taken.extend(submitter.await.unwrap());
+    }
+    check(&client, &process, jobs, &taken).await;
+    tally
+}
+
+/// Every job that was taken has its one result, the one of a run that nobody disturbed.
+async fn check(client: &Client, process: &Process, jobs: u64, taken: &BTreeMap<u64, String>) {
+    let ids: BTreeSet<&String> = taken.values().collect();
+    assert_eq!(
+        (taken.len() as u64, ids.len() as u64),
+        (jobs, jobs),
+        "each was taken once"
+    );
+    let library = Library::with_capacity(256 << 20);
+    for (number, id) in taken {
+        let url = format!("{}/v1/jobs/{id}", process.base);
+        let ended = client
+            .get(&url)
+            .header("prefer", "wait=20")
+            .send()
+            .await
+            .unwrap();
+        let ended: Value = ended.json().await.unwrap();
+        assert_eq!(ended["status"], "successful", "job {number}: {ended}");
+        let text = client
+            .get(format!("{url}/results"))
+            .send()
+            .await
+            .unwrap()
+            .text()
+            .await
+            .unwrap();
+        let submission = Submission::parse(job(*number).to_string().as_bytes()).unwrap();
+        assert_eq!(
+            text,
+            solve(&submission, &library, &Run::unattended()).unwrap(),
+            "job {number}"
+        );
+    }
+    let mut listed = 0;
+    let mut path = "/v1/jobs?limit=200".to_owned();
+    loop {
+        let page = process.get(client, &path).await;
+        listed += page["items"].as_array().unwrap().len() as u64;
+        match page["next"].as_str() {
+            Some(cursor) => path = format!("/v1/jobs?limit=200&cursor={cursor}"),
+            None => break,
+        }
+    }
+    assert_eq!(listed, jobs, "no job that nobody knows of");
+}
+
+async fn rounds(seeds: std::ops::Range<u64>, jobs: u64, kills: u32) {
+    let mut all = Tally::default();
+    for seed in seeds.clone() {
+        let folder = tempfile::tempdir().unwrap();
+        let tally = round(seed, jobs, kills, &folder.path().join("meshwright.db")).await;
+        all.kills += tally.kills;
+        all.ready.extend(tally.ready);
+    }
+    all.ready.sort();
+    let rounds = seeds.end - seeds.start;
+    println!(
+        "{rounds} rounds, {} kills, {} jobs taken and successful, none lost, none twice, all equal; ready again after {:?} (median), {:?} (longest)",
+        all.kills,
+        rounds * jobs,
+        all.ready[all.ready.len() / 2],
+        all.ready.last().unwrap(),
+    );
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn kills_at_random_moments_lose_no_job_and_double_none() {
+    rounds(1..3, 40, 2).await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[ignore = "takes minutes; ./chaos runs it"]
+async fn twenty_rounds_of_kills_lose_no_job_of_two_hundred() {
+    rounds(100..120, 200, 3).await;
+}

@@ -1,0 +1,129 @@
+//! Connections that say nothing, half of something, or take nothing: none of them stops the service or its end.
+
+use std::time::{Duration, Instant};
+
+use meshwright::config::Config;
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::TcpStream;
+
+use crate::bench::{Bench, PATIENCE, RESULTS, submission};
+
+async fn service(adjust: impl FnOnce(&mut Config)) -> Bench {
+    Bench::start(adjust, std::sync::Arc::new(|_, _| Ok(RESULTS.to_owned()))).await
+}
+
+async fn connect(bench: &Bench) -> TcpStream {
+    TcpStream::connect(bench.service().address()).await.unwrap()
+}
+
+/// Comes back when the service has closed the connection.
+async fn closed(mut stream: TcpStream) {
+    let mut rest = Vec::new();
+    let end = tokio::time::timeout(PATIENCE, stream.read_to_end(&mut rest));
+    // It may be closed in order or reset.
+    let _ = end.await.expect("the connection is closed");
+}
+
+#[tokio::test]
+async fn a_connection_that_sends_no_head_in_time_is_closed() {
+    let bench = service(|config| config.door.idle_time = Duration::from_millis(200)).await;
+    let silent = connect(&bench).await;
+    let mut slow = connect(&bench).await;
+    slow.write_all(b"GET /v1/jobs HTTP/1.1\r\nHost: localhost\r\nX-A")
+        .await
+        .unwrap();
+    let mut between = connect(&bench).await;
+    between
+        .write_all(b"GET /health/live HTTP/1.1\r\nHost: localhost\r\n\r\n")
+        .await
+        .unwrap();
+    for stream in [silent, slow, between] {
+        closed(stream).await;
+    }
+}
+
+#[tokio::test]
+async fn silent_connections_give_way_to_those_who_ask() {
+    let bench = service(|config| config.door.connections = 16).await;
+    let mut silent = Vec::new();
+    for _ in 0..100 {
+        silent.push(connect(&bench).await);
+    }
+    let start = Instant::now();
+    let answer = bench.get("/v1/jobs").send().await.unwrap();
+    assert_eq!(answer.status(), 200);
+    // The first that came is the first that went.
+    closed(silent.remove(0)).await;
+    assert!(start.elapsed() < PATIENCE);
+}
+
+#[tokio::test]
+async fn half_a_head_does_not_hold_a_shutdown_up_and_an_answer_under_way_is_finished() {
+    let (mut bench, mut engine) = Bench::steered().await;
+    let mut slow = connect(&bench).await;
+    slow.write_all(b"GET /v1/jobs HTTP/1.1\r\nHost: localhost\r\nX-A")
+        .await
+        .unwrap();
+    let path = bench.submit(&submission(1.0)).await;
+    let work = engine.next().await;
+    let waiting = tokio::spawn(bench.get(&path).header("prefer", "wait=20").send());
+    // The request has arrived when its place is taken.
+    while !bench
+        .get("/metrics")
+        .send()
+        .await
+        .unwrap()
+        .text()
+        .await
+        .unwrap()
+        .contains("meshwright_connections")
+    {}
+    let start = Instant::now();
+    let stopping = bench.shut_down();
+    let ((), answer) = tokio::join!(stopping, waiting);
+    assert_eq!(answer.unwrap().unwrap().status(), 200);
+    assert!(
+        start.elapsed() < Duration::from_secs(5),
+        "{:?}",
+        start.elapsed()
+    );
+    drop(work);
+    closed(slow).await;
+}
+
+#[tokio::test]
+async fn a_head_that_is_too_large_is_refused() {
+    let bench = service(|_| {}).await;
+    let mut stream = connect(&bench).await;
+    stream
+        .write_all(b"GET / HTTP/1.1\r\nHost: localhost\r\nX-A: ")
+        .await
+        .unwrap();
+    // The service may close before it has taken all of it.
+    let _ = stream.write_all(&vec![b'a'; 100_000]).await;
+    let mut answer = Vec::new();
+    let _ = tokio::time::timeout(PATIENCE, stream.read_to_end(&mut answer))
+        .await
+        .unwrap();
+    let text = String::from_utf8_lossy(&answer);
+    assert!(
+        text.is_empty() || text.starts_with("HTTP/1.1 431"),
+        "{text}"
+    );
+}
+
+#[tokio::test]
+async fn a_request_without_a_host_is_refused() {
+    let bench = service(|_| {}).await;
+    let mut stream = connect(&bench).await;
+    stream
+        .write_all(b"GET /v1/jobs HTTP/1.1\r\nConnection: close\r\n\r\n")
+        .await
+        .unwrap();
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).await.unwrap();
+    assert!(
+        answer.starts_with("HTTP/1.1 400") && answer.contains("invalid_parameter"),
+        "{answer}"
+    );
+}

@@ -1,0 +1,181 @@
+//! A disk that is really full: a file system of 12 MB in memory, filled up under the running service and emptied again.
+//! Needs the right to mount; without it nothing is shown, and the test says so.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use reqwest::Client;
+use serde_json::{Value, json};
+
+use crate::process::Process;
+
+/// A small file system, gone when it is dropped.
+struct Small {
+    folder: PathBuf,
+    _held: tempfile::TempDir,
+}
+
+impl Small {
+    fn mount(megabytes: u32) -> Option<Self> {
+        let held = tempfile::tempdir().unwrap();
+        let folder = held.path().join("disk");
+        fs::create_dir(&folder).unwrap();
+        let size = format!("size={megabytes}m");
+        let mounted = Command::new("mount")
+            .args(["-t", "tmpfs", "-o", &size, "meshwright-test"])
+            .arg(&folder)
+            .output();
+        let works = mounted.is_ok_and(|output| output.status.success());
+        works.then_some(Self {
+            folder,
+            _held: held,
+        })
+    }
+}
+
+impl Drop for Small {
+    fn drop(&mut self) {
+        let _ = Command::new("umount").arg("-l").arg(&self.folder).status();
+    }
+}
+
+/// Takes every byte that is left.
+fn fill(folder: &Path) -> PathBuf {
+    let filler = folder.join("filler");
+    let _ = Command::new("dd")
+        .args(["if=/dev/zero", "bs=4096"])
+        .arg(format!("of={}", filler.display()))
+        .output();
+    filler
+}
+
+fn job(number: u32) -> Value {
+    let gear = json!({ "tooth_count": 50, "module_mm": 2.0, "face_width_mm": 20.0, "blank": { "bore_radius_mm": 15.0 } });
+    json!({
+        "method": "load_distribution",
+        "pair": { "center_distance_mm": 100.5, "driving": gear, "driven": gear },
+        "output_torques_n_m": [20.0 + f64::from(number)],
+        "resolution": { "span_mesh_periods": 40 },
+    })
+}
+
+async fn status(client: &Client, url: String) -> u16 {
+    client.get(url).send().await.unwrap().status().as_u16()
+}
+
+#[tokio::test]
+async fn a_full_disk_stops_nothing_for_longer_than_it_is_full() {
+    let Some(disk) = Small::mount(12) else {
+        println!("NOT SHOWN: this user may not mount a file system.");
+        return;
+    };
+    let process = Process::start_with(&disk.folder.join("meshwright.db"), &["--keep-gb", "0"]);
+    let client = meshwright::client()
+        .timeout(Duration::from_secs(30))
+        .build()
+        .unwrap();
+    let mut taken = Vec::new();
+    let mut filler = None;
+    for number in 0..400 {
+        let request = client
+            .post(format!("{}/v1/jobs", process.base))
+            .json(&job(number));
+        let answer = request.send().await.unwrap();
+        match answer.status().as_u16() {
+            202 => {
+                let job: Value = answer.json().await.unwrap();
+                taken.push(job["id"].as_str().unwrap().to_owned());
+            }
+            503 => {
+                assert!(answer.headers().contains_key("retry-after"));
+                let problem: Value = answer.json().await.unwrap();
+                assert_eq!(problem["code"], "storage_unavailable");
+                break;
+            }
+            other => panic!("{other}"),
+        }
+        if number == 30 {
+            filler = Some(fill(&disk.folder));
+        }
+    }
+    assert_eq!(
+        status(&client, format!("{}/health/live", process.base)).await,
+        200
+    );
+    assert_eq!(
+        status(&client, format!("{}/health/ready", process.base)).await,
+        503
+    );
+    // What stands can be read all the while.
+    assert_eq!(
+        status(&client, format!("{}/v1/jobs/{}", process.base, taken[0])).await,
+        200
+    );
+
+    fs::remove_file(filler.unwrap()).unwrap();
+    let start = Instant::now();
+    while status(&client, format!("{}/health/ready", process.base)).await != 200 {
+        assert!(
+            start.elapsed() < Duration::from_secs(10),
+            "it stays unready"
+        );
+        tokio::time::sleep(Duration::from_millis(20)).await;
+    }
+    println!("ready {:?} after there is room again", start.elapsed());
+    for id in &taken {
+        let url = format!("{}/v1/jobs/{id}", process.base);
+        let ended = client
+            .get(url)
+            .header("prefer", "wait=20")
+            .send()
+            .await
+            .unwrap();
+        let ended: Value = ended.json().await.unwrap();
+        assert_eq!(ended["status"], "successful", "{ended}");
+    }
+    println!("{} jobs taken and successful", taken.len());
+}
+
+#[tokio::test]
+async fn a_database_that_cannot_be_written_is_refused_with_a_reason_and_an_exit_code() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("meshwright.db");
+    let serve = |path: &Path| {
+        let output = Command::new(env!("CARGO_BIN_EXE_meshwright"))
+            .args(["serve", "--listen", "127.0.0.1:0", "--database"])
+            .arg(path)
+            .output()
+            .unwrap();
+        (
+            output.status.code(),
+            String::from_utf8(output.stderr).unwrap(),
+        )
+    };
+    fs::write(&path, "this is no database, whatever its name says").unwrap();
+    let (code, told) = serve(&path);
+    assert_eq!(code, Some(3), "{told}");
+    assert!(
+        told.contains("no SQLite database") && told.contains("nothing was changed"),
+        "{told}"
+    );
+
+    let Some(disk) = Small::mount(12) else {
+        println!("NOT SHOWN: this user may not mount a file system.");
+        return;
+    };
+    let path = disk.folder.join("meshwright.db");
+    Process::start(&path).kill();
+    let remounted = Command::new("mount")
+        .args(["-o", "remount,ro"])
+        .arg(&disk.folder)
+        .status();
+    assert!(remounted.unwrap().success());
+    let (code, told) = serve(&path);
+    assert!(code == Some(3) || code == Some(1), "{told}");
+    assert!(
+        told.contains("read-only") || told.contains("Read-only"),
+        "{told}"
+    );
+}

@@ -1,0 +1,118 @@
+//! The program itself, in a process of its own.
+
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use reqwest::Client;
+use serde_json::Value;
+
+/// A service in a process of its own.
+pub(crate) struct Process {
+    child: Child,
+    pub(crate) base: String,
+}
+
+impl Process {
+    pub(crate) fn start(database: &Path) -> Self {
+        Self::start_with(database, &[])
+    }
+
+    /// The same with more arguments.
+    pub(crate) fn start_with(database: &Path, arguments: &[&str]) -> Self {
+        let program = Command::new(env!("CARGO_BIN_EXE_meshwright"));
+        Self::spawn(program, database, arguments)
+    }
+
+    /// The same with so many descriptors.
+    pub(crate) fn start_with_descriptors(database: &Path, descriptors: u32) -> Self {
+        let mut shell = Command::new("sh");
+        let limited = format!("ulimit -n {descriptors}; exec \"$0\" \"$@\"");
+        shell.args(["-c", &limited, env!("CARGO_BIN_EXE_meshwright")]);
+        Self::spawn(shell, database, &[])
+    }
+
+    fn spawn(mut program: Command, database: &Path, arguments: &[&str]) -> Self {
+        let mut child = program
+            .args(["serve", "--listen", "127.0.0.1:0", "--database"])
+            .arg(database)
+            .args(arguments)
+            .env("MESHWRIGHT_LOG", "warn")
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // The first line says where it listens.
+        let output = BufReader::new(child.stdout.take().unwrap());
+        let line = output.lines().next().unwrap().unwrap();
+        let base = line
+            .split_whitespace()
+            .find(|word| word.starts_with("http://"))
+            .unwrap();
+        let base = base.trim_end_matches(';').to_owned();
+        Self { child, base }
+    }
+
+    /// SIGKILL: nothing is written, nobody is told.
+    pub(crate) fn kill(mut self) {
+        self.child.kill().unwrap();
+        self.child.wait().unwrap();
+    }
+
+    /// SIGTERM, as an operator ends it. Gives back how long it took.
+    pub(crate) fn terminate(mut self) -> Duration {
+        let start = Instant::now();
+        let pid = rustix::process::Pid::from_child(&self.child);
+        rustix::process::kill_process(pid, rustix::process::Signal::TERM).unwrap();
+        assert!(self.child.wait().unwrap().success());
+        start.elapsed()
+    }
+
+    pub(crate) async fn get(&self, client: &Client, path: &str) -> Value {
+        let response = client
+            .get(format!("{}{path}", self.base))
+            .send()
+            .await
+            .unwrap();
+        assert_eq!(response.status(), 200, "{path}");
+        response.json().await.unwrap()
+    }
+
+    pub(crate) async fn submit(&self, client: &Client, study: &Value) -> String {
+        let response = client
+            .post(format!("{}/v1/studies", self.base))
+            .json(study)
+            .send()
+            .await
+            .unwrap();
+        assert_eq!(response.status(), 202);
+        response.headers()["location"].to_str().unwrap().to_owned()
+    }
+
+    /// Looks at the study until so many designs are done.
+    pub(crate) async fn done(&self, client: &Client, path: &str, count: u64) -> Value {
+        loop {
+            let study = self.get(client, path).await;
+            if study["done"].as_u64().unwrap() >= count {
+                return study;
+            }
+            tokio::time::sleep(Duration::from_millis(20)).await;
+        }
+    }
+
+    /// The most memory that the process has had, in MB, where the system tells.
+    pub(crate) fn peak_memory_mb(&self) -> Option<u64> {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).ok()?;
+        let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+        let kilobytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+        Some(kilobytes / 1000)
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        // A test that fails leaves no process behind; one that was killed before is no error.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

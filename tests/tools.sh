@@ -1,0 +1,28 @@
+# Sourced by the checks that need more than Rust and a C compiler: what they need is installed where that may be done.
+
+# An installation that hangs is given up.
+patience=600
+
+# Whether COMMAND succeeds, once PACKAGES of the system are installed: provide COMMAND PACKAGE ...
+provide() {
+    local command=$1 as_root=''
+    shift
+    $command >/dev/null 2>&1 && return
+    command -v apt-get >/dev/null || return 1
+    [ "$(id -u)" = 0 ] || as_root='sudo -n'
+    say "installing $*."
+    {
+        timeout $patience $as_root apt-get -qq update &&
+            timeout $patience $as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends "$@"
+    } >/dev/null 2>&1 </dev/null || true
+    $command >/dev/null 2>&1
+}
+
+# Whether PROGRAM is in the Python environment FOLDER, once REQUIREMENTS are installed there: python_tool FOLDER PROGRAM REQUIREMENTS
+python_tool() {
+    [ -x "$1/bin/$2" ] && "$1/bin/$2" --version >/dev/null 2>&1 && return
+    provide 'python3 -m ensurepip --version' python3-venv || return 1
+    say "installing $2."
+    python3 -m venv --clear "$1" >/dev/null 2>&1 &&
+        timeout $patience "$1/bin/pip" install --quiet --requirement "$3" >/dev/null 2>&1 </dev/null
+}
