@@ -286,8 +286,7 @@ impl TriangleNet {
             let corners = star.iter().map(|t| sharpest_corner(points, *t, &bulges));
             corners.fold(f64::INFINITY, f64::min)
         };
-        for point in fixed..self.points.len() {
-            let star = &around[point];
+        for (point, star) in around.iter().enumerate().skip(fixed) {
             let mut best = sharpest(&self.points, star);
             if best >= SHARP {
                 continue;
