@@ -307,8 +307,8 @@ fn rings_in_series() -> [f64; 2] {
     // Radially u = a r + b/r with σ_r = E/(1 − ν²) ((1 + ν) a − (1 − ν) b/r²): displacement and force per angle from ring to
     // ring, from the held bore out.
     let (mut u, mut force) = (0.0, 1.0);
-    for i in 0..3 {
-        let ((r, t), r_o) = (RINGS[i], outer(i));
+    for (i, (r, t)) in RINGS.into_iter().enumerate() {
+        let r_o = outer(i);
         let d = e / (1.0 - nu * nu) * t;
         let system = nalgebra::Matrix2::new(r, 1.0 / r, d * (1.0 + nu) * r, -d * (1.0 - nu) / r);
         let ab = system
