@@ -4,19 +4,38 @@ use super::case::{Case, Method};
 use super::expected_positions;
 use crate::assembly::blank::blank_grid;
 use crate::assembly::interface::{harmonics, interface_radius, orders_of_blank};
+use crate::assembly::pair::cells_per_patch;
+use crate::contact::facing::Facing;
+use crate::contact::{ContactSolver, default_penalty};
 use crate::gear::{Member, gcd};
-use crate::grid::ToothGrid;
+use crate::grid::{GridLevel, ToothGrid};
 
-/// Seconds of one core for the first contact solution at a fraction of the mesh period, for each further one there, for a
-/// node of a factorized grid, and for a multiplication and addition of dense linear algebra; measured on a 2.6 GHz server
-/// core, good to a factor of two.
-const SECONDS: [f64; 4] = [0.2e-3, 0.05e-3, 6e-6, 0.05e-9];
+/// Seconds of one core for the first contact solution at a fraction of the mesh period, for each further one there, and for a linear
+/// system of the augmented Lagrangian, all with the cells of [`CELLS`]; for a node of a factorized grid; and for a multiplication and
+/// addition of dense linear algebra. Measured on a 2.6 GHz server core, good to a factor of two.
+const SECONDS: [f64; 5] = [0.2e-3, 0.05e-3, 0.02e-3, 6e-6, 0.05e-9];
+
+/// Two patches at the standard level; solutions take the third power of the cells.
+const CELLS: f64 = 80.0;
+
+/// How much longer a first solution takes where load brings more pairs together than the contact ratio: tips dig in, and patches are laid
+/// again, wider.
+const DIGGING: f64 = 6.0;
+
+/// The stiffness of a mesh over E b of its softer gear, about: 0.03 with large holes under a heavy load, 0.04 in the paper's case 2.
+const STIFFNESS: f64 = 0.035;
+
+/// How far from the pitch point pairs are looked for.
+const FARTHEST_PAIR: i64 = 16;
+
+/// Bytes of one position: its contact, its place in the curves and in the document.
+const POSITION_MEMORY: f64 = 1e3;
 
 /// Patterns of force that a tooth exerts on the interface circle, about.
 const PATTERNS: f64 = 18.0;
 
 /// Memory that any case takes, in bytes.
-const BASE_MEMORY: f64 = 60e6;
+const BASE_MEMORY: f64 = 40e6;
 
 /// What a case will cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,57 +53,131 @@ pub struct Estimate {
 /// Estimates what `case` will cost; the grids are laid, nothing is solved. A gear whose grid fails counts as nothing.
 pub fn estimate(case: &Case) -> Estimate {
     let positions = (case.positions() * case.output_torques.len()) as u64;
-    let [per_first, per_further, per_node, per_operation] = SECONDS;
-    let solutions = expected_positions(case);
-    // Only the flexible method solves a fraction of the mesh period more than once.
-    let further = match case.method {
-        Method::Flexible => solutions - solutions / u64::from(case.span()).max(1),
-        _ => 0,
+    let mut estimate = Estimate {
+        degrees_of_freedom: 0,
+        memory: (BASE_MEMORY + POSITION_MEMORY * positions as f64) as u64,
+        seconds: 0.0,
+        positions,
     };
-    let mut seconds = per_first * (solutions - further) as f64 + per_further * further as f64;
-    let (mut degrees_of_freedom, mut memory) = (0, BASE_MEMORY);
     if case.method == Method::LoadDistribution {
-        return Estimate {
-            degrees_of_freedom,
-            memory: memory as u64,
-            seconds: seconds / 10.0,
-            positions,
-        };
+        estimate.seconds = SECONDS[0] / 10.0 * expected_positions(case) as f64;
+        return estimate;
     }
     let level = case.resolution.grid;
-    for member in Member::BOTH {
-        let gear = case.pair.gear(member);
-        let radius = interface_radius(gear, case.resolution.interface_radii[member.index()]);
-        let (Ok(tooth), Ok(blank)) = (
-            ToothGrid::new(gear, radius, level),
-            blank_grid(gear, radius, level),
-        ) else {
-            continue;
-        };
-        let (teeth, sectors) = (u64::from(gear.tooth_count()), u64::from(blank.sector_count));
-        let tooth_nodes = (tooth.grid.nodes.len() - tooth.side_nodes.0.len() - 1) as u64;
-        let blank_nodes = blank.own_nodes() as u64;
-        degrees_of_freedom += 2 * (teeth * tooth_nodes + sectors * blank_nodes);
+    let mut levels = vec![level];
+    if case.resolution.error_estimate {
+        levels.push(level.neighbor());
+    }
+    for (run, &at) in levels.iter().enumerate() {
+        let gears = Member::BOTH.map(|member| of_gear(case, member, at));
+        estimate.seconds += of_contacts(case, at);
+        for gear in gears {
+            estimate.seconds += gear.seconds;
+            estimate.memory += gear.memory;
+            if run == 0 {
+                estimate.degrees_of_freedom += gear.degrees_of_freedom;
+            }
+        }
+    }
+    estimate
+}
 
-        let orders = orders_of_blank(gear, radius, level);
-        let (all, met) = (
-            harmonics(gear, radius, level).unknowns() as f64,
-            orders.unknowns() as f64,
-        );
-        // The gear repeats itself so many times, and keeps the rows of the teeth of one period.
-        let repeats = f64::from(gcd(gear.tooth_count(), blank.sector_count));
-        let rows = teeth as f64 / repeats;
-        memory += 8.0 * (4.0 * all * all + 2.0 * met * rows.min(32.0) * PATTERNS)
-            + 3e3 * (tooth_nodes + blank_nodes) as f64;
-        let factorization = met * met * met / (6.0 * repeats * repeats);
-        let answers = rows * PATTERNS * met * (met / (2.0 * repeats) + 5.0 * PATTERNS);
-        seconds += per_node * (tooth_nodes + blank_nodes) as f64
-            + per_operation * (factorization + answers);
-    }
-    Estimate {
-        degrees_of_freedom,
-        memory: memory as u64,
-        seconds,
-        positions,
-    }
+/// Seconds that the contacts of `case` take at `level`.
+fn of_contacts(case: &Case, level: GridLevel) -> f64 {
+    let [per_first, per_further, per_system, ..] = SECONDS;
+    let solutions = expected_positions(case) as f64;
+    // Only the flexible method solves a fraction of the mesh period more than once.
+    let firsts = match case.method {
+        Method::Flexible => solutions / f64::from(case.span().max(1)),
+        _ => solutions,
+    };
+    let of_torque = |&output_torque: &f64| {
+        let (pairs, digging) = pairs_together(case, output_torque);
+        let cells = (pairs * cells_per_patch(level)) as f64;
+        let first = per_first * if digging { DIGGING } else { 1.0 };
+        let solved = first * firsts + per_further * (solutions - firsts);
+        (cells / CELLS).powi(3) * (solved + per_system * systems(case) * solutions)
+    };
+    let seconds: f64 = case.output_torques.iter().map(of_torque).sum();
+    seconds / case.output_torques.len().max(1) as f64
+}
+
+/// The tooth pairs that come together under a torque, about, and whether they are more than without load.
+fn pairs_together(case: &Case, output_torque: f64) -> (usize, bool) {
+    let pair = &case.pair;
+    let moduli = Member::BOTH.map(|member| pair.gear(member).material().youngs_modulus);
+    let stiffness = STIFFNESS * moduli[0].min(moduli[1]) * pair.common_face_width();
+    let delta = pair.load(output_torque) / stiffness;
+    let within = |n: &i64| Facing::of(pair, 0.5, *n, 0).is_some_and(|facing| facing.gap <= delta);
+    let near = (-FARTHEST_PAIR..=FARTHEST_PAIR).filter(within).count();
+    let rolling = pair.contact_ratio().ceil() as usize;
+    (near.max(rolling), near > rolling)
+}
+
+/// Linear systems that the augmented Lagrangian solves at a position, about: none for the active set.
+fn systems(case: &Case) -> f64 {
+    let ContactSolver::AugmentedLagrangian {
+        penalty,
+        gap_tolerance,
+    } = case.resolution.contact_solver
+    else {
+        return 0.0;
+    };
+    // An update leaves 1/(1 + κ h) of the error, with h of the default penalty that leaves a hundredth.
+    let strength = penalty.map_or(100.0, |penalty| {
+        100.0 * penalty / default_penalty(&case.pair)
+    });
+    let first_error = 1e-3 * case.pair.driving().data().rack.module;
+    let updates = (first_error / gap_tolerance).max(1.0).ln() / strength.ln_1p();
+    5.0 + updates.min(2000.0)
+}
+
+/// What making one gear costs, in all models that the method needs of it.
+fn of_gear(case: &Case, member: Member, level: GridLevel) -> Estimate {
+    let mut estimate = Estimate {
+        degrees_of_freedom: 0,
+        memory: 0,
+        seconds: 0.0,
+        positions: 0,
+    };
+    let [.., per_node, per_operation] = SECONDS;
+    let gear = case.pair.gear(member);
+    let radius = interface_radius(gear, case.resolution.interface_radii[member.index()]);
+    let (Ok(tooth), Ok(blank)) = (
+        ToothGrid::new(gear, radius, level),
+        blank_grid(gear, radius, level),
+    ) else {
+        return estimate;
+    };
+    let (teeth, sectors) = (u64::from(gear.tooth_count()), u64::from(blank.sector_count));
+    let tooth_nodes = (tooth.grid.nodes.len() - tooth.side_nodes.0.len() - 1) as u64;
+    let blank_nodes = blank.own_nodes() as u64;
+    estimate.degrees_of_freedom = 2 * (teeth * tooth_nodes + sectors * blank_nodes);
+
+    let orders = orders_of_blank(gear, radius, level);
+    let (all, met) = (
+        harmonics(gear, radius, level).unknowns() as f64,
+        orders.unknowns() as f64,
+    );
+    // The gear repeats itself so many times, and keeps the rows of the teeth of one period.
+    let repeats = f64::from(gcd(gear.tooth_count(), blank.sector_count));
+    let rows = teeth as f64 / repeats;
+    // Of the decomposition's models one has this blank flexible; the projection makes another of it that is alike all around.
+    let couplings = rows
+        + if case.method == Method::Flexible {
+            0.0
+        } else {
+            17.0
+        };
+    // At the most two matrices of all orders at once: the ring of teeth, and what is factorized.
+    estimate.memory = (8.0
+        * (2.0 * all * all
+            + 2.0 * met * rows.min(32.0) * PATTERNS
+            + 5.0 * couplings * (2.0 * PATTERNS).powi(2))
+        + 3e3 * (tooth_nodes + blank_nodes) as f64) as u64;
+    let factorization = met * met * met / (6.0 * repeats * repeats);
+    let answers = rows * PATTERNS * met * (met / (2.0 * repeats) + 5.0 * PATTERNS);
+    estimate.seconds =
+        per_node * (tooth_nodes + blank_nodes) as f64 + per_operation * (factorization + answers);
+    estimate
 }

@@ -108,7 +108,7 @@ impl Blanks {
 }
 
 /// Contact cells in one patch.
-fn cells_per_patch(level: GridLevel) -> usize {
+pub(crate) fn cells_per_patch(level: GridLevel) -> usize {
     match level {
         GridLevel::Coarse => 24,
         GridLevel::Standard => 40,
