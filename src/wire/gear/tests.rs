@@ -230,7 +230,7 @@ fn a_table_is_told_its_first_entry_that_does_not_rise_and_how_many_values_it_nee
     let table = |places: Value, removed: Value| json!({ "profile_modifications": [{ "kind": "table", "roll_length_mm": places, "removed_um": removed }] });
     let item = "profile_modifications/0";
     let falls = fault(
-        &table(json!([14, 15, 15, 13]), json!([0, 0, 0, 0])),
+        &table(json!([14, 15, 15, 16]), json!([0, 0, 0, 0])),
         &format!("{item}/roll_length_mm/2"),
         Code::TableDoesNotRise,
     );
@@ -239,6 +239,9 @@ fn a_table_is_told_its_first_entry_that_does_not_rise_and_how_many_values_it_nee
         Some(15.001),
         "a unit in the fifth digit: {falls:?}"
     );
+    let falling = faults(&table(json!([14, 15, 15, 13]), json!([0, 0, 0, 0])));
+    let together: Vec<_> = falling.iter().map(|fault| fault.nearest).collect();
+    assert_eq!(together, [Some(15.001), Some(15.002)], "{falling:?}");
     let short = fault(
         &table(json!([14, 15, 16]), json!([0, 1])),
         &format!("{item}/removed_um"),

@@ -30,6 +30,13 @@ pub(super) fn case_2() -> Value {
     serde_json::from_str(example.json).expect("JSON")
 }
 
+/// The example of this name with everything that is filled in.
+pub(super) fn filled_in(name: &str) -> Value {
+    let example = examples().iter().find(|example| example.name == name);
+    let submission = Submission::parse(example.expect("ships").json.as_bytes()).expect("valid");
+    serde_json::from_str(&submission.canonical_json()).expect("JSON")
+}
+
 pub(super) fn parse(document: &Value) -> Result<Submission, Problem> {
     Submission::parse(document.to_string().as_bytes())
 }
