@@ -22,7 +22,7 @@ use meshwright::config::Config;
 use meshwright::jobs::{Clock, HookRules};
 use meshwright::serve::{Compute, World, serve};
 use meshwright::wire::{self, Code, Problem, Submission};
-use meshwright_engine::analysis::Library;
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use serde::Deserialize;
 use serde_json::{Value, json};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use anyhow::Context;
-use meshwright_engine::analysis::Library;
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;

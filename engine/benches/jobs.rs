@@ -1,14 +1,16 @@
-//! Whole jobs in this process, by the goals of DESIGN section 6: cold (an empty library) unless the name says otherwise.
+//! Whole jobs in this process: cold (an empty library) unless the name says otherwise.
 
 use std::hint::black_box;
 
 use criterion::measurement::WallTime;
 use criterion::{BatchSize, Bencher, BenchmarkGroup, Criterion, criterion_group, criterion_main};
-use meshwright_engine::analysis::library::default_interface_radius;
-use meshwright_engine::analysis::{Case, Library, Method, analyze, pair_model};
+use meshwright_engine::analysis::{Case, Method, analyze, pair_model};
+use meshwright_engine::assembly::interface::default_interface_radius;
+use meshwright_engine::assembly::{Parts, TeethSpec};
 use meshwright_engine::contact::WarmStart;
 use meshwright_engine::gear::{GearPair, Member, SpurGear};
 use meshwright_engine::grid::GridLevel;
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
 /// As in the program.
@@ -61,10 +63,7 @@ fn with_teeth(case: &Case) -> Library {
         let radius = default_interface_radius(gear);
         library
             .teeth(
-                gear,
-                member,
-                radius,
-                case.resolution.grid,
+                &TeethSpec::new(gear, radius, case.resolution.grid),
                 &Run::unattended(),
             )
             .expect("the teeth of the paper have grids");

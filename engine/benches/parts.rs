@@ -5,18 +5,22 @@ use std::hint::black_box;
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main};
-use meshwright_engine::analysis::library::{
-    blank_grid, default_interface_radius, harmonics, orders_of_blank,
+use meshwright_engine::analysis::{Case, pair_model};
+use meshwright_engine::assembly::blank::blank_grid;
+use meshwright_engine::assembly::interface::{
+    default_interface_radius, harmonics, orders_of_blank,
 };
-use meshwright_engine::analysis::{Case, Library, pair_model};
 use meshwright_engine::contact::WarmStart;
 use meshwright_engine::contact::facing::Facing;
 use meshwright_engine::contact::flank_table::FlankTable;
 use meshwright_engine::contact::{Stage, solve_active_set};
 use meshwright_engine::fem::blank::BlankSubstructure;
 use meshwright_engine::fem::body::Coupling;
-use meshwright_engine::fem::tooth::{TeethRing, ToothSubstructure};
+use meshwright_engine::fem::teeth::TeethRing;
+use meshwright_engine::fem::tooth::ToothSubstructure;
+use meshwright_engine::gear::SpurGear;
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
 /// As in the program.
@@ -62,21 +66,21 @@ fn gears(criterion: &mut Criterion) {
         group.bench_function("teeth: ring", |bencher| {
             bencher.iter(|| black_box(TeethRing::new(&tooth, orders, &run)));
         });
-        let lay = |holes| blank_grid(gear, holes, radius, level).expect("a grid");
+        let lay = |gear: &SpurGear| blank_grid(gear, radius, level).expect("a grid");
         group.bench_function("blank: grid", |bencher| {
-            bencher.iter(|| black_box(lay(gear.holes())));
+            bencher.iter(|| black_box(lay(gear)));
         });
         let condense = |grid: &BlankGrid, orders| {
             BlankSubstructure::new(grid, radius, material, width, orders, &run).expect("a blank")
         };
-        let (low, grid) = (
-            orders_of_blank(gear, gear.holes(), radius, level),
-            lay(gear.holes()),
-        );
+        let (low, grid) = (orders_of_blank(gear, radius, level), lay(gear));
         group.bench_function("blank: condensed, and its ring", |bencher| {
             bencher.iter(|| black_box(condense(&grid, low)));
         });
-        let (blank, solid) = (condense(&grid, low), condense(&lay(None), orders));
+        let (blank, solid) = (
+            condense(&grid, low),
+            condense(&lay(&gear.without_holes()), orders),
+        );
         group.bench_function("gear: orders above the holes eliminated", |bencher| {
             bencher.iter(|| black_box(ring.above(low, &solid, &run)));
         });

@@ -2,7 +2,7 @@
 //! `-- blank BORE INTERFACE TEETH [COUNT CIRCLE RADIUS]`, with lengths in millimeters.
 
 use meshwright_engine::gear::{
-    Blank, GearData, HolePattern, Material, Rack, SpurGear, TipEdge, ToothDeviations,
+    BlankRegion, GearData, HolePattern, Material, Rack, SpurGear, TipEdge, ToothDeviations,
 };
 use meshwright_engine::grid::blank::ELEMENTS_PER_TOOTH;
 use meshwright_engine::grid::{BlankGrid, Grid, GridLevel, ToothGrid};
@@ -80,14 +80,11 @@ fn gear(tooth_count: u32, profile_shift: f64) -> Result<SpurGear, Box<dyn std::e
             poisson_ratio: 0.3,
             density: 7850.0,
         },
-        blank: Blank {
-            bore_radius: 1e-3,
-            holes: None,
-        },
+        blank: BlankRegion::solid(1e-3),
     })?)
 }
 
-/// Every element's outline as a polygon through its eight nodes, in micrometers.
+/// Every element's outline as a polygon through its nodes, in micrometers.
 fn svg(grid: &Grid) -> String {
     let micrometers = |node: u32| {
         let p = grid.nodes[node as usize] * 1e6;
@@ -97,8 +94,8 @@ fn svg(grid: &Grid) -> String {
     let mut outlines = String::new();
     for element in &grid.elements {
         outlines += "<polygon points=\"";
-        for local in [0, 4, 1, 5, 2, 6, 3, 7] {
-            let (x, y) = micrometers(element[local]);
+        for node in element.outline() {
+            let (x, y) = micrometers(node);
             low = (low.0.min(x), low.1.min(y));
             high = (high.0.max(x), high.1.max(y));
             outlines += &format!("{x:.2},{y:.2} ");

@@ -34,10 +34,12 @@
 //! The arrow: analysis → contact → fem → grid → gear.
 
 pub mod analysis;
+pub mod assembly;
 pub mod contact;
 pub mod fem;
 pub mod gear;
 pub mod grid;
+pub mod library;
 pub mod quadrature;
 pub mod root_finding;
 pub mod run;

@@ -5,11 +5,12 @@ mod cases;
 use std::f64::consts::PI;
 
 use cases::{case, gear};
-use meshwright_engine::analysis::pair_model;
+use meshwright_engine::analysis::{Method, analyze, pair_model};
 use meshwright_engine::contact::{WarmStart, light_contact};
 use meshwright_engine::gear::{
     Eccentricity, GearData, GearPair, Member, ModificationData, SpurGear,
 };
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
 fn pair(driving: GearData, driven: GearData) -> GearPair {
@@ -180,7 +181,7 @@ fn teeth_renumbered_by_one_move_the_curve_by_one_mesh_period() {
         let load = pair.load(30.0);
         let model = pair_model(
             &case(pair, &[30.0]),
-            &Default::default(),
+            &Library::default(),
             &Run::unattended(),
         )
         .expect("a model");
@@ -205,7 +206,7 @@ fn deviations_of_all_teeth_alike_are_a_turn_of_the_gear() {
     let solve = |pair: &GearPair, eta: f64| {
         let model = pair_model(
             &case(pair.clone(), &[30.0]),
-            &Default::default(),
+            &Library::default(),
             &Run::unattended(),
         )
         .expect("a model");
@@ -235,7 +236,7 @@ fn a_slope_of_every_tooth_is_the_slope_of_the_drawing() {
         let load = pair.load(30.0);
         let model = pair_model(
             &case(pair, &[30.0]),
-            &Default::default(),
+            &Library::default(),
             &Run::unattended(),
         )
         .expect("a model");
@@ -249,4 +250,72 @@ fn a_slope_of_every_tooth_is_the_slope_of_the_drawing() {
         // Cells are laid about other places.
         assert!((one / other - 1.0).abs() < 1e-3, "{eta}: {one:e} {other:e}");
     }
+}
+
+#[test]
+fn formulas_on_the_line_of_contact_see_deviations_as_rigid_flanks_do() {
+    // So light a load that nothing bends: δ is what the geometry says, to the first order in the eccentricity.
+    let mut driving = gear(25, 8e-3);
+    driving.deviations.cumulative_pitch = (0..25).map(|i| 1e-6 * f64::from(i * 7 % 11)).collect();
+    driving.deviations.eccentricity = Some(Eccentricity {
+        amount: 5e-6,
+        direction: 0.7,
+    });
+    let mut case = case(pair(driving, gear(31, 8e-3)), &[0.0, 1e-6]);
+    case.method = Method::LoadDistribution;
+    case.resolution.span_mesh_periods = Some(25);
+    case.resolution.positions_per_mesh_period = 10;
+    let analysis = analyze(&case, &Library::default(), &Run::unattended()).expect("curves");
+    let [light, formula] = &analysis.curves[..] else {
+        panic!("two curves")
+    };
+    // Tips that touch beside the line of contact are not seen by formulas: look where one pair alone is on it.
+    let mut seen = 0;
+    for (i, eta) in light.mesh_position.iter().enumerate() {
+        let fraction = eta - eta.floor();
+        if fraction < 0.15 || fraction > 0.85 {
+            let apart = formula.transmission_error[i] - light.transmission_error[i];
+            assert!(apart.abs() < 2e-8, "{eta}: {apart:e}");
+            seen += 1;
+        }
+    }
+    assert!(seen > 50);
+}
+
+#[test]
+fn every_method_sees_what_teeth_deviate() {
+    let mut driven = gear(24, 8e-3);
+    driven.deviations.cumulative_pitch = (0..24).map(|i| 1e-6 * f64::from(i * 5 % 7)).collect();
+    let pair = pair(gear(25, 8e-3), driven);
+    let curve = |method| {
+        let mut case = case(pair.clone(), &[0.0, 40.0]);
+        case.method = method;
+        case.resolution.span_mesh_periods = Some(24);
+        case.resolution.positions_per_mesh_period = 8;
+        let analysis = analyze(&case, &Library::default(), &Run::unattended()).expect("curves");
+        analysis
+            .curves
+            .into_iter()
+            .nth(1)
+            .expect("a curve")
+            .transmission_error
+    };
+    let flexible = curve(Method::Flexible);
+    // Without holes all three say the same.
+    for method in [Method::Decomposition, Method::ProjectedDecomposition] {
+        for (one, other) in flexible.iter().zip(curve(method)) {
+            assert!((one / other - 1.0).abs() < 1e-9);
+        }
+    }
+    let formulas = curve(Method::LoadDistribution);
+    let correlation = {
+        let centered = |values: &[f64]| -> Vec<f64> {
+            let mean = values.iter().sum::<f64>() / values.len() as f64;
+            values.iter().map(|value| value - mean).collect()
+        };
+        let (a, b) = (centered(&flexible), centered(&formulas));
+        let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
+        dot(&a, &b) / (dot(&a, &a) * dot(&b, &b)).sqrt()
+    };
+    assert!(correlation > 0.9, "{correlation}");
 }

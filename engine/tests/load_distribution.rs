@@ -4,12 +4,13 @@ mod cases;
 
 use cases::{case, gear, pair};
 use meshwright_engine::analysis::{
-    Analysis, BodyFormula, Case, Curve, FormulaQuantity, Formulas, Library, Method, PlaneState,
+    Analysis, BodyFormula, Case, Curve, FormulaQuantity, Formulas, Method, PlaneState,
     StiffnessRule, ToothFormula, Warning, analyze,
 };
 use meshwright_engine::gear::{
     GearData, GearPair, ModificationData, ReliefData, ReliefShape, ReliefStart, SpurGear,
 };
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
 /// What the service presets.

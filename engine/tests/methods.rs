@@ -5,7 +5,8 @@ mod cases;
 use std::sync::Barrier;
 
 use cases::{study_design, test_case};
-use meshwright_engine::analysis::{Analysis, Case, Curve, Library, Method, Warning, analyze};
+use meshwright_engine::analysis::{Analysis, Case, Curve, Method, Warning, analyze};
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
 fn solve(case: &Case, method: Method) -> Analysis {

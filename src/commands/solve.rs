@@ -11,7 +11,7 @@ use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
 use meshwright::wire::results::{CurveDocument, Results};
 use meshwright::wire::{Problem, Submission, solve::results};
-use meshwright_engine::analysis::Library;
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
 /// What the substructures of one submission may take; it is never reached by one pair.

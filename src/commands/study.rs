@@ -12,7 +12,7 @@ use meshwright::wire::study_table::{TableRow, csv, table};
 use meshwright::wire::{
     Code, Design, Problem, RowState, Status, Study as StudyDocument, StudyResults, Summary, solve,
 };
-use meshwright_engine::analysis::Library;
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use rayon::prelude::*;
 

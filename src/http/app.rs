@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
 
 use axum::http::header::HeaderValue;
-use meshwright_engine::analysis::Library;
+use meshwright_engine::library::Library;
 
 use super::door::Door;
 use super::health::Readings;

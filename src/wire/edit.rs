@@ -49,7 +49,7 @@ impl Node {
             }
             Self::Object(fields) => match fields.iter().position(|(key, _)| key == step) {
                 Some(i) => below(i, fields[i].1.put(rest, value)),
-                None if rest.iter().any(is_item) => None,
+                None if is_item(&step) || rest.iter().any(is_item) => None,
                 None => {
                     fields.push((step.to_owned(), within(rest, value)));
                     Some(Undo::RemoveLast)

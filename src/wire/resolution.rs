@@ -341,7 +341,7 @@ impl ResolutionDocument {
                 },
             },
             blank_positions: self.blank_positions,
-            interface_radius: self.interface_radius_mm.data()[0],
+            interface_radii: self.interface_radius_mm.data(),
             formulas: Formulas {
                 tooth: self.load_distribution.tooth,
                 body: self.load_distribution.body,

@@ -1,6 +1,7 @@
 //! From a submission to its results, or to what it would come to.
 
-use meshwright_engine::analysis::{self, AnalysisError, Library};
+use meshwright_engine::analysis::{self, AnalysisError};
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -8,7 +9,8 @@ use utoipa::ToSchema;
 use super::geometry::PairGeometry;
 use super::problem::{Code, Problem};
 use super::quantity::{
-    self, MOST_MODIFICATIONS, MOST_POSITIONS, MOST_TABLE_ENTRIES, MOST_TAGS, MOST_TORQUES,
+    self, MOST_HOLES, MOST_MODIFICATIONS, MOST_POSITIONS, MOST_TABLE_ENTRIES, MOST_TAGS,
+    MOST_TORQUES,
 };
 use super::results::Results;
 use super::submission::{SOLVER_VERSION, Submission};
@@ -166,7 +168,7 @@ pub struct Limits {
     /// The most positions in a mesh period.
     pub positions_per_mesh_period: u32,
     /// The most holes in a gear.
-    pub holes: u32,
+    pub holes: usize,
     /// The fewest and the most teeth.
     pub tooth_count: [u32; 2],
     /// The smallest and the largest module, in mm.
@@ -193,7 +195,7 @@ pub fn limits() -> Limits {
         torques: MOST_TORQUES,
         positions: MOST_POSITIONS,
         positions_per_mesh_period: counts(quantity::POSITIONS.bounds)[1],
-        holes: counts(quantity::HOLE_COUNT.bounds)[1],
+        holes: MOST_HOLES,
         tooth_count: counts(quantity::TOOTH_COUNT.bounds),
         module_mm: quantity::MODULE.bounds.into(),
         profile_modifications: MOST_MODIFICATIONS,

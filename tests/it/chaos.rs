@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use meshwright::wire::{Submission, solve};
-use meshwright_engine::analysis::Library;
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use reqwest::Client;
 use serde_json::{Value, json};

@@ -2,10 +2,10 @@
 
 use super::spectrum::RotationSpeed;
 use crate::contact::ContactSolver;
-use crate::gear::{GearPair, PlaneState};
+use crate::gear::{GearPair, Member, PlaneState};
 use crate::grid::GridLevel;
 
-/// The method that turns a gear pair into curves (DESIGN section 3).
+/// The method that turns a gear pair into curves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Method {
     /// Both whole gears flexible: section 2 of the paper.
@@ -76,8 +76,8 @@ pub struct Resolution {
     pub stiffness: StiffnessRule,
     /// Positions over one hole period in the decomposition.
     pub blank_positions: u32,
-    /// The interface radius R_w of holed gears, in meters; `None` for the default of each gear.
-    pub interface_radius: Option<f64>,
+    /// The interface radius R_w of each gear that has holes, in meters; `None` for its default.
+    pub interface_radii: [Option<f64>; 2],
     /// The formulas of the load distribution.
     pub formulas: Formulas,
     /// Whether to add a second, finer run that tells the discretization error.
@@ -115,5 +115,34 @@ impl Case {
     /// The positions of one curve.
     pub fn positions(&self) -> usize {
         self.span() as usize * self.resolution.positions_per_mesh_period as usize
+    }
+
+    /// The mesh positions of one curve: the span in equal steps from 0, its end excluded.
+    pub(super) fn mesh_positions(&self) -> Vec<f64> {
+        let steps = f64::from(self.resolution.positions_per_mesh_period);
+        (0..self.positions()).map(|i| i as f64 / steps).collect()
+    }
+
+    /// The mesh positions after which contact on blanks that are alike all around repeats: those of one mesh period, or of the whole
+    /// span where teeth deviate.
+    pub(super) fn repeating_positions(&self) -> Vec<f64> {
+        let mut positions = self.mesh_positions();
+        if self.pair.are_teeth_alike() {
+            positions.truncate(self.resolution.positions_per_mesh_period as usize);
+        }
+        positions
+    }
+
+    /// What holds at the repeating positions, over the whole span.
+    pub(super) fn repeated<T: Clone>(&self, period: impl Iterator<Item = T> + Clone) -> Vec<T> {
+        period.cycle().take(self.positions()).collect()
+    }
+
+    /// The gears with holes.
+    pub(super) fn holed(&self) -> Vec<Member> {
+        Member::BOTH
+            .into_iter()
+            .filter(|&member| !self.pair.gear(member).holes().is_empty())
+            .collect()
     }
 }

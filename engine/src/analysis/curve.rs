@@ -1,7 +1,8 @@
-//! What comes out: curves over mesh position, and the evidence for them.
+//! What comes out: curves over mesh position.
 
-use super::load_distribution::FormulaRange;
+use super::evidence::Evidence;
 use super::spectrum::Spectrum;
+use super::warning::Warning;
 use crate::gear::Member;
 
 /// Mean, rms of the fluctuation and peak-to-peak over one span.
@@ -70,8 +71,21 @@ pub struct BlankFit {
     pub amplitude: f64,
     /// The phase in radians.
     pub phase: f64,
+    /// Amplitude and phase of the harmonics 2, 3, … of holes that are not equal or not equally spaced; the paper has none.
+    pub higher: Vec<(f64, f64)>,
     /// The samples that were fitted.
     pub samples: Vec<BlankSample>,
+}
+
+impl BlankFit {
+    /// The fitted rotation R_b θ_gb at the angle `angle` = N θ, in meters.
+    pub fn at(&self, angle: f64) -> f64 {
+        let first = self.amplitude * (angle + self.phase).cos();
+        let higher = self.higher.iter().zip(2_u32..);
+        let higher =
+            higher.map(|((amplitude, phase), k)| amplitude * (f64::from(k) * angle + phase).cos());
+        self.mean + first + higher.sum::<f64>()
+    }
 }
 
 /// The parts that the decomposition adds up, eq. 15.
@@ -112,83 +126,6 @@ pub struct Curve {
     pub spectrum: Option<Spectrum>,
     /// The parts of the decomposition, for that method.
     pub decomposition: Option<DecompositionParts>,
-}
-
-/// What a finer run changes: the estimate of the discretization error, largest over the torques.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ErrorEstimate {
-    /// In the mean of δ, in meters.
-    pub mean: f64,
-    /// In the peak-to-peak of δ, in meters.
-    pub peak_to_peak: f64,
-    /// In the mean tangent stiffness, in N/m.
-    pub mean_stiffness: f64,
-}
-
-/// How well the equations that define the result are satisfied.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Evidence {
-    /// Unknowns of both gears before condensation; zero for formulas.
-    pub degrees_of_freedom: u64,
-    /// The largest |T_2 by cross product − T|/T.
-    pub equilibrium_residual: f64,
-    /// The largest |p_j g_j|/(F δ_max).
-    pub complementarity_residual: f64,
-    /// The largest penetration left, in meters.
-    pub largest_penetration: f64,
-    /// Iterations of the contact solver over all positions and torques.
-    pub contact_iterations: u64,
-    /// The discretization error, where it was asked for.
-    pub error_estimate: Option<ErrorEstimate>,
-}
-
-/// What a reader of the result should know beside the numbers.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Warning {
-    /// The teeth fit without any backlash; only the loaded flanks are solved.
-    ZeroBacklash,
-    /// Material around the holes thinner than one module.
-    ThinLigament {
-        /// The gear.
-        member: Member,
-        /// The ligament in meters.
-        ligament: f64,
-    },
-    /// A tip corner carries load off the line of action.
-    TipCornerContact {
-        /// The gear whose tip touches.
-        member: Member,
-        /// The largest share of the load that such a contact carries.
-        largest_share: f64,
-    },
-    /// The contact reaches the fillet of a gear, where it is not followed: the load at its end is not what it would be.
-    ContactReachesFillet {
-        /// The gear whose fillet is reached.
-        member: Member,
-    },
-    /// The face widths differ by more than a plane model can stand for.
-    FaceWidthsDiffer {
-        /// The larger over the smaller.
-        ratio: f64,
-    },
-    /// The contact presses so hard that materials do not stay linear.
-    ContactBeyondElasticity {
-        /// The largest contact pressure in Pa.
-        pressure: f64,
-        /// The smaller Young's modulus in Pa.
-        youngs_modulus: f64,
-    },
-    /// The span is not whole true periods: statistics are partial and there is no spectrum.
-    PartialSpan {
-        /// Mesh periods computed.
-        span: u32,
-        /// Mesh periods of the true period.
-        period: u32,
-    },
-    /// A formula is used outside the range for which it was published.
-    FormulaRange(FormulaRange),
-    /// The method does not see holes that the drawing has.
-    HolesNotSeen,
 }
 
 /// The answer to a [`super::Case`].

@@ -2,7 +2,8 @@
 
 use super::case::{Case, Method};
 use super::expected_positions;
-use super::library::{blank_grid, harmonics, interface_radius, orders_of_blank};
+use crate::assembly::blank::blank_grid;
+use crate::assembly::interface::{harmonics, interface_radius, orders_of_blank};
 use crate::gear::{Member, gcd};
 use crate::grid::ToothGrid;
 
@@ -53,19 +54,19 @@ pub fn estimate(case: &Case) -> Estimate {
     let level = case.resolution.grid;
     for member in Member::BOTH {
         let gear = case.pair.gear(member);
-        let radius = interface_radius(case, member);
+        let radius = interface_radius(gear, case.resolution.interface_radii[member.index()]);
         let (Ok(tooth), Ok(blank)) = (
             ToothGrid::new(gear, radius, level),
-            blank_grid(gear, gear.holes(), radius, level),
+            blank_grid(gear, radius, level),
         ) else {
             continue;
         };
         let (teeth, sectors) = (u64::from(gear.tooth_count()), u64::from(blank.sector_count));
         let tooth_nodes = (tooth.grid.nodes.len() - tooth.side_nodes.0.len() - 1) as u64;
-        let blank_nodes = (blank.grid.nodes.len() - blank.side_nodes.0.len() - 2) as u64;
+        let blank_nodes = blank.own_nodes() as u64;
         degrees_of_freedom += 2 * (teeth * tooth_nodes + sectors * blank_nodes);
 
-        let orders = orders_of_blank(gear, gear.holes(), radius, level);
+        let orders = orders_of_blank(gear, radius, level);
         let (all, met) = (
             harmonics(gear, radius, level).unknowns() as f64,
             orders.unknowns() as f64,

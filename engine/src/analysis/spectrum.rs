@@ -14,7 +14,7 @@ pub struct RotationSpeed(pub f64);
 pub struct NamedOrder {
     /// The order per revolution of the driven gear.
     pub order: f64,
-    /// For example `H_Z2`, `H_N`, `H_Z2+N2`, `H_1`, `H_Z2-1(2)`.
+    /// For example `H_Z2`, `H_N`, `H_Z2+N2`, `H_1`, `H_Z2-1(1)`.
     pub label: String,
     /// What it is.
     pub kind: OrderKind,
@@ -159,12 +159,13 @@ mod tests {
     fn case_2() -> GearPair {
         let solid = SpurGear::new(paper_gear(50)).expect("a gear");
         let mut data = paper_gear(50);
-        data.blank.holes = Some(HolePattern {
+        data.blank.holes = HolePattern {
             count: 10,
             circle_radius: 34e-3,
             radius: 7.5e-3,
             phase: 0.0,
-        });
+        }
+        .holes();
         GearPair::new(solid, SpurGear::new(data).expect("a gear"), 100.5e-3).expect("meshes")
     }
 

@@ -9,6 +9,7 @@
 //! - [`stage`]: one fraction of the mesh period, from laying the cells to a solution that nothing penetrates,
 //! - `light`: what is left of it as the load vanishes,
 //! - `penetration`: the look over the whole flanks that proves it,
+//! - [`positions`]: many positions of one load, in parallel,
 //! - [`model`]: what all of this is asked of,
 //! - [`ContactProblem`]: compliance, gaps and arms; and [`ContactSolution`]: forces, delta, stiffness, residuals,
 //! - [`solve_active_set`]: the exact solver, for every position of a mesh,
@@ -41,6 +42,7 @@ pub mod pair_cells;
 pub mod patch;
 mod penetration;
 pub mod placement;
+pub mod positions;
 mod problem;
 pub mod stage;
 

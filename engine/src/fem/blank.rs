@@ -3,9 +3,11 @@
 use faer::Mat;
 
 use super::FemError;
-use super::condensation::condense;
+use super::axes::{in_axes, polar_axes, rows_in_axes};
+use super::condensation::condense_with;
 use super::cyclic::{Component, Harmonics, Sector};
-use super::tooth::in_polar_axes;
+use super::recovery::Functional;
+
 use crate::gear::Material;
 use crate::grid::BlankGrid;
 use crate::run::Run;
@@ -39,6 +41,30 @@ impl BlankSubstructure {
         harmonics: Harmonics,
         run: &Run,
     ) -> Result<Self, FemError> {
+        let parts = Self::with_recovery(
+            grid,
+            interface_radius,
+            (material, thickness),
+            harmonics,
+            &[],
+            run,
+        );
+        Ok(parts?.0)
+    }
+
+    /// Condenses the ring of sectors `grid`, and with it the functionals `asked` of the displacements of sector 0.
+    ///
+    /// # Errors
+    ///
+    /// As [`BlankSubstructure::new`].
+    pub fn with_recovery(
+        grid: &BlankGrid,
+        interface_radius: f64,
+        (material, thickness): (&Material, f64),
+        harmonics: Harmonics,
+        asked: &[Functional],
+        run: &Run,
+    ) -> Result<(Self, BlankRecovery), FemError> {
         let (right, left) = &grid.side_nodes;
         let kept: Vec<u32> = right
             .iter()
@@ -46,35 +72,43 @@ impl BlankSubstructure {
             .chain(&grid.arc_nodes)
             .copied()
             .collect();
-        let schur = condense(
+        let condensed = condense_with(
             "the blank",
             &grid.grid,
-            material,
-            thickness,
+            (material, thickness),
             &kept,
             &grid.bore_nodes,
+            asked,
         )?;
-        let stiffness = in_polar_axes(
-            &schur,
-            kept.iter().map(|&node| grid.grid.nodes[node as usize]),
-        );
-        let count = grid.sector_count as usize;
+        let axes: Vec<_> = kept
+            .iter()
+            .map(|&node| polar_axes(grid.grid.nodes[node as usize]))
+            .collect();
         let sector = Sector {
-            count,
-            stiffness,
+            count: grid.sector_count as usize,
+            stiffness: in_axes(&condensed.stiffness, &axes),
             side_nodes: right.len(),
             arc_angles: grid.arc_angles.clone(),
         };
         let stiffness = sector.ring_stiffness(&harmonics, run)?;
-        // A sector repeats its right side as its left one, and the ends of both are nodes of the bore and of the arc.
-        let grid_nodes = count * (grid.grid.nodes.len() - left.len() - 2);
-        Ok(Self {
+        let rows = if asked.is_empty() {
+            Mat::zeros(0, harmonics.unknowns())
+        } else {
+            sector.ring_rows(&rows_in_axes(&condensed.rows, &axes), &harmonics, run)?
+        };
+        let recovery = BlankRecovery {
+            harmonics,
+            sector_count: sector.count,
+            rows,
+        };
+        let substructure = Self {
             interface_radius,
             harmonics,
             stiffness,
-            sector_count: count,
-            grid_nodes,
-        })
+            sector_count: sector.count,
+            grid_nodes: sector.count * grid.own_nodes(),
+        };
+        Ok((substructure, recovery))
     }
 
     /// The stiffness with hole 0 at the angle `phase`.
@@ -84,6 +118,35 @@ impl BlankSubstructure {
         } else {
             turned(&self.stiffness, &self.harmonics, phase)
         }
+    }
+}
+
+/// What the interface circle does inside a blank: a row for each functional asked of sector 0.
+#[derive(Debug, Clone)]
+pub struct BlankRecovery {
+    /// The harmonics of the interface circle.
+    pub harmonics: Harmonics,
+    /// The number of equal sectors.
+    pub sector_count: usize,
+    /// The functionals by the harmonics, with hole 0 at the angle 0.
+    pub rows: Mat<f64>,
+}
+
+impl BlankRecovery {
+    /// The functionals of sector `sector` for the amplitudes `q` of the interface circle in the frame of the gear, with hole
+    /// 0 at the angle `phase`; amplitudes beyond the harmonics of the blank do not reach them.
+    pub fn values(&self, sector: usize, phase: f64, q: &[f64]) -> Vec<f64> {
+        let turn = std::f64::consts::TAU * sector as f64 / self.sector_count as f64;
+        let seen = self
+            .harmonics
+            .turned(&q[..self.harmonics.unknowns()], phase + turn);
+        let row = |i: usize| {
+            seen.iter()
+                .enumerate()
+                .map(|(j, q)| self.rows[(i, j)] * q)
+                .sum()
+        };
+        (0..self.rows.nrows()).map(row).collect()
     }
 }
 

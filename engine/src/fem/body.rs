@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::FemError;
 use super::blank::BlankSubstructure;
 use super::dense::Cholesky;
-use super::tooth::TeethRing;
+use super::teeth::TeethRing;
 use crate::gear::gcd;
 use crate::run::Run;
 

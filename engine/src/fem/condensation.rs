@@ -1,44 +1,58 @@
-//! Static condensation: the exact stiffness of a grid on the unknowns that are kept.
+//! Static condensation: the exact stiffness of a grid on the unknowns that are kept, and what depends on all others.
 //!
 //! The kept unknowns are ordered last, so that the trailing block L₂₂ of the sparse Cholesky factor gives the Schur
-//! complement S = L₂₂ L₂₂ᵀ without a single right-hand side.
+//! complement S = L₂₂ L₂₂ᵀ without a single right-hand side. A functional b of all displacements takes one: with the kept ones
+//! moved by u it is (b₂ − L₂₁ L₁₁⁻¹ b₁)ᵀ u.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::perm::Perm;
+use faer::sparse::SparseColMat;
 use faer::sparse::linalg::SupernodalThreshold;
-use faer::sparse::linalg::amd;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
-    supernodal::SupernodalLltRef,
+    CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky, supernodal::SupernodalLltRef,
 };
-use faer::sparse::{SparseColMat, SymbolicSparseColMat};
-use faer::{Accum, Mat, Par, Side};
+use faer::{Accum, Conj, Mat, Par, Side};
 
 use super::FemError;
+use super::assembly::{BlockMatrix, Failure, Numbering};
+use super::dense::mirror_lower;
 use super::element::{self, ElementStiffness};
-use crate::gear::{Material, Vector};
+use super::recovery::Functional;
+use crate::gear::Material;
 use crate::grid::Grid;
 
-/// The stiffness of every element of `grid`, of one material and thickness.
+/// Functionals that go through the factor together: as many columns as stay in the cache beside a supernode.
+const FUNCTIONALS_AT_ONCE: usize = 64;
+
+/// A grid condensed to the nodes that are kept.
+#[derive(Debug, Clone)]
+pub struct Condensed {
+    /// The stiffness on the unknowns (u_x, u_y) of each kept node in the order given, in N/m.
+    pub stiffness: Mat<f64>,
+    /// The functionals asked for, one a row, by the same unknowns: what they are while no force acts on any other node.
+    pub rows: Mat<f64>,
+}
+
+/// The stiffness of every element of `grid` in turn, of one material; `thickness`, in meters, is that of an element whose own
+/// is 1.
 pub fn element_stiffnesses(
     grid: &Grid,
     material: &Material,
     thickness: f64,
-) -> Vec<ElementStiffness> {
-    grid.elements
-        .iter()
-        .map(|element| {
-            let nodes: [Vector; 8] = element.map(|node| grid.nodes[node as usize]);
-            element::stiffness(&nodes, material, thickness)
-        })
-        .collect()
+) -> impl Iterator<Item = ElementStiffness> {
+    grid.elements.iter().map(move |element| {
+        let (nodes, part) = (element.places(&grid.nodes), element.thickness());
+        element::stiffness(element.kind(), &nodes, material, thickness * part)
+    })
 }
 
 /// Condenses `grid` to the unknowns of the nodes in `kept`, with the nodes in `fixed` held.
 ///
 /// The result has the unknowns (u_x, u_y) of each kept node in the order given, in N/m. A grid that floats, with nothing
-/// fixed, is condensed as well: its stiffness is singular by the rigid motions only.
+/// fixed, is condensed as well: its stiffness is singular by the rigid motions only. `thickness`, in meters, is that of an
+/// element whose own is 1.
 ///
 /// # Errors
 ///
@@ -51,6 +65,23 @@ pub fn condense(
     kept: &[u32],
     fixed: &[u32],
 ) -> Result<Mat<f64>, FemError> {
+    Ok(condense_with(part, grid, (material, thickness), kept, fixed, &[])?.stiffness)
+}
+
+/// Condenses `grid` as [`condense`] does, and says what each of the functionals `asked` becomes on the kept unknowns. Asking
+/// for none costs nothing.
+///
+/// # Errors
+///
+/// As [`condense`].
+pub fn condense_with(
+    part: &'static str,
+    grid: &Grid,
+    (material, thickness): (&Material, f64),
+    kept: &[u32],
+    fixed: &[u32],
+    asked: &[Functional],
+) -> Result<Condensed, FemError> {
     let numbering = Numbering::new(grid.nodes.len(), kept, fixed);
     let mut matrix = BlockMatrix::new(&grid.elements, &numbering);
     for (element, k) in grid
@@ -71,304 +102,174 @@ pub fn condense(
         matrix.add_to_diagonal(node, spring);
     }
     let unknowns = 2 * numbering.count;
-    let mut schur = matrix
-        .trailing_schur(numbering.interior)
-        .map_err(|error| match error {
-            Failure::Size => FemError::TooLarge { part, unknowns },
-            Failure::Indefinite => FemError::NotPositiveDefinite { part, unknowns },
-        })?;
-    for i in 0..schur.nrows() {
-        schur[(i, i)] -= spring;
+    let failed = |error| match error {
+        Failure::Size => FemError::TooLarge { part, unknowns },
+        Failure::Indefinite => FemError::NotPositiveDefinite { part, unknowns },
+    };
+    let order = matrix
+        .fill_reducing_order(numbering.interior)
+        .map_err(failed)?;
+    let factor =
+        Factor::new(&matrix.into_unknowns(), order, 2 * numbering.interior).map_err(failed)?;
+    let trailing = factor.trailing();
+    let mut stiffness = squared(&trailing);
+    for i in 0..stiffness.nrows() {
+        stiffness[(i, i)] -= spring;
     }
-    Ok(schur)
+    let mut rows = Mat::zeros(asked.len(), 2 * kept.len());
+    for (chunk, asked) in asked.chunks(FUNCTIONALS_AT_ONCE).enumerate() {
+        let columns = factor.on_kept(asked, &numbering, &trailing);
+        rows.subrows_mut(chunk * FUNCTIONALS_AT_ONCE, asked.len())
+            .copy_from(columns.transpose());
+    }
+    Ok(Condensed { stiffness, rows })
 }
 
-enum Failure {
-    Size,
-    Indefinite,
-}
-
-/// The lower triangle of a symmetric matrix of 2 x 2 blocks, one for each pair of nodes of a common element.
-struct BlockMatrix {
-    /// Where the rows of each block column begin in `rows`.
-    starts: Vec<usize>,
-    /// The block rows of each column, rising, the diagonal first.
-    rows: Vec<u32>,
-    /// The unknowns' own columns one after the other; without the entry above the diagonal.
+/// The supernodal Cholesky factor of a sparse matrix, the unknowns from `interior` on last.
+struct Factor {
+    symbolic: SymbolicCholesky<u32>,
     values: Vec<f64>,
+    order: Perm<u32>,
+    interior: usize,
 }
 
-impl BlockMatrix {
-    /// A matrix of zeros with the pattern of `elements`.
-    fn new(elements: &[[u32; 8]], numbering: &Numbering) -> Self {
-        let pairs = || {
-            elements.iter().flat_map(|element| {
-                let places = element.map(|node| numbering.place(node));
-                let all = places
-                    .into_iter()
-                    .flat_map(move |column| places.into_iter().map(move |row| column.zip(row)));
-                all.flatten().filter(|(column, row)| row >= column)
-            })
+impl Factor {
+    /// Factorizes the symmetric matrix whose lower triangle is `a`; `order` leaves the unknowns from `interior` on in their
+    /// places.
+    fn new(a: &SparseColMat<u32, f64>, order: Perm<u32>, interior: usize) -> Result<Self, Failure> {
+        let params = CholeskySymbolicParams {
+            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+            ..Default::default()
         };
-        let mut ends = vec![0; numbering.count + 1];
-        for (column, _) in pairs() {
-            ends[column + 1] += 1;
-        }
-        for column in 0..numbering.count {
-            ends[column + 1] += ends[column];
-        }
-        let mut next = ends.clone();
-        let mut all = vec![0; ends[numbering.count]];
-        for (column, row) in pairs() {
-            all[next[column]] = row as u32;
-            next[column] += 1;
-        }
-        let (mut starts, mut rows) = (vec![0], Vec::with_capacity(all.len() / 2));
-        for range in ends.windows(2) {
-            let column = &mut all[range[0]..range[1]];
-            column.sort_unstable();
-            let first = rows.len();
-            for &row in &*column {
-                if rows.len() == first || rows[rows.len() - 1] != row {
-                    rows.push(row);
-                }
-            }
-            starts.push(rows.len());
-        }
-        let values = vec![0.0; 4 * rows.len() - numbering.count];
-        Self {
-            starts,
-            rows,
-            values,
-        }
-    }
-
-    /// Where the first unknown of a block column has its values, and how many blocks there are; those of the second
-    /// unknown follow.
-    fn column(&self, column: usize) -> (usize, usize) {
-        let (first, end) = (self.starts[column], self.starts[column + 1]);
-        (4 * first - column, end - first)
-    }
-
-    /// Adds the stiffness `k` of `element`.
-    fn add(&mut self, element: &[u32; 8], k: &ElementStiffness, numbering: &Numbering) {
-        let places = element.map(|node| numbering.place(node));
-        for (b, column) in places.iter().enumerate() {
-            let Some(column) = *column else { continue };
-            let (first, blocks) = self.column(column);
-            let rows = &self.rows[self.starts[column]..self.starts[column + 1]];
-            for (a, row) in places.iter().enumerate() {
-                let Some(row) = row.filter(|row| *row >= column) else {
-                    continue;
-                };
-                let block = rows.partition_point(|&known| (known as usize) < row);
-                let (left, right) = (first + 2 * block, first + 2 * (blocks + block));
-                self.values[left] += k[(2 * a, 2 * b)];
-                self.values[left + 1] += k[(2 * a + 1, 2 * b)];
-                if row > column {
-                    self.values[right - 1] += k[(2 * a, 2 * b + 1)];
-                }
-                self.values[right] += k[(2 * a + 1, 2 * b + 1)];
-            }
-        }
-    }
-
-    /// Adds `value` to both diagonal entries of a block.
-    fn add_to_diagonal(&mut self, block: usize, value: f64) {
-        let (first, blocks) = self.column(block);
-        self.values[first] += value;
-        self.values[first + 2 * blocks] += value;
-    }
-
-    /// The matrix on single unknowns.
-    fn into_unknowns(self) -> SparseColMat<u32, f64> {
-        let count = self.starts.len() - 1;
-        let mut pointers = Vec::with_capacity(2 * count + 1);
-        let mut rows = Vec::with_capacity(self.values.len());
-        pointers.push(0);
-        for column in 0..count {
-            let blocks = &self.rows[self.starts[column]..self.starts[column + 1]];
-            for unknown in 0..2 {
-                rows.extend(
-                    blocks
-                        .iter()
-                        .flat_map(|row| [2 * row, 2 * row + 1])
-                        .skip(unknown),
-                );
-                pointers.push(rows.len() as u32);
-            }
-        }
-        let pattern = SymbolicSparseColMat::new_checked(2 * count, 2 * count, pointers, None, rows);
-        SparseColMat::new(pattern, self.values)
-    }
-
-    /// Approximate minimum degree on the `interior` blocks; the kept ones stay last, in their order.
-    fn fill_reducing_order(&self, interior: usize) -> Result<Perm<u32>, Failure> {
-        let (mut pointers, mut rows) = (vec![0], Vec::new());
-        for column in 0..interior {
-            let blocks = &self.rows[self.starts[column]..self.starts[column + 1]];
-            rows.extend(blocks.iter().filter(|row| (**row as usize) < interior));
-            pointers.push(rows.len() as u32);
-        }
-        let entries = rows.len();
-        let pattern = SymbolicSparseColMat::new_checked(interior, interior, pointers, None, rows);
-        let (mut forward, mut inverse) = (vec![0_u32; interior], vec![0_u32; interior]);
-        let mut memory =
-            MemBuffer::new(amd::order_maybe_unsorted_scratch::<u32>(interior, entries));
-        amd::order_maybe_unsorted(
-            &mut forward,
-            &mut inverse,
-            pattern.as_ref(),
-            Default::default(),
-            MemStack::new(&mut memory),
+        let symbolic = factorize_symbolic_cholesky(
+            a.symbolic(),
+            Side::Lower,
+            SymmetricOrdering::Custom(order.as_ref()),
+            params,
         )
         .map_err(|_| Failure::Size)?;
-        let all = 0..self.starts.len() as u32 - 1;
-        let of_unknowns = |blocks: Vec<u32>| -> Box<[u32]> {
-            let kept = all.clone().skip(interior);
-            let blocks = blocks.into_iter().chain(kept);
-            blocks
-                .flat_map(|block| [2 * block, 2 * block + 1])
-                .collect()
-        };
-        let (forward, inverse) = (of_unknowns(forward), of_unknowns(inverse));
-        let unknowns = forward.len();
-        Ok(Perm::new_checked(forward, inverse, unknowns))
+        let mut values = vec![0.0; symbolic.len_val()];
+        let mut memory = MemBuffer::new(
+            symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()),
+        );
+        symbolic
+            .factorize_numeric_llt(
+                &mut values,
+                a.as_ref(),
+                Side::Lower,
+                Default::default(),
+                Par::Seq,
+                MemStack::new(&mut memory),
+                Default::default(),
+            )
+            .map_err(|_| Failure::Indefinite)?;
+        // Always, by the parameters above.
+        if !matches!(symbolic.raw(), SymbolicCholeskyRaw::Supernodal(_)) {
+            return Err(Failure::Size);
+        }
+        Ok(Self {
+            symbolic,
+            values,
+            order,
+            interior,
+        })
     }
 
-    /// The Schur complement on the unknowns of the blocks from `interior` on.
-    fn trailing_schur(self, interior: usize) -> Result<Mat<f64>, Failure> {
-        let order = self.fill_reducing_order(interior)?;
-        trailing_schur(&self.into_unknowns(), &order, 2 * interior)
+    fn supernodal(&self) -> SupernodalLltRef<'_, u32, f64> {
+        match self.symbolic.raw() {
+            SymbolicCholeskyRaw::Supernodal(supernodes) => {
+                SupernodalLltRef::new(supernodes, &self.values)
+            }
+            SymbolicCholeskyRaw::Simplicial(_) => unreachable!("refused when it was made"),
+        }
+    }
+
+    /// L₂₂: the part of the factor on the kept unknowns.
+    fn trailing(&self) -> Mat<f64> {
+        let (factor, interior) = (self.supernodal(), self.interior);
+        let kept = self.symbolic.nrows() - interior;
+        let mut l_22 = Mat::<f64>::zeros(kept, kept);
+        for index in (0..factor.symbolic().n_supernodes()).rev() {
+            let supernode = factor.supernode(index);
+            let (block, start) = (supernode.val(), supernode.start());
+            let width = block.ncols();
+            if start + width <= interior {
+                break;
+            }
+            for c in 0..width {
+                let Some(col) = (start + c).checked_sub(interior) else {
+                    continue;
+                };
+                for r in c..width {
+                    l_22[(start + r - interior, col)] = block[(r, c)];
+                }
+                for (r, &row) in supernode.pattern().iter().enumerate() {
+                    l_22[(row as usize - interior, col)] = block[(width + r, c)];
+                }
+            }
+        }
+        l_22
+    }
+
+    /// b₂ − L₂₁ L₁₁⁻¹ b₁ for each functional b, a column each: L₂₂ times the trailing part of L⁻¹ b.
+    fn on_kept(
+        &self,
+        asked: &[Functional],
+        numbering: &Numbering,
+        trailing: &Mat<f64>,
+    ) -> Mat<f64> {
+        let (factor, (_, place)) = (self.supernodal(), self.order.as_ref().arrays());
+        let mut solved = Mat::<f64>::zeros(self.symbolic.nrows(), asked.len());
+        for (column, functional) in asked.iter().enumerate() {
+            for &(node, weight) in functional.terms() {
+                // What is fixed does not move.
+                let Some(node) = numbering.place(node) else {
+                    continue;
+                };
+                solved[(place[2 * node] as usize, column)] += weight.x;
+                solved[(place[2 * node + 1] as usize, column)] += weight.y;
+            }
+        }
+        let scratch = self
+            .symbolic
+            .solve_in_place_scratch::<f64>(asked.len(), Par::Seq);
+        let mut memory = MemBuffer::new(scratch);
+        factor.l_solve_with_conj(
+            Conj::No,
+            solved.as_mut(),
+            Par::Seq,
+            MemStack::new(&mut memory),
+        );
+        let on_kept = solved.subrows(self.interior, trailing.nrows());
+        trailing * on_kept
     }
 }
 
-/// The Schur complement of the symmetric matrix whose lower triangle is `a` on its unknowns from `interior` on, which
-/// `order` leaves in their places.
-fn trailing_schur(
-    a: &SparseColMat<u32, f64>,
-    order: &Perm<u32>,
-    interior: usize,
-) -> Result<Mat<f64>, Failure> {
-    let kept = a.nrows() - interior;
-    let params = CholeskySymbolicParams {
-        supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-        ..Default::default()
-    };
-    let symbolic = factorize_symbolic_cholesky(
-        a.symbolic(),
-        Side::Lower,
-        SymmetricOrdering::Custom(order.as_ref()),
-        params,
-    )
-    .map_err(|_| Failure::Size)?;
-    let mut values = vec![0.0; symbolic.len_val()];
-    let mut memory =
-        MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()));
-    symbolic
-        .factorize_numeric_llt(
-            &mut values,
-            a.as_ref(),
-            Side::Lower,
-            Default::default(),
-            Par::Seq,
-            MemStack::new(&mut memory),
-            Default::default(),
-        )
-        .map_err(|_| Failure::Indefinite)?;
-    let SymbolicCholeskyRaw::Supernodal(supernodes) = symbolic.raw() else {
-        return Err(Failure::Size);
-    };
-    let factor = SupernodalLltRef::new(supernodes, &values);
-
-    let mut l_22 = Mat::<f64>::zeros(kept, kept);
-    for index in (0..supernodes.n_supernodes()).rev() {
-        let supernode = factor.supernode(index);
-        let (block, start) = (supernode.val(), supernode.start());
-        let width = block.ncols();
-        if start + width <= interior {
-            break;
-        }
-        for c in 0..width {
-            let Some(col) = (start + c).checked_sub(interior) else {
-                continue;
-            };
-            for r in c..width {
-                l_22[(start + r - interior, col)] = block[(r, c)];
-            }
-            for (r, &row) in supernode.pattern().iter().enumerate() {
-                l_22[(row as usize - interior, col)] = block[(width + r, c)];
-            }
-        }
-    }
-    let mut schur = Mat::<f64>::zeros(kept, kept);
+/// L Lᵀ of a lower triangle.
+fn squared(l: &Mat<f64>) -> Mat<f64> {
+    let mut square = Mat::<f64>::zeros(l.nrows(), l.nrows());
     triangular::matmul(
-        schur.as_mut(),
+        square.as_mut(),
         BlockStructure::TriangularLower,
         Accum::Replace,
-        &l_22,
+        l,
         BlockStructure::TriangularLower,
-        l_22.transpose(),
+        l.transpose(),
         BlockStructure::TriangularUpper,
         1.0,
         Par::Seq,
     );
-    mirror_lower(&mut schur);
-    Ok(schur)
-}
-
-/// Copies the lower triangle of `a` to its upper one.
-pub fn mirror_lower(a: &mut Mat<f64>) {
-    for j in 0..a.ncols() {
-        for i in 0..j {
-            a[(i, j)] = a[(j, i)];
-        }
-    }
-}
-
-/// The places of the nodes that move: interior ones first, kept ones last, fixed ones nowhere.
-struct Numbering {
-    places: Vec<u32>,
-    interior: usize,
-    count: usize,
-}
-
-impl Numbering {
-    const FIXED: u32 = u32::MAX;
-
-    fn new(nodes: usize, kept: &[u32], fixed: &[u32]) -> Self {
-        let mut places = vec![0; nodes];
-        for &node in kept.iter().chain(fixed) {
-            places[node as usize] = Self::FIXED;
-        }
-        let mut next = 0;
-        for place in places.iter_mut().filter(|place| **place != Self::FIXED) {
-            *place = next;
-            next += 1;
-        }
-        let interior = next as usize;
-        for &node in kept {
-            places[node as usize] = next;
-            next += 1;
-        }
-        Self {
-            places,
-            interior,
-            count: next as usize,
-        }
-    }
-
-    fn place(&self, node: u32) -> Option<usize> {
-        let place = self.places[node as usize];
-        (place != Self::FIXED).then_some(place as usize)
-    }
+    mirror_lower(&mut square);
+    square
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
+    use crate::gear::Vector;
+    use crate::grid::Element;
 
     const STEEL: Material = Material {
         youngs_modulus: 210e9,
@@ -377,7 +278,7 @@ mod tests {
     };
 
     /// Four distorted elements around one corner: nodes on the lattice of corners and midsides.
-    fn patch() -> Grid {
+    pub(in crate::fem) fn patch() -> Grid {
         let mut number = [[u32::MAX; 5]; 5];
         let mut nodes = Vec::new();
         for (j, row) in number.iter_mut().enumerate() {
@@ -403,14 +304,15 @@ mod tests {
             ]
             .map(|(a, b)| number[j + b][i + a])
         };
+        let element = |i: usize, j: usize| Element::quadrilateral(element(i, j));
         Grid {
             nodes,
             elements: vec![element(0, 0), element(2, 0), element(0, 2), element(2, 2)],
         }
     }
 
-    /// K_bb − K_bi K_ii⁻¹ K_ib with dense matrices, all unknowns of `kept` against all that are neither kept nor fixed.
-    fn dense_schur(grid: &Grid, kept: &[u32], fixed: &[u32]) -> DMatrix<f64> {
+    /// The stiffness of the whole grid.
+    fn dense(grid: &Grid) -> DMatrix<f64> {
         let n = 2 * grid.nodes.len();
         let mut k = DMatrix::<f64>::zeros(n, n);
         for (element, stiffness) in grid
@@ -418,13 +320,20 @@ mod tests {
             .iter()
             .zip(element_stiffnesses(grid, &STEEL, 20e-3))
         {
-            let place = |local: usize| 2 * element[local / 2] as usize + local % 2;
-            for i in 0..16 {
-                for j in 0..16 {
+            let place = |local: usize| 2 * element.nodes()[local / 2] as usize + local % 2;
+            let unknowns = 2 * element.nodes().len();
+            for i in 0..unknowns {
+                for j in 0..unknowns {
                     k[(place(i), place(j))] += stiffness[(i, j)];
                 }
             }
         }
+        k
+    }
+
+    /// K_bb − K_bi K_ii⁻¹ K_ib with dense matrices, all unknowns of `kept` against all that are neither kept nor fixed.
+    fn dense_schur(grid: &Grid, kept: &[u32], fixed: &[u32]) -> DMatrix<f64> {
+        let k = dense(grid);
         let unknowns = |nodes: &[u32]| -> Vec<usize> {
             nodes
                 .iter()
@@ -490,7 +399,8 @@ mod tests {
     fn a_grid_turned_inside_out_is_refused() {
         let mut grid = patch();
         for element in &mut grid.elements {
-            *element = [0, 3, 2, 1, 7, 6, 5, 4].map(|place: usize| element[place]);
+            let nodes = element.nodes();
+            *element = Element::quadrilateral([0, 3, 2, 1, 7, 6, 5, 4].map(|i: usize| nodes[i]));
         }
         let error = condense("a patch", &grid, &STEEL, 20e-3, &[0, 4], &[]).expect_err("a refusal");
         assert!(matches!(
@@ -500,5 +410,58 @@ mod tests {
                 ..
             }
         ));
+    }
+
+    #[test]
+    fn functionals_follow_the_kept_nodes_as_the_solution_of_the_dense_system_does() {
+        let grid = patch();
+        let n = grid.nodes.len() as u32;
+        // Inner, kept and fixed nodes together, with and without anything held.
+        let asked: Vec<Functional> = (0..70)
+            .map(|k| {
+                let term = |i: u32| {
+                    (
+                        (7 * k + 3 * i) % n,
+                        Vector::new(f64::from(i) - 1.0, 0.5 + f64::from(k % 5)),
+                    )
+                };
+                Functional::new((0..4).map(term).collect())
+            })
+            .collect();
+        for fixed in [&[0, 1, 2][..], &[]] {
+            let kept = [18, 20, 3];
+            let condensed = condense_with("a patch", &grid, (&STEEL, 20e-3), &kept, fixed, &asked)
+                .expect("a sound grid");
+            let inner: Vec<u32> = (0..n)
+                .filter(|node| !kept.contains(node) && !fixed.contains(node))
+                .collect();
+            // u_i = −K_ii⁻¹ K_ib u_b, from the dense matrix.
+            let k = dense(&grid);
+            let unknowns = |nodes: &[u32]| -> Vec<usize> {
+                let both = |node: &u32| [2 * *node as usize, 2 * *node as usize + 1];
+                nodes.iter().flat_map(both).collect()
+            };
+            let (b, i) = (unknowns(&kept), unknowns(&inner));
+            let part = |rows: &[usize], cols: &[usize]| k.select_rows(rows).select_columns(cols);
+            let moved = -part(&i, &i).lu().solve(&part(&i, &b)).expect("held");
+            for (row, functional) in asked.iter().enumerate() {
+                for column in 0..b.len() {
+                    let mut expected = 0.0;
+                    for &(node, weight) in functional.terms() {
+                        for (unknown, w) in [
+                            (2 * node as usize, weight.x),
+                            (2 * node as usize + 1, weight.y),
+                        ] {
+                            if unknown == b[column] {
+                                expected += w;
+                            } else if let Some(place) = i.iter().position(|u| *u == unknown) {
+                                expected += w * moved[(place, column)];
+                            }
+                        }
+                    }
+                    assert!((condensed.rows[(row, column)] - expected).abs() < 1e-11);
+                }
+            }
+        }
     }
 }

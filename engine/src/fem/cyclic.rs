@@ -5,7 +5,7 @@
 //! is condensed on one sector. Teeth (S = Z) and holed blanks (S = N) meet in the same harmonics, whatever Z, N and the
 //! phase between them: rigid motions and linear fields are the orders 0, 1 and 2 and are exact.
 
-use faer::{Mat, c64};
+use faer::{Mat, MatRef, c64};
 
 use super::FemError;
 use super::dense::Cholesky;
@@ -86,6 +86,54 @@ impl Harmonics {
             .collect()
     }
 
+    /// The polar displacements of nodes at `angles` on the circle for unit unknowns: (u_r, u_t) of each node.
+    pub fn on_circle(&self, angles: &[f64]) -> Mat<f64> {
+        let mut e = Mat::zeros(2 * angles.len(), self.unknowns());
+        for (node, angle) in angles.iter().enumerate() {
+            for n in 0..=self.largest {
+                let (sin, cos) = (n as f64 * angle).sin_cos();
+                for (c, component) in [Component::Radial, Component::Tangential]
+                    .into_iter()
+                    .enumerate()
+                {
+                    let cosine = self.cosine(n, component);
+                    e[(2 * node + c, cosine)] = cos;
+                    if n > 0 {
+                        e[(2 * node + c, cosine + 2)] = sin;
+                    }
+                }
+            }
+        }
+        e
+    }
+
+    /// The amplitudes `q` of a circle as they are seen from a frame turned by `angle` counter-clockwise.
+    pub fn turned(&self, q: &[f64], angle: f64) -> Vec<f64> {
+        let mut turned = q.to_vec();
+        for i in (0..q.len()).filter(|&i| self.is_cosine(i)) {
+            // cos n(θ + α) and sin n(θ + α) by those of nθ.
+            let (sin, cos) = (self.order(i) as f64 * angle).sin_cos();
+            turned[i] = cos * q[i] + sin * q[i + 2];
+            turned[i + 2] = cos * q[i + 2] - sin * q[i];
+        }
+        turned
+    }
+
+    /// Enters `of_order`, rows on the complex amplitudes (radial, tangential) of order `n`, into real `rows`.
+    ///
+    /// With c_n = (a_n − i b_n)/2 and its conjugate at −n, a row x + i y of order n is x on a_n and y on b_n.
+    pub fn set_rows(&self, rows: &mut Mat<f64>, n: i64, of_order: MatRef<'_, c64>) {
+        let first = self.cosine(n.unsigned_abs() as usize, Component::Radial);
+        for i in 0..rows.nrows() {
+            for c in 0..2 {
+                rows[(i, first + c)] = of_order[(i, c)].re;
+                if n != 0 {
+                    rows[(i, first + c + 2)] = n.signum() as f64 * of_order[(i, c)].im;
+                }
+            }
+        }
+    }
+
     /// Adds to `stiffness` the block `block` (components of order `n` by components of order `n_other`) of a Hermitian
     /// form in the complex amplitudes c_n = (a_n − i b_n)/2.
     fn add_block(&self, stiffness: &mut Mat<f64>, n: i64, n_other: i64, block: [[c64; 2]; 2]) {
@@ -145,6 +193,13 @@ impl Sector {
     /// The phase factor e^{i class 2π/S} from the right side of a sector to its left side.
     pub fn phase(&self, class: usize) -> c64 {
         let (sin, cos) = (2.0 * std::f64::consts::PI * class as f64 / self.count as f64).sin_cos();
+        c64::new(cos, sin)
+    }
+
+    /// The phase factor e^{i class 2πd/S} from a sector to the one `distance` places counter-clockwise of it.
+    pub fn turn(&self, class: usize, distance: usize) -> c64 {
+        let part = ((class * distance) % self.count) as f64 / self.count as f64;
+        let (sin, cos) = (2.0 * std::f64::consts::PI * part).sin_cos();
         c64::new(cos, sin)
     }
 
@@ -230,6 +285,9 @@ impl Sector {
     ///
     /// [`FemError::NotPositiveDefinite`].
     pub fn ring_stiffness(&self, harmonics: &Harmonics, run: &Run) -> Result<Mat<f64>, FemError> {
+        if self.count == 1 && self.side_nodes == 0 {
+            return self.closed_stiffness(harmonics, run);
+        }
         let mut stiffness = Mat::zeros(harmonics.unknowns(), harmonics.unknowns());
         // Classes c and S − c are each other's conjugates; both are visited only through their orders, so half suffice.
         for class in 0..=self.count / 2 {
@@ -243,6 +301,73 @@ impl Sector {
             );
         }
         Ok(stiffness)
+    }
+
+    /// The stiffness of a ring that is one sector without sides: Eᵀ K E with the real harmonics, at a quarter of the work of
+    /// the complex ones.
+    fn closed_stiffness(&self, harmonics: &Harmonics, run: &Run) -> Result<Mat<f64>, FemError> {
+        let e = harmonics.on_circle(&self.arc_angles);
+        let mut stiffness = Mat::zeros(e.ncols(), e.ncols());
+        for start in (0..e.ncols()).step_by(PANEL) {
+            run.check()?;
+            let width = PANEL.min(e.ncols() - start);
+            let forces = &self.stiffness * e.subcols(start, width);
+            stiffness
+                .subcols_mut(start, width)
+                .copy_from(e.transpose() * forces);
+        }
+        Ok(stiffness)
+    }
+
+    /// Rows on the unknowns of sector 0 (right side, left side, arc) as rows on the real unknowns of `harmonics`, with no force
+    /// on any side: one row of the result for each of `rows`.
+    ///
+    /// For sector i take the rows on harmonics turned by [`Harmonics::turned`].
+    ///
+    /// # Errors
+    ///
+    /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`].
+    pub fn ring_rows(
+        &self,
+        rows: &Mat<f64>,
+        harmonics: &Harmonics,
+        run: &Run,
+    ) -> Result<Mat<f64>, FemError> {
+        if self.count == 1 && self.side_nodes == 0 {
+            return Ok(rows * harmonics.on_circle(&self.arc_angles));
+        }
+        let mut ring = Mat::zeros(rows.nrows(), harmonics.unknowns());
+        for class in 0..=self.count / 2 {
+            let (_, solution) = self.condense_class(class, harmonics, run)?;
+            let on_harmonics = self.class_rows(rows, class, &solution);
+            for (j, &n) in solution.orders.iter().enumerate() {
+                harmonics.set_rows(&mut ring, n, on_harmonics.subcols(2 * j, 2));
+            }
+        }
+        Ok(ring)
+    }
+
+    /// Rows on the unknowns of sector 0 as rows on the complex amplitudes of the orders of one class.
+    pub fn class_rows(&self, rows: &Mat<f64>, class: usize, solution: &ClassSolution) -> Mat<c64> {
+        let (ns, na) = (2 * self.side_nodes, 2 * self.arc_angles.len());
+        let on_arc = Mat::<c64>::from_fn(rows.nrows(), na, |i, j| {
+            c64::new(rows[(i, 2 * ns + j)], 0.0)
+        });
+        let mut on_harmonics = on_arc * self.arc_of_harmonics(&solution.orders);
+        if let Some(sides) = &solution.sides {
+            let mut moved = solution.sides_to_harmonics.clone();
+            sides.solve_in_place(moved.as_mut());
+            on_harmonics -= self.side_rows(rows, class) * moved;
+        }
+        on_harmonics
+    }
+
+    /// Rows on both sides of sector 0 as rows on the amplitudes of its right side in one class.
+    pub fn side_rows(&self, rows: &Mat<f64>, class: usize) -> Mat<c64> {
+        let (ns, phase) = (2 * self.side_nodes, self.phase(class));
+        Mat::<c64>::from_fn(rows.nrows(), ns, |i, j| {
+            c64::new(rows[(i, j)], 0.0) + phase * rows[(i, ns + j)]
+        })
     }
 
     /// Adds one condensed class, and its conjugate, to the ring's real stiffness.
@@ -347,6 +472,7 @@ pub(super) mod tests {
             (4, 3, 9),
             (5, 2, 11),
             (4, 0, 3),
+            (1, 0, 3),
         ] {
             let (sector, harmonics) = (sector(count, side_nodes), Harmonics { largest });
             let ring = sector
@@ -382,5 +508,53 @@ pub(super) mod tests {
         orders.sort_unstable();
         assert_eq!(orders, (-11..=11).collect::<Vec<i64>>());
         assert_eq!(harmonics.class(1, 4), [-11, -7, -3, 1, 5, 9]);
+    }
+
+    #[test]
+    fn rows_on_a_sector_are_those_of_the_ring_assembled_sector_by_sector() {
+        for (count, side_nodes, largest) in [(1, 2, 3), (2, 2, 3), (4, 3, 9), (5, 2, 11), (1, 0, 3)]
+        {
+            let (sector, harmonics) = (sector(count, side_nodes), Harmonics { largest });
+            let rows = Mat::from_fn(3, sector.stiffness.nrows(), |i, j| {
+                (1.0 + (5 * i + 3 * j) as f64).sin()
+            });
+            let ring = sector
+                .ring_rows(&rows, &harmonics, &Run::unattended())
+                .expect("definite");
+            let whole = assembled(&sector, &harmonics);
+            let (ns, nq) = (2 * side_nodes, harmonics.unknowns());
+            let sides = ns * count;
+            let q: Vec<f64> = (0..nq).map(|i| (2.0 + i as f64).cos()).collect();
+            let q_dense = DMatrix::from_column_slice(nq, 1, &q);
+            let moved = if sides > 0 {
+                let held = whole.view((0, 0), (sides, sides)).clone_owned();
+                let coupling = whole.view((0, sides), (sides, nq)).clone_owned();
+                -held
+                    .cholesky()
+                    .expect("definite")
+                    .solve(&(coupling * &q_dense))
+            } else {
+                DMatrix::zeros(0, 1)
+            };
+            for i in 0..count {
+                let on_arc = arc(&sector, &harmonics, i) * &q_dense;
+                let seen = harmonics.turned(&q, std::f64::consts::TAU * i as f64 / count as f64);
+                for row in 0..3 {
+                    let mut expected = 0.0;
+                    for c in 0..ns {
+                        expected += rows[(row, c)] * moved[i * ns + c];
+                        expected += rows[(row, ns + c)] * moved[(i + 1) % count * ns + c];
+                    }
+                    for c in 0..on_arc.nrows() {
+                        expected += rows[(row, 2 * ns + c)] * on_arc[c];
+                    }
+                    let found: f64 = (0..nq).map(|c| ring[(row, c)] * seen[c]).sum();
+                    assert!(
+                        (found - expected).abs() < 1e-9,
+                        "{count} sectors, {i}: {found} {expected}"
+                    );
+                }
+            }
+        }
     }
 }

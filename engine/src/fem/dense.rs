@@ -100,6 +100,26 @@ impl Cholesky<f64> {
     }
 }
 
+/// Copies the lower triangle of `a` to its upper one.
+pub fn mirror_lower(a: &mut Mat<f64>) {
+    for j in 0..a.ncols() {
+        for i in 0..j {
+            a[(i, j)] = a[(j, i)];
+        }
+    }
+}
+
+/// Replaces both triangles of `a` by their mean.
+pub fn symmetrize(a: &mut Mat<f64>) {
+    for j in 0..a.ncols() {
+        for i in 0..j {
+            let mean = f64::midpoint(a[(i, j)], a[(j, i)]);
+            a[(i, j)] = mean;
+            a[(j, i)] = mean;
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,15 +1,24 @@
 //! Plane-stress finite elements and exact substructuring.
 //!
-//! Read in this order: [`element`] (one Q8), [`condensation`] (a grid's stiffness on the unknowns that are kept),
-//! [`cyclic`] (N equal sectors joined into a ring, on its harmonics), [`tooth`], [`blank`], and [`body`], which joins
-//! them into the compliance of a whole gear.
+//! Read in this order: [`element`] (one element), [`condensation`] (a grid's stiffness on the unknowns that are kept),
+//! [`recovery`] (displacements and stresses of the others),
+//! [`cyclic`] (N equal sectors joined into a ring, on its harmonics), [`tooth`], [`teeth`] (the ring of them), [`blank`], and
+//! [`body`], which joins them into the compliance of a whole gear. What happens inside: [`motion`]
+//! (of the interface circle under loads), [`teeth_recovery`] and [`blank::BlankRecovery`]. Beside them: [`dense`] (factorizations), `axes` and `modes`.
 
+mod assembly;
+mod axes;
 pub mod blank;
 pub mod body;
 pub mod condensation;
 pub mod cyclic;
 pub mod dense;
 pub mod element;
+mod modes;
+pub mod motion;
+pub mod recovery;
+pub mod teeth;
+pub mod teeth_recovery;
 pub mod tooth;
 
 use crate::run::Stopped;

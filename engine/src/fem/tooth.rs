@@ -1,23 +1,16 @@
-//! One tooth as a substructure, and the ring of all teeth on their interface circle.
+//! One tooth as a substructure.
 
-use faer::{Mat, c64};
+use faer::Mat;
 
 use super::FemError;
-use super::blank::BlankSubstructure;
-use super::body::tooth_angle;
-use super::condensation::{condense, mirror_lower};
-use super::cyclic::{Component, Harmonics, Sector};
-use super::dense::Cholesky;
-use crate::gear::{SpurGear, Vector, radial, tangential};
+use super::axes::{in_axes, polar_axes, rows_in_axes};
+use super::condensation::condense_with;
+use super::cyclic::Sector;
+use super::dense::{Cholesky, mirror_lower, symmetrize};
+use super::modes::compress;
+use super::recovery::Functional;
+use crate::gear::{SpurGear, Vector, radial};
 use crate::grid::ToothGrid;
-use crate::run::Run;
-
-/// Singular values below this share of the largest carry nothing: H keeps nine digits.
-const MODE_TOLERANCE: f64 = 1e-11;
-
-/// How far apart, in teeth, two teeth of one gear may be loaded together: several times what the heaviest load makes of the contact
-/// ratio of any gear that can be drawn.
-pub const FARTHEST_COUPLED: usize = 16;
 
 /// One tooth sector, condensed to its interface and its loaded flank.
 ///
@@ -35,8 +28,19 @@ pub struct ToothSubstructure {
     pub flank_points: Vec<Vector>,
     /// Nodes of the sector's grid.
     pub grid_nodes: usize,
-    mode_forces: Mat<f64>,
-    sector: Sector,
+    /// Q: the forces on sides and arc that the unit modes exert.
+    pub(super) mode_forces: Mat<f64>,
+    /// The sector with its flank free.
+    pub(super) sector: Sector,
+}
+
+/// Functionals asked of a tooth, a row each.
+#[derive(Debug, Clone)]
+pub struct ToothRows {
+    /// By the forces on the flank's unknowns, with the interface held.
+    pub by_flank: Mat<f64>,
+    /// By the displacements of the interface (right side, left side, arc) in polar components, with the flank free.
+    pub(super) by_interface: Mat<f64>,
 }
 
 impl ToothSubstructure {
@@ -46,6 +50,19 @@ impl ToothSubstructure {
     ///
     /// [`FemError`] if the grid is degenerate.
     pub fn new(gear: &SpurGear, grid: &ToothGrid) -> Result<Self, FemError> {
+        Ok(Self::with_recovery(gear, grid, &[])?.0)
+    }
+
+    /// Condenses `grid`, a sector of `gear`, and with it the functionals `asked` of its displacements.
+    ///
+    /// # Errors
+    ///
+    /// As [`ToothSubstructure::new`].
+    pub fn with_recovery(
+        gear: &SpurGear,
+        grid: &ToothGrid,
+        asked: &[Functional],
+    ) -> Result<(Self, ToothRows), FemError> {
         let (right, left) = &grid.side_nodes;
         let kept: Vec<u32> = grid
             .flank_nodes
@@ -55,13 +72,13 @@ impl ToothSubstructure {
             .chain(&grid.arc_nodes)
             .copied()
             .collect();
-        let schur = condense(
+        let condensed = condense_with(
             "the tooth",
             &grid.grid,
-            gear.material(),
-            gear.face_width(),
+            (gear.material(), gear.face_width()),
             &kept,
             &[],
+            asked,
         )?;
 
         // Components: normal and towards the tip on the flank, polar elsewhere.
@@ -70,13 +87,14 @@ impl ToothSubstructure {
             .flank_roll_lengths
             .iter()
             .map(|&s| [flank.normal(s), radial(flank.tangent_angle(s))])
-            .chain(kept[grid.flank_nodes.len()..].iter().map(|&node| {
-                let point = grid.grid.nodes[node as usize];
-                let angle = point.y.atan2(point.x);
-                [radial(angle), tangential(angle)]
-            }))
+            .chain(
+                kept[grid.flank_nodes.len()..]
+                    .iter()
+                    .map(|&node| polar_axes(grid.grid.nodes[node as usize])),
+            )
             .collect();
-        let schur = in_axes(&schur, &axes);
+        let schur = in_axes(&condensed.stiffness, &axes);
+        let rows = rows_in_axes(&condensed.rows, &axes);
 
         let f = 2 * grid.flank_nodes.len();
         let b = schur.nrows() - f;
@@ -97,6 +115,12 @@ impl ToothSubstructure {
         stiffness -= half.transpose() * &half;
         mirror_lower(&mut stiffness);
         flank_factor.other_half_solve_in_place(half.as_mut());
+        // u_f = H_0 p + Ψ u_b.
+        let on_flank = rows.subcols(0, f);
+        let rows = ToothRows {
+            by_flank: on_flank * &fixed_compliance,
+            by_interface: rows.subcols(f, b).to_owned() - on_flank * &half,
+        };
         let (modes, mode_forces) = compress(&(-half)).ok_or(FemError::NotPositiveDefinite {
             part: "the flank's modes",
             unknowns: b,
@@ -108,7 +132,7 @@ impl ToothSubstructure {
             side_nodes: right.len(),
             arc_angles: grid.arc_angles.clone(),
         };
-        Ok(Self {
+        let tooth = Self {
             fixed_compliance,
             modes,
             roll_lengths: grid.flank_roll_lengths.clone(),
@@ -120,7 +144,8 @@ impl ToothSubstructure {
             grid_nodes: grid.grid.nodes.len(),
             mode_forces,
             sector,
-        })
+        };
+        Ok((tooth, rows))
     }
 
     /// The nodes of the sector that are not also nodes of its neighbor: all but one side, which ends on the arc.
@@ -128,387 +153,17 @@ impl ToothSubstructure {
         self.grid_nodes - self.sector.side_nodes - 1
     }
 
+    /// Vᵀ p: what the forces `flank_forces` on the flank's unknowns are on the loading modes.
+    pub fn modal_loads(&self, flank_forces: &[f64]) -> Vec<f64> {
+        let load = |mode: usize| {
+            let shape = self.modes.col_as_slice(mode).iter();
+            shape.zip(flank_forces).map(|(v, p)| v * p).sum()
+        };
+        (0..self.mode_count()).map(load).collect()
+    }
+
     /// The number r of loading modes.
     pub fn mode_count(&self) -> usize {
         self.modes.ncols()
-    }
-}
-
-/// The ring of all teeth of a gear, condensed to the harmonics of the interface circle.
-#[derive(Debug, Clone)]
-pub struct TeethRing {
-    /// The harmonics.
-    pub harmonics: Harmonics,
-    /// The stiffness of all teeth together on the harmonics.
-    pub stiffness: Mat<f64>,
-    /// The forces on the harmonics that the unit modes of tooth 0 exert are G W: here G, real unknowns by the few patterns
-    /// of which they consist.
-    pub force_patterns: Mat<f64>,
-    /// W: how much of each pattern a mode exerts.
-    pub pattern_shares: Mat<f64>,
-    /// The number Z of teeth.
-    pub tooth_count: usize,
-    /// X_d: the answer of tooth 0 to the modes of tooth d, with the interface circle held; d = 0 … [`FARTHEST_COUPLED`].
-    pub held_coupling: Vec<Mat<f64>>,
-}
-
-impl TeethRing {
-    /// Joins Z copies of `tooth`.
-    ///
-    /// # Errors
-    ///
-    /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`].
-    pub fn new(
-        tooth: &ToothSubstructure,
-        harmonics: Harmonics,
-        run: &Run,
-    ) -> Result<Self, FemError> {
-        let sector = &tooth.sector;
-        let (z, r) = (sector.count, tooth.mode_count());
-        let ns = 2 * sector.side_nodes;
-        let forces = &tooth.mode_forces;
-        let mut stiffness = Mat::zeros(harmonics.unknowns(), harmonics.unknowns());
-        let mut tooth_forces = Mat::<f64>::zeros(harmonics.unknowns(), r);
-        let mut class_compliance = Vec::with_capacity(z / 2 + 1);
-        for class in 0..=z / 2 {
-            let (condensed, solution) = sector.condense_class(class, &harmonics, run)?;
-            sector.add_class(
-                &mut stiffness,
-                &harmonics,
-                class,
-                &condensed,
-                &solution.orders,
-            );
-
-            // Work of the modes on the sides and on the arc, as amplitudes of this class.
-            let phase = sector.phase(class);
-            let mut on_sides = Mat::<c64>::from_fn(ns, r, |i, j| {
-                c64::new(forces[(i, j)], 0.0) + phase.conj() * forces[(ns + i, j)]
-            });
-            let arc = Mat::<c64>::from_fn(2 * sector.arc_angles.len(), r, |i, j| {
-                c64::new(forces[(2 * ns + i, j)], 0.0)
-            });
-            let mut on_harmonics = sector.arc_of_harmonics(&solution.orders).adjoint() * arc;
-            let loads = on_sides.clone();
-            if let Some(sides) = &solution.sides {
-                sides.solve_in_place(on_sides.as_mut());
-                on_harmonics -= solution.sides_to_harmonics.adjoint() * &on_sides;
-            }
-            class_compliance.push(loads.adjoint() * &on_sides);
-            add_forces(
-                &mut tooth_forces,
-                &harmonics,
-                &on_harmonics,
-                &solution.orders,
-            );
-        }
-        let held_coupling = (0..=FARTHEST_COUPLED)
-            .map(|d| held_coupling(&class_compliance, z, d))
-            .collect();
-        // Modes that hardly show at the flank need fewer digits, and on their way to the interface circle their fields grow
-        // alike: they exert about half as many patterns as they are.
-        let heights: Vec<f64> = tooth.modes.col_iter().map(|mode| mode.norm_l2()).collect();
-        let seen = Mat::from_fn(tooth_forces.nrows(), r, |i, j| {
-            tooth_forces[(i, j)] * heights[j]
-        });
-        let (force_patterns, shares) = compress(&seen).ok_or(FemError::NotPositiveDefinite {
-            part: "the forces of the teeth",
-            unknowns: r,
-        })?;
-        let pattern_shares = Mat::from_fn(shares.ncols(), r, |i, j| shares[(j, i)] / heights[j]);
-        Ok(Self {
-            harmonics,
-            stiffness,
-            force_patterns,
-            pattern_shares,
-            tooth_count: z,
-            held_coupling,
-        })
-    }
-
-    /// This ring on a blank of which only the orders of `low` see the holes: the ones above, which find the blank as
-    /// stiff as the `solid` one, are eliminated.
-    ///
-    /// Both are alike at every tooth, so that only orders meet that differ by a multiple of Z: few at a time.
-    ///
-    /// # Errors
-    ///
-    /// [`FemError::NotPositiveDefinite`].
-    pub fn above(
-        &self,
-        low: Harmonics,
-        solid: &BlankSubstructure,
-        run: &Run,
-    ) -> Result<Self, FemError> {
-        let (z, n) = (self.tooth_count, low.unknowns());
-        let mut reduced = Self {
-            harmonics: low,
-            stiffness: self.stiffness.submatrix(0, 0, n, n).to_owned(),
-            force_patterns: self.force_patterns.subrows(0, n).to_owned(),
-            pattern_shares: self.pattern_shares.clone(),
-            tooth_count: z,
-            held_coupling: self.held_coupling.clone(),
-        };
-        for orders in self.harmonics.meeting_orders(z) {
-            run.check()?;
-            // Unknowns stand by rising order: the low ones keep their places.
-            let above: Vec<usize> = orders
-                .iter()
-                .copied()
-                .filter(|&n| n > low.largest)
-                .collect();
-            if above.is_empty() {
-                continue;
-            }
-            let (of_low, of_high) = (
-                low.unknowns_of(&orders[..orders.len() - above.len()]),
-                self.harmonics.unknowns_of(&above),
-            );
-            let stiffness = Mat::from_fn(of_high.len(), of_high.len(), |i, j| {
-                let at = (of_high[i], of_high[j]);
-                self.stiffness[at] + solid.stiffness[at]
-            });
-            let rim = Cholesky::new(stiffness).ok_or(FemError::NotPositiveDefinite {
-                part: "the rim",
-                unknowns: of_high.len(),
-            })?;
-            let mut half = Mat::from_fn(of_high.len(), of_low.len(), |i, j| {
-                self.stiffness[(of_high[i], of_low[j])]
-            });
-            rim.half_solve_in_place(half.as_mut());
-            let patterns_of = |tooth: usize| {
-                let mut patterns = self.patterns_of_tooth_at(tooth_angle(tooth, z), &above);
-                rim.half_solve_in_place(patterns.as_mut());
-                patterns
-            };
-            let own = patterns_of(0);
-            let (softer, weaker) = (half.transpose() * &half, half.transpose() * &own);
-            for (i, &row) in of_low.iter().enumerate() {
-                for (j, &column) in of_low.iter().enumerate() {
-                    reduced.stiffness[(row, column)] -= softer[(i, j)];
-                }
-                for pattern in 0..weaker.ncols() {
-                    reduced.force_patterns[(row, pattern)] -= weaker[(i, pattern)];
-                }
-            }
-            for (d, coupling) in reduced.held_coupling.iter_mut().enumerate() {
-                let shares = &self.pattern_shares;
-                *coupling += shares.transpose() * (own.transpose() * patterns_of(d)) * shares;
-            }
-        }
-        Ok(reduced)
-    }
-
-    /// G on the harmonics of `orders`, order by order, for the tooth at `angle`.
-    pub fn patterns_of_tooth_at(&self, angle: f64, orders: &[usize]) -> Mat<f64> {
-        let unknowns = self.harmonics.unknowns_of(orders);
-        let mut turned = Mat::from_fn(unknowns.len(), self.force_patterns.ncols(), |i, j| {
-            self.force_patterns[(unknowns[i], j)]
-        });
-        let turns: Vec<(usize, (f64, f64))> = (0..unknowns.len())
-            .filter(|&i| self.harmonics.is_cosine(unknowns[i]))
-            .map(|i| {
-                let n = self.harmonics.order(unknowns[i]);
-                (i, (n as f64 * angle).sin_cos())
-            })
-            .collect();
-        for j in 0..turned.ncols() {
-            let column = turned.col_as_slice_mut(j);
-            for &(i, (sin, cos)) in &turns {
-                let (x, y) = (column[i], column[i + 2]);
-                column[i] = cos * x - sin * y;
-                column[i + 2] = sin * x + cos * y;
-            }
-        }
-        turned
-    }
-}
-
-/// Turns complex forces on the orders of one class, and their conjugates, into forces on a_n and b_n.
-fn add_forces(
-    forces: &mut Mat<f64>,
-    harmonics: &Harmonics,
-    on_harmonics: &Mat<c64>,
-    orders: &[i64],
-) {
-    for (i, &n) in orders.iter().enumerate() {
-        // Each order is visited once: its conjugate −n is either in the conjugate class or in this one.
-        let conjugate_here = n != 0 && orders.contains(&-n);
-        if conjugate_here && n < 0 {
-            continue;
-        }
-        let sign = n.signum() as f64;
-        for (c, component) in [Component::Radial, Component::Tangential]
-            .into_iter()
-            .enumerate()
-        {
-            let a = harmonics.cosine(n.unsigned_abs() as usize, component);
-            for j in 0..forces.ncols() {
-                let force = on_harmonics[(2 * i + c, j)];
-                forces[(a, j)] += force.re;
-                if n != 0 {
-                    forces[(a + 2, j)] -= sign * force.im;
-                }
-            }
-        }
-    }
-}
-
-/// X_d = (1/Z) Σ_classes e^{−i class 2π d/Z} ĝᴴ K_s⁻¹ ĝ.
-fn held_coupling(class_compliance: &[Mat<c64>], z: usize, d: usize) -> Mat<f64> {
-    let r = class_compliance[0].nrows();
-    let mut sum = Mat::<f64>::zeros(r, r);
-    for (class, compliance) in class_compliance.iter().enumerate() {
-        let weight = if (2 * class).is_multiple_of(z) {
-            1.0
-        } else {
-            2.0
-        } / z as f64;
-        let (sin, cos) =
-            (2.0 * std::f64::consts::PI * ((class * d) % z) as f64 / z as f64).sin_cos();
-        let turn = c64::new(cos, -sin);
-        for j in 0..r {
-            for i in 0..r {
-                sum[(i, j)] += weight * (turn * compliance[(i, j)]).re;
-            }
-        }
-    }
-    sum
-}
-
-/// The symmetric matrix `a`, given on (x, y) of each node, on the axes of each node.
-fn in_axes(a: &Mat<f64>, axes: &[[Vector; 2]]) -> Mat<f64> {
-    let n = axes.len();
-    let mut rotated = Mat::zeros(2 * n, 2 * n);
-    for j in 0..n {
-        for i in 0..n {
-            let block = nalgebra::Matrix2::new(
-                a[(2 * i, 2 * j)],
-                a[(2 * i, 2 * j + 1)],
-                a[(2 * i + 1, 2 * j)],
-                a[(2 * i + 1, 2 * j + 1)],
-            );
-            for (c, left) in axes[i].iter().enumerate() {
-                for (d, right) in axes[j].iter().enumerate() {
-                    rotated[(2 * i + c, 2 * j + d)] = left.dot(&(block * right));
-                }
-            }
-        }
-    }
-    rotated
-}
-
-/// Splits `a` into a product of two matrices, the second with orthonormal rows, by its singular values above
-/// [`MODE_TOLERANCE`]: (U Σ, V).
-fn compress(a: &Mat<f64>) -> Option<(Mat<f64>, Mat<f64>)> {
-    let svd = a.thin_svd().ok()?;
-    let (u, v, s) = (svd.U(), svd.V(), svd.S().column_vector());
-    let rank = (0..s.nrows())
-        .take_while(|&i| s[i] > MODE_TOLERANCE * s[0])
-        .count();
-    let scaled = Mat::from_fn(u.nrows(), rank, |i, j| u[(i, j)] * s[j]);
-    Some((scaled, v.subcols(0, rank).to_owned()))
-}
-
-fn symmetrize(a: &mut Mat<f64>) {
-    for j in 0..a.ncols() {
-        for i in 0..j {
-            let mean = f64::midpoint(a[(i, j)], a[(j, i)]);
-            a[(i, j)] = mean;
-            a[(j, i)] = mean;
-        }
-    }
-}
-
-/// Polar axes of a node at `point`.
-pub(super) fn polar_axes(point: Vector) -> [Vector; 2] {
-    let angle = point.y.atan2(point.x);
-    [radial(angle), tangential(angle)]
-}
-
-/// The symmetric matrix `a` on the polar axes of `points`.
-pub(super) fn in_polar_axes(a: &Mat<f64>, points: impl Iterator<Item = Vector>) -> Mat<f64> {
-    in_axes(a, &points.map(polar_axes).collect::<Vec<_>>())
-}
-
-#[cfg(test)]
-mod tests {
-    use nalgebra::DMatrix;
-
-    use super::*;
-    use crate::fem::cyclic::tests::{arc, assembled, sector};
-
-    /// A tooth of which only what makes the ring is filled in: a sector, and two loading modes on all its unknowns.
-    fn tooth(count: usize, side_nodes: usize) -> ToothSubstructure {
-        let sector = sector(count, side_nodes);
-        let n = sector.stiffness.nrows();
-        ToothSubstructure {
-            fixed_compliance: Mat::zeros(0, 0),
-            modes: Mat::identity(2, 2),
-            roll_lengths: Vec::new(),
-            flank_points: Vec::new(),
-            grid_nodes: 0,
-            mode_forces: Mat::from_fn(n, 2, |i, j| (2.0 + (3 * i + 7 * j) as f64).cos()),
-            sector,
-        }
-    }
-
-    #[test]
-    fn forces_of_teeth_reach_the_harmonics_and_each_other_as_in_the_ring_assembled_sector_by_sector()
-     {
-        for (count, side_nodes, largest) in [(1, 2, 3), (3, 2, 7), (4, 1, 2), (4, 3, 9), (5, 2, 11)]
-        {
-            let (tooth, harmonics) = (tooth(count, side_nodes), Harmonics { largest });
-            let ring = TeethRing::new(&tooth, harmonics, &Run::unattended()).expect("definite");
-            let ns = 2 * side_nodes;
-            let (sides, nq) = (ns * count, harmonics.unknowns());
-            let whole = assembled(&tooth.sector, &harmonics);
-            let held = whole
-                .view((0, 0), (sides, sides))
-                .clone_owned()
-                .cholesky()
-                .expect("definite");
-            let coupling = whole.view((0, sides), (sides, nq)).clone_owned();
-            let forces = DMatrix::from_fn(tooth.mode_forces.nrows(), 2, |i, j| {
-                tooth.mode_forces[(i, j)]
-            });
-            let on_sides = |tooth: usize| {
-                let mut loads = DMatrix::<f64>::zeros(sides, 2);
-                for j in 0..2 {
-                    for c in 0..ns {
-                        loads[(tooth * ns + c, j)] += forces[(c, j)];
-                        loads[((tooth + 1) % count * ns + c, j)] += forces[(ns + c, j)];
-                    }
-                }
-                loads
-            };
-            for i in 0..count {
-                // F = f_q − K_qs K_ss⁻¹ f_s, and X_d = f_s(0)ᵀ K_ss⁻¹ f_s(d).
-                let solved = held.solve(&on_sides(i));
-                let on_arc = forces.rows(2 * ns, forces.nrows() - 2 * ns);
-                let expected = arc(&tooth.sector, &harmonics, i).transpose() * on_arc
-                    - coupling.transpose() * &solved;
-                let angle = 2.0 * std::f64::consts::PI * i as f64 / count as f64;
-                let orders: Vec<usize> = (0..=largest).collect();
-                let reached = ring.patterns_of_tooth_at(angle, &orders) * &ring.pattern_shares;
-                for q in 0..nq {
-                    for j in 0..2 {
-                        let apart = (reached[(q, j)] - expected[(q, j)]).abs();
-                        assert!(
-                            apart < 1e-10 * expected.amax(),
-                            "{count} sectors, tooth {i}, ({q}, {j}): {apart}"
-                        );
-                    }
-                }
-                let answer = on_sides(0).transpose() * &solved;
-                for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                    let apart = (ring.held_coupling[i][(a, b)] - answer[(a, b)]).abs();
-                    assert!(
-                        apart < 1e-10 * answer.amax(),
-                        "{count} sectors, neighbor {i}: {apart}"
-                    );
-                }
-            }
-        }
     }
 }

@@ -1,6 +1,6 @@
 //! What a drawing says of a spur gear, and why it cannot be made.
 
-use super::{Blank, Material, ModificationData, Rack, TipEdge, ToothDeviations};
+use super::{BlankRegion, Material, ModificationData, Rack, TipEdge, ToothDeviations};
 
 /// The least material, in meters, between a hole and its neighbor, the bore or the root circle.
 pub const LEAST_LIGAMENT: f64 = 0.5e-3;
@@ -33,8 +33,11 @@ pub struct GearData {
     /// The material of teeth and blank.
     pub material: Material,
     /// What carries the teeth.
-    pub blank: Blank,
+    pub blank: BlankRegion,
 }
+
+/// The least rim between a web and the root circle, in modules: less is no rim that teeth could stand on.
+pub const LEAST_WEB_RIM: f64 = 0.5;
 
 /// A list of deviations, one a tooth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -132,6 +135,20 @@ pub enum GearError {
         /// The number of teeth.
         needed: usize,
     },
+    /// The web does not lie between the bore and the rim under the teeth.
+    #[error(
+        "the web from {inner_radius} m to {outer_radius} m must lie between {least} m and {largest} m"
+    )]
+    WebOutside {
+        /// Where it was to begin.
+        inner_radius: f64,
+        /// Where it was to end.
+        outer_radius: f64,
+        /// The bore radius.
+        least: f64,
+        /// The largest radius that leaves [`LEAST_WEB_RIM`].
+        largest: f64,
+    },
     /// The bore leaves too thin a rim below the root circle.
     #[error("the bore of radius {bore_radius} m leaves no rim; at most {largest} m")]
     BoreTooLarge {
@@ -140,32 +157,38 @@ pub enum GearError {
         /// The largest that leaves [`LEAST_RIM`].
         largest: f64,
     },
-    /// Neighboring holes leave too little between them.
+    /// Holes leave too little between them, or a slot between its ends.
     #[error("the holes leave {ligament} m between them; a radius of {largest_radius} m would do")]
     HolesOverlap {
+        /// Their places in the list; twice the same for the ends of one slot.
+        holes: [usize; 2],
         /// The material left, negative if they overlap.
         ligament: f64,
-        /// The largest hole radius that leaves [`LEAST_LIGAMENT`].
+        /// The largest radius, or half width of a slot, that leaves [`LEAST_LIGAMENT`].
         largest_radius: f64,
     },
-    /// The holes leave too little below the root circle.
+    /// A hole leaves too little below the root circle.
     #[error(
         "the holes leave {ligament} m below the root circle; a radius of {largest_radius} m would do"
     )]
     HolesBreachRim {
+        /// Its place in the list.
+        hole: usize,
         /// The material left, negative if they cut through.
         ligament: f64,
-        /// The largest hole radius that leaves [`LEAST_LIGAMENT`].
+        /// The largest radius, or half width of a slot, that leaves [`LEAST_LIGAMENT`].
         largest_radius: f64,
     },
-    /// The holes leave too little around the bore.
+    /// A hole leaves too little around the bore.
     #[error(
         "the holes leave {ligament} m around the bore; a radius of {largest_radius} m would do"
     )]
     HolesBreachBore {
+        /// Its place in the list.
+        hole: usize,
         /// The material left, negative if they cut through.
         ligament: f64,
-        /// The largest hole radius that leaves [`LEAST_LIGAMENT`].
+        /// The largest radius, or half width of a slot, that leaves [`LEAST_LIGAMENT`].
         largest_radius: f64,
     },
 }

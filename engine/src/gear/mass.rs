@@ -1,39 +1,33 @@
 //! Mass and inertia of a gear, from its true profile.
 
-use std::f64::consts::PI;
-
-use super::{HolePattern, SpurGear, Vector, radial};
+use super::{Moments, SpurGear, Vector};
 use crate::quadrature::gauss_legendre_panels;
 
 impl SpurGear {
     /// The mass in kg, from the true profile.
     pub fn mass(&self) -> f64 {
         let (area, _) = self.profile_moments();
-        let holes = self.holes().map_or(0.0, HolePattern::area);
-        let bore = PI * self.bore_radius().powi(2);
-        self.material().density * self.face_width() * (area - bore - holes)
+        let volume = area * self.face_width() - self.taken_away().area;
+        self.material().density * volume
     }
 
     /// The polar moment of inertia about the axis in kg m², from the true profile.
     pub fn polar_inertia(&self) -> f64 {
         let (_, moment) = self.profile_moments();
-        let holes = self.holes().map_or(0.0, HolePattern::polar_moment);
-        let bore = PI / 2.0 * self.bore_radius().powi(4);
-        self.material().density * self.face_width() * (moment - bore - holes)
+        let volume = moment * self.face_width() - self.taken_away().polar;
+        self.material().density * volume
     }
 
-    /// The imbalance in kg m: the mass times the way from the axis of rotation to the center of mass, the centerline of tooth 0 along x.
-    ///
-    /// Holes that repeat around the gear are balanced; a single one is not.
+    /// The imbalance U in kg m: the mass times the place of its center, from the gear's own axis, in the frame of tooth 0. An eccentricity
+    /// adds the mass times itself.
     pub fn imbalance(&self) -> Vector {
-        let eccentric = self.mass() * self.deviations().displacement(0.0);
-        match self.holes().filter(|holes| holes.count == 1) {
-            None => eccentric,
-            Some(hole) => {
-                let missing = self.material().density * self.face_width() * hole.area();
-                eccentric - missing * hole.circle_radius * radial(hole.phase)
-            }
-        }
+        let own = -self.material().density * self.taken_away().first;
+        own + self.mass() * self.deviations().displacement(0.0)
+    }
+
+    /// What bore, holes and web take from the body inside the profile.
+    fn taken_away(&self) -> Moments {
+        self.data().blank.taken_away(self.face_width())
     }
 
     /// The area and the second polar moment inside the tooth profile, by Green's theorem along one half tooth:
@@ -78,6 +72,8 @@ impl SpurGear {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
     use crate::gear::TipEdge;
     use crate::gear::spur::tests::paper_gear;

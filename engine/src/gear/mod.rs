@@ -19,7 +19,7 @@ pub mod rack;
 pub mod spur;
 pub mod tip;
 
-pub use blank::{Blank, HolePattern};
+pub use blank::{BlankRegion, Hole, HolePattern, HoleShape, Ligament, Moments, Symmetry, Web};
 pub use data::{DeviationList, GearData, GearError};
 pub use deviation::{Eccentricity, ToothDeviations};
 pub use involute::Involute;

@@ -129,6 +129,24 @@ impl GearPair {
         Ok(pair)
     }
 
+    /// The same pair on blanks without bores and holes: what is left to say where only flanks matter.
+    pub fn without_blanks(&self) -> Self {
+        Self {
+            driving: self.driving.without_blank(),
+            driven: self.driven.without_blank(),
+            center_distance: self.center_distance,
+        }
+    }
+
+    /// The same pair of gears whose teeth do not deviate.
+    pub fn as_drawn(&self) -> Self {
+        Self {
+            driving: self.driving.as_drawn(),
+            driven: self.driven.as_drawn(),
+            center_distance: self.center_distance,
+        }
+    }
+
     fn check(&self) -> Result<(), GearPairError> {
         let tip_radii = self.driving.tip_radius() + self.driven.tip_radius();
         let center_distance = self.center_distance;
@@ -296,13 +314,16 @@ impl GearPair {
         self.backlash() - taken
     }
 
-    /// The number of mesh periods after which `member` stands alike again: Z/gcd(Z, N) with N equal holes, 1 without, Z where its teeth
+    /// The number of mesh periods after which `member` stands alike again: Z/gcd(Z, N) with holes that repeat N times, 1 without, Z where its teeth
     /// deviate.
     pub fn period_of(&self, member: Member) -> u32 {
         let gear = self.gear(member);
         let z = gear.tooth_count();
         if gear.deviations().is_none() {
-            gear.holes().map_or(1, |holes| z / gcd(z, holes.count))
+            match gear.hole_repeats() {
+                0 => 1,
+                repeats => z / gcd(z, repeats),
+            }
         } else {
             z
         }
@@ -483,12 +504,13 @@ mod tests {
     fn the_true_periods_of_the_three_test_cases_are_25_5_and_85() {
         let holed = |z: u32, count| {
             let mut data = paper_gear(z);
-            data.blank.holes = Some(HolePattern {
+            data.blank.holes = HolePattern {
                 count,
                 circle_radius: 30e-3,
                 radius: 5e-3,
                 phase: 0.0,
-            });
+            }
+            .holes();
             SpurGear::new(data).expect("fits")
         };
         let period = |one, other, a| GearPair::new(one, other, a).expect("meshes").period();

@@ -2,14 +2,15 @@
 
 use std::f64::consts::PI;
 
-use super::data::{DeviationList, LEAST_LIGAMENT, LEAST_RIM, LEAST_TIP_THICKNESS};
+use super::blank::Ligament;
+use super::data::{DeviationList, LEAST_LIGAMENT, LEAST_RIM, LEAST_TIP_THICKNESS, LEAST_WEB_RIM};
 use super::involute::involute_function;
 use super::modification::{Modification, Relief, TablePlaces};
 use super::rack::Trochoid;
 use super::tip::BrokenEdge;
 use super::{
-    GearData, GearError, HolePattern, Involute, Material, ModificationData, TipEdge,
-    ToothDeviations,
+    BlankRegion, GearData, GearError, Hole, HolePattern, Involute, Material, ModificationData,
+    TipEdge, ToothDeviations,
 };
 use crate::root_finding::bisect;
 
@@ -22,6 +23,7 @@ pub struct SpurGear {
     flank: Involute,
     broken_edge: Option<BrokenEdge>,
     modifications: Vec<Modification>,
+    hole_repeats: u32,
 }
 
 impl SpurGear {
@@ -43,12 +45,14 @@ impl SpurGear {
             flank: Involute::new(r * alpha.cos(), psi_b),
             broken_edge: None,
             modifications: Vec::new(),
+            hole_repeats: 0,
         };
 
         gear.check_rack()?;
         gear.check_tooth()?;
         gear.broken_edge = gear.checked_edge()?;
         gear.check_blank()?;
+        gear.hole_repeats = gear.data.blank.symmetry().count;
         gear.modifications = gear.checked_modifications()?;
         gear.check_deviations()?;
         Ok(gear)
@@ -110,32 +114,52 @@ impl SpurGear {
                 largest,
             });
         }
-        let Some(holes) = self.data.blank.holes else {
-            return Ok(());
-        };
-        let too_thin = |ligament: f64| ligament < LEAST_LIGAMENT;
-        let largest_radius = |ligament: f64| holes.radius + ligament - LEAST_LIGAMENT;
-        let ligament = holes.ligament_between();
-        if too_thin(ligament) {
-            let largest_radius = holes.radius + (ligament - LEAST_LIGAMENT) / 2.0;
-            return Err(GearError::HolesOverlap {
-                ligament,
-                largest_radius,
+        let blank = &self.data.blank;
+        for (place, ligament) in blank.ligaments(self.root_radius()) {
+            // Written so that a ligament that is not a number is refused as well.
+            if ligament >= LEAST_LIGAMENT {
+                continue;
+            }
+            let with = |hole: usize, gained: f64| {
+                blank.holes[hole].half_width() + gained * (ligament - LEAST_LIGAMENT)
+            };
+            return Err(match place {
+                Ligament::Between(one, other) => GearError::HolesOverlap {
+                    holes: [one, other],
+                    ligament,
+                    largest_radius: with(other, 0.5),
+                },
+                Ligament::WithinSlot(hole) => GearError::HolesOverlap {
+                    holes: [hole; 2],
+                    ligament,
+                    largest_radius: with(hole, 0.5),
+                },
+                Ligament::ToRim(hole) => GearError::HolesBreachRim {
+                    hole,
+                    ligament,
+                    largest_radius: with(hole, 1.0),
+                },
+                Ligament::ToBore(hole) => GearError::HolesBreachBore {
+                    hole,
+                    ligament,
+                    largest_radius: with(hole, 1.0),
+                },
             });
         }
-        let ligament = self.root_radius() - holes.outer_reach();
-        if too_thin(ligament) {
-            return Err(GearError::HolesBreachRim {
-                ligament,
-                largest_radius: largest_radius(ligament),
-            });
-        }
-        let ligament = holes.inner_reach() - bore_radius;
-        if too_thin(ligament) {
-            return Err(GearError::HolesBreachBore {
-                ligament,
-                largest_radius: largest_radius(ligament),
-            });
+        if let Some(web) = blank.web {
+            let largest = self.root_radius() - LEAST_WEB_RIM * self.data.rack.module;
+            let (inner_radius, outer_radius) = (web.inner_radius, web.outer_radius);
+            if !(inner_radius >= bore_radius
+                && outer_radius > inner_radius
+                && outer_radius <= largest)
+            {
+                return Err(GearError::WebOutside {
+                    inner_radius,
+                    outer_radius,
+                    least: bore_radius,
+                    largest,
+                });
+            }
         }
         Ok(())
     }
@@ -283,6 +307,62 @@ impl SpurGear {
         &self.data
     }
 
+    /// The same teeth on a blank without bore and holes: what is left to say where the blank does not matter.
+    pub fn without_blank(&self) -> Self {
+        self.on_blank(BlankRegion::solid(0.0))
+    }
+
+    /// The same gear without holes.
+    pub fn without_holes(&self) -> Self {
+        self.on_blank(BlankRegion {
+            holes: Vec::new(),
+            ..self.data.blank.clone()
+        })
+    }
+
+    /// The same gear with hole 0 at the angle 0.
+    pub fn with_holes_unturned(&self) -> Self {
+        self.on_blank(self.data.blank.turned(-self.hole_angle()))
+    }
+
+    /// The same gear with flanks as the rack cuts them, each like the other, up to a sharp tip.
+    pub fn with_plain_flanks(&self) -> Self {
+        Self {
+            data: GearData {
+                tip_edge: TipEdge::Sharp,
+                modifications: Vec::new(),
+                deviations: ToothDeviations::default(),
+                ..self.data.clone()
+            },
+            broken_edge: None,
+            modifications: Vec::new(),
+            ..self.clone()
+        }
+    }
+
+    /// The same gear with teeth that do not deviate.
+    pub fn as_drawn(&self) -> Self {
+        Self {
+            data: GearData {
+                deviations: ToothDeviations::default(),
+                ..self.data.clone()
+            },
+            ..self.clone()
+        }
+    }
+
+    /// The same gear on a `blank` that is known to fit.
+    fn on_blank(&self, blank: BlankRegion) -> Self {
+        Self {
+            hole_repeats: blank.symmetry().count,
+            data: GearData {
+                blank,
+                ..self.data.clone()
+            },
+            ..self.clone()
+        }
+    }
+
     /// The number of teeth Z.
     pub fn tooth_count(&self) -> u32 {
         self.data.tooth_count
@@ -303,9 +383,29 @@ impl SpurGear {
         self.data.blank.bore_radius
     }
 
-    /// The holes of the blank, if there are any.
-    pub fn holes(&self) -> Option<&HolePattern> {
-        self.data.blank.holes.as_ref()
+    /// The holes of the blank.
+    pub fn holes(&self) -> &[Hole] {
+        &self.data.blank.holes
+    }
+
+    /// Whether it has holes.
+    pub fn has_holes(&self) -> bool {
+        !self.holes().is_empty()
+    }
+
+    /// The holes as one pattern of equal round ones, if that is what they are.
+    pub fn hole_pattern(&self) -> Option<HolePattern> {
+        self.data.blank.pattern()
+    }
+
+    /// The angle of hole 0 from the centerline of tooth 0; 0 without holes.
+    pub fn hole_angle(&self) -> f64 {
+        self.holes().first().map_or(0.0, |hole| hole.angle)
+    }
+
+    /// How often the holes repeat around the blank: N of a pattern; 0 without holes.
+    pub fn hole_repeats(&self) -> u32 {
+        self.hole_repeats
     }
 
     /// The loaded flank of tooth 0.
@@ -382,6 +482,13 @@ impl SpurGear {
             amount * (s - from) / (to - from)
         });
         pitch + slope
+    }
+
+    /// How far the eccentricity moves the loaded flank of `tooth` along its normal at the roll length `s`, to the first order in it.
+    pub fn runout(&self, tooth: usize, s: f64) -> f64 {
+        let normal = tooth as f64 * self.pitch_angle() + self.flank.tangent_angle(s) + PI / 2.0;
+        let moved = self.data.deviations.displacement(0.0);
+        moved.x * normal.cos() + moved.y * normal.sin()
     }
 
     /// The slope of [`SpurGear::deviation`] by the roll length.
@@ -482,18 +589,15 @@ impl SpurGear {
 
     /// The thinnest material around the holes: between them, above them and below them. `None` without holes.
     pub fn least_ligament(&self) -> Option<f64> {
-        self.holes().map(|holes| {
-            let above = self.root_radius() - holes.outer_reach();
-            let below = holes.inner_reach() - self.bore_radius();
-            holes.ligament_between().min(above).min(below)
-        })
+        let blank = &self.data.blank;
+        let least = blank.least_ligament(self.root_radius());
+        least.map(|(_, ligament)| ligament)
     }
 
     /// The share of the blank that the holes remove; the blank is the ring between the bore and the mean of tip and root
     /// circle.
     pub fn removed_fraction(&self) -> f64 {
-        self.holes()
-            .map_or(0.0, |holes| holes.area() / self.nominal_blank_area())
+        self.data.blank.hole_area() / self.nominal_blank_area()
     }
 
     /// The area π (((r_a + r_f)/2)² − r_bore²) to which removed mass is referred.
@@ -530,7 +634,7 @@ impl SpurGear {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::gear::{Blank, Rack, ReliefData, ReliefShape, ReliefStart};
+    use crate::gear::{Rack, ReliefData, ReliefShape, ReliefStart};
 
     /// The paper's gears (Table 1): module 2 mm, 20 degrees, addendum 2 mm, dedendum 2.5 mm, width 20 mm, steel.
     pub(crate) fn paper_gear(tooth_count: u32) -> GearData {
@@ -554,21 +658,19 @@ pub(crate) mod tests {
                 poisson_ratio: 0.3,
                 density: 7850.0,
             },
-            blank: Blank {
-                bore_radius: 15e-3,
-                holes: None,
-            },
+            blank: BlankRegion::solid(15e-3),
         }
     }
 
     fn with_holes(count: u32, circle_radius: f64, radius: f64) -> Result<SpurGear, GearError> {
         let mut data = paper_gear(50);
-        data.blank.holes = Some(HolePattern {
+        data.blank.holes = HolePattern {
             count,
             circle_radius,
             radius,
             phase: 0.0,
-        });
+        }
+        .holes();
         SpurGear::new(data)
     }
 

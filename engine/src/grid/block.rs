@@ -1,6 +1,6 @@
 //! Structured blocks that share their edges.
 
-use super::Grid;
+use super::{Element, Grid};
 use crate::gear::Vector;
 
 /// The node numbers along the side of a block: corner, midside, corner, and so on.
@@ -9,10 +9,23 @@ pub(super) type Edge = Vec<u32>;
 /// A grid in the making.
 ///
 /// Blocks that name the same edge share its nodes; nothing is merged by position.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct GridBuilder {
     nodes: Vec<Vector>,
-    elements: Vec<[u32; 8]>,
+    elements: Vec<Element>,
+    /// The thickness of what is filled next, as a part of the body's.
+    pub(super) thickness: f64,
+}
+
+impl Default for GridBuilder {
+    /// Nothing yet, of the body's own thickness.
+    fn default() -> Self {
+        Self {
+            nodes: Vec::new(),
+            elements: Vec::new(),
+            thickness: 1.0,
+        }
+    }
 }
 
 impl GridBuilder {
@@ -118,7 +131,7 @@ impl GridBuilder {
         let at = |i: usize, j: usize| lattice[j * (m + 1) + i];
         for j in (0..n).step_by(2) {
             for i in (0..m).step_by(2) {
-                self.elements.push([
+                let element = Element::quadrilateral([
                     at(i, j),
                     at(i + 2, j),
                     at(i + 2, j + 2),
@@ -128,6 +141,7 @@ impl GridBuilder {
                     at(i + 1, j + 2),
                     at(i, j + 1),
                 ]);
+                self.elements.push(element.of_thickness(self.thickness));
             }
         }
     }

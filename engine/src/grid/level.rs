@@ -33,6 +33,15 @@ impl GridLevel {
 }
 
 impl GridLevel {
+    /// How often this level halves every element of the coarse one.
+    pub(super) fn halvings(self) -> u32 {
+        match self {
+            Self::Coarse => 0,
+            Self::Standard => 1,
+            Self::Fine => 2,
+        }
+    }
+
     /// The level to compare with for an error estimate: the next finer one, or the next coarser of the finest.
     pub fn neighbor(self) -> Self {
         match self {

@@ -1,16 +1,26 @@
 //! Finite-element grids of tooth sectors and holed blanks.
 //!
-//! Every grid is made of 8-node quadrilaterals in structured blocks. Read in this order: [`level`] (how fine), [`planar`]
-//! (what a grid is, and its quality), [`tooth`] and [`blank`] (the two sectors a gear is assembled from).
+//! Teeth and equal round holes are divided into 8-node quadrilaterals in structured blocks, any other blank into 6-node
+//! triangles. Read in this order: [`level`] (how fine), [`element`] (the two elements), [`planar`] (what a grid is, and its
+//! quality), [`tooth`] and [`blank`] (the two sectors a gear is assembled from), [`whole`] (a blank without symmetry).
 
 pub mod blank;
 mod block;
 mod division;
+pub mod element;
+mod hole_box;
 pub mod level;
+mod outline;
+mod outlines;
 pub mod planar;
+mod sector;
+mod sizes;
 pub mod tooth;
+mod triangles;
+pub mod whole;
 
 pub use blank::BlankGrid;
+pub use element::{Element, ElementKind};
 pub use level::GridLevel;
 pub use planar::{Grid, GridQuality};
 pub use tooth::ToothGrid;
@@ -40,6 +50,16 @@ pub enum GridError {
         interface_radius: f64,
         /// The bore radius.
         bore_radius: f64,
+    },
+    /// A web reaches beyond the interface circle, where teeth stand that are as thick as the face is wide.
+    #[error(
+        "the web reaches out to {web_radius} m, beyond the interface radius {interface_radius} m"
+    )]
+    WebAboveInterface {
+        /// Where the web ends.
+        web_radius: f64,
+        /// The interface radius.
+        interface_radius: f64,
     },
     /// A hole reaches its neighbor, the bore or the interface circle.
     #[error(

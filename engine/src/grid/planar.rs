@@ -1,30 +1,24 @@
-//! Grids of 8-node quadrilaterals in the plane, and their quality.
+//! Grids of second-order elements in the plane, and their quality.
 
 use std::f64::consts::PI;
 
+use super::element::{Element, ElementKind};
 use crate::gear::Vector;
-use crate::quadrature::GAUSS_3;
 
-/// The corners of the reference square, counter-clockwise.
-const CORNERS: [(f64, f64); 4] = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-
-/// A grid of 8-node serendipity quadrilaterals, with coordinates in meters.
-///
-/// The nodes of an element are its corners 0 to 3 counter-clockwise, then its midsides 4 (between corners 0 and 1),
-/// 5 (1, 2), 6 (2, 3) and 7 (3, 0).
+/// A grid of 8-node quadrilaterals and 6-node triangles, with coordinates in meters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
     /// The places of the nodes.
     pub nodes: Vec<Vector>,
-    /// The node numbers of each element.
-    pub elements: Vec<[u32; 8]>,
+    /// The elements.
+    pub elements: Vec<Element>,
 }
 
-/// How far the elements of a grid are from parallelograms.
+/// How far the elements of a grid are from parallelograms and from triangles with straight sides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GridQuality {
-    /// The least ratio, over the elements, of the smallest to the largest Jacobian determinant at the nine quadrature
-    /// points and the corners: 1 for a parallelogram, not positive where an element is folded.
+    /// The least ratio, over the elements, of the smallest to the largest Jacobian determinant at the quadrature points and
+    /// the corners: 1 for a parallelogram or a straight triangle, not positive where an element is folded.
     pub smallest_jacobian: f64,
     /// The smallest angle between the curved sides of an element at a corner, in radians.
     pub smallest_angle: f64,
@@ -40,7 +34,7 @@ impl Grid {
             smallest_angle: PI,
             largest_angle: 0.0,
         };
-        for element in 0..self.elements.len() {
+        for element in &self.elements {
             let [smallest, largest] = self.jacobian_range(element);
             // A negative largest determinant would turn the ratio positive again.
             let ratio = smallest / largest.abs();
@@ -48,12 +42,7 @@ impl Grid {
             if ratio < quality.smallest_jacobian || ratio.is_nan() {
                 quality.smallest_jacobian = ratio;
             }
-            for (xi, eta) in CORNERS {
-                let [along_xi, along_eta] = self.tangents(element, xi, eta);
-                // Towards the neighboring corners: inward from either end of each side.
-                let (p, q) = (-xi * along_xi, -eta * along_eta);
-                let cross = xi * eta * (p.x * q.y - p.y * q.x);
-                let angle = cross.atan2(p.dot(&q)).rem_euclid(2.0 * PI);
+            for angle in self.corner_angles(element) {
                 quality.smallest_angle = quality.smallest_angle.min(angle);
                 quality.largest_angle = quality.largest_angle.max(angle);
             }
@@ -61,25 +50,49 @@ impl Grid {
         quality
     }
 
-    /// The area by the 3 by 3 rule.
+    /// The area.
     pub fn area(&self) -> f64 {
-        let mut area = 0.0;
-        for element in 0..self.elements.len() {
-            for (xi, w_xi) in GAUSS_3 {
-                for (eta, w_eta) in GAUSS_3 {
-                    area += w_xi * w_eta * self.jacobian(element, xi, eta);
-                }
-            }
-        }
-        area
+        self.integral(|_| 1.0)
     }
 
-    fn jacobian_range(&self, element: usize) -> [f64; 2] {
-        let points = GAUSS_3
-            .into_iter()
-            .flat_map(|(xi, _)| GAUSS_3.into_iter().map(move |(eta, _)| (xi, eta)))
-            .chain(CORNERS);
-        points.fold(
+    /// The area times the thickness of each element, as parts of the body's thickness.
+    pub fn weighted_area(&self) -> f64 {
+        self.integral(Element::thickness)
+    }
+
+    fn integral(&self, weight: impl Fn(&Element) -> f64) -> f64 {
+        let mut sum = 0.0;
+        for element in &self.elements {
+            let share = weight(element);
+            for &(xi, eta, w) in element.kind().rule() {
+                sum += w * self.jacobian(element, xi, eta) * share;
+            }
+        }
+        sum
+    }
+
+    /// The angles between the curved sides of an element at its corners.
+    fn corner_angles(&self, element: &Element) -> impl Iterator<Item = f64> {
+        let corners = &element.kind().node_places()[..element.kind().corner_count()];
+        let count = corners.len();
+        (0..count).map(move |i| {
+            let (xi, eta) = corners[i];
+            let [along_xi, along_eta] = self.tangents(element, xi, eta);
+            let towards = |other: usize| {
+                let (to_xi, to_eta) = corners[other % count];
+                (to_xi - xi) * along_xi + (to_eta - eta) * along_eta
+            };
+            let (next, last) = (towards(i + 1), towards(i + count - 1));
+            let cross = next.x * last.y - next.y * last.x;
+            cross.atan2(next.dot(&last)).rem_euclid(2.0 * PI)
+        })
+    }
+
+    fn jacobian_range(&self, element: &Element) -> [f64; 2] {
+        let kind: ElementKind = element.kind();
+        let corners = &kind.node_places()[..kind.corner_count()];
+        let points = kind.rule().iter().map(|&(xi, eta, _)| (xi, eta));
+        points.chain(corners.iter().copied()).fold(
             [f64::INFINITY, f64::NEG_INFINITY],
             |[low, high], (xi, eta)| {
                 let j = self.jacobian(element, xi, eta);
@@ -88,45 +101,22 @@ impl Grid {
         )
     }
 
-    fn jacobian(&self, element: usize, xi: f64, eta: f64) -> f64 {
+    fn jacobian(&self, element: &Element, xi: f64, eta: f64) -> f64 {
         let [a, b] = self.tangents(element, xi, eta);
         a.x * b.y - a.y * b.x
     }
 
     /// The derivatives of the place by ξ and by η.
-    fn tangents(&self, element: usize, xi: f64, eta: f64) -> [Vector; 2] {
+    fn tangents(&self, element: &Element, xi: f64, eta: f64) -> [Vector; 2] {
         let mut tangents = [Vector::zeros(); 2];
-        for (node, [by_xi, by_eta]) in self.elements[element].iter().zip(derivatives(xi, eta)) {
+        let derivatives = element.kind().derivatives(xi, eta);
+        for (node, (by_xi, by_eta)) in element.nodes().iter().zip(derivatives) {
             let point = self.nodes[*node as usize];
             tangents[0] += by_xi * point;
             tangents[1] += by_eta * point;
         }
         tangents
     }
-}
-
-/// The derivatives by ξ and η of the eight serendipity functions: (1 + ξ ξ_i)(1 + η η_i)(ξ ξ_i + η η_i − 1)/4 at a
-/// corner, (1 − ξ²)(1 + η η_i)/2 and (1 + ξ ξ_i)(1 − η²)/2 at the midsides.
-fn derivatives(xi: f64, eta: f64) -> [[f64; 2]; 8] {
-    let corner = |(x, y): (f64, f64)| {
-        [
-            x * (1.0 + eta * y) * (2.0 * xi * x + eta * y) / 4.0,
-            y * (1.0 + xi * x) * (xi * x + 2.0 * eta * y) / 4.0,
-        ]
-    };
-    let across = |y: f64| [-xi * (1.0 + eta * y), (1.0 - xi * xi) * y / 2.0];
-    let along = |x: f64| [x * (1.0 - eta * eta) / 2.0, -eta * (1.0 + xi * x)];
-    let [c_0, c_1, c_2, c_3] = CORNERS.map(corner);
-    [
-        c_0,
-        c_1,
-        c_2,
-        c_3,
-        across(-1.0),
-        along(1.0),
-        across(1.0),
-        along(-1.0),
-    ]
 }
 
 #[cfg(test)]
@@ -141,7 +131,7 @@ mod tests {
             .collect();
         Grid {
             nodes,
-            elements: vec![[0, 1, 2, 3, 4, 5, 6, 7]],
+            elements: vec![Element::quadrilateral([0, 1, 2, 3, 4, 5, 6, 7])],
         }
     }
 
@@ -172,5 +162,35 @@ mod tests {
             *node *= 1.2;
         }
         assert!((grid.area() - (4.0 + 16.0 / 3.0 * 0.2)).abs() < 1e-13);
+    }
+
+    #[test]
+    fn a_triangle_has_its_own_angles_and_area_and_bulges_with_its_sides() {
+        let c = [(0.0, 0.0), (2.0, 0.0), (0.5, 1.0)].map(|(x, y)| Vector::new(x, y));
+        let middle = |i: usize| (c[i] + c[(i + 1) % 3]) / 2.0;
+        let mut grid = Grid {
+            nodes: vec![c[0], c[1], c[2], middle(0), middle(1), middle(2)],
+            elements: vec![Element::triangle([0, 1, 2, 3, 4, 5])],
+        };
+        let quality = grid.quality();
+        assert!((grid.area() - 1.0).abs() < 1e-14);
+        assert!((quality.smallest_jacobian - 1.0).abs() < 1e-12);
+        assert!((quality.smallest_angle - (1.0_f64 / 1.5).atan()).abs() < 1e-12);
+        assert!(
+            (quality.largest_angle - (PI - quality.smallest_angle - 2.0_f64.atan())).abs() < 1e-12
+        );
+        // A midside moved out by h adds the parabola's 2/3 of side times h; moved in far enough it folds the element.
+        grid.nodes[3].y = -0.1;
+        assert!((grid.area() - (1.0 + 2.0 / 3.0 * 2.0 * 0.1)).abs() < 1e-14);
+        grid.nodes[3].y = 0.6;
+        assert!(grid.quality().smallest_jacobian < 0.0);
+    }
+
+    #[test]
+    fn thickness_weighs_the_area() {
+        let mut grid = single([(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)]);
+        assert_eq!(grid.weighted_area(), grid.area());
+        grid.elements[0] = grid.elements[0].of_thickness(0.25);
+        assert!((grid.weighted_area() - 0.5).abs() < 1e-15);
     }
 }

@@ -8,25 +8,44 @@ use super::{Grid, GridError, GridLevel, checked};
 use crate::gear::rack::Trochoid;
 use crate::gear::{SpurGear, Vector, radial};
 
-/// The element size along the loaded flank at its tip corner, in modules, at the standard level.
+// Sizes are chosen for what the levels promise ([`GridLevel`]): none of them moves the sharpest corner by a tenth of a degree when
+// it is a third smaller or half as large again. The shape of the blocks is chosen for that corner, which is 30.8 degrees over all
+// teeth of the sweep below.
+
+/// The element size along the loaded flank at its tip corner, in modules, at the standard level: where contact cells of a few
+/// micrometers end.
 const SIZE_AT_TIP: f64 = 0.005;
-/// The growth of that size per distance from the tip corner.
+/// The growth of that size per distance from the tip corner: two neighbors differ by a seventh.
 const GROWTH_FROM_TIP: f64 = 0.15;
-/// The largest size along the flank, in modules.
+/// The largest size along the flank, in modules: two to three elements to the width of a usual contact.
 const SIZE_ON_FLANK: f64 = 0.06;
 /// The growth of the layers across the tooth at its tip, inward from the loaded flank.
 const GROWTH_ACROSS: f64 = 0.36;
-/// The largest size across the tooth at its tip, as a part of its thickness there.
+/// The largest size across the tooth at its tip, as a part of its thickness there: seven layers carry its bending.
 const SIZE_ACROSS: f64 = 0.14;
-/// The size along the fillet and the root land, in modules.
+/// The size along the fillet and the root land, in modules: half the radius of a usual fillet.
 const SIZE_ON_FILLET: f64 = 0.18;
 /// The size of the first layer below the fillet, in modules.
 const SIZE_BELOW_FILLET: f64 = 0.1;
 /// The growth of sizes away from the flank's lower end, and down from the fillet.
 const GROWTH_AT_ROOT: f64 = 0.3;
-/// The part of the fillet's turn that belongs to the tooth; the rest belongs to the rim. A third of the straight angle
-/// is left to each of the three blocks that meet there.
+/// The part of the fillet's turn that belongs to the tooth; the rest belongs to the rim. It leaves a third of the straight angle
+/// to each of the three blocks that meet there. A third less takes the sharpest corner to 21.7 degrees.
 const PART_OF_FILLET: f64 = 0.25;
+/// How much faster than linear the division across the tooth goes over from that of the tip to that of the neck: near the tip
+/// sizes along the flank grow as fast. From 0.4 to 0.9 the sharpest corner is the same.
+const BLEND: f64 = 0.6;
+/// How steep the line from the fillet's dividing point to the interface circle stands, in right angles: it halves what the tooth
+/// leaves of the straight angle there. The sharpest corner is the same from 0.46 to 0.83, and 17.4 degrees upright.
+const CORE_STEEPNESS: f64 = 0.69;
+/// The part of the interface circle that the core takes at least where the circle is deep. A third less gives the sharpest corner
+/// two degrees, half as much again takes three.
+const LEAST_CORE: f64 = 0.36;
+/// The part that it takes at most. Anything from 0.66 on does; a third less takes the sharpest corner to 18.0 degrees.
+const LARGEST_CORE: f64 = 0.8;
+/// The depth of a rim, in modules, at which the nodes on the interface circle stand halfway between below those of the fillet
+/// and even. The sharpest corner is the same from 0.2 to 0.45.
+const DEEP_RIM: f64 = 0.3;
 
 /// The grid of tooth 0 and its part of the rim, from the interface circle outward, in the frame of its gear: the
 /// centerline is the x axis, the loaded flank lies on the side of positive y.
@@ -41,6 +60,9 @@ pub struct ToothGrid {
     pub flank_nodes: Vec<u32>,
     /// The roll length of each of these, on the exact involute.
     pub flank_roll_lengths: Vec<f64>,
+    /// The nodes of the fillet on the loaded side and of the root land after it, corners and midsides, from the form point to
+    /// the side at π/Z: a free edge, in tension while the flank is loaded.
+    pub fillet_nodes: Vec<u32>,
     /// The nodes on the interface circle, corners and midsides, from −π/Z to π/Z.
     pub arc_nodes: Vec<u32>,
     /// The polar angle of each of these.
@@ -392,6 +414,12 @@ impl<'a> Plan<'a> {
         ToothGrid {
             flank_nodes: upper[self.below_form..].to_vec(),
             flank_roll_lengths: self.roll_lengths.clone(),
+            fillet_nodes: upper[..=self.below_form]
+                .iter()
+                .rev()
+                .chain(&left_curve[1..])
+                .copied()
+                .collect(),
             arc_nodes: join([&right_arc, &core_arc, &left_arc]),
             arc_angles: angles.into_iter().map(|(_, angle)| angle).collect(),
             side_nodes: (right_side[1..].to_vec(), left_side[1..].to_vec()),
@@ -421,7 +449,7 @@ impl<'a> Plan<'a> {
             let (point, length) = self.side[i];
             let from_tip = 1.0 - length / whole;
             // Somewhat faster than linear near the tip, where the sizes along the flank grow fast.
-            let blend = from_tip * (1.6 - 0.6 * from_tip);
+            let blend = from_tip * ((1.0 + BLEND) - BLEND * from_tip);
             let w = (1.0 - blend) * (tip[j].y / tip[tip.len() - 1].y + 1.0) / 2.0
                 + blend * across_root[j];
             let bulge = (tip[j].x - tip_x) * length / whole;
@@ -441,14 +469,14 @@ fn interface_angles(
     // A line from the dividing point that halves what the tooth leaves of the straight angle there would reach the
     // interface circle at this angle; the bounds leave room for core and rim where the circle is deep.
     let drop = corner.x - interface_radius;
-    let steep = (FRAC_PI_2 * 0.69).tan();
+    let steep = (FRAC_PI_2 * CORE_STEEPNESS).tan();
     let aim = (corner.y - drop / steep) / interface_radius;
-    let core_angle = aim.clamp(0.36 * beta, 0.8 * beta);
+    let core_angle = aim.clamp(LEAST_CORE * beta, LARGEST_CORE * beta);
 
     // Close under the root land the nodes stand below those of the fillet, so that thin layers stay upright; under a deep
     // rim they are evenly spread.
     let depth = (gear.root_radius() - interface_radius) / gear.data().rack.module;
-    let share = 1.0 / (1.0 + (depth / 0.3).powi(2));
+    let share = 1.0 / (1.0 + (depth / DEEP_RIM).powi(2));
     let last = root.len() - 1;
     let reach = |p: &Vector| beta - p.y.atan2(p.x);
     let (whole, target) = (reach(&corner), beta - core_angle);

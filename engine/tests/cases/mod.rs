@@ -7,7 +7,7 @@ use meshwright_engine::analysis::{
     ToothFormula,
 };
 use meshwright_engine::gear::{
-    Blank, GearData, GearPair, HolePattern, Material, ModificationData, Rack, ReliefData,
+    BlankRegion, GearData, GearPair, HolePattern, Material, ModificationData, Rack, ReliefData,
     ReliefShape, ReliefStart, SpurGear, TipEdge, ToothDeviations,
 };
 use meshwright_engine::grid::GridLevel;
@@ -37,10 +37,7 @@ pub(crate) fn gear(tooth_count: u32, bore_radius: f64) -> GearData {
         modifications: Vec::new(),
         deviations: ToothDeviations::default(),
         material: STEEL,
-        blank: Blank {
-            bore_radius,
-            holes: None,
-        },
+        blank: BlankRegion::solid(bore_radius),
     }
 }
 
@@ -64,12 +61,13 @@ pub(crate) fn holed(
     radius: f64,
     phase: f64,
 ) -> GearData {
-    data.blank.holes = Some(HolePattern {
+    data.blank.holes = HolePattern {
         count,
         circle_radius,
         radius,
         phase,
-    });
+    }
+    .holes();
     data
 }
 
@@ -120,7 +118,7 @@ pub(crate) fn case(pair: GearPair, output_torques: &[f64]) -> Case {
             contact_solver: ContactSolver::ActiveSet,
             stiffness: StiffnessRule::Tangent,
             blank_positions: 16,
-            interface_radius: None,
+            interface_radii: [None; 2],
             formulas: Formulas {
                 tooth: ToothFormula::WeberBanaschek,
                 body: BodyFormula::Sainsot,

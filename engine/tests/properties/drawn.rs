@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use meshwright_engine::gear::{
-    Blank, GearData, GearPair, HolePattern, Material, ModificationData, Rack, ReliefData,
+    BlankRegion, GearData, GearPair, HolePattern, Material, ModificationData, Rack, ReliefData,
     ReliefShape, ReliefStart, SpurGear, TipEdge, ToothDeviations,
 };
 
@@ -99,9 +99,9 @@ fn relief(draw: &mut Draw, module: f64, data: &GearData) -> Option<ReliefData> {
     })
 }
 
-fn blank(draw: &mut Draw, root_radius: f64, module: f64) -> Blank {
+fn blank(draw: &mut Draw, root_radius: f64, module: f64) -> BlankRegion {
     let bore_radius = root_radius * draw.between(0.15, 0.7);
-    let holes = draw.chance(0.5).then(|| {
+    let pattern = draw.chance(0.5).then(|| {
         let room = root_radius - module - bore_radius;
         let circle_radius = bore_radius + room * draw.between(0.35, 0.65);
         let count = draw.one_of(&[1, 2, 3, 4, 5, 6, 7, 8, 10, 12]);
@@ -120,7 +120,11 @@ fn blank(draw: &mut Draw, root_radius: f64, module: f64) -> Blank {
             phase: draw.between(-PI, PI),
         }
     });
-    Blank { bore_radius, holes }
+    BlankRegion {
+        bore_radius,
+        holes: pattern.map_or_else(Vec::new, |pattern| pattern.holes()),
+        web: None,
+    }
 }
 
 impl DrawnPair {
@@ -178,10 +182,7 @@ impl DrawnPair {
                 modifications: Vec::new(),
                 deviations: ToothDeviations::default(),
                 material: material(draw),
-                blank: Blank {
-                    bore_radius: 1e-6,
-                    holes: None,
-                },
+                blank: BlankRegion::solid(1e-6),
             };
             let bare = SpurGear::new(data.clone()).ok()?;
             data.blank = blank(draw, bare.root_radius(), module);

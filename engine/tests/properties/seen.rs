@@ -1,7 +1,7 @@
 //! Pairs on which a defect was once seen, each the instance of a class; what must hold of drawn pairs must hold of them.
 
 use meshwright_engine::gear::{
-    Blank, GearData, GearPair, HolePattern, Material, ModificationData, Rack, ReliefData,
+    BlankRegion, GearData, GearPair, HolePattern, Material, ModificationData, Rack, ReliefData,
     ReliefShape, ReliefStart, SpurGear, TipEdge, ToothDeviations,
 };
 
@@ -38,10 +38,7 @@ fn gear(
             poisson_ratio,
             density,
         },
-        blank: Blank {
-            bore_radius: bore_radius * 1e-3,
-            holes: None,
-        },
+        blank: BlankRegion::solid(bore_radius * 1e-3),
     }
 }
 
@@ -58,12 +55,13 @@ fn relieved(data: GearData, amount_um: f64, shape: ReliefShape, start: ReliefSta
 
 /// With N holes of the radius r on the circle R, in millimeters, hole 0 at an angle in degrees.
 fn holed(mut data: GearData, count: u32, [circle, radius, phase]: [f64; 3]) -> GearData {
-    data.blank.holes = Some(HolePattern {
+    data.blank.holes = HolePattern {
         count,
         circle_radius: circle * 1e-3,
         radius: radius * 1e-3,
         phase: phase.to_radians(),
-    });
+    }
+    .holes();
     data
 }
 

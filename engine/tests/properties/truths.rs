@@ -4,15 +4,16 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use meshwright_engine::analysis::{
-    Analysis, BodyFormula, Case, ContactSolver, Curve, Formulas, Library, Method, PlaneState,
-    Resolution, StiffnessRule, ToothFormula, analyze, pair_model,
+    Analysis, BodyFormula, Case, ContactSolver, Curve, Formulas, Method, PlaneState, Resolution,
+    StiffnessRule, ToothFormula, analyze, pair_model,
 };
 use meshwright_engine::contact::half_plane::{hertz, logarithm_factor};
 use meshwright_engine::contact::{MeshContact, PairModel, WarmStart};
 use meshwright_engine::gear::{
-    GearData, GearPair, Member, ModificationData, ReliefStart, SpurGear, Vector,
+    GearData, GearPair, HoleShape, Member, ModificationData, ReliefStart, SpurGear, Vector,
 };
 use meshwright_engine::grid::GridLevel;
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
 use crate::drawn::DrawnPair;
@@ -111,7 +112,7 @@ fn case(pair: &GearPair, output_torques: &[f64]) -> Case {
             contact_solver: ContactSolver::ActiveSet,
             stiffness: StiffnessRule::Tangent,
             blank_positions: 16,
-            interface_radius: None,
+            interface_radii: [None; 2],
             formulas: Formulas {
                 tooth: ToothFormula::WeberBanaschek,
                 body: BodyFormula::Sainsot,
@@ -303,9 +304,12 @@ fn scale(data: &mut GearData, s: f64) {
             ReliefStart::RollAngle(_) => {}
         }
     }
-    if let Some(holes) = &mut data.blank.holes {
-        holes.circle_radius *= s;
-        holes.radius *= s;
+    for hole in &mut data.blank.holes {
+        hole.circle_radius *= s;
+        match &mut hole.shape {
+            HoleShape::Round { radius } => *radius *= s,
+            HoleShape::Slot { width, .. } => *width *= s,
+        }
     }
 }
 
@@ -416,14 +420,13 @@ fn turned_by_hole_pitch(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     let pair = &drawn.pair;
     if Member::BOTH
         .iter()
-        .all(|&member| pair.gear(member).holes().is_none())
+        .all(|&member| pair.gear(member).holes().is_empty())
     {
         return Ok(None);
     }
     let turned = changed(pair, pair.center_distance(), |data, _| {
-        if let Some(holes) = &mut data.blank.holes {
-            holes.phase += 2.0 * PI / f64::from(holes.count);
-        }
+        let repeats = data.blank.symmetry().count.max(1);
+        data.blank = data.blank.turned(2.0 * PI / f64::from(repeats));
     })?;
     let one = curve(pair, drawn.output_torque)?;
     let other = curve(&turned, drawn.output_torque)?;
@@ -437,19 +440,17 @@ fn turned_by_tooth(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     let pair = &drawn.pair;
     if Member::BOTH
         .iter()
-        .all(|&member| pair.gear(member).holes().is_none())
+        .all(|&member| pair.gear(member).holes().is_empty())
     {
         return Ok(None);
     }
     // The next tooth of the driving gear is behind the reference tooth, that of the driven gear is ahead of it.
     let turned = changed(pair, pair.center_distance(), |data, member| {
         let pitch = 2.0 * PI / f64::from(data.tooth_count);
-        if let Some(holes) = &mut data.blank.holes {
-            holes.phase += match member {
-                Member::Driving => pitch,
-                Member::Driven => -pitch,
-            };
-        }
+        data.blank = data.blank.turned(match member {
+            Member::Driving => pitch,
+            Member::Driven => -pitch,
+        });
     })?;
     let load = pair.load(drawn.output_torque);
     let (here, there) = (model(pair)?, model(&turned)?);

@@ -3,14 +3,16 @@
 
 use std::sync::Arc;
 
-use meshwright_engine::analysis::library::{Library, default_interface_radius};
 use meshwright_engine::analysis::{Case, ContactSolver, Curve, StiffnessRule, analyze, pair_model};
+use meshwright_engine::assembly::interface::{default_interface_radius, harmonics};
+use meshwright_engine::assembly::{Parts, TeethSpec};
 use meshwright_engine::contact::{MeshCells, WarmStart};
 use meshwright_engine::fem::blank::BlankSubstructure;
 use meshwright_engine::fem::body::{Coupling, tooth_angle};
 use meshwright_engine::gear::{GearPair, Member, SpurGear, Vector, radial, tangential};
 use meshwright_engine::grid::blank::ELEMENTS_PER_TOOTH;
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
+use meshwright_engine::library::Library;
 use meshwright_engine::quadrature::GAUSS_3;
 use meshwright_engine::run::Run;
 use nalgebra::DMatrix;
@@ -24,9 +26,7 @@ use crate::whole::WholeGear;
 /// A gear of a case as a whole, on the grids and with the orders that the engine takes.
 fn whole_gear(gear: &SpurGear, level: GridLevel) -> WholeGear {
     let r_w = default_interface_radius(gear);
-    let teeth = library()
-        .teeth(gear, Member::Driving, r_w, level, &Run::unattended())
-        .expect("teeth");
+    let orders = harmonics(gear, r_w, level);
     let tooth = ToothGrid::new(gear, r_w, level).expect("a tooth");
     let blank = BlankGrid::new(
         gear.bore_radius(),
@@ -37,14 +37,14 @@ fn whole_gear(gear: &SpurGear, level: GridLevel) -> WholeGear {
         level,
     )
     .expect("a blank");
-    let phase = gear.holes().map_or(0.0, |holes| holes.phase);
+    let phase = gear.hole_angle();
     let properties = (gear.material(), gear.face_width());
     WholeGear::new(
         tooth,
         gear.tooth_count() as usize,
         &blank,
         phase,
-        teeth.ring.harmonics.largest,
+        orders.largest,
         properties,
     )
 }
@@ -408,9 +408,8 @@ fn more_load_means_more_transmission_error_and_the_tangent_is_its_slope() {
 fn couplings(gear: &SpurGear, level: GridLevel) -> [Coupling; 2] {
     let run = Run::unattended();
     let r_w = default_interface_radius(gear);
-    let teeth = library()
-        .teeth(gear, Member::Driven, r_w, level, &run)
-        .expect("teeth");
+    let teeth = TeethSpec::new(gear, r_w, level);
+    let teeth = library().teeth(&teeth, &run).expect("teeth");
     let (bore, z) = (gear.bore_radius(), gear.tooth_count());
     let grid = BlankGrid::new(bore, r_w, gear.holes(), z, ELEMENTS_PER_TOOTH, level);
     let blank = BlankSubstructure::new(
@@ -422,7 +421,7 @@ fn couplings(gear: &SpurGear, level: GridLevel) -> [Coupling; 2] {
         &run,
     )
     .expect("a blank");
-    let phase = gear.holes().map_or(0.0, |holes| holes.phase);
+    let phase = gear.hole_angle();
     let tooth_by_tooth = Coupling::tooth_by_tooth(&teeth.ring, &blank, phase, 4, &run);
     let on_blank = Coupling::on_blank(&teeth.ring, &blank, phase, 4, &run);
     [tooth_by_tooth, on_blank].map(|coupling| coupling.expect("a gear"))
@@ -447,7 +446,7 @@ fn rows_that_symmetry_leaves_are_the_rows_of_all_teeth() {
             let (a, b) = (block(&all), block(&some));
             largest = largest.max((&a - &b).norm_max() / a.norm_max());
         }
-        let holes = gear.holes().map_or(0, |holes| holes.count);
+        let holes = gear.hole_repeats();
         println!(
             "{holes} holes: {largest:.1e}, {} entries of {}",
             some.entries(),

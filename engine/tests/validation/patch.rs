@@ -6,9 +6,10 @@
 //! boundaries are alike and to the fourth order of the elements' length where they share no node. (A toothed ring has no field of constant strain without tractions on its flanks, and the blank's
 //! substructure holds its bore; so the linear field is imposed on two rings of the blank's own elements.)
 
-use meshwright_engine::analysis::library::default_interface_radius;
+use meshwright_engine::assembly::interface::default_interface_radius;
 use meshwright_engine::fem::cyclic::{Component, Harmonics};
-use meshwright_engine::fem::tooth::{TeethRing, ToothSubstructure};
+use meshwright_engine::fem::teeth::TeethRing;
+use meshwright_engine::fem::tooth::ToothSubstructure;
 use meshwright_engine::gear::{SpurGear, Vector, radial};
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::run::Run;

@@ -4,9 +4,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;
 
-use meshwright_engine::analysis::{Analysis, AnalysisError, Case, Curve, Library, Method, analyze};
+use meshwright_engine::analysis::{Analysis, AnalysisError, Case, Curve, Method, analyze};
 use meshwright_engine::gear::{GearData, GearPair, SpurGear};
 use meshwright_engine::grid::GridLevel;
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
 use crate::support::{case, gear, holed, paper_case, relieved, solve};

@@ -5,8 +5,9 @@ mod cases;
 
 use std::sync::OnceLock;
 
-use meshwright_engine::analysis::{Analysis, Case, Library, analyze};
+use meshwright_engine::analysis::{Analysis, Case, analyze};
 use meshwright_engine::gear::GearPair;
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
 pub(crate) use cases::*;

@@ -3,16 +3,17 @@
 use std::collections::HashMap;
 
 use faer::Mat;
-use meshwright_engine::analysis::library::default_interface_radius;
+use meshwright_engine::assembly::interface::{default_interface_radius, harmonics};
 use meshwright_engine::fem::blank::BlankSubstructure;
 use meshwright_engine::fem::body::{Coupling, tooth_angle};
 use meshwright_engine::fem::cyclic::Harmonics;
-use meshwright_engine::fem::tooth::{TeethRing, ToothSubstructure};
-use meshwright_engine::gear::{Member, SpurGear, Vector, radial, tangential};
-use meshwright_engine::grid::{BlankGrid, Grid, GridLevel, ToothGrid};
+use meshwright_engine::fem::teeth::TeethRing;
+use meshwright_engine::fem::tooth::ToothSubstructure;
+use meshwright_engine::gear::{SpurGear, Vector, radial, tangential};
+use meshwright_engine::grid::{BlankGrid, Element, Grid, GridLevel, ToothGrid};
 use meshwright_engine::run::Run;
 
-use crate::support::{gear, holed, library};
+use crate::support::{gear, holed};
 use crate::whole::{Assembly, Hold, Whole, WholeGear, on_circle, whole_tooth_sides};
 
 /// Teeth and nodes on them that are loaded, and the neighbors whose answer is compared.
@@ -123,7 +124,7 @@ fn answers_of_substructures(
         &Run::unattended(),
     )
     .expect("a blank");
-    let phase = gear.holes().map_or(0.0, |holes| holes.phase);
+    let phase = gear.hole_angle();
     let coupling = Coupling::on_blank(&ring, &blank, phase, 4, &Run::unattended()).expect("a gear");
     let unknowns = loaded_unknowns(substructure.roll_lengths.len());
     let v = &substructure.modes;
@@ -225,7 +226,7 @@ impl Conforming {
             for column in (0..columns - 1).step_by(2) {
                 let n = |i: usize, j: usize| at[(row + i) * columns + column + j];
                 // Counter-clockwise: outward is up, growing angles run to the left as seen from there.
-                blank.elements.push([
+                blank.elements.push(Element::quadrilateral([
                     n(2, 0),
                     n(0, 0),
                     n(0, 2),
@@ -234,7 +235,7 @@ impl Conforming {
                     n(0, 1),
                     n(1, 2),
                     n(2, 1),
-                ]);
+                ]));
             }
         }
         let row_of = |row: usize| at[row * columns..(row + 1) * columns].to_vec();
@@ -352,12 +353,7 @@ fn harmonics_on_the_interface_circle_do_what_shared_nodes_do() {
         );
         let exact = conforming.answers(&gear, &tooth);
         let r_w = default_interface_radius(&gear);
-        let shipped = library()
-            .teeth(&gear, Member::Driving, r_w, level, &Run::unattended())
-            .expect("teeth")
-            .ring
-            .harmonics
-            .largest;
+        let shipped = harmonics(&gear, r_w, level).largest;
         let grown = shipped * 3 / 2;
         let of = |largest: usize| {
             difference(

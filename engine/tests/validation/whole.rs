@@ -12,7 +12,7 @@ use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
 use meshwright_engine::fem::element;
 use meshwright_engine::gear::{Material, Vector, radial, tangential};
-use meshwright_engine::grid::{BlankGrid, Grid, ToothGrid};
+use meshwright_engine::grid::{BlankGrid, Element, Grid, ToothGrid};
 
 /// What holds a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,7 +30,7 @@ pub(crate) enum Hold {
 pub(crate) struct Assembly {
     pub(crate) nodes: Vec<Vector>,
     pub(crate) holds: Vec<Hold>,
-    pub(crate) elements: Vec<[u32; 8]>,
+    pub(crate) elements: Vec<Element>,
 }
 
 impl Assembly {
@@ -51,7 +51,7 @@ impl Assembly {
             .collect();
         let elements = grid.elements.iter();
         self.elements
-            .extend(elements.map(|element| element.map(|local| numbers[local as usize])));
+            .extend(elements.map(|element| element.renumbered(|local| numbers[local as usize])));
         numbers
     }
 
@@ -160,15 +160,21 @@ impl Whole {
         let stiffnesses: Vec<_> = assembly
             .elements
             .iter()
-            .map(|nodes| {
-                let points: [Vector; 8] = nodes.map(|node| assembly.nodes[node as usize]);
-                element::stiffness(&points, material, thickness)
+            .map(|element| {
+                let points = element.places(&assembly.nodes);
+                element::stiffness(
+                    element.kind(),
+                    &points,
+                    material,
+                    thickness * element.thickness(),
+                )
             })
             .collect();
 
         let mut triplets = Vec::new();
         let mut on_amplitudes = Mat::<f64>::zeros(amplitudes, amplitudes);
-        for (nodes, k) in assembly.elements.iter().zip(&stiffnesses) {
+        for (element, k) in assembly.elements.iter().zip(&stiffnesses) {
+            let nodes = element.nodes();
             let mut rows: Vec<(usize, Vec<f64>)> = Vec::new();
             for (local, &node) in nodes.iter().enumerate() {
                 if let Hold::OnCircle(angle) = assembly.holds[node as usize] {
@@ -328,7 +334,8 @@ impl Whole {
     /// K u on every node, element by element.
     pub(crate) fn nodal_forces(&self, displacements: &[Vector]) -> Vec<Vector> {
         let mut forces = vec![Vector::zeros(); displacements.len()];
-        for (nodes, k) in self.assembly.elements.iter().zip(&self.stiffnesses) {
+        for (element, k) in self.assembly.elements.iter().zip(&self.stiffnesses) {
+            let nodes = element.nodes();
             for (a, &node_a) in nodes.iter().enumerate() {
                 for (b, &node_b) in nodes.iter().enumerate() {
                     let u = displacements[node_b as usize];
@@ -366,6 +373,8 @@ pub(crate) struct WholeGear {
     pub(crate) whole: Whole,
     /// The number of each node of the tooth grid, tooth by tooth.
     pub(crate) teeth: Vec<Vec<u32>>,
+    /// The number of each node of the blank's grid, sector by sector.
+    pub(crate) sectors: Vec<Vec<u32>>,
     pub(crate) tooth: ToothGrid,
     pub(crate) bore: Vec<u32>,
 }
@@ -406,6 +415,7 @@ impl WholeGear {
         Self {
             whole,
             teeth,
+            sectors,
             tooth,
             bore,
         }

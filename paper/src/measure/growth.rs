@@ -1,8 +1,9 @@
 //! One thing varied at a time: tooth count, hole count, positions, torques.
 
 use anyhow::Context;
-use meshwright_engine::analysis::{Case, Library, Method, pair_model};
-use meshwright_engine::gear::{Blank, GearData, GearPair, HolePattern, SpurGear};
+use meshwright_engine::analysis::{Case, Method, pair_model};
+use meshwright_engine::gear::{BlankRegion, GearData, GearPair, HolePattern, SpurGear};
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use serde::Serialize;
 

@@ -1,8 +1,9 @@
 //! The paper's cases and the standard pair by every method, from nothing and with something known.
 
 use anyhow::Context;
-use meshwright_engine::analysis::{Analysis, Case, Library, Method, analyze};
+use meshwright_engine::analysis::{Analysis, Case, Method, analyze};
 use meshwright_engine::gear::{GearPair, SpurGear};
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use serde::Serialize;
 
@@ -90,7 +91,7 @@ pub(super) fn answer(case: &Case, library: &Library) -> anyhow::Result<Analysis>
 /// `case` with its hole circles a little larger; nothing for a pair without holes.
 fn with_moved_holes(case: &Case) -> anyhow::Result<Option<Case>> {
     let pair = &case.pair;
-    if pair.driving().holes().is_none() && pair.driven().holes().is_none() {
+    if pair.driving().holes().is_empty() && pair.driven().holes().is_empty() {
         return Ok(None);
     }
     let moved = |gear: &SpurGear| {

@@ -1,8 +1,9 @@
 //! What a finer grid costs, and what it changes.
 
 use anyhow::Context;
-use meshwright_engine::analysis::{Case, Curve, Library};
+use meshwright_engine::analysis::{Case, Curve};
 use meshwright_engine::grid::GridLevel;
+use meshwright_engine::library::Library;
 use serde::Serialize;
 
 use super::jobs::{PAIRS, answer};

@@ -3,7 +3,8 @@
 use std::time::Instant;
 
 use anyhow::Context;
-use meshwright_engine::analysis::{Analysis, Case, Curve, Library, Method, analyze};
+use meshwright_engine::analysis::{Analysis, Case, Curve, Method, analyze};
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
 use super::cases;
@@ -171,7 +172,7 @@ impl Computed {
     pub(super) fn holed_kept(&self) -> impl Iterator<Item = &Design> {
         self.designs
             .iter()
-            .filter(|design| design.kept && design.case.pair.driven().holes().is_some())
+            .filter(|design| design.kept && design.case.pair.driven().has_holes())
     }
 }
 
@@ -266,7 +267,7 @@ fn interfaces() -> anyhow::Result<Vec<(f64, Curve)>> {
     INTERFACES
         .into_iter()
         .map(|radius| {
-            case.resolution.interface_radius = Some(radius);
+            case.resolution.interface_radii = [Some(radius); 2];
             Ok((radius, only_curve(&case, &library)?))
         })
         .collect()

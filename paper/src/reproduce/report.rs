@@ -334,7 +334,7 @@ fn open(computed: &Computed) -> anyhow::Result<String> {
 mod tests {
     use std::path::Path;
 
-    use meshwright_engine::analysis::Library;
+    use meshwright_engine::library::Library;
 
     use super::super::{cases, computed, paper};
     use super::*;

@@ -307,7 +307,7 @@ pub(super) const SECTION_5_HEADER: [&str; 11] = [
 /// The rows of section 5 for one design: one a torque.
 pub(super) fn section_5_rows(design: &Design) -> anyhow::Result<Vec<Cells>> {
     let amplitude = |curve: &Curve, label| {
-        if design.case.pair.driven().holes().is_none() && label == "H_N" {
+        if design.case.pair.driven().holes().is_empty() && label == "H_N" {
             return Ok("-".to_owned());
         }
         Ok::<_, anyhow::Error>(micro(line(curve, label)?.0))

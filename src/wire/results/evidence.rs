@@ -1,7 +1,7 @@
 //! How good the numbers are, and what they mean.
 
 use meshwright_engine::analysis::Analysis;
-use meshwright_engine::analysis::curve::ErrorEstimate;
+use meshwright_engine::analysis::ErrorEstimate;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use utoipa::ToSchema;

@@ -2,11 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use meshwright_engine::analysis::curve::{
-    BlankFit, BlankSample, DecompositionParts, ErrorEstimate, LoadShare,
-};
+use meshwright_engine::analysis::curve::{BlankFit, BlankSample, DecompositionParts, LoadShare};
 use meshwright_engine::analysis::spectrum::Spectrum;
-use meshwright_engine::analysis::{Case, Curve, Evidence, Statistics, Warning};
+use meshwright_engine::analysis::{Case, Curve, ErrorEstimate, Evidence, Statistics, Warning};
 use meshwright_engine::gear::Member;
 use serde_json::{Value, json};
 
@@ -61,6 +59,7 @@ fn analysis(case: &Case) -> Analysis {
                     mean: 2e-6,
                     amplitude: 0.1e-6,
                     phase: 1.0,
+                    higher: vec![(0.05e-6, 0.5)],
                     samples: vec![BlankSample {
                         mesh_position: 0.25,
                         rotation: 2.05e-6,

@@ -78,13 +78,13 @@ impl<'a> PairFormulas<'a> {
         (first..=last)
             .map(|n| {
                 let offset = (n - eta.floor() as i64) as i32;
-                self.line_pair(offset, s_c + (eta - n as f64) * p_b)
+                self.line_pair(n, offset, s_c + (eta - n as f64) * p_b)
             })
             .collect()
     }
 
-    /// The pair of teeth at `offset` that touches at the roll length `s` of the driving gear.
-    fn line_pair(&self, offset: i32, s: f64) -> Result<LinePair, AnalysisError> {
+    /// The pair n of teeth, at `offset`, that touches at the roll length `s` of the driving gear.
+    fn line_pair(&self, n: i64, offset: i32, s: f64) -> Result<LinePair, AnalysisError> {
         let (line, width) = (self.pair.line_of_action(), self.pair.common_face_width());
         let least = LEAST_CURVATURE * line;
         let rolls = [s, line - s].map(|roll| roll.max(least));
@@ -92,7 +92,9 @@ impl<'a> PairFormulas<'a> {
             .map(|member| ToothLoad::at_roll_length(self.pair.gear(member), rolls[member.index()]));
         let gap = Member::BOTH.map(|member| {
             let gear = self.pair.gear(member);
-            gear.removed(rolls[member.index()])
+            let s = rolls[member.index()];
+            let tooth = self.pair.tooth(member, n);
+            gear.removed(s) - gear.deviation(tooth, s) - gear.runout(tooth, s)
         });
         let bodies = Member::BOTH.map(|member| ContactBody {
             material: *self.pair.gear(member).material(),

@@ -37,9 +37,10 @@ mod weber_banaschek;
 pub use range::{Formula, FormulaQuantity, FormulaRange};
 
 use super::case::{BodyFormula, Case, StiffnessRule, ToothFormula};
-use super::curve::{Evidence, LoadShare};
-use super::decomposition::{one_mesh_period, repeated};
-use super::{Analysis, AnalysisError, CurveParts, mesh_positions, warnings};
+use super::curve::LoadShare;
+use super::curve_parts::CurveParts;
+use super::warning::warnings;
+use super::{Analysis, AnalysisError, Evidence};
 use crate::gear::Member;
 use crate::run::Run;
 use compliance::PairFormulas;
@@ -49,7 +50,8 @@ use sharing::{LinePair, Shared, rise, share};
 /// Computes `case` by the load distribution.
 pub(super) fn distribute(case: &Case, run: &Run) -> Result<Analysis, AnalysisError> {
     let formulas = PairFormulas::new(&case.pair, case.resolution.formulas);
-    let positions = one_mesh_period(case)
+    let positions = case
+        .repeating_positions()
         .into_iter()
         .map(|eta| formulas.pairs_at(eta))
         .collect::<Result<Vec<_>, _>>()?;
@@ -65,7 +67,7 @@ pub(super) fn distribute(case: &Case, run: &Run) -> Result<Analysis, AnalysisErr
             run.reached(1)?;
         }
         let parts = curve_parts(case, &contacts, load);
-        curves.push(parts.into_curve(case, output_torque, mesh_positions(case)));
+        curves.push(parts.into_curve(case, output_torque));
     }
     Ok(Analysis {
         curves,
@@ -108,7 +110,7 @@ fn solved(pairs: &[LinePair], load: f64, rule: StiffnessRule) -> Shared {
 }
 
 fn curve_parts(case: &Case, contacts: &[Shared], load: f64) -> CurveParts {
-    let all = |value: fn(&Shared) -> f64| repeated(case, contacts.iter().map(value));
+    let all = |value: fn(&Shared) -> f64| case.repeated(contacts.iter().map(value));
     let pairs_in_contact = contacts
         .iter()
         .map(|contact| contact.loaded().count() as u32);
@@ -116,8 +118,8 @@ fn curve_parts(case: &Case, contacts: &[Shared], load: f64) -> CurveParts {
     CurveParts {
         transmission_error: all(|contact| contact.transmission_error),
         stiffness: all(|contact| contact.stiffness),
-        peak_contact_pressure: repeated(case, pressures),
-        pairs_in_contact: repeated(case, pairs_in_contact),
+        peak_contact_pressure: case.repeated(pressures),
+        pairs_in_contact: case.repeated(pairs_in_contact),
         load_shares: load_shares(case, contacts, load),
         decomposition: None,
     }
@@ -132,8 +134,7 @@ fn load_shares(case: &Case, contacts: &[Shared], load: f64) -> Vec<LoadShare> {
     offsets.dedup();
     let share_of = |pair_offset: i32| LoadShare {
         pair_offset,
-        share: repeated(
-            case,
+        share: case.repeated(
             contacts
                 .iter()
                 .map(|contact| contact.share(pair_offset, load)),

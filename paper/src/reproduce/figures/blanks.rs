@@ -54,7 +54,7 @@ pub(super) fn rotations(computed: &Computed) -> anyhow::Result<Illustration> {
 
 /// A + B cos(N θ + phase) at the mesh position η, with θ = η 2π/Z.
 fn fitted(fit: &BlankFit, gear: &SpurGear, mesh_position: f64) -> f64 {
-    let n = gear.holes().map_or(0.0, |holes| f64::from(holes.count));
+    let n = f64::from(gear.hole_repeats());
     fit.mean + fit.amplitude * (n * mesh_position * gear.pitch_angle() + fit.phase).cos()
 }
 
@@ -65,7 +65,7 @@ fn chart(place: &str, fit: &BlankFit, gear: &SpurGear) -> Chart {
         .iter()
         .map(|sample| (degrees(sample.mesh_position), sample.rotation * 1e6))
         .collect();
-    let holes = gear.holes().map_or(1, |holes| holes.count);
+    let holes = gear.hole_repeats().max(1);
     let period = TAU / f64::from(holes) / gear.pitch_angle();
     let curve = (0..=FINENESS)
         .map(|i| f64::from(i) / f64::from(FINENESS) * period)

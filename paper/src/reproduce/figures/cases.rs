@@ -147,7 +147,7 @@ fn revolution(test_case: &TestCase, quantity: Quantity, ends: (f64, f64)) -> Cha
 /// Two hole periods, where the methods can be told apart.
 fn closer(test_case: &TestCase, quantity: Quantity, ends: (f64, f64)) -> Chart {
     let gear = test_case.case.pair.driven();
-    let holes = gear.holes().map_or(1, |holes| holes.count);
+    let holes = gear.hole_repeats().max(1);
     let span = (2.0 * f64::from(gear.tooth_count()) / f64::from(holes)).ceil();
     let series: Vec<Series> = METHODS
         .iter()
@@ -204,10 +204,7 @@ fn around(values: &[f64]) -> (f64, f64) {
 /// Amplitudes over the orders of gear 2, up to the fourth mesh harmonic.
 fn spectrum(test_case: &TestCase, quantity: Quantity, (low, high): (i32, i32)) -> Chart {
     let gear = test_case.case.pair.driven();
-    let (z, n) = (
-        gear.tooth_count(),
-        gear.holes().map_or(0, |holes| holes.count),
-    );
+    let (z, n) = (gear.tooth_count(), gear.hole_repeats());
     let looks = [Look::Stems, Look::Rings, Look::Crosses];
     let series = METHODS
         .iter()

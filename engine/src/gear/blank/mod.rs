@@ -1,6 +1,19 @@
-//! The blank under the teeth: a bore on a rigid hub ring, and holes.
+//! The blank under the teeth: a bore on a rigid hub ring, holes, and a web.
+//!
+//! Read in this order: [`hole`] (one opening, round or a slot, and what is left between two), [`region`] (bore, holes and web
+//! together), [`moments`] (what they take away), [`symmetry`] (how often a blank repeats around).
 
 use std::f64::consts::PI;
+
+pub mod hole;
+pub mod moments;
+pub mod region;
+pub mod symmetry;
+
+pub use hole::{Hole, HoleShape};
+pub use moments::Moments;
+pub use region::{BlankRegion, Ligament, Web};
+pub use symmetry::Symmetry;
 
 /// N equal round holes on a circle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,13 +56,4 @@ impl HolePattern {
     pub fn polar_moment(&self) -> f64 {
         self.area() * (self.radius.powi(2) / 2.0 + self.circle_radius.powi(2))
     }
-}
-
-/// What carries the teeth: everything between the rigid bore and the root circle.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Blank {
-    /// The radius of the bore, on which the hub is rigid.
-    pub bore_radius: f64,
-    /// The holes, if there are any.
-    pub holes: Option<HolePattern>,
 }

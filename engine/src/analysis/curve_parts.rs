@@ -1,0 +1,111 @@
+//! A curve put together from what a method finds at each position.
+
+use super::Case;
+use super::curve::{Curve, DecompositionParts, LoadShare, Statistics};
+use super::spectrum::Spectrum;
+use crate::contact::MeshContact;
+
+/// What a method finds at each position of one torque.
+pub(super) struct CurveParts {
+    pub(super) transmission_error: Vec<f64>,
+    pub(super) stiffness: Vec<f64>,
+    pub(super) pairs_in_contact: Vec<u32>,
+    pub(super) peak_contact_pressure: Vec<Option<f64>>,
+    pub(super) load_shares: Vec<LoadShare>,
+    pub(super) decomposition: Option<DecompositionParts>,
+}
+
+impl CurveParts {
+    /// The curve of these parts at one torque of `case`.
+    pub(super) fn into_curve(self, case: &Case, output_torque: f64) -> Curve {
+        let load = case.pair.load(output_torque);
+        let spectrum = case.covers_whole_periods().then(|| {
+            Spectrum::of(
+                &case.pair,
+                case.span(),
+                &self.transmission_error,
+                &self.stiffness,
+                case.driving_speed,
+            )
+        });
+        Curve {
+            output_torque,
+            load,
+            mesh_position: case.mesh_positions(),
+            mesh_stiffness_secant: self
+                .transmission_error
+                .iter()
+                .map(|delta| if load == 0.0 { 0.0 } else { load / delta })
+                .collect(),
+            transmission_error_statistics: Statistics::of(&self.transmission_error),
+            mesh_stiffness_tangent_statistics: Statistics::of(&self.stiffness),
+            transmission_error: self.transmission_error,
+            mesh_stiffness_tangent: self.stiffness,
+            pairs_in_contact: self.pairs_in_contact,
+            peak_contact_pressure: self.peak_contact_pressure,
+            load_shares: self.load_shares,
+            spectrum,
+            decomposition: self.decomposition,
+        }
+    }
+}
+
+impl CurveParts {
+    /// What `contacts` at every position of `case` say, but for the stiffness.
+    pub(super) fn of_contacts(case: &Case, contacts: &[MeshContact], stiffness: Vec<f64>) -> Self {
+        let each = contacts.iter();
+        Self {
+            transmission_error: each
+                .clone()
+                .map(|contact| contact.transmission_error)
+                .collect(),
+            stiffness,
+            pairs_in_contact: each.clone().map(MeshContact::loaded_pairs).collect(),
+            peak_contact_pressure: each.map(|contact| contact.peak_pressure).collect(),
+            load_shares: load_shares(&case.mesh_positions(), contacts),
+            decomposition: None,
+        }
+    }
+
+    /// What `contacts` at the repeating positions of `case` say of everything but δ and k.
+    pub(super) fn of_repeating(case: &Case, contacts: &[MeshContact]) -> Self {
+        let each = contacts.iter();
+        let shares = load_shares(&case.repeating_positions(), contacts).into_iter();
+        Self {
+            transmission_error: Vec::new(),
+            stiffness: Vec::new(),
+            pairs_in_contact: case.repeated(each.clone().map(MeshContact::loaded_pairs)),
+            peak_contact_pressure: case.repeated(each.map(|contact| contact.peak_pressure)),
+            load_shares: shares
+                .map(|LoadShare { pair_offset, share }| LoadShare {
+                    pair_offset,
+                    share: case.repeated(share.iter().copied()),
+                })
+                .collect(),
+            decomposition: None,
+        }
+    }
+}
+
+/// Shares of the load by pair offset n − floor(η), for the offsets that ever carry load.
+fn load_shares(positions: &[f64], contacts: &[MeshContact]) -> Vec<LoadShare> {
+    let mut shares: Vec<LoadShare> = Vec::new();
+    for (i, (eta, contact)) in positions.iter().zip(contacts).enumerate() {
+        for pair in contact.pairs.iter().filter(|pair| pair.share > 0.0) {
+            let pair_offset = (pair.pair - eta.floor() as i64) as i32;
+            let place = shares
+                .iter()
+                .position(|share| share.pair_offset == pair_offset)
+                .unwrap_or_else(|| {
+                    shares.push(LoadShare {
+                        pair_offset,
+                        share: vec![0.0; positions.len()],
+                    });
+                    shares.len() - 1
+                });
+            shares[place].share[i] = pair.share;
+        }
+    }
+    shares.sort_by_key(|share| share.pair_offset);
+    shares
+}

@@ -1,0 +1,122 @@
+//! Why a case could not be computed.
+
+use super::load_distribution::Formula;
+use crate::assembly::AssemblyError;
+use crate::contact::positions::PositionsError;
+use crate::contact::{ContactError, PositionError};
+use crate::gear::Member;
+use crate::run::Stopped;
+
+/// Why a case could not be computed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AnalysisError {
+    /// The contact solver gave up at a position.
+    #[error(
+        "the contact did not converge at mesh position {mesh_position}: residual gap {residual} m after {iterations} iterations"
+    )]
+    NotConverged {
+        /// The mesh position η.
+        mesh_position: f64,
+        /// The gap left, in meters.
+        residual: f64,
+        /// The iterations spent.
+        iterations: u32,
+    },
+    /// The contact problem at a position could not be stated.
+    #[error("the contact at mesh position {mesh_position} failed")]
+    ContactFailed {
+        /// The mesh position η.
+        mesh_position: f64,
+        /// Why.
+        #[source]
+        error: ContactError,
+    },
+    /// No flanks come near each other at a position.
+    #[error("no flanks come near each other at mesh position {mesh_position}")]
+    NoContact {
+        /// The mesh position η.
+        mesh_position: f64,
+    },
+    /// Teeth touch that are too far apart for the model.
+    #[error(
+        "at mesh position {mesh_position} teeth touch that stand {apart} apart, and at most {coupled} can be coupled"
+    )]
+    TooFarApart {
+        /// The mesh position η.
+        mesh_position: f64,
+        /// Teeth between the first and the last that touch.
+        apart: usize,
+        /// How far apart coupled teeth stand.
+        coupled: usize,
+    },
+    /// A formula of the load distribution, far outside the range for which it was published, gives a pair of teeth no
+    /// compliance.
+    #[error("{formula} gives a pair of teeth the compliance {compliance} m/N")]
+    NoFormula {
+        /// The formula.
+        formula: Formula,
+        /// The gear whose part it is; `None` for the pair.
+        member: Option<Member>,
+        /// What it gives, in m/N: not positive, or no number.
+        compliance: f64,
+    },
+    /// A grid or a factorization failed.
+    #[error("the {member} gear cannot be discretized: {reason}")]
+    Discretization {
+        /// The gear.
+        member: Member,
+        /// What failed, with its numbers.
+        reason: String,
+    },
+    /// The caller stopped the work.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+}
+
+impl From<AssemblyError> for AnalysisError {
+    fn from(error: AssemblyError) -> Self {
+        match error {
+            AssemblyError::Part { member, error } => Self::Discretization {
+                member,
+                reason: error.to_string(),
+            },
+            AssemblyError::Stopped(stopped) => Self::Stopped(stopped),
+        }
+    }
+}
+
+impl From<PositionsError> for AnalysisError {
+    fn from(error: PositionsError) -> Self {
+        match error {
+            PositionsError::At {
+                mesh_position,
+                error,
+            } => Self::at_position(error, mesh_position),
+            PositionsError::Stopped(stopped) => Self::Stopped(stopped),
+        }
+    }
+}
+
+impl AnalysisError {
+    pub(super) fn at_position(error: PositionError, mesh_position: f64) -> Self {
+        match error {
+            PositionError::NoContact => Self::NoContact { mesh_position },
+            PositionError::TooFarApart { apart, coupled } => Self::TooFarApart {
+                mesh_position,
+                apart,
+                coupled,
+            },
+            PositionError::Contact(ContactError::NotConverged {
+                iterations, gap, ..
+            }) => Self::NotConverged {
+                mesh_position,
+                residual: gap,
+                iterations,
+            },
+            PositionError::Contact(error) => Self::ContactFailed {
+                mesh_position,
+                error,
+            },
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! Curves at torque 0: the limit as the load vanishes, in which nothing is elastic and every method agrees.
+
+use super::curve_parts::CurveParts;
+use super::evidence::Evidence;
+use super::warning::warnings;
+use super::{Analysis, AnalysisError, Case, Curve};
+use crate::contact::light_contact;
+
+/// `case` without its torques of zero.
+pub(super) fn without_torque_zero(case: &Case) -> Case {
+    let mut loaded = case.clone();
+    loaded.output_torques.retain(|torque| *torque != 0.0);
+    loaded
+}
+
+/// The `curves` of the loaded torques of `case`, and those of its torques of zero, in its order.
+pub(super) fn with_torque_zero(
+    case: &Case,
+    curves: Vec<Curve>,
+) -> Result<Vec<Curve>, AnalysisError> {
+    let mut curves = curves.into_iter();
+    let of = |torque: &f64| match *torque {
+        0.0 => Some(curve(case)),
+        _ => curves.next().map(Ok),
+    };
+    case.output_torques.iter().filter_map(of).collect()
+}
+
+/// The answer to a `case` that asks for no load at all.
+pub(super) fn alone(case: &Case) -> Result<Analysis, AnalysisError> {
+    Ok(Analysis {
+        curves: with_torque_zero(case, Vec::new())?,
+        evidence: Evidence::new(0),
+        warnings: warnings(case),
+    })
+}
+
+fn curve(case: &Case) -> Result<Curve, AnalysisError> {
+    let contacts = case
+        .repeating_positions()
+        .into_iter()
+        .map(|eta| {
+            light_contact(&case.pair, eta).map_err(|error| AnalysisError::at_position(error, eta))
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    let each = contacts.iter();
+    let parts = CurveParts {
+        transmission_error: case.repeated(each.clone().map(|contact| contact.transmission_error)),
+        stiffness: case.repeated(each.map(|contact| contact.stiffness)),
+        ..CurveParts::of_repeating(case, &contacts)
+    };
+    Ok(parts.into_curve(case, 0.0))
+}

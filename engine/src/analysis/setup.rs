@@ -1,0 +1,50 @@
+//! What every method by finite elements works with.
+
+use super::{AnalysisError, Case};
+use crate::assembly::{Blanks, Modeling, PairSpec, Parts};
+use crate::contact::PairModel;
+use crate::grid::GridLevel;
+use crate::run::Run;
+
+/// A case, how its pair is modeled, who provides the parts of the model, and the handle of the run.
+#[derive(Clone, Copy)]
+pub(super) struct Setup<'a> {
+    pub(super) case: &'a Case,
+    pub(super) modeling: Modeling,
+    pub(super) parts: &'a dyn Parts,
+    pub(super) run: &'a Run,
+}
+
+impl<'a> Setup<'a> {
+    /// `case` at `level`, with teeth coupled up to `farthest` apart.
+    pub(super) fn new(
+        case: &'a Case,
+        level: GridLevel,
+        farthest: usize,
+        parts: &'a dyn Parts,
+        run: &'a Run,
+    ) -> Self {
+        let modeling = Modeling {
+            level,
+            interface_radii: case.resolution.interface_radii,
+            farthest,
+            solver: case.resolution.contact_solver,
+        };
+        Self {
+            case,
+            modeling,
+            parts,
+            run,
+        }
+    }
+
+    /// The pair with those of its blanks that take part.
+    pub(super) fn spec(&self, blanks: Blanks) -> PairSpec {
+        PairSpec::new(&self.case.pair, blanks, &self.modeling)
+    }
+
+    /// Its model, and the unknowns of it before condensation.
+    pub(super) fn model(&self, blanks: Blanks) -> Result<(PairModel, u64), AnalysisError> {
+        Ok(self.spec(blanks).model(self.parts, self.run)?)
+    }
+}

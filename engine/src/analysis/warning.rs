@@ -1,0 +1,156 @@
+//! What a reader of a result should know beside the numbers.
+
+use super::load_distribution::{FormulaRange, out_of_range};
+use super::{Case, Curve, Method};
+use crate::contact::MeshContact;
+use crate::gear::Member;
+
+/// Backlash below this, in modules, counts as none.
+const NO_BACKLASH: f64 = 1e-6;
+
+/// Beyond this ratio of the face widths a plane model is told to be doubtful: the load spreads over the wider gear's width by bending it, which
+/// a plane does not see.
+const LIKE_WIDTHS: f64 = 1.5;
+
+/// Pressures beyond this part of Young's modulus strain a material by about as much: hardened steel yields near one percent, plastics bend
+/// their curve at two.
+const ELASTIC_STRAIN: f64 = 0.02;
+
+/// What a reader of the result should know beside the numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Warning {
+    /// The teeth fit without any backlash; only the loaded flanks are solved.
+    ZeroBacklash,
+    /// Material around the holes thinner than one module.
+    ThinLigament {
+        /// The gear.
+        member: Member,
+        /// The ligament in meters.
+        ligament: f64,
+    },
+    /// A tip corner carries load off the line of action.
+    TipCornerContact {
+        /// The gear whose tip touches.
+        member: Member,
+        /// The largest share of the load that such a contact carries.
+        largest_share: f64,
+    },
+    /// The contact reaches the fillet of a gear, where it is not followed: the load at its end is not what it would be.
+    ContactReachesFillet {
+        /// The gear whose fillet is reached.
+        member: Member,
+    },
+    /// The face widths differ by more than a plane model can stand for.
+    FaceWidthsDiffer {
+        /// The larger over the smaller.
+        ratio: f64,
+    },
+    /// The contact presses so hard that materials do not stay linear.
+    ContactBeyondElasticity {
+        /// The largest contact pressure in Pa.
+        pressure: f64,
+        /// The smaller Young's modulus in Pa.
+        youngs_modulus: f64,
+    },
+    /// The span is not whole true periods: statistics are partial and there is no spectrum.
+    PartialSpan {
+        /// Mesh periods computed.
+        span: u32,
+        /// Mesh periods of the true period.
+        period: u32,
+    },
+    /// A formula is used outside the range for which it was published.
+    FormulaRange(FormulaRange),
+    /// The method does not see holes that the drawing has.
+    HolesNotSeen,
+}
+
+/// What a reader should know of a case before it is computed.
+pub fn warnings(case: &Case) -> Vec<Warning> {
+    let pair = &case.pair;
+    let mut warnings = Vec::new();
+    if pair.backlash() < NO_BACKLASH * pair.driving().data().rack.module {
+        warnings.push(Warning::ZeroBacklash);
+    }
+    for member in Member::BOTH {
+        let gear = pair.gear(member);
+        if let Some(ligament) = gear
+            .least_ligament()
+            .filter(|&ligament| ligament < gear.data().rack.module)
+        {
+            warnings.push(Warning::ThinLigament { member, ligament });
+        }
+    }
+    let widths = [pair.driving().face_width(), pair.driven().face_width()];
+    let ratio = widths[0].max(widths[1]) / pair.common_face_width();
+    if ratio > LIKE_WIDTHS {
+        warnings.push(Warning::FaceWidthsDiffer { ratio });
+    }
+    if !case.covers_whole_periods() {
+        warnings.push(Warning::PartialSpan {
+            span: case.span(),
+            period: pair.period(),
+        });
+    }
+    if case.method == Method::LoadDistribution {
+        if !case.holed().is_empty() {
+            warnings.push(Warning::HolesNotSeen);
+        }
+        let outside = out_of_range(case);
+        warnings.extend(outside.into_iter().map(Warning::FormulaRange));
+    }
+    warnings
+}
+
+/// Warns of tips that touch off the path of contact, and of contact that reaches a fillet.
+pub(super) fn warn_of_tips(warnings: &mut Vec<Warning>, contacts: &[MeshContact]) {
+    for member in Member::BOTH {
+        let mut pairs = contacts.iter().flat_map(|contact| &contact.pairs);
+        let warning = Warning::ContactReachesFillet { member };
+        if pairs.any(|pair| pair.fillet == Some(member)) && !warnings.contains(&warning) {
+            warnings.push(warning);
+        }
+        let shares = contacts
+            .iter()
+            .flat_map(|contact| &contact.pairs)
+            .filter(|pair| pair.tip_corner == Some(member))
+            .map(|pair| pair.share);
+        let largest_share = shares.fold(0.0, f64::max);
+        if largest_share > 0.0 {
+            warn_of_corner(warnings, member, largest_share);
+        }
+    }
+}
+
+/// Warns of a tip corner, once for each gear.
+fn warn_of_corner(warnings: &mut Vec<Warning>, member: Member, share: f64) {
+    for warning in &mut *warnings {
+        if let Warning::TipCornerContact {
+            member: known,
+            largest_share,
+        } = warning
+            && *known == member
+        {
+            *largest_share = largest_share.max(share);
+            return;
+        }
+    }
+    warnings.push(Warning::TipCornerContact {
+        member,
+        largest_share: share,
+    });
+}
+
+/// Warns of pressures that no material bears in proportion.
+pub(super) fn warn_of_pressures(warnings: &mut Vec<Warning>, case: &Case, curves: &[Curve]) {
+    let moduli = Member::BOTH.map(|member| case.pair.gear(member).material().youngs_modulus);
+    let youngs_modulus = moduli[0].min(moduli[1]);
+    let pressures = curves.iter().flat_map(|curve| &curve.peak_contact_pressure);
+    let pressure = pressures.flatten().copied().fold(0.0, f64::max);
+    if pressure > ELASTIC_STRAIN * youngs_modulus {
+        warnings.push(Warning::ContactBeyondElasticity {
+            pressure,
+            youngs_modulus,
+        });
+    }
+}

@@ -1,0 +1,107 @@
+//! The blank of a gear, from the bore to the interface circle.
+
+use super::PartError;
+use super::interface::orders_of_blank;
+use crate::fem::blank::BlankSubstructure;
+use crate::fem::cyclic::Harmonics;
+use crate::gear::SpurGear;
+use crate::grid::blank::ELEMENTS_PER_TOOTH;
+use crate::grid::{BlankGrid, GridError, GridLevel};
+use crate::run::Run;
+
+/// Elements of the blank along the interface circle for each tooth, at most: a rim so thin that it would want more is
+/// refused or warned of.
+const MOST_ELEMENTS_PER_TOOTH: f64 = 10.0;
+
+/// Elements along the interface circle of a holed blank, at least.
+const ELEMENTS_AROUND_HOLES: f64 = 400.0;
+
+/// What a blank depends on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlankSpec {
+    gear: SpurGear,
+    interface_radius: f64,
+    level: GridLevel,
+}
+
+impl BlankSpec {
+    /// The blank of `gear` inside `interface_radius`, with hole 0 at the angle 0: a blank is turned when it is joined.
+    pub fn new(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Self {
+        Self {
+            gear: gear.with_holes_unturned().with_plain_flanks(),
+            interface_radius,
+            level,
+        }
+    }
+
+    /// The same blank without holes.
+    pub fn solid(&self) -> Self {
+        Self {
+            gear: self.gear.without_holes(),
+            ..self.clone()
+        }
+    }
+
+    /// The orders that find it unlike a solid blank.
+    pub fn orders(&self) -> Harmonics {
+        orders_of_blank(&self.gear, self.interface_radius, self.level)
+    }
+
+    /// Makes it, on this thread alone.
+    ///
+    /// # Errors
+    ///
+    /// [`PartError`].
+    pub fn make(&self, run: &Run) -> Result<BlankSubstructure, PartError> {
+        run.check()?;
+        let gear = &self.gear;
+        let grid = blank_grid(gear, self.interface_radius, self.level)?;
+        Ok(BlankSubstructure::new(
+            &grid,
+            self.interface_radius,
+            gear.material(),
+            gear.face_width(),
+            self.orders(),
+            run,
+        )?)
+    }
+}
+
+/// The grid of the blank of `gear`, or of one of its equal sectors, fine enough on the interface circle for the orders that it carries.
+///
+/// # Errors
+///
+/// [`GridError`] if the holes leave no room for elements.
+pub fn blank_grid(
+    gear: &SpurGear,
+    interface_radius: f64,
+    level: GridLevel,
+) -> Result<BlankGrid, GridError> {
+    let z = f64::from(gear.tooth_count());
+    let orders = orders_of_blank(gear, interface_radius, GridLevel::Standard).largest;
+    // Seven nodes, three and a half elements, for two wavelengths of the highest order.
+    let of_orders = 1.75 * orders as f64 / z;
+    // Holes are as large as their gear and not as its teeth.
+    let least = if gear.holes().is_empty() {
+        ELEMENTS_PER_TOOTH
+    } else {
+        ELEMENTS_PER_TOOTH.min(ELEMENTS_AROUND_HOLES / z)
+    };
+    let region = &gear.data().blank;
+    if let Some(web) = region.web_in(gear.face_width())
+        && web.outer_radius > interface_radius
+    {
+        return Err(GridError::WebAboveInterface {
+            web_radius: web.outer_radius,
+            interface_radius,
+        });
+    }
+    BlankGrid::of_region(
+        region,
+        gear.face_width(),
+        interface_radius,
+        gear.tooth_count(),
+        of_orders.clamp(least, MOST_ELEMENTS_PER_TOOTH),
+        level,
+    )
+}

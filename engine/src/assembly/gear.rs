@@ -1,0 +1,199 @@
+//! Whole gears: the teeth of each joined with what carries them.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::{AssemblyError, BlankSpec, PartError, Parts, Teeth, TeethSpec};
+use crate::contact::GearModel;
+use crate::fem::blank::BlankSubstructure;
+use crate::fem::body::Coupling;
+use crate::gear::{Member, SpurGear};
+use crate::grid::GridLevel;
+use crate::run::Run;
+
+/// What a gear depends on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GearSpec {
+    /// Its teeth.
+    pub teeth: TeethSpec,
+    /// What carries them; `None` for a blank that does not give way, so that the interface circle is held (paper: wh).
+    pub carrier: Option<Carrier>,
+}
+
+/// A flexible blank under the teeth of a gear.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Carrier {
+    /// The blank.
+    pub blank: BlankSpec,
+    /// The angle of its hole 0 in radians.
+    pub hole_angle: f64,
+    /// How far apart, in teeth, loaded teeth are coupled.
+    pub farthest: usize,
+}
+
+/// A gear ready for contact.
+#[derive(Debug, Clone)]
+pub struct Gear {
+    /// Its flank, and how its loaded teeth move each other.
+    pub model: GearModel,
+    /// Unknowns before condensation.
+    pub degrees_of_freedom: u64,
+}
+
+/// A gear that is wanted, and whose it is should it fail.
+#[derive(Debug, Clone)]
+pub struct WantedGear {
+    /// Which gear of the pair.
+    pub member: Member,
+    /// How it is made.
+    pub spec: GearSpec,
+}
+
+impl GearSpec {
+    /// `gear` on a rigid blank.
+    pub fn on_rigid_blank(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Self {
+        Self {
+            teeth: TeethSpec::new(gear, interface_radius, level),
+            carrier: None,
+        }
+    }
+
+    /// `gear` on its own blank; teeth up to `farthest` apart are coupled.
+    pub fn on_own_blank(
+        gear: &SpurGear,
+        interface_radius: f64,
+        level: GridLevel,
+        farthest: usize,
+    ) -> Self {
+        Self {
+            teeth: TeethSpec::new(gear, interface_radius, level),
+            carrier: Some(Carrier {
+                blank: BlankSpec::new(gear, interface_radius, level),
+                hole_angle: gear.hole_angle(),
+                farthest,
+            }),
+        }
+    }
+
+    /// The blanks of which it is made: its own, and beside a holed one the solid one that its highest orders find.
+    fn blanks(&self) -> Vec<BlankSpec> {
+        let Some(Carrier { blank, .. }) = &self.carrier else {
+            return Vec::new();
+        };
+        let solid = blank.solid();
+        if blank.orders() == solid.orders() {
+            vec![blank.clone()]
+        } else {
+            vec![blank.clone(), solid]
+        }
+    }
+
+    /// Joins `teeth` with the `blanks` of [`GearSpec::blanks`].
+    fn join(
+        &self,
+        teeth: &Teeth,
+        blanks: &[Arc<BlankSubstructure>],
+        run: &Run,
+    ) -> Result<Gear, PartError> {
+        let (coupling, blank_nodes) = match (&self.carrier, blanks) {
+            (Some(carrier), [blank, solid @ ..]) => {
+                (carrier.couple(teeth, blank, solid, run)?, blank.grid_nodes)
+            }
+            _ => (teeth.on_rigid_blank.clone(), 0),
+        };
+        Ok(Gear {
+            model: GearModel {
+                flank: teeth.flank.clone(),
+                coupling,
+            },
+            degrees_of_freedom: teeth.degrees_of_freedom + 2 * blank_nodes as u64,
+        })
+    }
+}
+
+impl Carrier {
+    /// How `teeth` move each other on `blank`, of which orders above its own find the `solid` one, if there are any.
+    fn couple(
+        &self,
+        teeth: &Teeth,
+        blank: &BlankSubstructure,
+        solid: &[Arc<BlankSubstructure>],
+        run: &Run,
+    ) -> Result<Arc<Coupling>, PartError> {
+        let on_blank = |ring| Coupling::on_blank(ring, blank, self.hole_angle, self.farthest, run);
+        let coupling = match solid {
+            [] => on_blank(&teeth.ring),
+            [solid, ..] => on_blank(&teeth.ring.above(blank.harmonics, solid, run)?),
+        };
+        Ok(Arc::new(coupling?))
+    }
+}
+
+/// Makes the gears that are `wanted` of what `parts` provides, in parallel; a part that they share is asked for once.
+///
+/// # Errors
+///
+/// [`AssemblyError`].
+pub fn make_gears<P: Parts + ?Sized>(
+    wanted: &[WantedGear],
+    parts: &P,
+    run: &Run,
+) -> Result<Vec<Arc<Gear>>, AssemblyError> {
+    let teeth: Vec<_> = wanted
+        .iter()
+        .map(|gear| (gear.member, gear.spec.teeth.clone()))
+        .collect();
+    let blanks: Vec<_> = wanted
+        .iter()
+        .flat_map(|gear| {
+            gear.spec
+                .blanks()
+                .into_iter()
+                .map(|blank| (gear.member, blank))
+        })
+        .collect();
+    // No part needs another. Teeth come first: they take longest.
+    let (teeth, blanks) = rayon::join(
+        || made(&teeth, |spec| parts.teeth(spec, run)),
+        || made(&blanks, |spec| parts.blank(spec, run)),
+    );
+    let mut blanks = blanks?.into_iter();
+    let blanks: Vec<Vec<_>> = wanted
+        .iter()
+        .map(|gear| blanks.by_ref().take(gear.spec.blanks().len()).collect())
+        .collect();
+    (wanted, teeth?, blanks)
+        .into_par_iter()
+        .with_max_len(1)
+        .map(|(gear, teeth, blanks)| {
+            let joined = gear.spec.join(&teeth, &blanks, run);
+            joined.map(Arc::new).map_err(|error| error.of(gear.member))
+        })
+        .collect()
+}
+
+/// The parts of `wanted`, in its order, made by `make` in parallel; equal ones are made once, for the gear that comes first.
+fn made<S: PartialEq + Sync, P: Send + Sync>(
+    wanted: &[(Member, S)],
+    make: impl Fn(&S) -> Result<Arc<P>, PartError> + Sync,
+) -> Result<Vec<Arc<P>>, AssemblyError> {
+    let mut distinct: Vec<&(Member, S)> = Vec::new();
+    let mut places = Vec::with_capacity(wanted.len());
+    for part in wanted {
+        let known = distinct.iter().position(|known| known.1 == part.1);
+        places.push(known.unwrap_or(distinct.len()));
+        if known.is_none() {
+            distinct.push(part);
+        }
+    }
+    let parts: Vec<Arc<P>> = distinct
+        .par_iter()
+        .with_max_len(1)
+        .map(|(member, spec)| make(spec).map_err(|error| error.of(*member)))
+        .collect::<Result<_, _>>()?;
+    Ok(places
+        .into_iter()
+        .map(|place| parts[place].clone())
+        .collect())
+}

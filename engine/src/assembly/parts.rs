@@ -1,0 +1,120 @@
+//! Who provides the parts of a model.
+
+use std::sync::Arc;
+
+use super::{BlankSpec, Gear, PairSpec, Teeth, TeethSpec, WantedGear, make_gears};
+use crate::contact::positions::{PositionsError, contacts};
+use crate::contact::{MeshContact, PairModel};
+use crate::fem::FemError;
+use crate::fem::blank::BlankSubstructure;
+use crate::gear::Member;
+use crate::grid::GridError;
+use crate::run::{Run, Stopped};
+
+/// Who provides parts: whoever makes them all ([`MakeAll`]), or keeps what others have made ([`crate::library::Library`]).
+///
+/// A part is a function of its spec: whoever provides it, it has the same bits. A provider overrides what it does better than
+/// making the part anew.
+pub trait Parts: Sync {
+    /// The teeth of `spec`.
+    ///
+    /// # Errors
+    ///
+    /// [`PartError`].
+    fn teeth(&self, spec: &TeethSpec, run: &Run) -> Result<Arc<Teeth>, PartError> {
+        spec.make(run).map(Arc::new)
+    }
+
+    /// The blank of `spec`.
+    ///
+    /// # Errors
+    ///
+    /// [`PartError`].
+    fn blank(&self, spec: &BlankSpec, run: &Run) -> Result<Arc<BlankSubstructure>, PartError> {
+        spec.make(run).map(Arc::new)
+    }
+
+    /// The gears that are `wanted`, all unlike, in their order. They are asked for together, because they may share teeth and
+    /// blanks.
+    ///
+    /// # Errors
+    ///
+    /// [`AssemblyError`].
+    fn gears(&self, wanted: &[WantedGear], run: &Run) -> Result<Vec<Arc<Gear>>, AssemblyError> {
+        make_gears(wanted, self, run)
+    }
+
+    /// The contacts of `spec`, of whose pair `model` is the model.
+    ///
+    /// # Errors
+    ///
+    /// [`PositionsError`].
+    fn contacts(
+        &self,
+        spec: &ContactsSpec,
+        model: &PairModel,
+        run: &Run,
+    ) -> Result<Arc<Vec<MeshContact>>, PositionsError> {
+        contacts(model, spec.load, &spec.positions, run).map(Arc::new)
+    }
+}
+
+/// Makes every part anew.
+#[derive(Debug, Clone, Copy)]
+pub struct MakeAll;
+
+impl Parts for MakeAll {}
+
+/// What the contacts of a pair at some positions depend on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactsSpec {
+    /// The transmitted load F in N.
+    pub load: f64,
+    /// The mesh positions η.
+    pub positions: Vec<f64>,
+    /// The pair.
+    pub pair: PairSpec,
+}
+
+/// Why a part could not be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PartError {
+    /// Its grid could not be laid.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    /// It could not be condensed.
+    #[error(transparent)]
+    Fem(#[from] FemError),
+    /// The caller stopped the work.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+}
+
+/// Why a gear could not be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AssemblyError {
+    /// A part of it could not.
+    #[error("a part of the {member} gear could not be made")]
+    Part {
+        /// The gear.
+        member: Member,
+        /// Why.
+        #[source]
+        error: PartError,
+    },
+    /// The caller stopped the work.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+}
+
+impl PartError {
+    /// The same of `member`.
+    pub(super) fn of(self, member: Member) -> AssemblyError {
+        match self {
+            Self::Stopped(stopped) | Self::Fem(FemError::Stopped(stopped)) => {
+                AssemblyError::Stopped(stopped)
+            }
+            error => AssemblyError::Part { member, error },
+        }
+    }
+}

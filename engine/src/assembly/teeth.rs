@@ -1,0 +1,73 @@
+//! All teeth of a gear, down to the interface circle.
+
+use std::sync::Arc;
+
+use super::PartError;
+use super::interface::harmonics;
+use crate::contact::flank_table::FlankTable;
+use crate::fem::body::Coupling;
+use crate::fem::teeth::{FARTHEST_COUPLED, TeethRing};
+use crate::fem::tooth::ToothSubstructure;
+use crate::gear::SpurGear;
+use crate::grid::{GridLevel, ToothGrid};
+use crate::run::Run;
+
+/// What the teeth of a gear depend on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TeethSpec {
+    gear: SpurGear,
+    interface_radius: f64,
+    level: GridLevel,
+}
+
+/// All teeth of a gear, down to the interface circle.
+#[derive(Debug)]
+pub struct Teeth {
+    /// The flank of each.
+    pub flank: Arc<FlankTable>,
+    /// Their ring.
+    pub ring: TeethRing,
+    /// Teeth with the interface circle held.
+    pub on_rigid_blank: Arc<Coupling>,
+    /// Unknowns before condensation.
+    pub degrees_of_freedom: u64,
+}
+
+impl TeethSpec {
+    /// The teeth of `gear` down to `interface_radius`. Nothing inside that circle counts, and no modification or
+    /// deviation: they are gaps and hardly change how a tooth bends.
+    pub fn new(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Self {
+        Self {
+            gear: gear.without_blank().with_plain_flanks(),
+            interface_radius,
+            level,
+        }
+    }
+
+    /// Makes them, on this thread alone.
+    ///
+    /// # Errors
+    ///
+    /// [`PartError`].
+    pub fn make(&self, run: &Run) -> Result<Teeth, PartError> {
+        let Self {
+            gear,
+            interface_radius,
+            level,
+        } = self;
+        run.check()?;
+        let grid = ToothGrid::new(gear, *interface_radius, *level)?;
+        run.check()?;
+        let tooth = ToothSubstructure::new(gear, &grid)?;
+        run.check()?;
+        let ring = TeethRing::new(&tooth, harmonics(gear, *interface_radius, *level), run)?;
+        // Nodes of the interface circle belong to the teeth; the blank's follow them.
+        let degrees_of_freedom = 2 * u64::from(gear.tooth_count()) * (tooth.own_nodes() as u64);
+        Ok(Teeth {
+            flank: Arc::new(FlankTable::new(&tooth, gear)),
+            on_rigid_blank: Arc::new(Coupling::on_rigid_blank(&ring, FARTHEST_COUPLED)),
+            ring,
+            degrees_of_freedom,
+        })
+    }
+}

@@ -1,0 +1,136 @@
+//! How the interface circle of a whole gear moves under loads on its flanks.
+
+use faer::Mat;
+
+use super::FemError;
+use super::blank::BlankSubstructure;
+use super::body::tooth_angle;
+use super::dense::Cholesky;
+use super::teeth::TeethRing;
+use crate::run::Run;
+
+/// A gear whose interface circle can be moved: q = C Σ_j F_j m_j.
+///
+/// Orders that see the blank are solved together; those above them, which find it as the solid one, follow in the groups in
+/// which the teeth join them.
+pub struct InterfaceMotion<'a> {
+    ring: &'a TeethRing,
+    /// The ring on the orders that see the blank.
+    seen: TeethRing,
+    gear: Cholesky<f64>,
+    above: Vec<OrdersAbove>,
+}
+
+/// Orders that do not see the blank and meet in the ring of teeth.
+struct OrdersAbove {
+    orders: Vec<usize>,
+    unknowns: Vec<usize>,
+    /// The lower orders that they meet with.
+    of_low: Vec<usize>,
+    coupling: Mat<f64>,
+    rim: Cholesky<f64>,
+}
+
+impl<'a> InterfaceMotion<'a> {
+    /// Joins `ring` with `blank`, whose hole 0 stands at `phase`; `solid` is the blank that the orders above those of `blank`
+    /// find, where there are any.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`].
+    pub fn new(
+        ring: &'a TeethRing,
+        blank: &BlankSubstructure,
+        phase: f64,
+        solid: &BlankSubstructure,
+        run: &Run,
+    ) -> Result<Self, FemError> {
+        let low = blank.harmonics;
+        let (seen, above) = if low == ring.harmonics {
+            (ring.clone(), Vec::new())
+        } else {
+            (
+                ring.above(low, solid, run)?,
+                orders_above(ring, low.largest, solid)?,
+            )
+        };
+        let total = &seen.stiffness + blank.stiffness_at(phase);
+        let unknowns = total.nrows();
+        let gear = Cholesky::new_watched(total, run)?.ok_or(FemError::NotPositiveDefinite {
+            part: "the gear's interface",
+            unknowns,
+        })?;
+        Ok(Self {
+            ring,
+            seen,
+            gear,
+            above,
+        })
+    }
+
+    /// The amplitudes of the circle on all orders of the ring of teeth, in meters, under the modal loads of the teeth given by
+    /// their numbers.
+    pub fn under(&self, modal_loads: &[(usize, Vec<f64>)]) -> Vec<f64> {
+        let low: Vec<usize> = (0..=self.seen.harmonics.largest).collect();
+        let mut motion = forces(&self.seen, modal_loads, &low);
+        self.gear.solve_in_place(motion.as_mut());
+        let mut all = vec![0.0; self.ring.harmonics.unknowns()];
+        all[..motion.nrows()].copy_from_slice(motion.col_as_slice(0));
+        for group in &self.above {
+            let mut moved = forces(self.ring, modal_loads, &group.orders);
+            let of_low = Mat::from_fn(group.of_low.len(), 1, |i, _| all[group.of_low[i]]);
+            moved -= &group.coupling * of_low;
+            group.rim.solve_in_place(moved.as_mut());
+            for (i, unknown) in group.unknowns.iter().enumerate() {
+                all[*unknown] = moved[(i, 0)];
+            }
+        }
+        all
+    }
+}
+
+/// Σ_j F_j m_j on the harmonics of `orders`, order by order.
+fn forces(ring: &TeethRing, modal_loads: &[(usize, Vec<f64>)], orders: &[usize]) -> Mat<f64> {
+    let mut sum = Mat::zeros(ring.harmonics.unknowns_of(orders).len(), 1);
+    for (tooth, loads) in modal_loads {
+        let patterns = ring.patterns_of_tooth_at(tooth_angle(*tooth, ring.tooth_count), orders);
+        let loads = Mat::from_fn(loads.len(), 1, |i, _| loads[i]);
+        sum += patterns * (&ring.pattern_shares * loads);
+    }
+    sum
+}
+
+fn orders_above(
+    ring: &TeethRing,
+    largest: usize,
+    solid: &BlankSubstructure,
+) -> Result<Vec<OrdersAbove>, FemError> {
+    let groups = ring.harmonics.meeting_orders(ring.tooth_count).into_iter();
+    let groups = groups.map(|orders| orders.into_iter().partition::<Vec<_>, _>(|n| *n > largest));
+    let group = |(orders, low): (Vec<usize>, Vec<usize>)| {
+        let (unknowns, of_low) = (
+            ring.harmonics.unknowns_of(&orders),
+            ring.harmonics.unknowns_of(&low),
+        );
+        let rim = Mat::from_fn(unknowns.len(), unknowns.len(), |i, j| {
+            let at = (unknowns[i], unknowns[j]);
+            ring.stiffness[at] + solid.stiffness[at]
+        });
+        Ok(OrdersAbove {
+            coupling: Mat::from_fn(unknowns.len(), of_low.len(), |i, j| {
+                ring.stiffness[(unknowns[i], of_low[j])]
+            }),
+            rim: Cholesky::new(rim).ok_or(FemError::NotPositiveDefinite {
+                part: "the rim",
+                unknowns: unknowns.len(),
+            })?,
+            orders,
+            unknowns,
+            of_low,
+        })
+    };
+    groups
+        .filter(|(orders, _)| !orders.is_empty())
+        .map(group)
+        .collect()
+}

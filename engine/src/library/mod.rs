@@ -1,0 +1,142 @@
+//! Parts that several cases share: made once, kept within a bound.
+//!
+//! A layer around the mechanics: [`Library`] is one of those who provide [`Parts`]. It changes no result, only how often a
+//! part is made.
+
+mod shelf;
+
+use std::sync::Arc;
+
+pub use shelf::ShelfUsage;
+
+use crate::assembly::{
+    AssemblyError, BlankSpec, ContactsSpec, Gear, GearSpec, PartError, Parts, Teeth, TeethSpec,
+    WantedGear, make_gears,
+};
+use crate::contact::positions::{PositionsError, contacts};
+use crate::contact::{MeshContact, PairModel};
+use crate::fem::blank::BlankSubstructure;
+use crate::run::Run;
+use shelf::Shelf;
+
+/// A bounded store of parts, shared between threads; cloning shares it.
+#[derive(Debug, Clone)]
+pub struct Library(Arc<Shelves>);
+
+#[derive(Debug)]
+struct Shelves {
+    teeth: Shelf<TeethSpec, Teeth>,
+    blanks: Shelf<BlankSpec, BlankSubstructure>,
+    gears: Shelf<GearSpec, Gear>,
+    contacts: Shelf<ContactsSpec, Vec<MeshContact>>,
+}
+
+impl Default for Library {
+    /// A library of 256 MB.
+    fn default() -> Self {
+        Self::with_capacity(256 << 20)
+    }
+}
+
+impl Library {
+    /// A library that keeps at most `bytes` of parts, of each kind the least recently used leaving first.
+    pub fn with_capacity(bytes: usize) -> Self {
+        Self(Arc::new(Shelves {
+            teeth: Shelf::new(bytes / 2, bytes_of_teeth),
+            blanks: Shelf::new(bytes / 4, bytes_of_blank),
+            gears: Shelf::new(bytes / 8, bytes_of_gear),
+            contacts: Shelf::new(bytes / 8, |spec, contacts| {
+                bytes_of_contacts(spec, contacts)
+            }),
+        }))
+    }
+
+    /// How each of its shelves is used, by what stands on it.
+    pub fn usage(&self) -> [(&'static str, ShelfUsage); 4] {
+        let Shelves {
+            teeth,
+            blanks,
+            gears,
+            contacts,
+        } = &*self.0;
+        [
+            ("teeth", teeth.usage()),
+            ("blanks", blanks.usage()),
+            ("gears", gears.usage()),
+            ("contacts", contacts.usage()),
+        ]
+    }
+}
+
+impl Parts for Library {
+    fn teeth(&self, spec: &TeethSpec, run: &Run) -> Result<Arc<Teeth>, PartError> {
+        run.check()?;
+        self.0.teeth.made_once(spec, || spec.make(run))
+    }
+
+    fn blank(&self, spec: &BlankSpec, run: &Run) -> Result<Arc<BlankSubstructure>, PartError> {
+        run.check()?;
+        self.0.blanks.made_once(spec, || spec.make(run))
+    }
+
+    // Gears are joined, and contacts solved, by many threads together. Who waited for that might be the one that is waited
+    // for, so that two who want the same at the same moment both make it, and get the same bits.
+
+    fn gears(&self, wanted: &[WantedGear], run: &Run) -> Result<Vec<Arc<Gear>>, AssemblyError> {
+        let shelf = &self.0.gears;
+        let known: Vec<Option<Arc<Gear>>> =
+            wanted.iter().map(|gear| shelf.find(&gear.spec)).collect();
+        let unknown: Vec<WantedGear> = wanted
+            .iter()
+            .zip(&known)
+            .filter(|(_, known)| known.is_none())
+            .map(|(gear, _)| gear.clone())
+            .collect();
+        let mut made = make_gears(&unknown, self, run)?.into_iter();
+        for (gear, part) in unknown.iter().zip(made.as_slice()) {
+            shelf.keep(&gear.spec, part);
+        }
+        Ok(known
+            .into_iter()
+            .filter_map(|known| known.or_else(|| made.next()))
+            .collect())
+    }
+
+    fn contacts(
+        &self,
+        spec: &ContactsSpec,
+        model: &PairModel,
+        run: &Run,
+    ) -> Result<Arc<Vec<MeshContact>>, PositionsError> {
+        let shelf = &self.0.contacts;
+        if let Some(known) = shelf.find(spec) {
+            run.reached(spec.positions.len() as u64)?;
+            return Ok(known);
+        }
+        let made = Arc::new(contacts(model, spec.load, &spec.positions, run)?);
+        shelf.keep(spec, &made);
+        Ok(made)
+    }
+}
+
+fn bytes_of_teeth(_: &TeethSpec, teeth: &Teeth) -> usize {
+    let ring = &teeth.ring;
+    let (n, r) = (ring.harmonics.unknowns(), teeth.flank.mode_count());
+    let couplings = 2 * teeth.on_rigid_blank.entries();
+    let patterns = (n + r) * ring.force_patterns.ncols();
+    size_of::<f64>() * (n * n + patterns + couplings + teeth.flank.entries())
+}
+
+fn bytes_of_blank(_: &BlankSpec, blank: &BlankSubstructure) -> usize {
+    size_of::<f64>() * blank.harmonics.unknowns().pow(2)
+}
+
+/// A gear keeps its flank and its coupling even where the teeth have gone.
+fn bytes_of_gear(_: &GearSpec, gear: &Gear) -> usize {
+    size_of::<f64>() * (gear.model.coupling.entries() + gear.model.flank.entries())
+}
+
+fn bytes_of_contacts(spec: &ContactsSpec, contacts: &[MeshContact]) -> usize {
+    let positions = size_of::<ContactsSpec>() + size_of_val(spec.positions.as_slice());
+    positions + contacts.iter().map(MeshContact::bytes).sum::<usize>()
+}
