@@ -475,3 +475,32 @@ fn a_constant_mass_knows_a_tip_circle_by_its_diameter() {
     );
     assert_ne!(radius(json!({})), by_addendum);
 }
+
+#[test]
+fn a_constant_mass_gives_every_pattern_of_a_list_the_same_radius() {
+    let mut document = axes(json!([
+        { "path": "/pair/driven/blank/holes/1/circle_radius_mm", "values": [38, 39] }
+    ]));
+    document["base"]["pair"]["driven"]["blank"]["holes"] = json!([
+        { "count": 4, "circle_radius_mm": 26.0 },
+        { "at_deg": [40, 140, 230, 320], "circle_radius_mm": 38.0 }
+    ]);
+    document["constant_mass"] = json!({ "gear": "driven", "mass_removed_percent": 10 });
+    let designs = designs(&parse(&document).unwrap());
+    for design in &designs {
+        let driven = design.submission.as_ref().unwrap().case().pair.driven();
+        assert!((driven.removed_fraction() - 0.1).abs() < 1e-10);
+        let radii = ["0", "1"].map(|i| {
+            let pointer = format!("/pair/driven/blank/holes/{i}/radius_mm");
+            design.changes[&pointer].as_f64().unwrap()
+        });
+        assert_eq!(radii[0], radii[1]);
+    }
+    document["axes"] = json!([
+        { "path": "/pair/driven/blank/holes/0/radius_mm", "values": [3, 4] }
+    ]);
+    assert_eq!(
+        refused(&document),
+        (Code::OutOfRange, vec!["/axes/0/path".to_owned()])
+    );
+}

@@ -113,6 +113,9 @@ fn no_change_of_a_document_gets_past_a_problem_or_a_submission() {
         "profile-modifications",
         "eccentricity",
         "interface-radii",
+        "web",
+        "unequal-holes",
+        "slots",
     ] {
         survives_changes(&filled_in(real), 1000);
     }
