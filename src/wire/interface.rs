@@ -97,12 +97,10 @@ impl InterfaceRadii {
 
 /// The radii in mm at which the blank of `gear` can be cut; any where it has no holes.
 fn range(gear: &SpurGear) -> (f64, f64) {
-    let blank = &gear.data().blank;
-    let Some(reach) = blank.outer_reach() else {
+    let Some(reach) = gear.data().blank.outer_reach() else {
         return (0.0, f64::INFINITY);
     };
-    let web = blank.web.map_or(0.0, |web| web.outer_radius);
-    let (inner, outer) = (to_mm(reach.max(web)), to_mm(gear.root_radius()));
+    let (inner, outer) = (to_mm(reach), to_mm(gear.root_radius()));
     let margin = 0.25 * (outer - inner).min(to_mm(gear.data().rack.module));
     (inner + margin, outer - margin)
 }
