@@ -13,27 +13,34 @@
 //!
 //! 1. **Geometry** ([`gear`]). An involute point at roll length s stands at r_b e_r(t) + s e_t(t), t = ψ_b − s/r_b. Gaps
 //!    between flanks follow in closed form: the normal of an involute through any point is a tangent of its base circle
-//!    ([`contact::patch`]).
+//!    ([`contact::facing`], [`contact::patch`]).
 //! 2. **Substructures** ([`grid`], [`fem`]). One tooth sector is condensed exactly to its loaded flank and its interface:
 //!    H_0 is the flank's compliance with the interface held, Ψ its answer to the interface ([`fem::tooth`]). The blank
 //!    between bore and R_w is any plane region with a thickness by region ([`gear::BlankRegion`]), condensed as a whole or, where
 //!    it is a pattern of holes, by the sector of one ([`fem::blank`]). Both meet on the circle R_w in trigonometric
-//!    polynomials, whatever Z, N and the phase of the holes ([`fem::harmonics`], [`fem::cyclic`]).
-//! 3. **Whole gears** ([`fem::body`]). C = (S_blank + S_teeth)⁻¹ on that circle, and between the flanks of teeth i and j
-//!    H_ij = δ_ij H_0 + Ψ_i C_ij Ψ_jᵀ, for every tooth on its own. Stresses inside follow from the same factors
+//!    polynomials, whatever Z, N and the angle of the holes ([`fem::harmonics`], [`fem::cyclic`], [`assembly::interface`]).
+//! 3. **Whole gears** ([`fem::body`], [`assembly::gear`]). C = (S_blank + S_teeth)⁻¹ on that circle, and between the flanks of
+//!    teeth i and j H_ij = δ_ij H_0 + Ψ_i C_ij Ψ_jᵀ, for every tooth on its own. Stresses inside follow from the same factors
 //!    ([`fem::recovery`]).
 //! 4. **Contact** ([`contact`]). At each position: minimize ½ pᵀHp + g_0ᵀp subject to wᵀp = F, p ≥ 0 (eqs. 4 to 6); δ is
 //!    the multiplier of the load. H on the contact cells is the smooth part of the finite-element compliance, interpolated,
-//!    plus the half plane's logarithm in closed form ([`contact::flank`], [`contact::half_plane`]), so that cells of a few
+//!    plus the half plane's logarithm in closed form ([`contact::flank_table`], [`contact::half_plane`]), so that cells of a few
 //!    micrometers move with the contact over elements of a tenth of a millimeter. Two solvers share nothing but H, g_0
 //!    and w: an exact active set and the augmented Lagrangian of eq. 7.
 //! 5. **Methods** ([`analysis`]). Flexible (section 2 of the paper), decomposition (section 3, eqs. 9 to 15), projected
 //!    decomposition (ours), and the classical load distribution (eqs. 4 and 5) from closed-form compliances
 //!    (`analysis::load_distribution`).
 //!
+//! Where the rest of the paper went: K_in,in and K_in,ed (eqs. 11 and 12) are never formed as such, because the inner unknowns of
+//! the annulus are eliminated exactly with every blank ([`fem::condensation`]) and its rotation is then the difference of two
+//! solutions (`analysis::decomposition`). The frequency f_0 (eq. 2) is that of the true period ([`gear::GearPair::period`]), the
+//! first order of a [`analysis::spectrum::Spectrum`]. M and C (eq. 8) are dropped: everything is quasi-static.
+//!
 //! *Mesh* always means gear teeth in engagement; finite elements live on a [`grid::Grid`].
 //!
-//! The arrow: analysis → contact → fem → grid → gear.
+//! The arrow: analysis → assembly → contact → fem → grid → gear. [`assembly`] makes a pair that is ready for contact of two drawings,
+//! part by part: teeth, blank, gear, pair. It asks [`assembly::Parts`] for each part; [`library`] is a layer around all of this that
+//! keeps parts for other cases, and no file of the mechanics knows it.
 
 pub mod analysis;
 pub mod assembly;

@@ -4,8 +4,10 @@ mod cases;
 
 use std::sync::Barrier;
 
-use cases::{study_design, test_case};
+use cases::{case, gear, holed, study_design, test_case};
 use meshwright_engine::analysis::{Analysis, Case, Curve, Method, Warning, analyze};
+use meshwright_engine::assembly::MakeAll;
+use meshwright_engine::gear::{GearData, GearPair, Material, Rack, SpurGear};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
@@ -234,6 +236,86 @@ fn the_stiffness_by_a_torque_step_is_the_tangent() {
         .filter(|(a, b)| (*a / *b - 1.0).abs() < 5e-3)
         .count();
     assert!(close >= 36, "{close} of 40 positions agree");
+}
+
+/// Large holes in a polymer gear that drives a steel one: what one gear gives way around its holes is far from small beside the other.
+fn large_holes_in_a_soft_gear() -> Case {
+    let rack = Rack {
+        module: 3e-3,
+        pressure_angle: 22.5_f64.to_radians(),
+        addendum: 3.57e-3,
+        dedendum: 4.32e-3,
+        tip_radius: 0.6e-3,
+    };
+    let polymer = Material {
+        youngs_modulus: 3e9,
+        poisson_ratio: 0.38,
+        density: 1400.0,
+    };
+    let soft = GearData {
+        rack,
+        profile_shift: 0.7,
+        face_width: 58e-3,
+        material: polymer,
+        ..gear(45, 19.6e-3)
+    };
+    let stiff = GearData {
+        rack,
+        face_width: 37e-3,
+        ..gear(45, 9.5e-3)
+    };
+    let driving = SpurGear::new(holed(soft, 5, 42.2e-3, 18.3e-3, 0.3)).expect("a gear");
+    let driven = SpurGear::new(holed(stiff, 10, 48.9e-3, 7.8e-3, 1.2)).expect("a gear");
+    let mut case = case(
+        GearPair::new(driving, driven, 137.4e-3).expect("meshes"),
+        &[0.5, 5.0],
+    );
+    case.resolution.positions_per_mesh_period = 20;
+    case
+}
+
+#[test]
+fn the_projection_says_how_far_off_it_is() {
+    let case = large_holes_in_a_soft_gear();
+    let (exact, projected) = (
+        solve(&case, Method::Flexible),
+        solve(&case, Method::ProjectedDecomposition),
+    );
+    let furthest = |i: usize| {
+        let curves = [&exact, &projected].map(|analysis| &analysis.curves[i].transmission_error);
+        let differences = curves[0].iter().zip(curves[1]);
+        differences.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    let furthest = furthest(0).max(furthest(1));
+    let told = projected.evidence.projection_error.expect("it projects");
+    println!("told {told:.2e} of {furthest:.2e} m");
+    // It looks at some of the positions, and finds most of what there is and never more (the contact solver starts elsewhere there:
+    // rounding).
+    assert!(told > 0.5 * furthest && told < 1.0001 * furthest);
+    let doubtful = |analysis: &Analysis| {
+        let warnings = analysis.warnings.iter();
+        warnings
+            .filter(|warning| matches!(warning, Warning::ProjectionDoubtful { .. }))
+            .count()
+    };
+    assert_eq!((doubtful(&projected), doubtful(&exact)), (1, 0));
+    assert_eq!(exact.evidence.projection_error, None);
+    for number in [1, 2, 3] {
+        let of_paper = solve(&test_case(number), Method::ProjectedDecomposition);
+        assert_eq!(doubtful(&of_paper), 0, "case {number}");
+    }
+}
+
+#[test]
+fn a_library_provides_what_is_made_without_one() {
+    for case in designs_by_methods() {
+        let made = analyze(&case, &MakeAll, &Run::unattended()).expect("a design of the study");
+        assert!(
+            made == solve_from(&Library::default(), &case),
+            "{:?}",
+            case.method
+        );
+    }
 }
 
 #[test]

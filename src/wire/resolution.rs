@@ -148,8 +148,9 @@ pub enum ContactSolverDocument {
     ActiveSet,
     /// The augmented Lagrangian of the paper.
     AugmentedLagrangian {
-        /// The penalty stiffness.
-        penalty_n_per_m: f64,
+        /// The penalty stiffness; absent where it follows from the gears.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        penalty_n_per_m: Option<f64>,
         /// The gap tolerance.
         gap_tolerance_um: f64,
     },
@@ -396,7 +397,7 @@ impl ContactSolverDocument {
             Node::Text(word) if word == "active_set" => return Some(Self::ActiveSet),
             Node::Text(word) if word == "augmented_lagrangian" => {
                 return Some(Self::AugmentedLagrangian {
-                    penalty_n_per_m: preset(&quantity::PENALTY),
+                    penalty_n_per_m: None,
                     gap_tolerance_um: preset(&quantity::GAP_TOLERANCE),
                 });
             }
@@ -416,7 +417,7 @@ impl ContactSolverDocument {
                 }
                 OptionalObject::Wrong => None,
                 OptionalObject::Present(mut inner) => {
-                    let penalty_n_per_m = inner.number(&quantity::PENALTY, None);
+                    let penalty_n_per_m = inner.optional_number(&quantity::PENALTY);
                     let gap_tolerance_um = inner.number(&quantity::GAP_TOLERANCE, None);
                     inner.finish();
                     penalty_n_per_m.zip(gap_tolerance_um).map(

@@ -5,7 +5,7 @@ use meshwright_engine::gear::Member;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::units::{plain, significant, to_mm, to_mpa, to_n_per_mm};
+use super::units::{plain, significant, to_mm, to_mpa, to_n_per_mm, to_um};
 
 /// A warning: the result stands, but with something to know.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
@@ -49,6 +49,8 @@ pub enum WarningCode {
     FormulaRange,
     /// The method does not see the holes that the drawing has.
     HolesNotSeen,
+    /// The projected decomposition leaves out too much of what the holes do.
+    ProjectionDoubtful,
 }
 
 /// One of the two gears.
@@ -180,6 +182,23 @@ impl WarningDocument {
                 WarningCode::HolesNotSeen,
                 "This method does not see holes: its curves are those of solid blanks.".to_owned(),
             ),
+            Warning::ProjectionDoubtful {
+                error,
+                part_of_mean,
+                part_of_peak_to_peak,
+            } => Self {
+                value: Some(to_um(error)),
+                unit: Some("um"),
+                ..new(
+                    WarningCode::ProjectionDoubtful,
+                    format!(
+                        "Where the holes let teeth touch earlier or later the projected decomposition is up to {} um off the exact transmission error, {} % of its mean and {} % of its peak-to-peak; the flexible method is exact.",
+                        plain(significant(to_um(error), 3)),
+                        plain(significant(100.0 * part_of_mean, 2)),
+                        plain(significant(100.0 * part_of_peak_to_peak, 2))
+                    ),
+                )
+            },
         }
     }
 

@@ -23,8 +23,7 @@ const TORQUE_STEP: f64 = 0.01;
 /// Contact solutions that the decomposition of `case` needs.
 pub(super) fn expected_positions(case: &Case) -> u64 {
     let samples = 2 * u64::from(case.resolution.blank_positions) * case.holed().len() as u64;
-    3 * case.output_torques.len() as u64
-        * (u64::from(case.resolution.positions_per_mesh_period) + samples)
+    3 * case.output_torques.len() as u64 * (case.repeating_positions().len() as u64 + samples)
 }
 
 /// One holed gear of the decomposition: the model in which its blank is flexible and the other holed one is not.

@@ -117,11 +117,11 @@ fn expected_positions(case: &Case) -> u64 {
         StiffnessRule::Tangent => 1,
         StiffnessRule::TorqueStep { .. } => 3,
     };
-    let per_period = u64::from(case.resolution.positions_per_mesh_period);
+    let repeating = case.repeating_positions().len() as u64;
     match case.method {
         Method::Flexible => torques * solves * case.positions() as u64,
         Method::Decomposition => decomposition::expected_positions(case),
-        Method::ProjectedDecomposition => torques * (solves + 1) * per_period,
-        Method::LoadDistribution => torques * per_period,
+        Method::ProjectedDecomposition => projected::expected_positions(case),
+        Method::LoadDistribution => torques * repeating,
     }
 }

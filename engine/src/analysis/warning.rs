@@ -1,7 +1,7 @@
 //! What a reader of a result should know beside the numbers.
 
 use super::load_distribution::{FormulaRange, out_of_range};
-use super::{Case, Curve, Method};
+use super::{Case, Curve, Method, Statistics};
 use crate::contact::MeshContact;
 use crate::gear::Member;
 
@@ -15,6 +15,13 @@ const LIKE_WIDTHS: f64 = 1.5;
 /// Pressures beyond this part of Young's modulus strain a material by about as much: hardened steel yields near one percent, plastics bend
 /// their curve at two.
 const ELASTIC_STRAIN: f64 = 0.02;
+
+/// Beyond these parts of the mean and of the peak-to-peak the error of the projected decomposition is told. Who asks for it asks what
+/// holes do to the fluctuation; at single positions case 1 of the paper is 4 % of it off, in its statistics 0.1 %.
+const DOUBTFUL_PROJECTION: [f64; 2] = [0.01, 0.05];
+
+/// A curve that fluctuates by a smaller part of its mean counts as one that fluctuates by so much: less is no concern of anyone.
+const LEAST_FLUCTUATION: f64 = 1e-3;
 
 /// What a reader of the result should know beside the numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,6 +70,15 @@ pub enum Warning {
     FormulaRange(FormulaRange),
     /// The method does not see holes that the drawing has.
     HolesNotSeen,
+    /// What the first-order term of the projected decomposition leaves out shows in its curve.
+    ProjectionDoubtful {
+        /// The largest difference to the exact δ that was found, in meters.
+        error: f64,
+        /// What part of the mean of its curve that is.
+        part_of_mean: f64,
+        /// What part of its peak-to-peak.
+        part_of_peak_to_peak: f64,
+    },
 }
 
 /// What a reader should know of a case before it is computed.
@@ -139,6 +155,27 @@ fn warn_of_corner(warnings: &mut Vec<Warning>, member: Member, share: f64) {
         member,
         largest_share: share,
     });
+}
+
+/// Warns of an `error` of the projected decomposition that shows in a curve with these `statistics`; of the largest error once.
+pub(super) fn warn_of_projection(warnings: &mut Vec<Warning>, error: f64, statistics: &Statistics) {
+    let mean = statistics.mean.abs().max(f64::MIN_POSITIVE);
+    let parts = [
+        error / mean,
+        error / statistics.peak_to_peak.max(LEAST_FLUCTUATION * mean),
+    ];
+    if parts[0] <= DOUBTFUL_PROJECTION[0] && parts[1] <= DOUBTFUL_PROJECTION[1] {
+        return;
+    }
+    let larger = |warning: &Warning| matches!(warning, Warning::ProjectionDoubtful { error: known, .. } if *known >= error);
+    if !warnings.iter().any(larger) {
+        warnings.retain(|warning| !matches!(warning, Warning::ProjectionDoubtful { .. }));
+        warnings.push(Warning::ProjectionDoubtful {
+            error,
+            part_of_mean: parts[0],
+            part_of_peak_to_peak: parts[1],
+        });
+    }
 }
 
 /// Warns of pressures that no material bears in proportion.

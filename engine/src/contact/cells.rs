@@ -9,7 +9,7 @@ use super::pair_cells::PairCells;
 use super::patch::Patch;
 use super::penetration::Found;
 use super::{
-    AugmentedLagrangian, ContactProblem, ContactSolution, solve_active_set,
+    AugmentedLagrangian, ContactProblem, ContactSolution, default_penalty, solve_active_set,
     solve_augmented_lagrangian,
 };
 use crate::gear::{Member, teeth_on};
@@ -188,7 +188,7 @@ impl<'a> ContactCells<'a> {
                 gap_tolerance,
             } => {
                 let settings = AugmentedLagrangian {
-                    penalty,
+                    penalty: penalty.unwrap_or_else(|| default_penalty(&self.model.pair)),
                     gap_tolerance,
                     max_iterations: MULTIPLIER_UPDATES,
                 };

@@ -15,8 +15,8 @@ pub enum ContactSolver {
     ActiveSet,
     /// The augmented Lagrangian of the paper, eq. 7.
     AugmentedLagrangian {
-        /// The penalty stiffness κ of a contact cell in N/m.
-        penalty: f64,
+        /// The penalty stiffness κ of a contact cell in N/m; `None` for [`super::default_penalty`].
+        penalty: Option<f64>,
         /// The gap tolerance ε in meters.
         gap_tolerance: f64,
     },

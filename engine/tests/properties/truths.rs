@@ -562,7 +562,7 @@ fn between_solvers(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     let mut other = exact.clone();
     let stiffness = drawn.pair.load(drawn.output_torque) / least;
     other.resolution.contact_solver = ContactSolver::AugmentedLagrangian {
-        penalty: 1e3 * stiffness,
+        penalty: Some(1e3 * stiffness),
         gap_tolerance: 1e-7 * least,
     };
     Ok(Some(largest_difference(&one, &delta(&other)?)))

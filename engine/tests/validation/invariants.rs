@@ -555,10 +555,11 @@ fn both_contact_solvers_give_the_same_curves() {
         };
         let active_set = curve(ContactSolver::ActiveSet);
         for (contact_solver, bounds) in [
-            (solver(1e17, 1e-12), (1e-6, 1e-6)),
-            (solver(1e17, 1e-8), (1e-6, 1e-6)),
-            (solver(1e9, 1e-12), (1e-6, 1e-6)),
-            (solver(1e9, 1e-8), (3e-3, 3e-2)),
+            (solver(None, 1e-12), (1e-6, 1e-6)),
+            (solver(Some(1e17), 1e-12), (1e-6, 1e-6)),
+            (solver(Some(1e17), 1e-8), (1e-6, 1e-6)),
+            (solver(Some(1e9), 1e-12), (1e-6, 1e-6)),
+            (solver(Some(1e9), 1e-8), (3e-3, 3e-2)),
         ] {
             let (delta, k) = largest_differences(&curve(contact_solver), &active_set);
             println!("{name}, {contact_solver:?}: delta {delta:.1e}, k {k:.1e}");

@@ -68,7 +68,9 @@ pub(in crate::wire) const PENALTY: Quantity = needed(
     (1e5, 1e18),
     "The penalty stiffness of a contact cell, eq. 7 of the paper. It changes the number of iterations, not the result.",
 )
-.or(Preset::Value(1e9));
+.or(Preset::Absent(
+    "100 times Young's modulus of the softer gear times the common face width",
+));
 
 pub(in crate::wire) const GAP_TOLERANCE: Quantity = needed(
     "gap_tolerance_um",

@@ -28,6 +28,10 @@ pub struct EvidenceDocument {
     pub largest_penetration_um: f64,
     /// Iterations of the contact solver over all positions and torques.
     pub contact_iterations: u64,
+    /// The largest difference of the projected decomposition to exact solutions at a few positions of each torque where it is least
+    /// sure, in um; absent for other methods.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub projection_error_um: Option<f64>,
     /// How the tangent stiffness was obtained.
     pub stiffness_rule: String,
     /// How it was computed, with every default filled in.
@@ -53,6 +57,7 @@ impl EvidenceDocument {
             complementarity_residual: evidence.complementarity_residual,
             largest_penetration_um: to_um(evidence.largest_penetration),
             contact_iterations: evidence.contact_iterations,
+            projection_error_um: evidence.projection_error.map(to_um),
             stiffness_rule: submission.resolution().stiffness_in_words(),
             resolution: without_nulls(submission),
             definitions: DEFINITIONS.to_vec(),

@@ -79,6 +79,7 @@ fn analysis(case: &Case) -> Analysis {
             complementarity_residual: 1e-15,
             largest_penetration: 1e-18,
             contact_iterations: 7,
+            projection_error: Some(2e-9),
             error_estimate: Some(ErrorEstimate {
                 mean: 1e-9,
                 peak_to_peak: 2e-9,

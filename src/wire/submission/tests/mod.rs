@@ -143,7 +143,7 @@ fn the_choices_of_the_resolution_reach_the_engine() {
     else {
         panic!("the solver")
     };
-    assert_eq!((penalty, gap_tolerance), (1e10, 1e-8));
+    assert_eq!((penalty, gap_tolerance), (Some(1e10), 1e-8));
     assert_eq!(
         case.resolution.stiffness,
         StiffnessRule::TorqueStep { fraction: 0.01 }
