@@ -641,7 +641,9 @@ impl Served {
             .enable_all()
             .build()?
             .block_on(async {
-                let response = reqwest::get(format!("http://{}{path}", self.address)).await?;
+                let client = meshwright::client().build()?;
+                let url = format!("http://{}{path}", self.address);
+                let response = client.get(url).send().await?;
                 Ok(response.error_for_status()?.text().await?)
             })
     }

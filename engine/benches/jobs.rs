@@ -75,8 +75,8 @@ fn with_teeth(case: &Case) -> Library {
 fn with_moved_holes(case: &Case, change: f64) -> Case {
     let moved = |gear: &SpurGear| {
         let mut data = gear.data().clone();
-        if let Some(holes) = &mut data.blank.holes {
-            holes.circle_radius += change;
+        for hole in &mut data.blank.holes {
+            hole.circle_radius += change;
         }
         SpurGear::new(data).expect("holes that move by a tenth of a millimeter still fit")
     };

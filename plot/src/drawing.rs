@@ -1,6 +1,6 @@
 //! Shapes to scale, and gears as they are cut.
 
-use meshwright_engine::gear::{SpurGear, Vector, radial};
+use meshwright_engine::gear::{Hole, HoleShape, SpurGear, Vector, radial};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
@@ -95,18 +95,7 @@ pub fn gear(gear: &SpurGear, place: Placement, fill: RGBColor) -> Vec<Shape> {
 /// The bore and the holes of a gear, and a mark on tooth 0's centerline at the bore.
 pub fn openings(gear: &SpurGear, place: Placement) -> Vec<Shape> {
     let mut shapes = vec![Shape::Disk(place.center, gear.bore_radius(), WHITE)];
-    if let Some(holes) = gear.holes() {
-        shapes.extend((0..holes.count).map(|i| {
-            let angle = place.angle
-                + holes.phase
-                + std::f64::consts::TAU * f64::from(i) / f64::from(holes.count);
-            Shape::Disk(
-                place.center + holes.circle_radius * radial(angle),
-                holes.radius,
-                WHITE,
-            )
-        }));
-    }
+    shapes.extend(gear.holes().iter().map(|hole| opening(hole, place)));
     let arm = 0.12 * gear.bore_radius();
     for direction in [Vector::x(), Vector::y()] {
         let (from, to) = (
@@ -116,6 +105,34 @@ pub fn openings(gear: &SpurGear, place: Placement) -> Vec<Shape> {
         shapes.push(Shape::Line(from, to, INK));
     }
     shapes
+}
+
+/// A hole: a disk, or a slot along its circle with round ends.
+fn opening(hole: &Hole, place: Placement) -> Shape {
+    let at = |angle: f64| place.center + hole.circle_radius * radial(place.angle + angle);
+    match hole.shape {
+        HoleShape::Round { radius } => Shape::Disk(at(hole.angle), radius, WHITE),
+        HoleShape::Slot { width, angle } => {
+            const POINTS: i32 = 24;
+            let half = 0.5 * width;
+            let part = |i: i32| f64::from(i) / f64::from(POINTS);
+            let along = |radius: f64, t: f64| {
+                place.center + radius * radial(place.angle + hole.angle + (t - 0.5) * angle)
+            };
+            let end = |side: f64, i: i32| {
+                let middle = hole.angle + side * 0.5 * angle;
+                let turn = side * std::f64::consts::PI * part(i);
+                at(middle) + half * radial(place.angle + middle + turn)
+            };
+            let outer = (0..=POINTS).map(|i| along(hole.circle_radius + half, part(i)));
+            let inner = (0..=POINTS)
+                .rev()
+                .map(|i| along(hole.circle_radius - half, part(i)));
+            let far = (0..=POINTS).map(|i| end(1.0, i));
+            let near = (0..=POINTS).rev().map(|i| end(-1.0, i));
+            Shape::Region(outer.chain(far).chain(inner).chain(near).collect(), WHITE)
+        }
+    }
 }
 
 /// The outline of all teeth: involutes and trochoids as the rack cuts them, tip and root lands.

@@ -109,6 +109,7 @@ documented!(
     ResolutionDocument,
     "Resolution",
     [
+        interface::EachRadius,
         ContactSolverDocument,
         StiffnessDocument,
         LoadDistributionDocument
@@ -158,29 +159,49 @@ pub enum ContactSolverDocument {
 documented!(
     ContactSolverDocument,
     "ContactSolver",
-    [],
+    [AugmentedLagrangianSchema, AugmentedLagrangianSettingsSchema],
     schema::one_of(
         "Contact solver",
         "The solver of the contact conditions: the exact active set, or the augmented Lagrangian of the paper (eq. 7). They agree to the gap tolerance.",
         Some(json!("active_set")),
         vec![
             schema::word("Active set", "Exact.", "active_set"),
-            schema::object(
-                "Augmented Lagrangian",
-                "The solver of the paper, eq. 7.",
-                vec![(
-                    "augmented_lagrangian",
-                    schema::object(
-                        "Augmented Lagrangian",
-                        "Its penalty and its tolerance.",
-                        vec![
-                            schema::number(&quantity::PENALTY),
-                            schema::number(&quantity::GAP_TOLERANCE)
-                        ]
-                    ),
-                    true
-                )]
-            ),
+            schema::reference::<AugmentedLagrangianSchema>(),
+        ]
+    )
+);
+
+/// Names the choice of the augmented Lagrangian in the contract, so that generators of clients need not.
+enum AugmentedLagrangianSchema {}
+
+documented!(
+    AugmentedLagrangianSchema,
+    "AugmentedLagrangian",
+    [],
+    schema::object(
+        "Augmented Lagrangian",
+        "The solver of the paper, eq. 7.",
+        vec![(
+            "augmented_lagrangian",
+            schema::reference::<AugmentedLagrangianSettingsSchema>(),
+            true
+        )]
+    )
+);
+
+/// Names its settings.
+enum AugmentedLagrangianSettingsSchema {}
+
+documented!(
+    AugmentedLagrangianSettingsSchema,
+    "AugmentedLagrangianSettings",
+    [],
+    schema::object(
+        "Settings of the augmented Lagrangian",
+        "Its penalty and its tolerance.",
+        vec![
+            schema::number(&quantity::PENALTY),
+            schema::number(&quantity::GAP_TOLERANCE)
         ]
     )
 );

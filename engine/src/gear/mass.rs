@@ -75,8 +75,8 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::*;
-    use crate::gear::TipEdge;
     use crate::gear::spur::tests::paper_gear;
+    use crate::gear::{HolePattern, TipEdge, radial};
 
     #[test]
     fn a_single_hole_draws_the_center_of_mass_away_from_it() {
@@ -87,13 +87,13 @@ mod tests {
             radius: 5e-3,
             phase: 0.5,
         };
-        data.blank.holes = Some(pattern(1));
+        data.blank.holes = pattern(1).holes();
         let gear = SpurGear::new(data.clone()).expect("one hole");
         // 7850 kg/m3 by 20 mm by pi 25 mm2 at 30 mm.
         let expected = 7850.0 * 20e-3 * PI * 25e-6 * 30e-3;
         let imbalance = gear.imbalance();
         assert!((imbalance + expected * radial(0.5)).norm() < 1e-12 * expected);
-        data.blank.holes = Some(pattern(2));
+        data.blank.holes = pattern(2).holes();
         let pair_of_holes = SpurGear::new(data).expect("two holes");
         assert_eq!(pair_of_holes.imbalance(), Vector::zeros());
     }

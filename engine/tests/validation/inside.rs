@@ -47,7 +47,7 @@ fn grids(gear: &SpurGear, level: GridLevel) -> (ToothGrid, BlankGrid) {
     let blank = BlankGrid::new(
         gear.bore_radius(),
         r_w,
-        gear.holes(),
+        gear.hole_pattern().as_ref(),
         gear.tooth_count(),
         6.0,
         level,

@@ -31,7 +31,7 @@ fn whole_gear(gear: &SpurGear, level: GridLevel) -> WholeGear {
     let blank = BlankGrid::new(
         gear.bore_radius(),
         r_w,
-        gear.holes(),
+        gear.hole_pattern().as_ref(),
         gear.tooth_count(),
         6.0,
         level,
@@ -411,7 +411,14 @@ fn couplings(gear: &SpurGear, level: GridLevel) -> [Coupling; 2] {
     let teeth = TeethSpec::new(gear, r_w, level);
     let teeth = library().teeth(&teeth, &run).expect("teeth");
     let (bore, z) = (gear.bore_radius(), gear.tooth_count());
-    let grid = BlankGrid::new(bore, r_w, gear.holes(), z, ELEMENTS_PER_TOOTH, level);
+    let grid = BlankGrid::new(
+        bore,
+        r_w,
+        gear.hole_pattern().as_ref(),
+        z,
+        ELEMENTS_PER_TOOTH,
+        level,
+    );
     let blank = BlankSubstructure::new(
         &grid.expect("a grid"),
         r_w,

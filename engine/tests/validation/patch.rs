@@ -110,8 +110,15 @@ fn a_gear_with_teeth_and_holes_follows_its_bore_rigidly() {
     let gear = SpurGear::new(data).expect("a gear");
     let r_w = default_interface_radius(&gear);
     let tooth = ToothGrid::new(&gear, r_w, GridLevel::Coarse).expect("a tooth");
-    let blank =
-        BlankGrid::new(6e-3, r_w, gear.holes(), 18, 4.0, GridLevel::Coarse).expect("a blank");
+    let blank = BlankGrid::new(
+        6e-3,
+        r_w,
+        gear.hole_pattern().as_ref(),
+        18,
+        4.0,
+        GridLevel::Coarse,
+    )
+    .expect("a blank");
     let motion = |p: Vector| Vector::new(2e-6, -1e-6) + 1e-3 * Vector::new(-p.y, p.x);
     let mut assembly = WholeGear::new(tooth, 18, &blank, 0.21, 36, (&STEEL, 20e-3));
     let bore = assembly.bore.clone();

@@ -39,7 +39,7 @@ fn blank_grid(gear: &SpurGear, level: GridLevel) -> BlankGrid {
     BlankGrid::new(
         gear.bore_radius(),
         r_w,
-        gear.holes(),
+        gear.hole_pattern().as_ref(),
         gear.tooth_count(),
         6.0,
         level,

@@ -179,7 +179,10 @@ fn of_teeth(count: u32) -> anyhow::Result<Case> {
     let of = |holes| {
         SpurGear::new(GearData {
             tooth_count: count,
-            blank: Blank { bore_radius, holes },
+            blank: match holes {
+                Some(pattern) => BlankRegion::with_pattern(bore_radius, pattern),
+                None => BlankRegion::solid(bore_radius),
+            },
             ..data.clone()
         })
     };

@@ -96,8 +96,8 @@ fn with_moved_holes(case: &Case) -> anyhow::Result<Option<Case>> {
     }
     let moved = |gear: &SpurGear| {
         let mut data = gear.data().clone();
-        if let Some(holes) = &mut data.blank.holes {
-            holes.circle_radius += MOVE;
+        for hole in &mut data.blank.holes {
+            hole.circle_radius += MOVE;
         }
         SpurGear::new(data)
     };

@@ -55,9 +55,9 @@ pub(crate) fn at_torques(case: &Case, output_torques: Vec<f64>) -> Case {
 ///
 /// If the holes do not fit.
 pub(crate) fn with_holes(case: &Case, holes: Option<HolePattern>) -> anyhow::Result<Case> {
-    let with = |gear: &SpurGear, holes| {
+    let with = |gear: &SpurGear, holes: Option<HolePattern>| {
         let mut data = gear.data().clone();
-        data.blank.holes = holes;
+        data.blank.holes = holes.map_or_else(Vec::new, |pattern| pattern.holes());
         SpurGear::new(data)
     };
     let pair = &case.pair;

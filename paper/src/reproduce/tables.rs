@@ -131,7 +131,7 @@ pub(super) fn table_1(computed: &Computed) -> String {
     for (test_case, printed) in computed.test_cases.iter().zip(paper::BASE_RADII) {
         for (member, printed) in Member::BOTH.into_iter().zip(printed) {
             let gear = test_case.case.pair.gear(member);
-            let holes = gear.holes();
+            let holes = gear.hole_pattern();
             let or_dash = |text: Option<String>| text.unwrap_or_else(|| "-".into());
             rows.push(vec![
                 test_case.number.to_string(),
@@ -214,7 +214,7 @@ pub(super) fn table_1_pairs(computed: &Computed) -> String {
 
 /// The least ligament in mm, and where it is.
 fn ligament(gear: &SpurGear) -> String {
-    let Some(holes) = gear.holes() else {
+    let Some(holes) = gear.hole_pattern() else {
         return "-".into();
     };
     let places = [
@@ -261,16 +261,16 @@ pub(super) fn table_3_row(design: &Design) -> Cells {
         } else {
             "dropped".into()
         },
-        of_holes(|gear| Some(gear.holes()?.radius), 3),
+        of_holes(|gear| Some(gear.hole_pattern()?.radius), 3),
         format!("{:.2} %", gear.removed_fraction() * 100.0),
         format!("{:.4}", gear.mass()),
-        of_holes(|gear| Some(gear.holes()?.ligament_between()), 2),
+        of_holes(|gear| Some(gear.hole_pattern()?.ligament_between()), 2),
         of_holes(
-            |gear| Some(gear.root_radius() - gear.holes()?.outer_reach()),
+            |gear| Some(gear.root_radius() - gear.hole_pattern()?.outer_reach()),
             2,
         ),
         of_holes(
-            |gear| Some(gear.holes()?.inner_reach() - gear.bore_radius()),
+            |gear| Some(gear.hole_pattern()?.inner_reach() - gear.bore_radius()),
             2,
         ),
         ligament(gear),
@@ -408,7 +408,7 @@ pub(super) fn dropped(computed: &Computed) -> String {
     const PLACES: [&str; 3] = ["between the holes", "below the roots", "at the bore"];
     let ligaments = |design: &Design| {
         let gear = design.case.pair.driven();
-        gear.holes().map(|holes| {
+        gear.hole_pattern().map(|holes| {
             [
                 holes.ligament_between(),
                 gear.root_radius() - holes.outer_reach(),

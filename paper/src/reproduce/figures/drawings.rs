@@ -191,13 +191,15 @@ fn panel(name: &str, driven: &SpurGear, kept: bool) -> Drawing {
         angle: 0.0,
     };
     let mut shapes = gear(driven, place, if kept { ELASTIC } else { DROPPED });
-    let radius = driven.holes().map_or(0.0, |holes| holes.circle_radius);
+    let radius = driven
+        .hole_pattern()
+        .map_or(0.0, |holes| holes.circle_radius);
     shapes.push(Shape::Circle(Vector::zeros(), radius, CIRCLE));
     let reach = Vector::new(1.0, 1.0) * 1.03 * driven.tip_radius();
     Drawing {
         title: format!(
             "{name}: r {:.3} mm, ligament {:.1} mm",
-            driven.holes().map_or(0.0, |holes| holes.radius) * 1e3,
+            driven.hole_pattern().map_or(0.0, |holes| holes.radius) * 1e3,
             driven.least_ligament().unwrap_or_default() * 1e3
         ),
         window: (-reach, reach),
