@@ -37,6 +37,13 @@ fn every_field_of_a_submission_tells_a_form_its_title_and_its_kind() {
         "Holes",
         "Material",
         "TipRelief",
+        "ProfileModification",
+        "RootReliefModification",
+        "TableModification",
+        "ToothDeviations",
+        "Eccentricity",
+        "Slot",
+        "Web",
         "Resolution",
     ] {
         let Some(properties) = schemas[schema]["properties"].as_object() else {

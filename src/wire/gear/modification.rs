@@ -2,8 +2,10 @@
 
 use meshwright_engine::gear::{ModificationData, TablePlaces};
 use serde::Serialize;
+use utoipa::openapi::RefOr;
+use utoipa::openapi::schema::Schema;
 
-use super::relief::{ReliefDocument, ReliefEnd};
+use super::relief::{ReliefDocument, ReliefEnd, RootStart};
 use super::tip::either;
 use crate::wire::problem::{Code, FieldError};
 use crate::wire::quantity::{self, MOST_MODIFICATIONS, MOST_TABLE_ENTRIES, Quantity};
@@ -75,26 +77,57 @@ impl Choice for Kind {
 documented!(
     ModificationDocument,
     "ProfileModification",
-    [],
+    [
+        TipReliefKind,
+        RootReliefKind,
+        CrowningKind,
+        SlopeKind,
+        TableKind
+    ],
     schema::one_of(
         "Profile modification",
         "What is taken off every loaded flank, normal to it. Taken off is positive.",
         None,
-        Kind::OPTIONS
-            .iter()
-            .map(|(word, kind, meaning)| {
-                let title = word.replace('_', " ");
-                let kind_field = (
-                    "kind",
-                    schema::word("Kind", "What the modification is.", word),
-                    true,
-                );
-                let properties = [kind_field].into_iter().chain(kind.properties());
-                schema::object(&title, &format!("{meaning}."), properties.collect())
-            })
-            .collect()
+        vec![
+            schema::reference::<TipReliefKind>(),
+            schema::reference::<RootReliefKind>(),
+            schema::reference::<CrowningKind>(),
+            schema::reference::<SlopeKind>(),
+            schema::reference::<TableKind>(),
+        ]
     )
 );
+
+/// Names each kind of modification in the contract, so that generators of clients need not.
+macro_rules! kinds {
+    ($($name:ident $word:literal $kind:ident [$($part:ty),*])*) => {$(
+        enum $name {}
+
+        documented!($name, $word, [$($part),*], Kind::$kind.schema());
+    )*};
+}
+
+kinds! {
+    TipReliefKind "TipReliefModification" TipRelief []
+    RootReliefKind "RootReliefModification" RootRelief [RootStart]
+    CrowningKind "CrowningModification" Crowning []
+    SlopeKind "SlopeModification" Slope []
+    TableKind "TableModification" Table []
+}
+
+impl Kind {
+    /// An object of this kind.
+    fn schema(self) -> RefOr<Schema> {
+        let meaning = Self::OPTIONS
+            .iter()
+            .find(|(_, kind, _)| *kind == self)
+            .map_or("", |(.., meaning)| meaning);
+        let kind = schema::word("Kind", "What the modification is.", self.word());
+        let properties = [("kind", kind, true)].into_iter().chain(self.properties());
+        let title = self.word().replace('_', " ");
+        schema::object(&title, &format!("{meaning}."), properties.collect())
+    }
+}
 
 impl Kind {
     /// What the schema says of the fields beside the kind.
