@@ -8,6 +8,8 @@ mod private;
 
 pub mod wire;
 
+pub mod exchange;
+
 pub mod jobs;
 
 pub mod keys;

@@ -16,9 +16,10 @@ use meshwright_engine::contact::flank_table::FlankTable;
 use meshwright_engine::contact::{Stage, solve_active_set};
 use meshwright_engine::fem::blank::BlankSubstructure;
 use meshwright_engine::fem::body::Coupling;
+use meshwright_engine::fem::harmonics::Harmonics;
 use meshwright_engine::fem::teeth::TeethRing;
 use meshwright_engine::fem::tooth::ToothSubstructure;
-use meshwright_engine::gear::SpurGear;
+use meshwright_engine::gear::{BlankRegion, Hole, HoleShape, SpurGear};
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -92,6 +93,41 @@ fn gears(criterion: &mut Criterion) {
     }
 }
 
+/// A blank without symmetry: four unequal holes under fifty teeth.
+fn whole_blank(criterion: &mut Criterion) {
+    let hole = |angle, radius| Hole {
+        circle_radius: 30e-3,
+        angle,
+        shape: HoleShape::Round { radius },
+    };
+    let region = BlankRegion {
+        bore_radius: 15e-3,
+        holes: vec![
+            hole(0.0, 10e-3),
+            hole(1.7, 8e-3),
+            hole(3.2, 9e-3),
+            hole(4.6, 6e-3),
+        ],
+        web: None,
+    };
+    let (radius, width, run) = (45.5e-3, 20e-3, Run::unattended());
+    let case = test_case(2);
+    let material = case.pair.driven().material();
+    let lay = || BlankGrid::of_region(&region, width, radius, 50, 4.0, GridLevel::Standard);
+    let mut group = group(criterion, "four unequal holes");
+    group.bench_function("blank: grid", |bencher| bencher.iter(|| black_box(lay())));
+    let grid = lay().expect("a grid");
+    let orders = Harmonics { largest: 51 };
+    group.bench_function("blank: condensed, and its ring", |bencher| {
+        bencher.iter(|| {
+            black_box(BlankSubstructure::new(
+                &grid, radius, material, width, orders, &run,
+            ))
+        });
+    });
+    group.finish();
+}
+
 /// The pairs to either side of position `eta` that may touch.
 fn facings(case: &Case, eta: f64) -> Vec<Facing<'_>> {
     (-3..=4)
@@ -141,5 +177,5 @@ fn positions(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, gears, positions);
+criterion_group!(benches, gears, whole_blank, positions);
 criterion_main!(benches);

@@ -207,7 +207,7 @@ fn the_load_distribution_sees_no_holes_and_says_so() {
         holed.curves[0].transmission_error[..40],
         solid.curves[0].transmission_error[..]
     );
-    // One body for each pair: p-p far above the 0.93 µm of the finite elements (FIELD section 0.6).
+    // One body for each pair: p-p far above the 0.93 µm of the finite elements.
     let curve = solid.curves.remove(0);
     assert!(curve.transmission_error_statistics.peak_to_peak > 2e-6);
     let worst = curve.load_shares.iter().fold(vec![0.0; 40], |sum, share| {

@@ -1,6 +1,8 @@
-//! Shapes to scale, and gears as they are cut.
+//! Shapes to scale, gears as they are cut, and pairs in mesh.
 
-use meshwright_engine::gear::{Hole, HoleShape, SpurGear, Vector, radial};
+use std::f64::consts::PI;
+
+use meshwright_engine::gear::{GearPair, Hole, HoleShape, Member, SpurGear, Vector, radial};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
@@ -83,6 +85,36 @@ pub struct Placement {
     pub center: Vector,
     /// The angle in radians.
     pub angle: f64,
+}
+
+/// Where both gears stand at mesh position 0: the centers on the x axis, the loaded flanks of tooth 0 at the pitch point.
+pub fn placements(pair: &GearPair) -> [Placement; 2] {
+    let half_angle = |member| {
+        pair.gear(member)
+            .flank()
+            .half_angle(pair.working_radius(member))
+    };
+    [
+        Placement {
+            center: Vector::zeros(),
+            angle: -half_angle(Member::Driving),
+        },
+        Placement {
+            center: Vector::new(pair.center_distance(), 0.0),
+            angle: PI - half_angle(Member::Driven),
+        },
+    ]
+}
+
+/// The corners around both gears of a pair, with a margin.
+pub fn window(pair: &GearPair) -> (Vector, Vector) {
+    let (r_1, r_2) = (pair.driving().tip_radius(), pair.driven().tip_radius());
+    let height = 1.04 * r_1.max(r_2);
+    let margin = 0.1 * r_2;
+    (
+        Vector::new(-r_1 - margin, -height),
+        Vector::new(pair.center_distance() + r_2 + margin, height),
+    )
 }
 
 /// The gear with its teeth, bore and holes, filled with `fill`.

@@ -54,7 +54,7 @@ pub(super) async fn run(address: SocketAddr) -> anyhow::Result<()> {
     let results: Value = client.get(link("results")?).send().await?.json().await?;
     show(&results, &job_now)?;
     println!(
-        "  job      {}\n  results  {}\n  curve    {}/ste.csv\n  docs     {base}/docs\n",
+        "  page     {base}/\n  job      {}\n  results  {}\n  curve    {}/ste.csv, {0}/results/ste.svg\n  docs     {base}/docs\n",
         link("self")?,
         link("results")?,
         link("results")?

@@ -9,8 +9,9 @@ use axum::middleware::Next;
 use axum::response::Response;
 use uuid::Uuid;
 
-/// Pages have no scripts but those of the documentation, which brings its own.
+/// What is no page runs nothing. The page runs its own files and talks to its own service; the documentation brings scripts of its own.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+const POLICY_OF_PAGE: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 const POLICY_OF_DOCS: &str = "default-src 'self'; script-src 'self' 'unsafe-inline'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
@@ -26,10 +27,9 @@ pub(super) async fn secure(
     request: Request,
     next: Next,
 ) -> Response {
-    let is_docs = request.uri().path().starts_with("/docs");
+    let policy = policy_of(request.uri().path());
     let mut response = next.run(request).await;
     let headers = response.headers_mut();
-    let policy = if is_docs { POLICY_OF_DOCS } else { POLICY };
     for (name, value) in [
         (X_CONTENT_TYPE_OPTIONS, "nosniff"),
         (X_FRAME_OPTIONS, "DENY"),
@@ -47,6 +47,14 @@ pub(super) async fn secure(
         .entry(CACHE_CONTROL)
         .or_insert(HeaderValue::from_static("no-store"));
     response
+}
+
+fn policy_of(path: &str) -> &'static str {
+    match path {
+        "/" => POLICY_OF_PAGE,
+        _ if path.starts_with("/docs") => POLICY_OF_DOCS,
+        _ => POLICY,
+    }
 }
 
 /// Gives every request an id and a place in a trace: those that it came with, if they are such, or new ones. They stand in

@@ -17,8 +17,10 @@ mod headers;
 mod health;
 mod jobs;
 mod metrics;
+mod outline;
 mod page;
 mod parameters;
+mod pictures;
 mod prefer;
 mod previews;
 mod problem;
@@ -31,6 +33,7 @@ mod studies;
 mod submit;
 mod tables;
 mod view;
+mod web;
 mod webhooks;
 
 pub use app::{App, Edge};

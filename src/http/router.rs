@@ -11,7 +11,6 @@ use axum::http::header::{
 };
 use axum::http::{Method, StatusCode, Uri};
 use axum::middleware::{from_fn, from_fn_with_state};
-use axum::response::Redirect;
 use axum::routing::get;
 use axum::{BoxError, Router};
 use tower::ServiceBuilder;
@@ -29,8 +28,8 @@ use utoipa_axum::routes;
 use super::app::App;
 use super::headers::Trace;
 use super::{
-    batch, docs, document, door, events, headers, health, jobs, metrics, previews, problem,
-    problem_pages, reference, results, studies, submit, tables, webhooks,
+    batch, docs, document, door, events, headers, health, jobs, metrics, outline, previews,
+    problem, problem_pages, reference, results, studies, submit, tables, web, webhooks,
 };
 use crate::wire::{Code, Problem};
 
@@ -72,7 +71,7 @@ pub fn router(app: App) -> Router {
         .layer(CatchPanicLayer::custom(problem::of_panic));
     router
         .merge(docs::routes_of_docs(&openapi))
-        .route("/", get(|| async { Redirect::to("/docs/") }))
+        .merge(web::routes_of_page())
         .route("/v1/studies/{id}/results.csv", get(studies::old_csv))
         .fallback(nothing_here)
         .method_not_allowed_fallback(not_that_method)
@@ -122,6 +121,7 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(health::ready))
         .routes(routes!(metrics::metrics))
         .routes(routes!(reference::validate))
+        .routes(routes!(outline::outline))
         .routes(routes!(tables::table))
         .routes(routes!(studies::results))
         .routes(routes!(studies::file))

@@ -1,9 +1,9 @@
-//! Parts of the results as tables, JSON or CSV, for those who want a curve and not the whole document.
+//! Parts of the results as tables or pictures, for those who want a curve and not the whole document.
 
 use axum::Json;
 use axum::extract::{Path, State};
 use axum::http::HeaderMap;
-use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
+use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE, HeaderName};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
@@ -14,7 +14,9 @@ use super::aside::aside;
 use super::client::Client;
 use super::conditional::{Keep, Tag};
 use super::parameters::{Parameters, job_id};
+use super::pictures::{self, Picture};
 use super::problem::of_missing_results;
+use crate::exchange::look_up;
 use crate::jobs::{Document, JobError};
 use crate::wire::csv::CsvWriter;
 use crate::wire::results::NamedOrderDocument;
@@ -122,15 +124,15 @@ pub(super) struct TableParameters {
     torque: Option<f64>,
 }
 
-/// Get one table of the results
+/// Get one table or picture of the results
 ///
-/// The transmission error, the mesh stiffness or the spectrum alone, as JSON or CSV. The first column is the output
-/// torque. A column that the results do not have is left out.
+/// The transmission error, the mesh stiffness or the spectrum alone, as JSON, as CSV or as a picture; the load shares as a
+/// picture. The first column of a CSV is the output torque. A column that the results do not have is left out.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/{table}", tag = "Results", operation_id = "get_table",
     params(
         ("id" = String, Path, format = "uuid", description = "The id of the job."),
-        ("table" = String, Path, description = "`ste`, `mesh-stiffness` or `spectrum`, with `.json` or `.csv`."),
+        ("table" = String, Path, description = "`ste`, `mesh-stiffness` or `spectrum`, with `.json`, `.csv` or `.svg`; or `load-share.svg`; or `look-up-table.csv`, `look-up-table.txt`, which have one curve over the angle in SI units, datum and signs in their head."),
         TableParameters,
         ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
     ),
@@ -138,6 +140,8 @@ pub(super) struct TableParameters {
         (status = 200, description = "The table.", content(
             (CurveTable = "application/json"),
             (String = "text/csv"),
+            (String = "image/svg+xml"),
+            (String = "text/plain"),
         ), headers(("ETag" = String, description = "Stands for this table."))),
         (status = 304, description = "The client has this table."),
         (status = 400, description = "A parameter is not understood.", body = Problem, content_type = "application/problem+json"),
@@ -152,7 +156,7 @@ pub(super) async fn table(
     Parameters(TableParameters { torque }): Parameters<TableParameters>,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
-    let (table, form) = find_table(&file)?;
+    let wanted = find_file(&file)?;
     let job = app.jobs.find(client.name(), job_id(&id)?).await?;
     let Some(hash) = &job.document else {
         return Err(of_missing_results(job.status, job.problem.as_ref()));
@@ -161,35 +165,70 @@ pub(super) async fn table(
     let made = async {
         let document = app.jobs.document(&job).await?;
         let name = format!("{id}-{file}");
-        aside(move |_| make(&document, table, form, torque, &name)).await?
+        aside(move |_| make(&document, wanted, torque, &name)).await?
     };
     Tag::of_hash(hash, &part)
         .answer(Keep::ForGood, &request, made)
         .await
 }
 
-/// The table of a results document.
+/// The table or picture of a results document.
 fn make(
     document: &Document,
-    table: &'static Table,
-    form: Form,
+    wanted: File,
     torque: Option<f64>,
     name: &str,
 ) -> Result<Response, Problem> {
     let text = document.text().map_err(JobError::from)?;
-    let results: Value = serde_json::from_str(&text).map_err(|_| no_table(table))?;
-    let curves = select(table, &results, torque)?;
+    let results: Value = serde_json::from_str(&text).map_err(|_| nothing_to_show())?;
+    let curves = curves_of(&results, torque)?;
+    let (table, form) = match wanted {
+        File::Table(table, form) => (table, form),
+        File::Picture(picture) => {
+            let svg = picture
+                .draw(&curves)
+                .unwrap_or_else(|| Err(nothing_to_show()));
+            return svg.map(pictures::answer);
+        }
+        File::LookUp(form) => return look_up_table(&results, &curves, form, name),
+    };
+    let curves = select(table, &curves)?;
     Ok(match form {
         Form::Json => Json(json!({ "curves": curves })).into_response(),
         Form::Csv => {
-            let file = format!("attachment; filename=\"{name}\"");
-            let headers = [
-                (CONTENT_TYPE, "text/csv; charset=utf-8"),
-                (CONTENT_DISPOSITION, file.as_str()),
-            ];
+            let headers = file_headers("text/csv; charset=utf-8", name);
             (headers, csv(table, &curves)).into_response()
         }
     })
+}
+
+/// The first of the curves as a look-up table.
+fn look_up_table(
+    results: &Value,
+    curves: &[&Value],
+    form: look_up::Form,
+    name: &str,
+) -> Result<Response, Problem> {
+    let curve = curves.first().ok_or_else(nothing_to_show)?;
+    let table = look_up::table(results, curve, form).ok_or_else(|| {
+        let detail = "These results span no whole number of true periods, and a look-up table is read over and over.";
+        Problem::new(Code::NotFound, detail)
+    })?;
+    let media_type = match form {
+        look_up::Form::Csv => "text/csv; charset=utf-8",
+        look_up::Form::Text => "text/plain; charset=utf-8",
+    };
+    Ok((file_headers(media_type, name), table).into_response())
+}
+
+fn file_headers(media_type: &str, name: &str) -> [(HeaderName, String); 2] {
+    [
+        (CONTENT_TYPE, media_type.to_owned()),
+        (
+            CONTENT_DISPOSITION,
+            format!("attachment; filename=\"{name}\""),
+        ),
+    ]
 }
 
 #[derive(Clone, Copy)]
@@ -198,29 +237,41 @@ enum Form {
     Csv,
 }
 
-fn find_table(file: &str) -> Result<(&'static Table, Form), Problem> {
+/// What a file name asks for.
+enum File {
+    Table(&'static Table, Form),
+    Picture(Picture),
+    LookUp(look_up::Form),
+}
+
+fn find_file(file: &str) -> Result<File, Problem> {
+    match file {
+        "look-up-table.csv" => return Ok(File::LookUp(look_up::Form::Csv)),
+        "look-up-table.txt" => return Ok(File::LookUp(look_up::Form::Text)),
+        _ => {}
+    }
+    if let Some(picture) = Picture::named(file) {
+        return Ok(File::Picture(picture));
+    }
     let found = file.split_once('.').and_then(|(name, extension)| {
         let form = match extension {
             "json" => Form::Json,
             "csv" => Form::Csv,
             _ => return None,
         };
-        Some((TABLES.iter().find(|table| table.name == name)?, form))
+        let table = TABLES.iter().find(|table| table.name == name)?;
+        Some(File::Table(table, form))
     });
     found.ok_or_else(|| {
         Problem::new(
             Code::NotFound,
-            "The tables are ste, mesh-stiffness and spectrum, each as .json or .csv.",
+            "The tables are ste, mesh-stiffness and spectrum, each as .json or .csv; the pictures are those and load-share, as .svg; there are look-up-table.csv and look-up-table.txt.",
         )
     })
 }
 
-/// The chosen columns of the chosen curves.
-fn select(
-    table: &Table,
-    results: &Value,
-    torque: Option<f64>,
-) -> Result<Vec<Map<String, Value>>, Problem> {
+/// The curves of the results, or the one of a torque.
+fn curves_of(results: &Value, torque: Option<f64>) -> Result<Vec<&Value>, Problem> {
     let curves = results
         .get("curves")
         .and_then(Value::as_array)
@@ -245,9 +296,13 @@ fn select(
         );
         return Err(Problem::new(Code::NotFound, detail));
     }
+    Ok(meant)
+}
 
-    let selected: Vec<_> = meant
-        .into_iter()
+/// The chosen columns of the chosen curves.
+fn select(table: &Table, curves: &[&Value]) -> Result<Vec<Map<String, Value>>, Problem> {
+    let selected: Vec<_> = curves
+        .iter()
         .filter_map(|curve| select_columns(table, curve))
         .collect();
     if selected.is_empty() {
@@ -305,6 +360,13 @@ fn csv(table: &Table, curves: &[Map<String, Value>]) -> String {
     text.into_text()
 }
 
+fn nothing_to_show() -> Problem {
+    Problem::new(
+        Code::NotFound,
+        "These results have nothing that this shows.",
+    )
+}
+
 fn no_table(table: &Table) -> Problem {
     let detail = match table.name {
         "spectrum" => "These results have no spectrum: they span no whole number of true periods.",
@@ -326,10 +388,21 @@ mod tests {
         ] })
     }
 
+    fn table_of(file: &str) -> &'static Table {
+        match find_file(file) {
+            Ok(File::Table(table, _)) => table,
+            _ => panic!("{file} is a table"),
+        }
+    }
+
     #[test]
     fn a_table_has_one_line_for_each_torque_and_position() {
-        let (table, _) = find_table("ste.csv").unwrap();
-        let text = csv(table, &select(table, &results(), None).unwrap());
+        let table = table_of("ste.csv");
+        let results = results();
+        let text = csv(
+            table,
+            &select(table, &curves_of(&results, None).unwrap()).unwrap(),
+        );
         let lines = [
             "output_torque_n_m,mesh_position,transmission_error_um",
             "115.0,0.0,14.1",
@@ -343,28 +416,28 @@ mod tests {
 
     #[test]
     fn a_torque_selects_its_curve_and_an_unknown_one_is_told_which_there_are() {
-        let (table, _) = find_table("ste.json").unwrap();
-        let selected = select(table, &results(), Some(20.0)).unwrap();
+        let (table, results) = (table_of("ste.json"), results());
+        let selected = select(table, &curves_of(&results, Some(20.0)).unwrap()).unwrap();
         assert_eq!(selected.len(), 1);
         assert_eq!(selected[0]["transmission_error_um"], json!([5.0, 6.0]));
-        let problem = select(table, &results(), Some(21.0)).unwrap_err();
+        let problem = curves_of(&results, Some(21.0)).unwrap_err();
         assert!(problem.detail.contains("115, 20 N m"), "{}", problem.detail);
     }
 
     #[test]
     fn the_spectrum_keeps_its_names_in_json_and_may_be_absent() {
-        let (table, _) = find_table("spectrum.json").unwrap();
-        let selected = select(table, &results(), Some(115.0)).unwrap();
+        let (table, results) = (table_of("spectrum.json"), results());
+        let at = |torque| curves_of(&results, Some(torque)).unwrap();
+        let selected = select(table, &at(115.0)).unwrap();
         assert_eq!(selected[0]["named"], json!([{ "label": "H_N" }]));
         assert_eq!(
             csv(table, &selected),
             "output_torque_n_m,order,transmission_error_um\r\n115.0,10,0.001\r\n115.0,50,0.4\r\n"
         );
-        assert!(select(table, &results(), Some(20.0)).is_err());
-        assert!(
-            find_table("ste.svg").is_err()
-                && find_table("ste").is_err()
-                && find_table("x.csv").is_err()
-        );
+        assert!(select(table, &at(20.0)).is_err());
+        for unknown in ["ste", "x.csv", "x.svg", "load-share.csv"] {
+            assert!(find_file(unknown).is_err(), "{unknown}");
+        }
+        assert!(matches!(find_file("ste.svg"), Ok(File::Picture(_))));
     }
 }

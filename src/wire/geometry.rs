@@ -143,7 +143,7 @@ impl PairGeometry {
 }
 
 impl PathOfContact {
-    fn of(pair: &GearPair) -> Self {
+    pub(super) fn of(pair: &GearPair) -> Self {
         let (s_a, s_e) = pair.path_of_contact();
         let (s_c, p_b) = (pair.pitch_roll_length(), pair.base_pitch());
         let point = |s: f64| PathPoint {

@@ -1,7 +1,7 @@
 //! The JSON documents of the interface as types, in the units of those who read them.
 //!
 //! Read in this order: [`problem`] (what goes wrong), [`submission`] with its parts [`pair`], [`gear`] and
-//! [`resolution`] (what is asked), [`geometry`], [`warning`] and [`results`] (what is answered), [`solve`](mod@solve)
+//! [`resolution`] (what is asked), [`geometry`], [`outline`], [`warning`] and [`results`] (what is answered), [`solve`](mod@solve)
 //! (what leads from the one to the other) and [`examples`](mod@examples); [`preview`], a submission that is answered at
 //! once; then [`study`] and [`study_table`], many
 //! submissions at once. `units`, `quantity`, `size`, `tree`, `edit`, `schema`, `tags` and `pointer` carry them: conversions,
@@ -30,6 +30,7 @@ pub mod resolution;
 pub mod submission;
 
 pub mod geometry;
+pub mod outline;
 pub mod results;
 pub mod warning;
 
@@ -44,6 +45,7 @@ pub mod study_table;
 
 pub use examples::{Example, examples};
 pub use memory::{memory_above, too_much_memory};
+pub use outline::PairOutline;
 pub use preview::Preview;
 pub use problem::{Code, FieldError, Problem};
 pub use results::Results;

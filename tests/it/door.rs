@@ -102,6 +102,8 @@ async fn keys_are_needed_as_soon_as_there_is_one() {
         "/openapi.json",
         "/problems",
         "/docs/",
+        "/",
+        "/web/main.js",
     ] {
         let answer = bench.get(public).send().await.unwrap();
         assert_eq!(answer.status(), StatusCode::OK, "{public}");

@@ -18,6 +18,7 @@ mod events;
 mod growth;
 mod life;
 mod lists;
+mod page;
 mod previews;
 mod process;
 mod real;

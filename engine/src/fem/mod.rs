@@ -2,7 +2,7 @@
 //!
 //! Read in this order: [`element`] (one element), [`condensation`] (a grid's stiffness on the unknowns that are kept),
 //! [`recovery`] (displacements and stresses of the others),
-//! [`cyclic`] (N equal sectors joined into a ring, on its harmonics), [`tooth`], [`teeth`] (the ring of them), [`blank`], and
+//! [`harmonics`] (the unknowns of an interface circle), [`cyclic`] (N equal sectors joined into a ring on them), [`tooth`], [`teeth`] (the ring of them), [`blank`], and
 //! [`body`], which joins them into the compliance of a whole gear. What happens inside: [`motion`]
 //! (of the interface circle under loads), [`teeth_recovery`] and [`blank::BlankRecovery`]. Beside them: [`dense`] (factorizations), `axes` and `modes`.
 
@@ -14,6 +14,7 @@ pub mod condensation;
 pub mod cyclic;
 pub mod dense;
 pub mod element;
+pub mod harmonics;
 mod modes;
 pub mod motion;
 pub mod recovery;

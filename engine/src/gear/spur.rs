@@ -433,14 +433,19 @@ impl SpurGear {
 
     /// The material removed from every loaded flank at the roll length `s`, along the normal: modifications and the broken edge.
     pub fn removed(&self, s: f64) -> f64 {
-        let modified = self
-            .modifications
-            .iter()
-            .map(|each| each.depth(&self.flank, s));
         let edge = self
             .broken_edge
             .map_or(0.0, |edge| edge.depth_and_slope(&self.flank, s).0);
-        modified.sum::<f64>() + edge
+        self.modified(s) + edge
+    }
+
+    /// The part of [`SpurGear::removed`] that is meant by modifications, without the broken edge.
+    pub(super) fn modified(&self, s: f64) -> f64 {
+        let depths = self
+            .modifications
+            .iter()
+            .map(|each| each.depth(&self.flank, s));
+        depths.sum()
     }
 
     /// The slope of [`SpurGear::removed`] by the roll length.

@@ -36,8 +36,9 @@ impl BlankGrid {
     /// Divides the blank `region` inside `interface_radius`, under `tooth_count` teeth with `elements_per_tooth` elements on the
     /// interface circle for each at the standard level. `face_width` is the thickness beside the web.
     ///
-    /// A blank without holes is divided by one pitch, a pattern of round holes by the sector of one hole, in the frame of
-    /// hole 0 ([`HolePattern::phase`]); any other, and one whose web ends across the holes or close to them, as a whole.
+    /// A blank without holes is divided by one pitch, a pattern of round holes by the sector of one hole; any other, and one
+    /// whose web ends across the holes or close to them, as a whole. The frame is that of hole 0 of a pattern, so that patterns
+    /// of any phase share their grid, and of the gear otherwise: turned by [`BlankRegion::phase`].
     ///
     /// # Errors
     ///
@@ -65,6 +66,7 @@ impl BlankGrid {
             }
         }
         let elements = elements_per_tooth * f64::from(tooth_count.max(1));
+        let region = &region.turned(-region.phase());
         Self::whole(region, face_width, interface_radius, elements, level)
     }
 

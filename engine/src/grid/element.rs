@@ -119,7 +119,7 @@ const TRIANGLE_RULE: [RulePoint; 7] = {
     const NEAR: f64 = 0.101_286_507_323_456_34;
     const FAR: f64 = 0.470_142_064_105_115_1;
     const AT_NEAR: f64 = 0.062_969_590_272_413_58;
-    const AT_FAR: f64 = 0.066_197_076_394_253_09;
+    const AT_FAR: f64 = 0.066_197_076_394_253_1;
     [
         (1.0 / 3.0, 1.0 / 3.0, 0.1125),
         (NEAR, NEAR, AT_NEAR),

@@ -8,14 +8,17 @@ pub mod blank;
 mod block;
 mod division;
 pub mod element;
+mod frame;
 mod hole_box;
 pub mod level;
 mod outline;
 mod outlines;
 pub mod planar;
+mod root_curve;
 mod sector;
 mod sizes;
 pub mod tooth;
+mod tooth_plan;
 mod triangles;
 pub mod whole;
 

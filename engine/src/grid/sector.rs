@@ -7,9 +7,10 @@ use std::f64::consts::PI;
 
 use super::block::{Edge, GridBuilder, backwards};
 use super::division::{Grading, reversed, uniform};
+use super::frame::Frame;
 use super::hole_box::HoleBox;
 use super::{BlankGrid, GridError, GridLevel, checked};
-use crate::gear::{HolePattern, Vector, Web, radial};
+use crate::gear::{HolePattern, Web};
 
 // Sizes, chosen for what the levels promise ([`GridLevel`]); none of them moves the sharpest corner of the tests' patterns by a tenth
 // of a degree when halved or doubled.
@@ -146,113 +147,7 @@ pub(super) struct RingWeb {
     part: f64,
 }
 
-/// The rectangles into which lines of equal radius and lines of equal angle cut the sector.
-struct Frame {
-    /// The edges along the radius: by interval of the radius, then by line of equal angle.
-    rays: Vec<Vec<Edge>>,
-    /// The edges along the angle: by line of equal radius, then by interval of the angle.
-    arcs: Vec<Vec<Edge>>,
-}
-
-impl Frame {
-    /// Fills one of the rectangles.
-    fn fill(&self, builder: &mut GridBuilder, row: usize, column: usize) {
-        builder.block(
-            &self.rays[row][column],
-            &self.arcs[row + 1][column],
-            &self.rays[row][column + 1],
-            &self.arcs[row][column],
-        );
-    }
-
-    /// All nodes along one line of equal angle.
-    fn ray(&self, column: usize) -> Edge {
-        chain(self.rays.iter().map(|row| &row[column]))
-    }
-
-    /// All nodes along one line of equal radius.
-    fn arc(&self, row: usize) -> Edge {
-        chain(self.arcs[row].iter())
-    }
-
-    fn blank(
-        &self,
-        builder: GridBuilder,
-        interface_radius: f64,
-        sector_count: u32,
-        hole_edges: Vec<Edge>,
-    ) -> BlankGrid {
-        let inner = |edge: Edge| edge[1..edge.len() - 1].to_vec();
-        let arc_nodes = self.arc(self.arcs.len() - 1);
-        BlankGrid {
-            sector_count,
-            arc_angles: arc_nodes.iter().map(|n| builder.point(*n).y).collect(),
-            arc_nodes,
-            bore_nodes: self.arc(0),
-            side_nodes: (inner(self.ray(0)), inner(self.ray(self.arcs[0].len()))),
-            hole_edges,
-            grid: builder.finish(|p| interface_radius * p.x.exp() * radial(p.y)),
-        }
-    }
-}
-
-/// Edges that follow one another, as one.
-fn chain<'a>(edges: impl Iterator<Item = &'a Edge>) -> Edge {
-    let mut whole = Edge::new();
-    for edge in edges {
-        let repeated = usize::from(!whole.is_empty());
-        whole.extend(&edge[repeated..]);
-    }
-    whole
-}
-
 impl Ring {
-    fn frame(
-        &self,
-        builder: &mut GridBuilder,
-        lines: (&[f64], &[f64]),
-        ray_fractions: &[Vec<f64>],
-        arc_fractions: &[Vec<Vec<f64>>],
-    ) -> Frame {
-        let (radii, angles) = lines;
-        let vertices: Vec<Vec<u32>> = radii
-            .iter()
-            .map(|x| {
-                angles
-                    .iter()
-                    .map(|t| builder.node(Vector::new(*x, *t)))
-                    .collect()
-            })
-            .collect();
-        let rays = (0..radii.len() - 1)
-            .map(|row| {
-                (0..angles.len())
-                    .map(|c| {
-                        builder.straight(
-                            vertices[row][c],
-                            vertices[row + 1][c],
-                            &ray_fractions[row],
-                        )
-                    })
-                    .collect()
-            })
-            .collect();
-        let arcs = (0..radii.len())
-            .map(|row| {
-                (0..angles.len() - 1)
-                    .map(|c| {
-                        builder.straight(
-                            vertices[row][c],
-                            vertices[row][c + 1],
-                            &arc_fractions[row][c],
-                        )
-                    })
-                    .collect()
-            })
-            .collect();
-        Frame { rays, arcs }
-    }
-
     /// The lines of equal radius between which the thickness is one, from the bore to the interface circle.
     fn lines(&self) -> Vec<f64> {
         let ends = self.web.iter().flat_map(|web| web.ends);
@@ -304,7 +199,11 @@ impl Ring {
                 let layers = Grading {
                     length: lines[row + 1] - lines[row],
                     // Sizes go on from line to line.
-                    first: whole.size(-lines[row + 1]),
+                    first: if row + 2 == lines.len() {
+                        whole.first
+                    } else {
+                        whole.size(-lines[row + 1])
+                    },
                     ..whole
                 };
                 reversed(&layers.divide(layers.count_at(least(row), self.level)))
@@ -312,7 +211,7 @@ impl Ring {
             .collect();
         let arcs = uniform(self.level.count(self.elements_per_tooth));
         let mut builder = GridBuilder::default();
-        let frame = self.frame(
+        let frame = Frame::new(
             &mut builder,
             (&lines, &[-half, half]),
             &rays,
@@ -372,7 +271,7 @@ impl Ring {
                 }
             })
             .collect();
-        let frame = self.frame(&mut builder, (&radii, &angles), &rays, &arcs);
+        let frame = Frame::new(&mut builder, (&radii, &angles), &rays, &arcs);
         for row in 0..rays.len() {
             for column in 0..columns {
                 if (row, column) != (box_row, box_column) {
@@ -446,6 +345,7 @@ impl Ring {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gear::Vector;
     use crate::grid::blank::ELEMENTS_PER_TOOTH;
 
     const LEVELS: [GridLevel; 3] = [GridLevel::Coarse, GridLevel::Standard, GridLevel::Fine];
@@ -594,7 +494,7 @@ mod tests {
                 .step_by(2)
                 .map(|a| a[2] - a[0])
                 .fold(0.0, f64::max);
-            // The brief of the coupling: at most a third of a pitch.
+            // Three elements to a pitch, so that two wavelengths have six nodes at the highest order.
             assert!(
                 largest < 2.0 * PI / (3.0 * f64::from(teeth)),
                 "{case:?}: {largest}"

@@ -9,19 +9,24 @@ use super::sizes::Sizes;
 use super::{Element, Grid};
 use crate::gear::{Vector, radial};
 
+// Measured over the regions of the tests of `whole` at the coarse level, whose sharpest corners are 33 degrees in the mean.
+
 /// A triangle is divided when its circumscribed circle is larger than this, in sizes: that of an equilateral triangle is
-/// 0.58, and a new point then stands no nearer to any other than this.
+/// 0.58, and a new point then stands no nearer to any other than this. With 0.86 there are a quarter fewer triangles, but some do
+/// not recover: corners fall to 16 degrees.
 const LARGEST_CIRCLE: f64 = 0.75;
-/// How near to the boundary a new point may stand, in sizes: an equilateral triangle is 0.87 high.
+/// How near to the boundary a new point may stand, in sizes: an equilateral triangle is 0.87 high. From 0.2 to 0.6 it hardly
+/// matters.
 const NEAREST_TO_BOUNDARY: f64 = 0.4;
-/// Rounds of dividing all triangles that are too large: each halves their number at least, and a hundredth of them is none.
+/// Rounds of dividing all triangles that are too large, at most: nine were needed.
 const MOST_PASSES: usize = 40;
-/// Smoothing steps after dividing; the smallest angle hardly grows after ten.
-const SMOOTHINGS: usize = 8;
-/// Rounds of moving single points out of sharp corners, each followed by a new triangulation.
+/// Smoothing steps after dividing: they even out the bulk. More of them sharpen the sharpest corners.
+const SMOOTHINGS: usize = 4;
+/// Rounds of moving single points out of sharp corners, each followed by a new triangulation. Without any the corners have 25
+/// degrees in the mean, and grids must be made finer for some regions; with one 30, with four hardly more.
 const REPAIRS: usize = 2;
-/// Corners sharper than this, in radians, are worth moving a point.
-const SHARP: f64 = 0.55;
+/// Corners sharper than this, in radians, are worth moving a point: 38 degrees. With 25 degrees the corners lose four.
+const SHARP: f64 = 0.66;
 /// The steps that a point may move by, in sizes.
 const STEPS: [f64; 4] = [0.2, 0.1, 0.05, 0.025];
 
@@ -185,7 +190,8 @@ impl TriangleNet {
                 .material(&delaunay)
                 .into_iter()
                 .filter(|triangle| {
-                    triangle.iter().any(|i| *i as usize >= last) || waiting.contains(triangle)
+                    triangle.iter().any(|i| *i as usize >= last)
+                        || waiting.contains(&sorted(*triangle))
                 })
                 .filter_map(|triangle| self.too_large(triangle, sizes))
                 .collect();
@@ -202,7 +208,7 @@ impl TriangleNet {
                     self.sizes.push(size);
                     delaunay.insert(Point2::new(point.x, point.y)).ok()?;
                 } else {
-                    waiting.insert(triangle);
+                    waiting.insert(sorted(triangle));
                 }
             }
         }
@@ -280,8 +286,7 @@ impl TriangleNet {
             let corners = star.iter().map(|t| sharpest_corner(points, *t, &bulges));
             corners.fold(f64::INFINITY, f64::min)
         };
-        for point in fixed..self.points.len() {
-            let star = &around[point];
+        for (point, star) in around.iter().enumerate().skip(fixed) {
             let mut best = sharpest(&self.points, star);
             if best >= SHARP {
                 continue;
@@ -357,6 +362,12 @@ impl TriangleNet {
         };
         (grid, self.chains)
     }
+}
+
+/// The corners of a triangle in an order that says nothing of where it begins.
+fn sorted(mut triangle: [u32; 3]) -> [u32; 3] {
+    triangle.sort_unstable();
+    triangle
 }
 
 /// The smallest angle at a corner of `triangle` between its sides as they will be: parabolas through the points of the curves

@@ -137,9 +137,9 @@ fn triangles_agree_with_quadrilaterals_on_a_pattern_of_holes() {
     let holes = pattern(8, 30e-3, 8e-3);
     let region = region(holes.holes(), None);
     for (orders, bounds) in [
-        (8, [1e-2, 1e-3, 2e-4]),
+        (8, [2e-2, 2e-3, 2e-4]),
         (16, [2e-2, 2e-3, 3e-4]),
-        (32, [6e-2, 8e-3, 2e-3]),
+        (24, [6e-2, 1e-2, 1e-3]),
     ] {
         let reference = BlankGrid::new(15e-3, INTERFACE, Some(&holes), TEETH, 4.0, GridLevel::Fine);
         let reference = condensed(&reference.expect("a sector"), orders);
@@ -223,10 +223,37 @@ fn a_web_of_the_face_width_is_no_web() {
         let nearly = of_region(&with(FACE_WIDTH * (1.0 + 1e-9)), GridLevel::Standard);
         assert_ne!(nearly.grid.elements, none.grid.elements);
         let apart = apart(
-            &condensed(&nearly, 40).stiffness,
-            &condensed(&none, 40).stiffness,
+            &condensed(&nearly, 12).stiffness,
+            &condensed(&none, 12).stiffness,
         );
         println!("{} holes: apart by {apart:.1e}", holes.len());
+        assert!(apart < 4e-3, "two grids of the standard level");
+    }
+}
+
+#[test]
+fn a_pattern_is_divided_in_the_frame_of_its_hole_0_and_turned_by_its_phase() {
+    let phase = 0.4;
+    let turned = HolePattern {
+        phase,
+        ..pattern(6, 30e-3, 7e-3)
+    };
+    // The second web ends across the holes, so that the blank is divided as a whole.
+    for outer_radius in [40e-3, 33e-3] {
+        let web = Some(Web {
+            inner_radius: 19e-3,
+            outer_radius,
+            thickness: 6e-3,
+        });
+        let region = region(turned.holes(), web);
+        let by_pattern = of_region(&region, GridLevel::Standard);
+        let found = condensed(&by_pattern, 12).stiffness_at(region.phase());
+        let expected = condensed(&whole(&region, GridLevel::Standard), 12).stiffness;
+        let apart = apart(&found, &expected);
+        println!(
+            "web to {outer_radius} m, {} sectors: apart by {apart:.1e}",
+            by_pattern.sector_count
+        );
         assert!(apart < 4e-3, "two grids of the standard level");
     }
 }
@@ -262,7 +289,8 @@ fn slots_of_no_angle_are_round_holes() {
     };
     let change = apart(&nearly(0.0), &nearly(1e-9));
     println!("a slot of 1e-9 rad: apart by {change:.1e}");
-    assert!(change < 1e-6);
+    // Points of its grid may be moved by another step; that shows far below what the coarse level resolves.
+    assert!(change < 1e-4);
 }
 
 /// The thickness of rings from the bore out, each with its inner radius.
@@ -280,8 +308,8 @@ fn rings_in_series() -> [f64; 2] {
     // Radially u = a r + b/r with σ_r = E/(1 − ν²) ((1 + ν) a − (1 − ν) b/r²): displacement and force per angle from ring to
     // ring, from the held bore out.
     let (mut u, mut force) = (0.0, 1.0);
-    for i in 0..3 {
-        let ((r, t), r_o) = (RINGS[i], outer(i));
+    for (i, (r, t)) in RINGS.into_iter().enumerate() {
+        let r_o = outer(i);
         let d = e / (1.0 - nu * nu) * t;
         let system = nalgebra::Matrix2::new(r, 1.0 / r, d * (1.0 + nu) * r, -d * (1.0 - nu) / r);
         let ab = system
@@ -544,7 +572,7 @@ fn stresses_at_hole_edges_settle_and_symmetry_recovers_what_the_whole_does() {
 }
 
 #[test]
-fn four_unequal_holes_are_divided_and_condensed_within_their_time() {
+fn four_unequal_holes_settle_and_are_the_same_at_every_run() {
     let holes = vec![
         round(30e-3, 0.0, 10e-3),
         round(30e-3, 1.7, 8e-3),
@@ -552,25 +580,18 @@ fn four_unequal_holes_are_divided_and_condensed_within_their_time() {
         round(30e-3, 4.6, 6e-3),
     ];
     let region = region(holes, None);
-    let mut last: Option<Mat<f64>> = None;
-    for level in LEVELS {
-        let start = std::time::Instant::now();
-        let grid = of_region(&region, level);
-        let laid = start.elapsed();
-        assert_eq!(grid.sector_count, 1);
-        let found = condensed(&grid, 51).stiffness;
-        println!(
-            "{level:?}: {} nodes, laid in {laid:.0?}, all in {:.0?}",
-            grid.grid.nodes.len(),
-            start.elapsed()
-        );
-        assert_eq!(of_region(&region, level), grid, "the same at every run");
-        if let Some(last) = &last {
-            println!(
-                "   apart from the coarser one by {:.1e}",
-                apart(&found, last)
-            );
-        }
-        last = Some(found);
+    let settled = |orders: usize| {
+        let [coarse, standard, fine] = LEVELS.map(|level| {
+            let grid = of_region(&region, level);
+            assert_eq!(grid.sector_count, 1);
+            assert_eq!(of_region(&region, level), grid);
+            condensed(&grid, orders).stiffness
+        });
+        (apart(&coarse, &standard), apart(&standard, &fine))
+    };
+    for (orders, bound) in [(12, 3e-3), (24, 1e-2)] {
+        let (coarse, standard) = settled(orders);
+        println!("{orders} orders: {coarse:.1e}, then {standard:.1e}");
+        assert!(standard < bound && standard < coarse / 6.0);
     }
 }

@@ -14,7 +14,7 @@ use crate::support::{STEEL, case, gear, library, pair, standard_pair};
 #[test]
 fn an_annulus_under_uniform_tangential_traction_turns_by_its_closed_form() {
     // θ = T/(4π G b) (1/r_i² − 1/r_o²): T 115 N m, b 20 mm, r_o 47.5 mm; 5.41407e-5 rad for r_i 10 mm and 2.26676e-5 rad
-    // for 15 mm (DESIGN section 5), to 0.1 %.
+    // for 15 mm, to 0.1 %.
     let (torque, width, r_o) = (115.0, 20e-3, 47.5e-3);
     let shear_modulus = STEEL.youngs_modulus / (2.0 * (1.0 + STEEL.poisson_ratio));
     for (r_i, printed) in [(10e-3, 5.41407e-5), (15e-3, 2.26676e-5)] {
@@ -52,7 +52,7 @@ fn an_annulus_under_uniform_tangential_traction_turns_by_its_closed_form() {
 
 #[test]
 fn the_contact_at_the_pitch_point_is_hertz() {
-    // Plane stress, both radii 17.8187 mm, T 115 N m: half-width 115.0 µm and 677 MPa (DESIGN section 5).
+    // Plane stress, both radii 17.8187 mm, T 115 N m: half-width 115.0 µm and 677 MPa.
     let case = case(standard_pair(false), &[115.0]);
     let model = pair_model(&case, library(), &Run::unattended()).expect("a model");
     let load = case.pair.load(115.0);

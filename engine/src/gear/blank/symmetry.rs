@@ -55,6 +55,11 @@ impl BlankRegion {
         })
     }
 
+    /// The angle of hole 0 of a pattern; 0 for any other blank.
+    pub fn phase(&self) -> f64 {
+        self.pattern().map_or(0.0, |pattern| pattern.phase)
+    }
+
     /// The holes that are equal but for their angle.
     fn classes(&self) -> Vec<Vec<usize>> {
         let mut classes: Vec<Vec<usize>> = Vec::new();

@@ -1,15 +1,13 @@
 //! Figs. 2, 5 and 9: the gears as they are cut.
 
-use std::f64::consts::PI;
-
 use anyhow::Context;
-use meshwright_engine::gear::{GearPair, Member, SpurGear, Vector};
+use meshwright_engine::gear::{SpurGear, Vector};
 use meshwright_plot::{RGBColor, WHITE};
 
 use super::super::cases::{HOLE_CIRCLES, HOLE_COUNTS, design_name};
 use super::super::computed::Computed;
 use super::Illustration;
-use meshwright_plot::drawing::{Placement, gear, openings, outline};
+use meshwright_plot::drawing::{Placement, gear, openings, outline, placements, window};
 use meshwright_plot::{Drawing, Figure, Look, Panel, Shape};
 
 const ELASTIC: RGBColor = RGBColor(190, 208, 226);
@@ -27,36 +25,6 @@ const CHOICE: [(&str, RGBColor, Look); 3] = [
     ("dropped", DROPPED, Look::Patch),
     ("hole circle R", CIRCLE, Look::Line),
 ];
-
-/// Where both gears stand at mesh position 0: the centers on the x axis, the loaded flanks of tooth 0 at the pitch point.
-fn placements(pair: &GearPair) -> [Placement; 2] {
-    let half_angle = |member| {
-        pair.gear(member)
-            .flank()
-            .half_angle(pair.working_radius(member))
-    };
-    [
-        Placement {
-            center: Vector::zeros(),
-            angle: -half_angle(Member::Driving),
-        },
-        Placement {
-            center: Vector::new(pair.center_distance(), 0.0),
-            angle: PI - half_angle(Member::Driven),
-        },
-    ]
-}
-
-/// The corners around both gears, with a margin.
-fn window(pair: &GearPair) -> (Vector, Vector) {
-    let (r_1, r_2) = (pair.driving().tip_radius(), pair.driven().tip_radius());
-    let height = 1.04 * r_1.max(r_2);
-    let margin = 0.1 * r_2;
-    (
-        Vector::new(-r_1 - margin, -height),
-        Vector::new(pair.center_distance() + r_2 + margin, height),
-    )
-}
 
 fn legend(entries: &[(&str, RGBColor, Look)]) -> Vec<(String, RGBColor, Look)> {
     entries

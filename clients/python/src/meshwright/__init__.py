@@ -1,0 +1,9 @@
+"""Client of a Meshwright service: transmission error and mesh stiffness of spur gear pairs with holes."""
+
+from .client import AsyncClient, Client
+from .look_up import LookUpTable
+from .problem import FieldError, ProblemError
+from .results import Curve, Results
+from .study import StudyTable
+
+__all__ = ["AsyncClient", "Client", "Curve", "FieldError", "LookUpTable", "ProblemError", "Results", "StudyTable"]

@@ -1,0 +1,129 @@
+"""Results as arrays, frames and plots."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+
+_COLUMNS = (
+    "mesh_position",
+    "driving_angle_deg",
+    "driven_angle_deg",
+    "transmission_error_um",
+    "mesh_stiffness_tangent_n_per_m",
+    "mesh_stiffness_secant_n_per_m",
+    "pairs_in_contact",
+    "peak_contact_pressure_mpa",
+)
+
+
+def _array(values: list[float | None]) -> Array:
+    """What is null on the wire is no number here."""
+    return np.array([np.nan if value is None else value for value in values], dtype=np.float64)
+
+
+class Curve:
+    """The curves at one output torque. Units stand in the names; all arrays run over the same positions."""
+
+    def __init__(self, document: dict[str, Any]) -> None:
+        self.document = document
+
+    @property
+    def output_torque_n_m(self) -> float:
+        return float(self.document["output_torque_n_m"])
+
+    @property
+    def mesh_position(self) -> Array:
+        """In mesh periods, end excluded; 0 where the reference pair touches at the pitch point."""
+        return self["mesh_position"]
+
+    @property
+    def transmission_error_um(self) -> Array:
+        """Positive where load makes the driven gear lag."""
+        return self["transmission_error_um"]
+
+    @property
+    def mesh_stiffness_tangent_n_per_m(self) -> Array:
+        return self["mesh_stiffness_tangent_n_per_m"]
+
+    @property
+    def peak_contact_pressure_mpa(self) -> Array:
+        """NaN where a sharp tip corner carries."""
+        return self["peak_contact_pressure_mpa"]
+
+    @property
+    def statistics(self) -> dict[str, Any]:
+        statistics: dict[str, Any] = self.document["statistics"]
+        return statistics
+
+    def load_share(self, pair_offset: int) -> Array:
+        """The share of the pair at an offset; zero for one that never carries."""
+        for share in self.document["load_shares"]:
+            if share["pair_offset"] == pair_offset:
+                return _array(share["share"])
+        return np.zeros_like(self.mesh_position)
+
+    def order(self, label: str) -> float:
+        """The amplitude of the transmission error, in um, at a named order such as `H_N` or `H_Z2`."""
+        for line in self.document.get("spectrum", {}).get("named", []):
+            if line["label"] == label:
+                return float(line["transmission_error_um"])
+        raise KeyError(f"the spectrum names no {label}")
+
+    def __getitem__(self, column: str) -> Array:
+        return _array(self.document[column])
+
+
+class Results:
+    """A results document, and its curves as arrays."""
+
+    def __init__(self, document: dict[str, Any]) -> None:
+        self.document = document
+        self.curves = [Curve(curve) for curve in document["curves"]]
+
+    @property
+    def pair(self) -> dict[str, Any]:
+        """The derived geometry of the pair."""
+        pair: dict[str, Any] = self.document["pair"]
+        return pair
+
+    def frame(self) -> pandas.DataFrame:
+        """A row for each torque and position."""
+        import pandas
+
+        frames = []
+        for curve in self.curves:
+            columns = {name: curve[name] for name in _COLUMNS if name in curve.document}
+            frames.append(pandas.DataFrame({"output_torque_n_m": curve.output_torque_n_m, **columns}))
+        return pandas.concat(frames, ignore_index=True)
+
+    def spectrum_frame(self) -> pandas.DataFrame:
+        """A row for each torque and order."""
+        import pandas
+
+        frames = []
+        for curve in self.curves:
+            spectrum = curve.document.get("spectrum")
+            if spectrum:
+                columns = {name: values for name, values in spectrum.items() if name != "named"}
+                frames.append(pandas.DataFrame({"output_torque_n_m": curve.output_torque_n_m, **columns}))
+        return pandas.concat(frames, ignore_index=True) if frames else pandas.DataFrame()
+
+    def plot(self, column: str = "transmission_error_um", axes: Axes | None = None) -> Axes:
+        """Draws a column over the mesh position, a line for each torque."""
+        from matplotlib import pyplot
+
+        axes = pyplot.subplots()[1] if axes is None else axes
+        for curve in self.curves:
+            axes.plot(curve.mesh_position, curve[column], label=f"{curve.output_torque_n_m:g} N m")
+        axes.set(xlabel="mesh position in mesh periods", ylabel=column)
+        axes.legend()
+        return axes

@@ -1,0 +1,112 @@
+"""The client against a running service (MESHWRIGHT_URL)."""
+
+from __future__ import annotations
+
+import asyncio
+
+import numpy as np
+import pytest
+
+from meshwright import AsyncClient, Client, ProblemError
+
+
+@pytest.fixture()
+def service():
+    with Client() as client:
+        yield client
+
+
+def test_case_2_has_the_mean_of_the_paper(service):
+    told = []
+    results = service.solve(service.example("test-case-2"), progress=lambda done, total: told.append((done, total)))
+    curve = results.curves[0]
+    # Table 2 of the paper: 13.79 um.
+    assert abs(curve.transmission_error_um.mean() - 13.79) < 0.05
+    assert abs(curve.transmission_error_um.mean() - curve.statistics["transmission_error_um"]["mean"]) < 1e-6
+    assert told[-1] == (200, 200)
+
+
+def test_a_frame_has_a_row_for_each_torque_and_position(service):
+    submission = service.example("standard-pair")
+    frame = service.preview(submission).frame()
+    assert sorted(frame.output_torque_n_m.unique()) == [20.0, 115.0]
+    assert len(frame) == 2 * 40
+    assert frame.transmission_error_um.gt(0).all()
+
+
+def test_shares_add_up_and_orders_have_names(service):
+    curve = service.preview(service.example("test-case-2")).curves[0]
+    offsets = [share["pair_offset"] for share in curve.document["load_shares"]]
+    assert np.allclose(sum(curve.load_share(offset) for offset in offsets), 1.0, atol=1e-9)
+    assert curve.order("H_N") > 0.1
+    with pytest.raises(KeyError):
+        curve.order("H_99")
+
+
+def test_a_refusal_names_the_field_and_the_nearest_value(service):
+    submission = service.example("bad-case-3-as-printed")
+    with pytest.raises(ProblemError) as refused:
+        service.solve(submission)
+    (error,) = refused.value.errors
+    assert (refused.value.code, error.pointer, error.nearest) == ("teeth_do_not_reach", "/pair/center_distance_mm", 115.56)
+
+
+def test_the_same_calls_can_be_awaited(service):
+    async def ask():
+        async with AsyncClient() as client:
+            submission = await client.example("standard-pair")
+            return await asyncio.gather(client.preview(submission), client.solve(submission), client.validate(submission))
+
+    preview, solved, validation = asyncio.run(ask())
+    assert preview.document == solved.document
+    assert validation["valid"]
+
+
+def test_a_study_is_a_frame(service):
+    base = service.example("test-case-2")
+    table = service.study({"base": base, "axes": [{"path": "/pair/driven/blank/holes/count", "values": [6, 40]}]})
+    frame = table.frame()
+    assert list(frame.status) == ["successful", "failed"]
+    assert frame.problem[1]
+    assert table.pareto() == [frame.label[0]]
+
+
+def solved(service):
+    job = service.submit(service.example("test-case-2"))
+    while job["status"] not in ("successful", "failed"):
+        job = service.job(job["id"])
+    return job["id"], service.results(job["id"]).curves[0]
+
+
+def test_a_look_up_table_has_the_curve_over_the_angle_and_closes(service):
+    job, curve = solved(service)
+    table = service.look_up_table(job)
+    assert np.allclose(table.transmission_error_m[:-1] * 1e6, curve.transmission_error_um, rtol=1e-9)
+    assert np.isclose(table.driving_angle_rad[-1], np.deg2rad(5 * 360 / 50))
+    assert table.mesh_stiffness_n_per_m[0] == table.mesh_stiffness_n_per_m[-1]
+    assert table.head["period_mesh_periods"] == "5"
+    assert table.head["signs"]
+
+
+def test_ross_interpolates_our_stiffness(service):
+    ross_gears = pytest.importorskip("ross.gear_element", reason="ROSS is not installed")
+    from ross.materials import steel
+
+    job, curve = solved(service)
+    table = service.look_up_table(job)
+    gear = {"material": steel, "width": 0.02, "bore_diameter": 0.032, "module": 0.002, "n_teeth": 50, "pr_angle": np.deg2rad(20)}
+    driving, driven = (ross_gears.GearElementTVMS(n=node, **gear) for node in (0, 1))
+    mesh = table.to_ross(ross_gears.Mesh(driving, driven, gear_mesh_stiffness=1e8))
+    # Over several periods, at the positions computed: ROSS wraps where the table ends.
+    angles = np.deg2rad(curve["driving_angle_deg"])
+    again = [mesh.interpolate_stiffness(angle + table.driving_angle_rad[-1]) for angle in angles[1:]]
+    assert np.allclose(again, curve.mesh_stiffness_tangent_n_per_m[1:], rtol=1e-6)
+    assert np.isclose(np.mean(curve.mesh_stiffness_tangent_n_per_m), mesh.stiffness, rtol=1e-9)
+
+
+def test_results_are_plotted(service):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    axes = service.preview(service.example("standard-pair")).plot()
+    assert len(axes.lines) == 2

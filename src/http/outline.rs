@@ -1,0 +1,60 @@
+//! The outline of a pair: numbers for pages that draw it, or the drawing itself.
+
+use axum::http::HeaderMap;
+use axum::http::header::{ACCEPT, CONTENT_TYPE, HeaderValue, VARY};
+use axum::response::{IntoResponse, Response};
+
+use super::aside::aside;
+use super::client::Onlooker;
+use super::document::Document;
+use super::pictures;
+use super::problem::internal;
+use crate::wire::{PairOutline, Problem, Submission};
+
+/// Get the outline of a pair
+///
+/// Takes a submission and answers with the pair as it is cut: the profile of a tooth of each gear, its holes and circles, where both
+/// gears stand, and the line of action with its points A to E. Makes no job and computes no load: a drawing can follow the hand.
+/// With `Accept: image/svg+xml` the answer is the drawing itself.
+#[utoipa::path(
+    post, path = "/v1/outline", tag = "Reference", operation_id = "outline",
+    request_body(content = Submission, content_type = "application/json", description = "The submission."),
+    responses(
+        (status = 200, description = "The outline.", content((PairOutline = "application/json"), (String = "image/svg+xml"))),
+        (status = 400, description = "The body is no JSON.", body = Problem, content_type = "application/problem+json"),
+        (status = 408, description = "The body came too slowly.", body = Problem, content_type = "application/problem+json"),
+        (status = 413, description = "The body has more than 1 MiB.", body = Problem, content_type = "application/problem+json"),
+        (status = 415, description = "The body is not declared as JSON.", body = Problem, content_type = "application/problem+json"),
+        (status = 422, description = "The pair cannot be made; `errors` says which field is why.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(super) async fn outline(
+    _: Onlooker,
+    request: HeaderMap,
+    Document(document): Document,
+) -> Result<Response, Problem> {
+    let as_picture = wants_picture(&request);
+    let made = aside(move |_| {
+        let submission = Submission::parse(&document)?;
+        let pair = &submission.case().pair;
+        if as_picture {
+            return pictures::pair(pair).map(pictures::answer);
+        }
+        let json = PairOutline::of(pair).to_json().map_err(|_| internal())?;
+        Ok(([(CONTENT_TYPE, "application/json")], json).into_response())
+    });
+    let mut response = made.await??;
+    let headers = response.headers_mut();
+    headers.insert(VARY, HeaderValue::from_static("accept"));
+    Ok(response)
+}
+
+/// Whether the client asks for a picture by its name.
+fn wants_picture(request: &HeaderMap) -> bool {
+    let mut accepted = request.get_all(ACCEPT).iter();
+    accepted.any(|value| {
+        value
+            .to_str()
+            .is_ok_and(|text| text.contains("image/svg+xml"))
+    })
+}

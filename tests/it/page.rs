@@ -1,0 +1,158 @@
+//! The page, the outline that it draws, and the pictures and look-up tables of results.
+
+use meshwright::wire::examples;
+use reqwest::StatusCode;
+use serde_json::{Value, json};
+
+use crate::bench::{Bench, problem, submission};
+
+fn example(name: &str) -> Value {
+    let found = examples().iter().find(|example| example.name == name);
+    serde_json::from_str(found.unwrap().json).unwrap()
+}
+
+#[tokio::test]
+async fn the_page_and_its_files_come_with_their_types_and_a_strict_policy() {
+    let bench = Bench::quick().await;
+    let page = bench.get("/").send().await.unwrap();
+    assert_eq!(page.headers()["content-type"], "text/html; charset=utf-8");
+    let policy = page.headers()["content-security-policy"].to_str().unwrap();
+    assert!(
+        policy.contains("script-src 'self'") && !policy.contains("unsafe"),
+        "{policy}"
+    );
+    let tag = page.headers()["etag"].clone();
+    let again = bench
+        .get("/")
+        .header("if-none-match", &tag)
+        .send()
+        .await
+        .unwrap();
+    assert_eq!(again.status(), StatusCode::NOT_MODIFIED);
+
+    let text = page.text().await.unwrap();
+    let files = text.split('"').filter(|word| word.starts_with("web/"));
+    let mut seen = 0;
+    for file in files {
+        let answer = bench.get(&format!("/{file}")).send().await.unwrap();
+        assert_eq!(answer.status(), StatusCode::OK, "{file}");
+        let media_type = answer.headers()["content-type"]
+            .to_str()
+            .unwrap()
+            .to_owned();
+        let expected = match file.rsplit_once('.').unwrap().1 {
+            "js" => "text/javascript",
+            "css" => "text/css",
+            _ => "image/svg+xml",
+        };
+        assert!(media_type.starts_with(expected), "{file}: {media_type}");
+        seen += 1;
+    }
+    assert!(seen > 10, "the page names {seen} files");
+    for absent in [
+        "/web/",
+        "/web/none.js",
+        "/web/../Cargo.toml",
+        "/web/%2e%2e/Cargo.toml",
+    ] {
+        let answer = bench.get(absent).send().await.unwrap();
+        assert_eq!(answer.status(), StatusCode::NOT_FOUND, "{absent}");
+    }
+}
+
+#[tokio::test]
+async fn the_outline_of_a_pair_comes_as_numbers_or_as_a_drawing() {
+    let bench = Bench::quick().await;
+    let case_2 = example("test-case-2");
+    let outline: Value = bench
+        .post("/v1/outline", &case_2)
+        .send()
+        .await
+        .unwrap()
+        .json()
+        .await
+        .unwrap();
+    assert_eq!(outline["driven"]["holes"].as_array().unwrap().len(), 10);
+    assert_eq!(outline["driven"]["center_mm"], json!([100.5, 0.0]));
+    assert_eq!(outline["driving"]["angle_per_mesh_period_deg"], 7.2);
+    assert_eq!(outline["line_of_action"]["points"][2]["name"], "C");
+    // The pitch point of equal gears is halfway.
+    let pitch = outline["line_of_action"]["points"][2]["at_mm"][0]
+        .as_f64()
+        .unwrap();
+    assert!((pitch - 50.25).abs() < 1e-6, "{pitch}");
+
+    let request = bench
+        .post("/v1/outline", &case_2)
+        .header("accept", "image/svg+xml");
+    let picture = request.send().await.unwrap();
+    assert_eq!(picture.headers()["content-type"], "image/svg+xml");
+    assert!(picture.text().await.unwrap().starts_with("<svg"));
+
+    let bad = bench
+        .post("/v1/outline", &example("bad-case-3-as-printed"))
+        .send()
+        .await
+        .unwrap();
+    problem(bad, 422, "teeth_do_not_reach").await;
+}
+
+#[tokio::test]
+async fn pictures_and_look_up_tables_stand_beside_the_results() {
+    let bench = Bench::real().await;
+    let path = bench.submit(&example("test-case-2")).await;
+    bench.ended(&path).await;
+    for picture in ["ste", "mesh-stiffness", "load-share", "spectrum"] {
+        let answer = bench
+            .get(&format!("{path}/results/{picture}.svg"))
+            .send()
+            .await
+            .unwrap();
+        assert_eq!(
+            answer.headers()["content-type"],
+            "image/svg+xml",
+            "{picture}"
+        );
+        let text = answer.text().await.unwrap();
+        assert!(
+            text.starts_with("<svg") && !text.contains("NaN"),
+            "{picture}"
+        );
+    }
+
+    let results: Value = bench.document(&format!("{path}/results")).await;
+    let table = bench
+        .get(&format!("{path}/results/look-up-table.csv"))
+        .send()
+        .await
+        .unwrap();
+    let text = table.text().await.unwrap();
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .filter(|line| line.starts_with(|first: char| first.is_ascii_digit()))
+        .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    assert_eq!(
+        rows.len(),
+        201,
+        "five mesh periods of 40 positions, and the first again"
+    );
+    let mean = rows[..200].iter().map(|row| row[2]).sum::<f64>() / 200.0;
+    let stiffness = &results["curves"][0]["statistics"]["mesh_stiffness_tangent_n_per_m"];
+    assert!((mean / stiffness["mean"].as_f64().unwrap() - 1.0).abs() < 1e-8);
+}
+
+#[tokio::test]
+async fn results_without_what_a_picture_shows_say_so() {
+    let bench = Bench::quick().await;
+    let path = bench.submit(&submission(115.0)).await;
+    bench.ended(&path).await;
+    for absent in ["load-share.svg", "look-up-table.txt", "drawing.svg"] {
+        let answer = bench
+            .get(&format!("{path}/results/{absent}"))
+            .send()
+            .await
+            .unwrap();
+        problem(answer, 404, "not_found").await;
+    }
+}

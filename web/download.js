@@ -1,0 +1,64 @@
+// What is on the page as files.
+
+import { h } from "./dom.js";
+
+/** Gives the visitor a file. */
+export function save(name, type, content) {
+  const address = URL.createObjectURL(content instanceof Blob ? content : new Blob([content], { type }));
+  const link = h("a", { href: address, download: name, hidden: true });
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(address), 10_000);
+}
+
+const COLUMNS = ["mesh_position", "driving_angle_deg", "driven_angle_deg", "transmission_error_um", "mesh_stiffness_tangent_n_per_m", "mesh_stiffness_secant_n_per_m", "pairs_in_contact", "peak_contact_pressure_mpa"];
+
+/** Every curve of the results as one table: a line for each torque and position. */
+export function csv(results) {
+  const offsets = [...new Set(results.curves.flatMap((curve) => curve.load_shares.map(({ pair_offset: offset }) => offset)))].sort((a, b) => a - b);
+  const lines = [["output_torque_n_m", ...COLUMNS, ...offsets.map((offset) => `load_share.${offset}`)].join(",")];
+  for (const curve of results.curves) {
+    const share = (offset) => curve.load_shares.find((each) => each.pair_offset === offset)?.share;
+    curve.mesh_position.forEach((_, i) => {
+      const values = [curve.output_torque_n_m, ...COLUMNS.map((name) => curve[name]?.[i]), ...offsets.map((offset) => share(offset)?.[i] ?? 0)];
+      lines.push(values.map((value) => value ?? "").join(","));
+    });
+  }
+  return `${lines.join("\r\n")}\r\n`;
+}
+
+/** A drawing of the page as a file of its own: looks that come from the style sheet are written into it. */
+export function drawingFile(svg) {
+  const copy = svg.cloneNode(true);
+  const [from, to] = [svg.querySelectorAll("*"), copy.querySelectorAll("*")];
+  from.forEach((element, i) => {
+    const style = getComputedStyle(element);
+    for (const name of ["fill", "stroke", "stroke-width", "stroke-dasharray", "vector-effect", "font-family", "text-anchor", "paint-order"]) {
+      const value = style.getPropertyValue(name);
+      if (value && value !== "none" || name === "fill") to[i].setAttribute(name, value);
+    }
+    for (const name of ["tabindex", "role", "aria-hidden", "data-member"]) to[i].removeAttribute(name);
+  });
+  copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");
+  const box = svg.viewBox.baseVal;
+  copy.setAttribute("width", 1200);
+  copy.setAttribute("height", Math.round((1200 * box.height) / box.width));
+  return new XMLSerializer().serializeToString(copy);
+}
+
+/** The canvases of the charts below each other, as a picture. */
+export async function chartsPicture(canvases, background) {
+  const shown = canvases.filter(Boolean);
+  const [width, height] = [Math.max(...shown.map((each) => each.width)), shown.reduce((sum, each) => sum + each.height, 0)];
+  const sheet = h("canvas", { width, height });
+  const context = sheet.getContext("2d");
+  context.fillStyle = background;
+  context.fillRect(0, 0, width, height);
+  let y = 0;
+  for (const canvas of shown) {
+    context.drawImage(canvas, 0, y);
+    y += canvas.height;
+  }
+  return new Promise((resolve) => sheet.toBlob(resolve, "image/png"));
+}

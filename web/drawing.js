@@ -1,0 +1,211 @@
+// The pair as it is cut: turned by hand, its holes dragged, contact forces at the position shown.
+
+import { s, number } from "./dom.js";
+import { HoleHandles } from "./holes.js";
+
+const TURN = Math.PI / 180;
+const MEMBERS = ["driving", "driven"];
+
+export class Drawing {
+  #outline = null;
+  #curve = null;
+  #gears = {};
+  #view = "pair";
+  #position = 0;
+
+  /** Draws in `place`. `onTurn` is told the mesh position that a hand turned to. */
+  constructor(place, design, { onTurn }) {
+    this.design = design;
+    this.onTurn = onTurn;
+    this.svg = s("svg", { class: "gears", role: "group", "aria-label": "The gear pair from its true geometry" });
+    this.overlay = s("g", { class: "overlay", "aria-hidden": "true" });
+    this.forces = s("g", { class: "forces", "aria-hidden": "true" });
+    this.world = s("g", { transform: "scale(1 -1)" }, ...MEMBERS.map((member) => this.#gear(member)), this.overlay, this.forces);
+    this.svg.append(this.world);
+    place.replaceChildren(this.svg);
+    this.#turnByHand();
+  }
+
+  get element() {
+    return this.svg;
+  }
+
+  setView(view) {
+    this.#view = view;
+    this.#frame();
+  }
+
+  /** Shows another pair. What a hand holds stays in it: elements are changed, not made anew. */
+  setOutline(outline) {
+    this.#outline = outline;
+    for (const member of MEMBERS) this.#gears[member].show(outline[member]);
+    this.#line();
+    this.refreshHoles();
+    this.#frame();
+    this.setPosition(this.#position);
+  }
+
+  /** Takes the forces from these curves. */
+  setCurve(curve) {
+    this.#curve = curve;
+    this.#drawForces();
+  }
+
+  /** Turns both gears to a mesh position. */
+  setPosition(position) {
+    this.#position = position;
+    if (!this.#outline) return;
+    for (const { rotor, outline } of Object.values(this.#gears)) {
+      const angle = outline.angle_deg + position * outline.angle_per_mesh_period_deg;
+      rotor.setAttribute("transform", `translate(${outline.center_mm.join(" ")}) rotate(${angle})`);
+    }
+    this.#drawForces();
+  }
+
+  /** Draws the holes as the design has them, whether or not they can be made. */
+  refreshHoles(wrong = []) {
+    for (const gear of Object.values(this.#gears)) gear.holes.refresh(wrong);
+  }
+
+  #gear(member) {
+    const body = s("path", { class: `body ${member}` });
+    const [pitch, base] = ["pitch", "base"].map((name) => s("circle", { class: name }));
+    const bore = s("circle", { class: "opening" });
+    const tooth0 = s("circle", { class: "tooth0" });
+    const cross = s("path", { class: "cross" });
+    const holes = new HoleHandles(member, this.design, (event) => this.#inGear(member, event));
+    const marks = s("g", { class: "circles", "aria-hidden": "true" }, pitch, base);
+    const rotor = s("g", { class: `rotor ${member}`, "data-member": member }, body, marks, bore, holes.element, cross, tooth0);
+    const gear = { rotor, holes, outline: null };
+    gear.show = (outline) => {
+      const { tip_mm: tip, root_mm: root, pitch_mm, base_mm } = outline.circles;
+      if (JSON.stringify(outline.tooth_mm) !== JSON.stringify(gear.outline?.tooth_mm) || outline.tooth_count !== gear.outline.tooth_count) body.setAttribute("d", outlinePath(outline));
+      gear.outline = outline;
+      for (const [circle, r] of [[pitch, pitch_mm], [base, base_mm], [bore, outline.bore_radius_mm], [tooth0, (tip - root) / 9]]) circle.setAttribute("r", r);
+      tooth0.setAttribute("cx", (root + tip) / 2);
+      cross.setAttribute("d", `M${-0.12 * root} 0H${0.12 * root}M0 ${-0.12 * root}V${0.12 * root}`);
+    };
+    this.#gears[member] = gear;
+    return rotor;
+  }
+
+  #line() {
+    const { line_of_action: line, driving, driven } = this.#outline;
+    const size = driving.circles.tip_mm - driving.circles.root_mm;
+    this.overlay.replaceChildren(
+      s("path", { d: `M${line.from_mm.join(" ")}L${line.to_mm.join(" ")}`, class: "action" }),
+      s("path", { d: `M${driving.center_mm.join(" ")}L${driven.center_mm.join(" ")}`, class: "centers" }),
+      ...line.points.map((point) => s("circle", { cx: point.at_mm[0], cy: point.at_mm[1], r: size / 16, class: "mark" })),
+      ...line.points.map((point) => text(point.name, [point.at_mm[0] + size * 0.12, point.at_mm[1] + size * 0.03], size / 4.5, "letter")),
+      text(`a = ${number(driven.center_mm[0], 7)} mm`, [driving.circles.pitch_mm, -0.94 * Math.min(driving.circles.tip_mm, driven.circles.tip_mm)], driven.center_mm[0] / 28, "dimension"),
+    );
+  }
+
+  /** An arrow for each pair of teeth that carries load, as long as its share. */
+  #drawForces() {
+    if (!this.#outline) return;
+    const curve = this.#curve;
+    if (!curve) return this.forces.replaceChildren();
+    const { points, from_mm, to_mm } = this.#outline.line_of_action;
+    const [a, e] = [points[0], points[4]];
+    const along = [to_mm[0] - from_mm[0], to_mm[1] - from_mm[1]];
+    const length = Math.hypot(...along);
+    const unit = along.map((each) => each / length);
+    const size = this.#outline.driving.circles.tip_mm - this.#outline.driving.circles.root_mm;
+    const index = indexAt(curve, this.#position);
+    const period = this.#position - Math.floor(this.#position);
+    const arrows = curve.load_shares.flatMap(({ pair_offset: offset, share }) => {
+      const carried = share[index];
+      if (!(carried > 1e-3)) return [];
+      const t = (period - offset - a.mesh_position) / (e.mesh_position - a.mesh_position);
+      const at = [0, 1].map((i) => a.at_mm[i] + t * (e.at_mm[i] - a.at_mm[i]));
+      const tip = [0, 1].map((i) => at[i] + unit[i] * size * 2.2 * carried);
+      return [arrow(at, tip, unit, size / 5), s("circle", { cx: at[0], cy: at[1], r: size / 14, class: "touch" })];
+    });
+    this.forces.replaceChildren(...arrows);
+  }
+
+  #frame() {
+    if (!this.#outline) return;
+    const { driving, driven, line_of_action: line } = this.#outline;
+    const [r1, r2, a] = [driving.circles.tip_mm, driven.circles.tip_mm, driven.center_mm[0]];
+    if (this.#view === "mesh") {
+      const [x, y] = line.points[2].at_mm;
+      const reach = 2.6 * (driving.circles.tip_mm - driving.circles.root_mm);
+      this.svg.setAttribute("viewBox", `${x - 1.6 * reach} ${-y - reach} ${3.2 * reach} ${2 * reach}`);
+      return;
+    }
+    const margin = 0.03 * (r1 + r2);
+    const height = Math.max(r1, r2) + margin;
+    this.svg.setAttribute("viewBox", `${-r1 - margin} ${-height} ${r1 + a + r2 + 2 * margin} ${2 * height}`);
+  }
+
+  /** Where a pointer is, in mm of the drawing. */
+  #inWorld(event) {
+    const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(this.world.getScreenCTM().inverse());
+    return [point.x, point.y];
+  }
+
+  /** Where a pointer is in the frame of a gear, in mm. */
+  #inGear(member, event) {
+    const { outline } = this.#gears[member];
+    const [x, y] = this.#inWorld(event);
+    const angle = -TURN * (outline.angle_deg + this.#position * outline.angle_per_mesh_period_deg);
+    const [dx, dy] = [x - outline.center_mm[0], y - outline.center_mm[1]];
+    return [dx * Math.cos(angle) - dy * Math.sin(angle), dx * Math.sin(angle) + dy * Math.cos(angle)];
+  }
+
+  #turnByHand() {
+    this.svg.addEventListener("pointerdown", (event) => {
+      const member = event.target.closest("[data-member]")?.dataset.member;
+      if (!member || event.target.closest(".hole") || event.button !== 0) return;
+      const { outline } = this.#gears[member];
+      const angleOf = (moved) => {
+        const [x, y] = this.#inWorld(moved);
+        return Math.atan2(y - outline.center_mm[1], x - outline.center_mm[0]) / TURN;
+      };
+      let last = angleOf(event);
+      const turn = (moved) => {
+        const now = angleOf(moved);
+        const by = ((now - last + 540) % 360) - 180;
+        last = now;
+        this.onTurn(this.#position + by / outline.angle_per_mesh_period_deg);
+      };
+      this.svg.setPointerCapture(event.pointerId);
+      this.svg.addEventListener("pointermove", turn);
+      const end = () => this.svg.removeEventListener("pointermove", turn);
+      for (const name of ["pointerup", "pointercancel"]) this.svg.addEventListener(name, end, { once: true });
+    });
+  }
+}
+
+/** The index of the computed position next to a mesh position. */
+export function indexAt(curve, position) {
+  const positions = curve.mesh_position;
+  const count = positions.length;
+  const step = count > 1 ? positions[1] - positions[0] : 1;
+  return ((Math.round((position - positions[0]) / step) % count) + count) % count;
+}
+
+function outlinePath({ tooth_mm: tooth, tooth_count: count }) {
+  const points = [];
+  for (let i = 0; i < count; i += 1) {
+    const [cos, sin] = [Math.cos((2 * Math.PI * i) / count), Math.sin((2 * Math.PI * i) / count)];
+    // The last point of a tooth is the first of the next.
+    for (const [x, y] of tooth.slice(0, -1)) points.push(`${(x * cos - y * sin).toFixed(4)} ${(x * sin + y * cos).toFixed(4)}`);
+  }
+  return `M${points.join("L")}Z`;
+}
+
+function text(words, [x, y], size, name) {
+  const element = s("text", { transform: `translate(${x} ${y}) scale(1 -1)`, "font-size": size, class: name });
+  element.textContent = words;
+  return element;
+}
+
+function arrow(from, to, [ux, uy], head) {
+  const base = [to[0] - head * ux, to[1] - head * uy];
+  const side = [-uy * head * 0.4, ux * head * 0.4];
+  const tip = `M${to.join(" ")}L${base[0] + side[0]} ${base[1] + side[1]}L${base[0] - side[0]} ${base[1] - side[1]}Z`;
+  return s("g", { class: "force" }, s("path", { d: `M${from.join(" ")}L${base.join(" ")}`, class: "shaft" }), s("path", { d: tip, class: "head" }));
+}

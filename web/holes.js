@@ -1,0 +1,136 @@
+// The holes of a gear: seen, dragged and moved by keys.
+
+import { s, number } from "./dom.js";
+
+const TURN = Math.PI / 180;
+const round = (value, step) => Number((Math.round(value / step) * step).toFixed(6));
+
+export class HoleHandles {
+  /** The holes of `member` in `design`; `inGear` gives where an event's pointer is in the gear's frame, in mm. */
+  constructor(member, design, inGear) {
+    this.member = member;
+    this.design = design;
+    this.inGear = inGear;
+    this.element = s("g", { class: "holes" });
+    this.drawn = "";
+  }
+
+  get pointer() {
+    return `/pair/${this.member}/blank/holes`;
+  }
+
+  /** The patterns with the pointer of each: one, or a list of them. */
+  patterns() {
+    const given = this.design.get(this.pointer);
+    if (!given) return [];
+    return Array.isArray(given) ? given.map((pattern, i) => [`${this.pointer}/${i}`, pattern]) : [[this.pointer, given]];
+  }
+
+  refresh(wrong) {
+    const patterns = this.patterns();
+    const isWrong = wrong.some((pointer) => pointer.startsWith(this.pointer));
+    const shape = JSON.stringify(patterns.map(([, pattern]) => anglesOf(pattern).length + (pattern.slot ? "s" : "r")));
+    if (shape !== this.drawn) {
+      this.drawn = shape;
+      this.element.replaceChildren(...patterns.flatMap(([pointer, pattern]) => anglesOf(pattern).map((_, i) => this.#handle(pointer, i))));
+    }
+    this.element.classList.toggle("wrong", isWrong);
+    const handles = [...this.element.children];
+    for (const [, pattern] of patterns) for (const angle of anglesOf(pattern)) place(handles.shift(), pattern, angle);
+  }
+
+  #handle(pointer, index) {
+    const first = index === 0;
+    const handle = s("path", {
+      class: "hole", tabindex: first ? 0 : undefined, role: first ? "slider" : undefined,
+      "aria-label": first ? `Holes of the ${this.member} gear: arrow keys up and down move the circle, left and right the phase, plus and minus change the radius, brackets the number` : undefined,
+    });
+    handle.append(s("title"));
+    handle.addEventListener("pointerdown", (event) => this.#drag(event, pointer, index));
+    handle.addEventListener("keydown", (event) => this.#press(event, pointer));
+    return handle;
+  }
+
+  /** Dragged at its rim a hole changes its radius, elsewhere its circle and its phase. */
+  #drag(event, pointer, index) {
+    if (event.button !== 0) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const handle = event.currentTarget;
+    const pattern = this.design.get(pointer);
+    const angle = anglesOf(pattern)[index];
+    const center = [pattern.circle_radius_mm * Math.cos(angle), pattern.circle_radius_mm * Math.sin(angle)];
+    const grip = this.inGear(event).map((value, i) => value - center[i]);
+    const atRim = pattern.radius_mm && Math.hypot(...grip) > 0.78 * pattern.radius_mm;
+    const move = (moved) => {
+      const place = this.inGear(moved);
+      if (atRim) return this.design.set(`${pointer}/radius_mm`, Math.max(0.05, round(Math.hypot(place[0] - center[0], place[1] - center[1]), 0.05)), "drag");
+      const to = place.map((value, i) => value - grip[i]);
+      const turned = wrap((Math.atan2(to[1], to[0]) - angle) / TURN);
+      // A hand that means the circle is not to turn the holes.
+      const phase = Math.abs(turned) < 2 ? (pattern.phase_deg ?? 0) : wrap(round((pattern.phase_deg ?? 0) + turned, 0.5));
+      const values = { [`${pointer}/circle_radius_mm`]: Math.max(0.1, round(Math.hypot(...to), 0.05)) };
+      if (pattern.count) values[`${pointer}/phase_deg`] = phase;
+      this.design.setAll(values, "drag");
+    };
+    handle.setPointerCapture(event.pointerId);
+    handle.classList.add("held");
+    handle.addEventListener("pointermove", move);
+    const end = () => {
+      handle.classList.remove("held");
+      handle.removeEventListener("pointermove", move);
+    };
+    for (const name of ["pointerup", "pointercancel"]) handle.addEventListener(name, end, { once: true });
+  }
+
+  #press(event, pointer) {
+    const pattern = this.design.get(pointer);
+    const add = (field, by, least) => this.design.set(`${pointer}/${field}`, Math.max(least, Number(((pattern[field] ?? 0) + by).toFixed(6))), "drag");
+    const actions = {
+      ArrowUp: () => add("circle_radius_mm", 0.25, 0.1),
+      ArrowDown: () => add("circle_radius_mm", -0.25, 0.1),
+      ArrowRight: () => pattern.count && add("phase_deg", 1, -360),
+      ArrowLeft: () => pattern.count && add("phase_deg", -1, -360),
+      "+": () => pattern.radius_mm && add("radius_mm", 0.1, 0.05),
+      "-": () => pattern.radius_mm && add("radius_mm", -0.1, 0.05),
+      "]": () => pattern.count && add("count", 1, 1),
+      "[": () => pattern.count && add("count", -1, 1),
+    };
+    if (!actions[event.key]) return;
+    event.preventDefault();
+    actions[event.key]();
+    this.element.querySelector("[tabindex]")?.focus();
+  }
+}
+
+/** The angles of the holes of a pattern in the frame of its gear, in radians. */
+function anglesOf(pattern) {
+  if (Array.isArray(pattern.at_deg)) return pattern.at_deg.map((angle) => angle * TURN);
+  const count = Math.min(200, Math.max(0, Math.round(pattern.count ?? 0)));
+  return Array.from({ length: count }, (_, i) => ((pattern.phase_deg ?? 0) + (360 * i) / count) * TURN);
+}
+
+const wrap = (degrees) => ((((degrees + 180) % 360) + 360) % 360) - 180;
+
+function place(handle, pattern, angle) {
+  const words = pattern.slot ? `slot ${number(pattern.slot.width_mm)} mm` : `r ${number(pattern.radius_mm)} mm`;
+  handle.setAttribute("d", pattern.slot ? slotPath(pattern, angle) : diskPath(pattern, angle));
+  handle.querySelector("title").textContent = `${words}, R ${number(pattern.circle_radius_mm)} mm`;
+  if (handle.getAttribute("role")) {
+    handle.setAttribute("aria-valuenow", pattern.circle_radius_mm);
+    handle.setAttribute("aria-valuetext", `${pattern.count ?? pattern.at_deg?.length} holes, circle radius ${pattern.circle_radius_mm} mm, ${words}`);
+  }
+}
+
+function diskPath({ circle_radius_mm: R, radius_mm: r }, angle) {
+  const [x, y] = [R * Math.cos(angle), R * Math.sin(angle)];
+  return `M${x - r} ${y}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0Z`;
+}
+
+/** A kidney along the circle, round at its ends. */
+function slotPath({ circle_radius_mm: R, slot }, angle) {
+  const [r, half] = [slot.width_mm / 2, (slot.angle_deg * TURN) / 2];
+  const at = (radius, turned) => `${radius * Math.cos(angle + turned)} ${radius * Math.sin(angle + turned)}`;
+  const large = 2 * half > Math.PI ? 1 : 0;
+  return `M${at(R + r, -half)}A${R + r} ${R + r} 0 ${large} 1 ${at(R + r, half)}A${r} ${r} 0 0 1 ${at(R - r, half)}A${R - r} ${R - r} 0 ${large} 0 ${at(R - r, -half)}A${r} ${r} 0 0 1 ${at(R + r, -half)}Z`;
+}

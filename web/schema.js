@@ -1,0 +1,62 @@
+// The schema of a submission, as the service describes it.
+
+import { json } from "./api.js";
+
+let documentOf = null;
+
+/** The OpenAPI document; asked for once. */
+export function openapi() {
+  documentOf ??= json("openapi.json");
+  return documentOf;
+}
+
+/** Follows references. */
+export function resolve(api, schema) {
+  let seen = schema;
+  while (seen?.$ref) seen = seen.$ref.slice(2).split("/").reduce((place, name) => place[name], api);
+  // A reference may bear words of its own.
+  return schema?.$ref && (schema.title || schema.description) ? { ...seen, ...withoutRef(schema) } : seen;
+}
+
+function withoutRef({ $ref: _, ...rest }) {
+  return rest;
+}
+
+/** What a field takes: `{ kind, schema, optional, ... }`. Null as one of several is told by `optional`. */
+export function kindOf(api, given) {
+  const schema = resolve(api, given);
+  const types = [schema.type].flat().filter((type) => type && type !== "null");
+  const optional = [schema.type].flat().includes("null");
+  if (schema.oneOf) {
+    const choices = schema.oneOf.map((each) => resolve(api, each));
+    const meant = choices.filter((each) => each.type !== "null");
+    const nullable = meant.length < choices.length;
+    if (meant.length === 1) {
+      const inner = kindOf(api, meant[0]);
+      const titles = { title: schema.title && !/^[A-Z]\w*[a-z][A-Z]/.test(schema.title) ? schema.title : inner.schema.title, description: schema.description ?? inner.schema.description };
+      return { ...inner, schema: { ...inner.schema, ...titles, default: schema.default }, optional: nullable };
+    }
+    return { kind: "variants", schema, variants: meant, optional: nullable };
+  }
+  if (schema.enum) return { kind: "choice", schema, optional };
+  if (types[0] === "object" && schema.properties) return { kind: "object", schema, optional };
+  if (types[0] === "array") {
+    const items = kindOf(api, schema.items ?? {});
+    return { kind: items.kind === "number" ? "numbers" : items.kind === "text" ? "texts" : "list", schema, items, optional };
+  }
+  if (types[0] === "number" || types[0] === "integer") return { kind: "number", whole: types[0] === "integer", schema, optional };
+  if (types[0] === "boolean") return { kind: "flag", schema, optional };
+  if (types[0] === "string") return { kind: "text", schema, optional };
+  return { kind: "json", schema, optional };
+}
+
+/** The words of a description without the unit and the default, which stand elsewhere. */
+export function help(schema) {
+  return (schema.description ?? "").replace(/ ?Unit: [^.]*\.(?= |$)/, "").replace(/`/g, "").trim();
+}
+
+/** The default that stands in the words of a description. */
+export function saidDefault(schema) {
+  const said = /Default: (.*?)\.?$/.exec(schema.description ?? "");
+  return said ? said[1].replace(/^1 modules$/, "1 module") : "";
+}

@@ -1,0 +1,67 @@
+// The peak-to-peak transmission error over the torque, and where it is least.
+
+import { ProblemError } from "./api.js";
+import { h, fixed, number } from "./dom.js";
+import { preview } from "./preview.js";
+import { scatter } from "./scatter.js";
+
+const MOST_TORQUES = 24;
+
+/** The sweep of `design` in `place`; `limits` tells how many positions a preview may have. */
+export function sweep(place, design, limits, positionsOf) {
+  const from = h("input", { type: "number", id: "sweep-from", step: "any", min: 0 });
+  const to = h("input", { type: "number", id: "sweep-to", step: "any", min: 0 });
+  const run = h("button", { type: "submit", className: "primary" }, "Sweep");
+  const out = h("div", { className: "out", ariaLive: "polite" });
+  const form = h("form", { className: "line", on: { submit: (event) => { event.preventDefault(); start(); } } },
+    h("label", { htmlFor: "sweep-from" }, "Torque from"), from, h("span", { className: "unit" }, "N m"),
+    h("label", { htmlFor: "sweep-to" }, "to"), to, h("span", { className: "unit" }, "N m"), run);
+  place.replaceChildren(h("p", { className: "note" }, "At which torque is the transmission error flattest? A tip relief suits one torque; this shows which."), form, out);
+
+  const suggest = () => {
+    const torque = design.get("/output_torques_n_m/0") ?? 100;
+    if (!from.value) from.value = number(torque / 10, 2);
+    if (!to.value) to.value = number(torque * 2, 2);
+  };
+
+  async function start() {
+    suggest();
+    const [low, high] = [Number(from.value), Number(to.value)];
+    if (!(low > 0 && high > low)) return out.replaceChildren(h("p", { className: "field-error" }, "The torques have to be positive, the second larger than the first."));
+    run.disabled = true;
+    out.replaceChildren(h("p", { className: "note" }, "Computing"));
+    try {
+      out.replaceChildren(...shown(await pointsOf(low, high)));
+    } catch (error) {
+      if (!(error instanceof ProblemError)) throw error;
+      out.replaceChildren(h("p", { className: "field-error" }, error.problem.errors?.[0]?.detail ?? error.message));
+    } finally {
+      run.disabled = false;
+    }
+  }
+
+  /** As many torques in one request as a preview may have, and the rest in further ones. */
+  async function pointsOf(low, high) {
+    const torques = Array.from({ length: MOST_TORQUES }, (_, i) => Number((low + ((high - low) * i) / (MOST_TORQUES - 1)).toPrecision(6)));
+    const each = Math.max(1, Math.floor(limits.previews.positions / Math.max(1, positionsOf())));
+    const points = [];
+    for (let i = 0; i < torques.length; i += each) {
+      const results = await preview({ ...design.submission, output_torques_n_m: torques.slice(i, i + each) });
+      for (const curve of results.curves) points.push({ x: curve.output_torque_n_m, y: curve.statistics.transmission_error_um.peak_to_peak, label: `${number(curve.output_torque_n_m)} N m` });
+    }
+    return points;
+  }
+
+  function shown(points) {
+    const least = points.reduce((best, point) => (point.y < best.y ? point : best));
+    least.strong = true;
+    least.label = `least: ${fixed(least.y, 3)} µm at ${number(least.x)} N m`;
+    const use = h("button", { type: "button", on: { click: () => design.set("/output_torques_n_m", [least.x], "mend") } }, `Show ${number(least.x)} N m`);
+    const atEnd = least === points[0] || least === points.at(-1);
+    const words = atEnd ? "The least lies at an end of the sweep; a wider one may find less." : "";
+    return [h("p", {}, `Least peak-to-peak of these torques: ${fixed(least.y, 3)} µm at ${number(least.x)} N m. ${words} `, use), scatter({ points, x: "output torque in N m", y: "STE peak-to-peak in µm", title: "Peak-to-peak transmission error over the torque", line: true })];
+  }
+
+  suggest();
+  return { suggest };
+}
