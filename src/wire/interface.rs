@@ -111,7 +111,9 @@ fn range(gear: &SpurGear) -> (f64, f64) {
     let Some(reach) = blank.outer_reach() else {
         return (0.0, f64::INFINITY);
     };
-    let web = blank.web.map_or(0.0, |web| web.outer_radius);
+    let web = blank
+        .web_in(gear.face_width())
+        .map_or(0.0, |web| web.outer_radius);
     let (inner, outer) = (to_mm(reach.max(web)), to_mm(gear.root_radius()));
     let margin = 0.25 * (outer - inner).min(to_mm(gear.data().rack.module));
     (inner + margin, outer - margin)

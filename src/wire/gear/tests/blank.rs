@@ -98,7 +98,7 @@ fn holes_that_do_not_fit_are_told_in_their_pattern_with_what_would_do() {
             Code::HolesBreachRim,
         ),
         (
-            slot(30.0, 40.0, 0.0, 4),
+            slot(30.0, 24.0, 0.0, 8),
             "slot/width_mm",
             Code::HolesOverlap,
         ),
