@@ -127,6 +127,7 @@ export class Drawing {
 
   #frame() {
     if (!this.#outline) return;
+    this.svg.setAttribute("data-view", this.#view);
     const { driving, driven, line_of_action: line } = this.#outline;
     const [r1, r2, a] = [driving.circles.tip_mm, driven.circles.tip_mm, driven.center_mm[0]];
     if (this.#view === "mesh") {

@@ -94,11 +94,17 @@ function showDesigns() {
   live.color = colors[0];
   kept.forEach((each, i) => { each.color = colors[(i % 6) + 1]; });
   const designs = [live, ...kept];
-  charts.show(designs);
+  charts.show(designs.map((each) => ({ ...each, name: legendOf(each, designs) })));
   byId("table").replaceChildren(table(designs, {
     onRemove: (gone) => { kept.splice(kept.indexOf(gone), 1); showDesigns(); },
     onOpen: ({ submission }) => design.replace(submission, "open"),
   }));
+}
+
+/** What a design is called beside others: by its method too, where they differ in it. */
+function legendOf({ name, results }, designs) {
+  const differ = designs.some((other) => other.results.method !== results.method);
+  return differ ? `${name} ${results.method.replace(/_/g, " ")}` : name;
 }
 
 const carry = debounced(250, async () => {

@@ -19,8 +19,8 @@
 //!    between bore and R_w is any plane region with a thickness by region ([`gear::BlankRegion`]), condensed as a whole or, where
 //!    it is a pattern of holes, by the sector of one ([`fem::blank`]). Both meet on the circle R_w in trigonometric
 //!    polynomials, whatever Z, N and the angle of the holes ([`fem::harmonics`], [`fem::cyclic`], [`assembly::interface`]).
-//! 3. **Whole gears** ([`fem::body`], [`assembly::gear`]). C = (S_blank + S_teeth)⁻¹ on that circle, and between the flanks of teeth i and j
-//!    H_ij = δ_ij H_0 + Ψ_i C_ij Ψ_jᵀ, for every tooth on its own. Stresses inside follow from the same factors
+//! 3. **Whole gears** ([`fem::body`], [`assembly::gear`]). C = (S_blank + S_teeth)⁻¹ on that circle, and between the flanks of
+//!    teeth i and j H_ij = δ_ij H_0 + Ψ_i C_ij Ψ_jᵀ, for every tooth on its own. Stresses inside follow from the same factors
 //!    ([`fem::recovery`]).
 //! 4. **Contact** ([`contact`]). At each position: minimize ½ pᵀHp + g_0ᵀp subject to wᵀp = F, p ≥ 0 (eqs. 4 to 6); δ is
 //!    the multiplier of the load. H on the contact cells is the smooth part of the finite-element compliance, interpolated,

@@ -273,7 +273,7 @@ fn formulas_on_the_line_of_contact_see_deviations_as_rigid_flanks_do() {
     let mut seen = 0;
     for (i, eta) in light.mesh_position.iter().enumerate() {
         let fraction = eta - eta.floor();
-        if fraction < 0.15 || fraction > 0.85 {
+        if !(0.15..=0.85).contains(&fraction) {
             let apart = formula.transmission_error[i] - light.transmission_error[i];
             assert!(apart.abs() < 2e-8, "{eta}: {apart:e}");
             seen += 1;

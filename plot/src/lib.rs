@@ -1,7 +1,7 @@
 //! Figures as SVG: charts of named series, order spectra, and drawings of gears.
 //!
 //! Read in this order: [`axis`], [`chart`] (curves and stems), [`drawing`] (shapes, and the true outline of a gear),
-//! [`simplify`] (what keeps the files small). Nothing here knows what the figures are about.
+//! `simplify` (what keeps the files small). Nothing here knows what the figures are about.
 
 pub mod axis;
 pub mod chart;

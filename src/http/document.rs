@@ -18,7 +18,7 @@ const DRAINED: usize = 64;
 /// The body is here within this time; a layer of the router sees to it.
 pub(super) const PATIENCE: Duration = Duration::from_secs(30);
 
-/// The bytes of a request's JSON document, so many MiB at most. The largest submission has a few thousand bytes.
+/// The bytes of a request's JSON document, so many MiB at most. The largest submission, with every table full, has a few hundred thousand bytes.
 pub(super) struct Document<const MIB: usize = 1>(pub(super) Bytes);
 
 impl<const MIB: usize, S: Send + Sync> FromRequest<S> for Document<MIB> {

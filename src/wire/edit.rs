@@ -34,20 +34,22 @@ impl Node {
         }
     }
 
-    /// Puts `value` behind `steps`. Objects on the way that are absent or null are made. `None`, and nothing is changed,
-    /// if something on the way is no object, or a list without this place.
+    /// Puts `value` behind `steps`. Objects on the way that are absent or null are made, lists are not. `None`, and nothing is
+    /// changed, if something on the way is no object, or a list without this place.
     pub(super) fn put<S: AsRef<str>>(&mut self, steps: &[S], value: Self) -> Option<Undo> {
         let Some((step, rest)) = steps.split_first() else {
             return Some(Undo::Restore(std::mem::replace(self, value)));
         };
         let step = step.as_ref();
         match self {
+            Self::Null if rest.iter().any(is_item) || is_item(&step) => None,
             Self::Null => {
                 let made = Self::Object(vec![(step.to_owned(), within(rest, value))]);
                 Some(Undo::Restore(std::mem::replace(self, made)))
             }
             Self::Object(fields) => match fields.iter().position(|(key, _)| key == step) {
                 Some(i) => below(i, fields[i].1.put(rest, value)),
+                None if is_item(&step) || rest.iter().any(is_item) => None,
                 None => {
                     fields.push((step.to_owned(), within(rest, value)));
                     Some(Undo::RemoveLast)
@@ -75,6 +77,11 @@ impl Node {
             }
         }
     }
+}
+
+/// Whether a step names an item of a list: no field of a submission is a number.
+fn is_item<S: AsRef<str>>(step: &S) -> bool {
+    step.as_ref().bytes().all(|byte| byte.is_ascii_digit())
 }
 
 fn below(i: usize, undo: Option<Undo>) -> Option<Undo> {
@@ -114,6 +121,8 @@ mod tests {
             &["torques", "1"][..],
             &["torques", "0", "x"],
             &["torques", "x"],
+            &["pair", "driven", "holes", "0", "count"],
+            &["pair", "driven", "modifications", "0", "amount"],
         ] {
             assert!(document.put(nowhere, Node::Null).is_none());
         }

@@ -41,6 +41,9 @@ const EXAMPLES: &[Example] = examples! {
     "eccentricity" true "A driven gear that turns 20 um beside its own axis, at a speed that gives frequencies."
     "light-load" true "The limit of light load, the torque 0, beside two loaded curves."
     "interface-radii" true "The decomposition of two holed gears that are cut at radii of their own."
+    "web" true "A driven gear with a web thinner than its rim, and six holes in it."
+    "unequal-holes" true "Six holes of two sizes at unequal angles: their order spreads over those of a revolution."
+    "slots" true "Five kidneys along a circle."
     "bad-case-3-as-printed" false "Test case 3 with the center distance that the paper prints, 118.5 mm: its teeth do not reach each other, and it is refused."
 };
 
@@ -97,6 +100,9 @@ mod tests {
                 "/pair/driven/tooth_deviations/eccentricity/amount_um",
             ),
             ("light-load", "/output_torques_n_m/2"),
+            ("web", "/pair/driven/blank/web/thickness_mm"),
+            ("unequal-holes", "/pair/driven/blank/holes/1/at_deg/1"),
+            ("slots", "/pair/driven/blank/holes/slot/width_mm"),
             ("interface-radii", "/resolution/interface_radius_mm/driving"),
         ] {
             let example = examples().iter().find(|example| example.name == name);

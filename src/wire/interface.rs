@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::problem::{Code, FieldError};
 use super::quantity;
-use super::schema::{self, Property};
+use super::schema::{self, Property, documented};
 use super::tree::{Choice, Node, ObjectReader};
 use super::units::{Side, from_mm, plain, rounded_inward, to_mm};
 
@@ -23,22 +23,32 @@ pub(super) enum InterfaceRadii {
 pub(super) fn property() -> Property {
     let quantity = &quantity::INTERFACE_RADIUS;
     let (name, number, _) = schema::number(quantity);
-    let gear = |member: Member| {
-        let (_, number, _) = schema::number(quantity);
-        (member.word(), number, false)
-    };
-    let each = schema::object(
-        "Interface radius of each gear",
-        "One radius for each gear that has holes.",
-        Member::BOTH.map(gear).to_vec(),
-    );
     let either = schema::one_of(
         quantity.title,
         quantity.description,
         Some(Value::Null),
-        vec![number, each],
+        vec![number, schema::reference::<EachRadius>()],
     );
     (name, either, false)
+}
+
+/// Names the object with a radius for each gear in the contract.
+pub(super) enum EachRadius {}
+
+documented!(
+    EachRadius,
+    "InterfaceRadii",
+    [],
+    schema::object(
+        "Interface radius of each gear",
+        "One radius for each gear that has holes.",
+        Member::BOTH.map(radius_of).to_vec(),
+    )
+);
+
+fn radius_of(member: Member) -> Property {
+    let (_, number, _) = schema::number(&quantity::INTERFACE_RADIUS);
+    (member.word(), number, false)
 }
 
 impl InterfaceRadii {
@@ -101,7 +111,9 @@ fn range(gear: &SpurGear) -> (f64, f64) {
     let Some(reach) = blank.outer_reach() else {
         return (0.0, f64::INFINITY);
     };
-    let web = blank.web.map_or(0.0, |web| web.outer_radius);
+    let web = blank
+        .web_in(gear.face_width())
+        .map_or(0.0, |web| web.outer_radius);
     let (inner, outer) = (to_mm(reach.max(web)), to_mm(gear.root_radius()));
     let margin = 0.25 * (outer - inner).min(to_mm(gear.data().rack.module));
     (inner + margin, outer - margin)

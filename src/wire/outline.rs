@@ -223,9 +223,15 @@ mod tests {
     use super::*;
     use crate::wire::{Submission, examples};
 
-    fn case(name: &str) -> Submission {
+    /// A test case without its reliefs: masses and conjugate flanks are those of the plain profile.
+    fn plain_case(name: &str) -> Submission {
         let example = examples().iter().find(|example| example.name == name);
-        Submission::parse(example.expect("ships").json.as_bytes()).expect("valid")
+        let json = example.expect("ships").json;
+        let mut document: serde_json::Value = serde_json::from_str(json).expect("JSON");
+        for member in ["driving", "driven"] {
+            document["pair"][member]["tip_relief"] = serde_json::Value::Null;
+        }
+        Submission::parse(document.to_string().as_bytes()).expect("valid")
     }
 
     fn world(gear: &GearOutline, local: Point, mesh_position: f64) -> Vector {
@@ -237,7 +243,7 @@ mod tests {
     #[test]
     fn loaded_flanks_touch_on_the_line_of_action_at_every_mesh_position() {
         // Conjugate action: without relief the flank points at s_1 and at T - s_1 coincide, and lie on the line from foot to foot.
-        let submission = case("test-case-3");
+        let submission = plain_case("test-case-3");
         let pair = &submission.case().pair;
         let outline = PairOutline::of(pair);
         let line = &outline.line_of_action;
@@ -257,7 +263,7 @@ mod tests {
     #[test]
     fn the_outline_with_its_bore_and_holes_encloses_the_mass() {
         for name in ["test-case-1", "test-case-2", "test-case-3"] {
-            let submission = case(name);
+            let submission = plain_case(name);
             let pair = &submission.case().pair;
             let outline = PairOutline::of(pair);
             for (member, drawn) in [
@@ -276,7 +282,8 @@ mod tests {
                 let area = (teeth - open - circle(drawn.bore_radius_mm)) * 1e-6;
                 let mass = gear.material().density * gear.face_width() * area;
                 let off = mass / gear.mass() - 1.0;
-                assert!(off.abs() < 2e-5, "{name}: {off:e}");
+                // Half a micrometer along the 700 mm of a profile is 6e-5 of the smallest area.
+                assert!(off.abs() < 6e-5, "{name}: {off:e}");
             }
         }
     }

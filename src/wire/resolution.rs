@@ -109,6 +109,7 @@ documented!(
     ResolutionDocument,
     "Resolution",
     [
+        interface::EachRadius,
         ContactSolverDocument,
         StiffnessDocument,
         LoadDistributionDocument

@@ -7,8 +7,9 @@ use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, Seq
 
 use super::problem::{Code, FieldError, Problem};
 
-/// The most values of a submission: objects, lists, words and numbers. The richest has a few thousand.
-pub(super) const MOST_VALUES: u64 = 20_000;
+/// The most values of a submission: objects, lists, words and numbers. The richest has two gears with sixteen tables of a thousand
+/// entries each.
+pub(super) const MOST_VALUES: u64 = 80_000;
 
 /// Refuses a document of more than `most` values. What is no JSON is told later, with its place.
 ///

@@ -8,7 +8,10 @@ use utoipa::ToSchema;
 
 use super::geometry::PairGeometry;
 use super::problem::{Code, Problem};
-use super::quantity::{self, MOST_POSITIONS, MOST_TAGS, MOST_TORQUES};
+use super::quantity::{
+    self, MOST_HOLES, MOST_MODIFICATIONS, MOST_POSITIONS, MOST_TABLE_ENTRIES, MOST_TAGS,
+    MOST_TORQUES,
+};
 use super::results::Results;
 use super::submission::{SOLVER_VERSION, Submission};
 use super::units::{plain, to_um};
@@ -165,11 +168,15 @@ pub struct Limits {
     /// The most positions in a mesh period.
     pub positions_per_mesh_period: u32,
     /// The most holes in a gear.
-    pub holes: u32,
+    pub holes: usize,
     /// The fewest and the most teeth.
     pub tooth_count: [u32; 2],
     /// The smallest and the largest module, in mm.
     pub module_mm: [f64; 2],
+    /// The most profile modifications of a gear, beside its tip relief.
+    pub profile_modifications: usize,
+    /// The most entries of a profile table.
+    pub table_entries: usize,
     /// The most tags.
     pub tags: usize,
     /// The most characters of a tag.
@@ -188,9 +195,11 @@ pub fn limits() -> Limits {
         torques: MOST_TORQUES,
         positions: MOST_POSITIONS,
         positions_per_mesh_period: counts(quantity::POSITIONS.bounds)[1],
-        holes: counts(quantity::HOLE_COUNT.bounds)[1],
+        holes: MOST_HOLES,
         tooth_count: counts(quantity::TOOTH_COUNT.bounds),
         module_mm: quantity::MODULE.bounds.into(),
+        profile_modifications: MOST_MODIFICATIONS,
+        table_entries: MOST_TABLE_ENTRIES,
         tags: MOST_TAGS.0,
         tag_length: MOST_TAGS.1,
         designs: super::study::MOST_DESIGNS,

@@ -1,6 +1,6 @@
 //! What the orders of a spectrum are: of the mesh, of holes, of revolutions, and the sidebands that these make about the mesh.
 
-use crate::gear::{GearPair, Member};
+use crate::gear::{GearPair, Member, SpurGear};
 
 /// What a line of the spectrum is.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -92,24 +92,14 @@ impl Orders {
         // A revolution of a gear, in those of the driven one.
         let revolution = |member: Member| mesh / f64::from(pair.gear(member).tooth_count());
         let holes = |member: Member| {
-            let gear = pair.gear(member);
-            let count = match gear.hole_repeats() {
-                0 => return None,
-                // Holes that repeat with the revolution only still come as many times.
-                1 => gear.holes().len() as u32,
-                repeats => repeats,
-            };
+            let count = hole_order(pair.gear(member))?;
             Some(f64::from(count) * revolution(member))
         };
-        let deviating = |member: Member| {
-            let gear = pair.gear(member);
-            let unequal = gear.hole_repeats() == 1 && gear.holes().len() > 1;
-            (unequal || !gear.deviations().is_none()).then(|| revolution(member))
-        };
+        let once = |member: Member| repeats_once(pair.gear(member)).then(|| revolution(member));
         Self {
             mesh,
             holes: families(true, Member::BOTH.map(holes)),
-            revolutions: families(false, Member::BOTH.map(deviating)),
+            revolutions: families(false, Member::BOTH.map(once)),
         }
     }
 
@@ -218,25 +208,47 @@ fn whole(value: f64) -> Option<u32> {
     (value > 0.5 && (value - value.round()).abs() < SAME).then_some(value.round() as u32)
 }
 
-/// The families of both gears' orders. One needs no number of its gear; two different ones do.
+/// The order that the holes of `gear` make in one of its revolutions: how often they repeat, or their number where they do not.
+fn hole_order(gear: &SpurGear) -> Option<u32> {
+    match gear.hole_repeats() {
+        0 => None,
+        1 => Some(gear.holes().len() as u32),
+        repeats => Some(repeats),
+    }
+}
+
+/// Whether only a whole revolution of `gear` brings back what its teeth or its holes do.
+fn repeats_once(gear: &SpurGear) -> bool {
+    let unequal = gear.hole_repeats() == 1 && gear.holes().len() > 1;
+    unequal || !gear.deviations().is_none()
+}
+
+/// The families of both gears' orders. Holes of both that make different orders have the number of their gear. Revolutions are those of
+/// the driven gear, per which orders count; those of the driving gear have its number, unless both are the same.
 fn families(holes: bool, orders: [Option<f64>; 2]) -> Vec<Family> {
-    let family = |order: f64, gears: Vec<Member>, number: &str| Family {
-        cause: OrderCause { holes, gears },
+    let family = |order: f64, gears: &[Member], number: &str| Family {
+        cause: OrderCause {
+            holes,
+            gears: gears.to_vec(),
+        },
         order,
         name: match (holes, number) {
             (true, number) => format!("N{number}"),
-            (false, "") => String::new(),
-            (false, number) => format!("({number})"),
+            (false, "1") => "(1)".to_owned(),
+            (false, _) => String::new(),
         },
     };
+    let (one, two) = (&[Member::Driving], &[Member::Driven]);
     match orders {
-        [Some(one), Some(two)] if (one - two).abs() > SAME => vec![
-            family(one, vec![Member::Driving], "1"),
-            family(two, vec![Member::Driven], "2"),
-        ],
-        [Some(order), Some(_)] => vec![family(order, Member::BOTH.to_vec(), "")],
-        [Some(order), None] => vec![family(order, vec![Member::Driving], "")],
-        [None, Some(order)] => vec![family(order, vec![Member::Driven], "")],
+        [Some(first), Some(second)] if (first - second).abs() > SAME => {
+            vec![family(first, one, "1"), family(second, two, "2")]
+        }
+        [Some(order), Some(_)] => vec![family(order, &Member::BOTH, "")],
+        [Some(order), None] if !holes && (order - 1.0).abs() > SAME => {
+            vec![family(order, one, "1")]
+        }
+        [Some(order), None] => vec![family(order, one, "")],
+        [None, Some(order)] => vec![family(order, two, "")],
         [None, None] => Vec::new(),
     }
 }
@@ -275,7 +287,7 @@ mod tests {
         let unlike = orders(eccentric(29), eccentric(85), 114.5e-3);
         assert_eq!(label(&unlike, 85.0 / 29.0), "H_1(1)");
         assert_eq!(label(&unlike, 85.0 - 85.0 / 29.0), "H_Z2-1(1)");
-        assert_eq!(label(&unlike, 86.0), "H_Z2+1(2)");
+        assert_eq!(label(&unlike, 86.0), "H_Z2+1");
         let of_both = unlike
             .known()
             .iter()

@@ -14,7 +14,7 @@ pub struct RotationSpeed(pub f64);
 pub struct NamedOrder {
     /// The order per revolution of the driven gear.
     pub order: f64,
-    /// For example `H_Z2`, `H_N`, `H_Z2+N2`, `H_1`, `H_Z2-1(2)`.
+    /// For example `H_Z2`, `H_N`, `H_Z2+N2`, `H_1`, `H_Z2-1(1)`.
     pub label: String,
     /// What it is.
     pub kind: OrderKind,

@@ -11,7 +11,7 @@ pub const LEAST_TIP_THICKNESS: f64 = 0.05;
 /// The least rim between the bore and the root circle, in modules.
 pub const LEAST_RIM: f64 = 1.0;
 
-/// What a drawing says of a spur gear; [`SpurGear::new`] checks it.
+/// What a drawing says of a spur gear; [`super::SpurGear::new`] checks it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GearData {
     /// The number of teeth Z.

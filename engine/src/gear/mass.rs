@@ -95,7 +95,7 @@ mod tests {
         assert!((imbalance + expected * radial(0.5)).norm() < 1e-12 * expected);
         data.blank.holes = pattern(2).holes();
         let pair_of_holes = SpurGear::new(data).expect("two holes");
-        assert_eq!(pair_of_holes.imbalance(), Vector::zeros());
+        assert!(pair_of_holes.imbalance().norm() < 1e-12 * expected);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //!
 //! Read in this order: [`involute`] (one flank), [`rack`] (the tool and the fillet it leaves), [`modification`]
 //! and [`tip`] (what is taken off it), [`deviation`] (what teeth differ by), [`blank`], [`material`], [`data`] (what a drawing says),
-//! [`spur`], [`mass`] and [`outline`] (a whole gear), [`pair`] (two of them at a center distance).
+//! [`spur`], `mass` and `outline` (a whole gear), [`pair`] (two of them at a center distance).
 //!
 //! Every gear is described in its own frame: the center of the gear is the origin, the centerline of tooth 0 is the
 //! x axis, and the loaded flank of each tooth lies on its counter-clockwise side.

@@ -1,4 +1,4 @@
-//! Gears, pairs and cases of the paper, with what it leaves open settled here.
+//! Gears, pairs and cases of the paper, with what it leaves open settled as the README says.
 
 #![allow(dead_code, reason = "each test and benchmark uses some of these")]
 
@@ -12,7 +12,7 @@ use meshwright_engine::gear::{
 };
 use meshwright_engine::grid::GridLevel;
 
-/// Steel, as in all cases of the paper.
+/// Steel, as taken for all of the paper's gears.
 pub(crate) const STEEL: Material = Material {
     youngs_modulus: 210e9,
     poisson_ratio: 0.3,
@@ -84,7 +84,7 @@ pub(crate) fn standard_pair(with_relief: bool) -> GearPair {
     pair(data.clone(), data, 100.5e-3)
 }
 
-/// Test case `number` of the paper with what it leaves open filled in, and its output torque.
+/// Test case `number` of the paper with the values of the README where the paper gives none, and its output torque.
 pub(crate) fn paper_case(number: u32) -> (GearPair, f64) {
     let blank = |z, bore| relieved(gear(z, bore));
     match number {

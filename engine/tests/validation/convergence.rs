@@ -26,7 +26,7 @@ const COARSE: Bounds = Bounds {
     mesh_harmonic: 4e-2,
 };
 
-/// What the standard level promises. Asked for are 0.1 %, 1 %, 0.5 % of the mean stiffness and 1 % of the harmonics.
+/// What the standard level promises. Asked for were 0.1 %, 1 %, 0.5 % of the mean stiffness and 1 % of the harmonics.
 const STANDARD: Bounds = Bounds {
     mean: 3e-4,
     peak_to_peak: 5e-3,

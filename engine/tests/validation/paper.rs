@@ -1,4 +1,4 @@
-//! The flexible method against Table 2 of the paper, with what the paper leaves open filled in.
+//! The flexible method against Table 2 of the paper, with what the paper leaves open filled in as the README says.
 //!
 //! Bores and hole circles were fitted to the means of δ, so that the means of δ test little; rms and peak-to-peak of δ, and
 //! the stiffness, test the method.

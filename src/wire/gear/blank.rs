@@ -1,8 +1,9 @@
-//! What carries the teeth: the bore and the holes.
+//! What carries the teeth: the bore, the holes and the web.
 
-use meshwright_engine::gear::{BlankRegion, HolePattern};
+use meshwright_engine::gear::{BlankRegion, Web};
 use serde::Serialize;
 
+use super::holes::{self, HolesDocument, PatternDocument};
 use crate::wire::quantity;
 use crate::wire::schema::{self, documented};
 use crate::wire::tree::{ObjectReader, OptionalObject};
@@ -12,48 +13,48 @@ use crate::wire::units::from_mm;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BlankDocument {
     pub(super) bore_radius_mm: f64,
-    pub(super) holes: Option<HolesDocument>,
+    pub(super) holes: HolesDocument,
+    pub(super) web: Option<WebDocument>,
 }
 
 documented!(
     BlankDocument,
     "Blank",
-    [HolesDocument],
+    [PatternDocument, WebDocument],
     schema::object(
         "Blank",
         "What carries the teeth: everything between the bore and the root circle.",
         vec![
             schema::number(&quantity::BORE_RADIUS),
-            schema::optional_document::<HolesDocument>(
-                "holes",
-                "Holes",
-                "Equal round holes on a circle. Default: none."
+            holes::property(),
+            schema::optional_document::<WebDocument>(
+                "web",
+                "Web",
+                "A ring that is thinner, or thicker, than the face is wide. Default: none."
             ),
         ]
     )
 );
 
-/// Equal round holes on a circle.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct HolesDocument {
-    pub(super) count: u32,
-    pub(super) circle_radius_mm: f64,
-    pub(super) radius_mm: f64,
-    phase_deg: f64,
+/// A ring of its own thickness.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct WebDocument {
+    pub(super) inner_radius_mm: f64,
+    pub(super) outer_radius_mm: f64,
+    pub(super) thickness_mm: f64,
 }
 
 documented!(
-    HolesDocument,
-    "Holes",
+    WebDocument,
+    "Web",
     [],
     schema::object(
-        "Holes",
-        "Equal, evenly spaced round holes on a circle.",
+        "Web",
+        "Between its two radii the blank has this thickness, elsewhere the face width. The model is plane stress with a thickness by region.",
         vec![
-            schema::number(&quantity::HOLE_COUNT),
-            schema::number(&quantity::HOLE_CIRCLE),
-            schema::number(&quantity::HOLE_RADIUS),
-            schema::number(&quantity::HOLE_PHASE),
+            schema::number(&quantity::WEB_INNER),
+            schema::number(&quantity::WEB_OUTER),
+            schema::number(&quantity::WEB_THICKNESS),
         ]
     )
 );
@@ -61,49 +62,48 @@ documented!(
 impl BlankDocument {
     pub(super) fn read(mut reader: ObjectReader<'_>) -> Option<Self> {
         let bore_radius_mm = reader.number(&quantity::BORE_RADIUS, None);
-        let holes = match reader.optional_object("holes") {
+        let holes = HolesDocument::read(&mut reader);
+        let web = match reader.optional_object("web") {
             OptionalObject::Absent => Some(None),
             OptionalObject::Wrong => None,
-            OptionalObject::Present(holes) => HolesDocument::read(holes).map(Some),
+            OptionalObject::Present(web) => WebDocument::read(web).map(Some),
         };
         reader.finish();
         Some(Self {
             bore_radius_mm: bore_radius_mm?,
             holes: holes?,
+            web: web?,
         })
     }
 
+    /// What the engine is told.
     pub(super) fn data(&self) -> BlankRegion {
-        let holes = self.holes.as_ref().map(HolesDocument::data);
         BlankRegion {
             bore_radius: from_mm(self.bore_radius_mm),
-            holes: holes.map_or_else(Vec::new, |pattern| pattern.holes()),
-            web: None,
+            holes: self.holes.data(),
+            web: self.web.map(WebDocument::data),
         }
     }
 }
 
-impl HolesDocument {
+impl WebDocument {
     fn read(mut reader: ObjectReader<'_>) -> Option<Self> {
-        let count = reader.count(&quantity::HOLE_COUNT);
-        let circle_radius_mm = reader.number(&quantity::HOLE_CIRCLE, None);
-        let radius_mm = reader.number(&quantity::HOLE_RADIUS, None);
-        let phase_deg = reader.number(&quantity::HOLE_PHASE, None);
+        let inner_radius_mm = reader.number(&quantity::WEB_INNER, None);
+        let outer_radius_mm = reader.number(&quantity::WEB_OUTER, None);
+        let thickness_mm = reader.number(&quantity::WEB_THICKNESS, None);
         reader.finish();
         Some(Self {
-            count: count?,
-            circle_radius_mm: circle_radius_mm?,
-            radius_mm: radius_mm?,
-            phase_deg: phase_deg?,
+            inner_radius_mm: inner_radius_mm?,
+            outer_radius_mm: outer_radius_mm?,
+            thickness_mm: thickness_mm?,
         })
     }
 
-    fn data(&self) -> HolePattern {
-        HolePattern {
-            count: self.count,
-            circle_radius: from_mm(self.circle_radius_mm),
-            radius: from_mm(self.radius_mm),
-            phase: self.phase_deg.to_radians(),
+    fn data(self) -> Web {
+        Web {
+            inner_radius: from_mm(self.inner_radius_mm),
+            outer_radius: from_mm(self.outer_radius_mm),
+            thickness: from_mm(self.thickness_mm),
         }
     }
 }

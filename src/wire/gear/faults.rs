@@ -1,13 +1,13 @@
 //! What prevents a gear, told by field, with the bound beyond which it could be made.
 
-use meshwright_engine::gear::data::{LEAST_LIGAMENT, LEAST_RIM, LEAST_TIP_THICKNESS};
+use meshwright_engine::gear::data::{LEAST_RIM, LEAST_TIP_THICKNESS};
 use meshwright_engine::gear::{DeviationList, GearError};
 
 use super::GearDocument;
 use super::field::{Field, ReliefPlace};
 use super::relief::{ReliefEnd, StartWay};
 use crate::wire::problem::Code;
-use crate::wire::units::{Side, from_mm, plain, rounded_inward, to_mm, to_um};
+use crate::wire::units::{Side, from_mm, plain, to_mm, to_um};
 
 /// Why a gear cannot be made, and the bound beyond which it could, in the unit of the field.
 #[derive(Debug, Clone, PartialEq)]
@@ -187,34 +187,21 @@ impl GearDocument {
                 ),
                 None,
             ),
-            GearError::WebOutside { .. } => {
-                Fault::new(Field::Bore, Code::OutOfRange, error.to_string(), None)
-            }
             GearError::HolesOverlap {
-                holes: _,
-                ligament,
-                largest_radius,
-            } => self.hole_fault(Code::HolesOverlap, "between them", ligament, largest_radius),
-            GearError::HolesBreachRim {
-                hole: _,
-                ligament,
-                largest_radius,
-            } => self.hole_fault(
-                Code::HolesBreachRim,
-                "below the root circle",
-                ligament,
-                largest_radius,
-            ),
-            GearError::HolesBreachBore {
-                hole: _,
-                ligament,
-                largest_radius,
-            } => self.hole_fault(
-                Code::HolesBreachBore,
-                "around the bore",
-                ligament,
-                largest_radius,
-            ),
+                holes, ligament, ..
+            } => self.overlap_fault(holes, ligament),
+            GearError::HolesBreachRim { hole, ligament, .. } => {
+                self.breach_fault(Code::HolesBreachRim, hole, ligament)
+            }
+            GearError::HolesBreachBore { hole, ligament, .. } => {
+                self.breach_fault(Code::HolesBreachBore, hole, ligament)
+            }
+            GearError::WebOutside {
+                inner_radius,
+                outer_radius,
+                least,
+                largest,
+            } => self.web_fault([inner_radius, outer_radius], [least, largest]),
         }
     }
 
@@ -275,45 +262,5 @@ impl GearDocument {
             detail,
             Some(bound),
         )
-    }
-
-    /// The radius of the holes is to blame, unless no radius would do: then it is their circle.
-    fn hole_fault(&self, code: Code, place: &str, ligament: f64, largest_radius: f64) -> Fault {
-        let least = to_mm(LEAST_LIGAMENT);
-        let detail = if ligament < 0.0 {
-            format!(
-                "The holes leave nothing {place}: they cut {} mm too far.",
-                plain(to_mm(-ligament))
-            )
-        } else {
-            format!(
-                "The holes leave {} mm {place}; at least {least} mm has to stay.",
-                plain(to_mm(ligament))
-            )
-        };
-        let largest = rounded_inward(to_mm(largest_radius), Side::AtMost, 0);
-        if self.accepts(Field::HoleRadius, largest) && largest >= self.least_hole_mm() {
-            return Fault::new(
-                Field::HoleRadius,
-                code,
-                detail,
-                Some((to_mm(largest_radius), Side::AtMost)),
-            );
-        }
-        let missing = least - to_mm(ligament);
-        let circle = self.value(Field::HoleCircle);
-        let bound = match code {
-            Code::HolesBreachRim => (circle - missing, Side::AtMost),
-            Code::HolesBreachBore => (circle + missing, Side::AtLeast),
-            _ => {
-                let count = self.blank.holes.as_ref().map_or(1, |holes| holes.count);
-                let half_angle = std::f64::consts::PI / f64::from(count);
-                (
-                    (self.value(Field::HoleRadius) + least / 2.0) / half_angle.sin(),
-                    Side::AtLeast,
-                )
-            }
-        };
-        Fault::new(Field::HoleCircle, code, detail, Some(bound))
     }
 }

@@ -1,6 +1,7 @@
 //! The fields that may have to change to make a gear: their values, bounds and places.
 
 use super::GearDocument;
+use super::blank::WebDocument;
 use super::relief::ReliefDocument;
 use crate::wire::quantity::{self, Quantity};
 
@@ -21,8 +22,14 @@ pub(super) enum Field {
     /// The deviations as a whole.
     Deviations,
     Bore,
-    HoleCircle,
-    HoleRadius,
+    /// The circle of a pattern of holes.
+    HoleCircle(usize),
+    /// The radius of its holes, or the width of its slots.
+    HoleWidth(usize),
+    SlotAngle(usize),
+    WebInner,
+    WebOuter,
+    WebThickness,
 }
 
 /// Where a relief stands in the document of a gear.
@@ -45,7 +52,8 @@ impl ReliefPlace {
 
 impl GearDocument {
     pub(super) fn value(&self, field: Field) -> f64 {
-        let holes = self.blank.holes.as_ref();
+        let holes = self.blank.holes.patterns();
+        let web = |value: fn(&WebDocument) -> f64| self.blank.web.as_ref().map_or(0.0, value);
         match field {
             Field::ProfileShift => self.profile_shift,
             Field::Tip => self.tip_circle.value(),
@@ -57,31 +65,49 @@ impl GearDocument {
                 self.relief(place).map_or(0.0, |relief| relief.start.value)
             }
             Field::Bore => self.blank.bore_radius_mm,
-            Field::HoleCircle => holes.map_or(0.0, |holes| holes.circle_radius_mm),
-            Field::HoleRadius => holes.map_or(0.0, |holes| holes.radius_mm),
+            Field::HoleCircle(i) => holes[i].circle_radius_mm,
+            Field::HoleWidth(i) => holes[i].shape.width_value(),
+            Field::SlotAngle(i) => holes[i].shape.span_deg(),
+            Field::WebInner => web(|web| web.inner_radius_mm),
+            Field::WebOuter => web(|web| web.outer_radius_mm),
+            Field::WebThickness => web(|web| web.thickness_mm),
             Field::Modification(_) | Field::Deviations => 0.0,
         }
     }
 
     pub(super) fn set(&mut self, field: Field, value: f64) {
-        let holes = self.blank.holes.as_mut();
-        match (field, holes) {
-            (Field::ProfileShift, _) => self.profile_shift = value,
-            (Field::Tip, _) => self.tip_circle = self.tip_circle.with(value),
-            (Field::Dedendum, _) => self.dedendum_mm = value,
-            (Field::RackTipRadius, _) => self.rack_tip_radius_mm = value,
-            (Field::ThicknessDeviation, _) => self.tooth_thickness_deviation_um = value,
-            (Field::TipEdge, _) => self.tip_edge = self.tip_edge.with(value),
-            (Field::Bore, _) => self.blank.bore_radius_mm = value,
-            (Field::ReliefStart(place), _) => {
+        match field {
+            Field::ProfileShift => self.profile_shift = value,
+            Field::Tip => self.tip_circle = self.tip_circle.with(value),
+            Field::Dedendum => self.dedendum_mm = value,
+            Field::RackTipRadius => self.rack_tip_radius_mm = value,
+            Field::ThicknessDeviation => self.tooth_thickness_deviation_um = value,
+            Field::TipEdge => self.tip_edge = self.tip_edge.with(value),
+            Field::Bore => self.blank.bore_radius_mm = value,
+            Field::ReliefStart(place) => {
                 if let Some(relief) = self.relief_mut(place) {
                     relief.start.value = value;
                 }
             }
-            (Field::HoleCircle, Some(holes)) => holes.circle_radius_mm = value,
-            (Field::HoleRadius, Some(holes)) => holes.radius_mm = value,
-            (Field::HoleCircle | Field::HoleRadius, None)
-            | (Field::Modification(_) | Field::Deviations, _) => {}
+            Field::HoleCircle(i) | Field::HoleWidth(i) | Field::SlotAngle(i) => {
+                if let Some(pattern) = self.blank.holes.pattern_mut(i) {
+                    match field {
+                        Field::HoleCircle(_) => pattern.circle_radius_mm = value,
+                        Field::HoleWidth(_) => pattern.shape.set_width(value),
+                        _ => pattern.shape.set_span(value),
+                    }
+                }
+            }
+            Field::WebInner | Field::WebOuter | Field::WebThickness => {
+                if let Some(web) = &mut self.blank.web {
+                    match field {
+                        Field::WebInner => web.inner_radius_mm = value,
+                        Field::WebOuter => web.outer_radius_mm = value,
+                        _ => web.thickness_mm = value,
+                    }
+                }
+            }
+            Field::Modification(_) | Field::Deviations => {}
         }
     }
 
@@ -95,8 +121,12 @@ impl GearDocument {
             Field::TipEdge => self.tip_edge.quantity()?,
             Field::ReliefStart(place) => self.relief(place)?.start.quantity(),
             Field::Bore => &quantity::BORE_RADIUS,
-            Field::HoleCircle => &quantity::HOLE_CIRCLE,
-            Field::HoleRadius => &quantity::HOLE_RADIUS,
+            Field::HoleCircle(_) => &quantity::HOLE_CIRCLE,
+            Field::HoleWidth(i) => self.blank.holes.patterns()[i].shape.width().0,
+            Field::SlotAngle(_) => &quantity::SLOT_ANGLE,
+            Field::WebInner => &quantity::WEB_INNER,
+            Field::WebOuter => &quantity::WEB_OUTER,
+            Field::WebThickness => &quantity::WEB_THICKNESS,
             Field::Modification(_) | Field::Deviations => return None,
         })
     }
@@ -108,7 +138,13 @@ impl GearDocument {
             Field::Modification(place) => place.pointer_within(),
             Field::Deviations => "tooth_deviations".to_owned(),
             Field::Bore => format!("blank/{name}"),
-            Field::HoleCircle | Field::HoleRadius => format!("blank/holes/{name}"),
+            Field::HoleCircle(i) => format!("{}/{name}", self.blank.holes.pointer_within(i)),
+            Field::HoleWidth(i) => {
+                let (_, folder) = self.blank.holes.patterns()[i].shape.width();
+                format!("{}/{folder}{name}", self.blank.holes.pointer_within(i))
+            }
+            Field::SlotAngle(i) => format!("{}/slot/{name}", self.blank.holes.pointer_within(i)),
+            Field::WebInner | Field::WebOuter | Field::WebThickness => format!("blank/web/{name}"),
             _ => name.to_owned(),
         }
     }

@@ -1,12 +1,14 @@
 //! The gears of a submission, and what is wrong with those that cannot be made.
 //!
-//! The document by its parts: `tip`, `relief`, `modification`, `deviation`, `material`, `blank`. Then what prevents a gear
-//! (`proportions`, `faults`), which fields could change (`field`), and the values that together would do (`repair`).
+//! The document by its parts: `tip`, `relief`, `modification`, `deviation`, `material`, `blank` and `holes`. Then what prevents
+//! a gear (`proportions`, `faults`, `blank_faults`), which fields could change (`field`), and the values that together would do (`repair`).
 
 mod blank;
+mod blank_faults;
 mod deviation;
 mod faults;
 mod field;
+mod holes;
 mod material;
 mod modification;
 mod proportions;
@@ -19,8 +21,9 @@ mod tip;
 use meshwright_engine::gear::{GearData, Rack, ToothDeviations};
 use serde::Serialize;
 
-pub use blank::{BlankDocument, HolesDocument};
+pub use blank::{BlankDocument, WebDocument};
 pub use deviation::{DeviationsDocument, EccentricityDocument};
+pub use holes::{PatternDocument, SlotDocument};
 pub use material::MaterialDocument;
 pub use modification::{ModificationDocument, TableDocument};
 pub use relief::{ReliefDocument, StartDocument};

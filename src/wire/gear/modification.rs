@@ -2,8 +2,10 @@
 
 use meshwright_engine::gear::{ModificationData, TablePlaces};
 use serde::Serialize;
+use utoipa::openapi::RefOr;
+use utoipa::openapi::schema::Schema;
 
-use super::relief::{ReliefDocument, ReliefEnd};
+use super::relief::{ReliefDocument, ReliefEnd, RootStart};
 use super::tip::either;
 use crate::wire::problem::{Code, FieldError};
 use crate::wire::quantity::{self, MOST_MODIFICATIONS, MOST_TABLE_ENTRIES, Quantity};
@@ -75,26 +77,57 @@ impl Choice for Kind {
 documented!(
     ModificationDocument,
     "ProfileModification",
-    [],
+    [
+        TipReliefKind,
+        RootReliefKind,
+        CrowningKind,
+        SlopeKind,
+        TableKind
+    ],
     schema::one_of(
         "Profile modification",
         "What is taken off every loaded flank, normal to it. Taken off is positive.",
         None,
-        Kind::OPTIONS
-            .iter()
-            .map(|(word, kind, meaning)| {
-                let title = word.replace('_', " ");
-                let kind_field = (
-                    "kind",
-                    schema::word("Kind", "What the modification is.", word),
-                    true,
-                );
-                let properties = [kind_field].into_iter().chain(kind.properties());
-                schema::object(&title, &format!("{meaning}."), properties.collect())
-            })
-            .collect()
+        vec![
+            schema::reference::<TipReliefKind>(),
+            schema::reference::<RootReliefKind>(),
+            schema::reference::<CrowningKind>(),
+            schema::reference::<SlopeKind>(),
+            schema::reference::<TableKind>(),
+        ]
     )
 );
+
+/// Names each kind of modification in the contract, so that generators of clients need not.
+macro_rules! kinds {
+    ($($name:ident $word:literal $kind:ident [$($part:ty),*])*) => {$(
+        enum $name {}
+
+        documented!($name, $word, [$($part),*], Kind::$kind.schema());
+    )*};
+}
+
+kinds! {
+    TipReliefKind "TipReliefModification" TipRelief []
+    RootReliefKind "RootReliefModification" RootRelief [RootStart]
+    CrowningKind "CrowningModification" Crowning []
+    SlopeKind "SlopeModification" Slope []
+    TableKind "TableModification" Table []
+}
+
+impl Kind {
+    /// An object of this kind.
+    fn schema(self) -> RefOr<Schema> {
+        let meaning = Self::OPTIONS
+            .iter()
+            .find(|(_, kind, _)| *kind == self)
+            .map_or("", |(.., meaning)| meaning);
+        let kind = schema::word("Kind", "What the modification is.", self.word());
+        let properties = [("kind", kind, true)].into_iter().chain(self.properties());
+        let title = self.word().replace('_', " ");
+        schema::object(&title, &format!("{meaning}."), properties.collect())
+    }
+}
 
 impl Kind {
     /// What the schema says of the fields beside the kind.
@@ -280,9 +313,8 @@ impl TableDocument {
     /// What is wrong with it on a gear of `module` over the base circle, both in mm, as the list at `pointer` has it.
     pub(super) fn faults(&self, pointer: &str, module: f64, base_radius: f64) -> Vec<FieldError> {
         let length = self.length_fault(pointer);
-        let start = self.start_fault(pointer, base_radius);
-        let rise = self.rise_fault(pointer, LEAST_STEP * module);
-        length.into_iter().chain(start).chain(rise).collect()
+        let places = self.place_faults(pointer, LEAST_STEP * module, base_radius);
+        length.into_iter().chain(places).collect()
     }
 
     fn length_fault(&self, pointer: &str) -> Option<FieldError> {
@@ -304,39 +336,43 @@ impl TableDocument {
         Some(FieldError::new(pointer, Code::WrongLength, detail).nearest(needed as f64))
     }
 
-    /// Below the base circle there is no flank that a diameter could name.
-    fn start_fault(&self, pointer: &str, base_radius: f64) -> Option<FieldError> {
-        let Places::Diameters(diameters) = &self.places else {
-            return None;
+    /// The first diameter that is below the base circle, where there is no flank that it could name, and each entry that does not
+    /// stand beyond the one before it; each with a value such that all of them together make a table.
+    fn place_faults(&self, pointer: &str, step: f64, base_radius: f64) -> Vec<FieldError> {
+        const ROUNDING: f64 = 1e-9;
+        let name = self.places.quantity().name;
+        let mut faults = Vec::new();
+        let mut floor = match &self.places {
+            Places::RollLengths(_) => 0.0,
+            Places::Diameters(_) => 2.0 * base_radius,
         };
-        let least = 2.0 * base_radius;
-        let below = *diameters.first()?;
-        if below >= least * (1.0 - 1e-9) {
-            return None;
+        for (i, &value) in self.places.values().iter().enumerate() {
+            if value >= floor * (1.0 - ROUNDING) {
+                floor = value + step;
+                continue;
+            }
+            let nearest = rounded_inward(floor, Side::AtLeast, 0);
+            let pointer = format!("{pointer}/{name}/{i}");
+            let (code, what) = if i == 0 {
+                (
+                    Code::OutOfRange,
+                    "below the base circle, where there is no flank",
+                )
+            } else {
+                (
+                    Code::TableDoesNotRise,
+                    "not beyond the entry before it by 0.0001 modules",
+                )
+            };
+            let detail = format!(
+                "{pointer} is {} mm, {what}; at least {} mm.",
+                plain(value),
+                plain(nearest)
+            );
+            faults.push(FieldError::new(pointer, code, detail).nearest(nearest));
+            floor = nearest + step;
         }
-        let nearest = rounded_inward(least, Side::AtLeast, 0);
-        let pointer = format!("{pointer}/{}/0", quantity::TABLE_DIAMETER.name);
-        let detail = format!(
-            "{pointer} is {} mm, below the base circle, which has no flank; at least {} mm.",
-            plain(below),
-            plain(nearest)
-        );
-        Some(FieldError::new(pointer, Code::OutOfRange, detail).nearest(nearest))
-    }
-
-    fn rise_fault(&self, pointer: &str, step: f64) -> Option<FieldError> {
-        let values = self.places.values();
-        let before = values
-            .windows(2)
-            .position(|pair| pair[1] - pair[0] < step * (1.0 - 1e-9))?;
-        let nearest = rounded_inward(values[before] + step, Side::AtLeast, 0);
-        let pointer = format!("{pointer}/{}/{}", self.places.quantity().name, before + 1);
-        let detail = format!(
-            "{pointer} is {} mm and follows {} mm; a table rises by at least 0.0001 modules from entry to entry.",
-            plain(values[before + 1]),
-            plain(values[before])
-        );
-        Some(FieldError::new(pointer, Code::TableDoesNotRise, detail).nearest(nearest))
+        faults
     }
 
     fn data(&self) -> ModificationData {

@@ -5,6 +5,7 @@ use meshwright_engine::gear::SpurGear;
 use super::GearDocument;
 use super::faults::Fault;
 use super::field::Field;
+use super::holes::HolesDocument;
 use crate::wire::problem::{Code, FieldError};
 use crate::wire::units::{Side, from_mm, plain};
 
@@ -63,15 +64,15 @@ impl GearDocument {
             f64::INFINITY,
             "5 % of the root radius and more",
         )?;
-        if self.blank.holes.is_some() {
+        for (i, pattern) in self.blank.holes.patterns().iter().enumerate() {
             self.check_between(
-                Field::HoleRadius,
-                self.least_hole_mm(),
+                Field::HoleWidth(i),
+                pattern.shape.of_half_width(self.least_hole_mm()),
                 f64::INFINITY,
-                "1 % of the root radius and more",
+                "1 % of the root radius to each side and more",
             )?;
         }
-        Ok(())
+        self.check_web()
     }
 
     /// The addendum has its bounds in modules, and they are those of the tip diameter too.
@@ -86,7 +87,13 @@ impl GearDocument {
         )
     }
 
-    fn check_between(&self, field: Field, least: f64, most: f64, said: &str) -> Result<(), Fault> {
+    pub(super) fn check_between(
+        &self,
+        field: Field,
+        least: f64,
+        most: f64,
+        said: &str,
+    ) -> Result<(), Fault> {
         // What was computed from the other numbers is so up to the last bits.
         const ROUNDING: f64 = 1e-12;
         let value = self.value(field);
@@ -134,13 +141,17 @@ impl GearDocument {
             let place = format!("{pointer}/tooth_deviations");
             deviations.faults(&place, self.tooth_count, self.module_mm)
         });
-        of_tables.chain(of_deviations).collect()
+        let of_holes = self.blank.holes.too_many(pointer);
+        of_tables.chain(of_deviations).chain(of_holes).collect()
     }
 
     /// The same gear without lists, its modifications in their places.
     pub(super) fn without_lists(&self) -> Self {
         let mut gear = self.clone();
         gear.tooth_deviations = None;
+        if gear.blank.holes.too_many("").is_some() {
+            gear.blank.holes = HolesDocument::None;
+        }
         for modification in &mut gear.profile_modifications {
             modification.empty_table();
         }

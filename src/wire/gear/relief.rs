@@ -94,6 +94,16 @@ documented!(
     start_schema(ReliefEnd::Tip)
 );
 
+/// Names the start of a root relief in the contract.
+pub(super) enum RootStart {}
+
+documented!(
+    RootStart,
+    "RootReliefStart",
+    [],
+    start_schema(ReliefEnd::Form)
+);
+
 fn start_schema(end: ReliefEnd) -> RefOr<Schema> {
     let ways = StartWay::ALL.iter().map(|way| {
         let quantity = way.quantity(end);
@@ -131,7 +141,7 @@ impl ReliefDocument {
             ReliefEnd::Form => (
                 &quantity::ROOT_RELIEF_AMOUNT,
                 "How the relief grows towards the form circle.",
-                ("start", start_schema(end), true),
+                schema::document::<RootStart>("start", true),
             ),
         };
         let shape = schema::choice("shape", "Shape", grows, Some(ReliefShape::Linear));

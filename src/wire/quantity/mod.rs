@@ -162,6 +162,10 @@ pub(super) const MOST_POSITIONS: u64 = 20_000;
 pub(super) const MOST_MODIFICATIONS: usize = 16;
 /// The most entries of a profile table.
 pub(super) const MOST_TABLE_ENTRIES: usize = 1000;
+/// The most patterns of holes in one blank.
+pub(super) const MOST_PATTERNS: usize = 12;
+/// The most holes in one blank.
+pub(super) const MOST_HOLES: usize = HOLE_COUNT.bounds.1 as usize;
 /// The most tags, and the most characters of one.
 pub(super) const MOST_TAGS: (usize, usize) = (16, 64);
 

@@ -41,6 +41,9 @@ pub struct BlankFitDocument {
     pub amplitude_um: f64,
     /// The phase, in degrees.
     pub phase_deg: f64,
+    /// The harmonics 2, 3 and so on of holes that are not equal or not evenly spaced; absent for a pattern, which has none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub higher: Vec<BlankHarmonicDocument>,
     /// The samples that were fitted.
     pub samples: Vec<BlankSampleDocument>,
 }
@@ -53,6 +56,14 @@ impl BlankFitDocument {
             mean_um: to_um(fit.mean),
             amplitude_um: to_um(fit.amplitude),
             phase_deg: fit.phase.to_degrees(),
+            higher: (2..)
+                .zip(&fit.higher)
+                .map(|(harmonic, (amplitude, phase))| BlankHarmonicDocument {
+                    harmonic,
+                    amplitude_um: to_um(*amplitude),
+                    phase_deg: phase.to_degrees(),
+                })
+                .collect(),
             samples: fit
                 .samples
                 .iter()
@@ -73,4 +84,16 @@ pub struct BlankSampleDocument {
     pub mesh_position: f64,
     /// The rotation of the hub times the base radius, in um.
     pub rotation_um: f64,
+}
+
+/// A further harmonic of a holed blank: amplitude cos(harmonic N theta + phase).
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[schema(as = BlankHarmonic, title = "Blank harmonic")]
+pub struct BlankHarmonicDocument {
+    /// Which of them.
+    pub harmonic: u32,
+    /// The amplitude, in um along the line of action, not negative.
+    pub amplitude_um: f64,
+    /// The phase, in degrees.
+    pub phase_deg: f64,
 }

@@ -14,7 +14,9 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 pub use curve::{CurveDocument, LoadShareDocument, StatisticsDocument, StatisticsValues};
-pub use decomposition::{BlankFitDocument, BlankSampleDocument, DecompositionDocument};
+pub use decomposition::{
+    BlankFitDocument, BlankHarmonicDocument, BlankSampleDocument, DecompositionDocument,
+};
 pub use evidence::{Definition, ErrorEstimateDocument, EvidenceDocument};
 pub use spectrum::{NamedOrderDocument, OrderKindName, SpectrumDocument};
 

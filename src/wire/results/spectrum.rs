@@ -66,7 +66,7 @@ pub struct NamedOrderDocument {
     /// The order per revolution of the driven gear.
     pub order: f64,
     /// Its name: H_Z2 and multiples for the mesh, H_N for the holes (H_N1 and H_N2 where both gears have different
-    /// ones), H_1 and multiples for revolutions of gears that deviate (H_1(1) and H_1(2) where both do and differ), H_Z2+N, H_Z2-1 and so
+    /// ones), H_1 and multiples for revolutions of gears that deviate (H_1(1) for those of a driving gear that turns at another speed), H_Z2+N, H_Z2-1 and so
     /// on for the sidebands.
     #[schema(example = "H_N")]
     pub label: String,

@@ -59,7 +59,7 @@ fn analysis(case: &Case) -> Analysis {
                     mean: 2e-6,
                     amplitude: 0.1e-6,
                     phase: 1.0,
-                    higher: Vec::new(),
+                    higher: vec![(0.05e-6, 0.5)],
                     samples: vec![BlankSample {
                         mesh_position: 0.25,
                         rotation: 2.05e-6,

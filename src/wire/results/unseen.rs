@@ -41,7 +41,13 @@ fn real_teeth_do_not_see(case: &Case) -> Vec<&'static str> {
     if any(|gear| !gear.deviations().are_teeth_alike()) {
         unseen.push("that a tooth which stands out is thicker, and stiffer, by what it stands out: every tooth yields as drawn");
     }
+    if any(|gear| gear.data().blank.web.is_some()) {
+        unseen.push("that force flows around the edges of a web: every region is in plane stress with its own thickness");
+    }
     let by_formula = case.method == Method::LoadDistribution;
+    if by_formula && any(|gear| gear.data().blank.web.is_some()) {
+        unseen.push("webs: the bodies are as thick as their faces are wide");
+    }
     if by_formula && any(|gear| gear.data().tip_edge != TipEdge::Sharp) {
         unseen.push("contact on broken tip edges: a pair is taken to part where they begin");
     }

@@ -45,17 +45,25 @@ impl ConstantMass {
         })
     }
 
-    /// Where the radius stands in a submission.
-    pub(super) fn radius_pointer(self) -> String {
-        format!(
-            "/pair/{}/blank/holes/{}",
-            self.gear.word(),
-            quantity::HOLE_RADIUS.name
-        )
+    /// Whether `pointer` names a radius that it sets: that of the pattern, or of each pattern of a list.
+    pub(super) fn sets(self, pointer: &str) -> bool {
+        let within = pointer.strip_prefix(&*self.holes_pointer());
+        let Some(rest) = within.and_then(|rest| rest.strip_suffix(quantity::HOLE_RADIUS.name))
+        else {
+            return false;
+        };
+        let item = rest
+            .strip_suffix('/')
+            .and_then(|rest| rest.strip_prefix('/'));
+        rest == "/" || item.is_some_and(|item| item.bytes().all(|byte| byte.is_ascii_digit()))
     }
 
-    /// Gives the holes of `submission` their radius, and notes it among the changes. What cannot be read is left to the
-    /// check of the submission.
+    fn holes_pointer(self) -> String {
+        format!("/pair/{}/blank/holes", self.gear.word())
+    }
+
+    /// Gives the holes of `submission` their radius, and notes it among the changes; the patterns of a list get the same. What cannot
+    /// be read is left to the check of the submission.
     ///
     /// N π r² = percent · π (((r_a + r_f)/2)² − r_bore²), DESIGN section 4.
     pub(super) fn apply(self, submission: &mut Node, changes: &mut Map<String, Value>) {
@@ -64,25 +72,51 @@ impl ConstantMass {
         let Some(blank_area) = submission.at(&gear).and_then(blank_area) else {
             return;
         };
-        let Some(pattern @ Node::Object(_)) = submission.at(&holes) else {
+        let counts: Option<Vec<(String, f64)>> = match submission.at(&holes) {
+            Some(pattern @ Node::Object(_)) => {
+                count_of(pattern).map(|count| vec![(String::new(), count)])
+            }
+            Some(Node::List(patterns)) => {
+                let numbered = patterns.iter().enumerate();
+                let count =
+                    |(i, pattern): (usize, &Node)| Some((i.to_string(), count_of(pattern)?));
+                numbered.map(count).collect()
+            }
+            _ => None,
+        };
+        let Some(counts) = counts.filter(|counts| !counts.is_empty()) else {
             return;
         };
-        let count = pattern.number_at(&[quantity::HOLE_COUNT.name]);
-        let Some(count) = count.filter(|&count| count >= 1.0) else {
-            return;
-        };
+        let count: f64 = counts.iter().map(|(_, count)| count).sum();
         // If the bore leaves no blank, any radius will do for the check to come to that.
-        let mut radius = quantity::HOLE_RADIUS.bounds.0;
-        if blank_area > 0.0 {
-            radius = significant(
+        let radius = if blank_area > 0.0 {
+            significant(
                 (self.percent / 100.0 * blank_area / (PI * count)).sqrt(),
                 12,
-            );
-            changes.insert(self.radius_pointer(), json!(radius));
+            )
+        } else {
+            quantity::HOLE_RADIUS.bounds.0
+        };
+        let name = quantity::HOLE_RADIUS.name;
+        for (item, _) in &counts {
+            let mut place = holes.to_vec();
+            place.extend((!item.is_empty()).then_some(&**item));
+            place.push(name);
+            if blank_area > 0.0 {
+                changes.insert(format!("/{}", place.join("/")), json!(radius));
+            }
+            submission.put(&place, Node::Number(radius));
         }
-        let place = [&holes[..], &[quantity::HOLE_RADIUS.name]].concat();
-        submission.put(&place, Node::Number(radius));
     }
+}
+
+/// The number of holes of a pattern, if it can be read.
+fn count_of(pattern: &Node) -> Option<f64> {
+    let count = match pattern.at(&[quantity::HOLE_ANGLES.name]) {
+        Some(Node::List(angles)) => Some(angles.len() as f64),
+        _ => pattern.number_at(&[quantity::HOLE_COUNT.name]),
+    };
+    count.filter(|&count| count >= 1.0)
 }
 
 /// The area between the bore and the mean of tip and root circle, in mm².

@@ -38,12 +38,11 @@ impl Study {
         // Thousands of designs change the same few places.
         let places: BTreeMap<&str, &Pointer> =
             self.paths().map(|path| (path.text(), path)).collect();
-        let mass = self.constant_mass.map(|rule| rule.radius_pointer());
         let mended = |error: &FieldError| {
             let pointer = &error.pointer;
             // A list that is too long stays so whatever stands in it.
             let may_be_completed = error.code != Code::TooLarge;
-            mass.as_ref() == Some(pointer)
+            self.constant_mass.is_some_and(|rule| rule.sets(pointer))
                 || places.values().any(|path| {
                     path.covers(pointer) || (may_be_completed && path.is_below(pointer))
                 })
@@ -101,8 +100,7 @@ impl Study {
         let Some(rule) = self.constant_mass else {
             return;
         };
-        let radius = rule.radius_pointer();
-        let refuse = |place: String| {
+        let refuse = |place: String, radius: &str| {
             let detail = format!(
                 "{radius} is set by /constant_mass in every design that has holes; it cannot be changed as well."
             );
@@ -111,15 +109,17 @@ impl Study {
         match &self.plan {
             Plan::Axes(axes) => {
                 for (i, axis) in axes.iter().enumerate() {
-                    if axis.path.text() == radius {
-                        refuse(format!("/axes/{i}/path"));
+                    let path = axis.path.text();
+                    if rule.sets(path) {
+                        refuse(format!("/axes/{i}/path"), path);
                     }
                 }
             }
             Plan::Designs(designs) => {
                 for (i, design) in designs.iter().enumerate() {
-                    if design.changes.iter().any(|(path, _)| path.text() == radius) {
-                        refuse(format!("/designs/{i}/changes/{}", escaped(&radius)));
+                    let paths = design.changes.iter().map(|(path, _)| path.text());
+                    for path in paths.filter(|path| rule.sets(path)) {
+                        refuse(format!("/designs/{i}/changes/{}", escaped(path)), path);
                     }
                 }
             }

@@ -113,8 +113,7 @@ fn constant_mass_sets_the_radius_that_the_paper_s_quarter_needs() {
                 assert!((driven.removed_fraction() - 0.25).abs() < 1e-10, "{label}");
             }
             None => {
-                assert_eq!(radius(design), None);
-                assert!(!driven.has_holes());
+                assert_eq!((radius(design), driven.has_holes()), (None, false));
             }
         }
         assert_eq!(submission.case().output_torques, [20.0, 115.0]);
@@ -412,4 +411,96 @@ fn a_study_has_a_name_and_tags_that_change_no_design() {
     document["name"] = json!("");
     document["tags"] = json!([7]);
     assert_eq!(refused(&document).1, ["/name", "/tags/0"]);
+}
+
+#[test]
+fn a_study_varies_a_modification_in_its_list() {
+    let path = "/pair/driving/profile_modifications/0/amount_um";
+    let mut document = axes(json!([{ "path": path, "values": [2, 4.5] }]));
+    document["base"]["pair"]["driving"]["profile_modifications"] =
+        json!([{ "kind": "crowning", "amount_um": 0 }]);
+    let designs = designs(&parse(&document).unwrap());
+    let labels: Vec<&str> = designs.iter().map(|design| &*design.label).collect();
+    assert_eq!(labels, ["amount_um=2", "amount_um=4.5"]);
+    let second = designs[1].submission.as_ref().unwrap();
+    let crowning = &second.case().pair.driving().data().modifications[0];
+    assert_eq!(
+        *crowning,
+        meshwright_engine::gear::ModificationData::Crowning { amount: 4.5e-6 }
+    );
+    // A list that is not there has no first item.
+    let absent = parse(&axes(json!([{ "path": path, "values": [2] }])));
+    assert!(absent.is_err(), "{absent:?}");
+}
+
+#[test]
+fn a_thousand_pairs_with_drawn_pitch_errors_make_a_study() {
+    let drawn = |seed: u32| {
+        let noise = |tooth: u32| f64::from((seed * 7919 + tooth * 104_729) % 101) / 10.0 - 5.0;
+        json!((0..50).map(noise).collect::<Vec<_>>())
+    };
+    let list: Vec<Value> = (0..1000)
+        .map(|i| {
+            json!({ "label": format!("pair {i}"), "changes": {
+                "/pair/driving/tooth_deviations/pitch_cumulative_um": drawn(2 * i),
+                "/pair/driven/tooth_deviations": { "pitch_cumulative_um": drawn(2 * i + 1) }
+            } })
+        })
+        .collect();
+    let study = parse(&listed(json!(list))).unwrap();
+    let last = study.design(999).unwrap().submission.unwrap();
+    let pair = &last.case().pair;
+    assert_eq!((study.total(), pair.period()), (1000, 50));
+    assert_eq!(pair.driven().deviations().cumulative_pitch.len(), 50);
+}
+
+#[test]
+fn a_constant_mass_knows_a_tip_circle_by_its_diameter() {
+    let radius = |tip: Value| {
+        let mut document = axes(json!([{ "path": "/method", "values": ["flexible"] }]));
+        let driven = &mut document["base"]["pair"]["driven"];
+        for (name, value) in tip.as_object().unwrap() {
+            driven[name] = value.clone();
+        }
+        driven["blank"]["holes"] =
+            json!({ "count": 8, "circle_radius_mm": 30.0, "radius_mm": 5.0 });
+        document["constant_mass"] = json!({ "gear": "driven", "mass_removed_percent": 20 });
+        let study = parse(&document).unwrap();
+        study.design(0).unwrap().changes["/pair/driven/blank/holes/radius_mm"].clone()
+    };
+    let by_addendum = radius(json!({ "addendum_mm": 1.8 }));
+    assert_eq!(
+        radius(json!({ "tip_diameter_mm": 103.6, "addendum_mm": null })),
+        by_addendum
+    );
+    assert_ne!(radius(json!({})), by_addendum);
+}
+
+#[test]
+fn a_constant_mass_gives_every_pattern_of_a_list_the_same_radius() {
+    let mut document = axes(json!([
+        { "path": "/pair/driven/blank/holes/1/circle_radius_mm", "values": [38, 39] }
+    ]));
+    document["base"]["pair"]["driven"]["blank"]["holes"] = json!([
+        { "count": 4, "circle_radius_mm": 26.0 },
+        { "at_deg": [40, 140, 230, 320], "circle_radius_mm": 38.0 }
+    ]);
+    document["constant_mass"] = json!({ "gear": "driven", "mass_removed_percent": 10 });
+    let designs = designs(&parse(&document).unwrap());
+    for design in &designs {
+        let driven = design.submission.as_ref().unwrap().case().pair.driven();
+        assert!((driven.removed_fraction() - 0.1).abs() < 1e-10);
+        let radii = ["0", "1"].map(|i| {
+            let pointer = format!("/pair/driven/blank/holes/{i}/radius_mm");
+            design.changes[&pointer].as_f64().unwrap()
+        });
+        assert_eq!(radii[0], radii[1]);
+    }
+    document["axes"] = json!([
+        { "path": "/pair/driven/blank/holes/0/radius_mm", "values": [3, 4] }
+    ]);
+    assert_eq!(
+        refused(&document),
+        (Code::OutOfRange, vec!["/axes/0/path".to_owned()])
+    );
 }

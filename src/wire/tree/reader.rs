@@ -114,6 +114,18 @@ impl<'a> ObjectReader<'a> {
         self.checked_number(node, &self.pointer_to(quantity.name), quantity)
     }
 
+    /// A number that has to be given here, whatever its quantity says, and is not null.
+    pub(in crate::wire) fn given_number(&mut self, quantity: &Quantity) -> Option<f64> {
+        match self.present(quantity.name) {
+            Some(node) => self.checked_number(node, &self.pointer_to(quantity.name), quantity),
+            None => {
+                let detail = format!("{} is needed.", place(&self.pointer_to(quantity.name)));
+                self.wrong(quantity.name, Code::MissingField, detail, None);
+                None
+            }
+        }
+    }
+
     /// A number that may be absent or null.
     pub(in crate::wire) fn optional_number(&mut self, quantity: &Quantity) -> Option<Option<f64>> {
         match self.present(quantity.name) {

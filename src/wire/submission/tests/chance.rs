@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Submission, case_2, parse, put};
+use super::{Submission, filled_in, parse, put};
 
 /// A xorshift generator: the same numbers in every run.
 struct Chance(u64);
@@ -53,14 +53,38 @@ fn follow_advice(document: &mut Value) -> Option<bool> {
 
 #[test]
 fn whoever_follows_the_advice_arrives_at_a_submission() {
+    advice_leads_from(&filled_in("test-case-2"), 4000);
+}
+
+#[test]
+fn whoever_follows_the_advice_on_real_teeth_arrives_at_a_submission() {
+    let mut whole = filled_in("profile-modifications");
+    let driving = filled_in("tip-diameter")["pair"]["driving"].clone();
+    for name in [
+        "addendum_mm",
+        "tip_diameter_mm",
+        "tooth_thickness_deviation_um",
+    ] {
+        whole["pair"]["driving"][name] = driving[name].clone();
+    }
+    let edges = filled_in("tip-edges");
+    let eccentric = filled_in("eccentricity");
+    whole["pair"]["driving"]["tip_rounding_mm"] =
+        edges["pair"]["driving"]["tip_rounding_mm"].clone();
+    whole["pair"]["driven"]["tip_chamfer_mm"] = edges["pair"]["driven"]["tip_chamfer_mm"].clone();
+    whole["pair"]["driven"]["tooth_deviations"] =
+        eccentric["pair"]["driven"]["tooth_deviations"].clone();
+    advice_leads_from(&whole, 2000);
+}
+
+/// Changes a number or two of `whole`, so many times, and follows what is advised.
+fn advice_leads_from(whole: &Value, times: usize) {
     let mut chance = Chance(0x2545_f491_4f6c_dd1d);
-    let whole: Value =
-        serde_json::from_str(&parse(&case_2()).expect("valid").canonical_json()).expect("JSON");
     let mut places = Vec::new();
-    pointers(&whole, String::new(), &mut places);
+    pointers(whole, String::new(), &mut places);
     places.retain(|place| whole.pointer(place).is_some_and(Value::is_number));
     let mut led = 0;
-    for _ in 0..4000 {
+    for _ in 0..times {
         let mut document = whole.clone();
         for _ in 0..=chance.below(2) {
             let target = document
@@ -77,11 +101,29 @@ fn whoever_follows_the_advice_arrives_at_a_submission() {
             led += 1;
         }
     }
-    assert!(led > 3000, "advice is the rule: {led} of 4000");
+    assert!(4 * led > 3 * times, "advice is the rule: {led} of {times}");
 }
 
 #[test]
 fn no_change_of_a_document_gets_past_a_problem_or_a_submission() {
+    survives_changes(&filled_in("test-case-2"), 4000);
+    for real in [
+        "tip-diameter",
+        "tip-edges",
+        "profile-modifications",
+        "eccentricity",
+        "interface-radii",
+        "web",
+        "unequal-holes",
+        "slots",
+    ] {
+        survives_changes(&filled_in(real), 1000);
+    }
+    survives_changes(&filled_in("pitch-deviations"), 500);
+}
+
+/// Puts odd values into `whole`, and breaks its text, so many times.
+fn survives_changes(whole: &Value, times: usize) {
     let odd = [
         json!(null),
         json!(true),
@@ -105,11 +147,9 @@ fn no_change_of_a_document_gets_past_a_problem_or_a_submission() {
         json!({ "count": 3 }),
     ];
     let mut chance = Chance(0x9e37_79b9_7f4a_7c15);
-    let whole: Value =
-        serde_json::from_str(&parse(&case_2()).expect("valid").canonical_json()).expect("JSON");
     let mut places = Vec::new();
-    pointers(&whole, String::new(), &mut places);
-    for _ in 0..4000 {
+    pointers(whole, String::new(), &mut places);
+    for _ in 0..times {
         let mut document = whole.clone();
         for _ in 0..=chance.below(3) {
             let place = &places[chance.below(places.len())];
@@ -131,7 +171,7 @@ fn no_change_of_a_document_gets_past_a_problem_or_a_submission() {
         }
     }
     let text = whole.to_string().into_bytes();
-    for _ in 0..4000 {
+    for _ in 0..times {
         let mut bytes = text.clone();
         for _ in 0..=chance.below(4) {
             let at = chance.below(bytes.len());

@@ -30,6 +30,13 @@ pub(super) fn case_2() -> Value {
     serde_json::from_str(example.json).expect("JSON")
 }
 
+/// The example of this name with everything that is filled in.
+pub(super) fn filled_in(name: &str) -> Value {
+    let example = examples().iter().find(|example| example.name == name);
+    let submission = Submission::parse(example.expect("ships").json.as_bytes()).expect("valid");
+    serde_json::from_str(&submission.canonical_json()).expect("JSON")
+}
+
 pub(super) fn parse(document: &Value) -> Result<Submission, Problem> {
     Submission::parse(document.to_string().as_bytes())
 }
@@ -64,7 +71,7 @@ fn the_least_submission_is_echoed_with_every_default() {
                 "tooth_thickness_deviation_um": 0.0, "tip_rounding_mm": null, "tip_chamfer_mm": null,
                 "face_width_mm": 20.0, "tip_relief": null, "profile_modifications": [], "tooth_deviations": null,
                 "material": { "youngs_modulus_gpa": 210.0, "poisson_ratio": 0.3, "density_kg_m3": 7850.0 },
-                "blank": { "bore_radius_mm": 15.0, "holes": null }
+                "blank": { "bore_radius_mm": 15.0, "holes": null, "web": null }
             })
         );
     }

@@ -2,7 +2,9 @@
 
 use serde_json::Value;
 
-use super::{Submission, least, parse};
+use super::{Submission, filled_in, least, parse};
+use crate::wire::examples;
+use crate::wire::pointer::Pointer;
 
 #[test]
 fn every_field_of_the_schema_has_a_title_and_the_defaults_are_those_that_are_filled_in() {
@@ -61,5 +63,28 @@ fn every_field_of_the_schema_has_a_title_and_the_defaults_are_those_that_are_fil
                 assert!(property["x-unit"].is_string(), "{name}.{field}");
             }
         }
+    }
+}
+
+#[test]
+fn every_field_of_every_echo_is_one_of_the_schema() {
+    fn check(value: &Value, here: &str) {
+        if !here.is_empty() {
+            let named = Pointer::parse(here).and_then(|pointer| pointer.check_named());
+            assert!(named.is_ok(), "{here}: {named:?}");
+        }
+        match value {
+            Value::Object(fields) => fields
+                .iter()
+                .for_each(|(key, value)| check(value, &format!("{here}/{key}"))),
+            Value::Array(items) => items
+                .iter()
+                .enumerate()
+                .for_each(|(i, value)| check(value, &format!("{here}/{i}"))),
+            _ => {}
+        }
+    }
+    for example in examples().iter().filter(|example| example.valid) {
+        check(&filled_in(example.name), "");
     }
 }

@@ -1,59 +1,11 @@
-//! The teeth of real drawings: what is read, told to the engine, echoed and refused.
+//! Teeth: tip circles and edges, thickness, modifications and deviations.
 
-use meshwright_engine::gear::{GearData, ModificationData, TablePlaces, TipEdge};
+use meshwright_engine::gear::{ModificationData, TablePlaces, TipEdge};
 use serde_json::{Value, json};
 
+use super::{fault, faults, near, told, with};
+use crate::wire::Code;
 use crate::wire::submission::Submission;
-use crate::wire::{Code, FieldError};
-
-/// The pair of the least submission, its driving gear with these fields too.
-fn with(fields: &Value) -> Value {
-    let gear = json!({
-        "tooth_count": 50, "module_mm": 2.0, "face_width_mm": 20.0, "blank": { "bore_radius_mm": 15.0 }
-    });
-    let mut driving = gear.clone();
-    for (name, value) in fields.as_object().expect("fields") {
-        driving[name] = value.clone();
-    }
-    json!({
-        "method": "flexible",
-        "pair": { "center_distance_mm": 100.5, "driving": driving, "driven": gear },
-        "output_torques_n_m": [115.0]
-    })
-}
-
-/// What the engine is told of the driving gear with these fields.
-fn told(fields: &Value) -> GearData {
-    let submission = Submission::parse(with(fields).to_string().as_bytes());
-    let submission = submission.unwrap_or_else(|problem| panic!("{fields}: {problem:?}"));
-    let echo = submission.canonical_json();
-    let again = Submission::parse(echo.as_bytes()).expect("an echo is valid");
-    assert_eq!(again, submission, "an echo is its own echo: {echo}");
-    submission.case().pair.driving().data().clone()
-}
-
-/// The faults of the driving gear with these fields.
-fn faults(fields: &Value) -> Vec<FieldError> {
-    let read = Submission::parse(with(fields).to_string().as_bytes());
-    let problem = read.err().unwrap_or_else(|| panic!("{fields} is taken"));
-    assert_eq!(problem.status, 422);
-    problem.errors
-}
-
-/// The only fault of the driving gear with these fields, which stands at `place` in it.
-fn fault(fields: &Value, place: &str, code: Code) -> FieldError {
-    let faults = faults(fields);
-    let [fault] = faults.as_slice() else {
-        panic!("one fault of {fields}: {faults:?}")
-    };
-    let expected = (format!("/pair/driving/{place}"), code);
-    assert_eq!((fault.pointer.clone(), fault.code), expected, "{fault:?}");
-    fault.clone()
-}
-
-fn near(value: f64, expected: f64) {
-    assert!((value - expected).abs() < 1e-15, "{value} {expected}");
-}
 
 #[test]
 fn a_tip_diameter_says_the_addendum() {
@@ -230,7 +182,7 @@ fn a_table_is_told_its_first_entry_that_does_not_rise_and_how_many_values_it_nee
     let table = |places: Value, removed: Value| json!({ "profile_modifications": [{ "kind": "table", "roll_length_mm": places, "removed_um": removed }] });
     let item = "profile_modifications/0";
     let falls = fault(
-        &table(json!([14, 15, 15, 13]), json!([0, 0, 0, 0])),
+        &table(json!([14, 15, 15, 16]), json!([0, 0, 0, 0])),
         &format!("{item}/roll_length_mm/2"),
         Code::TableDoesNotRise,
     );
@@ -239,6 +191,9 @@ fn a_table_is_told_its_first_entry_that_does_not_rise_and_how_many_values_it_nee
         Some(15.001),
         "a unit in the fifth digit: {falls:?}"
     );
+    let falling = faults(&table(json!([14, 15, 15, 13]), json!([0, 0, 0, 0])));
+    let together: Vec<_> = falling.iter().map(|fault| fault.nearest).collect();
+    assert_eq!(together, [Some(15.001), Some(15.002)], "{falling:?}");
     let short = fault(
         &table(json!([14, 15, 16]), json!([0, 1])),
         &format!("{item}/removed_um"),

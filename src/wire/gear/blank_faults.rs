@@ -1,0 +1,176 @@
+//! What prevents a blank: holes too near to each other, to the rim or to the bore, and a web outside of it.
+
+use meshwright_engine::gear::data::LEAST_LIGAMENT;
+
+use super::GearDocument;
+use super::faults::Fault;
+use super::field::Field;
+use crate::wire::problem::Code;
+use crate::wire::units::{Side, plain, rounded_inward, to_mm};
+
+impl GearDocument {
+    /// Two holes, by their places in the list, or the ends of one slot leave too little between them.
+    pub(super) fn overlap_fault(&self, [one, other]: [usize; 2], ligament: f64) -> Fault {
+        let holes = &self.blank.holes;
+        let (first, second) = (holes.pattern_of(one), holes.pattern_of(other));
+        let missing = to_mm(LEAST_LIGAMENT) - to_mm(ligament);
+        let detail = left("between them", ligament);
+        if first == second {
+            return self.overlap_within(first, [one, other], missing, detail);
+        }
+        // The hole that comes later gives way, or the one before it, or the later one moves to another circle.
+        [second, first]
+            .into_iter()
+            .find_map(|pattern| self.narrower(pattern, missing, Code::HolesOverlap, &detail))
+            .unwrap_or_else(|| {
+                Fault::new(Field::HoleCircle(second), Code::HolesOverlap, detail, None)
+            })
+    }
+
+    /// Holes of one pattern: their ends, their width, or their circle has to give way.
+    fn overlap_within(
+        &self,
+        pattern: usize,
+        [one, other]: [usize; 2],
+        missing: f64,
+        detail: String,
+    ) -> Fault {
+        let (least, code) = (to_mm(LEAST_LIGAMENT), Code::HolesOverlap);
+        let document = &self.blank.holes.patterns()[pattern];
+        let width = self.half_width(pattern);
+        let apart = self.apart(one, other);
+        let circle = document.circle_radius_mm;
+        if document.shape.span_deg() > 0.0 {
+            let chord = ((2.0 * width + least) / (2.0 * circle)).min(1.0);
+            let span = (apart - 2.0 * chord.asin()).to_degrees();
+            if span > 0.0 {
+                let field = Field::SlotAngle(pattern);
+                return Fault::new(field, code, detail, Some((span, Side::AtMost)));
+            }
+        }
+        if let Some(fault) = self.narrower(pattern, missing / 2.0, code, &detail) {
+            return fault;
+        }
+        let needed = (width + least / 2.0) / (apart / 2.0).sin();
+        // Holes at one and the same angle find no circle.
+        let bound = needed.is_finite().then_some((needed, Side::AtLeast));
+        Fault::new(Field::HoleCircle(pattern), code, detail, bound)
+    }
+
+    /// A hole leaves too little below the root circle or around the bore.
+    pub(super) fn breach_fault(&self, code: Code, hole: usize, ligament: f64) -> Fault {
+        let pattern = self.blank.holes.pattern_of(hole);
+        let missing = to_mm(LEAST_LIGAMENT) - to_mm(ligament);
+        let (place, sign, side) = match code {
+            Code::HolesBreachRim => ("below the root circle", -1.0, Side::AtMost),
+            _ => ("around the bore", 1.0, Side::AtLeast),
+        };
+        let detail = left(place, ligament);
+        // The width of the holes is to blame, unless none would do: then it is their circle.
+        self.narrower(pattern, missing, code, &detail)
+            .unwrap_or_else(|| {
+                let circle = self.value(Field::HoleCircle(pattern));
+                let bound = (circle + sign * missing, side);
+                Fault::new(Field::HoleCircle(pattern), code, detail, Some(bound))
+            })
+    }
+
+    /// That the holes of a pattern are wider by `missing` mm to each side than would do, if holes so narrow can be made.
+    fn narrower(&self, pattern: usize, missing: f64, code: Code, detail: &str) -> Option<Fault> {
+        let shape = self.blank.holes.patterns()[pattern].shape;
+        let largest = shape.of_half_width(self.half_width(pattern) - missing);
+        let field = Field::HoleWidth(pattern);
+        let rounded = rounded_inward(largest, Side::AtMost, 0);
+        let can_be_made =
+            self.accepts(field, rounded) && rounded >= shape.of_half_width(self.least_hole_mm());
+        can_be_made.then(|| {
+            let bound = Some((largest, Side::AtMost));
+            Fault::new(field, code, detail.to_owned(), bound)
+        })
+    }
+
+    fn half_width(&self, pattern: usize) -> f64 {
+        let shape = self.blank.holes.patterns()[pattern].shape;
+        shape.width_value() / shape.of_half_width(1.0)
+    }
+
+    /// The angle between the middles of two holes, a whole turn for a hole and itself.
+    fn apart(&self, one: usize, other: usize) -> f64 {
+        use std::f64::consts::TAU;
+        if one == other {
+            return TAU;
+        }
+        let holes = self.blank.holes.data();
+        let between = (holes[one].angle - holes[other].angle).rem_euclid(TAU);
+        between.min(TAU - between)
+    }
+
+    /// The web begins in the bore, ends in the rim or before it begins. All in meters.
+    pub(super) fn web_fault(&self, [inner, outer]: [f64; 2], [least, largest]: [f64; 2]) -> Fault {
+        let detail = format!(
+            "The web from {} mm to {} mm has to lie between the bore, {} mm, and the rim, {} mm.",
+            plain(to_mm(inner)),
+            plain(to_mm(outer)),
+            plain(to_mm(least)),
+            plain(to_mm(largest))
+        );
+        let (field, bound) = if inner < least {
+            (Field::WebInner, (to_mm(least), Side::AtLeast))
+        } else if outer > largest {
+            (Field::WebOuter, (to_mm(largest), Side::AtMost))
+        } else {
+            (
+                Field::WebOuter,
+                (to_mm(inner) + self.least_web_mm(), Side::AtLeast),
+            )
+        };
+        Fault::new(field, Code::WebOutsideBlank, detail, Some(bound))
+    }
+
+    /// A web is a ring of some width, away from the bore or up to it, and of some thickness.
+    pub(super) fn check_web(&self) -> Result<(), Fault> {
+        let Some(web) = self.blank.web else {
+            return Ok(());
+        };
+        let (least, bore) = (self.least_web_mm(), self.blank.bore_radius_mm);
+        let (inner, outer) = (web.inner_radius_mm, web.outer_radius_mm);
+        if inner > bore && inner < (bore + least) * (1.0 - 1e-12) {
+            let detail = format!(
+                "The web begins {} mm outside of the bore; it begins there, or at least 0.1 modules away.",
+                plain(inner - bore)
+            );
+            let bound = Some((bore + least, Side::AtLeast));
+            return Err(Fault::new(Field::WebInner, Code::OutOfRange, detail, bound));
+        }
+        if outer > inner && outer < (inner + least) * (1.0 - 1e-12) {
+            let detail = format!(
+                "The web is {} mm wide; at least 0.1 modules.",
+                plain(outer - inner)
+            );
+            let bound = Some((inner + least, Side::AtLeast));
+            return Err(Fault::new(Field::WebOuter, Code::OutOfRange, detail, bound));
+        }
+        self.check_between(
+            Field::WebThickness,
+            0.01 * self.face_width_mm,
+            4.0 * self.face_width_mm,
+            "1 % to four times the face width",
+        )
+    }
+
+    /// The least width of a web, and of what stands between it and the bore.
+    fn least_web_mm(&self) -> f64 {
+        0.1 * self.module_mm
+    }
+}
+
+/// What is left at `place`, as a sentence.
+fn left(place: &str, ligament: f64) -> String {
+    if ligament < 0.0 {
+        let too_far = plain(to_mm(-ligament));
+        format!("The holes leave nothing {place}: they cut {too_far} mm too far.")
+    } else {
+        let (left, least) = (plain(to_mm(ligament)), to_mm(LEAST_LIGAMENT));
+        format!("The holes leave {left} mm {place}; at least {least} mm has to stay.")
+    }
+}
