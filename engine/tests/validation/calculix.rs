@@ -9,8 +9,8 @@
 use meshwright_engine::analysis::pair_model;
 use meshwright_engine::contact::{MeshContact, WarmStart};
 use meshwright_engine::gear::{
-    GearData, GearPair, Material, ModificationData, ReliefData, ReliefShape, ReliefStart,
-    TablePlaces, TipEdge,
+    GearData, GearPair, Hole, HoleShape, Material, ModificationData, ReliefData, ReliefShape,
+    ReliefStart, TablePlaces, TipEdge, Web,
 };
 use meshwright_engine::run::Run;
 use serde_json::Value;
@@ -389,4 +389,62 @@ fn a_rounded_tip_that_carries_follows_calculix() {
     data.tip_edge = TipEdge::Rounded(0.2e-3);
     let pair = pair(data.clone(), data, 100.5e-3);
     check("calculix-rounding.json", pair, Corners::Settled, 6);
+}
+
+/// The standard pair with relief, its driven gear on a blank of a bore of 15 mm, these round holes (circle and own radius in mm, angle in
+/// degrees), and this web.
+fn on_blank(holes: &[(f64, f64, f64)], web: Option<Web>) -> GearPair {
+    let solid = relieved(gear(50, 15e-3));
+    let mut driven = solid.clone();
+    driven.blank.web = web;
+    driven.blank.holes = holes
+        .iter()
+        .map(|&(circle, radius, angle)| Hole {
+            circle_radius: circle * 1e-3,
+            angle: angle.to_radians(),
+            shape: HoleShape::Round {
+                radius: radius * 1e-3,
+            },
+        })
+        .collect();
+    pair(solid, driven, 100.5e-3)
+}
+
+/// 6 mm thick between radii of 20 and 42 mm, under a face of 20 mm.
+const WEB: Option<Web> = Some(Web {
+    inner_radius: 20e-3,
+    outer_radius: 42e-3,
+    thickness: 6e-3,
+});
+
+#[test]
+fn a_web_of_a_third_of_the_face_width_follows_calculix() {
+    check("calculix-web.json", on_blank(&[], WEB), Corners::Settled, 5);
+}
+
+#[test]
+fn six_holes_in_a_web_follow_calculix() {
+    let holes: Vec<(f64, f64, f64)> = (0..6).map(|i| (31.0, 6.0, 60.0 * f64::from(i))).collect();
+    check(
+        "calculix-web-holes.json",
+        on_blank(&holes, WEB),
+        Corners::Settled,
+        6,
+    );
+}
+
+#[test]
+fn four_unequal_holes_follow_calculix() {
+    let holes = [
+        (32.0, 9.0, 0.0),
+        (32.0, 6.0, 80.0),
+        (32.0, 8.0, 190.0),
+        (32.0, 5.0, 265.0),
+    ];
+    check(
+        "calculix-four-holes.json",
+        on_blank(&holes, None),
+        Corners::Settled,
+        7,
+    );
 }
