@@ -10,7 +10,7 @@ use crate::wire::schema::{self, documented};
 use crate::wire::tree::{ObjectReader, OptionalObject};
 use crate::wire::units::{from_um, plain};
 
-/// The most teeth that deviations are given for.
+/// The most teeth that deviations are given for. How few are too few depends on the gear, which says so.
 const MOST_TEETH: usize = quantity::TOOTH_COUNT.bounds.1 as usize;
 
 /// How far the sum of all single pitch deviations may be from zero, in um.
@@ -33,9 +33,9 @@ documented!(
         "Tooth deviations",
         "What the teeth of a gear deviate from each other by. Positive is towards the mate, so that contact is earlier.",
         vec![
-            schema::numbers(&quantity::PITCH_CUMULATIVE, (1, MOST_TEETH), false),
-            schema::numbers(&quantity::PITCH_SINGLE, (1, MOST_TEETH), false),
-            schema::numbers(&quantity::PROFILE_SLOPES, (1, MOST_TEETH), false),
+            schema::numbers(&quantity::PITCH_CUMULATIVE, (0, MOST_TEETH), false),
+            schema::numbers(&quantity::PITCH_SINGLE, (0, MOST_TEETH), false),
+            schema::numbers(&quantity::PROFILE_SLOPES, (0, MOST_TEETH), false),
             schema::optional_document::<EccentricityDocument>(
                 "eccentricity",
                 "Eccentricity",

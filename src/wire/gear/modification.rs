@@ -124,7 +124,8 @@ impl Kind {
             .map_or("", |(.., meaning)| meaning);
         let kind = schema::word("Kind", "What the modification is.", self.word());
         let properties = [("kind", kind, true)].into_iter().chain(self.properties());
-        let title = self.word().replace('_', " ");
+        // Generators of clients name types by their titles, and a tip relief stands in the contract by itself.
+        let title = format!("{} modification", self.word().replace('_', " "));
         schema::object(&title, &format!("{meaning}."), properties.collect())
     }
 }

@@ -107,11 +107,12 @@ documented!(
 fn start_schema(end: ReliefEnd) -> RefOr<Schema> {
     let ways = StartWay::ALL.iter().map(|way| {
         let quantity = way.quantity(end);
-        schema::object(
-            quantity.title,
-            quantity.description,
-            vec![schema::number(quantity)],
-        )
+        // Generators of clients name types by their titles.
+        let title = match end {
+            ReliefEnd::Tip => quantity.title.to_owned(),
+            ReliefEnd::Form => format!("{} of a root relief", quantity.title),
+        };
+        schema::object(&title, quantity.description, vec![schema::number(quantity)])
     });
     schema::one_of(
         "Start of the relief",
