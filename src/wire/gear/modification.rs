@@ -3,7 +3,7 @@
 use meshwright_engine::gear::{ModificationData, TablePlaces};
 use serde::Serialize;
 use utoipa::openapi::RefOr;
-use utoipa::openapi::schema::Schema;
+use utoipa::openapi::schema::{Schema, SchemaType, Type};
 
 use super::relief::{ReliefDocument, ReliefEnd, RootStart};
 use super::tip::either;
@@ -139,7 +139,8 @@ impl Kind {
             Self::Crowning => vec![schema::number(&quantity::CROWNING_AMOUNT)],
             Self::Slope => vec![schema::number(&quantity::SLOPE_AMOUNT)],
             Self::Table => {
-                let lengths = (LEAST_ENTRIES, MOST_TABLE_ENTRIES);
+                // Too few are told with the number that is needed.
+                let lengths = (0, MOST_TABLE_ENTRIES);
                 vec![
                     schema::numbers(&quantity::TABLE_ROLL_LENGTH, lengths, false),
                     schema::numbers(&quantity::TABLE_DIAMETER, lengths, false),
@@ -158,6 +159,8 @@ pub(super) fn list_property() -> Property {
         schema::reference::<ModificationDocument>(),
         (0, MOST_MODIFICATIONS),
     );
+    // Null is as good as absent.
+    let list = list.schema_type(SchemaType::from_iter([Type::Array, Type::Null]));
     (
         "profile_modifications",
         list.default(Some(serde_json::json!([]))).into(),
