@@ -224,7 +224,7 @@ mod tests {
 
     #[test]
     fn the_standard_pair_has_the_geometry_of_its_closed_form() {
-        // FIELD section 3.1: alpha_w 20.76902 deg, epsilon 1.51155, s_A, s_C, s_E 13.3564, 17.8187, 22.2810, j 0.34836 mm.
+        // By the closed forms of ISO 21771: alpha_w 20.76902 deg, epsilon 1.51155, s_A, s_C, s_E 13.3564, 17.8187, 22.2810, j 0.34836 mm.
         let pair = geometry("standard-pair");
         for (value, printed, half_digit) in [
             (pair.working_pressure_angle_deg, 20.769_02, 6e-6),

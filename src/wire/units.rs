@@ -195,7 +195,7 @@ mod tests {
 
     #[test]
     fn bounds_are_rounded_to_the_side_that_works() {
-        // Largest center distance of 29/85: 115.567 mm (DESIGN section 5); API.md prints 115.56.
+        // Largest center distance of 29/85: 115.567 mm.
         assert_eq!(rounded_inward(115.567_123, Side::AtMost, 0), 115.56);
         assert_eq!(rounded_inward(115.567_123, Side::AtMost, 1), 115.55);
         assert_eq!(rounded_inward(0.298_123_4, Side::AtLeast, 0), 0.298_13);
