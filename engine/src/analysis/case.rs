@@ -127,7 +127,7 @@ impl Case {
     /// span where teeth deviate.
     pub(super) fn repeating_positions(&self) -> Vec<f64> {
         let mut positions = self.mesh_positions();
-        if self.pair.are_teeth_alike() {
+        if self.pair.is_as_drawn() {
             positions.truncate(self.resolution.positions_per_mesh_period as usize);
         }
         positions

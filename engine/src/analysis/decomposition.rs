@@ -15,15 +15,29 @@ use crate::assembly::Blanks;
 use crate::assembly::interface::interface_radius;
 use crate::contact::positions::contacts;
 use crate::contact::{MeshContact, PairModel};
-use crate::gear::Member;
+use crate::gear::{Member, SpurGear};
 
 /// The torque step to either side, over the torque, with which the paper's route differentiates.
 const TORQUE_STEP: f64 = 0.01;
 
 /// Contact solutions that the decomposition of `case` needs.
 pub(super) fn expected_positions(case: &Case) -> u64 {
-    let samples = 2 * u64::from(case.resolution.blank_positions) * case.holed().len() as u64;
+    let samples: u64 = case
+        .holed()
+        .into_iter()
+        .map(|member| 2 * u64::from(blank_samples(case, member)))
+        .sum();
     3 * case.output_torques.len() as u64 * (case.repeating_positions().len() as u64 + samples)
+}
+
+/// Holes that no turn of the blank takes to each other: 1 for a pattern.
+fn unlike_holes(gear: &SpurGear) -> u32 {
+    gear.holes().len() as u32 / gear.hole_repeats().max(1)
+}
+
+/// Samples of the rotation of a holed blank. Unlike holes make more than one harmonic, and need as many more.
+fn blank_samples(case: &Case, member: Member) -> u32 {
+    case.resolution.blank_positions * unlike_holes(case.pair.gear(member)).max(1)
 }
 
 /// One holed gear of the decomposition: the model in which its blank is flexible and the other holed one is not.
@@ -48,7 +62,9 @@ pub(super) fn solve(setup: Setup<'_>) -> Result<Analysis, AnalysisError> {
         case: &drawn,
         ..setup
     };
-    let rigid_as_drawn = RigidBlank::new(of_drawn)?;
+    let apart = (drawn.pair != case.pair).then(|| RigidBlank::new(of_drawn));
+    let apart = apart.transpose()?;
+    let rigid_as_drawn = apart.as_ref().unwrap_or(&rigid);
     let mut degrees_of_freedom = rigid.degrees_of_freedom;
     let mut blanks = Vec::new();
     for member in case.holed() {
@@ -58,7 +74,7 @@ pub(super) fn solve(setup: Setup<'_>) -> Result<Analysis, AnalysisError> {
         blanks.push(HoledBlank {
             member,
             model,
-            rigid: &rigid_as_drawn,
+            rigid: rigid_as_drawn,
             interface_radius: interface_radius(case.pair.gear(member), asked),
         });
     }
@@ -163,11 +179,8 @@ impl HoledBlank<'_> {
     fn fit(&self, load: f64) -> Result<BlankFit, AnalysisError> {
         let Setup { case, run, .. } = self.rigid.setup;
         let gear = case.pair.gear(self.member);
-        let repeats = gear.hole_repeats().max(1);
-        // Holes that are not all equal, or not equally spaced, make more than one harmonic, and need as many more samples.
-        let unlike = gear.holes().len() as u32 / repeats;
-        let count = case.resolution.blank_positions * unlike.max(1);
-        let period = f64::from(gear.tooth_count()) / f64::from(repeats);
+        let count = blank_samples(case, self.member);
+        let period = f64::from(gear.tooth_count()) / f64::from(gear.hole_repeats().max(1));
         let positions: Vec<f64> = (0..count)
             .map(|j| f64::from(j) * period / f64::from(count))
             .collect();
@@ -184,7 +197,7 @@ impl HoledBlank<'_> {
         let rotations: Vec<f64> = samples.iter().map(|sample| sample.rotation).collect();
         let harmonic = |k: u32| harmonic(&rotations, k);
         let (amplitude, phase) = harmonic(1);
-        let higher = if unlike > 1 {
+        let higher = if unlike_holes(gear) > 1 {
             (2..count.div_ceil(2)).map(harmonic).collect()
         } else {
             Vec::new()

@@ -112,7 +112,7 @@ impl<'a> Facing<'a> {
             placement: Placement::new(gears, eta, n, home),
         };
         facing.range = facing.facing_range()?;
-        facing.nearest = facing.nearest_point();
+        facing.nearest = facing.nearest_point([0.0; 2]);
         facing.gap = facing.point(facing.nearest)?.gap;
         facing.arm = facing.cell(facing.nearest, 0.0)?.arm;
         Some(facing)
@@ -197,63 +197,42 @@ impl<'a> Facing<'a> {
         })
     }
 
-    /// The arc length at which the gap is least.
+    /// The arc length at which the gap is least between flanks inclined by `slopes`, those of the driving and of the driven tooth: what
+    /// stands out beyond the drawing for each roll length.
     ///
     /// The gap is a parabola about the nominal contact plus reliefs that grow towards either tip: it is convex, and least where its
     /// slope changes sign, or at an end. A profile table may give it several hollows: of many places the least tells where to look.
-    fn nearest_point(&self) -> f64 {
+    fn nearest_point(&self, slopes: [f64; 2]) -> f64 {
         const PLACES: u32 = 128;
         let FlankRange { from, to, .. } = self.range;
-        if self.gears.driving().is_convex() && self.gears.driven().is_convex() {
-            return self.least_within(from, to, [0.0; 2]);
+        let (mut low, mut high) = (from, to);
+        if !(self.gears.driving().is_convex() && self.gears.driven().is_convex()) {
+            let at = |i: u32| from + (to - from) * f64::from(i) / f64::from(PLACES);
+            let gap = |i: u32| {
+                self.point(at(i)).map_or(f64::INFINITY, |point| {
+                    let rolls = self.on_both(point.roll_length, point.sight.roll_length);
+                    point.gap - slopes[0] * rolls[0] - slopes[1] * rolls[1]
+                })
+            };
+            let least = (0..=PLACES).min_by(|&i, &j| gap(i).total_cmp(&gap(j)));
+            let least = least.unwrap_or(0);
+            (low, high) = (at(least.saturating_sub(1)), at((least + 1).min(PLACES)));
         }
-        let at = |i: u32| from + (to - from) * f64::from(i) / f64::from(PLACES);
-        let gap = |i: u32| self.point(at(i)).map_or(f64::INFINITY, |point| point.gap);
-        let least = (0..=PLACES)
-            .min_by(|&i, &j| gap(i).total_cmp(&gap(j)))
-            .unwrap_or(0);
-        self.least_within(
-            at(least.saturating_sub(1)),
-            at((least + 1).min(PLACES)),
-            [0.0; 2],
-        )
-    }
-
-    /// Where the gap is least between two arc lengths, where the flanks of the driving and of the driven tooth are inclined by
-    /// `slopes`: what stands out for each roll length.
-    fn least_within(&self, from: f64, to: f64, slopes: [f64; 2]) -> f64 {
-        let closes = |arc: f64| self.slope(arc) < self.inclination(arc, slopes);
-        if closes(to) {
-            to
-        } else if closes(from) {
-            bisect(from, to, closes)
+        let closes = |arc: f64| self.slope(arc, slopes) < 0.0;
+        if closes(high) {
+            high
+        } else if closes(low) {
+            bisect(low, high, closes)
         } else {
-            from
+            low
         }
-    }
-
-    /// How fast flanks inclined by `slopes` close the gap along the seat's flank.
-    fn inclination(&self, arc: f64, slopes: [f64; 2]) -> f64 {
-        if slopes == [0.0; 2] {
-            return 0.0;
-        }
-        let (gear, mate) = (
-            self.gears.gear(self.seat),
-            self.gears.gear(self.seat.other()),
-        );
-        self.point(arc).map_or(0.0, |point| {
-            let (_, seen) = point.sight.change(mate.base_radius(), point.place.to_tip);
-            let rolled = gear.base_radius() / point.roll_length.max(1e-9 * gear.base_radius());
-            slopes[self.seat.index()] * rolled + slopes[self.seat.other().index()] * seen
-        })
     }
 
     /// The δ at which `teeth`, the driving and the driven one, touch with their deviations from the drawing: their least gap over its
     /// arm.
     pub(super) fn touch_of(&self, teeth: [usize; 2]) -> f64 {
-        if self.gears.driving().deviations().are_without_lists()
-            && self.gears.driven().deviations().are_without_lists()
-        {
+        let alike = |member: Member| self.gears.gear(member).deviations().are_teeth_alike();
+        if Member::BOTH.into_iter().all(alike) {
             return self.gap / self.arm;
         }
         let of = |member: Member| (self.gears.gear(member), teeth[member.index()]);
@@ -264,7 +243,7 @@ impl<'a> Facing<'a> {
         let nearest = if slopes == [0.0; 2] {
             self.nearest
         } else {
-            self.least_within(self.range.from, self.range.to, slopes)
+            self.nearest_point(slopes)
         };
         self.point(nearest).map_or(f64::INFINITY, |point| {
             let rolls = self.on_both(point.roll_length, point.sight.roll_length);
@@ -298,20 +277,18 @@ impl<'a> Facing<'a> {
     pub(super) fn opening_angle(&self) -> f64 {
         let FlankRange { from, to, .. } = self.range;
         if self.nearest == to {
-            (-self.slope(to)).max(0.0)
+            (-self.slope(to, [0.0; 2])).max(0.0)
         } else if self.nearest == from {
-            self.slope(from).max(0.0)
+            self.slope(from, [0.0; 2]).max(0.0)
         } else {
             0.0
         }
     }
 
-    /// The slope of the gap along the seat's flank, towards its tip.
-    fn slope(&self, arc: f64) -> f64 {
-        let (gear, mate) = (
-            self.gears.gear(self.seat),
-            self.gears.gear(self.seat.other()),
-        );
+    /// The slope of the gap along the seat's flank, towards its tip, between flanks inclined by `slopes`.
+    fn slope(&self, arc: f64, slopes: [f64; 2]) -> f64 {
+        let other = self.seat.other();
+        let (gear, mate) = (self.gears.gear(self.seat), self.gears.gear(other));
         let Some(FacingPoint {
             roll_length: s,
             place,
@@ -322,9 +299,10 @@ impl<'a> Facing<'a> {
             return 0.0;
         };
         let (gap, seen) = sight.change(mate.base_radius(), place.to_tip);
+        let away = gear.removed_slope(s) - slopes[self.seat.index()];
+        let away_on_mate = mate.removed_slope(sight.roll_length) - slopes[other.index()];
         // An arc grows by s/r_b along a roll length.
-        gap + gear.removed_slope(s) * gear.base_radius() / s.max(1e-9 * gear.base_radius())
-            + mate.removed_slope(sight.roll_length) * seen
+        gap + away * gear.base_radius() / s.max(1e-9 * gear.base_radius()) + away_on_mate * seen
     }
 }
 

@@ -25,20 +25,25 @@ pub struct ToothDeviations {
 }
 
 impl ToothDeviations {
-    /// Whether every tooth stands as drawn, about the axis of rotation.
+    /// The same said shortest: what deviates by nothing is not there.
+    pub(super) fn without_zeros(mut self) -> Self {
+        for list in [&mut self.cumulative_pitch, &mut self.profile_slope] {
+            if list.iter().all(|deviation| *deviation == 0.0) {
+                list.clear();
+            }
+        }
+        self.eccentricity = self.eccentricity.filter(|each| each.amount != 0.0);
+        self
+    }
+
+    /// Whether every tooth stands as drawn, about the axis of rotation. Of a gear that exists.
     pub fn is_none(&self) -> bool {
-        self.are_teeth_alike() && self.displacement(0.0) == Vector::zeros()
+        self.are_teeth_alike() && self.eccentricity.is_none()
     }
 
-    /// Whether no list of teeth was given.
-    pub fn are_without_lists(&self) -> bool {
-        self.cumulative_pitch.is_empty() && self.profile_slope.is_empty()
-    }
-
-    /// Whether every tooth is like every other.
+    /// Whether no tooth deviates. Of a gear that exists.
     pub fn are_teeth_alike(&self) -> bool {
-        let lists = self.cumulative_pitch.iter().chain(&self.profile_slope);
-        lists.into_iter().all(|deviation| *deviation == 0.0)
+        self.cumulative_pitch.is_empty() && self.profile_slope.is_empty()
     }
 
     /// Where the gear's own axis stands from the axis of rotation while the centerline of tooth 0 points along `angle`.

@@ -348,17 +348,16 @@ impl GearPair {
 
     /// Whether both gears turn about their own axes.
     pub fn is_concentric(&self) -> bool {
-        Member::BOTH.into_iter().all(|member| {
-            let eccentricity = self.gear(member).deviations().eccentricity;
-            eccentricity.is_none_or(|each| each.amount == 0.0)
-        })
+        Member::BOTH
+            .into_iter()
+            .all(|member| self.gear(member).deviations().eccentricity.is_none())
     }
 
-    /// Whether every tooth of either gear is like the others, and both turn about their own axes: the contact on rigid blanks repeats with
-    /// every mesh period.
-    pub fn are_teeth_alike(&self) -> bool {
-        let alike = |member: Member| self.gear(member).deviations().are_teeth_alike();
-        self.is_concentric() && Member::BOTH.into_iter().all(alike)
+    /// Whether nothing of either gear deviates from its drawing: the contact on rigid blanks repeats with every mesh period.
+    pub fn is_as_drawn(&self) -> bool {
+        Member::BOTH
+            .into_iter()
+            .all(|member| self.gear(member).deviations().is_none())
     }
 
     /// The face width on which the gears touch: the smaller of the two.

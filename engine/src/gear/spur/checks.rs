@@ -1,0 +1,271 @@
+//! Whether a gear can be made: what is refused of its drawing, and what would do.
+
+use super::SpurGear;
+use crate::gear::blank::Ligament;
+use crate::gear::data::{
+    DeviationList, LEAST_LIGAMENT, LEAST_RIM, LEAST_TIP_THICKNESS, LEAST_WEB_RIM,
+};
+use crate::gear::modification::{Modification, Relief, TablePlaces};
+use crate::gear::tip::BrokenEdge;
+use crate::gear::{GearError, ModificationData, TipEdge};
+use crate::root_finding::bisect;
+
+impl SpurGear {
+    pub(super) fn check_rack(&self) -> Result<(), GearError> {
+        let rack = &self.data.rack;
+        let largest = rack.largest_tip_radius();
+        if rack.tip_radius > largest {
+            return Err(GearError::RackTipRadius {
+                tip_radius: rack.tip_radius,
+                largest,
+            });
+        }
+        let largest = 2.0 * rack.half_tip_land();
+        // Rounding of a full tip radius leaves a land of nothing, or a little less.
+        if self.data.thickness_deviation > largest.max(0.0) {
+            return Err(GearError::TeethTooThick {
+                deviation: self.data.thickness_deviation,
+                largest: largest.max(0.0),
+            });
+        }
+        Ok(())
+    }
+
+    pub(super) fn check_tooth(&self) -> Result<(), GearError> {
+        let rack = &self.data.rack;
+        let (r, sin) = (self.reference_radius(), rack.pressure_angle.sin());
+        if self.form_roll_length_signed() < 0.0 {
+            let smallest = (rack.straight_depth() - r * sin * sin) / rack.module;
+            return Err(GearError::Undercut {
+                profile_shift: self.data.profile_shift,
+                smallest,
+            });
+        }
+        let (r_a, r_form) = (self.tip_radius(), self.form_radius());
+        if r_a <= r_form {
+            return Err(GearError::NoFlank {
+                tip_radius: r_a,
+                form_radius: r_form,
+            });
+        }
+        let thickness = self.tip_thickness();
+        if thickness < LEAST_TIP_THICKNESS * rack.module {
+            return Err(GearError::PointedTip {
+                thickness,
+                largest_addendum: self.largest_addendum(),
+            });
+        }
+        Ok(())
+    }
+
+    pub(super) fn check_blank(&self) -> Result<(), GearError> {
+        let bore_radius = self.data.blank.bore_radius;
+        let largest = self.root_radius() - LEAST_RIM * self.data.rack.module;
+        if bore_radius > largest {
+            return Err(GearError::BoreTooLarge {
+                bore_radius,
+                largest,
+            });
+        }
+        let blank = &self.data.blank;
+        for (place, ligament) in blank.ligaments(self.root_radius()) {
+            // Written so that a ligament that is not a number is refused as well.
+            if ligament >= LEAST_LIGAMENT {
+                continue;
+            }
+            let with = |hole: usize, gained: f64| {
+                blank.holes[hole].half_width() + gained * (ligament - LEAST_LIGAMENT)
+            };
+            return Err(match place {
+                Ligament::Between(one, other) => GearError::HolesOverlap {
+                    holes: [one, other],
+                    ligament,
+                    largest_radius: with(other, 0.5),
+                },
+                Ligament::WithinSlot(hole) => GearError::HolesOverlap {
+                    holes: [hole; 2],
+                    ligament,
+                    largest_radius: with(hole, 0.5),
+                },
+                Ligament::ToRim(hole) => GearError::HolesBreachRim {
+                    hole,
+                    ligament,
+                    largest_radius: with(hole, 1.0),
+                },
+                Ligament::ToBore(hole) => GearError::HolesBreachBore {
+                    hole,
+                    ligament,
+                    largest_radius: with(hole, 1.0),
+                },
+            });
+        }
+        if let Some(web) = blank.web {
+            let largest = self.root_radius() - LEAST_WEB_RIM * self.data.rack.module;
+            let (inner_radius, outer_radius) = (web.inner_radius, web.outer_radius);
+            if !(inner_radius >= bore_radius
+                && outer_radius > inner_radius
+                && outer_radius <= largest)
+            {
+                return Err(GearError::WebOutside {
+                    inner_radius,
+                    outer_radius,
+                    least: bore_radius,
+                    largest,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn checked_edge(&self) -> Result<Option<BrokenEdge>, GearError> {
+        let (amount, of): (f64, fn(f64) -> TipEdge) = match self.data.tip_edge {
+            TipEdge::Sharp => return Ok(None),
+            TipEdge::Rounded(radius) => (radius, TipEdge::Rounded),
+            TipEdge::Chamfered(depth) => (depth, TipEdge::Chamfered),
+        };
+        let broken = |amount: f64| BrokenEdge::new(of(amount), &self.flank, self.tip_radius());
+        let fits = |amount: f64| {
+            broken(amount)
+                .is_some_and(|edge| edge.from > self.form_roll_length() && edge.half_angle() > 0.0)
+        };
+        if amount <= 0.0 {
+            return Ok(None);
+        }
+        if !fits(amount) {
+            let largest = bisect(0.0, amount, fits);
+            return Err(GearError::TipEdgeTooLarge { amount, largest });
+        }
+        Ok(broken(amount))
+    }
+
+    pub(super) fn checked_modifications(&self) -> Result<Vec<Modification>, GearError> {
+        let (s_f, s_a) = (self.form_roll_length(), self.tip_roll_length());
+        let mut checked = Vec::new();
+        for (index, data) in self.data.modifications.iter().enumerate() {
+            checked.push(match data {
+                ModificationData::TipRelief(relief) => {
+                    let r_s = relief.start.radius(&self.flank, self.tip_radius());
+                    if relief.amount == 0.0 {
+                        continue;
+                    }
+                    self.check_start(index, r_s, self.tip_radius())?;
+                    Modification::Tip(Relief::new(
+                        relief.amount,
+                        relief.shape,
+                        r_s,
+                        self.tip_radius(),
+                    ))
+                }
+                ModificationData::RootRelief(relief) => {
+                    let r_s = relief.start.radius(&self.flank, self.form_radius());
+                    if relief.amount == 0.0 {
+                        continue;
+                    }
+                    self.check_start(index, r_s, self.form_radius())?;
+                    Modification::Root(Relief::new(
+                        relief.amount,
+                        relief.shape,
+                        r_s,
+                        self.form_radius(),
+                    ))
+                }
+                ModificationData::Crowning { amount } => Modification::Crowning {
+                    amount: *amount,
+                    middle: f64::midpoint(s_f, s_a),
+                    half: 0.5 * (s_a - s_f),
+                },
+                ModificationData::Slope { amount } => Modification::Slope {
+                    amount: *amount,
+                    from: s_f,
+                    length: s_a - s_f,
+                },
+                ModificationData::Table { places, removed } => {
+                    self.checked_table(index, places, removed)?
+                }
+            });
+        }
+        Ok(checked)
+    }
+
+    /// Whether a relief that ends at `end_radius` starts elsewhere on the flank.
+    fn check_start(
+        &self,
+        modification: usize,
+        start_radius: f64,
+        end_radius: f64,
+    ) -> Result<(), GearError> {
+        let (form_radius, tip_radius) = (self.form_radius(), self.tip_radius());
+        if (form_radius..=tip_radius).contains(&start_radius) && start_radius != end_radius {
+            return Ok(());
+        }
+        Err(GearError::ReliefTooLong {
+            modification,
+            start_radius,
+            form_radius,
+            tip_radius,
+        })
+    }
+
+    fn checked_table(
+        &self,
+        modification: usize,
+        places: &TablePlaces,
+        removed: &[f64],
+    ) -> Result<Modification, GearError> {
+        let places: Vec<f64> = match places {
+            TablePlaces::RollLengths(lengths) => lengths.clone(),
+            TablePlaces::Diameters(diameters) => diameters
+                .iter()
+                .map(|diameter| self.flank.roll_length(diameter / 2.0))
+                .collect(),
+        };
+        let fault = |entry| {
+            Err(GearError::TableDoesNotRise {
+                modification,
+                entry,
+            })
+        };
+        if places.len() < 2 || places.len() != removed.len() {
+            return fault(places.len().min(removed.len()));
+        }
+        match places.windows(2).position(|pair| pair[0] >= pair[1]) {
+            Some(before) => fault(before + 1),
+            None => Ok(Modification::Table {
+                places,
+                removed: removed.to_vec(),
+            }),
+        }
+    }
+
+    pub(super) fn check_deviations(&self) -> Result<(), GearError> {
+        let needed = self.data.tooth_count as usize;
+        let deviations = &self.data.deviations;
+        for (list, values) in [
+            (DeviationList::Pitch, &deviations.cumulative_pitch),
+            (DeviationList::ProfileSlope, &deviations.profile_slope),
+        ] {
+            if !values.is_empty() && values.len() != needed {
+                return Err(GearError::DeviationCount {
+                    list,
+                    given: values.len(),
+                    needed,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn largest_addendum(&self) -> f64 {
+        let r_0 = self.reference_radius() + self.profile_shift_length();
+        let least = LEAST_TIP_THICKNESS * self.data.rack.module;
+        let thick_enough = |addendum: f64| {
+            let r_a = r_0 + addendum;
+            2.0 * r_a * self.flank.half_angle(r_a) >= least
+        };
+        bisect(
+            self.form_radius() - r_0,
+            self.data.rack.addendum,
+            thick_enough,
+        )
+    }
+}

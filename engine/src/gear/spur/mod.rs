@@ -1,0 +1,432 @@
+//! A whole spur gear: what its drawing says, checked once (`checks`), and the true shape of its flanks (`flanks`).
+
+mod checks;
+mod flanks;
+
+use std::f64::consts::PI;
+
+use super::involute::involute_function;
+use super::modification::Modification;
+use super::rack::Trochoid;
+use super::tip::BrokenEdge;
+use super::{
+    BlankRegion, GearData, GearError, Hole, HolePattern, Involute, Material, TipEdge,
+    ToothDeviations,
+};
+
+/// A spur gear that can be made: neither undercut nor pointed, with its holes inside its blank.
+///
+/// Lengths are in meters, angles in radians.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpurGear {
+    data: GearData,
+    flank: Involute,
+    broken_edge: Option<BrokenEdge>,
+    modifications: Vec<Modification>,
+    hole_repeats: u32,
+}
+
+impl SpurGear {
+    /// Checks a drawing.
+    ///
+    /// # Errors
+    ///
+    /// [`GearError`] says which part cannot be made and what would do.
+    pub fn new(data: GearData) -> Result<Self, GearError> {
+        let rack = &data.rack;
+        let (z, alpha) = (f64::from(data.tooth_count), rack.pressure_angle);
+        let r = rack.module * z / 2.0;
+        let psi_b = PI / (2.0 * z)
+            + 2.0 * data.profile_shift * alpha.tan() / z
+            + involute_function(alpha)
+            + data.thickness_deviation / (2.0 * r);
+        let mut gear = Self {
+            data,
+            flank: Involute::new(r * alpha.cos(), psi_b),
+            broken_edge: None,
+            modifications: Vec::new(),
+            hole_repeats: 0,
+        };
+
+        gear.check_rack()?;
+        gear.check_tooth()?;
+        gear.broken_edge = gear.checked_edge()?;
+        gear.check_blank()?;
+        gear.hole_repeats = gear.data.blank.symmetry().count;
+        gear.modifications = gear.checked_modifications()?;
+        gear.check_deviations()?;
+        gear.data.deviations = std::mem::take(&mut gear.data.deviations).without_zeros();
+        Ok(gear)
+    }
+
+    /// The drawing.
+    pub fn data(&self) -> &GearData {
+        &self.data
+    }
+
+    /// The same teeth on a blank without bore and holes: what is left to say where the blank does not matter.
+    pub fn without_blank(&self) -> Self {
+        self.on_blank(BlankRegion::solid(0.0))
+    }
+
+    /// The same gear without holes.
+    pub fn without_holes(&self) -> Self {
+        self.on_blank(BlankRegion {
+            holes: Vec::new(),
+            ..self.data.blank.clone()
+        })
+    }
+
+    /// The same gear with hole 0 at the angle 0.
+    pub fn with_holes_unturned(&self) -> Self {
+        self.on_blank(self.data.blank.turned(-self.hole_angle()))
+    }
+
+    /// The same gear with flanks as the rack cuts them, each like the other, up to a sharp tip.
+    pub fn with_plain_flanks(&self) -> Self {
+        Self {
+            data: GearData {
+                tip_edge: TipEdge::Sharp,
+                modifications: Vec::new(),
+                deviations: ToothDeviations::default(),
+                ..self.data.clone()
+            },
+            broken_edge: None,
+            modifications: Vec::new(),
+            ..self.clone()
+        }
+    }
+
+    /// The same gear with teeth that do not deviate.
+    pub fn as_drawn(&self) -> Self {
+        Self {
+            data: GearData {
+                deviations: ToothDeviations::default(),
+                ..self.data.clone()
+            },
+            ..self.clone()
+        }
+    }
+
+    /// The same gear on a `blank` that is known to fit.
+    fn on_blank(&self, blank: BlankRegion) -> Self {
+        Self {
+            hole_repeats: blank.symmetry().count,
+            data: GearData {
+                blank,
+                ..self.data.clone()
+            },
+            ..self.clone()
+        }
+    }
+
+    /// The number of teeth Z.
+    pub fn tooth_count(&self) -> u32 {
+        self.data.tooth_count
+    }
+
+    /// The face width b.
+    pub fn face_width(&self) -> f64 {
+        self.data.face_width
+    }
+
+    /// The material.
+    pub fn material(&self) -> &Material {
+        &self.data.material
+    }
+
+    /// The bore radius.
+    pub fn bore_radius(&self) -> f64 {
+        self.data.blank.bore_radius
+    }
+
+    /// The holes of the blank.
+    pub fn holes(&self) -> &[Hole] {
+        &self.data.blank.holes
+    }
+
+    /// Whether it has holes.
+    pub fn has_holes(&self) -> bool {
+        !self.holes().is_empty()
+    }
+
+    /// The holes as one pattern of equal round ones, if that is what they are.
+    pub fn hole_pattern(&self) -> Option<HolePattern> {
+        self.data.blank.pattern()
+    }
+
+    /// The angle of hole 0 from the centerline of tooth 0; 0 without holes.
+    pub fn hole_angle(&self) -> f64 {
+        self.holes().first().map_or(0.0, |hole| hole.angle)
+    }
+
+    /// How often the holes repeat around the blank: N of a pattern; 0 without holes.
+    pub fn hole_repeats(&self) -> u32 {
+        self.hole_repeats
+    }
+
+    /// The loaded flank of tooth 0.
+    pub fn flank(&self) -> &Involute {
+        &self.flank
+    }
+
+    /// The fillet of tooth 0 on its loaded side.
+    pub fn fillet(&self) -> Trochoid {
+        Trochoid::new(
+            &self.data.rack,
+            self.data.tooth_count,
+            self.profile_shift_length(),
+            self.data.thickness_deviation,
+        )
+    }
+
+    /// The flank from the form circle to the tip circle, by arc length from the base circle.
+    pub fn flank_arcs(&self) -> (f64, f64) {
+        (
+            self.flank.arc_length(self.form_roll_length()),
+            self.flank.arc_length(self.tip_roll_length()),
+        )
+    }
+
+    /// The angle 2π/Z between teeth.
+    pub fn pitch_angle(&self) -> f64 {
+        2.0 * PI / f64::from(self.data.tooth_count)
+    }
+
+    /// The reference radius r = m Z/2.
+    pub fn reference_radius(&self) -> f64 {
+        self.data.rack.module * f64::from(self.data.tooth_count) / 2.0
+    }
+
+    /// The base radius r_b = r cos α (R_b in the paper).
+    pub fn base_radius(&self) -> f64 {
+        self.flank.base_radius()
+    }
+
+    /// The tip radius r_a = r + h_a + x m; tips are not shortened.
+    pub fn tip_radius(&self) -> f64 {
+        self.reference_radius() + self.data.rack.addendum + self.profile_shift_length()
+    }
+
+    /// The root radius r_f = r − h_f + x m.
+    pub fn root_radius(&self) -> f64 {
+        self.reference_radius() - self.data.rack.dedendum + self.profile_shift_length()
+    }
+
+    /// The base pitch p_b = π m cos α.
+    pub fn base_pitch(&self) -> f64 {
+        PI * self.data.rack.module * self.data.rack.pressure_angle.cos()
+    }
+
+    /// The roll length at which the generated flank ends and the fillet begins.
+    pub fn form_roll_length(&self) -> f64 {
+        self.form_roll_length_signed().max(0.0)
+    }
+
+    /// The form radius: where the flank ends and the fillet begins.
+    pub fn form_radius(&self) -> f64 {
+        self.flank.radius(self.form_roll_length())
+    }
+
+    /// The roll length at the tip circle.
+    pub fn tip_roll_length(&self) -> f64 {
+        self.flank.roll_length(self.tip_radius())
+    }
+
+    /// The roll length s_Fa at which the involute ends: at the tip circle, or at a broken edge.
+    pub fn tip_form_roll_length(&self) -> f64 {
+        self.broken_edge
+            .map_or_else(|| self.tip_roll_length(), |edge| edge.from)
+    }
+
+    /// Half the angle of the tip land between both edges.
+    pub fn tip_half_angle(&self) -> f64 {
+        self.broken_edge.map_or_else(
+            || self.flank.half_angle(self.tip_radius()),
+            |edge| edge.half_angle(),
+        )
+    }
+
+    /// The edge between flank and tip circle, if it is broken.
+    pub(super) fn broken_edge(&self) -> Option<&BrokenEdge> {
+        self.broken_edge.as_ref()
+    }
+
+    /// The thickness of the tooth along its tip circle, were its edges sharp.
+    pub fn tip_thickness(&self) -> f64 {
+        let r_a = self.tip_radius();
+        2.0 * r_a * self.flank.half_angle(r_a)
+    }
+
+    /// The thinnest material around the holes: between them, above them and below them. `None` without holes.
+    pub fn least_ligament(&self) -> Option<f64> {
+        let blank = &self.data.blank;
+        let least = blank.least_ligament(self.root_radius());
+        least.map(|(_, ligament)| ligament)
+    }
+
+    /// The share of the blank that the holes remove; the blank is the ring between the bore and the mean of tip and root
+    /// circle.
+    pub fn removed_fraction(&self) -> f64 {
+        self.data.blank.hole_area() / self.nominal_blank_area()
+    }
+
+    /// The area π (((r_a + r_f)/2)² − r_bore²) to which removed mass is referred.
+    pub fn nominal_blank_area(&self) -> f64 {
+        let mean = f64::midpoint(self.tip_radius(), self.root_radius());
+        PI * (mean.powi(2) - self.bore_radius().powi(2))
+    }
+
+    fn profile_shift_length(&self) -> f64 {
+        self.data.profile_shift * self.data.rack.module
+    }
+
+    fn form_roll_length_signed(&self) -> f64 {
+        let sin = self.data.rack.pressure_angle.sin();
+        self.reference_radius() * sin
+            - (self.data.rack.straight_depth() - self.profile_shift_length()) / sin
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::gear::{ModificationData, Rack, ReliefData, ReliefShape, ReliefStart};
+
+    /// The paper's gears (Table 1): module 2 mm, 20 degrees, addendum 2 mm, dedendum 2.5 mm, width 20 mm, steel.
+    pub(crate) fn paper_gear(tooth_count: u32) -> GearData {
+        GearData {
+            tooth_count,
+            rack: Rack {
+                module: 2e-3,
+                pressure_angle: 20_f64.to_radians(),
+                addendum: 2e-3,
+                dedendum: 2.5e-3,
+                tip_radius: 0.76e-3,
+            },
+            profile_shift: 0.0,
+            thickness_deviation: 0.0,
+            tip_edge: TipEdge::Sharp,
+            face_width: 20e-3,
+            modifications: Vec::new(),
+            deviations: ToothDeviations::default(),
+            material: Material {
+                youngs_modulus: 210e9,
+                poisson_ratio: 0.3,
+                density: 7850.0,
+            },
+            blank: BlankRegion::solid(15e-3),
+        }
+    }
+
+    fn with_holes(count: u32, circle_radius: f64, radius: f64) -> Result<SpurGear, GearError> {
+        let mut data = paper_gear(50);
+        data.blank.holes = HolePattern {
+            count,
+            circle_radius,
+            radius,
+            phase: 0.0,
+        }
+        .holes();
+        SpurGear::new(data)
+    }
+
+    #[test]
+    fn the_form_radius_is_the_one_of_the_independent_solver() {
+        // calculix-s1.json: r_form = 48.31354660697083 mm.
+        let gear = SpurGear::new(paper_gear(50)).expect("the standard gear");
+        assert!((gear.form_radius() - 48.313_546_606_970_83e-3).abs() < 1e-12);
+    }
+
+    #[test]
+    fn undercut_begins_below_the_textbook_tooth_count_and_the_named_shift_cures_it() {
+        // z_min = 2 h_Ff/(m sin² α) = 17.1 for the ISO rack with rounding 0.38 m, whose straight depth is one module.
+        assert!(
+            SpurGear::new(paper_gear(18)).is_err(),
+            "a bore of 15 mm leaves no rim"
+        );
+        let small = |z, x| {
+            let mut data = paper_gear(z);
+            data.blank.bore_radius = 5e-3;
+            data.profile_shift = x;
+            SpurGear::new(data)
+        };
+        assert!(small(18, 0.0).is_ok());
+        let Err(GearError::Undercut { smallest, .. }) = small(12, 0.0) else {
+            panic!("12 teeth are undercut")
+        };
+        assert!(small(12, smallest + 1e-9).is_ok());
+        assert!(matches!(
+            small(12, smallest - 1e-6),
+            Err(GearError::Undercut { .. })
+        ));
+    }
+
+    #[test]
+    fn a_pointed_tooth_is_refused_and_the_named_addendum_cures_it() {
+        let mut data = paper_gear(30);
+        data.rack.addendum = 4e-3;
+        let Err(GearError::PointedTip {
+            largest_addendum, ..
+        }) = SpurGear::new(data.clone())
+        else {
+            panic!("pointed")
+        };
+        data.rack.addendum = largest_addendum;
+        assert!(SpurGear::new(data).is_ok());
+    }
+
+    #[test]
+    fn holes_are_refused_where_they_touch_and_the_named_radius_cures_each() {
+        // Touching limits R sin(π/N) , less half the least ligament.
+        let Err(GearError::HolesOverlap { largest_radius, .. }) = with_holes(8, 27e-3, 10.5e-3)
+        else {
+            panic!("overlap")
+        };
+        assert!((largest_radius - (10.332e-3 - 0.25e-3)).abs() < 1e-6);
+        assert!(with_holes(8, 27e-3, largest_radius - 1e-12).is_ok());
+        let Err(GearError::HolesBreachRim { largest_radius, .. }) = with_holes(6, 38e-3, 9.5e-3)
+        else {
+            panic!("rim")
+        };
+        assert!((largest_radius - 9e-3).abs() < 1e-12);
+        let Err(GearError::HolesBreachBore { largest_radius, .. }) = with_holes(3, 25e-3, 10e-3)
+        else {
+            panic!("bore")
+        };
+        assert!((largest_radius - 9.5e-3).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_relief_must_start_on_the_flank() {
+        let mut data = paper_gear(50);
+        let relief = |length| {
+            ModificationData::TipRelief(ReliefData {
+                amount: 5e-6,
+                shape: ReliefShape::Linear,
+                start: ReliefStart::RadialLength(length),
+            })
+        };
+        data.modifications = vec![relief(3.7e-3)];
+        assert!(matches!(
+            SpurGear::new(data.clone()),
+            Err(GearError::ReliefTooLong { .. })
+        ));
+        data.modifications = vec![relief(1.75e-3)];
+        let gear = SpurGear::new(data).expect("fits");
+        assert!((gear.removed(gear.tip_roll_length()) - 5e-6).abs() < 1e-18);
+    }
+
+    #[test]
+    fn a_quarter_of_the_blank_goes_with_the_papers_hole_radii() {
+        // Bore 15 mm and 25 % give r = 7.500 (10 holes), 8.385 (8), 9.683 (6) mm.
+        for (count, circle_radius, radius) in [
+            (10, 34e-3, 7.5e-3),
+            (8, 34e-3, 8.385e-3),
+            (6, 30e-3, 9.683e-3),
+        ] {
+            let gear = with_holes(count, circle_radius, radius).expect("a design of the study");
+            assert!((gear.removed_fraction() - 0.25).abs() < 5e-5);
+        }
+    }
+}
