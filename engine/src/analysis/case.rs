@@ -95,6 +95,8 @@ pub struct Case {
     pub output_torques: Vec<f64>,
     /// How to compute.
     pub resolution: Resolution,
+    /// Whether the largest stresses at roots and holes are asked for.
+    pub stress: bool,
     /// The speed of the driving gear, if frequencies are wanted.
     pub driving_speed: Option<RotationSpeed>,
 }

@@ -2,6 +2,7 @@
 
 use super::evidence::Evidence;
 use super::spectrum::Spectrum;
+use super::stress::GearStresses;
 use super::warning::Warning;
 use crate::gear::Member;
 
@@ -126,6 +127,8 @@ pub struct Curve {
     pub spectrum: Option<Spectrum>,
     /// The parts of the decomposition, for that method.
     pub decomposition: Option<DecompositionParts>,
+    /// The largest stresses in the driving and in the driven gear, where they were asked for, by the flexible method, under load.
+    pub stresses: Option<[GearStresses; 2]>,
 }
 
 /// The answer to a [`super::Case`].

@@ -3,6 +3,7 @@
 use super::Case;
 use super::curve::{Curve, DecompositionParts, LoadShare, Statistics};
 use super::spectrum::Spectrum;
+use super::stress::GearStresses;
 use crate::contact::MeshContact;
 
 /// What a method finds at each position of one torque.
@@ -13,6 +14,7 @@ pub(super) struct CurveParts {
     pub(super) peak_contact_pressure: Vec<Option<f64>>,
     pub(super) load_shares: Vec<LoadShare>,
     pub(super) decomposition: Option<DecompositionParts>,
+    pub(super) stresses: Option<[GearStresses; 2]>,
 }
 
 impl CurveParts {
@@ -46,6 +48,7 @@ impl CurveParts {
             load_shares: self.load_shares,
             spectrum,
             decomposition: self.decomposition,
+            stresses: self.stresses,
         }
     }
 }
@@ -64,6 +67,7 @@ impl CurveParts {
             peak_contact_pressure: each.map(|contact| contact.peak_pressure).collect(),
             load_shares: load_shares(&case.mesh_positions(), contacts),
             decomposition: None,
+            stresses: None,
         }
     }
 
@@ -83,6 +87,7 @@ impl CurveParts {
                 })
                 .collect(),
             decomposition: None,
+            stresses: None,
         }
     }
 }

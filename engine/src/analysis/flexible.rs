@@ -4,6 +4,7 @@ use super::case::StiffnessRule;
 use super::curve_parts::CurveParts;
 use super::evidence::Evidence;
 use super::setup::Setup;
+use super::stress::{GearStresses, PositionPeaks, StressModel};
 use super::warning::{warn_of_tips, warnings};
 use super::{Analysis, AnalysisError};
 use crate::assembly::Blanks;
@@ -17,13 +18,23 @@ pub(super) fn solve(setup: Setup<'_>) -> Result<Analysis, AnalysisError> {
     let positions = case.mesh_positions();
     let mut evidence = Evidence::new(degrees_of_freedom);
     let mut warnings = warnings(case);
+    let stress = case.stress.then(|| StressModel::new(&setup)).transpose()?;
+    let stress = stress.as_ref().map(|model| model.loaded(setup.run));
+    let stress = stress.transpose()?;
+    let peaks = |cells: &ContactCells<'_>, solution: &ContactSolution| {
+        stress.as_ref().map(|pair| pair.peaks(cells, solution))
+    };
     let mut curves = Vec::with_capacity(case.output_torques.len());
     for &output_torque in &case.output_torques {
         let load = case.pair.load(output_torque);
-        let solved = solved(&setup, &model, load, &positions, |_, _| ())?;
+        let solved = solved(&setup, &model, load, &positions, peaks)?;
         evidence.gather(&solved.contacts, load);
         warn_of_tips(&mut warnings, &solved.contacts);
-        let parts = CurveParts::of_contacts(case, &solved.contacts, solved.stiffness);
+        let peaks: Option<Vec<PositionPeaks>> = solved.kept.into_iter().collect();
+        let parts = CurveParts {
+            stresses: peaks.map(|peaks| GearStresses::of_positions(&peaks)),
+            ..CurveParts::of_contacts(case, &solved.contacts, solved.stiffness)
+        };
         curves.push(parts.into_curve(case, output_torque));
     }
     Ok(Analysis {

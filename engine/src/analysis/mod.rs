@@ -1,7 +1,7 @@
 //! From a pair to its curves: the methods, their results and spectra.
 //!
 //! Read in this order: [`case`] (what is asked), `setup` (what the methods work with), `flexible`, `rigid_blank`,
-//! `decomposition`, `projected` and `load_distribution` (the methods), `light` (torque 0, alike for all), `curve_parts` and [`curve`], [`evidence`], [`warning`],
+//! `decomposition`, `projected` and `load_distribution` (the methods), `light` (torque 0, alike for all), [`stress`] (at roots and holes), `curve_parts` and [`curve`], [`evidence`], [`warning`],
 //! [`error`] and [`spectrum`] (what comes out), `estimate` (what it costs).
 
 pub mod case;
@@ -19,6 +19,7 @@ mod projected;
 mod rigid_blank;
 mod setup;
 pub mod spectrum;
+pub mod stress;
 pub mod warning;
 
 pub use case::{BodyFormula, Case, Formulas, Method, Resolution, StiffnessRule, ToothFormula};

@@ -264,6 +264,7 @@ mod tests {
                 },
                 error_estimate: false,
             },
+            stress: false,
             driving_speed: None,
         }
     }

@@ -2,8 +2,9 @@
 
 use super::PartError;
 use super::interface::orders_of_blank;
-use crate::fem::blank::BlankSubstructure;
+use crate::fem::blank::{BlankRecovery, BlankSubstructure};
 use crate::fem::cyclic::Harmonics;
+use crate::fem::recovery::Functional;
 use crate::gear::SpurGear;
 use crate::grid::blank::ELEMENTS_PER_TOOTH;
 use crate::grid::{BlankGrid, GridError, GridLevel};
@@ -47,6 +48,15 @@ impl BlankSpec {
         orders_of_blank(&self.gear, self.interface_radius, self.level)
     }
 
+    /// Its grid, or that of one of its equal sectors.
+    ///
+    /// # Errors
+    ///
+    /// [`GridError`].
+    pub fn grid(&self) -> Result<BlankGrid, GridError> {
+        blank_grid(&self.gear, self.interface_radius, self.level)
+    }
+
     /// Makes it, on this thread alone.
     ///
     /// # Errors
@@ -54,16 +64,20 @@ impl BlankSpec {
     /// [`PartError`].
     pub fn make(&self, run: &Run) -> Result<BlankSubstructure, PartError> {
         run.check()?;
-        let gear = &self.gear;
-        let grid = blank_grid(gear, self.interface_radius, self.level)?;
-        Ok(BlankSubstructure::new(
-            &grid,
-            self.interface_radius,
-            gear.material(),
-            gear.face_width(),
-            self.orders(),
-            run,
-        )?)
+        Ok(self.make_with(&self.grid()?, &[], run)?.0)
+    }
+
+    /// Makes it of its `grid`, and with it what the functionals `asked` of its sector 0 become.
+    pub(super) fn make_with(
+        &self,
+        grid: &BlankGrid,
+        asked: &[Functional],
+        run: &Run,
+    ) -> Result<(BlankSubstructure, BlankRecovery), PartError> {
+        let plate = (self.gear.material(), self.gear.face_width());
+        let (radius, orders) = (self.interface_radius, self.orders());
+        let made = BlankSubstructure::with_recovery(grid, radius, plate, orders, asked, run)?;
+        Ok(made)
     }
 }
 

@@ -1,13 +1,15 @@
 //! From the drawings of two gears to a pair that is ready for contact.
 //!
 //! In reading order: [`interface`] (the circle on which teeth and blank meet), [`teeth`] (all teeth of a gear down to it),
-//! [`blank`] (what carries them), [`gear`] (both joined), [`pair`] (two gears and the rules of their contact).
+//! [`blank`] (what carries them), [`gear`] (both joined), [`pair`] (two gears and the rules of their contact);
+//! beside them [`inside`] (what goes on in a gear whose flanks are loaded).
 //!
 //! Each part is a pure function of its *spec*, a value that says all that the part depends on. Equal specs are equal parts;
 //! who makes them, and whether anyone keeps them, is asked of [`Parts`].
 
 pub mod blank;
 pub mod gear;
+pub mod inside;
 pub mod interface;
 pub mod pair;
 mod parts;
@@ -15,6 +17,7 @@ pub mod teeth;
 
 pub use blank::BlankSpec;
 pub use gear::{Carrier, Gear, GearSpec, WantedGear, make_gears};
+pub use inside::{Inside, Probes};
 pub use pair::{Blanks, Modeling, PairSpec};
 pub use parts::{AssemblyError, ContactsSpec, MakeAll, PartError, Parts};
 pub use teeth::{Teeth, TeethSpec};

@@ -1,10 +1,10 @@
 //! A pair of gears ready for contact: which blanks take part, and the rules of contact.
 
 use super::interface::interface_radius;
-use super::{AssemblyError, GearSpec, Parts, WantedGear};
+use super::{AssemblyError, GearSpec, Inside, Parts, Probes, WantedGear};
 use crate::contact::{ContactSolver, PairModel};
-use crate::gear::{GearPair, Member};
-use crate::grid::GridLevel;
+use crate::gear::{GearPair, Material, Member};
+use crate::grid::{BlankGrid, GridLevel, ToothGrid};
 use crate::run::Run;
 
 /// Which blanks take part in a model.
@@ -64,6 +64,22 @@ impl PairSpec {
             level,
             solver,
         }
+    }
+
+    /// The inside of the gear `member`, asked for what `probes` says of its grids and material.
+    ///
+    /// # Errors
+    ///
+    /// [`AssemblyError`].
+    pub fn inside(
+        &self,
+        member: Member,
+        probes: impl FnOnce(&ToothGrid, Option<&BlankGrid>, &Material) -> Probes,
+        parts: &dyn Parts,
+        run: &Run,
+    ) -> Result<Inside, AssemblyError> {
+        let spec = &self.gears[member.index()];
+        Inside::new(spec, probes, parts, run).map_err(|error| error.of(member))
     }
 
     /// The model, and its unknowns before condensation, of what `parts` provides.

@@ -109,7 +109,7 @@ pub enum AssemblyError {
 
 impl PartError {
     /// The same of `member`.
-    pub(super) fn of(self, member: Member) -> AssemblyError {
+    pub(crate) fn of(self, member: Member) -> AssemblyError {
         match self {
             Self::Stopped(stopped) | Self::Fem(FemError::Stopped(stopped)) => {
                 AssemblyError::Stopped(stopped)

@@ -9,7 +9,7 @@ use crate::fem::body::Coupling;
 use crate::fem::teeth::{FARTHEST_COUPLED, TeethRing};
 use crate::fem::tooth::ToothSubstructure;
 use crate::gear::SpurGear;
-use crate::grid::{GridLevel, ToothGrid};
+use crate::grid::{GridError, GridLevel, ToothGrid};
 use crate::run::Run;
 
 /// What the teeth of a gear depend on.
@@ -44,6 +44,20 @@ impl TeethSpec {
         }
     }
 
+    /// The gear, as far as its teeth go.
+    pub(super) fn gear(&self) -> &SpurGear {
+        &self.gear
+    }
+
+    /// The grid of one of them.
+    ///
+    /// # Errors
+    ///
+    /// [`GridError`].
+    pub fn grid(&self) -> Result<ToothGrid, GridError> {
+        ToothGrid::new(&self.gear, self.interface_radius, self.level)
+    }
+
     /// Makes them, on this thread alone.
     ///
     /// # Errors
@@ -56,7 +70,7 @@ impl TeethSpec {
             level,
         } = self;
         run.check()?;
-        let grid = ToothGrid::new(gear, *interface_radius, *level)?;
+        let grid = self.grid()?;
         run.check()?;
         let tooth = ToothSubstructure::new(gear, &grid)?;
         run.check()?;

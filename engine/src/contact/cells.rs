@@ -87,6 +87,15 @@ pub struct PairLoads {
     pub loads: [Mat<f64>; 2],
 }
 
+/// What a contact presses one tooth with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlankLoad {
+    /// The tooth.
+    pub tooth: usize,
+    /// The forces in N on the unknowns of its flank ([`crate::fem::tooth::ToothSubstructure`]).
+    pub forces: Vec<f64>,
+}
+
 impl MeshContact {
     /// About how much memory it holds.
     pub fn bytes(&self) -> usize {
@@ -326,6 +335,20 @@ impl<'a> ContactCells<'a> {
                     pair: pair.patch.pair,
                     loads: std::array::from_fn(|gear| pair.shapes[gear].transpose() * &forces),
                 }
+            })
+            .collect()
+    }
+
+    /// What the `forces` on all cells are on the flanks of `member`, tooth by tooth of those that carry any.
+    pub fn flank_loads(&self, member: Member, forces: &[f64]) -> Vec<FlankLoad> {
+        let (gear, pair) = (member.index(), &self.model.pair);
+        let flank = &self.model.gears[gear].flank;
+        self.ranges()
+            .map(|(cells, range)| (cells, &forces[range]))
+            .filter(|(_, forces)| forces.iter().any(|force| *force > 0.0))
+            .map(|(cells, forces)| FlankLoad {
+                tooth: pair.tooth(member, self.period + cells.patch.pair),
+                forces: cells.nodal_forces(flank, gear, forces),
             })
             .collect()
     }

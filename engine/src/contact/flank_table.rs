@@ -133,6 +133,20 @@ impl FlankTable {
         compliance
     }
 
+    /// What `forces` at `points`, along their directions, are on the flank's unknowns: along the outward normal and towards the tip,
+    /// node by node, so that pressure is negative.
+    pub fn nodal_forces(&self, points: &[FlankPoint], forces: &[f64]) -> Vec<f64> {
+        let mut nodal = vec![0.0; self.modes.nrows()];
+        for (point, force) in points.iter().zip(forces) {
+            for (node, weight) in (point.first..).zip(point.weights) {
+                for (component, against) in point.direction.into_iter().enumerate() {
+                    nodal[2 * node + component] -= weight * against * force;
+                }
+            }
+        }
+        nodal
+    }
+
     /// W V: how the flank follows its interface at `points`.
     pub fn shapes_at(&self, points: &[FlankPoint]) -> Mat<f64> {
         let (first, weights) = weights(points);

@@ -48,7 +48,7 @@ pub mod stage;
 
 pub use active_set::solve_active_set;
 pub use augmented_lagrangian::{AugmentedLagrangian, default_penalty, solve_augmented_lagrangian};
-pub use cells::{ContactCells, MeshCells, MeshContact, PairContact, PairLoads};
+pub use cells::{ContactCells, FlankLoad, MeshCells, MeshContact, PairContact, PairLoads};
 pub use light::light_contact;
 pub use model::{ContactSolver, GearModel, PairModel, PositionError, WarmStart};
 pub use problem::{ContactError, ContactProblem, ContactQuantity, ContactSolution};

@@ -3,7 +3,7 @@
 use faer::Mat;
 
 use super::facing::Facing;
-use super::flank_table::FlankPoint;
+use super::flank_table::{FlankPoint, FlankTable};
 use super::model::PairModel;
 use super::patch::Patch;
 
@@ -37,11 +37,7 @@ impl PairCells {
         let mut held = Mat::zeros(here, here);
         let shapes = [0, 1].map(|gear| {
             let flank = &model.gears[gear].flank;
-            let points: Vec<FlankPoint> = patch
-                .cells
-                .iter()
-                .map(|cell| flank.point(cell.roll_lengths[gear], cell.directions[gear]))
-                .collect();
+            let points = points(&patch, flank, gear);
             held += flank.smooth_compliance(&points, &points);
             flank.shapes_at(&points)
         });
@@ -67,6 +63,11 @@ impl PairCells {
         })
     }
 
+    /// What `forces` on its cells are on the unknowns of `flank`, that of the gear of index `gear`.
+    pub(super) fn nodal_forces(&self, flank: &FlankTable, gear: usize, forces: &[f64]) -> Vec<f64> {
+        flank.nodal_forces(&points(&self.patch, flank, gear), forces)
+    }
+
     /// Whether a wider patch would have more room.
     pub(super) fn can_widen(&self) -> bool {
         self.patch.ends.contains(&None)
@@ -77,4 +78,12 @@ impl PairCells {
         let [first, last] = [active.first(), active.last()].map(|end| end == Some(&true));
         (first && self.patch.ends[0].is_none()) || (last && self.patch.ends[1].is_none())
     }
+}
+
+/// The cells of `patch` as points on `flank`, that of the gear of index `gear`.
+fn points(patch: &Patch, flank: &FlankTable, gear: usize) -> Vec<FlankPoint> {
+    let cells = patch.cells.iter();
+    cells
+        .map(|cell| flank.point(cell.roll_lengths[gear], cell.directions[gear]))
+        .collect()
 }

@@ -126,6 +126,7 @@ pub(crate) fn case(pair: GearPair, output_torques: &[f64]) -> Case {
             },
             error_estimate: false,
         },
+        stress: false,
         driving_speed: None,
     }
 }

@@ -120,6 +120,7 @@ fn case(pair: &GearPair, output_torques: &[f64]) -> Case {
             },
             error_estimate: false,
         },
+        stress: false,
         driving_speed: None,
     }
 }

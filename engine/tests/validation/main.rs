@@ -14,6 +14,7 @@ mod invariants;
 mod paper;
 mod patch;
 mod robustness;
+mod stress;
 mod support;
 mod uncondensed;
 mod whole;

@@ -122,6 +122,7 @@ fn curve_parts(case: &Case, contacts: &[Shared], load: f64) -> CurveParts {
         pairs_in_contact: case.repeated(pairs_in_contact),
         load_shares: load_shares(case, contacts, load),
         decomposition: None,
+        stresses: None,
     }
 }
 

@@ -1,0 +1,182 @@
+//! The largest stresses at the roots of the teeth and at the edges of the holes, position by position.
+//!
+//! A free edge is stressed along itself only, so that the von Mises stress there is what stretches or presses it.
+
+use std::f64::consts::TAU;
+
+use super::AnalysisError;
+use super::setup::Setup;
+use crate::assembly::inside::LoadedGear;
+use crate::assembly::{Blanks, Inside, PartError, Probes};
+use crate::contact::{ContactCells, ContactSolution};
+use crate::fem::recovery::edge_stresses;
+use crate::gear::{Material, Member};
+use crate::grid::{BlankGrid, Grid, ToothGrid};
+use crate::run::Run;
+
+/// The largest stress along some edges, and where.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PeakStress {
+    /// The von Mises stress in Pa.
+    pub stress: f64,
+    /// The polar angle of the place from the centerline of tooth 0 in radians, from 0 to 2π, in the frame of the gear.
+    pub angle: f64,
+}
+
+/// The largest stresses of one gear at each position of a curve.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct GearStresses {
+    /// The largest tension along the fillets and root lands beside the loaded flanks.
+    pub root: Vec<PeakStress>,
+    /// The largest stress along the edges of the holes; empty without holes.
+    pub holes: Vec<PeakStress>,
+}
+
+/// Both gears, to be asked for the stresses under a contact.
+pub(super) struct StressModel {
+    gears: [StressedGear; 2],
+}
+
+struct StressedGear {
+    member: Member,
+    inside: Inside,
+    tooth_count: usize,
+    /// The polar angles of the nodes along the fillet, from the centerline of their tooth.
+    fillet: Vec<f64>,
+    /// The polar angles of the nodes along the edges of holes, in the frame of sector 0.
+    edges: Vec<f64>,
+}
+
+/// The peaks of both gears at one position: root, and hole where there is any.
+pub(super) type PositionPeaks = [(PeakStress, Option<PeakStress>); 2];
+
+impl StressModel {
+    /// That of both gears as `setup` has them, blanks flexible.
+    pub(super) fn new(setup: &Setup<'_>) -> Result<Self, AnalysisError> {
+        let spec = setup.spec(Blanks::Flexible);
+        let of = |member: Member| -> Result<StressedGear, AnalysisError> {
+            let (mut fillet, mut edges) = (Vec::new(), Vec::new());
+            let probes = |tooth: &ToothGrid, blank: Option<&BlankGrid>, material: &Material| {
+                fillet = angles(&tooth.grid, &tooth.fillet_nodes);
+                let mut probes = Probes {
+                    in_tooth: edge_stresses(&tooth.grid, material, &tooth.fillet_nodes, false),
+                    in_blank: Vec::new(),
+                };
+                if let Some(BlankGrid {
+                    grid, hole_edges, ..
+                }) = blank
+                {
+                    edges = angles(grid, &hole_edges.concat());
+                    let along = |edge: &Vec<u32>| edge_stresses(grid, material, edge, true);
+                    probes.in_blank = hole_edges.iter().flat_map(along).collect();
+                }
+                probes
+            };
+            let inside = spec.inside(member, probes, setup.parts, setup.run)?;
+            Ok(StressedGear {
+                member,
+                inside,
+                tooth_count: setup.case.pair.gear(member).tooth_count() as usize,
+                fillet,
+                edges,
+            })
+        };
+        let (driving, driven) = rayon::join(|| of(Member::Driving), || of(Member::Driven));
+        Ok(Self {
+            gears: [driving?, driven?],
+        })
+    }
+
+    /// Both gears, ready to be loaded.
+    pub(super) fn loaded<'a>(&'a self, run: &Run) -> Result<LoadedPair<'a>, AnalysisError> {
+        let [driving, driven] = &self.gears;
+        let loaded = |gear: &'a StressedGear| {
+            let loaded = gear.inside.loaded(run);
+            loaded.map_err(|error| PartError::from(error).of(gear.member))
+        };
+        let (driving, driven) = rayon::join(|| loaded(driving), || loaded(driven));
+        Ok(LoadedPair {
+            model: self,
+            gears: [driving?, driven?],
+        })
+    }
+}
+
+/// Both gears, ready to be loaded.
+pub(super) struct LoadedPair<'a> {
+    model: &'a StressModel,
+    gears: [LoadedGear<'a>; 2],
+}
+
+impl LoadedPair<'_> {
+    /// The largest stresses under the contact `solution` on `cells`.
+    pub(super) fn peaks(
+        &self,
+        cells: &ContactCells<'_>,
+        solution: &ContactSolution,
+    ) -> PositionPeaks {
+        Member::BOTH.map(|member| {
+            let (gear, loaded) = (
+                &self.model.gears[member.index()],
+                &self.gears[member.index()],
+            );
+            let loads = cells.flank_loads(member, &solution.forces);
+            let answer = loaded.under(&loads);
+            // A thin rim bends most beside the tooth that is loaded.
+            let z = gear.tooth_count;
+            let mut teeth: Vec<usize> = loads
+                .iter()
+                .flat_map(|load| [load.tooth + z - 1, load.tooth, load.tooth + 1])
+                .map(|tooth| tooth % z)
+                .collect();
+            teeth.sort_unstable();
+            teeth.dedup();
+            let roots = teeth.into_iter().flat_map(|tooth| {
+                let turn = TAU * tooth as f64 / z as f64;
+                let along = answer.in_tooth(tooth).into_iter().zip(&gear.fillet);
+                along.map(move |(stress, angle)| (stress, turn + angle))
+            });
+            let sectors = gear.inside.sector_angles().into_iter().enumerate();
+            let holes = sectors.flat_map(|(sector, turn)| {
+                let along = answer.in_blank(sector).into_iter().zip(&gear.edges);
+                along.map(move |(stress, angle)| (stress.abs(), turn + angle))
+            });
+            let holes = (!gear.edges.is_empty()).then(|| largest(holes));
+            (largest(roots), holes)
+        })
+    }
+}
+
+impl GearStresses {
+    /// Those of both gears, of the peaks at each position.
+    pub(super) fn of_positions(peaks: &[PositionPeaks]) -> [Self; 2] {
+        [0, 1].map(|gear| Self {
+            root: peaks.iter().map(|both| both[gear].0).collect(),
+            holes: peaks.iter().filter_map(|both| both[gear].1).collect(),
+        })
+    }
+}
+
+/// The polar angles of `nodes`.
+fn angles(grid: &Grid, nodes: &[u32]) -> Vec<f64> {
+    let places = nodes.iter().map(|node| grid.nodes[*node as usize]);
+    places.map(|place| place.y.atan2(place.x)).collect()
+}
+
+/// The first of the largest of `stresses` with their angles.
+fn largest(stresses: impl Iterator<Item = (f64, f64)>) -> PeakStress {
+    let none = PeakStress {
+        stress: 0.0,
+        angle: 0.0,
+    };
+    stresses.fold(none, |most, (stress, angle)| {
+        if stress > most.stress {
+            PeakStress {
+                stress,
+                angle: angle.rem_euclid(TAU),
+            }
+        } else {
+            most
+        }
+    })
+}

@@ -1,0 +1,163 @@
+//! What goes on inside a gear whose flanks are loaded: functionals of its displacements, such as the stress along an edge.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use super::{GearSpec, PartError, Parts, Teeth};
+use crate::contact::FlankLoad;
+use crate::fem::FemError;
+use crate::fem::blank::{BlankRecovery, BlankSubstructure};
+use crate::fem::motion::InterfaceMotion;
+use crate::fem::recovery::Functional;
+use crate::fem::teeth_recovery::TeethRecovery;
+use crate::fem::tooth::ToothSubstructure;
+use crate::gear::Material;
+use crate::grid::{BlankGrid, ToothGrid};
+use crate::run::Run;
+
+/// What is asked of the inside of a gear.
+#[derive(Debug, Clone, Default)]
+pub struct Probes {
+    /// Functionals of the displacements of one tooth.
+    pub in_tooth: Vec<Functional>,
+    /// Functionals of the displacements of sector 0 of the blank.
+    pub in_blank: Vec<Functional>,
+}
+
+/// A gear that can be asked what goes on inside it.
+pub struct Inside {
+    teeth: Arc<Teeth>,
+    tooth: ToothSubstructure,
+    in_tooth: TeethRecovery,
+    /// `None` if it is rigid.
+    blank: Option<InsideBlank>,
+}
+
+struct InsideBlank {
+    blank: BlankSubstructure,
+    /// What its highest orders find.
+    solid: Arc<BlankSubstructure>,
+    recovery: BlankRecovery,
+    hole_angle: f64,
+}
+
+/// A gear that can be loaded.
+pub struct LoadedGear<'a> {
+    inside: &'a Inside,
+    /// How its interface circle moves; `None` if it is held.
+    motion: Option<InterfaceMotion<'a>>,
+}
+
+/// How a gear answers to one set of loads.
+pub struct Answer<'a> {
+    inside: &'a Inside,
+    loads: &'a [FlankLoad],
+    modal_loads: Vec<(usize, Vec<f64>)>,
+    /// The amplitudes of the interface circle.
+    motion: Vec<f64>,
+}
+
+impl Inside {
+    /// The inside of the gear of `spec`, asked for what `probes` says of its grids and material.
+    ///
+    /// # Errors
+    ///
+    /// [`PartError`].
+    pub fn new(
+        spec: &GearSpec,
+        probes: impl FnOnce(&ToothGrid, Option<&BlankGrid>, &Material) -> Probes,
+        parts: &dyn Parts,
+        run: &Run,
+    ) -> Result<Self, PartError> {
+        let gear = spec.teeth.gear();
+        let tooth_grid = spec.teeth.grid()?;
+        let carrier = spec.carrier.as_ref();
+        let blank_grid = carrier.map(|carrier| carrier.blank.grid()).transpose()?;
+        let probes = probes(&tooth_grid, blank_grid.as_ref(), gear.material());
+        let teeth = parts.teeth(&spec.teeth, run)?;
+        let (tooth, rows) = ToothSubstructure::with_recovery(gear, &tooth_grid, &probes.in_tooth)?;
+        run.check()?;
+        let in_tooth = TeethRecovery::new(&tooth, &rows, teeth.ring.harmonics, run)?;
+        let blank = carrier.zip(blank_grid).map(|(carrier, grid)| {
+            let (blank, recovery) = carrier.blank.make_with(&grid, &probes.in_blank, run)?;
+            Ok::<_, PartError>(InsideBlank {
+                blank,
+                solid: parts.blank(&carrier.blank.solid(), run)?,
+                recovery,
+                hole_angle: carrier.hole_angle,
+            })
+        });
+        Ok(Self {
+            teeth,
+            tooth,
+            in_tooth,
+            blank: blank.transpose()?,
+        })
+    }
+
+    /// The same, ready to be loaded.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`].
+    pub fn loaded(&self, run: &Run) -> Result<LoadedGear<'_>, FemError> {
+        let ring = &self.teeth.ring;
+        let motion = self.blank.as_ref().map(|inside| {
+            let (blank, solid) = (&inside.blank, &inside.solid);
+            InterfaceMotion::new(ring, blank, inside.hole_angle, solid, run)
+        });
+        Ok(LoadedGear {
+            inside: self,
+            motion: motion.transpose()?,
+        })
+    }
+
+    /// The angles from the centerline of tooth 0 to the frames of the equal sectors of its blank; none of a rigid one.
+    pub fn sector_angles(&self) -> Vec<f64> {
+        self.blank.as_ref().map_or_else(Vec::new, |inside| {
+            let count = inside.recovery.sector_count;
+            let turn = |sector: usize| TAU * sector as f64 / count as f64;
+            (0..count)
+                .map(|sector| inside.hole_angle + turn(sector))
+                .collect()
+        })
+    }
+}
+
+impl<'a> LoadedGear<'a> {
+    /// Under `loads` on its flanks.
+    pub fn under(&self, loads: &'a [FlankLoad]) -> Answer<'a> {
+        let Inside { teeth, tooth, .. } = self.inside;
+        let modal = |load: &FlankLoad| (load.tooth, tooth.modal_loads(&load.forces));
+        let modal_loads: Vec<_> = loads.iter().map(modal).collect();
+        let motion = self.motion.as_ref().map_or_else(
+            || vec![0.0; teeth.ring.harmonics.unknowns()],
+            |motion| motion.under(&modal_loads),
+        );
+        Answer {
+            inside: self.inside,
+            loads,
+            modal_loads,
+            motion,
+        }
+    }
+}
+
+impl Answer<'_> {
+    /// What was asked of a tooth, in tooth `tooth`.
+    pub fn in_tooth(&self, tooth: usize) -> Vec<f64> {
+        let own = self.loads.iter().find(|load| load.tooth == tooth);
+        let own = own.map_or(&[][..], |load| &load.forces);
+        let recovery = &self.inside.in_tooth;
+        recovery.values(tooth, own, &self.modal_loads, &self.motion)
+    }
+
+    /// What was asked of the blank, in sector `sector`; nothing of a rigid one.
+    pub fn in_blank(&self, sector: usize) -> Vec<f64> {
+        self.inside.blank.as_ref().map_or_else(Vec::new, |inside| {
+            inside
+                .recovery
+                .values(sector, inside.hole_angle, &self.motion)
+        })
+    }
+}
