@@ -35,9 +35,12 @@ fn an_estimate_is_within_a_factor_of_two_of_what_was_measured() {
     fine.resolution.grid = GridLevel::Fine;
     let mut decomposed = largest(16, 20);
     decomposed.method = Method::Decomposition;
+    let mut stressed = active_set.clone();
+    stressed.stress = true;
     // Seconds of one busy core and the most memory of the program, in MB.
     for (name, case, seconds, memory) in [
         ("active set", active_set, 5.3, 326.0),
+        ("stress", stressed, 11.2, 434.0),
         ("augmented Lagrangian", augmented, 8.7, 389.0),
         ("fine", fine, 2.2, 571.0),
         ("decomposition", decomposed, 1.6, 294.0),

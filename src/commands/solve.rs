@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
-use meshwright::wire::results::{CurveDocument, Results};
+use meshwright::wire::results::{CurveDocument, GearPeakStress, PeakStressDocument, Results};
 use meshwright::wire::{Problem, Submission, solve::results};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -181,6 +181,9 @@ fn table(results: &Results, elapsed: Duration) -> String {
         }
         text.push('\n');
     }
+    for curve in &results.curves {
+        text.push_str(&stresses(curve));
+    }
     for warning in &results.warnings {
         text.push_str(&format!("Warning: {}\n", warning.detail));
     }
@@ -196,6 +199,24 @@ fn table(results: &Results, elapsed: Duration) -> String {
         results.evidence.degrees_of_freedom
     ));
     text
+}
+
+/// A line of the largest stresses, where they were asked for.
+fn stresses(curve: &CurveDocument) -> String {
+    let Some(PeakStressDocument { driving, driven }) = &curve.statistics.stress else {
+        return String::new();
+    };
+    let of = |gear: &GearPeakStress| {
+        let hole = gear.hole_mpa;
+        let hole = hole.map_or_else(String::new, |stress| format!(", {stress:.1} at a hole"));
+        format!("{:.1} at a root{hole}", gear.root_mpa)
+    };
+    format!(
+        "Largest stress in MPa at {} N m: driving gear {}; driven gear {}.\n",
+        curve.output_torque_n_m,
+        of(driving),
+        of(driven)
+    )
 }
 
 fn amplitude(curve: &CurveDocument, label: &str) -> Option<f64> {

@@ -44,6 +44,7 @@ const EXAMPLES: &[Example] = examples! {
     "web" true "A driven gear with a web thinner than its rim, and six holes in it."
     "unequal-holes" true "Six holes of two sizes at unequal angles: their order spreads over those of a revolution."
     "slots" true "Five kidneys along a circle."
+    "stress" true "Design 8R34 with the largest stresses at its roots and at the edges of its holes."
     "bad-case-3-as-printed" false "Test case 3 with the center distance that the paper prints, 118.5 mm: its teeth do not reach each other, and it is refused."
 };
 
@@ -173,5 +174,13 @@ mod tests {
         assert!(error.detail.contains("118 mm"), "{}", error.detail);
         let cured = bad.json.replace("118.5", "115.56");
         assert!(Submission::parse(cured.as_bytes()).is_ok());
+    }
+
+    #[test]
+    fn the_example_of_stresses_asks_for_them() {
+        let example = examples().iter().find(|example| example.name == "stress");
+        let json = example.expect("ships").json;
+        let submission = Submission::parse(json.as_bytes()).expect("valid");
+        assert!(submission.case().stress);
     }
 }

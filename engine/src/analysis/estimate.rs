@@ -28,6 +28,9 @@ const STIFFNESS: f64 = 0.035;
 /// How far from the pitch point pairs are looked for.
 const FARTHEST_PAIR: i64 = 16;
 
+/// Seconds of one core, for each of its teeth, in which a gear answers to a contact with its stresses.
+const PER_ANSWER: f64 = 3.5e-6;
+
 /// Bytes of one position: its contact, its place in the curves and in the document.
 const POSITION_MEMORY: f64 = 1e3;
 
@@ -62,6 +65,16 @@ pub fn estimate(case: &Case) -> Estimate {
     if case.method == Method::LoadDistribution {
         estimate.seconds = SECONDS[0] / 10.0 * expected_positions(case) as f64;
         return estimate;
+    }
+    if case.stress && case.method == Method::Flexible {
+        let teeth = Member::BOTH.map(|member| f64::from(case.pair.gear(member).tooth_count()));
+        estimate.seconds += PER_ANSWER * (teeth[0] + teeth[1]) * positions as f64;
+        // Both gears are made once more, with rows that lead inside.
+        for member in Member::BOTH {
+            let gear = of_gear(case, member, case.resolution.grid);
+            estimate.seconds += gear.seconds;
+            estimate.memory += gear.memory / 4;
+        }
     }
     let level = case.resolution.grid;
     let mut levels = vec![level];

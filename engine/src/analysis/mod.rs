@@ -64,7 +64,11 @@ pub fn analyze(case: &Case, parts: &dyn Parts, run: &Run) -> Result<Analysis, An
     }
     let mut analysis = analyze_at(&loaded, level, parts, run)?;
     if with_estimate {
-        let other = analyze_at(&loaded, level.neighbor(), parts, run)?;
+        let curves_only = Case {
+            stress: false,
+            ..loaded
+        };
+        let other = analyze_at(&curves_only, level.neighbor(), parts, run)?;
         let estimate = ErrorEstimate::between(&analysis.curves, &other.curves);
         analysis.evidence.error_estimate = Some(estimate);
     }

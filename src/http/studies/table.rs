@@ -223,7 +223,7 @@ async fn table(app: App, study: &StudyRecord, form: Form) -> Result<Body, Proble
             outline.add(row);
         }
     }
-    let csv = CsvTable::new(outline.pointers().to_vec());
+    let csv = CsvTable::new(outline.pointers().to_vec(), outline.has_stress());
     let (head, foot) = match form {
         Form::Csv => (csv.header(), ""),
         Form::Json | Form::Documents => (head_of_json(study, &app), "]}"),

@@ -7,6 +7,7 @@ use utoipa::ToSchema;
 use super::decomposition::DecompositionDocument;
 use super::each;
 use super::spectrum::SpectrumDocument;
+use super::stress::{PeakStressDocument, StressDocument};
 use crate::wire::units::{or_null, to_mpa, to_um};
 
 /// The curves at one output torque. All lists, those of the spectrum aside, run over the same positions.
@@ -36,6 +37,10 @@ pub struct CurveDocument {
     pub peak_contact_pressure_mpa: Vec<Option<f64>>,
     /// The share of the load on each pair that ever carries any, by rising offset.
     pub load_shares: Vec<LoadShareDocument>,
+    /// The largest stresses; absent unless the submission asks for them, for other methods than the flexible one, and at the
+    /// torque 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stress: Option<StressDocument>,
     /// Statistics over the span.
     pub statistics: StatisticsDocument,
     /// The order spectrum; absent for a partial span.
@@ -76,6 +81,7 @@ impl CurveDocument {
                     share: share.share.clone(),
                 })
                 .collect(),
+            stress: curve.stresses.as_ref().map(StressDocument::of),
             statistics: StatisticsDocument {
                 partial: !case.covers_whole_periods(),
                 transmission_error_um: StatisticsValues::of(
@@ -86,6 +92,7 @@ impl CurveDocument {
                     &curve.mesh_stiffness_tangent_statistics,
                     |value| value,
                 ),
+                stress: curve.stresses.as_ref().map(PeakStressDocument::of),
             },
             spectrum: curve
                 .spectrum
@@ -116,6 +123,9 @@ pub struct StatisticsDocument {
     pub transmission_error_um: StatisticsValues,
     /// Of the tangent stiffness, in N/m.
     pub mesh_stiffness_tangent_n_per_m: StatisticsValues,
+    /// The largest stresses, where they were asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stress: Option<PeakStressDocument>,
 }
 
 /// Mean, fluctuation and range of a curve, in its unit.

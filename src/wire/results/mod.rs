@@ -4,6 +4,7 @@ mod curve;
 mod decomposition;
 mod evidence;
 mod spectrum;
+mod stress;
 mod unseen;
 
 #[cfg(test)]
@@ -19,6 +20,7 @@ pub use decomposition::{
 };
 pub use evidence::{Definition, ErrorEstimateDocument, EvidenceDocument};
 pub use spectrum::{NamedOrderDocument, OrderKindName, SpectrumDocument};
+pub use stress::{GearPeakStress, GearStressDocument, PeakStressDocument, StressDocument};
 
 use super::geometry::{Frequencies, PairGeometry};
 use super::problem::{Code, Problem};

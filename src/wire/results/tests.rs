@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use meshwright_engine::analysis::curve::{BlankFit, BlankSample, DecompositionParts, LoadShare};
 use meshwright_engine::analysis::spectrum::Spectrum;
+use meshwright_engine::analysis::stress::{GearStresses, PeakStress};
 use meshwright_engine::analysis::{Case, Curve, ErrorEstimate, Evidence, Statistics, Warning};
 use meshwright_engine::gear::Member;
 use serde_json::{Value, json};
@@ -66,6 +67,16 @@ fn analysis(case: &Case) -> Analysis {
                     }],
                 }],
             }),
+            stresses: Some([
+                GearStresses {
+                    root: peaks(&[100e6, 140e6]),
+                    holes: Vec::new(),
+                },
+                GearStresses {
+                    root: peaks(&[120e6, 110e6]),
+                    holes: peaks(&[30e6, 31e6]),
+                },
+            ]),
             mesh_position: eta.clone(),
             transmission_error: delta,
             mesh_stiffness_tangent: k,
@@ -91,6 +102,15 @@ fn analysis(case: &Case) -> Analysis {
             largest_share: 0.125,
         }],
     }
+}
+
+/// Stresses at half a turn.
+fn peaks(stresses: &[f64]) -> Vec<PeakStress> {
+    let peak = |&stress: &f64| PeakStress {
+        stress,
+        angle: TAU / 2.0,
+    };
+    stresses.iter().map(peak).collect()
 }
 
 #[test]
@@ -129,6 +149,16 @@ fn the_document_speaks_the_units_of_its_names() {
         "/evidence/error_estimate/transmission_error_peak_to_peak_um",
         2e-3,
     );
+    near("/curves/0/stress/driving/root_mpa/1", 140.0);
+    near("/curves/0/stress/driven/hole_angle_deg/0", 180.0);
+    near("/curves/0/statistics/stress/driving/root_mpa", 140.0);
+    near("/curves/0/statistics/stress/driven/hole_mpa", 31.0);
+    for without_holes in [
+        "/stress/driving/hole_mpa",
+        "/statistics/stress/driving/hole_mpa",
+    ] {
+        assert_eq!(curve.pointer(without_holes), None);
+    }
     near("/evidence/largest_penetration_um", 1e-12);
     near("/warnings/0/value", 12.5);
     // 600 rpm are 10 Hz; 50 teeth mesh at 500 Hz; the order counts turns of the driven gear, here 10 Hz too.

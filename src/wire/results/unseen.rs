@@ -26,7 +26,19 @@ pub(super) fn does_not_see(case: &Case) -> Vec<&'static str> {
         .into_iter()
         .chain(real_teeth_do_not_see(case))
         .chain(own)
+        .chain(stress_not_told(case))
         .collect()
+}
+
+/// Why stresses that were asked for are not all there.
+fn stress_not_told(case: &Case) -> Option<&'static str> {
+    match case.method {
+        _ if !case.stress => None,
+        Method::Flexible => Some(
+            "stress under the contact itself, and concentrated where regions of unlike thickness meet: stress tells roots and hole edges",
+        ),
+        _ => Some("stress: it was asked for, and only the flexible method tells it"),
+    }
 }
 
 /// What is left out of modified, broken and deviating teeth, as far as the gears of `case` have them.

@@ -17,6 +17,14 @@ const FIXED: [&str; 10] = [
     "output_torque_n_m",
 ];
 
+/// The largest stresses, in the tables of studies that ask for them.
+const STRESSES: [&str; 4] = [
+    "statistics.stress.driving.root_mpa",
+    "statistics.stress.driving.hole_mpa",
+    "statistics.stress.driven.root_mpa",
+    "statistics.stress.driven.hole_mpa",
+];
+
 /// The last columns.
 const LAST: [&str; 4] = [
     "hole_order_um",
@@ -30,12 +38,16 @@ const LAST: [&str; 4] = [
 #[derive(Debug, Clone)]
 pub struct CsvTable {
     pointers: Vec<String>,
+    with_stress: bool,
 }
 
 impl CsvTable {
-    /// A table whose rows change what is at these pointers.
-    pub fn new(pointers: Vec<String>) -> Self {
-        Self { pointers }
+    /// A table whose rows change what is at these pointers, with or without columns for stresses.
+    pub fn new(pointers: Vec<String>, with_stress: bool) -> Self {
+        Self {
+            pointers,
+            with_stress,
+        }
     }
 
     /// The line of names.
@@ -59,7 +71,8 @@ impl CsvTable {
         {
             text.text(&name);
         }
-        for name in LAST {
+        let stresses = STRESSES.into_iter().filter(|_| self.with_stress);
+        for name in stresses.chain(LAST) {
             text.text(name);
         }
         text.end_line();
@@ -98,7 +111,7 @@ impl CsvTable {
             text.number(number);
         }
         text.text(if row.pareto { "true" } else { "false" });
-        cells_of_curve(text, curve);
+        cells_of_curve(text, curve, self.with_stress);
         for part in ["code", "detail"] {
             text.value(row.problem.as_ref().and_then(|problem| problem.get(part)));
         }
@@ -106,7 +119,7 @@ impl CsvTable {
     }
 }
 
-fn cells_of_curve(text: &mut CsvWriter, curve: Option<&RowCurve>) {
+fn cells_of_curve(text: &mut CsvWriter, curve: Option<&RowCurve>, with_stress: bool) {
     let statistics = curve.and_then(|curve| curve.statistics.as_ref());
     let ste = statistics.map(|statistics| &statistics.transmission_error_um);
     let k = statistics.map(|statistics| &statistics.mesh_stiffness_tangent_n_per_m);
@@ -115,6 +128,14 @@ fn cells_of_curve(text: &mut CsvWriter, curve: Option<&RowCurve>) {
         text.number(values.map(|values| values.mean));
         text.number(values.map(|values| values.rms));
         text.number(values.map(|values| values.peak_to_peak));
+    }
+    if with_stress {
+        let stress = statistics.and_then(|statistics| statistics.stress.as_ref());
+        let (driving, driven) = (stress.map(|s| &s.driving), stress.map(|s| &s.driven));
+        for gear in [driving, driven] {
+            text.number(gear.map(|gear| gear.root_mpa));
+            text.number(gear.and_then(|gear| gear.hole_mpa));
+        }
     }
     text.number(curve.and_then(|curve| curve.hole_order_um));
     text.number(curve.and_then(|curve| curve.mesh_order_um));

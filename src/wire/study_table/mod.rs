@@ -135,7 +135,12 @@ pub fn csv(rows: &[TableRow]) -> String {
             pointers.push(pointer.clone());
         }
     }
-    let table = CsvTable::new(pointers);
+    let mut statistics = rows
+        .iter()
+        .flat_map(|row| &row.curves)
+        .filter_map(|curve| curve.statistics.as_ref());
+    let with_stress = statistics.any(|statistics| statistics.stress.is_some());
+    let table = CsvTable::new(pointers, with_stress);
     table.header() + &table.lines(rows)
 }
 

@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 use std::collections::{BTreeMap, HashSet};
 
 use super::RowState;
+use super::summary::Summary;
 
 /// What has to be known of all rows before one of them can be shown: which are best, and what they change. It keeps three
 /// numbers of each row, so that a table of any length is made row by row.
@@ -13,6 +14,7 @@ pub struct Outline {
     groups: BTreeMap<Conditions, Vec<(usize, [f64; 3])>>,
     pointers: Vec<String>,
     known: HashSet<String>,
+    has_stress: bool,
 }
 
 /// Method and torques: what has to be the same for a comparison to mean something.
@@ -33,7 +35,13 @@ impl Outline {
             let group = self.groups.entry(summary.conditions()).or_default();
             group.push((self.rows, objectives));
         }
+        self.has_stress |= row.summary.as_ref().is_some_and(Summary::has_stress);
         self.rows += 1;
+    }
+
+    /// Whether any row tells stresses.
+    pub fn has_stress(&self) -> bool {
+        self.has_stress
     }
 
     /// What the rows change, in the order in which it was met first.

@@ -128,6 +128,15 @@ impl Summary {
         Some(significant(sum, 10))
     }
 
+    /// Whether it tells stresses.
+    pub(super) fn has_stress(&self) -> bool {
+        let mut statistics = self
+            .curves
+            .iter()
+            .filter_map(|curve| curve.statistics.as_ref());
+        statistics.any(|statistics| statistics.stress.is_some())
+    }
+
     /// What designs are compared by, each the less the better; none if a number is missing.
     pub(super) fn objectives(&self) -> Option<[f64; 3]> {
         let mut worst_range = f64::NEG_INFINITY;

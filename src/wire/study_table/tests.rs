@@ -185,6 +185,38 @@ fn the_csv_has_a_line_for_each_row_and_torque_and_names_joined_by_dots() {
 }
 
 #[test]
+fn the_csv_has_columns_for_stresses_where_any_row_tells_them() {
+    let mut document: Value =
+        serde_json::from_str(&document(0.9, [1.7, 2.5], 2.2e8)).expect("a document");
+    document["curves"][0]["statistics"]["stress"] = json!({ "driving": { "root_mpa": 151.0 }, "driven": { "root_mpa": 157.5, "hole_mpa": 38.9 } });
+    let mut stressed = state("stressed", 0.9, [1.7, 2.5], 2.2e8);
+    stressed.summary = Summary::of_document(&document.to_string());
+    let rows = table(
+        GearName::Driven,
+        vec![stressed, state("plain", 0.9, [1.7, 2.5], 2.2e8)],
+    );
+    let text = csv(&rows);
+    let mut read = ::csv::Reader::from_reader(text.as_bytes());
+    let names = read.headers().expect("names").clone();
+    let lines: Vec<_> = read.records().map(|line| line.expect("a line")).collect();
+    let cell = |line: usize, name: &str| {
+        let place = names.iter().position(|known| known == name).expect(name);
+        lines[line][place].to_owned()
+    };
+    for (name, value) in [
+        ("statistics.stress.driving.root_mpa", "151.0"),
+        ("statistics.stress.driving.hole_mpa", ""),
+        ("statistics.stress.driven.root_mpa", "157.5"),
+        ("statistics.stress.driven.hole_mpa", "38.9"),
+        ("hole_order_um", "0.31"),
+    ] {
+        assert_eq!(cell(0, name), value, "{name}");
+    }
+    assert_eq!(cell(2, "statistics.stress.driven.hole_mpa"), "");
+    assert_eq!(cell(2, "hole_order_um"), "0.31");
+}
+
+#[test]
 fn a_label_that_begins_a_formula_comes_out_as_text() {
     let rows = table(
         GearName::Driven,

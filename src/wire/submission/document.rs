@@ -18,6 +18,7 @@ pub(super) struct Document {
     pub(super) pair: PairDocument,
     pub(super) output_torques_n_m: Vec<f64>,
     pub(super) driving_speed_rpm: Option<f64>,
+    pub(super) stress: bool,
     pub(super) resolution: ResolutionDocument,
     pub(super) tags: Vec<String>,
 }
@@ -29,6 +30,7 @@ impl Document {
         let pair = reader.needed_object("pair").and_then(PairDocument::read);
         let output_torques_n_m = Self::read_torques(&mut reader);
         let driving_speed_rpm = reader.optional_number(&quantity::DRIVING_SPEED);
+        let stress = reader.flag("stress", false);
         let resolution = ResolutionDocument::read(reader.optional_object("resolution"));
         let tags = tags::read(&mut reader);
         reader.finish();
@@ -37,6 +39,7 @@ impl Document {
             pair: pair?,
             output_torques_n_m: output_torques_n_m?,
             driving_speed_rpm: driving_speed_rpm?,
+            stress: stress?,
             resolution: resolution?,
             tags: tags?,
         })

@@ -79,6 +79,12 @@ impl Submission {
                 true,
             ),
             schema::number(&quantity::DRIVING_SPEED),
+            schema::flag(
+                "stress",
+                "Stress",
+                "Whether the flexible method also tells the largest von Mises stress at the tensile root fillets and at the edges of the holes, position by position, and where it is.",
+                false,
+            ),
             schema::document::<ResolutionDocument>("resolution", false),
             tags::property("job"),
         ]
@@ -148,6 +154,7 @@ impl Submission {
             method: document.method,
             output_torques: document.output_torques_n_m.clone(),
             resolution: document.resolution.data(),
+            stress: document.stress,
             driving_speed: document
                 .driving_speed_rpm
                 .map(|speed| RotationSpeed(speed / 60.0)),
