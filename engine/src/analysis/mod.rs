@@ -1,7 +1,7 @@
 //! From a pair to its curves: the methods, their results and spectra.
 //!
 //! Read in this order: [`case`] (what is asked), `setup` (what the methods work with), `flexible`, `rigid_blank`,
-//! `decomposition`, `projected` and `load_distribution` (the methods), `light` (torque 0, alike for all), [`stress`] (at roots and holes), `curve_parts` and [`curve`], [`evidence`], [`warning`],
+//! `decomposition`, `projected` and `load_distribution` (the methods), `light` (torque 0, alike for all), [`stress`] (at roots and holes) and [`fields`] (everywhere), `curve_parts` and [`curve`], [`evidence`], [`warning`],
 //! [`error`] and [`spectrum`] (what comes out), `estimate` (what it costs).
 
 pub mod case;
@@ -11,6 +11,7 @@ mod decomposition;
 pub mod error;
 mod estimate;
 pub mod evidence;
+pub mod fields;
 mod flexible;
 mod light;
 mod load_distribution;

@@ -152,6 +152,19 @@ impl Answer<'_> {
         recovery.values(tooth, own, &self.modal_loads, &self.motion)
     }
 
+    /// How the interface circle moves, radially and tangentially, at `angles` from the centerline of tooth 0.
+    pub fn on_circle(&self, angles: &[f64]) -> Vec<[f64; 2]> {
+        let harmonics = self.inside.teeth.ring.harmonics;
+        let at = |angle: &f64| {
+            let shapes = harmonics.on_circle(&[*angle]);
+            [0, 1].map(|c| {
+                let terms = self.motion.iter().enumerate();
+                terms.map(|(j, q)| shapes[(c, j)] * q).sum()
+            })
+        };
+        angles.iter().map(at).collect()
+    }
+
     /// What was asked of the blank, in sector `sector`; nothing of a rigid one.
     pub fn in_blank(&self, sector: usize) -> Vec<f64> {
         self.inside.blank.as_ref().map_or_else(Vec::new, |inside| {

@@ -77,6 +77,11 @@ impl<'a> Placement<'a> {
         }
     }
 
+    /// Where the own axis of `member` stands, and the angle of the centerline of its tooth.
+    pub fn frame(&self, member: Member) -> (Vector, f64) {
+        (self.centers[member.index()], self.angles[member.index()])
+    }
+
     /// The place on the flank of `member` at roll length `s`.
     pub(super) fn place(&self, member: Member, s: f64) -> FlankPlace {
         let gear = self.pair.gear(member);

@@ -4,21 +4,14 @@
 //! complement S = L₂₂ L₂₂ᵀ without a single right-hand side. A functional b of all displacements takes one: with the kept ones
 //! moved by u it is (b₂ − L₂₁ L₁₁⁻¹ b₁)ᵀ u.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::matmul::triangular::{self, BlockStructure};
-use faer::perm::Perm;
-use faer::sparse::SparseColMat;
-use faer::sparse::linalg::SupernodalThreshold;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-    factorize_symbolic_cholesky, supernodal::SupernodalLltRef,
-};
-use faer::{Accum, Conj, Mat, Par, Side};
+use faer::{Accum, Mat, Par};
 
 use super::FemError;
 use super::assembly::{BlockMatrix, Failure, Numbering};
 use super::dense::mirror_lower;
 use super::element::{self, ElementStiffness};
+use super::factor::Factor;
 use super::recovery::Functional;
 use crate::gear::Material;
 use crate::grid::Grid;
@@ -123,126 +116,6 @@ pub fn condense_with(
             .copy_from(columns.transpose());
     }
     Ok(Condensed { stiffness, rows })
-}
-
-/// The supernodal Cholesky factor of a sparse matrix, the unknowns from `interior` on last.
-struct Factor {
-    symbolic: SymbolicCholesky<u32>,
-    values: Vec<f64>,
-    order: Perm<u32>,
-    interior: usize,
-}
-
-impl Factor {
-    /// Factorizes the symmetric matrix whose lower triangle is `a`; `order` leaves the unknowns from `interior` on in their
-    /// places.
-    fn new(a: &SparseColMat<u32, f64>, order: Perm<u32>, interior: usize) -> Result<Self, Failure> {
-        let params = CholeskySymbolicParams {
-            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-            ..Default::default()
-        };
-        let symbolic = factorize_symbolic_cholesky(
-            a.symbolic(),
-            Side::Lower,
-            SymmetricOrdering::Custom(order.as_ref()),
-            params,
-        )
-        .map_err(|_| Failure::Size)?;
-        let mut values = vec![0.0; symbolic.len_val()];
-        let mut memory = MemBuffer::new(
-            symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()),
-        );
-        symbolic
-            .factorize_numeric_llt(
-                &mut values,
-                a.as_ref(),
-                Side::Lower,
-                Default::default(),
-                Par::Seq,
-                MemStack::new(&mut memory),
-                Default::default(),
-            )
-            .map_err(|_| Failure::Indefinite)?;
-        // Always, by the parameters above.
-        if !matches!(symbolic.raw(), SymbolicCholeskyRaw::Supernodal(_)) {
-            return Err(Failure::Size);
-        }
-        Ok(Self {
-            symbolic,
-            values,
-            order,
-            interior,
-        })
-    }
-
-    fn supernodal(&self) -> SupernodalLltRef<'_, u32, f64> {
-        match self.symbolic.raw() {
-            SymbolicCholeskyRaw::Supernodal(supernodes) => {
-                SupernodalLltRef::new(supernodes, &self.values)
-            }
-            SymbolicCholeskyRaw::Simplicial(_) => unreachable!("refused when it was made"),
-        }
-    }
-
-    /// L₂₂: the part of the factor on the kept unknowns.
-    fn trailing(&self) -> Mat<f64> {
-        let (factor, interior) = (self.supernodal(), self.interior);
-        let kept = self.symbolic.nrows() - interior;
-        let mut l_22 = Mat::<f64>::zeros(kept, kept);
-        for index in (0..factor.symbolic().n_supernodes()).rev() {
-            let supernode = factor.supernode(index);
-            let (block, start) = (supernode.val(), supernode.start());
-            let width = block.ncols();
-            if start + width <= interior {
-                break;
-            }
-            for c in 0..width {
-                let Some(col) = (start + c).checked_sub(interior) else {
-                    continue;
-                };
-                for r in c..width {
-                    l_22[(start + r - interior, col)] = block[(r, c)];
-                }
-                for (r, &row) in supernode.pattern().iter().enumerate() {
-                    l_22[(row as usize - interior, col)] = block[(width + r, c)];
-                }
-            }
-        }
-        l_22
-    }
-
-    /// b₂ − L₂₁ L₁₁⁻¹ b₁ for each functional b, a column each: L₂₂ times the trailing part of L⁻¹ b.
-    fn on_kept(
-        &self,
-        asked: &[Functional],
-        numbering: &Numbering,
-        trailing: &Mat<f64>,
-    ) -> Mat<f64> {
-        let (factor, (_, place)) = (self.supernodal(), self.order.as_ref().arrays());
-        let mut solved = Mat::<f64>::zeros(self.symbolic.nrows(), asked.len());
-        for (column, functional) in asked.iter().enumerate() {
-            for &(node, weight) in functional.terms() {
-                // What is fixed does not move.
-                let Some(node) = numbering.place(node) else {
-                    continue;
-                };
-                solved[(place[2 * node] as usize, column)] += weight.x;
-                solved[(place[2 * node + 1] as usize, column)] += weight.y;
-            }
-        }
-        let scratch = self
-            .symbolic
-            .solve_in_place_scratch::<f64>(asked.len(), Par::Seq);
-        let mut memory = MemBuffer::new(scratch);
-        factor.l_solve_with_conj(
-            Conj::No,
-            solved.as_mut(),
-            Par::Seq,
-            MemStack::new(&mut memory),
-        );
-        let on_kept = solved.subrows(self.interior, trailing.nrows());
-        trailing * on_kept
-    }
 }
 
 /// L Lᵀ of a lower triangle.

@@ -4,7 +4,8 @@
 //! [`recovery`] (displacements and stresses of the others),
 //! [`harmonics`] (the unknowns of an interface circle), [`cyclic`] (N equal sectors joined into a ring on them), [`tooth`], [`teeth`] (the ring of them), [`blank`], and
 //! [`body`], which joins them into the compliance of a whole gear. What happens inside: [`motion`]
-//! (of the interface circle under loads), [`teeth_recovery`] and [`blank::BlankRecovery`]. Beside them: [`dense`] (factorizations), `axes` and `modes`.
+//! (of the interface circle under loads), [`teeth_recovery`] and [`blank::BlankRecovery`], and [`prescribed`] (at every node). Beside them: [`dense`] and `factor`
+//! (factorizations), `axes` and `modes`.
 
 mod assembly;
 mod axes;
@@ -14,9 +15,11 @@ pub mod condensation;
 pub mod cyclic;
 pub mod dense;
 pub mod element;
+mod factor;
 pub mod harmonics;
 mod modes;
 pub mod motion;
+pub mod prescribed;
 pub mod recovery;
 pub mod teeth;
 pub mod teeth_recovery;

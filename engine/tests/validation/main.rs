@@ -9,6 +9,7 @@ mod blanks;
 mod calculix;
 mod closed_forms;
 mod convergence;
+mod fields;
 mod inside;
 mod invariants;
 mod paper;

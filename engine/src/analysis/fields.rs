@@ -1,0 +1,252 @@
+//! Displacements and stresses everywhere in both gears, at one mesh position.
+
+use std::f64::consts::TAU;
+
+use super::setup::Setup;
+use super::{AnalysisError, Case};
+use crate::assembly::inside::Answer;
+use crate::assembly::{Blanks, Inside, PartError, Parts, Probes};
+use crate::contact::placement::Placement;
+use crate::contact::{FlankLoad, Stage, WarmStart};
+use crate::fem::FemError;
+use crate::fem::prescribed::{Load, displacements};
+use crate::fem::recovery::{Functional, nodal_stresses};
+use crate::fem::teeth::FARTHEST_COUPLED;
+use crate::gear::{Material, Member, SpurGear, Vector, radial, tangential};
+use crate::grid::{BlankGrid, Element, Grid, ToothGrid};
+use crate::run::Run;
+
+/// What goes on in one gear, node by node, where it stands at a mesh position: the driving axis is the origin, the driven one lies on
+/// the x axis.
+///
+/// Each tooth and the blank have nodes of their own where they meet.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct GearField {
+    /// Where the nodes lie before loading, in meters.
+    pub nodes: Vec<Vector>,
+    /// How each of them moves against the hub of its gear, in meters.
+    pub displacements: Vec<Vector>,
+    /// The stresses (σ_xx, σ_yy, τ_xy) at each in Pa: the mean of the elements that meet there.
+    pub stresses: Vec<[f64; 3]>,
+    /// The elements, on these nodes.
+    pub elements: Vec<Element>,
+    /// The thickness of each element in meters.
+    pub thicknesses: Vec<f64>,
+}
+
+/// Where a part stands: its origin and the direction of its x axis.
+#[derive(Clone, Copy)]
+struct Stand {
+    origin: Vector,
+    angle: f64,
+}
+
+/// Both gears of `case` under `output_torque`, positive, at the mesh position `eta`, by the flexible method.
+///
+/// # Errors
+///
+/// As [`super::analyze`].
+pub fn fields(
+    case: &Case,
+    output_torque: f64,
+    eta: f64,
+    parts: &dyn Parts,
+    run: &Run,
+) -> Result<[GearField; 2], AnalysisError> {
+    faer::set_global_parallelism(faer::Par::Seq);
+    let setup = Setup::new(case, case.resolution.grid, FARTHEST_COUPLED, parts, run);
+    let (model, _) = setup.model(Blanks::Flexible)?;
+    let at = |error| AnalysisError::at_position(error, eta);
+    let mut stage = Stage::new(&model, eta, case.pair.load(output_torque)).map_err(at)?;
+    let period = eta.floor() as i64;
+    let (_, loads) = stage
+        .contact(period, &mut WarmStart::default(), |cells, solution| {
+            Member::BOTH.map(|member| cells.flank_loads(member, &solution.forces))
+        })
+        .map_err(at)?;
+    let placement = Placement::new(&case.pair, eta, 0, 0);
+    let of = |member: Member| {
+        let (origin, angle) = placement.frame(member);
+        of_gear(
+            &setup,
+            member,
+            &loads[member.index()],
+            Stand { origin, angle },
+        )
+    };
+    let (driving, driven) = rayon::join(|| of(Member::Driving), || of(Member::Driven));
+    Ok([driving?, driven?])
+}
+
+/// The gear `member` under `loads`, with the centerline of tooth 0 along the x axis of `stand`.
+fn of_gear(
+    setup: &Setup<'_>,
+    member: Member,
+    loads: &[FlankLoad],
+    stand: Stand,
+) -> Result<GearField, AnalysisError> {
+    let gear = setup.case.pair.gear(member);
+    let mut grids = None;
+    let probes = |tooth: &ToothGrid, blank: Option<&BlankGrid>, _: &Material| {
+        let along =
+            |node: u32| [Vector::x(), Vector::y()].map(|axis| Functional::displacement(node, axis));
+        let in_tooth = interface_of(tooth).into_iter().flat_map(along).collect();
+        grids = Some((tooth.clone(), blank.cloned()));
+        Probes {
+            in_tooth,
+            in_blank: Vec::new(),
+        }
+    };
+    let spec = setup.spec(Blanks::Flexible);
+    let inside = spec.inside(member, probes, setup.parts, setup.run)?;
+    let fem = |error: FemError| PartError::from(error).of(member);
+    let loaded = inside.loaded(setup.run).map_err(fem)?;
+    let answer = loaded.under(loads);
+    let mut field = GearField::default();
+    if let Some((tooth, blank)) = grids {
+        add_teeth(&mut field, gear, &tooth, loads, &answer, stand).map_err(fem)?;
+        setup.run.check()?;
+        if let Some(blank) = blank {
+            add_blank(&mut field, gear, &blank, &inside, &answer, stand).map_err(fem)?;
+        }
+    }
+    Ok(field)
+}
+
+/// The nodes at which a tooth meets its neighbors and the blank.
+fn interface_of(tooth: &ToothGrid) -> Vec<u32> {
+    let (right, left) = &tooth.side_nodes;
+    let sides = right.iter().chain(left);
+    sides.chain(&tooth.arc_nodes).copied().collect()
+}
+
+fn add_teeth(
+    field: &mut GearField,
+    gear: &SpurGear,
+    tooth: &ToothGrid,
+    loads: &[FlankLoad],
+    answer: &Answer<'_>,
+    stand: Stand,
+) -> Result<(), FemError> {
+    let interface = interface_of(tooth);
+    let count = gear.tooth_count() as usize;
+    let flank = gear.flank();
+    let on_flank = |forces: &[f64]| -> Vec<(u32, Vector)> {
+        let nodes = tooth.flank_nodes.iter().zip(&tooth.flank_roll_lengths);
+        nodes
+            .zip(forces.chunks_exact(2))
+            .map(|((node, &s), force)| {
+                let to_tip = radial(flank.tangent_angle(s));
+                (*node, force[0] * flank.normal(s) + force[1] * to_tip)
+            })
+            .collect()
+    };
+    let of_tooth = |number: usize| {
+        let moves = answer.in_tooth(number);
+        let own = loads.iter().find(|load| load.tooth == number);
+        Load {
+            moves: moves
+                .chunks_exact(2)
+                .map(|u| Vector::new(u[0], u[1]))
+                .collect(),
+            forces: own.map_or_else(Vec::new, |load| on_flank(&load.forces)),
+        }
+    };
+    let acting: Vec<Load> = (0..count).map(of_tooth).collect();
+    let plate = (gear.material(), gear.face_width());
+    let moved = displacements("the tooth", &tooth.grid, plate, &interface, &acting)?;
+    let stresses = all_stresses(&tooth.grid, gear.material());
+    for (number, moved) in moved.iter().enumerate() {
+        let turn = TAU * number as f64 / count as f64;
+        field.add(&tooth.grid, moved, &stresses, gear, stand.turned(turn));
+    }
+    Ok(())
+}
+
+fn add_blank(
+    field: &mut GearField,
+    gear: &SpurGear,
+    blank: &BlankGrid,
+    inside: &Inside,
+    answer: &Answer<'_>,
+    stand: Stand,
+) -> Result<(), FemError> {
+    let whole = blank.unrolled();
+    let first = inside.sector_angles().first().copied().unwrap_or(0.0);
+    let angles: Vec<f64> = whole.arc_angles.iter().map(|angle| angle + first).collect();
+    let on_circle = answer.on_circle(&angles).into_iter().zip(&whole.arc_angles);
+    let moves = on_circle
+        .map(|([u_r, u_t], angle)| u_r * radial(*angle) + u_t * tangential(*angle))
+        .chain(whole.bore_nodes.iter().map(|_| Vector::zeros()));
+    let acting = Load {
+        moves: moves.collect(),
+        forces: Vec::new(),
+    };
+    let moved: Vec<u32> = whole
+        .arc_nodes
+        .iter()
+        .chain(&whole.bore_nodes)
+        .copied()
+        .collect();
+    let plate = (gear.material(), gear.face_width());
+    let answers = displacements("the blank", &whole.grid, plate, &moved, &[acting])?;
+    let stresses = all_stresses(&whole.grid, gear.material());
+    for moved in &answers {
+        field.add(&whole.grid, moved, &stresses, gear, stand.turned(first));
+    }
+    Ok(())
+}
+
+/// The stresses at every node of `grid`.
+fn all_stresses(grid: &Grid, material: &Material) -> Vec<[Functional; 3]> {
+    let nodes: Vec<u32> = (0..grid.nodes.len() as u32).collect();
+    nodal_stresses(grid, material, &nodes)
+}
+
+impl Stand {
+    fn turned(self, by: f64) -> Self {
+        Self {
+            angle: self.angle + by,
+            ..self
+        }
+    }
+}
+
+impl GearField {
+    /// Adds `grid`, a part of `gear` that stands at `stand` and moves by `moved`, both in its own axes.
+    fn add(
+        &mut self,
+        grid: &Grid,
+        moved: &[Vector],
+        stresses: &[[Functional; 3]],
+        gear: &SpurGear,
+        stand: Stand,
+    ) {
+        let first = self.nodes.len() as u32;
+        let (e_x, e_y) = (radial(stand.angle), tangential(stand.angle));
+        let turned = |v: &Vector| v.x * e_x + v.y * e_y;
+        let nodes = grid.nodes.iter().map(|node| stand.origin + turned(node));
+        self.nodes.extend(nodes);
+        self.displacements.extend(moved.iter().map(turned));
+        self.stresses.extend(stresses.iter().map(|stress| {
+            let [xx, yy, xy] = [0, 1, 2].map(|i| stress[i].value(moved));
+            let along = |a: &Vector, b: &Vector| {
+                xx * a.x * b.x + yy * a.y * b.y + xy * (a.x * b.y + a.y * b.x)
+            };
+            // The axes of the pair as the part sees them.
+            let (x, y) = (Vector::new(e_x.x, e_y.x), Vector::new(e_x.y, e_y.y));
+            [along(&x, &x), along(&y, &y), along(&x, &y)]
+        }));
+        for element in &grid.elements {
+            self.elements.push(element.renumbered(|node| first + node));
+            self.thicknesses
+                .push(gear.face_width() * element.thickness());
+        }
+    }
+
+    /// The von Mises stress at each node in Pa.
+    pub fn von_mises(&self) -> Vec<f64> {
+        let of = |[xx, yy, xy]: &[f64; 3]| (xx * xx - xx * yy + yy * yy + 3.0 * xy * xy).sqrt();
+        self.stresses.iter().map(of).collect()
+    }
+}
