@@ -14,6 +14,7 @@ const PANELS = [
   { id: "stiffness", title: "Mesh stiffness, tangent", unit: "N/µm", of: (curve) => curve.mesh_stiffness_tangent_n_per_m.map((value) => value * 1e-6) },
   { id: "share", title: "Load share", unit: "%", ofLive: shares, note: "a color for each pair of teeth" },
   { id: "pressure", title: "Peak contact pressure", unit: "MPa", of: (curve) => curve.peak_contact_pressure_mpa },
+  { id: "stress", title: "Largest stress", unit: "MPa", ofLive: stresses },
   { id: "spectrum", title: "Spectrum of the transmission error", unit: "µm" },
 ];
 
@@ -31,6 +32,13 @@ function shares(curve) {
     // Where nothing is carried there is no line, but a curve begins and ends at zero.
     return { name: "", open: true, values: carried.map((value, i) => (value > 0 || carried[i - 1] > 0 || carried[i + 1] > 0 ? Math.max(value, 0) : null)) };
   });
+}
+
+/** The stresses of the live curve, where they were asked for: at the roots of both gears, and at their holes. */
+export function stresses({ stress }) {
+  if (!stress) return [];
+  return [["root_mpa", "root"], ["hole_mpa", "hole"]].flatMap(([field, place]) =>
+    ["driving", "driven"].flatMap((gear) => (stress[gear][field] ? [{ name: `${place}, ${gear} gear`, values: stress[gear][field] }] : [])));
 }
 
 /** The colors and letters of the page as it looks now. */

@@ -14,14 +14,17 @@ export function save(name, type, content) {
 
 const COLUMNS = ["mesh_position", "driving_angle_deg", "driven_angle_deg", "transmission_error_um", "mesh_stiffness_tangent_n_per_m", "mesh_stiffness_secant_n_per_m", "pairs_in_contact", "peak_contact_pressure_mpa"];
 
+const STRESSES = ["driving", "driven"].flatMap((gear) => ["root_mpa", "root_angle_deg", "hole_mpa", "hole_angle_deg"].map((name) => `stress.${gear}.${name}`));
+
 /** Every curve of the results as one table: a line for each torque and position. */
 export function csv(results) {
   const offsets = [...new Set(results.curves.flatMap((curve) => curve.load_shares.map(({ pair_offset: offset }) => offset)))].sort((a, b) => a - b);
-  const lines = [["output_torque_n_m", ...COLUMNS, ...offsets.map((offset) => `load_share.${offset}`)].join(",")];
+  const stressed = results.curves.some(({ stress }) => stress) ? STRESSES : [];
+  const lines = [["output_torque_n_m", ...COLUMNS, ...stressed, ...offsets.map((offset) => `load_share.${offset}`)].join(",")];
   for (const curve of results.curves) {
     const share = (offset) => curve.load_shares.find((each) => each.pair_offset === offset)?.share;
     curve.mesh_position.forEach((_, i) => {
-      const values = [curve.output_torque_n_m, ...COLUMNS.map((name) => curve[name]?.[i]), ...offsets.map((offset) => share(offset)?.[i] ?? 0)];
+      const values = [curve.output_torque_n_m, ...COLUMNS.map((name) => curve[name]?.[i]), ...stressed.map((name) => name.split(".").reduce((within, part) => within?.[part], curve)?.[i]), ...offsets.map((offset) => share(offset)?.[i] ?? 0)];
       lines.push(values.map((value) => value ?? "").join(","));
     });
   }

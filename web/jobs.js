@@ -59,7 +59,7 @@ export function jobs(place, design) {
     const buttons = [button("Open", async () => design.replace((await json(address)).submission, "open"))];
     if (!ENDED.includes(job.status)) buttons.push(button("Cancel", () => request(`${address}/cancel`, { method: "POST" })));
     else buttons.push(button("Run again", async () => post("v1/jobs", (await json(address)).submission)));
-    if (job.status === "successful") buttons.push(button("JSON", file("results.json")), button("CSV", file("ste.csv")), button("SVG", file("ste.svg")));
+    if (job.status === "successful") buttons.push(button("JSON", file("results.json")), button("CSV", file("ste.csv")), button("SVG", file("ste.svg")), button("VTU", file("fields.vtu")));
     const progress = ENDED.includes(job.status) ? job.status : h("span", {}, `${job.status} `, h("progress", { max: 100, value: job.progress_percent, ariaLabel: "Progress" }), ` ${job.progress_percent} %`);
     const why = job.problem ? h("small", {}, ` ${job.problem.detail}`) : null;
     return h("tr", {}, h("th", { scope: "row" }, new Date(job.submitted_at).toLocaleString()), h("td", {}, job.method.replace(/_/g, " ")), h("td", {}, progress, why), h("td", {}, job.wall_time_seconds === null ? "" : `${number(job.wall_time_seconds, 2)} s`), h("td", { className: "actions" }, ...buttons));

@@ -2,7 +2,7 @@
 
 import { hasKey, json, onKeyNeeded, ProblemError, setKey } from "./api.js";
 import { byId, debounced, fixed, h } from "./dom.js";
-import { Charts, looks } from "./charts.js";
+import { Charts, looks, stresses } from "./charts.js";
 import { Design, fromFragment, nameOf, toFragment } from "./design.js";
 import { chartsPicture, csv, drawingFile, save } from "./download.js";
 import { Drawing, indexAt } from "./drawing.js";
@@ -47,7 +47,7 @@ function showReadout() {
   const pressure = curve.peak_contact_pressure_mpa[i];
   const pairs = curve.pairs_in_contact[i];
   byId("position").setAttribute("aria-valuetext", `${fixed(position, 2)} mesh periods, transmission error ${fixed(curve.transmission_error_um[i], 2)} micrometers`);
-  byId("readout").textContent = `Transmission error ${fixed(curve.transmission_error_um[i], 3)} µm, stiffness ${fixed(curve.mesh_stiffness_tangent_n_per_m[i] * 1e-6, 1)} N/µm, ${pairs} ${pairs === 1 ? "pair" : "pairs"} in contact, ${pressure === null ? "a tip corner carries" : `${fixed(pressure, 0)} MPa`}.`;
+  byId("readout").textContent = `Transmission error ${fixed(curve.transmission_error_um[i], 3)} µm, stiffness ${fixed(curve.mesh_stiffness_tangent_n_per_m[i] * 1e-6, 1)} N/µm, ${pairs} ${pairs === 1 ? "pair" : "pairs"} in contact, ${pressure === null ? "a tip corner carries" : `${fixed(pressure, 0)} MPa`}.${stresses(curve).map(({ name, values }, j) => `${j ? "," : " Stress in MPa:"} ${fixed(values[i], 1)} at a ${name.replace(",", " of the")}`).join("")}${curve.stress ? "." : ""}`;
 }
 
 function onResults(results, submission, { took, since }) {

@@ -13,6 +13,7 @@ mod docs;
 mod document;
 mod door;
 mod events;
+mod fields;
 mod headers;
 mod health;
 mod jobs;

@@ -28,7 +28,7 @@ use utoipa_axum::routes;
 use super::app::App;
 use super::headers::Trace;
 use super::{
-    batch, docs, document, door, events, headers, health, jobs, metrics, outline, previews,
+    batch, docs, document, door, events, fields, headers, health, jobs, metrics, outline, previews,
     problem, problem_pages, reference, results, studies, submit, tables, web, webhooks,
 };
 use crate::wire::{Code, Problem};
@@ -122,6 +122,7 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(metrics::metrics))
         .routes(routes!(reference::validate))
         .routes(routes!(outline::outline))
+        .routes(routes!(fields::vtu))
         .routes(routes!(tables::table))
         .routes(routes!(studies::results))
         .routes(routes!(studies::file))

@@ -30,7 +30,7 @@ pub use hooks::{HookRules, HookTarget, NewHook, most_webhooks};
 pub use job::{Job, Progress};
 pub use keeper::{Keep, Keeper};
 pub use live::News;
-pub use previews::{PreviewError, PreviewRules, Previewed, Previews};
+pub use previews::{Computed, PreviewError, PreviewRules, Previewed, Previews};
 pub use queue::{Jobs, Member, Page, Rules, Submitted};
 pub use store::{
     BackupError, Cursor, Damaged, Depth, Document, EventKind, Filter, KeyRecord, Membership,

@@ -21,7 +21,7 @@ use tracing::error;
 use super::attempt::message_of;
 use super::threads::{Cores, Work, engine_threads};
 use super::worker::{Solve, StartError};
-use crate::wire::{Code, Preview, Problem, Submission};
+use crate::wire::{Code, Preview, Problem};
 
 /// Rooms that there are at least, so that a newer preview begins while the one that it replaces winds down.
 const FEWEST_ROOMS: usize = 2;
@@ -42,6 +42,17 @@ pub struct PreviewRules {
 pub struct Previewed {
     /// The text of the results document: the one that a job would give.
     pub document: String,
+    /// How long it waited for threads.
+    pub waited: Duration,
+    /// How long the engine took.
+    pub computed: Duration,
+}
+
+/// Something else that was computed while a request waited.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Computed<T> {
+    /// What came of it.
+    pub answer: T,
     /// How long it waited for threads.
     pub waited: Duration,
     /// How long the engine took.
@@ -162,8 +173,34 @@ impl Previews {
     /// A [`PreviewError`].
     pub async fn compute(&self, client: &str, preview: Preview) -> Result<Previewed, PreviewError> {
         let Preview { submission, id } = preview;
+        let solve = Arc::clone(&self.0.solve);
+        let work = move |run: &Run| solve(&submission, run);
+        let name = id.map(|id| (client.to_owned(), id));
+        let Computed {
+            answer,
+            waited,
+            computed,
+        } = self.work(name, work).await?;
+        metrics::histogram!("meshwright_preview_engine_seconds").record(computed.as_secs_f64());
+        Ok(Previewed {
+            document: answer,
+            waited,
+            computed,
+        })
+    }
+
+    /// Does `work` for which a request waits, and stops the older one of the same name. Dropping the future stops the engine.
+    ///
+    /// # Errors
+    ///
+    /// A [`PreviewError`].
+    pub async fn work<T: Send + 'static>(
+        &self,
+        name: Option<Name>,
+        work: impl FnOnce(&Run) -> Result<T, Problem> + Send + 'static,
+    ) -> Result<Computed<T>, PreviewError> {
         let rules = self.rules();
-        let admitted = self.admit(id.map(|id| (client.to_owned(), id)))?;
+        let admitted = self.admit(name)?;
         let start = Instant::now();
         let deadline = start + rules.time_limit;
 
@@ -176,15 +213,13 @@ impl Previews {
             .unless_over(
                 deadline,
                 PreviewError::TimeLimit(rules.time_limit),
-                room.launch(submission, admitted.run()),
+                room.launch(work, admitted.run()),
             )
             .await?;
         // The sender is only ever dropped with a result in it.
         let (result, computed) = result.unwrap_or_else(|_| (Err(failure()), Duration::ZERO));
-        let document = result.map_err(PreviewError::Failed)?;
-        metrics::histogram!("meshwright_preview_engine_seconds").record(computed.as_secs_f64());
-        Ok(Previewed {
-            document,
+        Ok(Computed {
+            answer: result.map_err(PreviewError::Failed)?,
             waited,
             computed,
         })
@@ -290,16 +325,16 @@ impl Drop for Admitted {
 
 impl Room {
     /// Starts the computation on the room's threads. A panic in it is the engine's fault and ends this preview only.
-    fn launch(
+    fn launch<T: Send + 'static>(
         self,
-        submission: Submission,
+        work: impl FnOnce(&Run) -> Result<T, Problem> + Send + 'static,
         run: Run,
-    ) -> oneshot::Receiver<(Result<String, Problem>, Duration)> {
+    ) -> oneshot::Receiver<(Result<T, Problem>, Duration)> {
         let (sender, receiver) = oneshot::channel();
         let threads = Arc::clone(&self.threads);
         threads.spawn(move || {
             let start = std::time::Instant::now();
-            let work = || (self.desk.solve)(&submission, &run);
+            let work = || work(&run);
             let result = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
                 error!(
                     panic = message_of(&*panic),

@@ -1,5 +1,6 @@
 //! From a submission to its results, or to what it would come to.
 
+use meshwright_engine::analysis::fields::GearField;
 use meshwright_engine::analysis::{self, AnalysisError};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -36,6 +37,28 @@ pub fn results(submission: &Submission, library: &Library, run: &Run) -> Result<
         Ok(analysis) => Ok(Results::new(submission, &analysis)),
         Err(error) => Err(problem_of(&error)),
     }
+}
+
+/// Displacements and stresses in both gears of `submission` under a torque of it, not 0, at a mesh position.
+///
+/// # Errors
+///
+/// As for [`solve`].
+pub fn fields(
+    submission: &Submission,
+    output_torque_n_m: f64,
+    mesh_position: f64,
+    library: &Library,
+    run: &Run,
+) -> Result<[GearField; 2], Problem> {
+    analysis::fields::fields(
+        submission.case(),
+        output_torque_n_m,
+        mesh_position,
+        library,
+        run,
+    )
+    .map_err(|error| problem_of(&error))
 }
 
 fn problem_of(error: &AnalysisError) -> Problem {

@@ -82,3 +82,42 @@ async fn a_table_of_a_job_that_has_not_ended_is_not_ready() {
         StatusCode::OK
     );
 }
+
+#[tokio::test]
+async fn fields_come_as_a_grid_at_any_position_and_torque_of_the_job() {
+    let bench = Bench::quick().await;
+    let path = bench.submit(&submission(115.0)).await;
+    bench.ended(&path).await;
+    let get = async |query: &str| {
+        let path = format!("{path}/results/fields.vtu{query}");
+        bench.get(&path).send().await.unwrap()
+    };
+    let answer = get("?torque=115&mesh_position=0.25").await;
+    assert_eq!(answer.status(), StatusCode::OK);
+    assert_eq!(answer.headers()["content-type"], "application/xml");
+    let tag = answer.headers()["etag"].clone();
+    let text = answer.text().await.unwrap();
+    for name in [
+        "UnstructuredGrid",
+        "displacement_um",
+        "stress_mpa",
+        "von_mises_mpa",
+        "thickness_mm",
+        "gear",
+    ] {
+        assert!(text.contains(name), "{name}");
+    }
+    let again = bench
+        .get(&format!(
+            "{path}/results/fields.vtu?torque=115&mesh_position=0.25"
+        ))
+        .header("if-none-match", tag)
+        .send()
+        .await
+        .unwrap();
+    assert_eq!(again.status(), StatusCode::NOT_MODIFIED);
+    problem(get("?torque=116").await, 404, "not_found").await;
+    problem(get("?mesh_position=-0.5").await, 400, "invalid_parameter").await;
+    problem(get("?mesh_position=1e9").await, 400, "invalid_parameter").await;
+    problem(get("?position=1").await, 400, "invalid_parameter").await;
+}

@@ -141,6 +141,19 @@ await step("curves and gears stand at the same position, whichever is moved", se
   assert.ok((await page.locator(".forces .force").count()) >= 1);
 });
 
+await step("stresses are shown where they are asked for", service, async (page) => {
+  await open(page, service);
+  assert.ok(await page.locator("#chart-stress").isHidden());
+  await page.locator('[id="field-/stress"]').check();
+  await page.locator("#chart-stress").waitFor();
+  // The roots of both gears, and the holes of the driven one.
+  assert.equal(await page.locator("#chart-stress .entry").count(), 3);
+  await page.locator("#chart-ste .u-over").hover({ position: { x: 120, y: 60 } });
+  assert.match(await page.locator("#readout").innerText(), /Stress in MPa: \d+\.\d at a root of the driving gear/);
+  assert.match(await page.locator("#table thead").innerText(), /Stress at a root/i);
+  await axe(page);
+});
+
 await step("several designs and methods stand in one plot", service, async (page) => {
   await open(page, service);
   await page.locator("#methods").click();
@@ -177,6 +190,9 @@ await step("a job is submitted, followed and opened", service, async (page) => {
   const waiting = page.waitForEvent("download");
   await page.locator("#jobs button", { hasText: "CSV" }).first().click();
   assert.match((await waiting).suggestedFilename(), /ste\.csv$/);
+  const fields = page.waitForEvent("download");
+  await page.locator("#jobs button", { hasText: "VTU" }).first().click();
+  assert.match((await fields).suggestedFilename(), /fields\.vtu$/);
 });
 
 await step("what is shown is downloaded", service, async (page) => {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 
+import meshio
 import numpy as np
 import pytest
 
@@ -110,3 +111,30 @@ def test_results_are_plotted(service):
     matplotlib.use("Agg")
     axes = service.preview(service.example("standard-pair")).plot()
     assert len(axes.lines) == 2
+
+
+def test_fields_are_read_back_with_the_stresses_of_the_curve(service, tmp_path):
+    submission = service.example("stress")
+    curve = service.solve(submission).curves[0]
+    job = service.submit(submission)["id"]
+    place = 7
+    position = float(curve.mesh_position[place])
+    file = tmp_path / "fields.vtu"
+    file.write_text(service.fields(job, torque=115.0, mesh_position=position))
+    grid = meshio.read(file)
+    stress, von_mises = grid.point_data["stress_mpa"].reshape(-1, 3, 3), grid.point_data["von_mises_mpa"]
+    sxx, syy, sxy = stress[:, 0, 0], stress[:, 1, 1], stress[:, 0, 1]
+    assert np.allclose(np.sqrt(sxx**2 - sxx * syy + syy**2 + 3 * sxy**2), von_mises, rtol=1e-3, atol=1e-2)
+    # Hubs stand still, and the largest displacement is of the order of the transmission error.
+    moved = np.linalg.norm(grid.point_data["displacement_um"], axis=1)
+    for center in (0.0, 100.5):
+        radius = np.hypot(grid.points[:, 0] - center, grid.points[:, 1])
+        assert moved[radius < 15.001].max() == 0.0
+    assert 0.3 < moved.max() / curve.transmission_error_um[place] < 3.0
+    # The nodes where the curve has its largest stress at a hole are stressed as much: means over elements against the edge itself.
+    hole = curve.stress("driven")["hole_mpa"][place]
+    x, y = grid.points[:, 0] - 100.5, grid.points[:, 1]
+    radius = np.hypot(x, y)
+    near_holes = (radius > 34 - 8.386) & (radius < 34 + 8.386)
+    assert abs(von_mises[near_holes].max() / hole - 1.0) < 0.03
+    assert sorted({int(value) for block in grid.cell_data["gear"] for value in block}) == [0, 1]

@@ -10,7 +10,7 @@ use crate::contact::placement::Placement;
 use crate::contact::{FlankLoad, Stage, WarmStart};
 use crate::fem::FemError;
 use crate::fem::prescribed::{Load, displacements};
-use crate::fem::recovery::{Functional, nodal_stresses};
+use crate::fem::recovery::{Functional, stresses};
 use crate::fem::teeth::FARTHEST_COUPLED;
 use crate::gear::{Material, Member, SpurGear, Vector, radial, tangential};
 use crate::grid::{BlankGrid, Element, Grid, ToothGrid};
@@ -155,10 +155,9 @@ fn add_teeth(
     let acting: Vec<Load> = (0..count).map(of_tooth).collect();
     let plate = (gear.material(), gear.face_width());
     let moved = displacements("the tooth", &tooth.grid, plate, &interface, &acting)?;
-    let stresses = all_stresses(&tooth.grid, gear.material());
     for (number, moved) in moved.iter().enumerate() {
         let turn = TAU * number as f64 / count as f64;
-        field.add(&tooth.grid, moved, &stresses, gear, stand.turned(turn));
+        field.add(&tooth.grid, moved, gear, stand.turned(turn));
     }
     Ok(())
 }
@@ -190,17 +189,10 @@ fn add_blank(
         .collect();
     let plate = (gear.material(), gear.face_width());
     let answers = displacements("the blank", &whole.grid, plate, &moved, &[acting])?;
-    let stresses = all_stresses(&whole.grid, gear.material());
     for moved in &answers {
-        field.add(&whole.grid, moved, &stresses, gear, stand.turned(first));
+        field.add(&whole.grid, moved, gear, stand.turned(first));
     }
     Ok(())
-}
-
-/// The stresses at every node of `grid`.
-fn all_stresses(grid: &Grid, material: &Material) -> Vec<[Functional; 3]> {
-    let nodes: Vec<u32> = (0..grid.nodes.len() as u32).collect();
-    nodal_stresses(grid, material, &nodes)
 }
 
 impl Stand {
@@ -214,22 +206,15 @@ impl Stand {
 
 impl GearField {
     /// Adds `grid`, a part of `gear` that stands at `stand` and moves by `moved`, both in its own axes.
-    fn add(
-        &mut self,
-        grid: &Grid,
-        moved: &[Vector],
-        stresses: &[[Functional; 3]],
-        gear: &SpurGear,
-        stand: Stand,
-    ) {
+    fn add(&mut self, grid: &Grid, moved: &[Vector], gear: &SpurGear, stand: Stand) {
         let first = self.nodes.len() as u32;
         let (e_x, e_y) = (radial(stand.angle), tangential(stand.angle));
         let turned = |v: &Vector| v.x * e_x + v.y * e_y;
         let nodes = grid.nodes.iter().map(|node| stand.origin + turned(node));
         self.nodes.extend(nodes);
         self.displacements.extend(moved.iter().map(turned));
-        self.stresses.extend(stresses.iter().map(|stress| {
-            let [xx, yy, xy] = [0, 1, 2].map(|i| stress[i].value(moved));
+        let stresses = stresses(grid, gear.material(), moved);
+        self.stresses.extend(stresses.iter().map(|[xx, yy, xy]| {
             let along = |a: &Vector, b: &Vector| {
                 xx * a.x * b.x + yy * a.y * b.y + xy * (a.x * b.y + a.y * b.x)
             };

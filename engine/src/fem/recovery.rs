@@ -21,7 +21,7 @@ use std::collections::HashMap;
 
 use super::element::gradients;
 use crate::gear::{Material, Vector};
-use crate::grid::Grid;
+use crate::grid::{Element, Grid};
 
 /// A linear functional Σ w·u of the displacements u of some nodes.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,28 +113,63 @@ pub fn nodal_stresses(grid: &Grid, material: &Material, nodes: &[u32]) -> Vec<[F
 
 /// The mean stress of elements at their local nodes.
 fn mean_stress(grid: &Grid, material: &Material, meeting: &[(usize, usize)]) -> [Functional; 3] {
-    let (e, nu) = (material.youngs_modulus, material.poisson_ratio);
-    let d = e / (1.0 - nu * nu) / meeting.len() as f64;
-    let g = e / (2.0 * (1.0 + nu)) / meeting.len() as f64;
     let mut stress: [Vec<(u32, Vector)>; 3] = Default::default();
+    let share = 1.0 / meeting.len() as f64;
     for &(index, local) in meeting {
-        let element = &grid.elements[index];
-        let (xi, eta) = element.kind().node_places()[local];
-        let (gradient, _) = gradients(element.kind(), &element.places(&grid.nodes), xi, eta);
-        for (node, (by_x, by_y)) in element.nodes().iter().zip(gradient) {
-            stress[0].push((*node, d * Vector::new(by_x, nu * by_y)));
-            stress[1].push((*node, d * Vector::new(nu * by_x, by_y)));
-            stress[2].push((*node, g * Vector::new(by_y, by_x)));
+        for (node, weights) in stress_at(grid, material, &grid.elements[index], local) {
+            for (terms, weight) in stress.iter_mut().zip(weights) {
+                terms.push((node, share * weight));
+            }
         }
     }
     stress.map(Functional::new)
+}
+
+/// The stresses (σ_xx, σ_yy, τ_xy) in Pa at every node for the displacements `u` of all: the mean over the elements that meet there.
+pub fn stresses(grid: &Grid, material: &Material, u: &[Vector]) -> Vec<[f64; 3]> {
+    let mut sums = vec![([0.0; 3], 0.0); grid.nodes.len()];
+    for element in &grid.elements {
+        for (local, node) in element.nodes().iter().enumerate() {
+            let (sum, meeting) = &mut sums[*node as usize];
+            *meeting += 1.0;
+            for (node, weights) in stress_at(grid, material, element, local) {
+                for (stress, weight) in sum.iter_mut().zip(weights) {
+                    *stress += weight.dot(&u[node as usize]);
+                }
+            }
+        }
+    }
+    sums.into_iter()
+        .map(|(sum, meeting)| sum.map(|stress| stress / f64::max(meeting, 1.0)))
+        .collect()
+}
+
+/// The stresses of `element` at its node `local`: the weights of the displacement of each of its nodes in each stress.
+fn stress_at(
+    grid: &Grid,
+    material: &Material,
+    element: &Element,
+    local: usize,
+) -> impl Iterator<Item = (u32, [Vector; 3])> {
+    let (e, nu) = (material.youngs_modulus, material.poisson_ratio);
+    let (d, g) = (e / (1.0 - nu * nu), e / (2.0 * (1.0 + nu)));
+    let (xi, eta) = element.kind().node_places()[local];
+    let (gradient, _) = gradients(element.kind(), &element.places(&grid.nodes), xi, eta);
+    let nodes = element.nodes().iter().copied().zip(gradient);
+    nodes.map(move |(node, (by_x, by_y))| {
+        let weights = [
+            d * Vector::new(by_x, nu * by_y),
+            d * Vector::new(nu * by_x, by_y),
+            g * Vector::new(by_y, by_x),
+        ];
+        (node, weights)
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::fem::condensation::tests::patch;
-    use crate::grid::Element;
 
     const STEEL: Material = Material {
         youngs_modulus: 210e9,
@@ -176,9 +211,14 @@ mod tests {
             let field =
                 |p: &Vector| Vector::new(exx * p.x + 0.2 * gxy * p.y, eyy * p.y + 0.8 * gxy * p.x);
             let u: Vec<Vector> = grid.nodes.iter().map(field).collect();
-            for stresses in nodal_stresses(&grid, &STEEL, &all) {
-                for (stress, expected) in stresses.iter().zip(expected) {
+            for found in nodal_stresses(&grid, &STEEL, &all) {
+                for (stress, expected) in found.iter().zip(expected) {
                     assert!((stress.value(&u) - expected).abs() < 1e-9 * d * exx);
+                }
+            }
+            for found in stresses(&grid, &STEEL, &u) {
+                for (stress, expected) in found.iter().zip(expected) {
+                    assert!((stress - expected).abs() < 1e-9 * d * exx);
                 }
             }
         }

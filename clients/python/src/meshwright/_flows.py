@@ -52,6 +52,13 @@ def look_up_table(job_id: str, torque: float | None) -> Flow[LookUpTable]:
     return LookUpTable.parse((yield Call("GET", f"/v1/jobs/{job_id}/results/look-up-table.csv{query}", as_text=True)))
 
 
+def fields(job_id: str, torque: float | None, mesh_position: float | None) -> Flow[str]:
+    asked = {"torque": torque, "mesh_position": mesh_position}
+    query = "&".join(f"{name}={value}" for name, value in asked.items() if value is not None)
+    text: str = yield Call("GET", f"/v1/jobs/{job_id}/results/fields.vtu?{query}", as_text=True)
+    return text
+
+
 def preview(submission: Submission) -> Flow[Results]:
     return Results((yield from post("/v1/preview", submission)))
 

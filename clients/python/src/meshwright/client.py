@@ -108,6 +108,10 @@ class Client:
         """One curve over the angle in SI units, for rotor dynamics: the first, or that of a torque."""
         return self._run(_flows.look_up_table(job_id, torque))
 
+    def fields(self, job_id: str, torque: float | None = None, mesh_position: float | None = None) -> str:
+        """Displacements and stresses in both gears at a mesh position, as a VTU document for ParaView, PyVista or meshio."""
+        return self._run(_flows.fields(job_id, torque, mesh_position))
+
     def study(self, document: Mapping[str, Any], progress: bool | Report = False) -> StudyTable:
         """Submits a study and gives its table when all designs have ended."""
         return self._run(_flows.study(document, reporter(progress)))
@@ -182,6 +186,9 @@ class AsyncClient:
 
     async def look_up_table(self, job_id: str, torque: float | None = None) -> LookUpTable:
         return await self._run(_flows.look_up_table(job_id, torque))
+
+    async def fields(self, job_id: str, torque: float | None = None, mesh_position: float | None = None) -> str:
+        return await self._run(_flows.fields(job_id, torque, mesh_position))
 
     async def study(self, document: Mapping[str, Any], progress: bool | Report = False) -> StudyTable:
         return await self._run(_flows.study(document, reporter(progress)))

@@ -64,6 +64,11 @@ class Curve:
         statistics: dict[str, Any] = self.document["statistics"]
         return statistics
 
+    def stress(self, gear: str) -> dict[str, Array]:
+        """The largest stresses of the `driving` or `driven` gear, in MPa, and where they are; none unless they were asked for."""
+        told: dict[str, list[float | None]] = self.document.get("stress", {}).get(gear, {})
+        return {name: _array(values) for name, values in told.items()}
+
     def load_share(self, pair_offset: int) -> Array:
         """The share of the pair at an offset; zero for one that never carries."""
         for share in self.document["load_shares"]:

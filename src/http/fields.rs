@@ -1,0 +1,120 @@
+//! Displacements and stresses everywhere in both gears at one mesh position, for those who look inside.
+
+use axum::extract::{Path, State};
+use axum::http::HeaderMap;
+use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
+use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+use utoipa::IntoParams;
+
+use super::app::App;
+use super::client::Client;
+use super::conditional::{Keep, Tag};
+use super::parameters::{Parameters, invalid, job_id};
+use super::problem::{internal, of_missing_results};
+use crate::exchange::vtu;
+use crate::wire::solve::fields;
+use crate::wire::{Code, Problem, Submission};
+
+/// Where to look.
+#[derive(Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub(super) struct FieldParameters {
+    /// One of the job's output torques, in N m, not 0; without it, the first of them.
+    #[param(example = 115.0)]
+    torque: Option<f64>,
+    /// The mesh position in mesh periods, from 0 to the span of the job; without it, 0.
+    #[param(example = 0.25, minimum = 0)]
+    mesh_position: Option<f64>,
+}
+
+/// Get displacements and stresses of both gears at a mesh position
+///
+/// A VTK unstructured grid that ParaView, PyVista and meshio read: at points `displacement_um` of each gear against its hub, `stress_mpa`
+/// and `von_mises_mpa`, in cells `thickness_mm` and `gear` (0 driving, 1 driven); points in mm, the driving axis at the origin, the driven
+/// one on the x axis. It is computed by the flexible method, whatever the job's was, while the request waits, and bounded as previews
+/// are.
+#[utoipa::path(
+    get, path = "/v1/jobs/{id}/results/fields.vtu", tag = "Results", operation_id = "get_fields",
+    params(
+        ("id" = String, Path, format = "uuid", description = "The id of the job."),
+        FieldParameters,
+        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
+    ),
+    responses(
+        (status = 200, description = "The grid.", body = String, content_type = "application/xml", headers(
+            ("ETag" = String, description = "Stands for this grid."),
+        )),
+        (status = 304, description = "The client has this grid."),
+        (status = 400, description = "A parameter is not understood, or the position is outside the span.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such job or torque, or the job has not ended.", body = Problem, content_type = "application/problem+json"),
+        (status = 409, description = "The job failed or was cancelled, and has no results.", body = Problem, content_type = "application/problem+json"),
+        (status = 422, description = "This position cannot be computed, or takes too long.", body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(super) async fn vtu(
+    State(app): State<App>,
+    client: Client,
+    Path(id): Path<String>,
+    Parameters(place): Parameters<FieldParameters>,
+    request: HeaderMap,
+) -> Result<Response, Problem> {
+    let job = app.jobs.find(client.name(), job_id(&id)?).await?;
+    let Some(hash) = &job.document else {
+        return Err(of_missing_results(job.status, job.problem.as_ref()));
+    };
+    let submission = app.jobs.submission(job.id).await?;
+    let submission = Submission::parse(submission.as_bytes())?;
+    let (torque, position) = place.within(&submission)?;
+    app.jobs.check_memory(&submission)?;
+    let made = async {
+        let library = app.library.clone();
+        let work = move |run: &meshwright_engine::run::Run| {
+            let gears = fields(&submission, torque, position, &library, run)?;
+            vtu::document(&gears).map_err(|error| {
+                tracing::error!(%error, "a field could not be written");
+                internal()
+            })
+        };
+        let grid = app.previews.work(None, work).await?.answer;
+        let name = format!("attachment; filename=\"{id}-fields.vtu\"");
+        let headers = [
+            (CONTENT_TYPE, "application/xml".to_owned()),
+            (CONTENT_DISPOSITION, name),
+        ];
+        Ok((headers, grid).into_response())
+    };
+    Tag::of_hash(hash, &format!("/fields.vtu/{torque}/{position}"))
+        .answer(Keep::ForGood, &request, made)
+        .await
+}
+
+impl FieldParameters {
+    /// The torque and the position, if `submission` has them.
+    fn within(&self, submission: &Submission) -> Result<(f64, f64), Problem> {
+        let case = submission.case();
+        let mut loaded = case.output_torques.iter().filter(|torque| **torque != 0.0);
+        let torque = match self.torque {
+            None => loaded.next(),
+            Some(wanted) => loaded.find(|torque| **torque == wanted),
+        };
+        let torque = *torque.ok_or_else(|| {
+            let all: Vec<String> = case.output_torques.iter().map(f64::to_string).collect();
+            let detail = format!(
+                "There is no such torque to look at; the job's are {} N m, and at 0 nothing is deformed.",
+                all.join(", ")
+            );
+            Problem::new(Code::NotFound, detail)
+        })?;
+        let (position, span) = (self.mesh_position.unwrap_or(0.0), f64::from(case.span()));
+        if !(0.0..=span).contains(&position) {
+            let nearest = if position > span { span } else { 0.0 };
+            return Err(invalid(format!(
+                "mesh_position is {position}; the job spans 0 to {span} mesh periods, and the nearest is {nearest}."
+            )));
+        }
+        Ok((torque, position))
+    }
+}
