@@ -1,5 +1,7 @@
 //! The grid of a blank, from the bore to the interface circle.
 
+use std::f64::consts::TAU;
+
 use super::sector::Sector;
 use super::{Element, Grid, GridError, GridLevel};
 use crate::gear::{BlankRegion, HolePattern, Vector, radial, tangential};
@@ -66,8 +68,8 @@ impl BlankGrid {
             }
         }
         let elements = elements_per_tooth * f64::from(tooth_count.max(1));
-        let region = &region.turned(-region.phase());
-        Self::whole(region, face_width, interface_radius, elements, level)
+        let region = settled(region.turned(-region.phase()));
+        Self::whole(&region, face_width, interface_radius, elements, level)
     }
 
     /// Divides one sector of the ring between `bore_radius` and `interface_radius`, on which `tooth_count` teeth stand,
@@ -174,4 +176,17 @@ impl BlankGrid {
         }
         whole
     }
+}
+
+/// The same region with the angles of its holes rounded, from 0 to 2π: so that a blank turned by a whole turn, which leaves it the same
+/// but for the last bits, has the same triangles.
+fn settled(mut region: BlankRegion) -> BlankRegion {
+    const STEP: f64 = 1e-11;
+    // Hole 0 is at 0, or the last bits before.
+    const BEFORE: f64 = 1e-6;
+    for hole in &mut region.holes {
+        let within = (hole.angle + BEFORE).rem_euclid(TAU) - BEFORE;
+        hole.angle = (within / STEP).round() * STEP;
+    }
+    region
 }

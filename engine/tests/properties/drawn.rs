@@ -3,8 +3,9 @@
 use std::f64::consts::PI;
 
 use meshwright_engine::gear::{
-    BlankRegion, GearData, GearPair, HolePattern, Material, ModificationData, Rack, ReliefData,
-    ReliefShape, ReliefStart, SpurGear, TipEdge, ToothDeviations,
+    BlankRegion, Eccentricity, GearData, GearPair, Hole, HolePattern, HoleShape, Material, Member,
+    ModificationData, Rack, ReliefData, ReliefShape, ReliefStart, RootReliefData, RootReliefStart,
+    SpurGear, TablePlaces, TipEdge, ToothDeviations, Web,
 };
 
 /// A stream of pseudo-random numbers (xorshift*), so that a seed names a draw forever.
@@ -127,7 +128,169 @@ fn blank(draw: &mut Draw, root_radius: f64, module: f64) -> BlankRegion {
     }
 }
 
+/// The same gear as workshops make it: with edges, modifications, deviations and blanks of every kind, each now and then.
+fn as_made(draw: &mut Draw, data: &GearData) -> GearData {
+    let mut data = data.clone();
+    let module = data.rack.module;
+    if draw.chance(0.3) {
+        data.rack.addendum *= draw.between(0.85, 1.0);
+    }
+    if draw.chance(0.4) {
+        data.thickness_deviation = module * draw.between(-0.05, 0.0);
+    }
+    data.tip_edge = match draw.one_of(&[0, 0, 1, 2]) {
+        0 => TipEdge::Sharp,
+        1 => TipEdge::Rounded(module * draw.between(0.02, 0.12)),
+        _ => TipEdge::Chamfered(module * draw.between(0.02, 0.1)),
+    };
+    if draw.chance(0.3) {
+        data.modifications
+            .push(ModificationData::RootRelief(RootReliefData {
+                amount: draw.over_decades(1e-3, 6e-3) * module,
+                shape: draw.one_of(&[ReliefShape::Linear, ReliefShape::Parabolic]),
+                start: match draw.one_of(&[0, 1]) {
+                    0 => RootReliefStart::RadialLength(draw.between(0.1, 0.5) * module),
+                    _ => RootReliefStart::RollLengthFromForm(draw.between(0.2, 1.0) * module),
+                },
+            }));
+    }
+    if draw.chance(0.3) {
+        let amount = draw.over_decades(0.5e-3, 4e-3) * module;
+        data.modifications
+            .push(ModificationData::Crowning { amount });
+    }
+    if draw.chance(0.3) {
+        let amount = draw.between(-2e-3, 3e-3) * module;
+        data.modifications.push(ModificationData::Slope { amount });
+    }
+    data.deviations = deviations(draw, data.tooth_count, module);
+    if let Ok(bare) = SpurGear::new(GearData {
+        blank: BlankRegion::solid(1e-6),
+        modifications: Vec::new(),
+        ..data.clone()
+    }) {
+        if draw.chance(0.3) {
+            data.modifications.push(table(draw, &bare));
+        }
+        if draw.chance(0.5) {
+            data.blank = irregular_blank(draw, bare.root_radius(), module);
+        }
+        if draw.chance(0.4) {
+            data.blank.web = web(draw, &data.blank, bare.root_radius(), &data);
+        }
+    }
+    data
+}
+
+/// A measured profile: hills and hollows of a few thousandths of a module.
+fn table(draw: &mut Draw, bare: &SpurGear) -> ModificationData {
+    let (from, to) = (bare.form_roll_length(), bare.tip_roll_length());
+    let count = draw.between(2.0, 9.0) as usize;
+    let module = bare.data().rack.module;
+    ModificationData::Table {
+        places: TablePlaces::RollLengths(
+            (0..count)
+                .map(|i| from + (to - from) * i as f64 / (count - 1) as f64)
+                .collect(),
+        ),
+        removed: (0..count)
+            .map(|_| draw.between(0.0, 2e-3) * module)
+            .collect(),
+    }
+}
+
+fn deviations(draw: &mut Draw, tooth_count: u32, module: f64) -> ToothDeviations {
+    let mut list = |chance: f64| -> Vec<f64> {
+        let most = draw.over_decades(0.2e-3, 3e-3) * module;
+        let given = draw.chance(chance);
+        (0..tooth_count)
+            .filter(|_| given)
+            .map(|_| draw.between(-most, most))
+            .collect()
+    };
+    let (cumulative_pitch, profile_slope) = (list(0.4), list(0.3));
+    ToothDeviations {
+        cumulative_pitch,
+        profile_slope,
+        eccentricity: draw.chance(0.3).then(|| Eccentricity {
+            amount: draw.over_decades(0.5e-3, 10e-3) * module,
+            direction: draw.between(-PI, PI),
+        }),
+    }
+}
+
+/// Holes and kidneys at any angles on up to two circles.
+fn irregular_blank(draw: &mut Draw, root_radius: f64, module: f64) -> BlankRegion {
+    let bore_radius = root_radius * draw.between(0.15, 0.5);
+    let room = root_radius - 1.2 * module - bore_radius;
+    let circles = draw.one_of(&[1, 1, 2]);
+    let mut holes = Vec::new();
+    for circle in 0..circles {
+        let half = 0.5 * room / f64::from(circles);
+        let circle_radius = bore_radius + half * f64::from(2 * circle + 1);
+        let (count, first) = (draw.one_of(&[1, 2, 3, 5]), draw.between(-PI, PI));
+        let pitch = 2.0 * PI / f64::from(count);
+        for i in 0..count {
+            let angle = first + pitch * (f64::from(i) + draw.between(-0.15, 0.15));
+            let beside = 0.35 * circle_radius * (pitch / 2.0).min(1.0);
+            let radius = half.min(beside) * draw.between(0.3, 0.8);
+            let shape = if draw.chance(0.4) {
+                HoleShape::Slot {
+                    width: 2.0 * radius,
+                    angle: 0.4 * pitch * draw.unit(),
+                }
+            } else {
+                HoleShape::Round { radius }
+            };
+            holes.push(Hole {
+                circle_radius,
+                angle,
+                shape,
+            });
+        }
+    }
+    BlankRegion {
+        bore_radius,
+        holes,
+        web: None,
+    }
+}
+
+fn web(draw: &mut Draw, blank: &BlankRegion, root_radius: f64, data: &GearData) -> Option<Web> {
+    let room = root_radius - 1.5 * data.rack.module - blank.bore_radius;
+    let inner_radius = blank.bore_radius + room * draw.between(0.0, 0.3);
+    let outer_radius = blank.bore_radius + room * draw.between(0.6, 1.0);
+    (outer_radius > inner_radius).then(|| Web {
+        inner_radius,
+        outer_radius,
+        thickness: data.face_width * draw.between(0.2, 1.2),
+    })
+}
+
 impl DrawnPair {
+    /// The first pair as workshops make it that can be made of the numbers that `seed` names.
+    pub(crate) fn as_made(seed: u64) -> Self {
+        let mut draw = Draw::new(!seed);
+        loop {
+            let Some((drawn, output_torque)) = Self::drawn(&mut draw) else {
+                continue;
+            };
+            let mut gear =
+                |member: Member| SpurGear::new(as_made(&mut draw, drawn.gear(member).data())).ok();
+            let (Some(driving), Some(driven)) = (gear(Member::Driving), gear(Member::Driven))
+            else {
+                continue;
+            };
+            let distance = drawn.center_distance() + 0.02 * driving.data().rack.module;
+            if let Ok(pair) = GearPair::new(driving, driven, distance) {
+                return Self {
+                    pair,
+                    output_torque,
+                };
+            }
+        }
+    }
+
     /// The first pair that can be made of the numbers that `seed` names.
     pub(crate) fn of(seed: u64) -> Self {
         let mut draw = Draw::new(seed);

@@ -14,7 +14,10 @@ use truths::{TRUTHS, Truth};
 /// Pairs of the short form; other seeds than those of the long one would do as well.
 const SHORT: std::ops::Range<u64> = 0..24;
 
-/// Pairs of the long form.
+/// Pairs of the short form as workshops make them.
+const AS_MADE: std::ops::Range<u64> = 0..16;
+
+/// Pairs of the long form, and as many as workshops make them.
 const LONG: std::ops::Range<u64> = 0..1000;
 
 /// Tries `truth` on `pairs` and tells of its worst; panics where it does not hold.
@@ -54,6 +57,10 @@ fn drawn(seeds: std::ops::Range<u64>) -> impl Iterator<Item = (String, DrawnPair
     seeds.map(|seed| (format!("seed {seed}"), DrawnPair::of(seed)))
 }
 
+fn as_made(seeds: std::ops::Range<u64>) -> impl Iterator<Item = (String, DrawnPair)> {
+    seeds.map(|seed| (format!("as made, seed {seed}"), DrawnPair::as_made(seed)))
+}
+
 fn named(name: &str) -> &'static Truth {
     TRUTHS
         .iter()
@@ -68,7 +75,8 @@ macro_rules! short_forms {
             fn $name() {
                 let seen = seen::pairs().into_iter();
                 let seen = seen.map(|(name, pair)| (name.to_owned(), pair));
-                hold(named(stringify!($name)), seen.chain(drawn(SHORT)));
+                let drawn = drawn(SHORT).chain(as_made(AS_MADE));
+                hold(named(stringify!($name)), seen.chain(drawn));
             }
         )*
 
@@ -99,6 +107,6 @@ short_forms! {
 #[ignore = "the long form takes an hour"]
 fn a_thousand_pairs() {
     for truth in TRUTHS {
-        hold(truth, drawn(LONG));
+        hold(truth, drawn(LONG).chain(as_made(LONG)));
     }
 }

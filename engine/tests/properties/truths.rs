@@ -10,7 +10,8 @@ use meshwright_engine::analysis::{
 use meshwright_engine::contact::half_plane::{hertz, logarithm_factor};
 use meshwright_engine::contact::{MeshContact, PairModel, WarmStart};
 use meshwright_engine::gear::{
-    GearData, GearPair, HoleShape, Member, ModificationData, ReliefStart, SpurGear, Vector,
+    GearData, GearPair, HoleShape, Member, ModificationData, ReliefStart, RootReliefStart,
+    SpurGear, TablePlaces, TipEdge, ToothDeviations, Vector,
 };
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
@@ -31,7 +32,7 @@ pub(crate) struct Truth {
 pub(crate) const TRUTHS: &[Truth] = &[
     Truth {
         name: "no_flank_penetrates",
-        // Over δ: where stretches of flank overlap two cells, of which pressures are even.
+        // Over the deflection: where stretches of flank overlap two cells, of which pressures are even.
         bound: 2e-3,
         figure: penetration,
     },
@@ -74,7 +75,7 @@ pub(crate) const TRUTHS: &[Truth] = &[
     },
     Truth {
         name: "the_curve_has_no_jump",
-        // What a step of 1/24 mesh period leaves, as a part of δ, after fourteen halvings into the steeper half.
+        // What a step of 1/24 mesh period leaves, as a part of the deflection, after fourteen halvings into the steeper half.
         bound: 2e-4,
         figure: jump,
     },
@@ -162,9 +163,12 @@ fn changed(
         .map_err(|error| error.to_string())
 }
 
-fn unrelieved(pair: &GearPair) -> Result<GearPair, String> {
+/// The same pair with involutes up to sharp tips, without deviations.
+fn plain(pair: &GearPair) -> Result<GearPair, String> {
     changed(pair, pair.center_distance(), |data, _| {
-        data.modifications.clear()
+        data.modifications.clear();
+        data.tip_edge = TipEdge::Sharp;
+        data.deviations = ToothDeviations::default();
     })
 }
 
@@ -175,14 +179,22 @@ fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
         .fold(0.0, f64::max)
 }
 
+/// What the mesh yields by at the least: the load over the largest stiffness. Where teeth deviate δ itself may be nothing.
+fn deflection(curve: &Curve) -> f64 {
+    let stiffest = curve.mesh_stiffness_tangent.iter().copied();
+    curve.load / stiffest.fold(0.0, f64::max)
+}
+
+/// The largest difference over `deflection`.
+fn apart(one: &[f64], other: &[f64], deflection: f64) -> f64 {
+    let pairs = one.iter().zip(other);
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / deflection
+}
+
 fn penetration(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     let analysis = solve(&case(&drawn.pair, &[drawn.output_torque]))?;
-    let least = analysis.curves[0]
-        .transmission_error
-        .iter()
-        .copied()
-        .fold(f64::INFINITY, f64::min);
-    Ok(Some(analysis.evidence.largest_penetration / least))
+    let deflection = deflection(&analysis.curves[0]);
+    Ok(Some(analysis.evidence.largest_penetration / deflection))
 }
 
 /// The rigid gap of pair `n` at `eta` along the line of action, by looking at dense polygons of both flanks: independent of
@@ -204,16 +216,20 @@ fn polygon_gap(pair: &GearPair, eta: f64, n: i64) -> Option<f64> {
             ),
         };
         let angle = turn - gear.flank().base_half_angle() + s / gear.base_radius();
+        let tooth = pair.tooth(member, n);
+        let tooth_0 = angle - tooth as f64 * gear.pitch_angle();
+        let beside = gear.deviations().displacement(tooth_0);
         let (from, to) = (gear.form_roll_length(), gear.tip_roll_length());
         (0..=POINTS)
             .map(|i| {
                 let s = from + (to - from) * i as f64 / POINTS as f64;
                 // Relief moves the point inward along the normal.
-                let point = gear.flank().point(s) - gear.removed(s) * gear.flank().normal(s);
+                let out = gear.deviation(tooth, s) - gear.removed(s);
+                let point = gear.flank().point(s) + out * gear.flank().normal(s);
                 let (sin, cos) = angle.sin_cos();
                 Vector::new(
-                    cos * point.x - sin * point.y + center,
-                    sin * point.x + cos * point.y,
+                    cos * point.x - sin * point.y + center + beside.x,
+                    sin * point.x + cos * point.y + beside.y,
                 )
             })
             .collect()
@@ -296,14 +312,51 @@ fn scale(data: &mut GearData, s: f64) {
     ] {
         *length *= s;
     }
-    if let [ModificationData::TipRelief(relief)] = &mut data.modifications[..] {
-        relief.amount *= s;
-        match &mut relief.start {
-            ReliefStart::RadialLength(length)
-            | ReliefStart::RollLengthFromTip(length)
-            | ReliefStart::Diameter(length) => *length *= s,
-            ReliefStart::RollAngle(_) => {}
+    for modification in &mut data.modifications {
+        match modification {
+            ModificationData::TipRelief(relief) => {
+                relief.amount *= s;
+                match &mut relief.start {
+                    ReliefStart::RadialLength(length)
+                    | ReliefStart::RollLengthFromTip(length)
+                    | ReliefStart::Diameter(length) => *length *= s,
+                    ReliefStart::RollAngle(_) => {}
+                }
+            }
+            ModificationData::RootRelief(relief) => {
+                relief.amount *= s;
+                match &mut relief.start {
+                    RootReliefStart::RadialLength(length)
+                    | RootReliefStart::RollLengthFromForm(length)
+                    | RootReliefStart::Diameter(length) => *length *= s,
+                    RootReliefStart::RollAngle(_) => {}
+                }
+            }
+            ModificationData::Crowning { amount } | ModificationData::Slope { amount } => {
+                *amount *= s;
+            }
+            ModificationData::Table { places, removed } => {
+                let (TablePlaces::RollLengths(places) | TablePlaces::Diameters(places)) = places;
+                places.iter_mut().chain(removed).for_each(|each| *each *= s);
+            }
         }
+    }
+    data.thickness_deviation *= s;
+    if let TipEdge::Rounded(size) | TipEdge::Chamfered(size) = &mut data.tip_edge {
+        *size *= s;
+    }
+    let deviations = &mut data.deviations;
+    let lists = deviations.cumulative_pitch.iter_mut();
+    lists
+        .chain(&mut deviations.profile_slope)
+        .for_each(|each| *each *= s);
+    if let Some(eccentricity) = &mut deviations.eccentricity {
+        eccentricity.amount *= s;
+    }
+    if let Some(web) = &mut data.blank.web {
+        web.inner_radius *= s;
+        web.outer_radius *= s;
+        web.thickness *= s;
     }
     for hole in &mut data.blank.holes {
         hole.circle_radius *= s;
@@ -331,10 +384,10 @@ fn similarity(drawn: &DrawnPair) -> Result<Option<f64>, String> {
         .collect();
     let stiffness: Vec<f64> = other.mesh_stiffness_tangent.iter().map(|k| k / s).collect();
     // Gaps are differences of coordinates as large as the center distance, and no truer than those.
-    let least = scaled.iter().copied().fold(f64::INFINITY, f64::min);
-    let rounding = 4.0 * f64::EPSILON * drawn.pair.center_distance() / least;
+    let deflection = deflection(&one);
+    let rounding = 4.0 * f64::EPSILON * drawn.pair.center_distance() / deflection;
     Ok(Some(
-        (largest_difference(&one.transmission_error, &scaled) - rounding)
+        (apart(&one.transmission_error, &scaled, deflection) - rounding)
             .max(largest_difference(&one.mesh_stiffness_tangent, &stiffness)),
     ))
 }
@@ -348,8 +401,12 @@ fn scaled_moduli(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     let other = curve(&softer, drawn.output_torque * c)?;
     let stiffness: Vec<f64> = other.mesh_stiffness_tangent.iter().map(|k| k / c).collect();
     Ok(Some(
-        largest_difference(&one.transmission_error, &other.transmission_error)
-            .max(largest_difference(&one.mesh_stiffness_tangent, &stiffness)),
+        apart(
+            &one.transmission_error,
+            &other.transmission_error,
+            deflection(&one),
+        )
+        .max(largest_difference(&one.mesh_stiffness_tangent, &stiffness)),
     ))
 }
 
@@ -393,8 +450,8 @@ fn on_path(pair: &GearPair, contact: &MeshContact, eta: f64, torque: f64) -> boo
 }
 
 fn swapped(drawn: &DrawnPair) -> Result<Option<f64>, String> {
-    // A relief moves the contact beside the line of action, where the arms about both centers differ by its slope.
-    let plain = unrelieved(&drawn.pair)?;
+    // Whatever inclines a flank moves the contact beside the line of action, where the arms about both centers differ by its slope.
+    let plain = plain(&drawn.pair)?;
     let pair = &plain;
     // Seen from behind and run backward, the same flanks touch: hole angles, told from the loaded flank, stay as they are.
     let other = GearPair::new(
@@ -431,27 +488,44 @@ fn turned_by_hole_pitch(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     })?;
     let one = curve(pair, drawn.output_torque)?;
     let other = curve(&turned, drawn.output_torque)?;
-    Ok(Some(largest_difference(
+    Ok(Some(apart(
         &one.transmission_error,
         &other.transmission_error,
+        deflection(&one),
     )))
 }
 
 fn turned_by_tooth(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     let pair = &drawn.pair;
-    if Member::BOTH
-        .iter()
-        .all(|&member| pair.gear(member).holes().is_empty())
+    if pair.is_as_drawn()
+        && Member::BOTH
+            .iter()
+            .all(|&member| pair.gear(member).holes().is_empty())
     {
         return Ok(None);
     }
     // The next tooth of the driving gear is behind the reference tooth, that of the driven gear is ahead of it.
     let turned = changed(pair, pair.center_distance(), |data, member| {
         let pitch = 2.0 * PI / f64::from(data.tooth_count);
-        data.blank = data.blank.turned(match member {
+        let turn = match member {
             Member::Driving => pitch,
             Member::Driven => -pitch,
-        });
+        };
+        data.blank = data.blank.turned(turn);
+        let deviations = &mut data.deviations;
+        for list in [
+            &mut deviations.cumulative_pitch,
+            &mut deviations.profile_slope,
+        ] {
+            match member {
+                _ if list.is_empty() => {}
+                Member::Driving => list.rotate_right(1),
+                Member::Driven => list.rotate_left(1),
+            }
+        }
+        if let Some(eccentricity) = &mut deviations.eccentricity {
+            eccentricity.direction += turn;
+        }
     })?;
     let load = pair.load(drawn.output_torque);
     let (here, there) = (model(pair)?, model(&turned)?);
@@ -510,14 +584,14 @@ fn jump(drawn: &DrawnPair) -> Result<Option<f64>, String> {
                 (ends[0], values[0]) = (middle, value);
             }
         }
-        worst = worst.max((values[1] - values[0]).abs() / values[0].abs());
+        worst = worst.max((values[1] - values[0]).abs() / deflection(&curve));
     }
     Ok(Some(worst))
 }
 
 /// How far the peak pressure is from Hertz's where one pair carries all the load away from corners and reliefs.
 fn beside_hertz(drawn: &DrawnPair) -> Result<Option<f64>, String> {
-    let plain = unrelieved(&drawn.pair)?;
+    let plain = plain(&drawn.pair)?;
     let pair = &plain;
     let load = pair.load(drawn.output_torque);
     let model = model(pair)?;
@@ -558,15 +632,18 @@ fn between_solvers(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     let delta = |case: &Case| -> Result<Vec<f64>, String> {
         Ok(solve(case)?.curves.remove(0).transmission_error)
     };
-    let one = delta(&exact)?;
-    let least = one.iter().copied().fold(f64::INFINITY, f64::min);
+    let one = solve(&exact)?.curves.remove(0);
+    let deflection = deflection(&one);
     let mut other = exact.clone();
-    let stiffness = drawn.pair.load(drawn.output_torque) / least;
     other.resolution.contact_solver = ContactSolver::AugmentedLagrangian {
-        penalty: Some(1e3 * stiffness),
-        gap_tolerance: 1e-7 * least,
+        penalty: Some(1e3 * one.load / deflection),
+        gap_tolerance: 1e-7 * deflection,
     };
-    Ok(Some(largest_difference(&one, &delta(&other)?)))
+    Ok(Some(apart(
+        &one.transmission_error,
+        &delta(&other)?,
+        deflection,
+    )))
 }
 
 fn standard_beside_fine(drawn: &DrawnPair) -> Result<Option<f64>, String> {
