@@ -400,6 +400,48 @@ fn reliefs_that_are_said_otherwise_than_we_can_take_are_refused() {
 }
 
 #[test]
+fn a_crowning_takes_off_the_same_at_both_ends_and_a_slope_at_the_tip() {
+    let model = |crowning: &str| {
+        let parts = format!(
+            r#"<component id="60" type="profile_crowning">{crowning}</component><component id="61" type="profile_slope"><attribute id="profile_slope" unit="mum">-3</attribute></component></components>"#
+        );
+        let refer = |flank: u32, to: u32| {
+            format!(
+                r#"<relation id="{to}{flank}" type="reference"><ref id="{flank}" role="origin"/><ref id="{to}" role="referenced"/></relation>"#
+            )
+        };
+        let relations = [refer(12, 60), refer(13, 60), refer(12, 61), refer(13, 61)].concat();
+        let model = CASE_2.replace("</components>", &parts);
+        model.replace("</relations>", &format!("{relations}</relations>"))
+    };
+    let at = |end: &str, mm: f64| {
+        format!(r#"<attribute id="profile_crowning_at_{end}" unit="mm">{mm}</attribute>"#)
+    };
+    let imported = taken(&model(&(at("tip", 0.004) + &at("root", 0.004))));
+    assert_eq!(
+        field(&imported, "/pair/driving/profile_modifications"),
+        json!([{ "kind": "crowning", "amount_um": 4.0 }, { "kind": "slope", "amount_um": -3.0 }])
+    );
+    let sign = |remark: &String| remark.contains("takes material off at the tip");
+    assert!(imported.remarks.iter().any(sign), "{:?}", imported.remarks);
+    let unlike = model(&(at("tip", 0.004) + &at("root", 0.006)));
+    assert_refused(
+        &unlike,
+        "component 60",
+        &["0.004", "0.006", "profile_slope"],
+    );
+}
+
+#[test]
+fn more_load_cases_than_anybody_computes_are_refused() {
+    let cases: String = (2..1002)
+        .map(|id| format!(r#"<load_case id="{id}"/>"#))
+        .collect();
+    let many = with("</load_spectrum>", &format!("{cases}</load_spectrum>"));
+    assert_refused(&many, "the load spectrum", &["1001", "1000"]);
+}
+
+#[test]
 fn a_problem_of_the_submission_leads_back_to_the_model() {
     let apart = with(
         r#""center_distance" unit="mm">100.5"#,
