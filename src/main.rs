@@ -22,6 +22,9 @@ enum Command {
     Solve(commands::solve::Solve),
     /// Compute a study: many variants of one submission, and their table.
     Study(commands::study::Study),
+    /// Take a pair out of a REXS model, or write one.
+    #[command(subcommand)]
+    Rexs(commands::rexs::Rexs),
     /// Make, list and revoke API keys.
     Keys(commands::keys::Keys),
     /// Copy the database, while the service runs or not.
@@ -40,6 +43,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Command::Serve(serve) => serve.run(),
         Command::Solve(solve) => solve.run(),
         Command::Study(study) => study.run(),
+        Command::Rexs(rexs) => rexs.run(),
         Command::Keys(keys) => keys.run(),
         Command::Backup(backup) => backup.run(),
         Command::Health(health) => health.run(),

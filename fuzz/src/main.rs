@@ -1,15 +1,18 @@
-//! Bytes as a submission, a preview and a study: whatever they are, reading ends in a document or a problem, and what was read is
-//! read again from its echo. Guided by coverage (libFuzzer); `fuzz/run` builds and runs it.
+//! Bytes as a submission, a preview, a study and a REXS model: whatever they are, reading ends in a document or a problem, and what was
+//! read is read again from its echo, or from the model that it is written as. Guided by coverage (libFuzzer); `fuzz/run` builds and runs it.
 
 #![no_main]
 #![allow(dead_code, unused_imports, unreachable_pub, missing_docs)]
 
 // The documents alone, without the service around them, which would take minutes to build.
+#[path = "../../src/exchange/mod.rs"]
+mod exchange;
 #[path = "../../src/hash.rs"]
 mod hash;
 #[path = "../../src/wire/mod.rs"]
 mod wire;
 
+use exchange::rexs::{Choices, export, import, is_xml};
 use libfuzzer_sys::fuzz_target;
 use meshwright_engine::run::Run;
 use wire::{Preview, Problem, Study, Submission};
@@ -25,7 +28,25 @@ fn check(problem: &Problem) {
     }
 }
 
+/// Takes a model, and writes what it comes to as one that can be taken again.
+fn check_model(bytes: &[u8]) {
+    let Ok(imported) = import(bytes, &Choices::default()) else {
+        return;
+    };
+    match Submission::parse(imported.submission.to_string().as_bytes()) {
+        Ok(submission) => {
+            let model = export(&submission, None, "");
+            import(model.as_bytes(), &Choices::default()).expect("what is written can be read");
+        }
+        Err(problem) => check(&problem),
+    }
+}
+
 fuzz_target!(|bytes: &[u8]| {
+    if is_xml(bytes) {
+        check_model(bytes);
+        return;
+    }
     match Submission::parse(bytes) {
         Ok(submission) => {
             let again = Submission::parse(submission.canonical_json().as_bytes()).expect("an echo is valid");

@@ -1,4 +1,4 @@
-//! `meshwright solve`: one submission from a file, computed here and now.
+//! `meshwright solve`: one submission, or one pair of a REXS model, from a file, computed here and now.
 
 use std::fs;
 use std::io::{Read, Write};
@@ -9,10 +9,13 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
+use meshwright::exchange::rexs::is_xml;
 use meshwright::wire::results::{CurveDocument, GearPeakStress, PeakStressDocument, Results};
 use meshwright::wire::{Problem, Submission, solve::results};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
+
+use super::rexs::ModelChoices;
 
 /// What the substructures of one submission may take; it is never reached by one pair.
 const LIBRARY_BYTES: usize = 512 << 20;
@@ -20,14 +23,16 @@ const LIBRARY_BYTES: usize = 512 << 20;
 /// The exit code for a submission that cannot be computed.
 pub(super) const EXIT_PROBLEM: u8 = 2;
 
-/// Compute one submission.
+/// Compute one submission, or one pair of a REXS model.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Solve {
-    /// The submission; - reads standard input.
+    /// The submission, or a REXS model as XML; - reads standard input.
     submission: PathBuf,
     /// Where to write the results document; - writes standard output. Without it, only the table is printed.
     #[arg(long, short)]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    model: ModelChoices,
 }
 
 impl Solve {
@@ -39,8 +44,10 @@ impl Solve {
     pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
         let document = read(&self.submission)?;
         let started = Instant::now();
-        let results = match Submission::parse(&document).and_then(|submission| compute(&submission))
-        {
+        let Some(submission) = self.submission(&document) else {
+            return Ok(ExitCode::from(EXIT_PROBLEM));
+        };
+        let results = match compute(&submission) {
             Ok(results) => results,
             Err(problem) => {
                 eprint!("{}", told(&problem));
@@ -51,7 +58,7 @@ impl Solve {
         match &self.output {
             Some(path) => {
                 let json = results.to_json()?;
-                self.write(path, &json)?;
+                write(path, &json)?;
                 // Standard output may be the document; the table must not end up in it.
                 if is_dash(path) {
                     eprint!("{table}")
@@ -64,13 +71,27 @@ impl Solve {
         Ok(ExitCode::SUCCESS)
     }
 
-    fn write(&self, path: &Path, json: &str) -> anyhow::Result<()> {
-        if is_dash(path) {
-            writeln!(std::io::stdout(), "{json}").context("standard output cannot be written")
-        } else {
-            fs::write(path, format!("{json}\n"))
-                .with_context(|| format!("{} cannot be written", path.display()))
+    /// The submission, out of a model if the document is one. What is wrong is printed.
+    fn submission(&self, document: &[u8]) -> Option<Submission> {
+        if is_xml(document) {
+            return self.model.submission(document);
         }
+        if let Some(option) = self.model.given() {
+            eprintln!("{option} is for REXS models; a submission says it itself.");
+            return None;
+        }
+        let parsed = Submission::parse(document);
+        parsed.map_err(|problem| eprint!("{}", told(&problem))).ok()
+    }
+}
+
+/// Writes a document as a line of its own.
+pub(super) fn write(path: &Path, text: &str) -> anyhow::Result<()> {
+    if is_dash(path) {
+        writeln!(std::io::stdout(), "{text}").context("standard output cannot be written")
+    } else {
+        fs::write(path, format!("{text}\n"))
+            .with_context(|| format!("{} cannot be written", path.display()))
     }
 }
 
@@ -110,12 +131,20 @@ fn compute(submission: &Submission) -> Result<Results, Problem> {
 
 /// A problem as a person reads it.
 pub(super) fn told(problem: &Problem) -> String {
+    told_with(problem, |_| None)
+}
+
+/// The same, with where each field is from.
+pub(super) fn told_with<'a>(problem: &Problem, origin: impl Fn(&str) -> Option<&'a str>) -> String {
     let mut text = format!("{} ({}).\n", problem.title, code_word(problem));
     if problem.errors.is_empty() {
         text.push_str(&format!("  {}\n", problem.detail));
     }
     for error in &problem.errors {
         text.push_str(&format!("  {}\n    {}\n", error.pointer, error.detail));
+        if let Some(place) = origin(&error.pointer) {
+            text.push_str(&format!("    from {place}\n"));
+        }
         if let Some(nearest) = error.nearest {
             text.push_str(&format!("    nearest: {nearest}\n"));
         }

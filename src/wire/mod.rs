@@ -55,3 +55,4 @@ pub use status::Status;
 pub use study::{Design, Study};
 pub use study_table::{RowState, StudyResults, Summary};
 pub use submission::{SOLVER_VERSION, Submission};
+pub(crate) use units::significant;

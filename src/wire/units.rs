@@ -42,7 +42,7 @@ pub(super) fn to_mpa(value: f64) -> f64 {
 }
 
 /// `value` rounded to `digits` significant decimal digits; a negative zero loses its sign.
-pub(super) fn significant(value: f64, digits: usize) -> f64 {
+pub(crate) fn significant(value: f64, digits: usize) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value + 0.0;
     }

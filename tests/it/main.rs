@@ -25,6 +25,7 @@ mod real;
 mod recovery;
 mod refusals;
 mod repeats;
+mod rexs;
 mod shares;
 mod sigkill;
 mod strain;

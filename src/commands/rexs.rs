@@ -1,0 +1,156 @@
+//! `meshwright rexs`: submissions out of REXS models, and models out of submissions.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Context;
+use jiff::Zoned;
+use meshwright::exchange::rexs::{Choices, Import, export, import};
+use meshwright::wire::Submission;
+use serde_json::Value;
+
+use super::solve::{EXIT_PROBLEM, read, told, told_with, write};
+
+/// Take a pair out of a REXS model, or write one.
+#[derive(Debug, clap::Subcommand)]
+pub(crate) enum Rexs {
+    /// Write the submission that a pair of a model comes to.
+    Import {
+        /// The model, REXS 1.4 to 2 as XML; - reads standard input.
+        model: PathBuf,
+        /// Where to write the submission.
+        #[arg(long, short, default_value = "-")]
+        output: PathBuf,
+        #[command(flatten)]
+        choices: ModelChoices,
+    },
+    /// Write a model, REXS 2.0, of a submission, and of its results if they are given.
+    Export {
+        /// The submission; - reads standard input.
+        submission: PathBuf,
+        /// Its results document.
+        results: Option<PathBuf>,
+        /// Where to write the model.
+        #[arg(long, short, default_value = "-")]
+        output: PathBuf,
+    },
+}
+
+/// What a REXS model leaves open.
+#[derive(Debug, clap::Args)]
+pub(crate) struct ModelChoices {
+    /// Of a REXS model: the id of the cylindrical stage, where there are several.
+    #[arg(long, value_name = "ID")]
+    stage: Option<i64>,
+    /// Of a REXS model: torques on the driven gear, instead of those that it says.
+    #[arg(
+        long,
+        value_name = "N_M",
+        value_delimiter = ',',
+        allow_negative_numbers = true
+    )]
+    torque: Vec<f64>,
+    /// Of a REXS model: the method; flexible if neither this nor the model says one.
+    #[arg(long)]
+    method: Option<String>,
+    /// Of a REXS model: the bore radius of both gears, or of the driving and the driven one, instead of what it says.
+    #[arg(long, value_name = "MM", value_delimiter = ',')]
+    bore_radius: Vec<f64>,
+}
+
+impl ModelChoices {
+    /// The first option that is given.
+    pub(super) fn given(&self) -> Option<&'static str> {
+        [
+            (self.stage.is_some(), "--stage"),
+            (!self.torque.is_empty(), "--torque"),
+            (self.method.is_some(), "--method"),
+            (!self.bore_radius.is_empty(), "--bore-radius"),
+        ]
+        .into_iter()
+        .find_map(|(given, name)| given.then_some(name))
+    }
+
+    /// The submission that a pair of a model comes to. What is assumed, not read or wrong is printed.
+    pub(super) fn submission(&self, model: &[u8]) -> Option<Submission> {
+        let choices = Choices {
+            stage: self.stage,
+            torques: self.torque.clone(),
+            method: self.method.clone(),
+            bore_radii: self.bore_radius.clone(),
+        };
+        let imported: Import = match import(model, &choices) {
+            Ok(imported) => imported,
+            Err(refused) => {
+                eprint!("{refused}");
+                return None;
+            }
+        };
+        for remark in &imported.remarks {
+            eprintln!("{remark}");
+        }
+        let parsed = Submission::parse(imported.submission.to_string().as_bytes());
+        parsed
+            .map_err(|problem| eprint!("{}", told_with(&problem, |field| imported.origin(field))))
+            .ok()
+    }
+}
+
+impl Rexs {
+    /// Runs the command.
+    ///
+    /// # Errors
+    ///
+    /// If a file cannot be read or written. What is wrong with a document is printed, and is exit code 2.
+    pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
+        match self {
+            Self::Import {
+                model,
+                output,
+                choices,
+            } => {
+                let Some(submission) = choices.submission(&read(model)?) else {
+                    return Ok(ExitCode::from(EXIT_PROBLEM));
+                };
+                let json = serde_json::to_string_pretty(&submission)?;
+                write(output, &json)?;
+            }
+            Self::Export {
+                submission,
+                results,
+                output,
+            } => {
+                let submission = match Submission::parse(&read(submission)?) {
+                    Ok(submission) => submission,
+                    Err(problem) => {
+                        eprint!("{}", told(&problem));
+                        return Ok(ExitCode::from(EXIT_PROBLEM));
+                    }
+                };
+                let results: Option<Value> = match results {
+                    Some(path) => Some(
+                        serde_json::from_slice(&read(path)?)
+                            .with_context(|| format!("{} is no JSON", path.display()))?,
+                    ),
+                    None => None,
+                };
+                if let Some(results) = &results
+                    && results["evidence"]["input_hash"] != submission.input_hash()
+                {
+                    eprintln!(
+                        "The results are not those of this submission: their evidence.input_hash is {}, that of the submission {}.",
+                        results["evidence"]["input_hash"],
+                        submission.input_hash()
+                    );
+                    return Ok(ExitCode::from(EXIT_PROBLEM));
+                }
+                let date = Zoned::now().strftime("%Y-%m-%dT%H:%M:%S%:z").to_string();
+                write(
+                    output,
+                    export(&submission, results.as_ref(), &date).trim_end(),
+                )?;
+            }
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}

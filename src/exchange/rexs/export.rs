@@ -1,0 +1,535 @@
+//! From a submission, and its results, to a model.
+
+use std::fmt::Write as _;
+
+use serde_json::Value;
+
+use super::gear::{GENERATED_SHIFT, ROOT, ReliefNames, TIP};
+use super::own;
+use super::unit::{DEG, KG_PER_DM3, MM, MPA, N_M, NONE, PER_MINUTE, mm_of_um};
+use crate::wire::geometry::{GearGeometry, PairGeometry};
+use crate::wire::{Submission, significant};
+
+/// The version whose names are written.
+const VERSION: &str = "2.0.0";
+
+const N_PER_MM: &str = "N / mm";
+const MUM: &str = "mum";
+
+/// The digits that the standard keeps of a number.
+const DIGITS: usize = 15;
+
+/// The components of one gear, by their ids.
+struct Ids {
+    gear: usize,
+    left: usize,
+    right: usize,
+    data: usize,
+    tool: usize,
+    settings: usize,
+    material: usize,
+    body: usize,
+    /// The modifications of both flanks, which are the same.
+    modifications: Vec<usize>,
+}
+
+const UNIT: usize = 1;
+const STAGE: usize = 2;
+
+/// The model of a submission; with its results, one load case for each torque has the curves. `date` is the time of writing, by
+/// ISO 8601 with its offset.
+///
+/// The curves stand at the stage: `meshing_stiffness_characteristic`, the tangent stiffness at each mesh position, and each gear
+/// says by `rotational_meshing_position` the angles at which it stands then.
+pub fn export(submission: &Submission, results: Option<&Value>, date: &str) -> String {
+    let document = serde_json::to_value(submission).expect("a submission is words and numbers");
+    let geometry = PairGeometry::of(&submission.case().pair);
+    let mut components = Xml {
+        indent: "    ",
+        ..Xml::default()
+    };
+    let mut relations = Relations::default();
+    components.open(UNIT, "gear_unit");
+    components.close();
+    components.open(STAGE, "cylindrical_stage");
+    let pair = &document["pair"];
+    components.number(
+        "center_distance",
+        MM.name,
+        number(pair, "center_distance_mm"),
+    );
+    components.number("radial_contact_ratio", NONE.name, geometry.contact_ratio);
+    components.word(own::METHOD, submission.method());
+    components.close();
+    relations.add("assembly", None, &[("assembly", UNIT), ("part", STAGE)]);
+    let mut next = STAGE + 1;
+    let ids =
+        [("driving", &geometry.driving), ("driven", &geometry.driven)].map(|(member, geometry)| {
+            let gear = Gear {
+                document: &pair[member],
+                geometry,
+            };
+            let ids = gear.ids(&mut next);
+            gear.write(
+                &ids,
+                member == "driving",
+                number_of(&document, "driving_speed_rpm"),
+                &mut components,
+            );
+            gear.relate(&ids, &mut relations);
+            ids
+        });
+    let gears = [
+        ("stage", STAGE),
+        ("gear_1", ids[0].gear),
+        ("gear_2", ids[1].gear),
+    ];
+    relations.add("stage", None, &gears);
+    let load_cases = load_cases(&document, results, &ids);
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model version=\"{VERSION}\" applicationId=\"Meshwright\" applicationVersion=\"{}\" date=\"{}\" applicationLanguage=\"en\">\n  <relations>\n{}  </relations>\n  <components>\n{}  </components>\n  <load_spectrum id=\"1\">\n{load_cases}  </load_spectrum>\n</model>\n",
+        env!("CARGO_PKG_VERSION"),
+        escaped(date),
+        relations.text,
+        components.text,
+    )
+}
+
+/// One load case for each torque.
+fn load_cases(document: &Value, results: Option<&Value>, ids: &[Ids; 2]) -> String {
+    let mut text = String::new();
+    let torques = document["output_torques_n_m"].as_array();
+    for (i, torque) in torques
+        .into_iter()
+        .flatten()
+        .filter_map(Value::as_f64)
+        .enumerate()
+    {
+        let curve = results.and_then(|results| results["curves"].get(i));
+        let list = |name: &str| curve.map(|curve| numbers(&curve[name]));
+        let mut case = Xml {
+            indent: "      ",
+            ..Xml::default()
+        };
+        case.open(STAGE, "cylindrical_stage");
+        for (attribute, unit, name, divisor) in [
+            (
+                "meshing_stiffness_characteristic",
+                N_PER_MM,
+                "mesh_stiffness_tangent_n_per_m",
+                1e3,
+            ),
+            (own::SECANT, N_PER_MM, "mesh_stiffness_secant_n_per_m", 1e3),
+            (own::TRANSMISSION_ERROR, MUM, "transmission_error_um", 1.0),
+            (own::MESH_POSITION, NONE.name, "mesh_position", 1.0),
+        ] {
+            if let Some(values) = list(name) {
+                case.list(
+                    attribute,
+                    unit,
+                    values.into_iter().map(|value| value / divisor),
+                );
+            }
+        }
+        case.close();
+        for (member, (ids, name)) in ids
+            .iter()
+            .zip(["driving_angle_deg", "driven_angle_deg"])
+            .enumerate()
+        {
+            case.open(ids.data, "cylindrical_stage_gear_data");
+            if member == 1 {
+                case.number("torque", N_M.name, torque);
+            }
+            if let Some(values) = list(name) {
+                case.list("rotational_meshing_position", DEG.name, values.into_iter());
+            }
+            case.close();
+        }
+        let _ = write!(
+            text,
+            "    <load_case id=\"{}\">\n{}    </load_case>\n",
+            i + 1,
+            case.text
+        );
+    }
+    text
+}
+
+/// A gear as the submission has it, and what follows from that.
+struct Gear<'a> {
+    document: &'a Value,
+    geometry: &'a GearGeometry,
+}
+
+impl Gear<'_> {
+    fn ids(&self, next: &mut usize) -> Ids {
+        let mut id = || {
+            *next += 1;
+            *next - 1
+        };
+        Ids {
+            gear: id(),
+            left: id(),
+            right: id(),
+            data: id(),
+            tool: id(),
+            settings: id(),
+            material: id(),
+            body: id(),
+            modifications: self.modifications().iter().map(|_| id()).collect(),
+        }
+    }
+
+    fn number(&self, name: &str) -> f64 {
+        number(self.document, name)
+    }
+
+    /// The profile shift with which the teeth come out as thick as they are.
+    fn generated_shift(&self) -> f64 {
+        let angle = self.number("pressure_angle_deg").to_radians();
+        let thicker = mm_of_um(self.number("tooth_thickness_deviation_um"));
+        self.number("profile_shift") + thicker / (2.0 * self.number("module_mm") * angle.tan())
+    }
+
+    fn write(&self, ids: &Ids, drives: bool, speed: Option<f64>, out: &mut Xml) {
+        let (module, geometry) = (self.number("module_mm"), self.geometry);
+        let shift = self.number("profile_shift");
+        let blank = &self.document["blank"];
+        out.open(ids.gear, "cylindrical_gear");
+        out.number("number_of_teeth", NONE.name, self.number("tooth_count"));
+        out.number("normal_module", MM.name, module);
+        out.number("helix_angle_reference_diameter", DEG.name, 0.0);
+        out.number("face_width", MM.name, self.number("face_width_mm"));
+        let tip = number_of(self.document, "tip_diameter_mm");
+        out.number(
+            "tip_diameter",
+            MM.name,
+            tip.unwrap_or(2.0 * geometry.tip_radius_mm),
+        );
+        out.number("root_diameter", MM.name, 2.0 * geometry.root_radius_mm);
+        out.number("base_diameter", MM.name, 2.0 * geometry.base_radius_mm);
+        out.number(
+            "inner_diameter",
+            MM.name,
+            2.0 * number(blank, "bore_radius_mm"),
+        );
+        if let Some(speed) = speed.filter(|_| drives) {
+            out.number("rotational_speed", PER_MINUTE.name, speed);
+        }
+        if let Some(rounding) = number_of(self.document, "tip_rounding_mm") {
+            out.number(own::TIP_ROUNDING, MM.name, rounding);
+        }
+        for (attribute, value) in [
+            (own::HOLES, &blank["holes"]),
+            (own::DEVIATIONS, &self.document["tooth_deviations"]),
+        ] {
+            if !value.is_null() {
+                out.word(attribute, &value.to_string());
+            }
+        }
+        out.close();
+        for flank in [ids.left, ids.right] {
+            out.open(flank, "cylindrical_gear_flank");
+            out.number(
+                "normal_pressure_angle",
+                DEG.name,
+                self.number("pressure_angle_deg"),
+            );
+            out.number("addendum_modification_coefficient", NONE.name, shift);
+            if let Some(addendum) = number_of(self.document, "addendum_mm") {
+                out.number(
+                    "addendum_coefficient_basic_profile",
+                    NONE.name,
+                    addendum / module,
+                );
+            }
+            let chamfer = number_of(self.document, "tip_chamfer_mm");
+            out.number("tooth_tip_chamfer", MM.name, chamfer.unwrap_or(0.0));
+            let tables = self.tables();
+            if !tables.is_empty() {
+                out.word(own::TABLES, &Value::Array(tables).to_string());
+            }
+            out.close();
+        }
+        out.open(ids.data, "cylindrical_stage_gear_data");
+        out.word("is_driving_gear", if drives { "true" } else { "false" });
+        out.close();
+        out.open(ids.tool, "rack_shaped_tool");
+        out.number("normal_module", MM.name, module);
+        out.number(
+            "normal_pressure_angle",
+            DEG.name,
+            self.number("pressure_angle_deg"),
+        );
+        let reach = self.number("dedendum_mm") / module + self.generated_shift() - shift;
+        out.number("addendum_coefficient_reference_profile", NONE.name, reach);
+        let rounding = self.number("rack_tip_radius_mm") / module;
+        out.number(
+            "tip_corner_radius_factor_reference_profile",
+            NONE.name,
+            rounding,
+        );
+        out.close();
+        out.open(ids.settings, "cylindrical_gear_manufacturing_settings");
+        out.number(GENERATED_SHIFT, NONE.name, self.generated_shift());
+        out.close();
+        let material = &self.document["material"];
+        out.open(ids.material, "material");
+        out.number(
+            "elastic_modulus",
+            MPA.name,
+            number(material, "youngs_modulus_gpa") * 1e3,
+        );
+        out.number(
+            "poisson_ratio",
+            NONE.name,
+            number(material, "poisson_ratio"),
+        );
+        out.number(
+            "density",
+            KG_PER_DM3.name,
+            number(material, "density_kg_m3") / 1e3,
+        );
+        out.close();
+        out.open(ids.body, "gear_body");
+        out.number(
+            "inner_diameter",
+            MM.name,
+            2.0 * number(blank, "bore_radius_mm"),
+        );
+        out.number("outer_diameter", MM.name, 2.0 * geometry.root_radius_mm);
+        if let Some(outer) = number_of(&blank["web"], "outer_radius_mm") {
+            out.number(
+                "gear_body_rim_thickness",
+                MM.name,
+                geometry.root_radius_mm - outer,
+            );
+            out.number(
+                "gear_body_web_thickness",
+                MM.name,
+                number(&blank["web"], "thickness_mm"),
+            );
+            out.number(
+                own::WEB_INNER_RADIUS,
+                MM.name,
+                number(&blank["web"], "inner_radius_mm"),
+            );
+        }
+        out.close();
+        for (id, modification) in ids.modifications.iter().zip(self.modifications()) {
+            self.write_modification(*id, modification, out);
+        }
+    }
+
+    /// What is taken off the flanks in ways that the standard knows, in the order of the submission.
+    fn modifications(&self) -> Vec<&Value> {
+        let listed = self.document["profile_modifications"].as_array();
+        std::iter::once(&self.document["tip_relief"])
+            .chain(listed.into_iter().flatten())
+            .filter(|modification| !modification.is_null() && kind(modification) != "table")
+            // What takes nothing off may begin anywhere, even beside the flank.
+            .filter(|modification| number(modification, "amount_um") != 0.0)
+            .collect()
+    }
+
+    fn tables(&self) -> Vec<Value> {
+        let listed = self.document["profile_modifications"].as_array();
+        let tables = listed
+            .into_iter()
+            .flatten()
+            .filter(|each| kind(each) == "table");
+        tables.cloned().collect()
+    }
+
+    fn write_modification(&self, id: usize, modification: &Value, out: &mut Xml) {
+        let amount = mm_of_um(number(modification, "amount_um"));
+        out.open(id, component_of(kind(modification)));
+        match kind(modification) {
+            "crowning" => {
+                out.number("profile_crowning_at_tip", MM.name, amount);
+                out.number("profile_crowning_at_root", MM.name, amount);
+                out.word("shape_of_profile_crowning", "parabolic");
+            }
+            "slope" => out.number("profile_slope", MM.name, amount),
+            "root_relief" => self.write_relief(&ROOT, amount, modification, out),
+            _ => self.write_relief(&TIP, amount, modification, out),
+        }
+        out.close();
+    }
+
+    fn write_relief(&self, names: &ReliefNames, amount: f64, relief: &Value, out: &mut Xml) {
+        let (start, geometry) = (&relief["start"], self.geometry);
+        out.number(names.depth, MM.name, amount);
+        out.word(
+            "shape_of_relief",
+            relief["shape"].as_str().unwrap_or("linear"),
+        );
+        if let Some(length) = number_of(start, names.roll_length) {
+            out.number(names.length, MM.name, length);
+            return;
+        }
+        let from_radial = |length: f64| {
+            let radius = match names.kind {
+                "tip_relief" => geometry.tip_radius_mm - length,
+                _ => geometry.form_radius_mm + length,
+            };
+            2.0 * radius
+        };
+        let from_angle = |angle: f64| 2.0 * geometry.base_radius_mm * angle.to_radians().hypot(1.0);
+        let diameter = number_of(start, "diameter_mm")
+            .or_else(|| number_of(start, "radial_length_mm").map(from_radial))
+            .or_else(|| number_of(start, "roll_angle_deg").map(from_angle));
+        if let Some(diameter) = diameter {
+            out.number(names.diameter, MM.name, diameter);
+        }
+    }
+
+    fn relate(&self, ids: &Ids, out: &mut Relations) {
+        let gear = ids.gear;
+        out.add(
+            "stage_gear_data",
+            None,
+            &[
+                ("stage", STAGE),
+                ("gear", gear),
+                ("stage_gear_data", ids.data),
+            ],
+        );
+        out.add(
+            "flank",
+            None,
+            &[("gear", gear), ("left", ids.left), ("right", ids.right)],
+        );
+        out.add("assembly", None, &[("assembly", gear), ("part", ids.body)]);
+        out.add(
+            "reference",
+            None,
+            &[("origin", gear), ("referenced", ids.material)],
+        );
+        out.add(
+            "reference",
+            None,
+            &[("origin", ids.body), ("referenced", ids.material)],
+        );
+        for flank in [ids.left, ids.right] {
+            let step = [
+                ("workpiece", flank),
+                ("tool", ids.tool),
+                ("manufacturing_settings", ids.settings),
+            ];
+            out.add("manufacturing_step", Some(1), &step);
+            for modification in &ids.modifications {
+                out.add(
+                    "reference",
+                    None,
+                    &[("origin", flank), ("referenced", *modification)],
+                );
+            }
+        }
+    }
+}
+
+/// The kind of a modification; the short form of a tip relief has no word for it.
+fn kind(modification: &Value) -> &str {
+    modification["kind"].as_str().unwrap_or(TIP.kind)
+}
+
+fn component_of(kind: &str) -> &'static str {
+    match kind {
+        "crowning" => "profile_crowning",
+        "slope" => "profile_slope",
+        "root_relief" => ROOT.kind,
+        _ => TIP.kind,
+    }
+}
+
+fn number_of(document: &Value, name: &str) -> Option<f64> {
+    document[name].as_f64()
+}
+
+/// A number that every submission with its defaults has.
+fn number(document: &Value, name: &str) -> f64 {
+    number_of(document, name).unwrap_or_default()
+}
+
+fn numbers(list: &Value) -> Vec<f64> {
+    let items = list.as_array().into_iter().flatten();
+    items.filter_map(Value::as_f64).collect()
+}
+
+/// Components as text.
+#[derive(Default)]
+struct Xml {
+    indent: &'static str,
+    text: String,
+}
+
+impl Xml {
+    fn open(&mut self, id: usize, kind: &str) {
+        let _ = writeln!(
+            self.text,
+            "{}<component id=\"{id}\" type=\"{kind}\">",
+            self.indent
+        );
+    }
+
+    fn close(&mut self) {
+        let _ = writeln!(self.text, "{}</component>", self.indent);
+    }
+
+    fn number(&mut self, id: &str, unit: &str, value: f64) {
+        self.attribute(id, unit, &written(value));
+    }
+
+    fn word(&mut self, id: &str, word: &str) {
+        self.attribute(id, NONE.name, &escaped(word));
+    }
+
+    fn attribute(&mut self, id: &str, unit: &str, content: &str) {
+        let _ = writeln!(
+            self.text,
+            "{}  <attribute id=\"{id}\" unit=\"{unit}\">{content}</attribute>",
+            self.indent
+        );
+    }
+
+    fn list(&mut self, id: &str, unit: &str, values: impl Iterator<Item = f64>) {
+        let cells: String = values
+            .map(|value| format!("<c>{}</c>", written(value)))
+            .collect();
+        self.attribute(id, unit, &format!("<array>{cells}</array>"));
+    }
+}
+
+/// Relations as text, numbered.
+#[derive(Default)]
+struct Relations {
+    text: String,
+    count: usize,
+}
+
+impl Relations {
+    fn add(&mut self, kind: &str, order: Option<usize>, refs: &[(&str, usize)]) {
+        self.count += 1;
+        let order = order.map_or_else(String::new, |order| format!(" order=\"{order}\""));
+        let _ = writeln!(
+            self.text,
+            "    <relation id=\"{}\" type=\"{kind}\"{order}>",
+            self.count
+        );
+        for (role, id) in refs {
+            let _ = writeln!(self.text, "      <ref id=\"{id}\" role=\"{role}\"/>");
+        }
+        self.text.push_str("    </relation>\n");
+    }
+}
+
+fn written(value: f64) -> String {
+    significant(value, DIGITS).to_string()
+}
+
+fn escaped(text: &str) -> String {
+    let text = text.replace('&', "&amp;").replace('<', "&lt;");
+    text.replace('>', "&gt;").replace('"', "&quot;")
+}

@@ -1,0 +1,378 @@
+//! From a model to a submission: which stage, which gear drives, and what was not read.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+use serde_json::{Value, json};
+
+use super::fault::{Fault, Refused};
+use super::file::{Component, Model};
+use super::gear::Gear;
+use super::own;
+use super::unit::{MM, Unit};
+
+/// What a model leaves open, and the caller says.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Choices {
+    /// The id of the cylindrical stage, where there are several.
+    pub stage: Option<i64>,
+    /// Output torques in N m, instead of those of the model.
+    pub torques: Vec<f64>,
+    /// The method, instead of the flexible one or that of the model.
+    pub method: Option<String>,
+    /// The bore radii in mm of the driving and of the driven gear, or one for both, instead of those of the model.
+    pub bore_radii: Vec<f64>,
+}
+
+/// A submission out of a model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Import {
+    /// The document, which is still to be checked as every submission is.
+    pub submission: Value,
+    /// What the model does not say and was assumed, and what it says and was not read: one sentence each.
+    pub remarks: Vec<String>,
+    origins: Vec<(String, String)>,
+}
+
+impl Import {
+    /// Where in the model the field at `pointer` of the submission is from.
+    pub fn origin(&self, pointer: &str) -> Option<&str> {
+        let found = self.origins.iter().find(|(field, _)| field == pointer);
+        found.map(|(_, place)| place.as_str())
+    }
+}
+
+/// Reads a model and takes one pair out of it.
+///
+/// # Errors
+///
+/// Everything that is wrong, with its place: what is no model, several stages, and what a spur gear pair cannot have.
+pub fn import(bytes: &[u8], choices: &Choices) -> Result<Import, Refused> {
+    let model = Model::read(bytes)?;
+    let reading = Reading {
+        model: &model,
+        choices,
+        faults: RefCell::default(),
+        remarks: RefCell::default(),
+        origins: RefCell::default(),
+    };
+    let submission = reading.submission();
+    let faults = reading.faults.take();
+    match submission {
+        Some(submission) if faults.is_empty() => {
+            let mut remarks = reading.remarks.take();
+            remarks.extend(left_out(&model));
+            Ok(Import {
+                submission,
+                remarks,
+                origins: reading.origins.take(),
+            })
+        }
+        _ => Err(Refused(faults)),
+    }
+}
+
+/// A model under way to a submission. Every method reports what is wrong and answers `None` then, so that all is told together.
+pub(super) struct Reading<'a> {
+    pub(super) model: &'a Model,
+    pub(super) choices: &'a Choices,
+    faults: RefCell<Vec<Fault>>,
+    remarks: RefCell<Vec<String>>,
+    origins: RefCell<Vec<(String, String)>>,
+}
+
+/// The stage with its gears.
+pub(super) struct Stage<'a> {
+    pub(super) component: &'a Component,
+    /// The driving gear, then the driven one.
+    pub(super) gears: [&'a Component; 2],
+    /// What is said of each gear in this stage.
+    pub(super) gear_data: [Option<&'a Component>; 2],
+}
+
+impl<'a> Reading<'a> {
+    pub(super) fn wrong(&self, place: String, detail: impl Into<String>) {
+        let fault = Fault::new(place, detail);
+        let mut faults = self.faults.borrow_mut();
+        // What both flanks refer to is read for each.
+        if !faults.contains(&fault) {
+            faults.push(fault);
+        }
+    }
+
+    pub(super) fn remark(&self, sentence: String) {
+        let mut remarks = self.remarks.borrow_mut();
+        if !remarks.contains(&sentence) {
+            remarks.push(sentence);
+        }
+    }
+
+    /// That the field at `pointer` is from this attribute.
+    pub(super) fn from(&self, pointer: String, component: &Component, attribute: &str) {
+        let place = component.place_of(attribute);
+        self.origins.borrow_mut().push((pointer, place));
+    }
+
+    /// The number of an attribute, if it is there.
+    pub(super) fn number(&self, of: &Component, attribute: &str, unit: Unit) -> Option<f64> {
+        let read = of.attribute(attribute)?.number(unit);
+        read.map_err(|detail| self.wrong(of.place_of(attribute), detail))
+            .ok()
+    }
+
+    /// The number of an attribute of either name.
+    pub(super) fn either(
+        &self,
+        of: &Component,
+        attributes: [(&'static str, f64); 2],
+        units: [Unit; 2],
+    ) -> Option<(f64, &'static str)> {
+        let read = |i: usize| {
+            let (name, factor) = attributes[i];
+            Some((self.number(of, name, units[i])? * factor, name))
+        };
+        let (first, second) = (read(0), read(1));
+        first.or(second)
+    }
+
+    /// The word of an attribute, if it is there and not empty.
+    pub(super) fn word(&self, of: &'a Component, attribute: &str) -> Option<&'a str> {
+        let read = of.attribute(attribute)?.word();
+        let word = read.map_err(|detail| self.wrong(of.place_of(attribute), detail));
+        word.ok().filter(|word| !word.is_empty())
+    }
+
+    /// One of the words that an attribute may have here.
+    pub(super) fn choice(
+        &self,
+        of: &'a Component,
+        attribute: &str,
+        words: &[&str],
+    ) -> Option<&'a str> {
+        let word = self.word(of, attribute)?;
+        if words.contains(&word) {
+            return Some(word);
+        }
+        let short: String = word.chars().take(40).collect();
+        let detail = format!("It is \"{short}\"; known here: {}.", words.join(", "));
+        self.wrong(of.place_of(attribute), detail);
+        None
+    }
+
+    /// That the model does not say this of a component.
+    pub(super) fn assumed(&self, of: &Component, attribute: &str, taken: &str) {
+        let place = of.place();
+        self.remark(format!(
+            "Assumed: {place} has no {attribute}; taken is {taken}."
+        ));
+    }
+
+    /// The JSON of an attribute that only we write.
+    pub(super) fn json(&self, of: &'a Component, attribute: &str) -> Option<Value> {
+        let text = self.word(of, attribute)?;
+        let read = serde_json::from_str(text);
+        read.map_err(|error| {
+            let detail = format!("It is not the JSON of a submission: {error}.");
+            self.wrong(of.place_of(attribute), detail);
+        })
+        .ok()
+    }
+
+    fn submission(&self) -> Option<Value> {
+        let stage = self.stage()?;
+        if self.choices.bore_radii.len() > 2 {
+            let detail = "There are at most two: of the driving and of the driven gear.";
+            self.wrong("the bore radii".to_owned(), detail);
+        }
+        let distance = self.number(stage.component, "center_distance", MM);
+        match distance {
+            Some(_) => self.from(
+                "/pair/center_distance_mm".to_owned(),
+                stage.component,
+                "center_distance",
+            ),
+            None if stage.component.attribute("center_distance").is_none() => self.wrong(
+                stage.component.place(),
+                "It has no center_distance, which has no default.",
+            ),
+            None => {}
+        }
+        let gear = |i: usize| {
+            let pointer = ["/pair/driving", "/pair/driven"][i];
+            let bores = &self.choices.bore_radii;
+            let bore = bores.get(i).or(bores.first()).copied();
+            Gear::of(self, stage.gears[i], stage.gear_data[i])
+                .and_then(|gear| gear.document(pointer, bore))
+        };
+        let (driving, driven) = (gear(0), gear(1));
+        let torques = self.torques(&stage);
+        let method = match &self.choices.method {
+            Some(method) => method.clone(),
+            None => self
+                .word(stage.component, own::METHOD)
+                .unwrap_or("flexible")
+                .to_owned(),
+        };
+        let mut submission = json!({
+            "method": method,
+            "pair": { "center_distance_mm": distance?, "driving": driving?, "driven": driven? },
+            "output_torques_n_m": torques?,
+        });
+        if let Some(speed) = self.driving_speed(&stage) {
+            submission["driving_speed_rpm"] = json!(speed);
+        }
+        Some(submission)
+    }
+
+    /// The one stage that is meant, and its gears in the order of the power.
+    fn stage(&self) -> Option<Stage<'a>> {
+        let component = self.chosen_stage()?;
+        let relation = self
+            .model
+            .relations
+            .iter()
+            .find(|relation| relation.kind == "stage" && relation.has("stage", component.id));
+        let gear = |role: &str| relation.and_then(|relation| self.model.in_role(relation, role));
+        let (Some(first), Some(second)) = (gear("gear_1"), gear("gear_2")) else {
+            let detail = "It needs a relation of type stage with a gear_1 and a gear_2.";
+            self.wrong(component.place(), detail);
+            return None;
+        };
+        let mut external = true;
+        for gear in [first, second] {
+            if gear.kind != "cylindrical_gear" {
+                let detail = format!(
+                    "A gear of type {} cannot be computed; the mechanics know external spur gears, type cylindrical_gear.",
+                    gear.kind
+                );
+                self.wrong(gear.place(), detail);
+                external = false;
+            }
+        }
+        if !external {
+            return None;
+        }
+        let data = [first, second].map(|gear| {
+            let relations = self.model.relations.iter();
+            relations
+                .filter(|relation| {
+                    relation.kind == "stage_gear_data"
+                        && relation.has("stage", component.id)
+                        && relation.has("gear", gear.id)
+                })
+                .find_map(|relation| self.model.in_role(relation, "stage_gear_data"))
+        });
+        let drives = data.map(|data| self.choice(data?, "is_driving_gear", &["true", "false"]));
+        let swapped = match drives {
+            [Some("true"), Some("true")] | [Some("false"), Some("false")] => {
+                let detail = "Its two gears say the same of is_driving_gear; exactly one drives.";
+                self.wrong(component.place(), detail);
+                return None;
+            }
+            [Some("true"), _] | [_, Some("false")] => false,
+            [Some("false"), _] | [_, Some("true")] => true,
+            _ => {
+                self.remark(format!(
+                    "Assumed: {} drives; no is_driving_gear says which gear does.",
+                    first.place()
+                ));
+                false
+            }
+        };
+        let order = if swapped { [1, 0] } else { [0, 1] };
+        component.met.set(true);
+        Some(Stage {
+            component,
+            gears: order.map(|i| [first, second][i]),
+            gear_data: order.map(|i| data[i]),
+        })
+    }
+
+    fn chosen_stage(&self) -> Option<&'a Component> {
+        let stages: Vec<&Component> = self.model.of_kind("cylindrical_stage").collect();
+        let names = || {
+            let names: Vec<String> = stages.iter().map(|stage| stage.place()).collect();
+            names.join(", ")
+        };
+        let file = "the file".to_owned();
+        match (stages.as_slice(), self.choices.stage) {
+            ([], _) => {
+                let kinds = ["planetary_stage", "bevel_stage", "worm_stage"];
+                let there = kinds
+                    .iter()
+                    .filter(|kind| self.model.of_kind(kind).count() > 0);
+                let there: Vec<&str> = there.copied().collect();
+                let has = if there.is_empty() {
+                    "no stage at all".to_owned()
+                } else {
+                    format!("{} only", there.join(" and "))
+                };
+                self.wrong(
+                    file,
+                    format!("It has {has}; a cylindrical_stage is needed."),
+                );
+                None
+            }
+            (_, Some(id)) => {
+                let found = stages.iter().find(|stage| stage.id == id).copied();
+                if found.is_none() {
+                    let detail = format!("No stage has the id {id}; it has {}.", names());
+                    self.wrong(file, detail);
+                }
+                found
+            }
+            ([one], None) => Some(one),
+            (several, None) => {
+                let detail = format!(
+                    "It has {} cylindrical stages, and one pair is computed at a time. Choose by --stage ID: {}.",
+                    several.len(),
+                    names()
+                );
+                self.wrong(file, detail);
+                None
+            }
+        }
+    }
+}
+
+/// What was not read: attributes of what was met, and kinds of what was not.
+fn left_out(model: &Model) -> Vec<String> {
+    let unread = |component: &Component| -> Vec<String> {
+        let unread = component.attributes.iter().filter(|a| !a.read.get());
+        unread.map(|attribute| attribute.id.clone()).collect()
+    };
+    let mut sentences: Vec<String> = model
+        .components
+        .iter()
+        .filter(|component| component.met.get())
+        .map(|component| (component.place(), unread(component)))
+        .filter(|(_, ids)| !ids.is_empty())
+        .map(|(place, ids)| format!("Not read: of {place}: {}.", ids.join(", ")))
+        .collect();
+    let mut kinds: BTreeMap<&str, usize> = BTreeMap::new();
+    for component in model.components.iter().filter(|other| !other.met.get()) {
+        *kinds.entry(&component.kind).or_default() += 1;
+    }
+    if !kinds.is_empty() {
+        let kinds: Vec<String> = kinds
+            .iter()
+            .map(|(kind, n)| format!("{n} {kind}"))
+            .collect();
+        sentences.push(format!("Not read: {}.", kinds.join(", ")));
+    }
+    let mut in_cases: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    let cases = model.load_cases.iter();
+    for component in cases.flat_map(|(_, case)| case.values()) {
+        let ids = in_cases.entry(&component.kind).or_default();
+        ids.extend(unread(component));
+    }
+    for (kind, mut ids) in in_cases.into_iter().filter(|(_, ids)| !ids.is_empty()) {
+        ids.sort();
+        ids.dedup();
+        sentences.push(format!(
+            "Not read: in load cases, of {kind}: {}.",
+            ids.join(", ")
+        ));
+    }
+    sentences
+}

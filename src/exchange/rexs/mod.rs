@@ -1,0 +1,50 @@
+//! REXS, the gearbox exchange format of the FVA: a pair of spur gears out of a model, and a pair with its curves as a model.
+//!
+//! A model is a list of components with attributes, relations between components, and load cases. Read in this order: `file` (the
+//! XML as such), `unit` (what its numbers are in), `fault` (what is wrong with a model), `import` with `gear` and `load`, and `export`.
+//!
+//! Names are those of versions 1.4 to 2.0. What the format has no words for stands in attributes `custom_meshwright_...`.
+
+mod export;
+mod fault;
+mod file;
+mod gear;
+mod import;
+mod load;
+#[cfg(test)]
+mod tests;
+mod unit;
+
+pub use export::export;
+pub use fault::{Fault, Refused};
+pub use import::{Choices, Import, import};
+
+/// Whether a document is XML rather than JSON, by its first character.
+pub fn is_xml(document: &[u8]) -> bool {
+    let text = document
+        .strip_prefix(file::BYTE_ORDER_MARK)
+        .unwrap_or(document);
+    text.trim_ascii_start().first() == Some(&b'<')
+}
+
+/// The attributes that only this program writes and reads, each named once for both directions.
+mod own {
+    /// Of the stage: the method, as a submission has it.
+    pub(super) const METHOD: &str = "custom_meshwright_method";
+    /// Of a gear: the holes of the blank, the JSON of a submission.
+    pub(super) const HOLES: &str = "custom_meshwright_holes";
+    /// Of a gear: the deviations of the teeth, the JSON of a submission.
+    pub(super) const DEVIATIONS: &str = "custom_meshwright_tooth_deviations";
+    /// Of a gear: the radius of the tip edges.
+    pub(super) const TIP_ROUNDING: &str = "custom_meshwright_tip_rounding";
+    /// Of a flank: profile tables, the JSON of a submission.
+    pub(super) const TABLES: &str = "custom_meshwright_profile_tables";
+    /// Of a gear body: where the web begins.
+    pub(super) const WEB_INNER_RADIUS: &str = "custom_meshwright_web_inner_radius";
+    /// Of the stage in a load case: where in the mesh each entry of the characteristic stands, in mesh periods.
+    pub(super) const MESH_POSITION: &str = "custom_meshwright_mesh_position";
+    /// Of the stage in a load case: the load over the transmission error.
+    pub(super) const SECANT: &str = "custom_meshwright_mesh_stiffness_secant";
+    /// Of the stage in a load case.
+    pub(super) const TRANSMISSION_ERROR: &str = "custom_meshwright_transmission_error";
+}

@@ -1,0 +1,654 @@
+//! Models taken and refused, and pairs that come back as they went.
+
+use meshwright_engine::library::Library;
+use meshwright_engine::run::Run;
+use serde_json::{Value, json};
+
+use super::{Choices, Import, Refused, export, import, is_xml};
+use crate::wire::solve::results;
+use crate::wire::{Submission, examples};
+
+const CASE_2: &str = include_str!("../../../api/examples/test-case-2.rexs");
+
+const DATE: &str = "2026-11-21T22:00:00+00:00";
+
+fn taken(model: &str) -> Import {
+    match import(model.as_bytes(), &Choices::default()) {
+        Ok(imported) => imported,
+        Err(refused) => panic!("{refused}"),
+    }
+}
+
+fn refused(model: &str) -> Refused {
+    import(model.as_bytes(), &Choices::default()).expect_err("it is refused")
+}
+
+/// The model of test case 2 with one piece of its text changed.
+fn with(old: &str, new: &str) -> String {
+    assert!(CASE_2.contains(old), "{old}");
+    CASE_2.replacen(old, new, 1)
+}
+
+/// That exactly one thing is wrong, at `place`, and that these words are said of it.
+fn assert_refused(model: &str, place: &str, words: &[&str]) {
+    let Refused(faults) = refused(model);
+    let [fault] = faults.as_slice() else {
+        panic!("{faults:?}");
+    };
+    assert!(fault.place.contains(place), "{fault:?}");
+    for word in words {
+        assert!(fault.detail.contains(word), "{word}: {fault:?}");
+    }
+}
+
+fn field(imported: &Import, pointer: &str) -> Value {
+    let found = imported.submission.pointer(pointer);
+    found
+        .unwrap_or_else(|| panic!("no {pointer}: {}", imported.submission))
+        .clone()
+}
+
+#[test]
+fn the_model_of_test_case_2_is_its_submission() {
+    let imported = taken(CASE_2);
+    let of_model = Submission::parse(imported.submission.to_string().as_bytes()).expect("valid");
+    let example = examples()
+        .iter()
+        .find(|example| example.name == "test-case-2");
+    let json = example.expect("ships").json;
+    // The relief of the model begins at a diameter, that of the submission at a depth: the same place.
+    let json = json.replace(r#""radial_length_mm": 1.75"#, r#""diameter_mm": 100.5"#);
+    let json = json.replace(r#""addendum_mm": 2.0"#, r#""tip_diameter_mm": 104.0"#);
+    let by_hand = Submission::parse(json.as_bytes()).expect("valid");
+    assert_eq!(of_model.canonical_json(), by_hand.canonical_json());
+    let said = &imported.remarks;
+    assert_eq!(said, &["Not read: 1 gear_unit, 1 shaft."]);
+}
+
+#[test]
+fn units_are_converted_and_unknown_ones_refused() {
+    for (old, new, pointer, value) in [
+        (
+            r#""center_distance" unit="mm">100.5"#,
+            r#""center_distance" unit="m">0.1005"#,
+            "/pair/center_distance_mm",
+            100.5,
+        ),
+        (
+            r#"unit="N / mm^2">210000"#,
+            r#"unit="MPa">205000"#,
+            "/pair/driven/material/youngs_modulus_gpa",
+            205.0,
+        ),
+        (
+            r#"unit="kg / dm^3">7.85"#,
+            r#"unit="kg / m^3">7850"#,
+            "/pair/driven/material/density_kg_m3",
+            7850.0,
+        ),
+        (
+            r#"unit="N m">-115"#,
+            r#"unit="kN m">-0.115"#,
+            "/output_torques_n_m/0",
+            115.0,
+        ),
+        (
+            r#"unit="mm">0.005<"#,
+            r#"unit="mum">5.1<"#,
+            "/pair/driving/tip_relief/amount_um",
+            5.1,
+        ),
+        (
+            r#""number_of_teeth" unit="none">50"#,
+            r#""number_of_teeth">50"#,
+            "/pair/driving/tooth_count",
+            50.0,
+        ),
+    ] {
+        let said = field(&taken(&with(old, new)), pointer);
+        assert_eq!(said.as_f64(), Some(value), "{new}");
+    }
+    let inches = with(r#"unit="mm">100.5"#, r#"unit="inch">3.957"#);
+    assert_refused(
+        &inches,
+        "component 2 (cylindrical_stage \"Stage\"), center_distance",
+        &["inch", "mm, mum"],
+    );
+    let word = with(r#"unit="mm">100.5"#, r#"unit="mm">wide"#);
+    assert_refused(&word, "center_distance", &["wide", "number"]);
+}
+
+#[test]
+fn a_word_that_is_not_known_is_refused() {
+    let flank = CASE_2.replace(
+        "true</attribute>",
+        r#"true</attribute><attribute id="loaded_tooth_flank">both</attribute>"#,
+    );
+    assert_refused(&flank, "component 11", &["both", "left, right"]);
+    let drives = with(">true<", ">yes<");
+    assert_refused(&drives, "component 11", &["yes", "true, false"]);
+    let shape = with(
+        r#"<attribute id="shape_of_relief" unit="none">linear</attribute>"#,
+        "",
+    );
+    let shape = taken(&shape);
+    assert_eq!(field(&shape, "/pair/driven/tip_relief/shape"), "linear");
+    let said = "Assumed: component 32 (tip_relief) has no shape_of_relief; taken is linear.";
+    assert_eq!(shape.remarks[0], said);
+}
+
+#[test]
+fn a_helix_an_internal_gear_and_flanks_that_differ_are_refused_with_the_reason() {
+    let helix = with(
+        r#""helix_angle_reference_diameter" unit="deg">0"#,
+        r#""helix_angle_reference_diameter" unit="deg">21"#,
+    );
+    assert_refused(
+        &helix,
+        "component 10 (cylindrical_gear \"Pinion\"), helix_angle_reference_diameter",
+        &["21 deg", "0 is what can be computed", "plane"],
+    );
+    let ring = with(
+        r#"<component id="20" type="cylindrical_gear""#,
+        r#"<component id="20" type="ring_gear""#,
+    );
+    assert_refused(&ring, "component 20", &["ring_gear", "external"]);
+    let shifted = with(
+        r#""addendum_modification_coefficient" unit="none">0"#,
+        r#""addendum_modification_coefficient" unit="none">0.2"#,
+    );
+    assert_refused(&shifted, "component 13", &["0.2", "both sides"]);
+    let one_relief = with(
+        r#"<ref id="12" role="origin"/>"#,
+        r#"<ref id="10" role="origin"/>"#,
+    );
+    assert_refused(&one_relief, "component 10", &["loaded_tooth_flank"]);
+    let told = one_relief.replacen(
+        r#"true</attribute>"#,
+        r#"true</attribute><attribute id="loaded_tooth_flank">right</attribute>"#,
+        1,
+    );
+    assert_eq!(
+        field(&taken(&told), "/pair/driving/tip_relief/amount_um"),
+        5.0
+    );
+}
+
+#[test]
+fn of_several_stages_one_is_chosen_by_its_id() {
+    let two = with(
+        "</components>",
+        r#"<component id="3" type="cylindrical_stage" name="Second"/></components>"#,
+    );
+    assert_refused(
+        &two,
+        "the file",
+        &[
+            "2 cylindrical stages",
+            "--stage",
+            "component 3",
+            "component 2",
+        ],
+    );
+    let choices = |stage| Choices {
+        stage: Some(stage),
+        ..Choices::default()
+    };
+    assert!(import(two.as_bytes(), &choices(2)).is_ok());
+    let Refused(faults) = import(two.as_bytes(), &choices(7)).expect_err("none has this id");
+    assert!(
+        faults[0].detail.contains("No stage has the id 7"),
+        "{faults:?}"
+    );
+    let Refused(faults) = import(two.as_bytes(), &choices(3)).expect_err("it has no gears");
+    assert!(faults[0].detail.contains("gear_1"), "{faults:?}");
+    let none = CASE_2.replace("cylindrical_stage\"", "bevel_stage\"");
+    assert_refused(&none, "the file", &["bevel_stage only"]);
+}
+
+#[test]
+fn a_torque_comes_from_the_case_the_gear_data_or_the_caller_and_else_is_missed() {
+    let none = with(
+        r#"<attribute id="torque_around_u_axis" unit="N m">-115</attribute>"#,
+        "",
+    );
+    assert_refused(&none, "component 2", &["--torque", "external_load"]);
+    let choices = Choices {
+        torques: vec![80.0, 20.0],
+        ..Choices::default()
+    };
+    let chosen = import(none.as_bytes(), &choices).expect("the caller says it");
+    assert_eq!(field(&chosen, "/output_torques_n_m"), json!([80.0, 20.0]));
+    // The torque of the driving gear is larger by the ratio on the driven one, and signs are those of the axes.
+    let data = r#"is_driving_gear" unit="none">true</attribute>"#;
+    let of_driving = none.replace(
+        data,
+        &format!("{data}<attribute id=\"torque\" unit=\"N m\">-40</attribute>"),
+    );
+    let of_driving = of_driving.replacen(">50<", ">25<", 1);
+    assert_eq!(
+        field(&taken(&of_driving), "/output_torques_n_m"),
+        json!([80.0])
+    );
+    let cases = with(
+        "</load_spectrum>",
+        r#"<load_case id="2"><component id="21" type="cylindrical_stage_gear_data"><attribute id="torque">20</attribute></component>
+           <component id="10" type="cylindrical_gear"><attribute id="rotational_speed" unit="1 / s">-25</attribute></component></load_case></load_spectrum>"#,
+    );
+    let cases = taken(&cases);
+    assert_eq!(field(&cases, "/output_torques_n_m"), json!([115.0, 20.0]));
+    assert_eq!(field(&cases, "/driving_speed_rpm"), 1500.0);
+}
+
+#[test]
+fn the_gear_that_says_so_drives() {
+    let swapped = CASE_2
+        .replace(">true<", ">?<")
+        .replace(">false<", ">true<")
+        .replace(">?<", ">false<");
+    let swapped = taken(&swapped.replace(
+        r#"<ref id="20" role="part"/>"#,
+        r#"<ref id="10" role="part"/>"#,
+    ));
+    assert_eq!(field(&swapped, "/pair/driving/blank/holes/count"), 10);
+    let silent = CASE_2.replace(">true<", "><").replace(">false<", "><");
+    let silent = taken(&silent);
+    assert_eq!(field(&silent, "/pair/driven/blank/holes/count"), 10);
+    assert!(
+        silent
+            .remarks
+            .iter()
+            .any(|remark| remark.contains("drives")),
+        "{:?}",
+        silent.remarks
+    );
+    let both = CASE_2.replace(">false<", ">true<");
+    assert_refused(&both, "component 2", &["exactly one drives"]);
+}
+
+#[test]
+fn what_is_absent_is_told_as_assumed_or_missed_and_what_is_not_read_is_named() {
+    let poor = CASE_2.replace(
+        r#"<attribute id="tip_radius_factor" unit="none">0.38</attribute>"#,
+        "",
+    );
+    let poor = poor.replace(
+        r#"<attribute id="normal_pressure_angle" unit="deg">20</attribute>"#,
+        r#"<attribute id="grinding_allowance" unit="mm">0.1</attribute>"#,
+    );
+    let imported = taken(&poor);
+    assert_eq!(field(&imported, "/pair/driven/pressure_angle_deg"), 20.0);
+    let remarks = imported.remarks.join("\n");
+    for said in [
+        "Assumed: component 10 (cylindrical_gear \"Pinion\") has no normal_pressure_angle; taken is 20 deg.",
+        "no rack_shaped_tool with a tip radius",
+        "Not read: of component 12 (cylindrical_gear_flank): grinding_allowance.",
+    ] {
+        assert!(remarks.contains(said), "{said}: {remarks}");
+    }
+    let solid = with(
+        r#"<attribute id="inner_diameter" unit="mm">32</attribute>"#,
+        "",
+    );
+    assert_refused(&solid, "component 10", &["inner_diameter", "--bore-radius"]);
+    let choices = Choices {
+        bore_radii: vec![12.0, 15.0],
+        ..Choices::default()
+    };
+    let bored = import(solid.as_bytes(), &choices).expect("the caller says it");
+    assert_eq!(field(&bored, "/pair/driving/blank/bore_radius_mm"), 12.0);
+    assert_eq!(field(&bored, "/pair/driven/blank/bore_radius_mm"), 15.0);
+    let narrow = with(r#"<attribute id="face_width" unit="mm">20</attribute>"#, "");
+    assert_refused(&narrow, "component 10", &["face_width", "no default"]);
+}
+
+#[test]
+fn the_tool_stands_where_it_generates_the_teeth() {
+    let thin = with(
+        r#""generated_addendum_modification_coefficient" unit="none">0"#,
+        r#""generated_addendum_modification_coefficient" unit="none">-0.02"#,
+    );
+    let imported = taken(&thin);
+    // Cut 0.02 modules deeper: the root by 0.04 mm, the tooth thinner by 2 * 0.04 mm * tan 20 deg.
+    assert_eq!(field(&imported, "/pair/driving/dedendum_mm"), 2.54);
+    let thinner = field(&imported, "/pair/driving/tooth_thickness_deviation_um");
+    let expected = -80.0 * 20_f64.to_radians().tan();
+    assert!((thinner.as_f64().expect("a number") - expected).abs() < 1e-6);
+    // A root diameter that says otherwise holds, and that is told.
+    let ground = CASE_2.replace(
+        r#"<attribute id="tip_diameter" unit="mm">104</attribute>"#,
+        r#"<attribute id="tip_diameter" unit="mm">104</attribute><attribute id="root_diameter" unit="mm">94.8</attribute>"#,
+    );
+    let ground = taken(&ground);
+    assert_eq!(field(&ground, "/pair/driven/dedendum_mm"), 2.6);
+    assert!(
+        ground
+            .remarks
+            .iter()
+            .any(|remark| remark.contains("root_diameter 2.6 mm"))
+    );
+    let other = with(
+        r#""normal_module" unit="mm">2</attribute>
+      <attribute id="normal_pressure_angle""#,
+        r#""normal_module" unit="mm">2.5</attribute>
+      <attribute id="normal_pressure_angle""#,
+    );
+    let Refused(faults) = refused(&other);
+    assert!(
+        faults
+            .iter()
+            .all(|fault| fault.place.contains("component 30")),
+        "{faults:?}"
+    );
+}
+
+#[test]
+fn a_web_lies_between_the_rim_and_the_bore() {
+    let body = r#"<component id="50" type="gear_body"><attribute id="gear_body_rim_thickness" unit="mm">4.5</attribute><attribute id="gear_body_web_thickness" unit="mm">6</attribute></component></components>"#;
+    let relation = r#"<relation id="50" type="assembly"><ref id="20" role="assembly"/><ref id="50" role="part"/></relation></relations>"#;
+    let model = CASE_2
+        .replace("</components>", body)
+        .replace("</relations>", relation);
+    let imported = taken(&model);
+    let web = json!({ "inner_radius_mm": 16.0, "outer_radius_mm": 43.0, "thickness_mm": 6.0 });
+    assert_eq!(field(&imported, "/pair/driven/blank/web"), web);
+    assert!(
+        imported
+            .remarks
+            .iter()
+            .any(|remark| remark.contains("no hub"))
+    );
+    let half = model.replace(
+        r#"<attribute id="gear_body_rim_thickness" unit="mm">4.5</attribute>"#,
+        "",
+    );
+    assert_refused(&half, "component 50", &["needs both"]);
+}
+
+#[test]
+fn reliefs_that_are_said_otherwise_than_we_can_take_are_refused() {
+    for (new, words) in [
+        (
+            r#""shape_of_relief">exponential"#,
+            ["exponential", "parabolic"],
+        ),
+        (
+            r#""shape_of_relief">linear</attribute><attribute id="tip_relief_evaluation_reference" unit="mm">103.6"#,
+            ["103.6", "104"],
+        ),
+    ] {
+        assert_refused(
+            &with(r#""shape_of_relief" unit="none">linear"#, new),
+            "component 32",
+            &words,
+        );
+    }
+    let nowhere = with(
+        r#"<attribute id="tip_relief_datum_diameter" unit="mm">100.5</attribute>"#,
+        "",
+    );
+    assert_refused(&nowhere, "component 32", &["where does it begin"]);
+    let rolled = with(
+        r#""tip_relief_datum_diameter" unit="mm">100.5"#,
+        r#""tip_relief_datum_length" unit="mm">4"#,
+    );
+    let rolled = taken(&rolled);
+    assert_eq!(
+        field(&rolled, "/pair/driving/tip_relief/start"),
+        json!({ "roll_length_from_tip_mm": 4.0 })
+    );
+}
+
+#[test]
+fn a_crowning_takes_off_the_same_at_both_ends_and_a_slope_at_the_tip() {
+    let model = |crowning: &str| {
+        let parts = format!(
+            r#"<component id="60" type="profile_crowning">{crowning}</component><component id="61" type="profile_slope"><attribute id="profile_slope" unit="mum">-3</attribute></component></components>"#
+        );
+        let refer = |flank: u32, to: u32| {
+            format!(
+                r#"<relation id="{to}{flank}" type="reference"><ref id="{flank}" role="origin"/><ref id="{to}" role="referenced"/></relation>"#
+            )
+        };
+        let relations = [refer(12, 60), refer(13, 60), refer(12, 61), refer(13, 61)].concat();
+        let model = CASE_2.replace("</components>", &parts);
+        model.replace("</relations>", &format!("{relations}</relations>"))
+    };
+    let at = |end: &str, mm: f64| {
+        format!(r#"<attribute id="profile_crowning_at_{end}" unit="mm">{mm}</attribute>"#)
+    };
+    let imported = taken(&model(&(at("tip", 0.004) + &at("root", 0.004))));
+    assert_eq!(
+        field(&imported, "/pair/driving/profile_modifications"),
+        json!([{ "kind": "crowning", "amount_um": 4.0 }, { "kind": "slope", "amount_um": -3.0 }])
+    );
+    let sign = |remark: &String| remark.contains("takes material off at the tip");
+    assert!(imported.remarks.iter().any(sign), "{:?}", imported.remarks);
+    let unlike = model(&(at("tip", 0.004) + &at("root", 0.006)));
+    assert_refused(
+        &unlike,
+        "component 60",
+        &["0.004", "0.006", "profile_slope"],
+    );
+}
+
+#[test]
+fn more_load_cases_than_anybody_computes_are_refused() {
+    let cases: String = (2..1002)
+        .map(|id| format!(r#"<load_case id="{id}"/>"#))
+        .collect();
+    let many = with("</load_spectrum>", &format!("{cases}</load_spectrum>"));
+    assert_refused(&many, "the load spectrum", &["1001", "1000"]);
+}
+
+#[test]
+fn a_problem_of_the_submission_leads_back_to_the_model() {
+    let apart = with(
+        r#""center_distance" unit="mm">100.5"#,
+        r#""center_distance" unit="mm">105"#,
+    );
+    let imported = taken(&apart);
+    let problem = Submission::parse(imported.submission.to_string().as_bytes()).expect_err("apart");
+    let origin = imported.origin(&problem.errors[0].pointer);
+    assert_eq!(
+        origin,
+        Some("component 2 (cylindrical_stage \"Stage\"), center_distance")
+    );
+}
+
+#[test]
+fn every_valid_example_comes_back_as_the_same_pair() {
+    let quick = json!({ "positions_per_mesh_period": 8, "span_mesh_periods": 1, "grid": "coarse" });
+    let library = Library::with_capacity(256 << 20);
+    let solved = |submission: &Submission| {
+        let solved = results(submission, &library, &Run::unattended()).expect("computed");
+        serde_json::to_value(solved).expect("JSON")
+    };
+    for example in examples().iter().filter(|example| example.valid) {
+        let mut document: Value = serde_json::from_str(example.json).expect("JSON");
+        document["resolution"] = quick.clone();
+        let gone = Submission::parse(document.to_string().as_bytes()).expect("valid");
+        let there = solved(&gone);
+        let imported = taken(&export(&gone, Some(&there), DATE));
+        let mut submission = imported.submission.clone();
+        submission["resolution"] = quick.clone();
+        let back = match Submission::parse(submission.to_string().as_bytes()) {
+            Ok(back) => back,
+            Err(problem) => panic!("{}: {problem:?}", example.name),
+        };
+        assert_eq!(gone.method(), back.method());
+        let again = solved(&back);
+        assert_alike(&there["pair"], &again["pair"], example.name);
+        assert_alike(&there["frequencies"], &again["frequencies"], example.name);
+        assert_alike(&there["curves"], &again["curves"], example.name);
+    }
+}
+
+/// Equal words, and numbers equal but for the last bits of the conversions, which contact answers with some more.
+fn assert_alike(one: &Value, other: &Value, place: &str) {
+    match (one, other) {
+        (Value::Number(a), Value::Number(b)) => {
+            let (a, b) = (
+                a.as_f64().unwrap_or(f64::NAN),
+                b.as_f64().unwrap_or(f64::NAN),
+            );
+            assert!(
+                (a - b).abs() <= 1e-6 * a.abs().max(b.abs()).max(1e-3),
+                "{place}: {a} and {b}"
+            );
+        }
+        (Value::Array(a), Value::Array(b)) => {
+            assert_eq!(a.len(), b.len(), "{place}");
+            for (i, (a, b)) in a.iter().zip(b).enumerate() {
+                assert_alike(a, b, &format!("{place}/{i}"));
+            }
+        }
+        (Value::Object(a), Value::Object(b)) => {
+            assert_eq!(a.len(), b.len(), "{place}");
+            for (key, a) in a {
+                assert_alike(a, &b[key], &format!("{place}/{key}"));
+            }
+        }
+        _ => assert_eq!(one, other, "{place}"),
+    }
+}
+
+#[test]
+fn the_curves_stand_at_the_stage_in_the_units_of_the_standard() {
+    let example = examples()
+        .iter()
+        .find(|example| example.name == "standard-pair");
+    let submission = Submission::parse(example.expect("ships").json.as_bytes()).expect("valid");
+    let library = Library::with_capacity(64 << 20);
+    let solved = results(&submission, &library, &Run::unattended()).expect("computed");
+    let results = serde_json::to_value(&solved).expect("JSON");
+    let text = export(&submission, Some(&results), DATE);
+    let document = roxmltree::Document::parse(&text).expect("XML");
+    let lists = |id: &str| -> Vec<(String, Vec<f64>)> {
+        let attributes = document
+            .descendants()
+            .filter(|node| node.attribute("id") == Some(id));
+        let of = |node: roxmltree::Node<'_, '_>| {
+            let cells = node.descendants().filter(|cell| cell.has_tag_name("c"));
+            let numbers = cells.map(|cell| cell.text().expect("text").parse().expect("a number"));
+            (
+                node.attribute("unit").expect("a unit").to_owned(),
+                numbers.collect(),
+            )
+        };
+        attributes.map(of).collect()
+    };
+    let stiffness = lists("meshing_stiffness_characteristic");
+    assert_eq!(stiffness.len(), solved.curves.len());
+    for ((unit, said), curve) in stiffness.iter().zip(&solved.curves) {
+        assert_eq!(unit, "N / mm");
+        let computed = &curve.mesh_stiffness_tangent_n_per_m;
+        assert_eq!(said.len(), computed.len());
+        for (said, computed) in said.iter().zip(computed) {
+            assert!((said * 1e3 / computed - 1.0).abs() < 1e-12);
+        }
+    }
+    let angles = lists("rotational_meshing_position");
+    assert_eq!(angles.len(), 2 * solved.curves.len());
+    assert_eq!(angles[0].0, "deg");
+    let torques: Vec<_> = document
+        .descendants()
+        .filter(|node| node.attribute("id") == Some("torque"))
+        .map(|node| node.text().expect("text"))
+        .collect();
+    assert_eq!(torques, ["115", "20"]);
+}
+
+#[test]
+fn what_is_no_model_is_refused_before_anything_grows() {
+    let bomb = r#"<!DOCTYPE model [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;">]><model version="2.0.0">&b;</model>"#;
+    assert_refused(bomb, "the file", &["XML", "DTD"]);
+    let foreign = r#"<!DOCTYPE model SYSTEM "file:///etc/hostname"><model version="2.0.0"/>"#;
+    assert_refused(foreign, "the file", &["XML", "DTD"]);
+    let unknown = with("Pinion", "&pinion;");
+    assert_refused(&unknown, "the file", &["XML", "pinion"]);
+    let deep = format!("<model version=\"2.0.0\">{}", "<a>".repeat(500_000));
+    assert_refused(&deep, "the file", &["XML"]);
+    let many = format!(
+        "<model version=\"2.0.0\">{}</model>",
+        "<a/>".repeat(2_000_001)
+    );
+    assert_refused(&many, "the file", &["XML", "limit"]);
+    let large = " ".repeat((32 << 20) + 1);
+    assert_refused(&large, "the file", &["33554433 bytes", "33554432"]);
+    assert_refused("<gearbox/>", "the file", &["<gearbox>"]);
+    assert_refused(r#"<model version="1.1"/>"#, "the file", &["1.1", "1.4"]);
+    assert_refused(r#"<model version="3.0"/>"#, "the file", &["3.0"]);
+    let same = with(
+        "</components>",
+        r#"<component id="33" type="material"/></components>"#,
+    );
+    assert_refused(&same, "component 33", &["same id"]);
+    let lost = with(
+        r#"<ref id="2" role="stage" hint"#,
+        r#"<ref id="99" role="stage" hint"#,
+    );
+    assert_refused(&lost, "relation of type stage", &["component 99"]);
+    let twice = with(
+        r#"<attribute id="poisson_ratio" unit="none">0.3</attribute>"#,
+        r#"<attribute id="density">7</attribute>"#,
+    );
+    assert_refused(&twice, "component 33", &["twice"]);
+    let Refused(faults) = import(b"<model \xFF", &Choices::default()).expect_err("no UTF-8");
+    assert!(faults[0].detail.contains("UTF-8"), "{faults:?}");
+}
+
+#[test]
+fn damaged_models_are_taken_or_refused_and_never_panic() {
+    let mut state: u64 = 1;
+    let mut next = |below: usize| {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    let (mut taken, mut refused) = (0, 0);
+    for _ in 0..3000 {
+        let mut bytes = CASE_2.as_bytes().to_vec();
+        for _ in 0..=next(3) {
+            let (at, from) = (next(bytes.len()), next(bytes.len()));
+            match next(3) {
+                0 => bytes[at] = bytes[from],
+                1 => bytes.truncate(at.max(1)),
+                _ => {
+                    let piece = bytes[from..(from + 30).min(bytes.len())].to_vec();
+                    bytes.splice(at..at, piece);
+                }
+            }
+        }
+        match import(&bytes, &Choices::default()) {
+            Ok(imported) => {
+                taken += 1;
+                Submission::parse(imported.submission.to_string().as_bytes()).ok();
+            }
+            Err(Refused(faults)) => {
+                refused += 1;
+                assert!(!faults.is_empty());
+            }
+        }
+    }
+    assert!(
+        taken > 50 && refused > 500,
+        "{taken} taken, {refused} refused"
+    );
+}
+
+#[test]
+fn a_model_is_known_by_its_first_character() {
+    assert!(is_xml(CASE_2.as_bytes()));
+    assert!(is_xml(b"\xEF\xBB\xBF\r\n <model/>"));
+    assert!(!is_xml(b" {}"));
+    assert!(!is_xml(b""));
+    let marked = [b"\xEF\xBB\xBF", CASE_2.as_bytes()].concat();
+    assert!(import(&marked, &Choices::default()).is_ok());
+    let named = with(
+        "<model version",
+        "<model xmlns=\"https://www.rexs.info\" version",
+    );
+    assert_eq!(taken(&named).submission, taken(CASE_2).submission);
+}

@@ -1,0 +1,139 @@
+//! The units of attributes. Each attribute has a unit of its own in the standard, and says it again; other spellings and other
+//! powers of ten are converted.
+
+use crate::wire::significant;
+
+/// The digits that the standard keeps of a number; what lies below is noise of a conversion.
+const DIGITS: usize = 15;
+
+/// A unit of the standard, and what is converted to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Unit {
+    /// As the standard writes it.
+    pub(super) name: &'static str,
+    /// Other units, without spaces, and what one of them is: a factor and a divisor, so that powers of ten round once.
+    others: &'static [(&'static str, f64, f64)],
+}
+
+pub(super) const NONE: Unit = Unit {
+    name: "none",
+    others: &[("", 1.0, 1.0), ("-", 1.0, 1.0)],
+};
+
+pub(super) const MM: Unit = Unit {
+    name: "mm",
+    others: &[
+        ("mum", 1.0, 1e3),
+        ("um", 1.0, 1e3),
+        ("µm", 1.0, 1e3),
+        ("cm", 10.0, 1.0),
+        ("m", 1e3, 1.0),
+    ],
+};
+
+pub(super) const DEG: Unit = Unit {
+    name: "deg",
+    others: &[("°", 1.0, 1.0), ("rad", 180.0, std::f64::consts::PI)],
+};
+
+pub(super) const MPA: Unit = Unit {
+    name: "MPa",
+    others: &[
+        ("N/mm^2", 1.0, 1.0),
+        ("Pa", 1.0, 1e6),
+        ("N/m^2", 1.0, 1e6),
+        ("GPa", 1e3, 1.0),
+    ],
+};
+
+pub(super) const KG_PER_DM3: Unit = Unit {
+    name: "kg / dm^3",
+    others: &[("g/cm^3", 1.0, 1.0), ("kg/m^3", 1.0, 1e3)],
+};
+
+pub(super) const N_M: Unit = Unit {
+    name: "N m",
+    others: &[("kNm", 1e3, 1.0), ("Nmm", 1.0, 1e3)],
+};
+
+pub(super) const PER_MINUTE: Unit = Unit {
+    name: "1 / min",
+    others: &[
+        ("1/s", 60.0, 1.0),
+        ("Hz", 60.0, 1.0),
+        ("rad/s", 30.0, std::f64::consts::PI),
+    ],
+};
+
+impl Unit {
+    /// `value` in this unit, if `said` is one that is known here. An attribute that says none has the unit of the standard.
+    pub(super) fn convert(self, value: f64, said: Option<&str>) -> Option<f64> {
+        let squeezed = |text: &str| text.split_whitespace().collect::<String>();
+        let Some(said) = said.map(squeezed) else {
+            return Some(value);
+        };
+        if said == squeezed(self.name) {
+            return Some(value);
+        }
+        let (_, factor, divisor) = self.others.iter().find(|(name, ..)| *name == said)?;
+        Some(significant(value * factor / divisor, DIGITS))
+    }
+
+    /// The units that are known, as a person is told them.
+    pub(super) fn known(self) -> String {
+        let others = self.others.iter().map(|(name, ..)| *name);
+        let names: Vec<&str> = std::iter::once(self.name)
+            .chain(others.filter(|name| !name.is_empty()))
+            .collect();
+        names.join(", ")
+    }
+}
+
+/// Millimeters as micrometers.
+pub(super) fn um_of_mm(value: f64) -> f64 {
+    significant(value * 1e3, DIGITS)
+}
+
+/// Micrometers as millimeters.
+pub(super) fn mm_of_um(value: f64) -> f64 {
+    value / 1e3
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_length_is_the_same_in_every_unit() {
+        for (value, unit) in [
+            (0.0051, "mm"),
+            (5.1, "mum"),
+            (5.1, "um"),
+            (5.1, "µm"),
+            (0.00051, "cm"),
+            (5.1e-6, "m"),
+            (5.1e-6, " m "),
+        ] {
+            assert_eq!(MM.convert(value, Some(unit)), Some(0.0051), "{unit}");
+        }
+        assert_eq!(MM.convert(0.0051, None), Some(0.0051));
+        assert_eq!(MM.convert(0.2, Some("inch")), None);
+        assert_eq!(MM.convert(0.2, Some("deg")), None);
+        assert_eq!(um_of_mm(0.0051), 5.1);
+    }
+
+    #[test]
+    fn stresses_densities_torques_speeds_and_angles_convert() {
+        assert_eq!(MPA.convert(210.0, Some("GPa")), Some(210_000.0));
+        assert_eq!(MPA.convert(210_000.0, Some("N / mm^2")), Some(210_000.0));
+        assert_eq!(MPA.convert(2.1e11, Some("Pa")), Some(210_000.0));
+        assert_eq!(KG_PER_DM3.convert(7850.0, Some("kg / m^3")), Some(7.85));
+        assert_eq!(N_M.convert(0.115, Some("kN m")), Some(115.0));
+        assert_eq!(N_M.convert(115_000.0, Some("N mm")), Some(115.0));
+        assert_eq!(PER_MINUTE.convert(25.0, Some("1 / s")), Some(1500.0));
+        let speed = 1500.0 / 30.0 * std::f64::consts::PI;
+        assert_eq!(PER_MINUTE.convert(speed, Some("rad / s")), Some(1500.0));
+        assert_eq!(DEG.convert(20.0, Some("°")), Some(20.0));
+        assert_eq!(DEG.convert(20_f64.to_radians(), Some("rad")), Some(20.0));
+    }
+}

@@ -1,0 +1,141 @@
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn example(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("api/examples")
+        .join(name)
+}
+
+fn meshwright(arguments: &[&Path]) -> Output {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_meshwright"));
+    program.args(arguments).output().unwrap()
+}
+
+fn path(text: &str) -> &Path {
+    Path::new(text)
+}
+
+/// The results that `solve` writes of a file.
+fn solved(folder: &Path, file: &Path) -> Value {
+    let results = folder.join("results.json");
+    let ran = meshwright(&[path("solve"), file, path("--output"), &results]);
+    assert!(
+        ran.status.success(),
+        "{}",
+        String::from_utf8_lossy(&ran.stderr)
+    );
+    serde_json::from_slice(&std::fs::read(results).unwrap()).unwrap()
+}
+
+/// The largest difference of two lists.
+fn apart(one: &Value, other: &Value) -> f64 {
+    let (one, other) = (one.as_array().unwrap(), other.as_array().unwrap());
+    assert_eq!(one.len(), other.len());
+    let pairs = one.iter().zip(other);
+    pairs.fold(0.0, |largest: f64, (a, b)| {
+        largest.max((a.as_f64().unwrap() - b.as_f64().unwrap()).abs())
+    })
+}
+
+#[test]
+fn solve_takes_a_rexs_model_for_the_submission_that_it_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let of_model = solved(folder.path(), &example("test-case-2.rexs"));
+    let of_json = solved(folder.path(), &example("test-case-2.json"));
+    assert_eq!(of_model["method"], of_json["method"]);
+    assert_eq!(of_model["curves"].as_array().unwrap().len(), 1);
+    let (model, json) = (&of_model["curves"][0], &of_json["curves"][0]);
+    assert_eq!(model["output_torque_n_m"], json["output_torque_n_m"]);
+    // A nanometer of the transmission error is the ripple of the method, and all ten digits are equal where nothing differs but the
+    // way in which tip circle and relief are said.
+    assert!(
+        apart(
+            &model["transmission_error_um"],
+            &json["transmission_error_um"]
+        ) < 1e-6
+    );
+    let name = "mesh_stiffness_tangent_n_per_m";
+    assert!(apart(&model[name], &json[name]) < 1e-6 * json[name][0].as_f64().unwrap());
+    let mean = &model["statistics"]["transmission_error_um"]["mean"];
+    assert!((mean.as_f64().unwrap() - 13.790).abs() < 1e-3, "{mean}");
+}
+
+#[test]
+fn a_pair_and_its_curves_go_out_and_come_back_by_the_command_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let (submission, model) = (example("web.json"), folder.path().join("web.rexs"));
+    let there = solved(folder.path(), &submission);
+    let results = folder.path().join("results.json");
+    let export = [
+        path("rexs"),
+        path("export"),
+        &submission,
+        &results,
+        path("-o"),
+        &model,
+    ];
+    let exported = meshwright(&export);
+    assert!(exported.status.success(), "{exported:?}");
+    let text = std::fs::read_to_string(&model).unwrap();
+    assert!(text.contains("meshing_stiffness_characteristic"), "{text}");
+    let back = solved(folder.path(), &model);
+    let (there, back) = (&there["curves"][0], &back["curves"][0]);
+    assert!(
+        apart(
+            &there["transmission_error_um"],
+            &back["transmission_error_um"]
+        ) < 1e-6
+    );
+    // Results of another submission are not put beside this pair.
+    let other = example("test-case-2.json");
+    let mixed = meshwright(&[path("rexs"), path("export"), &other, &results]);
+    assert_eq!(mixed.status.code(), Some(2));
+    assert!(
+        String::from_utf8_lossy(&mixed.stderr).contains("input_hash"),
+        "{mixed:?}"
+    );
+}
+
+#[test]
+fn what_is_wrong_is_told_with_its_place_in_the_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = std::fs::read_to_string(example("test-case-2.rexs")).unwrap();
+    let apart = folder.path().join("apart.rexs");
+    std::fs::write(&apart, model.replacen(">100.5<", ">119<", 1)).unwrap();
+    let refused = meshwright(&[path("solve"), &apart]);
+    assert_eq!(refused.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+    for part in [
+        "teeth_do_not_reach",
+        "nearest: ",
+        "from component 2 (cylindrical_stage \"Stage\"), center_distance",
+    ] {
+        assert!(said.contains(part), "{said}");
+    }
+    // Options of a model are nothing to a submission.
+    let json = example("test-case-2.json");
+    let refused = meshwright(&[path("solve"), &json, path("--torque"), path("20")]);
+    assert_eq!(refused.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(said.contains("--torque"), "{said}");
+    // And they stand in place of what the model says.
+    let model = example("test-case-2.rexs");
+    let quick = [
+        path("solve"),
+        &model,
+        path("--torque"),
+        path("20"),
+        path("--method"),
+        path("load_distribution"),
+    ];
+    let solved = meshwright(&quick);
+    assert!(solved.status.success(), "{solved:?}");
+    let said = String::from_utf8_lossy(&solved.stdout).into_owned();
+    assert!(
+        said.contains("load_distribution over") && said.contains("        20  "),
+        "{said}"
+    );
+}
