@@ -144,7 +144,9 @@ await step("curves and gears stand at the same position, whichever is moved", se
 await step("stresses are shown where they are asked for", service, async (page) => {
   await open(page, service);
   assert.ok(await page.locator("#chart-stress").isHidden());
-  await page.locator('[id="field-/stress"]').check();
+  const field = page.locator('[id="field-/stress"]');
+  await field.evaluate((element) => { for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true; });
+  await field.check();
   await page.locator("#chart-stress").waitFor();
   // The roots of both gears, and the holes of the driven one.
   assert.equal(await page.locator("#chart-stress .entry").count(), 3);
