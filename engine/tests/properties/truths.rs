@@ -75,7 +75,7 @@ pub(crate) const TRUTHS: &[Truth] = &[
     },
     Truth {
         name: "the_curve_has_no_jump",
-        // What a step of 1/24 mesh period leaves, as a part of the deflection, after fourteen halvings into the steeper half.
+        // What a step of 1/24 mesh period leaves, as a part of δ, after fourteen halvings into the steeper half.
         bound: 2e-4,
         figure: jump,
     },
@@ -483,7 +483,13 @@ fn turned_by_hole_pitch(drawn: &DrawnPair) -> Result<Option<f64>, String> {
         return Ok(None);
     }
     let turned = changed(pair, pair.center_distance(), |data, _| {
-        let repeats = data.blank.symmetry().count.max(1);
+        // The triangles of a blank that is laid as a whole do not repeat with its holes: it is turned by a whole turn.
+        let in_sectors = data.blank.pattern().is_some() && data.blank.web.is_none();
+        let repeats = if in_sectors {
+            data.blank.symmetry().count
+        } else {
+            1
+        };
         data.blank = data.blank.turned(2.0 * PI / f64::from(repeats));
     })?;
     let one = curve(pair, drawn.output_torque)?;
@@ -584,7 +590,9 @@ fn jump(drawn: &DrawnPair) -> Result<Option<f64>, String> {
                 (ends[0], values[0]) = (middle, value);
             }
         }
-        worst = worst.max((values[1] - values[0]).abs() / deflection(&curve));
+        // Where teeth deviate δ itself may be nothing.
+        let scale = values[0].abs().max(deflection(&curve));
+        worst = worst.max((values[1] - values[0]).abs() / scale);
     }
     Ok(Some(worst))
 }
