@@ -81,7 +81,7 @@ pub(super) async fn submit(
     State(app): State<App>,
     client: Client,
     IdempotencyKey(key): IdempotencyKey,
-    Document(document): Document<4>,
+    document: Document<4>,
 ) -> Result<Response, Problem> {
     let read = aside(move |_| read(&document)).await??;
     let jobs = read.into_iter().enumerate().map(|(i, submission)| {
@@ -115,15 +115,10 @@ pub(super) async fn submit(
     Ok((StatusCode::ACCEPTED, Json(BatchAnswer { taken, items })).into_response())
 }
 
-fn read(document: &[u8]) -> Result<Vec<Result<Submission, Problem>>, Problem> {
-    let batch: Batch<'_> = serde_json::from_slice(document).map_err(|error| {
-        let code = if error.is_data() {
-            Code::WrongType
-        } else {
-            Code::MalformedJson
-        };
-        Problem::new(code, format!("This is no batch of submissions: {error}."))
-    })?;
+fn read<const MIB: usize>(
+    document: &Document<MIB>,
+) -> Result<Vec<Result<Submission, Problem>>, Problem> {
+    let batch: Batch<'_> = document.parse("batch of submissions")?;
     let count = batch.submissions.len();
     if !(1..=MOST_IN_BATCH).contains(&count) {
         let detail = format!(

@@ -8,6 +8,7 @@ use axum::extract::{FromRequest, Request};
 use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_ENCODING, CONTENT_TYPE};
 use futures_util::StreamExt;
+use serde::Deserialize;
 use tower_http::timeout::TimeoutError;
 
 use crate::wire::{Code, Problem};
@@ -29,6 +30,20 @@ impl<const MIB: usize, S: Send + Sync> FromRequest<S> for Document<MIB> {
         let body = read(request.into_body(), MIB * 1024 * 1024).await?;
         media_type?;
         Ok(Self(body))
+    }
+}
+
+impl<const MIB: usize> Document<MIB> {
+    /// The document as a `T`, of which a problem speaks as `name`.
+    pub(super) fn parse<'a, T: Deserialize<'a>>(&'a self, name: &str) -> Result<T, Problem> {
+        serde_json::from_slice(&self.0).map_err(|error| {
+            let code = if error.is_data() {
+                Code::WrongType
+            } else {
+                Code::MalformedJson
+            };
+            Problem::new(code, format!("This is no {name}: {error}."))
+        })
     }
 }
 

@@ -100,16 +100,9 @@ impl WebhookView {
 pub(super) async fn make(
     State(app): State<App>,
     client: Client,
-    Document(document): Document,
+    document: Document,
 ) -> Result<Response, Problem> {
-    let new: NewWebhookDocument = serde_json::from_slice(&document).map_err(|error| {
-        let code = if error.is_data() {
-            Code::WrongType
-        } else {
-            Code::MalformedJson
-        };
-        Problem::new(code, format!("This is no webhook: {error}."))
-    })?;
+    let new: NewWebhookDocument = document.parse("webhook")?;
     let mut events: Vec<EventKind> = Vec::new();
     for event in new.events {
         if !events.contains(&event) {

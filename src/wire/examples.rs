@@ -43,6 +43,7 @@ const EXAMPLES: &[Example] = examples! {
     "interface-radii" true "The decomposition of two holed gears that are cut at radii of their own."
     "web" true "A driven gear with a web thinner than its rim, and six holes in it."
     "unequal-holes" true "Six holes of two sizes at unequal angles: their order spreads over those of a revolution."
+    "unequal-spacing" true "Eight equal holes at unequal angles: what an even ring puts into H_8 spreads over the orders beside it."
     "slots" true "Five kidneys along a circle."
     "stress" true "Design 8R34 with the largest stresses at its roots and at the edges of its holes."
     "bad-case-3-as-printed" false "Test case 3 with the center distance that the paper prints, 118.5 mm: its teeth do not reach each other, and it is refused."
@@ -103,6 +104,7 @@ mod tests {
             ("light-load", "/output_torques_n_m/2"),
             ("web", "/pair/driven/blank/web/thickness_mm"),
             ("unequal-holes", "/pair/driven/blank/holes/1/at_deg/1"),
+            ("unequal-spacing", "/pair/driven/blank/holes/at_deg/1"),
             ("slots", "/pair/driven/blank/holes/slot/width_mm"),
             ("interface-radii", "/resolution/interface_radius_mm/driving"),
         ] {

@@ -4,6 +4,8 @@
 //! property is tried on a few dozen pairs in the test command, and on a thousand by `./test --test properties -- --ignored --nocapture`,
 //! which prints the worst figures of each: docs/validity.md has them.
 
+#[path = "../cases/mod.rs"]
+mod cases;
 mod drawn;
 mod seen;
 mod truths;

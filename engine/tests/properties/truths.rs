@@ -3,10 +3,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use meshwright_engine::analysis::{
-    Analysis, BodyFormula, Case, ContactSolver, Curve, Formulas, Method, PlaneState, Resolution,
-    StiffnessRule, ToothFormula, analyze, pair_model,
-};
+use meshwright_engine::analysis::{Analysis, Case, ContactSolver, Curve, analyze, pair_model};
 use meshwright_engine::contact::half_plane::{hertz, logarithm_factor};
 use meshwright_engine::contact::{MeshContact, PairModel, WarmStart};
 use meshwright_engine::gear::{
@@ -17,6 +14,7 @@ use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
+use crate::cases;
 use crate::drawn::DrawnPair;
 
 /// What must hold of a drawn pair.
@@ -101,29 +99,13 @@ pub(crate) const TRUTHS: &[Truth] = &[
 /// Positions in the one mesh period that most properties look at.
 const POSITIONS: u32 = 8;
 
+/// One mesh period of `pair` on coarse grids.
 fn case(pair: &GearPair, output_torques: &[f64]) -> Case {
-    Case {
-        pair: pair.clone(),
-        method: Method::Flexible,
-        output_torques: output_torques.to_vec(),
-        resolution: Resolution {
-            positions_per_mesh_period: POSITIONS,
-            span_mesh_periods: Some(1),
-            grid: GridLevel::Coarse,
-            contact_solver: ContactSolver::ActiveSet,
-            stiffness: StiffnessRule::Tangent,
-            blank_positions: 16,
-            interface_radii: [None; 2],
-            formulas: Formulas {
-                tooth: ToothFormula::WeberBanaschek,
-                body: BodyFormula::Sainsot,
-                plane_state: PlaneState::Stress,
-            },
-            error_estimate: false,
-        },
-        stress: false,
-        driving_speed: None,
-    }
+    let mut case = cases::case(pair.clone(), output_torques);
+    case.resolution.positions_per_mesh_period = POSITIONS;
+    case.resolution.span_mesh_periods = Some(1);
+    case.resolution.grid = GridLevel::Coarse;
+    case
 }
 
 fn solve(case: &Case) -> Result<Analysis, String> {
