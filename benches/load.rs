@@ -160,7 +160,7 @@ fn run_stub(arguments: StubArguments) -> anyhow::Result<()> {
         let service = serve(&arguments.config, world).await?;
         println!(
             "Meshwright serves http://{}; its engine is {}.",
-            service.address(),
+            service.address().expect("it listens"),
             arguments.engine
         );
         tokio::signal::ctrl_c().await?;

@@ -2,14 +2,13 @@
 
 use std::net::SocketAddr;
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
 use std::time::Duration;
 
 use axum::http::{HeaderValue, Uri};
 use jiff::SignedDuration;
 
 use crate::http::{Bounds, DoorRules};
-use crate::jobs::{Cores, HookTarget, Keep, PreviewRules, Rules};
+use crate::jobs::{Cores, HookTarget, Keep, Pace, Place, PreviewRules, Rules};
 use crate::wire;
 
 /// Where and how the service runs. Every option has its variable of the environment.
@@ -24,14 +23,19 @@ pub struct Config {
     )]
     pub listen: SocketAddr,
 
-    /// File of the database; it is made if it is absent.
+    /// File of the database, which is made if it is absent; or postgres://user@host/name, on which several processes work.
     #[arg(
         long,
         env = "MESHWRIGHT_DATABASE",
         default_value = "./meshwright.db",
-        value_name = "FILE"
+        hide_env_values = true,
+        value_name = "FILE or ADDRESS"
     )]
-    pub database: PathBuf,
+    pub database: Place,
+
+    /// What this process does. Several on one PostgreSQL may divide the work.
+    #[arg(long, env = "MESHWRIGHT_ROLE", value_enum, default_value = "all")]
+    pub role: Part,
 
     /// Jobs computed at the same time, each by up to eight threads [default: one for each core, fewer on large machines].
     #[arg(long, env = "MESHWRIGHT_WORKERS", value_name = "NUMBER")]
@@ -63,6 +67,10 @@ pub struct Config {
     #[arg(long, env = "MESHWRIGHT_TIME_LIMIT_SECONDS", default_value_t = 600, value_name = "SECONDS",
           value_parser = clap::value_parser!(u64).range(1..=7 * 24 * 3600))]
     pub time_limit_seconds: u64,
+
+    /// Time after which a job whose worker has not been heard of is given to another one.
+    #[arg(long, env = "MESHWRIGHT_LEASE", default_value = "30s", value_parser = span, value_name = "TIME", hide = true)]
+    pub lease: Duration,
 
     /// Memory for the teeth, blanks and gears that jobs and previews share, in MB of 2^20 bytes.
     #[arg(long, env = "MESHWRIGHT_CACHE_MB", default_value_t = 256, value_name = "MB",
@@ -96,6 +104,29 @@ pub struct Config {
     /// Who gets in, and how much of the service each gets.
     #[command(flatten)]
     pub door: DoorOptions,
+}
+
+/// What a process does, of what the service does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Part {
+    /// Everything.
+    All,
+    /// Answer requests, deliver messages and remove what is old; compute previews, but no jobs.
+    Api,
+    /// Compute jobs. Nothing listens, but for --metrics-listen.
+    Worker,
+}
+
+impl Part {
+    /// Whether it answers requests.
+    pub fn answers(self) -> bool {
+        self != Self::Worker
+    }
+
+    /// Whether it computes jobs.
+    pub fn computes(self) -> bool {
+        self != Self::Api
+    }
 }
 
 /// What is kept, and how long.
@@ -187,15 +218,19 @@ pub struct DoorOptions {
 }
 
 impl Config {
-    /// The number of workers: as given, or as many as the machine is good for.
+    /// The number of workers: none where jobs are computed elsewhere, as given, or as many as the machine is good for.
     pub fn worker_count(&self) -> usize {
+        if !self.role.computes() {
+            return 0;
+        }
         self.workers
             .map_or_else(|| Cores::here().workers(), NonZeroUsize::get)
     }
 
-    /// The time for one job.
-    pub fn time_limit(&self) -> Duration {
-        Duration::from_secs(self.time_limit_seconds)
+    /// How the workers keep time.
+    pub fn pace(&self) -> Pace {
+        let time_limit = Duration::from_secs(self.time_limit_seconds);
+        Pace::with_lease(self.lease, time_limit)
     }
 
     /// Memory for the substructures that jobs and previews share, in bytes.

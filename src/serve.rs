@@ -4,17 +4,17 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
 use tracing::{info, warn};
 
-use crate::config::Config;
+use crate::config::{Config, Part};
 use crate::http::{App, Door, Edge, Readings, Server, router, router_of_metrics};
 use crate::jobs::{
-    Clock, Deliveries, HookRules, Jobs, Keeper, OpenError, Pace, Previews, Solve, Store, Workers,
+    Clock, Deliveries, HookRules, Jobs, Keeper, OpenError, Place, Previews, Solve, Store, Workers,
 };
 use crate::lock::DatabaseLock;
 use crate::wire::{Problem, Submission};
@@ -39,23 +39,23 @@ pub struct World {
 
 /// A service that runs.
 pub struct Service {
-    address: SocketAddr,
+    address: Option<SocketAddr>,
     metrics_address: Option<SocketAddr>,
     stop: CancellationToken,
-    server: Server,
+    server: Option<Server>,
     metrics_server: Option<Server>,
     workers: Workers,
-    keeper: Keeper,
-    deliveries: Deliveries,
+    keeper: Option<Keeper>,
+    deliveries: Option<Deliveries>,
     store: Store,
-    lock: DatabaseLock,
+    lock: Option<DatabaseLock>,
 }
 
 /// The database cannot be used.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot use the database {path}")]
+#[error("cannot use the database {place}")]
 pub struct UnusableDatabase {
-    path: String,
+    place: Place,
     #[source]
     cause: OpenError,
 }
@@ -67,16 +67,25 @@ pub struct UnusableDatabase {
 /// [`UnusableDatabase`] when the database cannot be opened; others when it belongs to another process, or an address cannot
 /// be taken.
 pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
-    let lock = DatabaseLock::take(&config.database)?;
+    let lock = match config.database.file() {
+        Some(_) if config.role != Part::All => bail!(
+            "only a database of PostgreSQL can be shared by processes of different roles; {} is a file, and its one process has the role all",
+            config.database
+        ),
+        Some(path) => Some(DatabaseLock::take(path)?),
+        None => None,
+    };
     let opened = Store::open(&config.database).await;
     let store = opened.map_err(|cause| UnusableDatabase {
-        path: config.database.display().to_string(),
+        place: config.database.clone(),
         cause,
     })?;
-    let listener = listen(config.listen).await?;
-    let address = listener
-        .local_addr()
-        .context("the listener has no address")?;
+    let listener = if config.role.answers() {
+        Some(listen(config.listen).await?)
+    } else {
+        None
+    };
+    let address = listener.as_ref().and_then(|it| it.local_addr().ok());
     let metrics_listener = match config.door.metrics_listen {
         Some(address) => Some(listen(address).await?),
         None => None,
@@ -93,17 +102,20 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
     };
     let previews = Previews::new(Arc::clone(&solve), config.preview_rules(), stop.clone())?;
     let jobs = Jobs::new(store.clone(), config.rules(), world.clock, stop.clone());
-    let pace = Pace::with_time_limit(config.time_limit());
-    let in_order = lock.ended_in_order();
+    let pace = config.pace();
+    let in_order = lock.as_ref().is_some_and(DatabaseLock::ended_in_order);
     let workers =
         Workers::start(jobs.clone(), solve, config.worker_count(), pace, in_order).await?;
-    let keeper = Keeper::start(jobs.clone(), config.keep());
-    let deliveries =
-        Deliveries::start(jobs.clone(), world.hooks.clone()).context("webhooks cannot be sent")?;
+    let (mut keeper, mut deliveries) = (None, None);
+    if config.role.answers() {
+        keeper = Some(Keeper::start(jobs.clone(), config.keep()));
+        let started = Deliveries::start(jobs.clone(), world.hooks.clone());
+        deliveries = Some(started.context("webhooks cannot be sent")?);
+    }
 
     let door = Door::new(config.door_rules());
     let asks_for_keys = !config.listen.ip().is_loopback() || store.has_keys().await?;
-    if asks_for_keys && !store.has_keys().await? {
+    if config.role.answers() && asks_for_keys && !store.has_keys().await? {
         warn!(
             "nobody gets in without a key, and there is none yet: make one with `meshwright keys create`"
         );
@@ -118,6 +130,7 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         jobs,
         previews,
         library,
+        computes: config.role.computes(),
         workers_alive: workers.alive(),
         hooks: world.hooks,
         door: Arc::new(door),
@@ -133,8 +146,9 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
             stop.clone(),
         )
     });
-    let server = Server::start(listener, router(app), bounds, stop.clone());
-    info!(%address, database = %config.database.display(), workers = config.worker_count(), "serving");
+    let server =
+        listener.map(|listener| Server::start(listener, router(app), bounds, stop.clone()));
+    info!(?address, database = %config.database, role = ?config.role, workers = config.worker_count(), "serving");
     Ok(Service {
         address,
         metrics_address,
@@ -155,8 +169,8 @@ async fn listen(address: SocketAddr) -> anyhow::Result<TcpListener> {
 }
 
 impl Service {
-    /// The address that it listens on.
-    pub fn address(&self) -> SocketAddr {
+    /// The address that it listens on; none if it only computes.
+    pub fn address(&self) -> Option<SocketAddr> {
         self.address
     }
 
@@ -172,11 +186,20 @@ impl Service {
         self.stop.cancel();
         let work = async {
             self.workers.ended().await;
-            self.keeper.ended().await;
-            self.deliveries.ended().await;
+            if let Some(keeper) = self.keeper {
+                keeper.ended().await;
+            }
+            if let Some(deliveries) = self.deliveries {
+                deliveries.ended().await;
+            }
         };
-        let (workers, answers) =
-            tokio::join!(tokio::time::timeout(GRACE, work), self.server.ended(GRACE));
+        let answers = async {
+            match self.server {
+                Some(server) => server.ended(GRACE).await,
+                None => true,
+            }
+        };
+        let (workers, answers) = tokio::join!(tokio::time::timeout(GRACE, work), answers);
         if workers.is_err() {
             // Its job stands in the queue already, or is recovered at the next start.
             warn!("the engine did not stop in time");
@@ -188,13 +211,17 @@ impl Service {
             server.ended(Duration::from_secs(1)).await;
         }
         // What is still said to run was not lost by a crash.
-        self.lock.end_in_order();
+        if let Some(lock) = &self.lock {
+            lock.end_in_order();
+        }
         self.store.close().await;
     }
 
     /// Ends as a crash would: nothing is returned to the queue, nobody is told.
     pub async fn kill(self) {
-        self.server.kill();
+        if let Some(server) = self.server {
+            server.kill();
+        }
         if let Some(server) = self.metrics_server {
             server.kill();
         }

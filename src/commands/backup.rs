@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
-use meshwright::jobs::Store;
+use meshwright::jobs::{Place, Store};
 
 /// Copy the database, while the service runs or not.
 #[derive(Debug, clap::Args)]
@@ -14,9 +14,10 @@ pub(crate) struct Backup {
         long,
         env = "MESHWRIGHT_DATABASE",
         default_value = "./meshwright.db",
+        hide_env_values = true,
         value_name = "FILE"
     )]
-    database: PathBuf,
+    database: Place,
     /// Where the copy goes; nothing is there yet.
     target: PathBuf,
 }
@@ -28,13 +29,13 @@ impl Backup {
     ///
     /// If there is no database, something is at the target, or the copy cannot be made; then nothing is left there.
     pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
-        if !self.database.exists() {
-            bail!("there is no database {}", self.database.display());
+        if self.database.file().is_some_and(|file| !file.exists()) {
+            bail!("there is no database {}", self.database);
         }
         let runtime = tokio::runtime::Runtime::new().context("the runtime cannot be started")?;
         runtime
             .block_on(Store::backup(&self.database, &self.target))
-            .with_context(|| format!("cannot back up {}", self.database.display()))?;
+            .with_context(|| format!("cannot back up {}", self.database))?;
         let bytes = std::fs::metadata(&self.target).map_or(0, |data| data.len());
         println!(
             "{} has {bytes} bytes, and was checked.",

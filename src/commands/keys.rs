@@ -1,25 +1,25 @@
 //! `meshwright keys`: who may use the service.
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use jiff::Timestamp;
-use meshwright::jobs::{KeyRecord, Role, Store};
+use meshwright::jobs::{KeyRecord, Place, Role, Store};
 use meshwright::keys::Key;
 
 /// Make, list and revoke API keys.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Keys {
-    /// File of the database; the service may be running on it.
+    /// File or address of the database; the service may be running on it.
     #[arg(
         long,
         env = "MESHWRIGHT_DATABASE",
         default_value = "./meshwright.db",
-        value_name = "FILE",
+        hide_env_values = true,
+        value_name = "FILE or ADDRESS",
         global = true
     )]
-    database: PathBuf,
+    database: Place,
     #[command(subcommand)]
     what: What,
 }
@@ -66,8 +66,8 @@ impl Keys {
         let runtime = tokio::runtime::Runtime::new().context("the runtime cannot be started")?;
         runtime.block_on(async {
             let store = Store::open(&self.database).await;
-            let store = store
-                .with_context(|| format!("cannot use the database {}", self.database.display()))?;
+            let store =
+                store.with_context(|| format!("cannot use the database {}", self.database))?;
             let done = self.act(&store).await;
             store.close().await;
             done

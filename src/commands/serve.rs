@@ -71,12 +71,14 @@ impl Serve {
             hooks: HookRules::to_public(self.config.door.webhook_hosts.clone()),
         };
         let service = serve(&self.config, world).await?;
-        println!(
-            "Meshwright serves http://{}; its documentation is at /docs.",
-            service.address()
-        );
-        if self.demo {
-            demo::run(service.address()).await?;
+        match service.address() {
+            Some(address) => {
+                println!("Meshwright serves http://{address}; its documentation is at /docs.");
+                if self.demo {
+                    demo::run(address).await?;
+                }
+            }
+            None => println!("Meshwright computes jobs of {}.", self.config.database),
         }
         signal().await?;
         // A second signal does not wait for the end of the first.

@@ -27,6 +27,8 @@ pub struct App {
     pub door: Arc<Door>,
     /// How the service looks from outside.
     pub edge: Arc<Edge>,
+    /// Whether this process computes jobs.
+    pub computes: bool,
     /// What the last look at the database said.
     pub readings: Arc<Readings>,
 }

@@ -79,7 +79,7 @@ pub(super) async fn ready(State(app): State<App>) -> Response {
     let database = app.readings.database_works(&app).await;
     let workers = app.workers_alive.load(Ordering::Relaxed);
     let shutting_down = app.jobs.stop().is_cancelled();
-    let ready = database && workers > 0 && !shutting_down;
+    let ready = database && (workers > 0 || !app.computes) && !shutting_down;
     let status = if ready {
         StatusCode::OK
     } else {

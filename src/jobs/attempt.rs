@@ -16,7 +16,7 @@ use uuid::Uuid;
 
 use super::job::Job;
 use super::live::Running;
-use super::store::{Claim, End, Packed, Started, StoreError};
+use super::store::{Claim, End, Lease, Packed, Started, StoreError};
 use super::worker::Shop;
 use crate::wire::{Code, Problem, SOLVER_VERSION, Submission, Summary};
 
@@ -52,6 +52,7 @@ impl Shop {
         heartbeat.set_missed_tick_behavior(MissedTickBehavior::Delay);
         // False once the row says that this attempt is over: what the engine still gives is not asked for.
         let mut held = true;
+        let mut reported = Instant::now();
 
         loop {
             tokio::select! {
@@ -76,7 +77,7 @@ impl Shop {
                     held = false;
                     self.release(claim).await;
                 }
-                _ = heartbeat.tick(), if held => held = self.report(claim, running).await,
+                _ = heartbeat.tick(), if held => held = self.report(claim, running, &mut reported).await,
             }
             if !held {
                 running.stop();
@@ -193,25 +194,41 @@ impl Shop {
     }
 
     /// Reports progress and renews the lease. False if the claim holds no more.
-    async fn report(&self, claim: Claim, running: &Running) -> bool {
-        let reported = self
-            .jobs
-            .store
-            .report(claim, running.progress(), self.lease_end());
-        match reported.await {
-            Ok(held) => held,
+    ///
+    /// Where other processes take over what has not been reported for a lease, `reported` is when it last was, and an
+    /// attempt that cannot report for so long is over: it would be computed twice.
+    async fn report(&self, claim: Claim, running: &Running, reported: &mut Instant) -> bool {
+        let store = &self.jobs.store;
+        let report = store.report(claim, running.progress(), self.lease());
+        let held = if store.is_shared() {
+            // A network that is cut answers nothing at all.
+            let answer = tokio::time::timeout(self.pace.lease / 3, report).await;
+            answer.unwrap_or_else(|_| Err(sqlx::Error::PoolTimedOut.into()))
+        } else {
+            report.await
+        };
+        match held {
+            Ok(held) => {
+                *reported = Instant::now();
+                held
+            }
             Err(error) => {
                 warn!(job = %claim.id, error = %error, "progress cannot be written");
-                true
+                let over = store.is_shared() && reported.elapsed() > self.pace.lease;
+                if over {
+                    warn!(job = %claim.id, "the attempt is given up: its lease is over");
+                }
+                !over
             }
         }
     }
 
-    /// When a lease that is given now runs out.
-    pub(super) fn lease_end(&self) -> Timestamp {
-        let lease = SignedDuration::try_from(self.pace.lease).unwrap_or(SignedDuration::MAX);
-        let now = self.jobs.clock.steady();
-        now.saturating_add(lease).unwrap_or(Timestamp::MAX)
+    /// A lease that is given now.
+    pub(super) fn lease(&self) -> Lease {
+        Lease {
+            steady: self.jobs.clock.steady(),
+            lasts: SignedDuration::try_from(self.pace.lease).unwrap_or(SignedDuration::MAX),
+        }
     }
 }
 

@@ -67,7 +67,8 @@ impl Jobs {
             let removed = self.remove_while(before, None).await?;
             tell("kept long enough", removed);
         }
-        if keep.bytes.is_some() {
+        // What a server occupies does not shrink when something is removed: it would never be little enough.
+        if keep.bytes.is_some() && !self.store.is_shared() {
             let removed = self.remove_while(Timestamp::MAX, keep.bytes).await?;
             tell("no room for it", removed);
         }

@@ -10,6 +10,9 @@ use uuid::Uuid;
 
 use super::job::{Job, Progress};
 
+/// Stands for every job and study.
+const ANYTHING: Uuid = Uuid::nil();
+
 /// The jobs that this process runs, and the bell for every change of state.
 #[derive(Debug)]
 pub(super) struct Live {
@@ -102,6 +105,12 @@ impl Live {
         }
     }
 
+    /// Tells everybody to look, because something may have happened.
+    pub(super) fn look(&self) {
+        self.changed(ANYTHING);
+        self.work.notify_one();
+    }
+
     pub(super) fn changes(&self) -> broadcast::Receiver<Uuid> {
         self.changes.subscribe()
     }
@@ -145,7 +154,7 @@ impl News {
     pub async fn changed_state(&mut self) {
         loop {
             match self.changes.recv().await {
-                Ok(id) if id != self.id => {}
+                Ok(id) if id != self.id && id != ANYTHING => {}
                 // One who lags has missed news, perhaps of this job.
                 Ok(_) | Err(broadcast::error::RecvError::Lagged(_)) => return,
                 Err(broadcast::error::RecvError::Closed) => std::future::pending().await,

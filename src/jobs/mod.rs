@@ -14,6 +14,7 @@ mod hooks;
 mod job;
 mod keeper;
 mod live;
+mod others;
 mod previews;
 mod queue;
 mod store;
@@ -34,7 +35,8 @@ pub use previews::{Computed, PreviewError, PreviewRules, Previewed, Previews};
 pub use queue::{Jobs, Member, Page, Rules, Submitted};
 pub use store::{
     BackupError, Cursor, Damaged, Depth, Document, EventKind, Filter, KeyRecord, Membership,
-    NoCursor, OpenError, Removed, Role, Space, Span, Store, StoreError, StudyFilter, Webhook,
+    NoCursor, OpenError, Place, Removed, Role, Space, Span, Store, StoreError, StudyFilter,
+    Webhook,
 };
 pub use studies::{DocumentLine, StudyPage, StudySubmitted};
 pub use study::StudyRecord;

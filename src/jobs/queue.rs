@@ -12,6 +12,7 @@ use super::clock::Clock;
 use super::error::JobError;
 use super::job::Job;
 use super::live::{Live, News};
+use super::others;
 use super::store::{
     Cursor, Depth, Document, Filter, NewJob, Outcome, QueueBounds, Store, StoreError,
 };
@@ -101,6 +102,9 @@ impl Jobs {
             rules,
             clock.clone(),
         ));
+        if store.is_shared() {
+            tokio::spawn(others::hear(store.clone(), Arc::clone(&live), stop.clone()));
+        }
         Self {
             store,
             live,

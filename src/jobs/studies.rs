@@ -16,7 +16,7 @@ use super::store::{
 };
 use super::study::StudyRecord;
 use crate::hash::sha256_hex;
-use crate::wire::{Design, RowState, SOLVER_VERSION, Status, Study, memory_above, too_much_memory};
+use crate::wire::{Design, RowState, Status, Study, memory_above, too_much_memory};
 
 /// So many designs are expanded and written in one transaction. Others write in between.
 const CHUNK: usize = 500;
@@ -115,9 +115,13 @@ impl Jobs {
         Ok(StudySubmitted { study, repeated })
     }
 
-    /// Goes on with the expansion of studies that an earlier process has left.
+    /// Goes on with the expansion of studies that another process has left.
     pub(super) async fn resume_studies(&self) -> Result<(), StoreError> {
-        for (id, client) in self.store.unfinished_expansions().await? {
+        for (id, client) in self
+            .store
+            .unfinished_expansions(self.clock.steady())
+            .await?
+        {
             let Some(record) = self.store.find_study(&client, id).await? else {
                 continue;
             };
@@ -177,7 +181,7 @@ impl Jobs {
                     expanded as u64,
                     &rows,
                     self.clock.now(),
-                    SOLVER_VERSION,
+                    self.bounds(),
                 )
                 .await;
             // What the disk does not take now it takes later; the study is not given up for that.

@@ -9,9 +9,10 @@ use rayon::ThreadPool;
 use tokio::task::JoinSet;
 use tokio::time::{Instant, interval_at, sleep};
 use tracing::{error, info, warn};
+use uuid::Uuid;
 
 use super::queue::Jobs;
-use super::store::{Claimed, Lost, StoreError};
+use super::store::{Claimed, Lease, Lost, StoreError};
 use super::threads::{Cores, Work, engine_threads};
 use crate::wire::{Code, Problem, SOLVER_VERSION, Submission};
 
@@ -35,9 +36,14 @@ pub struct Pace {
 impl Pace {
     /// Leases of half a minute, three attempts, and a limit for each job.
     pub fn with_time_limit(time_limit: Duration) -> Self {
+        Self::with_lease(Duration::from_secs(30), time_limit)
+    }
+
+    /// Leases of this length, three attempts, and a limit for each job.
+    pub fn with_lease(lease: Duration, time_limit: Duration) -> Self {
         Self {
-            lease: Duration::from_secs(30),
-            heartbeat: Duration::from_secs(2),
+            lease,
+            heartbeat: (lease / 5).min(Duration::from_secs(2)),
             time_limit,
             attempts_limit: 3,
         }
@@ -61,7 +67,8 @@ impl Workers {
     /// Puts jobs that lost their process back into the queue, and starts `count` workers. `in_order` says whether that
     /// process ended in order, and only could not write it down.
     ///
-    /// The caller vouches that no other process works on the same database.
+    /// The caller vouches that no other process works on the same database, unless it is shared: then jobs that have lost
+    /// their process are found by their leases, and `in_order` says nothing.
     ///
     /// # Errors
     ///
@@ -78,6 +85,12 @@ impl Workers {
             Lost::InOrder
         } else {
             Lost::Process
+        };
+        let lost = if shop.jobs.store.is_shared() {
+            // What another process runs is its own as long as it reports.
+            shop.over(&[])
+        } else {
+            lost
         };
         shop.recover(lost).await.map_err(StartError::Database)?;
         let resumed = shop.jobs.resume_studies().await;
@@ -204,27 +217,43 @@ impl Shop {
         let now = self.jobs.clock.now();
         self.jobs
             .store
-            .claim(now, self.lease_end(), SOLVER_VERSION)
+            .claim(now, self.lease(), SOLVER_VERSION)
             .await
     }
 
     /// Looks for leases that have run out until the stop.
     async fn watch_leases(&self) {
         let stop = self.jobs.stop();
-        let mut tick = interval_at(Instant::now() + self.pace.lease, self.pace.lease);
+        let shared = self.jobs.store.is_shared();
+        // Of several processes each may be the one that is left.
+        let every = if shared {
+            self.pace.lease / 3
+        } else {
+            self.pace.lease
+        };
+        let mut tick = interval_at(Instant::now() + every, every);
         loop {
             tokio::select! {
                 _ = tick.tick() => {}
                 () = stop.cancelled() => return,
             }
             let alive = self.jobs.live.ids();
-            let lost = Lost::Lease {
-                steady: self.jobs.clock.steady(),
-                alive: &alive,
-            };
-            if let Err(error) = self.recover(lost).await {
+            if let Err(error) = self.recover(self.over(&alive)).await {
                 error!(error = %error, "lost jobs cannot be recovered");
             }
+            if shared && let Err(error) = self.jobs.resume_studies().await {
+                error!(error = %error, "studies that were left cannot be expanded");
+            }
+        }
+    }
+
+    /// Jobs whose lease is over, but for those that are alive.
+    fn over<'a>(&self, alive: &'a [Uuid]) -> Lost<'a> {
+        let Lease { steady, lasts } = self.lease();
+        Lost::Lease {
+            steady,
+            lasts,
+            alive,
         }
     }
 

@@ -1,11 +1,10 @@
 //! The test bench: a service on a free port, a client, and an engine whose work the test steers.
 
-use std::path::Path;
 use std::sync::{Arc, mpsc as blocking};
 use std::time::Duration;
 
 use meshwright::config::Config;
-use meshwright::jobs::{Clock, HookRules, Solve};
+use meshwright::jobs::{Clock, HookRules, Place, Solve};
 use meshwright::serve::{Compute, Service, World, serve};
 use meshwright::wire::{self, Code, Problem, Submission};
 use meshwright_engine::run::Run;
@@ -13,6 +12,8 @@ use reqwest::{Client, RequestBuilder, Response, StatusCode};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 use tokio::sync::mpsc;
+
+use crate::stores;
 
 /// Nothing here takes long; what does not come in this time does not come.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(20);
@@ -26,13 +27,13 @@ pub(crate) const RESULTS: &str = r#"{ "method": "flexible",  "curves": [
   { "output_torque_n_m": 20.0, "mesh_position": [0.0, 0.5], "transmission_error_um": [5.0, 6.0] } ] }"#;
 
 /// The usual configuration, with one worker, few places and a free port.
-pub(crate) fn config(database: &Path) -> Config {
+pub(crate) fn config(database: &Place) -> Config {
     #[derive(clap::Parser)]
     struct Arguments {
         #[command(flatten)]
         config: Config,
     }
-    let database = database.to_str().unwrap();
+    let database = &stores::address(database);
     let arguments = [
         "test",
         "--listen",
@@ -48,6 +49,7 @@ pub(crate) fn config(database: &Path) -> Config {
         "--preview-time-limit-seconds",
         "20",
     ];
+    let arguments = arguments.iter().chain(stores::arguments());
     <Arguments as clap::Parser>::parse_from(arguments).config
 }
 
@@ -112,7 +114,7 @@ impl Bench {
 
     pub(crate) async fn start_with(adjust: impl FnOnce(&mut Config), compute: Compute) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let mut config = config(&folder.path().join("meshwright.db"));
+        let mut config = config(&stores::place(&folder).await);
         adjust(&mut config);
         let client = meshwright::client().timeout(PATIENCE).build().unwrap();
         let hooks = HookRules::to_public(config.door.webhook_hosts.clone());
@@ -133,19 +135,19 @@ impl Bench {
     /// Starts a service on the same database.
     pub(crate) async fn start_again(&mut self) {
         let service = self.another().await.unwrap();
-        self.base = format!("http://{}", service.address());
+        self.base = format!("http://{}", service.address().unwrap());
         self.service = Some(service);
     }
 
     /// A second service on the same database.
     pub(crate) async fn another(&self) -> anyhow::Result<Service> {
-        self.another_on(&self.config.database).await
+        self.another_on(self.config.database.clone()).await
     }
 
-    /// A service like this one on the database at `path`.
-    pub(crate) async fn another_on(&self, path: &Path) -> anyhow::Result<Service> {
+    /// A service like this one on the database at `place`.
+    pub(crate) async fn another_on(&self, place: Place) -> anyhow::Result<Service> {
         let config = Config {
-            database: path.to_owned(),
+            database: place,
             ..self.config.clone()
         };
         let world = World {
@@ -164,6 +166,7 @@ impl Bench {
     /// Ends the service as a crash would.
     pub(crate) async fn kill(&mut self) {
         self.service.take().unwrap().kill().await;
+        stores::pass_a_lease(&self.config.database).await;
     }
 
     /// Ends the service in order.

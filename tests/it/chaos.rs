@@ -4,10 +4,10 @@
 //! Two rounds run with the tests; twenty of two hundred jobs by `./chaos`.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use meshwright::jobs::Place;
 use meshwright::wire::{Submission, solve};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -16,6 +16,7 @@ use serde_json::{Value, json};
 use tokio::sync::Mutex;
 
 use crate::process::Process;
+use crate::stores;
 
 /// A generator of chance: the same numbers for the same seed.
 struct Chance(u64);
@@ -77,7 +78,7 @@ async fn submit_all(client: Client, base: Base, numbers: Vec<u64>) -> BTreeMap<u
     taken
 }
 
-async fn round(seed: u64, jobs: u64, kills: u32, database: &Path) -> Tally {
+async fn round(seed: u64, jobs: u64, kills: u32, database: &Place) -> Tally {
     const CLIENTS: u64 = 4;
     let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
     let client = meshwright::client()
@@ -169,7 +170,7 @@ async fn rounds(seeds: std::ops::Range<u64>, jobs: u64, kills: u32) {
     let mut all = Tally::default();
     for seed in seeds.clone() {
         let folder = tempfile::tempdir().unwrap();
-        let tally = round(seed, jobs, kills, &folder.path().join("meshwright.db")).await;
+        let tally = round(seed, jobs, kills, &stores::place(&folder).await).await;
         all.kills += tally.kills;
         all.ready.extend(tally.ready);
     }

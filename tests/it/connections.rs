@@ -13,7 +13,9 @@ async fn service(adjust: impl FnOnce(&mut Config)) -> Bench {
 }
 
 async fn connect(bench: &Bench) -> TcpStream {
-    TcpStream::connect(bench.service().address()).await.unwrap()
+    TcpStream::connect(bench.service().address().unwrap())
+        .await
+        .unwrap()
 }
 
 /// Comes back when the service has closed the connection.

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::process::Process;
+use crate::stores;
 
 fn case_2(method: &str, number: u32) -> Value {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/api/examples/test-case-2.json");
@@ -14,7 +15,7 @@ fn case_2(method: &str, number: u32) -> Value {
 
 async fn bytes_of_a_job(method: &str, jobs: u32) -> u64 {
     let folder = tempfile::tempdir().unwrap();
-    let database = folder.path().join("meshwright.db");
+    let database = stores::place(&folder).await;
     let process = Process::start(&database);
     let client = meshwright::client().build().unwrap();
     for number in 0..jobs {
@@ -25,7 +26,7 @@ async fn bytes_of_a_job(method: &str, jobs: u32) -> u64 {
     }
     process.terminate();
     // What was in the journal is in the file now.
-    std::fs::metadata(&database).unwrap().len() / u64::from(jobs)
+    stores::bytes(&database).await / u64::from(jobs)
 }
 
 #[tokio::test]

@@ -6,6 +6,9 @@
 )]
 
 mod bench;
+#[path = "../postgres/server.rs"]
+mod server;
+mod stores;
 
 mod batch;
 mod chaos;
@@ -15,9 +18,11 @@ mod disk;
 mod door;
 mod edge;
 mod events;
+mod fleet;
 mod growth;
 mod life;
 mod lists;
+mod once_more;
 mod page;
 mod previews;
 mod process;

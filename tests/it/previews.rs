@@ -8,12 +8,12 @@ use meshwright::wire::{Code, Preview, Problem};
 use meshwright_engine::run::Run;
 use reqwest::{Response, StatusCode};
 use serde_json::{Value, json};
-use sqlx::sqlite::SqlitePool;
 use tokio::sync::mpsc;
 use tokio::task::JoinHandle;
 use tokio_util::sync::CancellationToken;
 
 use crate::bench::{Bench, PATIENCE, RESULTS, problem, submission};
+use crate::stores;
 
 fn named(id: &str, torque: f64) -> Value {
     let mut preview = submission(torque);
@@ -79,16 +79,11 @@ async fn a_preview_is_the_document_of_a_job_to_the_last_digit_and_is_not_kept() 
     let cold = results(cold).await;
     let warm = results(bench.post("/v1/preview", &preview).send().await.unwrap()).await;
 
-    let database = format!("sqlite://{}", bench.config.database.display());
-    let database = SqlitePool::connect(&database).await.unwrap();
     for count in [
         "select count(*) from jobs",
         "select count(*) from documents",
     ] {
-        let rows: i64 = sqlx::query_scalar(count)
-            .fetch_one(&database)
-            .await
-            .unwrap();
+        let rows = stores::number(&bench.config.database, count).await;
         assert_eq!(rows, 0, "{count}");
     }
     let job = bench.post("/v1/jobs", &case).header("prefer", "wait=20");

@@ -1,12 +1,15 @@
 //! The program itself, in a process of its own.
 
 use std::io::{BufRead, BufReader};
-use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use reqwest::Client;
 use serde_json::Value;
+
+use meshwright::jobs::Place;
+
+use crate::stores;
 
 /// A service in a process of its own.
 pub(crate) struct Process {
@@ -15,28 +18,29 @@ pub(crate) struct Process {
 }
 
 impl Process {
-    pub(crate) fn start(database: &Path) -> Self {
+    pub(crate) fn start(database: &Place) -> Self {
         Self::start_with(database, &[])
     }
 
     /// The same with more arguments.
-    pub(crate) fn start_with(database: &Path, arguments: &[&str]) -> Self {
+    pub(crate) fn start_with(database: &Place, arguments: &[&str]) -> Self {
         let program = Command::new(env!("CARGO_BIN_EXE_meshwright"));
         Self::spawn(program, database, arguments)
     }
 
     /// The same with so many descriptors.
-    pub(crate) fn start_with_descriptors(database: &Path, descriptors: u32) -> Self {
+    pub(crate) fn start_with_descriptors(database: &Place, descriptors: u32) -> Self {
         let mut shell = Command::new("sh");
         let limited = format!("ulimit -n {descriptors}; exec \"$0\" \"$@\"");
         shell.args(["-c", &limited, env!("CARGO_BIN_EXE_meshwright")]);
         Self::spawn(shell, database, &[])
     }
 
-    fn spawn(mut program: Command, database: &Path, arguments: &[&str]) -> Self {
+    fn spawn(mut program: Command, database: &Place, arguments: &[&str]) -> Self {
         let mut child = program
             .args(["serve", "--listen", "127.0.0.1:0", "--database"])
-            .arg(database)
+            .arg(stores::address(database))
+            .args(stores::arguments())
             .args(arguments)
             .env("MESHWRIGHT_LOG", "warn")
             .stdout(Stdio::piped())
@@ -48,7 +52,8 @@ impl Process {
         let base = line
             .split_whitespace()
             .find(|word| word.starts_with("http://"))
-            .unwrap();
+            // One that only computes listens nowhere.
+            .unwrap_or_default();
         let base = base.trim_end_matches(';').to_owned();
         Self { child, base }
     }
@@ -59,11 +64,16 @@ impl Process {
         self.child.wait().unwrap();
     }
 
+    /// Sends it a signal.
+    pub(crate) fn signal(&self, signal: rustix::process::Signal) {
+        let pid = rustix::process::Pid::from_child(&self.child);
+        rustix::process::kill_process(pid, signal).unwrap();
+    }
+
     /// SIGTERM, as an operator ends it. Gives back how long it took.
     pub(crate) fn terminate(mut self) -> Duration {
         let start = Instant::now();
-        let pid = rustix::process::Pid::from_child(&self.child);
-        rustix::process::kill_process(pid, rustix::process::Signal::TERM).unwrap();
+        self.signal(rustix::process::Signal::TERM);
         assert!(self.child.wait().unwrap().success());
         start.elapsed()
     }

@@ -1,5 +1,7 @@
 //! The service ends in mid-job, in order or not, and starts again on the same database.
 
+use meshwright::jobs::Place;
+
 use crate::bench::{Bench, submission};
 
 #[tokio::test]
@@ -95,13 +97,14 @@ async fn a_database_is_served_by_one_process_only() {
 #[tokio::test]
 async fn links_of_both_kinds_lead_to_the_same_lock() {
     let bench = Bench::quick().await;
-    let folder = tempfile::tempdir_in(bench.config.database.parent().unwrap()).unwrap();
+    let database = bench.config.database.file().unwrap();
+    let folder = tempfile::tempdir_in(database.parent().unwrap()).unwrap();
     let symbolic = folder.path().join("symbolic.db");
     let hard = folder.path().join("hard.db");
-    std::os::unix::fs::symlink(&bench.config.database, &symbolic).unwrap();
-    std::fs::hard_link(&bench.config.database, &hard).unwrap();
+    std::os::unix::fs::symlink(database, &symbolic).unwrap();
+    std::fs::hard_link(database, &hard).unwrap();
     for path in [symbolic, hard] {
-        let refusal = bench.another_on(&path).await.err().unwrap();
+        let refusal = bench.another_on(Place::File(path)).await.err().unwrap();
         assert!(refusal.to_string().contains("another process"), "{refusal}");
     }
 }

@@ -9,6 +9,7 @@ use reqwest::Client;
 use serde_json::{Value, json};
 
 use crate::process::Process;
+use crate::stores;
 
 fn base(torque: f64) -> Value {
     let gear = json!({ "tooth_count": 50, "module_mm": 2.0, "face_width_mm": 20.0, "blank": { "bore_radius_mm": 15.0 } });
@@ -39,7 +40,7 @@ fn study(first: f64) -> Value {
 
 async fn shares(seconds: u64) -> (u64, u64, u64) {
     let folder = tempfile::tempdir().unwrap();
-    let process = Process::start(&folder.path().join("meshwright.db"));
+    let process = Process::start(&stores::place(&folder).await);
     let client = meshwright::client().build().unwrap();
     let first = process.submit(&client, &study(100.0)).await;
     let second = process.submit(&client, &study(200.0)).await;

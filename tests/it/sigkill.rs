@@ -7,6 +7,7 @@ use std::time::Instant;
 use serde_json::{Value, json};
 
 use crate::process::Process;
+use crate::stores;
 
 /// Hole patterns of the standard pair: different blanks on the same teeth.
 fn patterns(method: &str, counts: &[u32], radii: &[f64], circles: &[f64]) -> Value {
@@ -56,7 +57,7 @@ fn check_table(table: &Value, total: usize) {
 #[tokio::test]
 async fn a_study_killed_half_way_is_finished_by_the_next_process_with_every_design() {
     let folder = tempfile::tempdir().unwrap();
-    let database = folder.path().join("meshwright.db");
+    let database = stores::place(&folder).await;
     let client = meshwright::client().build().unwrap();
     let study = patterns(
         "load_distribution",
@@ -96,7 +97,7 @@ async fn a_thousand_decomposition_designs_straight_through_and_killed_half_way()
     let client = meshwright::client().build().unwrap();
     for kill in [false, true] {
         let folder = tempfile::tempdir().unwrap();
-        let database = folder.path().join("meshwright.db");
+        let database = stores::place(&folder).await;
         let start = Instant::now();
         let mut process = Process::start(&database);
         let path = process.submit(&client, &study).await;
@@ -122,7 +123,7 @@ async fn a_thousand_decomposition_designs_straight_through_and_killed_half_way()
             1000.0 / seconds,
             read.elapsed().as_secs_f64(),
             process.peak_memory_mb(),
-            std::fs::metadata(&database).unwrap().len() / 1_000_000,
+            stores::bytes(&database).await / 1_000_000,
         );
         process.kill();
     }

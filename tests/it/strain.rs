@@ -9,6 +9,7 @@ use tokio::io::AsyncWriteExt;
 use tokio::net::TcpStream;
 
 use crate::process::Process;
+use crate::stores;
 
 /// A study of 0.7 MB that would expand to 600 million torques.
 fn bomb() -> String {
@@ -41,8 +42,9 @@ async fn refuse(client: Client, url: String, bomb: String) -> Duration {
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn bombs_are_refused_in_less_than_a_tenth_of_a_second_and_hold_up_no_shutdown() {
+    let _alone = stores::ALONE.lock().await;
     let folder = tempfile::tempdir().unwrap();
-    let process = Process::start(&folder.path().join("meshwright.db"));
+    let process = Process::start(&stores::place(&folder).await);
     let client = meshwright::client().build().unwrap();
     let url = format!("{}/v1/studies", process.base);
     let bomb = bomb();
@@ -83,7 +85,7 @@ async fn two_thousand_silent_and_two_hundred_slow_sockets_do_not_stop_a_service_
 {
     raise_descriptors();
     let folder = tempfile::tempdir().unwrap();
-    let process = Process::start_with_descriptors(&folder.path().join("meshwright.db"), 256);
+    let process = Process::start_with_descriptors(&stores::place(&folder).await, 256);
     let address = process.base.trim_start_matches("http://").to_owned();
     let mut sockets = Vec::new();
     for number in 0..2200 {

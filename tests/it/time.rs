@@ -5,12 +5,15 @@ use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
 use jiff::Timestamp;
-use meshwright::jobs::{Clock, Filter, Job, Jobs, Member, Pace, Rules, Solve, Store, Workers};
+use meshwright::jobs::{
+    Clock, Filter, Job, Jobs, Member, Pace, Place, Rules, Solve, Store, Workers,
+};
 use meshwright::wire::{Code, Problem, Status, Submission};
 use tempfile::TempDir;
 use tokio_util::sync::CancellationToken;
 
 use crate::bench::{PATIENCE, RESULTS, submission};
+use crate::stores;
 
 const CLIENT: &str = "anonymous";
 
@@ -53,17 +56,17 @@ fn rules() -> Rules {
     }
 }
 
-async fn open(folder: &TempDir) -> Store {
-    Store::open(&folder.path().join("meshwright.db"))
-        .await
-        .unwrap()
+async fn open(place: &Place) -> Store {
+    Store::open(place).await.unwrap()
 }
 
-async fn jobs(clock: Clock) -> (Jobs, CancellationToken, TempDir) {
+async fn jobs(clock: Clock) -> (Jobs, CancellationToken, (Place, TempDir)) {
     let folder = tempfile::tempdir().unwrap();
+    let place = stores::place(&folder).await;
     let stop = CancellationToken::new();
-    let jobs = Jobs::new(open(&folder).await, rules(), clock, stop.clone());
-    (jobs, stop, folder)
+    let jobs = Jobs::new(open(&place).await, rules(), clock, stop.clone());
+    stores::give_clock(&place).await;
+    (jobs, stop, (place, folder))
 }
 
 fn member() -> Member {
@@ -135,7 +138,7 @@ fn waiting_engine() -> (Solve, impl AsyncFn() -> mpsc::Sender<&'static str>) {
 #[tokio::test]
 async fn a_job_whose_lease_ran_out_runs_again_elsewhere_and_the_late_results_are_not_kept() {
     let hands = Hands::default();
-    let (jobs, stop, folder) = jobs(hands.clock()).await;
+    let (jobs, stop, (place, _folder)) = jobs(hands.clock()).await;
     let (solve, begin) = waiting_engine();
     // The heart beats at the start of an attempt and not again: the worker seems lost when time goes on.
     let pace = Pace {
@@ -150,7 +153,7 @@ async fn a_job_whose_lease_ran_out_runs_again_elsewhere_and_the_late_results_are
     let first = begin().await;
 
     // As it would be in another process on the same database, whose start recovers nothing of the living.
-    let others = Jobs::new(open(&folder).await, rules(), hands.clock(), stop.clone());
+    let others = Jobs::new(open(&place).await, rules(), hands.clock(), stop.clone());
     let mut other_workers = Workers::beside(others.clone(), solve, 1, pace)
         .await
         .unwrap();

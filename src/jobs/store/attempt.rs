@@ -5,7 +5,8 @@ use uuid::Uuid;
 
 use super::documents::Packed;
 use super::endings::tell_end;
-use super::{Store, StoreError, column, shares};
+use super::statement::{query, query_as};
+use super::{Store, StoreError, column, dialect, micros, shares};
 use crate::jobs::job::{Job, Progress};
 
 /// A word for one attempt at one job: only the latest claim may report or finish.
@@ -13,6 +14,15 @@ use crate::jobs::job::{Job, Progress};
 pub(in crate::jobs) struct Claim {
     pub(in crate::jobs) id: Uuid,
     pub(in crate::jobs) attempt: i64,
+}
+
+/// A lease that is given now.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::jobs) struct Lease {
+    /// The steady time, where leases run by the clock of the one process that there is.
+    pub(in crate::jobs) steady: Timestamp,
+    /// How long it lasts.
+    pub(in crate::jobs) lasts: SignedDuration,
 }
 
 /// When an attempt ended, and what it took.
@@ -26,22 +36,20 @@ pub(in crate::jobs) struct End {
 
 impl End {
     fn columns(self) -> (i64, i64) {
-        let elapsed = i64::try_from(self.elapsed.as_micros()).unwrap_or(i64::MAX);
-        (self.at.as_microsecond(), elapsed.max(0))
+        (self.at.as_microsecond(), micros(self.elapsed).max(0))
     }
 }
 
 impl Store {
     /// Whether a claim holds: the job runs, and nobody has claimed it since.
     pub(in crate::jobs) async fn holds(&self, claim: Claim) -> Result<bool, StoreError> {
-        let found: Option<i64> = sqlx::query_scalar(
-            "select 1 from jobs where id = ?1 and attempt = ?2 and status = 'running'",
-        )
-        .bind(claim.id.to_string())
-        .bind(claim.attempt)
-        .fetch_optional(&self.readers)
-        .await?;
-        Ok(found.is_some())
+        let found =
+            query("select 1 from jobs where id = $1 and attempt = $2 and status = 'running'")
+                .bind(claim.id.to_string())
+                .bind(claim.attempt)
+                .exists(&self.readers)
+                .await?;
+        Ok(found)
     }
 
     /// Running -> running: how far the job has come, and a longer lease. False if the claim holds no more.
@@ -49,22 +57,20 @@ impl Store {
         &self,
         claim: Claim,
         progress: Progress,
-        lease_until: Timestamp,
+        lease: Lease,
     ) -> Result<bool, StoreError> {
         let mut write = self.begin().await?;
-        let updated = sqlx::query(
-            "update jobs set positions_done = ?3, positions_total = ?4, lease_until = ?5
-             where id = ?1 and attempt = ?2 and status = 'running'",
-        )
-        .bind(claim.id.to_string())
-        .bind(claim.attempt)
-        .bind(column(progress.done))
-        .bind(column(progress.total))
-        .bind(lease_until.as_microsecond())
-        .execute(&mut *write)
-        .await?;
+        let updated = query(dialect::report())
+            .bind(claim.id.to_string())
+            .bind(claim.attempt)
+            .bind(column(progress.done))
+            .bind(column(progress.total))
+            .bind(lease.steady.as_microsecond())
+            .bind(micros(lease.lasts))
+            .execute(&mut *write)
+            .await?;
         write.commit().await?;
-        Ok(updated.rows_affected() == 1)
+        Ok(updated == 1)
     }
 
     /// Running -> successful, with the results document and what the tables of studies show of it. False if the claim
@@ -81,19 +87,19 @@ impl Store {
         let mut write = self.begin().await?;
         document.insert(&mut write).await?;
         if let Some(summary) = summary {
-            sqlx::query(
-                "insert into summaries (document, body) values (?1, ?2) on conflict (document) do nothing",
+            query(
+                "insert into summaries (document, body) values ($1, $2) on conflict (document) do nothing",
             )
             .bind(document.hash())
             .bind(summary)
             .execute(&mut *write)
             .await?;
         }
-        let job: Option<Job> = sqlx::query_as(
+        let job: Option<Job> = query_as(
             "update jobs
-             set status = 'successful', finished_at = max(?3, started_at), elapsed = ?4, lease_until = null,
-                 document = ?5, solver_version = ?6, positions_done = positions_total
-             where id = ?1 and attempt = ?2 and status = 'running'
+             set status = 'successful', finished_at = max($3, started_at), elapsed = $4, lease_until = null,
+                 document = $5, solver_version = $6, positions_done = positions_total
+             where id = $1 and attempt = $2 and status = 'running'
              returning *",
         )
         .bind(claim.id.to_string())
@@ -122,10 +128,10 @@ impl Store {
     ) -> Result<bool, StoreError> {
         let (at, elapsed) = end.columns();
         let mut write = self.begin().await?;
-        let job: Option<Job> = sqlx::query_as(
+        let job: Option<Job> = query_as(
             "update jobs
-             set status = 'failed', finished_at = max(?3, started_at), elapsed = ?4, lease_until = null, problem = ?5
-             where id = ?1 and attempt = ?2 and status = 'running'
+             set status = 'failed', finished_at = max($3, started_at), elapsed = $4, lease_until = null, problem = $5
+             where id = $1 and attempt = $2 and status = 'running'
              returning *",
         )
         .bind(claim.id.to_string())
@@ -145,10 +151,10 @@ impl Store {
     /// Running -> accepted, because the worker shuts down: this claim does not count as an attempt.
     pub(in crate::jobs) async fn release(&self, claim: Claim) -> Result<bool, StoreError> {
         let mut write = self.begin().await?;
-        let job: Option<Job> = sqlx::query_as(
+        let job: Option<Job> = query_as(
             "update jobs
              set status = 'accepted', returned = returned + 1, started_at = null, lease_until = null, positions_done = 0
-             where id = ?1 and attempt = ?2 and status = 'running'
+             where id = $1 and attempt = $2 and status = 'running'
              returning *",
         )
         .bind(claim.id.to_string())

@@ -5,11 +5,14 @@ use std::path::{Path, PathBuf};
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{ConnectOptions, Connection};
 
-use super::Store;
+use super::{Place, Store};
 
 /// Why there is no backup.
 #[derive(Debug, thiserror::Error)]
 pub enum BackupError {
+    /// The database is no file.
+    #[error("{0} is copied by PostgreSQL's own pg_dump")]
+    NoFile(Place),
     /// A file is there already.
     #[error("{} is there already; nothing was written", .0.display())]
     Exists(PathBuf),
@@ -31,7 +34,10 @@ impl Store {
     /// # Errors
     ///
     /// [`BackupError`].
-    pub async fn backup(database: &Path, target: &Path) -> Result<(), BackupError> {
+    pub async fn backup(database: &Place, target: &Path) -> Result<(), BackupError> {
+        let Place::File(database) = database else {
+            return Err(BackupError::NoFile(database.clone()));
+        };
         if target.exists() {
             return Err(BackupError::Exists(target.to_owned()));
         }

@@ -1,12 +1,15 @@
 //! Accepted -> running: the job whose turn it is.
 
-use jiff::Timestamp;
-use sqlx::SqliteConnection;
+use std::collections::BTreeSet;
 
+use jiff::Timestamp;
+
+use super::attempt::Lease;
 use super::endings::tell_end;
 use super::shares::{self, Lane};
+use super::statement::{Connection, query, query_as, query_scalar};
 use super::submit::{Known, find_known};
-use super::{Store, StoreError};
+use super::{Store, StoreError, dialect, micros};
 use crate::jobs::job::Job;
 
 /// A job that a worker is to compute.
@@ -26,40 +29,38 @@ pub(in crate::jobs) struct Claimed {
     pub(in crate::jobs) given: Vec<Job>,
 }
 
-/// The job of a lane whose turn it is, unless an equal one is running.
-pub(super) const NEXT_WAITING: &str = "select id, input_hash, cost from jobs as waiting
-     where status = 'accepted' and client = ?1 and coalesce(study, '') = ?2
-       and not exists (select 1 from jobs as equal indexed by jobs_running
-                       where equal.status = 'running' and equal.client = waiting.client
-                         and equal.input_hash = waiting.input_hash)
-     order by sequence limit 1";
-
 /// So many jobs are given results in one commit at most.
 const MOST_GIVEN: usize = 100;
 
 impl Store {
-    /// Accepted -> running: the job whose turn it is, leased until `lease_until`. Equal work is done once: a job whose equal
+    /// Accepted -> running: the job whose turn it is, leased. Equal work is done once: a job whose equal
     /// is running is passed over, and one whose equal has become successful since it was submitted is given its results,
     /// accepted -> successful.
     ///
-    /// A job that may have brought a process down is run alone: before it begins, what runs comes to its end, and nothing
-    /// begins beside it.
+    /// A job that may have brought a process down is run alone in its process: before it begins, what runs comes to its end,
+    /// and nothing begins beside it.
     pub(in crate::jobs) async fn claim(
         &self,
         now: Timestamp,
-        lease_until: Timestamp,
+        lease: Lease,
         solver_version: &str,
     ) -> Result<Claimed, StoreError> {
         let mut write = self.begin().await?;
+        query(dialect::lock_turn()).execute(&mut *write).await?;
+        let process = self.process.to_string();
         let mut claimed = Claimed::default();
-        let next = match suspects(&mut write).await? {
-            Suspects::None => next_in_turn(&mut write, now, solver_version, &mut claimed).await?,
+        let mut turn = Turn::default();
+        let next = match suspects(&mut write, &process).await? {
+            Suspects::None => {
+                next_in_turn(&mut write, now, solver_version, &mut claimed, &mut turn).await?
+            }
             Suspects::Next(id) => Some(id),
             Suspects::Wait => None,
         };
         if let Some(id) = next {
-            claimed.started = Some(start(&mut write, &id, now, lease_until).await?);
+            claimed.started = Some(start(&mut write, &id, now, lease, &process).await?);
         }
+        turn.settle(&mut write).await?;
         write.commit().await?;
         Ok(claimed)
     }
@@ -75,20 +76,17 @@ enum Suspects {
     Wait,
 }
 
-async fn suspects(connection: &mut SqliteConnection) -> Result<Suspects, sqlx::Error> {
-    let (running, alone): (i64, i64) = sqlx::query_as(
-        "select count(*), coalesce(sum(suspect), 0) from jobs indexed by jobs_running where status = 'running'",
-    )
-    .fetch_one(&mut *connection)
-    .await?;
+async fn suspects(connection: &mut Connection, process: &str) -> Result<Suspects, sqlx::Error> {
+    let (running, alone): (i64, i64) = query_as(dialect::running_here())
+        .bind(process)
+        .fetch_one(&mut *connection)
+        .await?;
     if alone > 0 {
         return Ok(Suspects::Wait);
     }
-    let next: Option<String> = sqlx::query_scalar(
-        "select id from jobs where suspect = 1 and status = 'accepted' order by sequence limit 1",
-    )
-    .fetch_optional(connection)
-    .await?;
+    let next: Option<String> = query_scalar(dialect::next_suspect())
+        .fetch_optional(connection)
+        .await?;
     Ok(match next {
         Some(id) if running == 0 => Suspects::Next(id),
         Some(_) => Suspects::Wait,
@@ -96,22 +94,50 @@ async fn suspects(connection: &mut SqliteConnection) -> Result<Suspects, sqlx::E
     })
 }
 
-/// The job whose turn it is, its lane charged. Jobs before it that need no computing are given their results.
+/// What a claim means for the shares. Written behind the jobs, as every transition does (see `dialect::postgres`).
+#[derive(Default)]
+struct Turn {
+    empty: Vec<Lane>,
+    charged: Option<(Lane, i64)>,
+}
+
+impl Turn {
+    async fn settle(self, connection: &mut Connection) -> Result<(), sqlx::Error> {
+        let charged = self.charged.iter().map(|(lane, _)| lane);
+        let clients: BTreeSet<&String> = self
+            .empty
+            .iter()
+            .chain(charged)
+            .map(|lane| &lane.client)
+            .collect();
+        shares::lock(connection, clients).await?;
+        for lane in &self.empty {
+            rest_if_empty(connection, lane).await?;
+        }
+        if let Some((lane, cost)) = &self.charged {
+            lane.charge(connection, *cost).await?;
+        }
+        Ok(())
+    }
+}
+
+/// The job whose turn it is, its lane to be charged. Jobs before it that need no computing are given their results.
 async fn next_in_turn(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     now: Timestamp,
     solver_version: &str,
     claimed: &mut Claimed,
+    turn: &mut Turn,
 ) -> Result<Option<String>, sqlx::Error> {
     for lane in shares::lanes(connection).await? {
         while claimed.given.len() < MOST_GIVEN {
-            let next: Option<(String, String, i64)> = sqlx::query_as(NEXT_WAITING)
+            let next: Option<(String, String, i64)> = query_as(dialect::next_waiting())
                 .bind(&lane.client)
                 .bind(&lane.lane)
                 .fetch_optional(&mut *connection)
                 .await?;
             let Some((id, input_hash, cost)) = next else {
-                rest_if_empty(connection, &lane).await?;
+                turn.empty.push(lane);
                 break;
             };
             match find_known(connection, &lane.client, &input_hash, solver_version).await? {
@@ -121,7 +147,7 @@ async fn next_in_turn(
                     claimed.given.push(job);
                 }
                 None => {
-                    lane.charge(connection, cost).await?;
+                    turn.charged = Some((lane, cost));
                     return Ok(Some(id));
                 }
             }
@@ -131,15 +157,15 @@ async fn next_in_turn(
 }
 
 /// A lane whose jobs all wait for an equal one keeps its turn.
-async fn rest_if_empty(connection: &mut SqliteConnection, lane: &Lane) -> Result<(), sqlx::Error> {
-    let waits: Option<i64> = sqlx::query_scalar(
-        "select 1 from jobs where status = 'accepted' and client = ?1 and coalesce(study, '') = ?2 limit 1",
+async fn rest_if_empty(connection: &mut Connection, lane: &Lane) -> Result<(), sqlx::Error> {
+    let waits = query(
+        "select 1 from jobs where status = 'accepted' and client = $1 and coalesce(study, '') = $2 limit 1",
     )
     .bind(&lane.client)
     .bind(&lane.lane)
-    .fetch_optional(&mut *connection)
+    .exists(&mut *connection)
     .await?;
-    if waits.is_none() {
+    if !waits {
         lane.rest(connection).await?;
     }
     Ok(())
@@ -147,17 +173,17 @@ async fn rest_if_empty(connection: &mut SqliteConnection, lane: &Lane) -> Result
 
 /// Accepted -> successful, with the results of an equal job.
 async fn give(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     id: &str,
     known: &Known,
     now: Timestamp,
     solver_version: &str,
 ) -> Result<Job, sqlx::Error> {
-    sqlx::query_as(
+    query_as(
         "update jobs
-         set status = 'successful', started_at = max(?2, submitted_at), finished_at = max(?2, submitted_at), elapsed = 0,
-             document = ?3, solver_version = ?4, same_as = ?5, positions_done = ?6, positions_total = ?6
-         where id = ?1 and status = 'accepted'
+         set status = 'successful', started_at = max($2, submitted_at), finished_at = max($2, submitted_at), elapsed = 0,
+             document = $3, solver_version = $4, same_as = $5, positions_done = $6, positions_total = $6
+         where id = $1 and status = 'accepted'
          returning *",
     )
     .bind(id)
@@ -172,24 +198,21 @@ async fn give(
 
 /// Accepted -> running.
 async fn start(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     id: &str,
     now: Timestamp,
-    lease_until: Timestamp,
+    lease: Lease,
+    process: &str,
 ) -> Result<Started, sqlx::Error> {
-    let job = sqlx::query_as(
-        "update jobs
-         set status = 'running', attempt = attempt + 1, started_at = max(?2, submitted_at), lease_until = ?3,
-             positions_done = 0
-         where id = ?1 and status = 'accepted'
-         returning *",
-    )
-    .bind(id)
-    .bind(now.as_microsecond())
-    .bind(lease_until.as_microsecond())
-    .fetch_one(&mut *connection)
-    .await?;
-    let submission = sqlx::query_scalar("select body from submissions where job = ?1")
+    let job = query_as(dialect::start())
+        .bind(id)
+        .bind(now.as_microsecond())
+        .bind(lease.steady.as_microsecond())
+        .bind(micros(lease.lasts))
+        .bind(process)
+        .fetch_one(&mut *connection)
+        .await?;
+    let submission = query_scalar("select body from submissions where job = $1")
         .bind(id)
         .fetch_one(connection)
         .await?;

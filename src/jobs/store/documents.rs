@@ -6,9 +6,9 @@ use bytes::Bytes;
 use flate2::Compression;
 use flate2::read::GzDecoder;
 use flate2::write::GzEncoder;
-use sqlx::SqliteConnection;
 
-use super::{Store, StoreError};
+use super::statement::{Connection, query, query_as};
+use super::{Store, StoreError, dialect};
 use crate::hash::sha256_hex;
 
 /// Documents are numbers in decimal; a higher level packs them no smaller and takes longer.
@@ -46,18 +46,13 @@ impl Packed {
     }
 
     /// Keeps the document, unless it is kept already.
-    pub(super) async fn insert(
-        &self,
-        connection: &mut SqliteConnection,
-    ) -> Result<(), sqlx::Error> {
-        sqlx::query(
-            "insert into documents (hash, encoding, body, size) values (?1, 'gzip', ?2, ?3) on conflict (hash) do nothing",
-        )
-        .bind(&self.hash)
-        .bind(&self.body)
-        .bind(super::column(self.size))
-        .execute(connection)
-        .await?;
+    pub(super) async fn insert(&self, connection: &mut Connection) -> Result<(), sqlx::Error> {
+        query(dialect::insert_document())
+            .bind(&self.hash)
+            .bind(&*self.body)
+            .bind(super::column(self.size))
+            .execute(connection)
+            .await?;
         Ok(())
     }
 }
@@ -118,7 +113,7 @@ impl Store {
         hash: &str,
     ) -> Result<Option<Document>, StoreError> {
         let found: Option<(String, Vec<u8>)> =
-            sqlx::query_as("select encoding, body from documents where hash = ?1")
+            query_as("select encoding, body from documents where hash = $1")
                 .bind(hash)
                 .fetch_optional(&self.readers)
                 .await?;
@@ -128,11 +123,15 @@ impl Store {
 
 /// Removes a document unless a job needs it.
 pub(super) async fn forget_document(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     hash: &str,
 ) -> Result<(), sqlx::Error> {
-    sqlx::query(
-        "delete from documents where hash = ?1 and not exists (select 1 from jobs where document = ?1)",
+    query(dialect::lock_document())
+        .bind(hash)
+        .execute(&mut *connection)
+        .await?;
+    query(
+        "delete from documents where hash = $1 and not exists (select 1 from jobs where document = $1)",
     )
     .bind(hash)
     .execute(connection)

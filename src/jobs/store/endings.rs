@@ -1,16 +1,16 @@
 //! What follows when a job ends: its study may have ended with it, and somebody may want to be told.
 
 use jiff::Timestamp;
-use sqlx::SqliteConnection;
 use uuid::Uuid;
 
+use super::statement::{Connection, query_as, query_scalar};
 use super::webhooks::{EventKind, queue_messages};
 use crate::jobs::job::Job;
 use crate::jobs::study::StudyRecord;
 
 /// Notes that `job` has ended, in the same transaction.
 pub(super) async fn tell_end(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     job: &Job,
     now: Timestamp,
 ) -> Result<(), sqlx::Error> {
@@ -27,13 +27,13 @@ pub(super) async fn tell_end(
 
 /// Notes that a study has ended, if it has, once.
 pub(super) async fn note_study(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     id: Uuid,
     now: Timestamp,
 ) -> Result<(), sqlx::Error> {
-    let ended: Option<StudyRecord> = sqlx::query_as(
+    let ended: Option<StudyRecord> = query_as(
         "update studies set ended_at = max(coalesce(cancelled_at, last_end, submitted_at), submitted_at)
-         where id = ?1 and ended_at is null
+         where id = $1 and ended_at is null
            and (cancelled_at is not null or unbuildable + successful + failed + dismissed = total)
          returning *",
     )
@@ -41,7 +41,7 @@ pub(super) async fn note_study(
     .fetch_optional(&mut *connection)
     .await?;
     if let Some(study) = ended {
-        let client: String = sqlx::query_scalar("select client from studies where id = ?1")
+        let client: String = query_scalar("select client from studies where id = $1")
             .bind(id.to_string())
             .fetch_one(&mut *connection)
             .await?;

@@ -1,11 +1,10 @@
 //! API keys as they are kept: who has them and what they may do. Of the secret part only the hash is kept.
 
 use jiff::Timestamp;
-use sqlx::FromRow;
 use sqlx::Row;
-use sqlx::sqlite::SqliteRow;
 
-use super::rows::{instant, optional_instant};
+use super::rows::{from_row, instant, optional_instant, small};
+use super::statement::{query, query_as};
 use super::{Store, StoreError};
 
 /// What the bearer of a key may do.
@@ -62,16 +61,16 @@ pub struct KeyRecord {
     pub revoked_at: Option<Timestamp>,
 }
 
-impl FromRow<'_, SqliteRow> for KeyRecord {
-    fn from_row(row: &SqliteRow) -> Result<Self, sqlx::Error> {
+from_row! {
+    KeyRecord, |row| {
         Ok(Self {
             id: row.try_get("id")?,
             client: row.try_get("client")?,
             name: row.try_get("name")?,
             role: Role::of_word(&row.try_get::<String, _>("role")?),
             secret_hash: row.try_get("secret_hash")?,
-            requests_per_second: row.try_get("requests_per_second")?,
-            queue_limit: row.try_get("queue_limit")?,
+            requests_per_second: small(row, "requests_per_second")?,
+            queue_limit: small(row, "queue_limit")?,
             created_at: instant(row, "created_at")?,
             revoked_at: optional_instant(row, "revoked_at")?,
         })
@@ -82,9 +81,9 @@ impl Store {
     /// Keeps a key.
     pub async fn add_key(&self, key: &KeyRecord) -> Result<(), StoreError> {
         let mut write = self.begin().await?;
-        sqlx::query(
+        query(
             "insert into keys (id, client, name, role, secret_hash, requests_per_second, queue_limit, created_at)
-             values (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
+             values ($1, $2, $3, $4, $5, $6, $7, $8)",
         )
         .bind(&key.id)
         .bind(&key.client)
@@ -102,19 +101,18 @@ impl Store {
     /// Revokes a key. False if there is none of this id that was not revoked before.
     pub async fn revoke_key(&self, id: &str, now: Timestamp) -> Result<bool, StoreError> {
         let mut write = self.begin().await?;
-        let revoked =
-            sqlx::query("update keys set revoked_at = ?2 where id = ?1 and revoked_at is null")
-                .bind(id)
-                .bind(now.as_microsecond())
-                .execute(&mut *write)
-                .await?;
+        let revoked = query("update keys set revoked_at = $2 where id = $1 and revoked_at is null")
+            .bind(id)
+            .bind(now.as_microsecond())
+            .execute(&mut *write)
+            .await?;
         write.commit().await?;
-        Ok(revoked.rows_affected() == 1)
+        Ok(revoked == 1)
     }
 
     /// A key that was not revoked.
     pub async fn find_key(&self, id: &str) -> Result<Option<KeyRecord>, StoreError> {
-        let key = sqlx::query_as("select * from keys where id = ?1 and revoked_at is null")
+        let key = query_as("select * from keys where id = $1 and revoked_at is null")
             .bind(id)
             .fetch_optional(&self.readers)
             .await?;
@@ -123,7 +121,7 @@ impl Store {
 
     /// All keys, the oldest first.
     pub async fn list_keys(&self) -> Result<Vec<KeyRecord>, StoreError> {
-        let keys = sqlx::query_as("select * from keys order by created_at, id")
+        let keys = query_as("select * from keys order by created_at, id")
             .fetch_all(&self.readers)
             .await?;
         Ok(keys)
@@ -131,9 +129,9 @@ impl Store {
 
     /// Whether a key was ever made. One that was revoked does not open the door to everybody again.
     pub async fn has_keys(&self) -> Result<bool, StoreError> {
-        let found: Option<i64> = sqlx::query_scalar("select 1 from keys limit 1")
-            .fetch_optional(&self.readers)
+        let found = query("select 1 from keys limit 1")
+            .exists(&self.readers)
             .await?;
-        Ok(found.is_some())
+        Ok(found)
     }
 }

@@ -4,10 +4,10 @@ use std::fmt;
 use std::str::FromStr;
 
 use jiff::Timestamp;
-use sqlx::{QueryBuilder, Sqlite};
 use uuid::Uuid;
 
-use super::{Store, StoreError};
+use super::statement::{Dialect, Record, Statement, Text, query_as, query_scalar};
+use super::{Store, StoreError, dialect};
 use crate::jobs::job::Job;
 use crate::jobs::study::StudyRecord;
 use crate::wire::Status;
@@ -64,7 +64,7 @@ pub enum Membership {
 impl Store {
     /// A job of a client.
     pub async fn find(&self, client: &str, id: Uuid) -> Result<Option<Job>, StoreError> {
-        let job = sqlx::query_as("select * from jobs where id = ?1 and client = ?2")
+        let job = query_as("select * from jobs where id = $1 and client = $2")
             .bind(id.to_string())
             .bind(client)
             .fetch_optional(&self.readers)
@@ -74,7 +74,7 @@ impl Store {
 
     /// The submission of a job, JSON.
     pub async fn submission(&self, id: Uuid) -> Result<Option<String>, StoreError> {
-        let text = sqlx::query_scalar("select body from submissions where job = ?1")
+        let text = query_scalar("select body from submissions where job = $1")
             .bind(id.to_string())
             .fetch_optional(&self.readers)
             .await?;
@@ -109,8 +109,8 @@ impl Store {
         status: Option<Status>,
         limit: u32,
     ) -> Result<Vec<Job>, StoreError> {
-        let mut query = filter.query(client, status, limit);
-        Ok(query.build_query_as().fetch_all(&self.readers).await?)
+        let query = filter.query(self.readers.dialect(), client, status, limit);
+        Ok(query.fetch_all(&self.readers).await?)
     }
 
     /// A study of a client.
@@ -119,7 +119,7 @@ impl Store {
         client: &str,
         id: Uuid,
     ) -> Result<Option<StudyRecord>, StoreError> {
-        let study = sqlx::query_as("select * from studies where id = ?1 and client = ?2")
+        let study = query_as("select * from studies where id = $1 and client = $2")
             .bind(id.to_string())
             .bind(client)
             .fetch_optional(&self.readers)
@@ -129,8 +129,8 @@ impl Store {
 
     /// A study as it was sent, JSON, if it has no more characters than `most`.
     pub async fn study_text(&self, id: Uuid, most: u64) -> Result<Option<String>, StoreError> {
-        let text = sqlx::query_scalar(
-            "select body from study_documents where study = ?1 and length(body) <= ?2",
+        let text = query_scalar(
+            "select body from study_documents where study = $1 and length(body) <= $2",
         )
         .bind(id.to_string())
         .bind(super::column(most))
@@ -146,20 +146,14 @@ impl Store {
         filter: &StudyFilter,
         limit: u32,
     ) -> Result<Vec<StudyRecord>, StoreError> {
-        let mut query = filter.query(client, limit);
-        Ok(query.build_query_as().fetch_all(&self.readers).await?)
+        let query = filter.query(self.readers.dialect(), client, limit);
+        Ok(query.fetch_all(&self.readers).await?)
     }
 
     /// The queue as an operator sees it.
     pub async fn depth(&self) -> Result<Depth, StoreError> {
-        let (alone, in_studies, running, oldest) = sqlx::query_as(
-            "select (select count(*) from jobs where status = 'accepted' and coalesce(study, '') = ''),
-                    (select count(*) from jobs where status = 'accepted' and coalesce(study, '') <> ''),
-                    (select count(*) from jobs indexed by jobs_running where status = 'running'),
-                    (select min(submitted_at) from jobs where status = 'accepted' and coalesce(study, '') = '')",
-        )
-        .fetch_one(&self.readers)
-        .await?;
+        let (alone, in_studies, running, oldest) =
+            query_as(dialect::depth()).fetch_one(&self.readers).await?;
         let oldest: Option<i64> = oldest;
         Ok(Depth {
             alone,
@@ -183,34 +177,57 @@ pub struct Depth {
     pub oldest: Option<Timestamp>,
 }
 
+/// What keeps SQLite from another way to the rows than the one that has their order. PostgreSQL goes by its own counts.
+struct Hints {
+    /// A join that goes through its left side.
+    join: &'static str,
+    /// A sign that keeps an index from being used.
+    no_index: &'static str,
+}
+
+impl Hints {
+    fn of(dialect: Dialect) -> Self {
+        match dialect {
+            Dialect::Sqlite => Self {
+                join: "cross join",
+                no_index: "+",
+            },
+            Dialect::Postgres => Self {
+                join: "join",
+                no_index: "",
+            },
+        }
+    }
+}
+
 impl Filter {
     /// The query for jobs of one state or all.
     ///
-    /// A `+` keeps an index from being used: where ids or a study are named they are few, and the client has many jobs.
+    /// Where ids or a study are named they are few, and the client has many jobs.
     pub(super) fn query(
         &self,
+        dialect: Dialect,
         client: &str,
         status: Option<Status>,
         limit: u32,
-    ) -> QueryBuilder<Sqlite> {
+    ) -> Statement<Job> {
+        let Hints { join, no_index } = Hints::of(dialect);
         let named = self.ids.is_some() || matches!(self.study, Some(Membership::Of(_)));
         let mut query = match &self.tag {
             Some(tag) => {
-                let mut query = QueryBuilder::new(
-                    "select jobs.* from job_tags cross join jobs on jobs.id = job_tags.job where job_tags.client = ",
-                );
-                query.push_bind(client.to_owned());
-                query.push(" and job_tags.tag = ").push_bind(tag.clone());
+                let mut query = query_as(Text::Made(format!(
+                    "select jobs.* from job_tags {join} jobs on jobs.id = job_tags.job where job_tags.client = "
+                )));
+                query.push_bind(client);
+                query.push(" and job_tags.tag = ").push_bind(tag);
                 query
             }
             None => {
-                let start = if named {
-                    "select jobs.* from jobs where +jobs.client = "
-                } else {
-                    "select jobs.* from jobs where jobs.client = "
-                };
-                let mut query = QueryBuilder::new(start);
-                query.push_bind(client.to_owned());
+                let sign = if named { no_index } else { "" };
+                let mut query = query_as(Text::Made(format!(
+                    "select jobs.* from jobs where {sign}jobs.client = "
+                )));
+                query.push_bind(client);
                 query
             }
         };
@@ -225,16 +242,17 @@ impl Filter {
             query.push(" and jobs.status = ").push_bind(status.as_str());
         }
         if let Some(ids) = &self.ids {
-            let mut list = query.push(" and jobs.id in (").separated(", ");
+            // A list is not empty in SQL; nothing is equal to null.
+            query.push(" and jobs.id in (null");
             for id in ids {
-                list.push_bind(id.to_string());
+                query.push(", ").push_bind(id.to_string());
             }
             query.push(")");
         }
         match self.study {
             Some(Membership::Of(study)) => {
-                let sign = if self.ids.is_some() { "+" } else { "" };
-                query.push(format!(" and {sign}jobs.study = "));
+                let sign = if self.ids.is_some() { no_index } else { "" };
+                query.push(&format!(" and {sign}jobs.study = "));
                 query.push_bind(study.to_string());
             }
             Some(Membership::Alone) => {
@@ -242,86 +260,77 @@ impl Filter {
             }
             None => {}
         }
-        query.push(format!(" order by {walked}.sequence desc limit "));
+        query.push(&format!(" order by {walked}.sequence desc limit "));
         query.push_bind(limit);
         query
     }
 }
 
 impl StudyFilter {
-    fn query(&self, client: &str, limit: u32) -> QueryBuilder<Sqlite> {
+    fn query(&self, dialect: Dialect, client: &str, limit: u32) -> Statement<StudyRecord> {
+        let Hints { join, .. } = Hints::of(dialect);
         let mut query = match &self.tag {
             Some(tag) => {
-                let mut query = QueryBuilder::new(
-                    "select studies.* from study_tags cross join studies on studies.id = study_tags.study
-                     where study_tags.client = ",
-                );
-                query.push_bind(client.to_owned());
-                query.push(" and study_tags.tag = ").push_bind(tag.clone());
-                bound_sequence(
-                    &mut query,
-                    "study_tags",
-                    "studies",
-                    client,
-                    self.span,
-                    self.after,
-                );
+                let mut query = query_as(Text::Made(format!(
+                    "select studies.* from study_tags {join} studies on studies.id = study_tags.study
+                     where study_tags.client = "
+                )));
+                query.push_bind(client);
+                query.push(" and study_tags.tag = ").push_bind(tag);
                 query
             }
             None => {
-                let mut query =
-                    QueryBuilder::new("select studies.* from studies where studies.client = ");
-                query.push_bind(client.to_owned());
-                bound_sequence(
-                    &mut query, "studies", "studies", client, self.span, self.after,
-                );
+                let words = "select studies.* from studies where studies.client = ";
+                let mut query = query_as(Text::Made(words.to_owned()));
+                query.push_bind(client);
                 query
             }
         };
-        if let Some(name) = &self.name {
-            query.push(" and studies.name = ").push_bind(name.clone());
-        }
         let walked = if self.tag.is_some() {
             "study_tags"
         } else {
             "studies"
         };
-        query.push(format!(" order by {walked}.sequence desc limit "));
+        bound_sequence(&mut query, walked, "studies", client, self.span, self.after);
+        if let Some(name) = &self.name {
+            query.push(" and studies.name = ").push_bind(name);
+        }
+        query.push(&format!(" order by {walked}.sequence desc limit "));
         query.push_bind(limit);
         query
     }
 }
 
 /// Keeps to a span of time and to what stands behind a cursor, by the sequence in the table `walked`.
-fn bound_sequence(
-    query: &mut QueryBuilder<Sqlite>,
-    walked: &'static str,
-    timed: &'static str,
+fn bound_sequence<T: Record>(
+    query: &mut Statement<T>,
+    walked: &str,
+    timed: &str,
     client: &str,
     span: Span,
     after: Option<Cursor>,
 ) {
-    let first_since = |query: &mut QueryBuilder<Sqlite>, at: Timestamp| {
-        query.push(format!(
+    let first_since = |query: &mut Statement<T>, at: Timestamp| {
+        query.push(&format!(
             "coalesce((select t.sequence from {timed} as t where t.client = "
         ));
-        query.push_bind(client.to_owned());
+        query.push_bind(client);
         query
             .push(" and t.submitted_at >= ")
             .push_bind(at.as_microsecond());
         query.push(" order by t.submitted_at, t.sequence limit 1), 9223372036854775807)");
     };
     if let Some(from) = span.from {
-        query.push(format!(" and {walked}.sequence >= "));
+        query.push(&format!(" and {walked}.sequence >= "));
         first_since(query, from);
     }
     if let Some(until) = span.until {
-        query.push(format!(" and {walked}.sequence < "));
+        query.push(&format!(" and {walked}.sequence < "));
         first_since(query, until);
     }
     if let Some(Cursor(sequence)) = after {
         query
-            .push(format!(" and {walked}.sequence < "))
+            .push(&format!(" and {walked}.sequence < "))
             .push_bind(sequence);
     }
 }

@@ -1,9 +1,12 @@
-//! Where everything is kept: SQLite behind one type. All SQL of the service stands in this folder.
+//! Where everything is kept: a file of SQLite, or a server of PostgreSQL on which several processes work, behind one type.
+//! All SQL of the service stands in this folder.
 //!
-//! In reading order: how the database is [opened](open), how it is [written](write) and what can go wrong with it
+//! In reading order: where the database [is](place), how a [statement] is said to either kind and where the two
+//! [differ](dialect); how the database is [opened](open), how it is [written](write) and what can go wrong with it
 //! ([`StoreError`]); what a row is (`rows`); the transitions of a job: it is submitted (`submit`), claimed in its turn
 //! (`claim`, `shares`), attempted (`attempt`), and ends otherwise (`end`); those of a study (`studies`); what is read:
-//! lists, documents, tables; what else is kept: keys, webhooks; and what an operator needs: retention and backup.
+//! lists, documents, tables; what other processes tell (`news`); what else is kept: keys, webhooks; and what an operator
+//! needs: retention and backup.
 //!
 //! Each transition is one transaction that names the state it leaves; when the job is not in that state the transition does
 //! not happen, and says so. Time comes in as an argument.
@@ -19,16 +22,20 @@
 mod attempt;
 mod backup;
 mod claim;
+mod dialect;
 mod documents;
 mod end;
 mod endings;
 mod error;
 mod keys;
 mod lists;
+mod news;
 mod open;
+mod place;
 mod retention;
 mod rows;
 mod shares;
+mod statement;
 mod studies;
 mod study_tables;
 mod submit;
@@ -37,11 +44,12 @@ mod tests;
 mod webhooks;
 mod write;
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
-use sqlx::SqlitePool;
+use jiff::SignedDuration;
+use uuid::Uuid;
 
+use statement::Pool;
 use write::Health;
 
 pub use backup::BackupError;
@@ -50,13 +58,15 @@ pub use error::StoreError;
 pub use keys::{KeyRecord, Role};
 pub use lists::{Cursor, Depth, Filter, Membership, NoCursor, Span, StudyFilter};
 pub use open::OpenError;
+pub use place::Place;
 pub use retention::{Removed, Space};
 pub use webhooks::{EventKind, Webhook};
 
-pub(super) use attempt::{Claim, End};
+pub(super) use attempt::{Claim, End, Lease};
 pub(super) use claim::{Claimed, Started};
 pub(super) use documents::Packed;
 pub(super) use end::Lost;
+pub(super) use news::{Listener, Told};
 pub(super) use studies::{NewRow, NewStudy, StudyOutcome};
 pub(super) use study_tables::StoredRow;
 pub(super) use submit::{NewJob, Outcome, QueueBounds};
@@ -65,13 +75,15 @@ pub(super) use webhooks::{Delivery, NewWebhook};
 /// The database.
 ///
 /// SQLite takes one writer at a time. Writers queue for the one connection in memory, in order of arrival, instead of
-/// finding the file locked; readers see the last commit meanwhile.
+/// finding the file locked; readers see the last commit meanwhile. PostgreSQL takes many; there both pools are one.
 #[derive(Debug, Clone)]
 pub struct Store {
-    path: PathBuf,
-    writer: SqlitePool,
-    readers: SqlitePool,
+    place: Place,
+    writer: Pool,
+    readers: Pool,
     health: Arc<Health>,
+    /// This process, among those that work on the same database. Another one at each start.
+    process: Uuid,
 }
 
 impl Store {
@@ -80,9 +92,24 @@ impl Store {
         self.readers.close().await;
         self.writer.close().await;
     }
+
+    /// Whether it was closed.
+    pub(super) fn is_closed(&self) -> bool {
+        self.writer.is_closed()
+    }
+
+    /// Whether other processes may work on the same database.
+    pub fn is_shared(&self) -> bool {
+        matches!(self.place, Place::Postgres(_))
+    }
 }
 
-/// SQLite counts in 64 bits with a sign. A count beyond that is only shown, so the nearest will do.
+/// A span of time as a column.
+fn micros(span: SignedDuration) -> i64 {
+    i64::try_from(span.as_micros()).unwrap_or(i64::MAX)
+}
+
+/// The databases count in 64 bits with a sign. A count beyond that is only shown, so the nearest will do.
 fn column(count: u64) -> i64 {
     i64::try_from(count).unwrap_or(i64::MAX)
 }

@@ -2,21 +2,35 @@
 
 use std::io::Read;
 use std::path::Path;
+use std::str::FromStr;
 use std::time::Duration;
 
 use sqlx::migrate::{MigrateError, Migrator};
+use sqlx::postgres::{PgConnectOptions, PgPoolOptions};
 use sqlx::sqlite::{
     SqliteAutoVacuum, SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous,
 };
 use sqlx::{ConnectOptions, Connection, SqliteConnection};
 use tracing::{info, warn};
+use uuid::Uuid;
 
 use super::error::primary_code;
+use super::statement::Pool;
 use super::write::Health;
-use super::{Store, StoreError};
+use super::{Place, Store, StoreError};
 use crate::private::open_or_make;
 
 static MIGRATIONS: Migrator = sqlx::migrate!();
+static MIGRATIONS_OF_POSTGRES: Migrator = sqlx::migrate!("migrations/postgres");
+
+/// Connections of one process to a server at most, the one for news aside. A transaction needs one for some milliseconds.
+const CONNECTIONS: u32 = 10;
+
+/// A connection that has been idle for longer is asked whether it still is one.
+const IDLE: Duration = Duration::from_secs(1);
+
+/// A connection to a server that cannot be had in this time is not had now.
+const CONNECTING: Duration = Duration::from_secs(5);
 
 /// What every SQLite database begins with.
 const MAGIC: &[u8; 16] = b"SQLite format 3\0";
@@ -55,8 +69,11 @@ pub enum OpenError {
     /// Another program has it.
     #[error("another program has locked it")]
     Locked,
-    /// The system does not open it.
-    #[error("the system does not open it")]
+    /// Its address is none.
+    #[error("its address is not understood")]
+    Address(#[source] Box<sqlx::Error>),
+    /// The system or the server does not open it.
+    #[error("it does not open")]
     Connect(#[source] sqlx::Error),
     /// Its tables cannot be brought up to date.
     #[error("its tables cannot be brought up to date")]
@@ -101,37 +118,22 @@ impl From<MigrateError> for OpenError {
 }
 
 impl Store {
-    /// Opens the database at `path`, creates it if it is absent, brings its tables up to date and looks for damage.
+    /// Opens the database at `place`, brings its tables up to date and looks for damage. A file that is absent is made.
     ///
     /// # Errors
     ///
     /// [`OpenError`].
-    pub async fn open(path: &Path) -> Result<Self, OpenError> {
-        refuse_other_files(path)?;
-        let options = options(path);
-        bring_up_to_date(&options).await?;
-        // From here on the file is there. Made anew behind our back, it would be an empty one.
-        let options = options.create_if_missing(false).foreign_keys(true);
-        let pool = || {
-            SqlitePoolOptions::new()
-                .idle_timeout(None)
-                .max_lifetime(None)
-                // A connection to a file does not break while it lies idle; the look would double the way of a query.
-                .test_before_acquire(false)
+    pub async fn open(place: &Place) -> Result<Self, OpenError> {
+        let (writer, readers) = match place {
+            Place::File(path) => open_file(path).await?,
+            Place::Postgres(address) => open_server(address).await?,
         };
-        let writer = pool()
-            .max_connections(1)
-            .connect_with(options.clone())
-            .await?;
-        let readers = pool()
-            .max_connections(4)
-            .connect_with(options.read_only(true))
-            .await?;
         let store = Self {
-            path: path.to_owned(),
+            place: place.clone(),
             writer,
             readers,
             health: Health::new(),
+            process: Uuid::now_v7(),
         };
         store.look_for_damage().await?;
         store.probe().await?;
@@ -140,18 +142,83 @@ impl Store {
     }
 
     /// Reads through the file, unless it is so large that it would take seconds; then what is damaged is met when it is read.
+    /// A server looks after its own files.
     async fn look_for_damage(&self) -> Result<(), OpenError> {
+        let Pool::Sqlite(readers) = &self.readers else {
+            return Ok(());
+        };
         if self.space().await?.file > LARGEST_CHECKED {
             return Ok(());
         }
         let found: Vec<String> = sqlx::query_scalar("pragma quick_check(1)")
-            .fetch_all(&self.readers)
+            .fetch_all(readers)
             .await?;
         match found.into_iter().find(|line| line != "ok") {
             Some(first) => Err(OpenError::Damaged(first)),
             None => Ok(()),
         }
     }
+}
+
+async fn open_file(path: &Path) -> Result<(Pool, Pool), OpenError> {
+    refuse_other_files(path)?;
+    let options = options(path);
+    bring_up_to_date(&options).await?;
+    // From here on the file is there. Made anew behind our back, it would be an empty one.
+    let options = options.create_if_missing(false).foreign_keys(true);
+    let pool = || {
+        SqlitePoolOptions::new()
+            .idle_timeout(None)
+            .max_lifetime(None)
+            // A connection to a file does not break while it lies idle; the look would double the way of a query.
+            .test_before_acquire(false)
+    };
+    let writer = pool()
+        .max_connections(1)
+        .connect_with(options.clone())
+        .await?;
+    let readers = pool()
+        .max_connections(4)
+        .connect_with(options.read_only(true))
+        .await?;
+    Ok((Pool::Sqlite(writer), Pool::Sqlite(readers)))
+}
+
+/// Connects to a server, and brings the tables up to date: one process at a time, by a lock that the driver takes.
+async fn open_server(address: &str) -> Result<(Pool, Pool), OpenError> {
+    let options = PgConnectOptions::from_str(address)
+        .map_err(|error| OpenError::Address(Box::new(error)))?
+        .application_name("meshwright")
+        // A process that vanishes in the middle of a transaction, with its network or frozen, holds what it has locked no
+        // longer than this.
+        .options([
+            ("idle_in_transaction_session_timeout", "10s"),
+            ("tcp_keepalives_idle", "10"),
+            ("tcp_keepalives_interval", "5"),
+            ("tcp_keepalives_count", "3"),
+        ]);
+    let mut connection = options.connect().await?;
+    let migrated = MIGRATIONS_OF_POSTGRES
+        .run_direct(None, &mut connection, false)
+        .await;
+    connection.close().await?;
+    migrated?;
+    let pool = PgPoolOptions::new()
+        .max_connections(CONNECTIONS)
+        .acquire_timeout(CONNECTING)
+        .test_before_acquire(false)
+        // After a restart of the server all idle connections are dead.
+        .before_acquire(|connection, meta| {
+            Box::pin(async move {
+                if meta.idle_for < IDLE {
+                    return Ok(true);
+                }
+                Ok(connection.ping().await.is_ok())
+            })
+        })
+        .connect_with(options)
+        .await?;
+    Ok((Pool::Postgres(pool.clone()), Pool::Postgres(pool)))
 }
 
 /// A file that is there and not empty has to be a database; SQLite would say so later, and less clearly. One that is absent is

@@ -1,10 +1,13 @@
 //! What is kept how long, and the space that is given back.
 
+use std::collections::BTreeSet;
+
 use jiff::Timestamp;
 use uuid::Uuid;
 
 use super::documents::forget_document;
-use super::{Store, StoreError};
+use super::statement::{Pool, query, query_as, query_scalar};
+use super::{Place, Store, StoreError, dialect};
 use crate::jobs::job::Job;
 
 /// So many jobs are removed in one commit.
@@ -49,15 +52,15 @@ impl Store {
     /// Removes some of the jobs and studies that ended before `before`, the oldest first: a hundred jobs, or one study.
     pub async fn remove_old(&self, before: Timestamp) -> Result<Removed, StoreError> {
         let before = before.as_microsecond();
-        let study: Option<(String, i64)> = sqlx::query_as(
-            "select id, ended_at from studies where ended_at < ?1 order by ended_at limit 1",
+        let study: Option<(String, i64)> = query_as(
+            "select id, ended_at from studies where ended_at < $1 order by ended_at limit 1",
         )
         .bind(before)
         .fetch_optional(&self.readers)
         .await?;
         // A study that is older than the oldest jobs goes first.
-        let oldest_job: Option<i64> = sqlx::query_scalar(
-            "select finished_at from jobs where study is null and finished_at < ?1 order by finished_at limit 1",
+        let oldest_job: Option<i64> = query_scalar(
+            "select finished_at from jobs where study is null and finished_at < $1 order by finished_at limit 1",
         )
         .bind(before)
         .fetch_optional(&self.readers)
@@ -85,74 +88,90 @@ impl Store {
 
     async fn remove_old_jobs(&self, before: i64) -> Result<u64, StoreError> {
         let mut write = self.begin().await?;
-        let jobs: Vec<Job> = sqlx::query_as(
+        query(dialect::keep_alone()).execute(&mut *write).await?;
+        let jobs: Vec<Job> = query_as(
             "delete from jobs where id in
-               (select id from jobs where study is null and finished_at < ?1 order by finished_at limit ?2)
+               (select id from jobs where study is null and finished_at < $1 order by finished_at limit $2)
              returning *",
         )
         .bind(before)
         .bind(REMOVED_AT_ONCE)
         .fetch_all(&mut *write)
         .await?;
-        for hash in jobs.iter().filter_map(|job| job.document.as_deref()) {
+        let hashes: BTreeSet<&str> = jobs
+            .iter()
+            .filter_map(|job| job.document.as_deref())
+            .collect();
+        for hash in hashes {
             forget_document(&mut write, hash).await?;
         }
         write.commit().await?;
         Ok(jobs.len() as u64)
     }
 
-    /// What the file holds.
+    /// What the database holds. A server gives the space of what is removed to what comes next, and does not tell how much
+    /// of it is free.
     pub async fn space(&self) -> Result<Space, StoreError> {
-        let (page, pages, free): (i64, i64, i64) = sqlx::query_as(
+        let count = |number: i64| u64::try_from(number).unwrap_or(0);
+        if self.is_shared() {
+            let bytes = query_scalar("select pg_database_size(current_database())");
+            let file = count(bytes.fetch_one(&self.readers).await?);
+            return Ok(Space { file, free: 0 });
+        }
+        let (page, pages, free): (i64, i64, i64) = query_as(
             "select (select page_size from pragma_page_size), (select page_count from pragma_page_count),
                     (select freelist_count from pragma_freelist_count)",
         )
         .fetch_one(&self.readers)
         .await?;
-        let bytes = |pages: i64| u64::try_from(pages.saturating_mul(page)).unwrap_or(0);
         Ok(Space {
-            file: bytes(pages),
-            free: bytes(free),
+            file: count(pages.saturating_mul(page)),
+            free: count(free.saturating_mul(page)),
         })
     }
 
     /// Gives some of the space back that nothing occupies. False if there is none left.
     pub async fn shrink(&self) -> Result<bool, StoreError> {
-        if self.space().await?.free == 0 {
+        let before = self.space().await?;
+        let Pool::Sqlite(writer) = &self.writer else {
+            return Ok(false);
+        };
+        if before.free == 0 {
             return Ok(false);
         }
-        let before = self.space().await?;
-        let mut connection = self.writer.acquire().await?;
         sqlx::raw_sql(sqlx::AssertSqlSafe(format!(
             "pragma incremental_vacuum({PAGES_AT_ONCE})"
         )))
-        .execute(&mut *connection)
+        .execute(writer)
         .await?;
-        drop(connection);
         // A file of an earlier version cannot shrink page by page.
         Ok(self.space().await?.file < before.file)
     }
 
-    /// Bytes of the journal.
+    /// Bytes of the journal. That of a server is none of ours.
     pub fn journal_bytes(&self) -> u64 {
-        let mut name = self.path.as_os_str().to_owned();
+        let Place::File(path) = &self.place else {
+            return 0;
+        };
+        let mut name = path.as_os_str().to_owned();
         name.push("-wal");
         std::fs::metadata(name).map_or(0, |data| data.len())
     }
 
     /// Moves what stands in the journal to the file, and empties the journal, if no reader needs it.
     pub async fn empty_journal(&self) -> Result<(), StoreError> {
-        let mut connection = self.writer.acquire().await?;
-        sqlx::raw_sql("pragma wal_checkpoint(truncate)")
-            .execute(&mut *connection)
-            .await?;
+        if let Pool::Sqlite(writer) = &self.writer {
+            sqlx::raw_sql("pragma wal_checkpoint(truncate)")
+                .execute(writer)
+                .await?;
+        }
         Ok(())
     }
 
     /// Forgets the word under which a study was submitted, and those of jobs, if they are older.
     pub(in crate::jobs) async fn forget_keys(&self, before: Timestamp) -> Result<(), StoreError> {
         let mut write = self.begin().await?;
-        sqlx::query("delete from idempotency_keys where created_at < ?1")
+        query("delete from idempotency_keys where created_at < $1")
             .bind(before.as_microsecond())
             .execute(&mut *write)
             .await?;

@@ -1,8 +1,9 @@
 //! Rows of the database as what they mean.
 
 use jiff::{SignedDuration, Timestamp};
+use sqlx::Row;
+use sqlx::postgres::PgRow;
 use sqlx::sqlite::SqliteRow;
-use sqlx::{FromRow, Row};
 use uuid::Uuid;
 
 use crate::jobs::job::{Job, Progress};
@@ -10,8 +11,46 @@ use crate::jobs::study::StudyRecord;
 use crate::wire::Status;
 use crate::wire::warning::GearName;
 
-impl FromRow<'_, SqliteRow> for Job {
-    fn from_row(row: &SqliteRow) -> Result<Self, sqlx::Error> {
+/// Reads a type from the rows of both databases by the same words.
+macro_rules! from_row {
+    ($type:ty, |$row:ident| $read:block) => {
+        impl sqlx::FromRow<'_, sqlx::sqlite::SqliteRow> for $type {
+            fn from_row($row: &sqlx::sqlite::SqliteRow) -> Result<Self, sqlx::Error> $read
+        }
+
+        impl sqlx::FromRow<'_, sqlx::postgres::PgRow> for $type {
+            fn from_row($row: &sqlx::postgres::PgRow) -> Result<Self, sqlx::Error> $read
+        }
+    };
+}
+
+pub(super) use from_row;
+
+/// A row of either database, by the kinds of columns that there are.
+pub(super) trait Cells {
+    fn integer(&self, column: &'static str) -> Result<Option<i64>, sqlx::Error>;
+    fn text(&self, column: &'static str) -> Result<Option<String>, sqlx::Error>;
+}
+
+macro_rules! cells {
+    ($row:ty) => {
+        impl Cells for $row {
+            fn integer(&self, column: &'static str) -> Result<Option<i64>, sqlx::Error> {
+                self.try_get(column)
+            }
+
+            fn text(&self, column: &'static str) -> Result<Option<String>, sqlx::Error> {
+                self.try_get(column)
+            }
+        }
+    };
+}
+
+cells!(SqliteRow);
+cells!(PgRow);
+
+from_row! {
+    Job, |row| {
         let attempt: i64 = row.try_get("attempt")?;
         let returned: i64 = row.try_get("returned")?;
         let elapsed: Option<i64> = row.try_get("elapsed")?;
@@ -43,8 +82,8 @@ impl FromRow<'_, SqliteRow> for Job {
     }
 }
 
-impl FromRow<'_, SqliteRow> for StudyRecord {
-    fn from_row(row: &SqliteRow) -> Result<Self, sqlx::Error> {
+from_row! {
+    StudyRecord, |row| {
         Ok(Self {
             id: uuid(row, "id")?,
             sequence: row.try_get("sequence")?,
@@ -69,39 +108,32 @@ impl FromRow<'_, SqliteRow> for StudyRecord {
     }
 }
 
-pub(super) fn instant(row: &SqliteRow, column: &'static str) -> Result<Timestamp, sqlx::Error> {
-    let microseconds: i64 = row.try_get(column)?;
-    Timestamp::from_microsecond(microseconds).map_err(|error| undecodable(column, error))
+pub(super) fn instant(row: &impl Cells, column: &'static str) -> Result<Timestamp, sqlx::Error> {
+    optional_instant(row, column)?.ok_or_else(|| undecodable(column, Absent))
 }
 
 pub(super) fn optional_instant(
-    row: &SqliteRow,
+    row: &impl Cells,
     column: &'static str,
 ) -> Result<Option<Timestamp>, sqlx::Error> {
-    match row.try_get::<Option<i64>, _>(column)? {
-        Some(_) => instant(row, column).map(Some),
-        None => Ok(None),
-    }
+    let at = row.integer(column)?.map(Timestamp::from_microsecond);
+    at.transpose().map_err(|error| undecodable(column, error))
 }
 
-pub(super) fn uuid(row: &SqliteRow, column: &'static str) -> Result<Uuid, sqlx::Error> {
-    let text: String = row.try_get(column)?;
-    text.parse()
-        .map_err(|error: uuid::Error| undecodable(column, error))
+pub(super) fn uuid(row: &impl Cells, column: &'static str) -> Result<Uuid, sqlx::Error> {
+    optional_uuid(row, column)?.ok_or_else(|| undecodable(column, Absent))
 }
 
 pub(super) fn optional_uuid(
-    row: &SqliteRow,
+    row: &impl Cells,
     column: &'static str,
 ) -> Result<Option<Uuid>, sqlx::Error> {
-    match row.try_get::<Option<String>, _>(column)? {
-        Some(_) => uuid(row, column).map(Some),
-        None => Ok(None),
-    }
+    let id = row.text(column)?.map(|text| text.parse::<Uuid>());
+    id.transpose().map_err(|error| undecodable(column, error))
 }
 
-pub(super) fn status(row: &SqliteRow, column: &'static str) -> Result<Status, sqlx::Error> {
-    let word: String = row.try_get(column)?;
+pub(super) fn status(row: &impl Cells, column: &'static str) -> Result<Status, sqlx::Error> {
+    let word = row.text(column)?.unwrap_or_default();
     Status::of_word(&word).ok_or_else(|| undecodable(column, UnknownWord(word)))
 }
 
@@ -112,9 +144,25 @@ pub(super) fn json<T: serde::de::DeserializeOwned>(
     serde_json::from_str(text).map_err(|error| undecodable(column, error))
 }
 
-pub(super) fn count(row: &SqliteRow, column: &'static str) -> Result<u64, sqlx::Error> {
-    u64::try_from(row.try_get::<i64, _>(column)?).map_err(|error| undecodable(column, error))
+pub(super) fn count(row: &impl Cells, column: &'static str) -> Result<u64, sqlx::Error> {
+    let count = row
+        .integer(column)?
+        .ok_or_else(|| undecodable(column, Absent))?;
+    u64::try_from(count).map_err(|error| undecodable(column, error))
 }
+
+/// A number that is never large.
+pub(super) fn small(row: &impl Cells, column: &'static str) -> Result<Option<u32>, sqlx::Error> {
+    let number = row.integer(column)?.map(u32::try_from);
+    number
+        .transpose()
+        .map_err(|error| undecodable(column, error))
+}
+
+/// The database has nothing where something has to be.
+#[derive(Debug, thiserror::Error)]
+#[error("nothing is there")]
+struct Absent;
 
 /// The database has a word that this version does not know.
 #[derive(Debug, thiserror::Error)]

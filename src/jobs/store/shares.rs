@@ -5,8 +5,12 @@
 //! wait starts where those are that are being served: nobody saves up a claim, and nobody pays for having been alone. So
 //! while a client has work to do, no other one gets more than its share, however many jobs or studies it brings.
 
-use sqlx::SqliteConnection;
+use std::collections::BTreeSet;
+
 use uuid::Uuid;
+
+use super::dialect;
+use super::statement::{Connection, query, query_as};
 
 /// Jobs that stand alone have so many times the part of a study: somebody waits for them, but a study is not to starve.
 const WEIGHT_ALONE: i64 = 3;
@@ -14,23 +18,53 @@ const WEIGHT_ALONE: i64 = 3;
 /// The lane of jobs that stand alone.
 const ALONE: &str = "";
 
+/// A client and its study, or its jobs that stand alone, in the order in which shares are locked.
+pub(super) type LaneOf = (String, Option<Uuid>);
+
+/// Keeps others from changing the shares of some clients until the end of the transaction.
+pub(super) async fn lock(
+    connection: &mut Connection,
+    clients: BTreeSet<&String>,
+) -> Result<(), sqlx::Error> {
+    for client in clients {
+        query(dialect::lock_shares())
+            .bind(client)
+            .execute(&mut *connection)
+            .await?;
+    }
+    Ok(())
+}
+
+/// Makes sure that lanes in which a job waits are looked at.
+pub(super) async fn activate_all(
+    connection: &mut Connection,
+    lanes: &BTreeSet<LaneOf>,
+) -> Result<(), sqlx::Error> {
+    for (client, study) in lanes {
+        activate(connection, client, *study).await?;
+    }
+    Ok(())
+}
+
 /// Makes sure that a lane in which a job waits is looked at.
 pub(super) async fn activate(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     client: &str,
     study: Option<Uuid>,
 ) -> Result<(), sqlx::Error> {
-    sqlx::query(
-        "insert into shares (client, lane, due, active) values (?1, '*', (select due from served), 1)
-         on conflict do update set active = 1, due = iif(active = 1, due, max(due, excluded.due))",
+    query(
+        "insert into shares (client, lane, due, active) values ($1, '*', (select due from served), 1)
+         on conflict (client, lane) do update
+           set active = 1, due = case shares.active when 1 then shares.due else max(shares.due, excluded.due) end",
     )
     .bind(client)
     .execute(&mut *connection)
     .await?;
-    sqlx::query(
+    query(
         "insert into shares (client, lane, due, active)
-         values (?1, ?2, (select served from shares where client = ?1 and lane = '*'), 1)
-         on conflict do update set active = 1, due = iif(active = 1, due, max(due, excluded.due))",
+         values ($1, $2, (select served from shares where client = $1 and lane = '*'), 1)
+         on conflict (client, lane) do update
+           set active = 1, due = case shares.active when 1 then shares.due else max(shares.due, excluded.due) end",
     )
     .bind(client)
     .bind(study.map_or_else(|| ALONE.to_owned(), |study| study.to_string()))
@@ -50,8 +84,8 @@ pub(super) struct Lane {
 }
 
 /// The lanes with work to do, in the order in which they are due.
-pub(super) async fn lanes(connection: &mut SqliteConnection) -> Result<Vec<Lane>, sqlx::Error> {
-    sqlx::query_as(
+pub(super) async fn lanes(connection: &mut Connection) -> Result<Vec<Lane>, sqlx::Error> {
+    query_as(
         "select own.client, own.lane, whole.due as client_due, own.due as lane_due
          from shares as whole join shares as own on own.client = whole.client and own.lane <> '*' and own.active = 1
          where whole.lane = '*' and whole.active = 1
@@ -65,7 +99,7 @@ impl Lane {
     /// Charges it with a job that is begun.
     pub(super) async fn charge(
         &self,
-        connection: &mut SqliteConnection,
+        connection: &mut Connection,
         cost: i64,
     ) -> Result<(), sqlx::Error> {
         let cost = cost.max(1);
@@ -74,19 +108,19 @@ impl Lane {
         } else {
             cost
         };
-        sqlx::query("update shares set due = due + ?3 where client = ?1 and lane = ?2")
+        query("update shares set due = due + $3 where client = $1 and lane = $2")
             .bind(&self.client)
             .bind(&self.lane)
             .bind(of_lane)
             .execute(&mut *connection)
             .await?;
-        sqlx::query("update shares set due = due + ?2, served = max(served, ?3) where client = ?1 and lane = '*'")
+        query("update shares set due = due + $2, served = max(served, $3) where client = $1 and lane = '*'")
             .bind(&self.client)
             .bind(cost)
             .bind(self.lane_due)
             .execute(&mut *connection)
             .await?;
-        sqlx::query("update served set due = max(due, ?1)")
+        query("update served set due = max(due, $1)")
             .bind(self.client_due)
             .execute(connection)
             .await?;
@@ -94,23 +128,23 @@ impl Lane {
     }
 
     /// Takes it out of the turn, because nothing waits in it. What it has had is remembered while that can matter.
-    pub(super) async fn rest(&self, connection: &mut SqliteConnection) -> Result<(), sqlx::Error> {
-        sqlx::query("update shares set active = 0 where client = ?1 and lane = ?2")
+    pub(super) async fn rest(&self, connection: &mut Connection) -> Result<(), sqlx::Error> {
+        query("update shares set active = 0 where client = $1 and lane = $2")
             .bind(&self.client)
             .bind(&self.lane)
             .execute(&mut *connection)
             .await?;
-        sqlx::query(
-            "update shares set active = 0 where client = ?1 and lane = '*'
-               and not exists (select 1 from shares where client = ?1 and lane <> '*' and active = 1)",
+        query(
+            "update shares set active = 0 where client = $1 and lane = '*'
+               and not exists (select 1 from shares where client = $1 and lane <> '*' and active = 1)",
         )
         .bind(&self.client)
         .execute(&mut *connection)
         .await?;
         // A lane that others have caught up with begins anew where they are, remembered or not.
-        sqlx::query(
-            "delete from shares where client = ?1 and lane not in ('*', '') and active = 0
-               and due <= (select served from shares where client = ?1 and lane = '*')",
+        query(
+            "delete from shares where client = $1 and lane not in ('*', '') and active = 0
+               and due <= (select served from shares where client = $1 and lane = '*')",
         )
         .bind(&self.client)
         .execute(connection)

@@ -1,18 +1,23 @@
 //! The transitions of a study. Its designs are jobs, whose own transitions stand elsewhere; here is what concerns many of
 //! them at once: their beginning, chunk after chunk, and their end when the study is cancelled or deleted.
 
-use jiff::Timestamp;
-use sqlx::SqliteConnection;
+use std::collections::BTreeSet;
+
+use jiff::{SignedDuration, Timestamp};
 use uuid::Uuid;
 
 use super::documents::forget_document;
 use super::endings::note_study;
+use super::statement::{Connection, query, query_as, query_scalar};
 use super::submit::{QueueBounds, insert_known, insert_waiting, words};
-use super::{NewJob, Store, StoreError, column};
+use super::{NewJob, Store, StoreError, column, dialect, micros, shares};
 use crate::wire::warning::GearName;
 
 /// So many jobs of studies may wait; further studies are refused.
 pub(in crate::jobs) const MOST_WAITING_DESIGNS: i64 = 50_000;
+
+/// Where several processes expand studies, one that has taken a study has it for so long beyond each chunk.
+const EXPANDING_FOR: SignedDuration = SignedDuration::from_secs(20);
 
 /// So many jobs are deleted in one commit.
 const DELETED_AT_ONCE: u32 = 200;
@@ -69,8 +74,9 @@ impl Store {
         bounds: QueueBounds<'_>,
     ) -> Result<StudyOutcome, StoreError> {
         let mut write = self.begin().await?;
-        sqlx::query(
-            "update studies set idempotency_key = null where idempotency_key is not null and submitted_at < ?1",
+        query(dialect::lock_studies()).execute(&mut *write).await?;
+        query(
+            "update studies set idempotency_key = null where idempotency_key is not null and submitted_at < $1",
         )
         .bind(bounds.forget_keys_before.as_microsecond())
         .execute(&mut *write)
@@ -80,7 +86,7 @@ impl Store {
             return Ok(refusal);
         }
         insert_study(&mut write, study).await?;
-        append(&mut write, study.id, 0, rows, bounds.solver_version).await?;
+        append(&mut write, &study.client, study.id, 0, rows, bounds).await?;
         note_study(&mut write, study.id, study.submitted_at).await?;
         write.commit().await?;
         Ok(StudyOutcome::Taken)
@@ -93,35 +99,41 @@ impl Store {
         expanded: u64,
         rows: &[NewRow],
         now: Timestamp,
-        solver_version: &str,
+        bounds: QueueBounds<'_>,
     ) -> Result<bool, StoreError> {
         let mut write = self.begin().await?;
-        let stands: Option<i64> = sqlx::query_scalar(
-            "select 1 from studies where id = ?1 and expanded = ?2 and cancelled_at is null",
+        let client: Option<String> = query_scalar(
+            "select client from studies where id = $1 and expanded = $2 and cancelled_at is null",
         )
         .bind(id.to_string())
         .bind(column(expanded))
         .fetch_optional(&mut *write)
         .await?;
-        if stands.is_none() {
+        let Some(client) = client else {
+            write.rollback().await?;
+            return Ok(false);
+        };
+        if !append(&mut write, &client, id, expanded, rows, bounds).await? {
             write.rollback().await?;
             return Ok(false);
         }
-        append(&mut write, id, expanded, rows, solver_version).await?;
         note_study(&mut write, id, now).await?;
         write.commit().await?;
         Ok(true)
     }
 
-    /// The studies that do not have all their rows: ids and clients.
+    /// The studies that do not have all their rows, and that nobody expands: ids and clients. They are this process's now.
     pub(in crate::jobs) async fn unfinished_expansions(
         &self,
+        steady: Timestamp,
     ) -> Result<Vec<(Uuid, String)>, StoreError> {
-        let found: Vec<(String, String)> = sqlx::query_as(
-            "select id, client from studies where expanded < total and cancelled_at is null order by sequence",
-        )
-        .fetch_all(&self.readers)
-        .await?;
+        let mut write = self.begin().await?;
+        let found: Vec<(String, String)> = query_as(dialect::unfinished_expansions())
+            .bind(steady.as_microsecond())
+            .bind(micros(EXPANDING_FOR))
+            .fetch_all(&mut *write)
+            .await?;
+        write.commit().await?;
         Ok(found
             .into_iter()
             .filter_map(|(id, client)| Some((id.parse().ok()?, client)))
@@ -137,23 +149,27 @@ impl Store {
         now: Timestamp,
     ) -> Result<Option<Vec<Uuid>>, StoreError> {
         let mut write = self.begin().await?;
-        let cancelled = sqlx::query(
-            "update studies set cancelled_at = max(?3, submitted_at), version = version + 1
-             where id = ?1 and client = ?2 and cancelled_at is null and (expanded < total or accepted + running > 0)",
+        query(dialect::lock_designs())
+            .bind(id.to_string())
+            .execute(&mut *write)
+            .await?;
+        let cancelled = query(
+            "update studies set cancelled_at = max($3, submitted_at), version = version + 1
+             where id = $1 and client = $2 and cancelled_at is null and (expanded < total or accepted + running > 0)",
         )
         .bind(id.to_string())
         .bind(client)
         .bind(now.as_microsecond())
         .execute(&mut *write)
         .await?;
-        if cancelled.rows_affected() == 0 {
+        if cancelled == 0 {
             write.rollback().await?;
             return Ok(None);
         }
-        let jobs: Vec<String> = sqlx::query_scalar(
-            "update jobs set status = 'dismissed', finished_at = max(?2, submitted_at, coalesce(started_at, 0)),
+        let jobs: Vec<String> = query_scalar(
+            "update jobs set status = 'dismissed', finished_at = max(max($2, submitted_at), coalesce(started_at, 0)),
                              lease_until = null
-             where study = ?1 and status in ('accepted', 'running')
+             where study = $1 and status in ('accepted', 'running')
              returning id",
         )
         .bind(id.to_string())
@@ -182,34 +198,35 @@ impl Store {
     pub(in crate::jobs) async fn delete_ended_study(&self, id: Uuid) -> Result<bool, StoreError> {
         loop {
             let mut write = self.begin().await?;
-            let ended: Option<i64> = sqlx::query_scalar(
-                "select 1 from studies where id = ?1 and (cancelled_at is not null or expanded = total)
+            let ended = query(
+                "select 1 from studies where id = $1 and (cancelled_at is not null or expanded = total)
                    and accepted + running = 0",
             )
             .bind(id.to_string())
-            .fetch_optional(&mut *write)
+            .exists(&mut *write)
             .await?;
-            if ended.is_none() {
+            if !ended {
                 write.rollback().await?;
                 return Ok(false);
             }
-            let documents: Vec<Option<String>> = sqlx::query_scalar(
-                "delete from jobs where id in (select id from jobs where study = ?1 limit ?2) returning document",
+            let documents: Vec<Option<String>> = query_scalar(
+                "delete from jobs where id in (select id from jobs where study = $1 limit $2) returning document",
             )
             .bind(id.to_string())
             .bind(DELETED_AT_ONCE)
             .fetch_all(&mut *write)
             .await?;
-            for hash in documents.iter().flatten() {
+            let hashes: BTreeSet<&String> = documents.iter().flatten().collect();
+            for hash in hashes {
                 forget_document(&mut write, hash).await?;
             }
             let last = documents.is_empty();
             if last {
-                sqlx::query("delete from studies where id = ?1")
+                query("delete from studies where id = $1")
                     .bind(id.to_string())
                     .execute(&mut *write)
                     .await?;
-                sqlx::query("delete from shares where lane = ?1")
+                query("delete from shares where lane = $1")
                     .bind(id.to_string())
                     .execute(&mut *write)
                     .await?;
@@ -224,12 +241,12 @@ impl Store {
 
 /// Why the study is not taken, or which one was before.
 async fn refusal(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     study: &NewStudy,
 ) -> Result<Option<StudyOutcome>, sqlx::Error> {
     if let Some(key) = &study.idempotency_key {
-        let earlier: Option<(String, String)> = sqlx::query_as(
-            "select id, body_hash from studies where client = ?1 and idempotency_key = ?2",
+        let earlier: Option<(String, String)> = query_as(
+            "select id, body_hash from studies where client = $1 and idempotency_key = $2",
         )
         .bind(&study.client)
         .bind(key)
@@ -243,10 +260,11 @@ async fn refusal(
         }
     }
     // Those that have no row yet will wait, too.
-    let (own, all): (i64, i64) = sqlx::query_as(
-        "select coalesce(sum(iif(client = ?1, open, 0)), 0), coalesce(sum(open), 0)
-         from (select client, accepted + iif(cancelled_at is null, total - expanded, 0) as open
-               from studies where ended_at is null)",
+    let (own, all): (i64, i64) = query_as(
+        "select cast(coalesce(sum(case client when $1 then designs else 0 end), 0) as bigint),
+                cast(coalesce(sum(designs), 0) as bigint)
+         from (select client, accepted + case when cancelled_at is null then total - expanded else 0 end as designs
+               from studies where ended_at is null) as unended",
     )
     .bind(&study.client)
     .fetch_one(connection)
@@ -261,35 +279,27 @@ async fn refusal(
     })
 }
 
-async fn insert_study(
-    connection: &mut SqliteConnection,
-    study: &NewStudy,
-) -> Result<(), sqlx::Error> {
+async fn insert_study(connection: &mut Connection, study: &NewStudy) -> Result<(), sqlx::Error> {
     let id = study.id.to_string();
-    let sequence: i64 = sqlx::query_scalar(
-        "insert into studies (id, sequence, client, name, tags, body_hash, gear, total, expanded, submitted_at,
-                              idempotency_key)
-         values (?1, (select coalesce(max(sequence), 0) + 1 from studies), ?2, ?3, ?4, ?5, ?6, ?7, 0, ?8, ?9)
-         returning sequence",
-    )
-    .bind(&id)
-    .bind(&study.client)
-    .bind(&study.name)
-    .bind(words(&study.tags))
-    .bind(&study.body_hash)
-    .bind(study.gear.word())
-    .bind(column(study.total))
-    .bind(study.submitted_at.as_microsecond())
-    .bind(&study.idempotency_key)
-    .fetch_one(&mut *connection)
-    .await?;
-    sqlx::query("insert into study_documents (study, body) values (?1, ?2)")
+    let sequence: i64 = query_scalar(dialect::insert_study())
+        .bind(&id)
+        .bind(&study.client)
+        .bind(&study.name)
+        .bind(words(&study.tags))
+        .bind(&study.body_hash)
+        .bind(study.gear.word())
+        .bind(column(study.total))
+        .bind(study.submitted_at.as_microsecond())
+        .bind(&study.idempotency_key)
+        .fetch_one(&mut *connection)
+        .await?;
+    query("insert into study_documents (study, body) values ($1, $2)")
         .bind(&id)
         .bind(&study.document)
         .execute(&mut *connection)
         .await?;
     for tag in &study.tags {
-        sqlx::query("insert or ignore into study_tags (client, tag, sequence, study) values (?1, ?2, ?3, ?4)")
+        query("insert into study_tags (client, tag, sequence, study) values ($1, $2, $3, $4) on conflict do nothing")
             .bind(&study.client)
             .bind(tag)
             .bind(sequence)
@@ -300,23 +310,25 @@ async fn insert_study(
     Ok(())
 }
 
-/// Adds rows behind the first `expanded` ones, with their jobs.
+/// Adds rows behind the first `expanded` ones, with their jobs. False if the study has not just so many, or wants no more:
+/// somebody was faster.
 async fn append(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
+    client: &str,
     study: Uuid,
     expanded: u64,
     rows: &[NewRow],
-    solver_version: &str,
-) -> Result<(), sqlx::Error> {
+    bounds: QueueBounds<'_>,
+) -> Result<bool, sqlx::Error> {
+    let mut waits = false;
     let mut unbuildable = 0_i64;
     for (position, row) in (expanded..).zip(rows) {
         let (job, problem) = match &row.job {
             Ok(new) => {
-                if insert_known(connection, new, solver_version)
-                    .await?
-                    .is_none()
-                {
+                let known = insert_known(connection, new, bounds.solver_version).await?;
+                if known.is_none() {
                     insert_waiting(connection, new).await?;
+                    waits = true;
                 }
                 (Some(new.id.to_string()), None)
             }
@@ -325,8 +337,9 @@ async fn append(
                 (None, Some(problem))
             }
         };
-        sqlx::query(
-            "insert into study_rows (study, position, label, changes, job, problem) values (?1, ?2, ?3, ?4, ?5, ?6)",
+        query(
+            "insert into study_rows (study, position, label, changes, job, problem) values ($1, $2, $3, $4, $5, $6)
+             on conflict do nothing",
         )
         .bind(study.to_string())
         .bind(column(position))
@@ -337,13 +350,31 @@ async fn append(
         .execute(&mut *connection)
         .await?;
     }
-    sqlx::query(
-        "update studies set expanded = ?2, unbuildable = unbuildable + ?3, version = version + 1 where id = ?1",
+    let id = study.to_string();
+    let updated = query(
+        "update studies set expanded = $2, unbuildable = unbuildable + $3, version = version + 1
+         where id = $1 and expanded = $4 and cancelled_at is null",
     )
-    .bind(study.to_string())
+    .bind(&id)
     .bind(column(expanded + rows.len() as u64))
     .bind(unbuildable)
-    .execute(connection)
+    .bind(column(expanded))
+    .execute(&mut *connection)
     .await?;
-    Ok(())
+    if updated == 0 {
+        return Ok(false);
+    }
+    query(dialect::count_designs())
+        .execute(&mut *connection)
+        .await?;
+    query(dialect::expanding())
+        .bind(&id)
+        .bind(bounds.steady.as_microsecond())
+        .bind(micros(EXPANDING_FOR))
+        .execute(&mut *connection)
+        .await?;
+    if waits {
+        shares::activate(connection, client, Some(study)).await?;
+    }
+    Ok(true)
 }

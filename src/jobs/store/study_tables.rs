@@ -2,6 +2,7 @@
 
 use uuid::Uuid;
 
+use super::statement::query_as;
 use super::{Document, Store, StoreError};
 use crate::jobs::studies::DocumentLine;
 
@@ -27,14 +28,14 @@ impl Store {
         after: i64,
         limit: u32,
     ) -> Result<Vec<StoredRow>, StoreError> {
-        let rows = sqlx::query_as(
+        let rows = query_as(
             "select r.label, r.changes, r.job, j.status, s.body as summary,
                     coalesce(r.problem, j.problem) as problem
              from study_rows r
              left join jobs j on j.id = r.job
              left join summaries s on s.document = j.document
-             where r.study = ?1 and r.position > ?2
-             order by r.position limit ?3",
+             where r.study = $1 and r.position > $2
+             order by r.position limit $3",
         )
         .bind(id.to_string())
         .bind(after)
@@ -51,13 +52,13 @@ impl Store {
         after: i64,
         limit: u32,
     ) -> Result<Vec<DocumentLine>, StoreError> {
-        let rows: Vec<StoredDocument> = sqlx::query_as(
+        let rows: Vec<StoredDocument> = query_as(
             "select r.position, r.label, r.job, d.hash, d.encoding, d.body
              from study_rows r
              join jobs j on j.id = r.job
              join documents d on d.hash = j.document
-             where r.study = ?1 and r.position > ?2
-             order by r.position limit ?3",
+             where r.study = $1 and r.position > $2
+             order by r.position limit $3",
         )
         .bind(id.to_string())
         .bind(after)

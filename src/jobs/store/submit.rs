@@ -1,10 +1,12 @@
 //! Nothing -> accepted, or -> successful at once where the same has been computed before.
 
+use std::collections::BTreeSet;
+
 use jiff::Timestamp;
-use sqlx::SqliteConnection;
 use uuid::Uuid;
 
-use super::{Store, StoreError, column, shares};
+use super::statement::{Connection, query, query_as, query_scalar};
+use super::{Store, StoreError, column, dialect, shares};
 use crate::hash::sha256_hex;
 use crate::jobs::job::Job;
 
@@ -68,21 +70,28 @@ impl Store {
         bounds: QueueBounds<'_>,
     ) -> Result<Vec<Outcome>, StoreError> {
         let mut write = self.begin().await?;
-        sqlx::query("delete from idempotency_keys where created_at < ?1")
+        query(dialect::lock_queue()).execute(&mut *write).await?;
+        query("delete from idempotency_keys where created_at < $1")
             .bind(bounds.forget_keys_before.as_microsecond())
             .execute(&mut *write)
             .await?;
         let mut room = Room::new(bounds.queue_limit);
         let mut outcomes = Vec::with_capacity(batch.len());
+        let mut lanes = BTreeSet::new();
         for job in batch {
-            outcomes.push(submit_one(&mut write, job, &mut room, bounds).await?);
+            let outcome = submit_one(&mut write, job, &mut room, bounds).await?;
+            if matches!(outcome, Outcome::Queued(_)) {
+                lanes.insert((job.client.clone(), job.study));
+            }
+            outcomes.push(outcome);
         }
+        shares::activate_all(&mut write, &lanes).await?;
         write.commit().await?;
         Ok(outcomes)
     }
 }
 
-/// The room in the queue, within one transaction: nobody else writes meanwhile, so that one count serves all of it.
+/// The room in the queue, within one transaction: nobody else queues a job meanwhile, so that one count serves all of it.
 struct Room {
     limit: i64,
     waiting: Option<i64>,
@@ -97,13 +106,10 @@ impl Room {
     }
 
     /// Takes one place, or tells how many jobs wait if there is none.
-    async fn take(
-        &mut self,
-        connection: &mut SqliteConnection,
-    ) -> Result<Result<(), i64>, sqlx::Error> {
+    async fn take(&mut self, connection: &mut Connection) -> Result<Result<(), i64>, sqlx::Error> {
         let waiting = match self.waiting {
             Some(waiting) => waiting,
-            None => sqlx::query_scalar(
+            None => query_scalar(
                 "select count(*) from jobs where status = 'accepted' and coalesce(study, '') = ''",
             )
             .fetch_one(connection)
@@ -121,7 +127,7 @@ impl Room {
 }
 
 async fn submit_one(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     new: &NewJob,
     room: &mut Room,
     bounds: QueueBounds<'_>,
@@ -139,8 +145,8 @@ async fn submit_one(
         if let Err(waiting) = room.take(connection).await? {
             return Ok(Outcome::QueueFull { waiting });
         }
-        let own: i64 = sqlx::query_scalar(
-            "select count(*) from jobs where client = ?1 and status = 'accepted' and coalesce(study, '') = ''",
+        let own: i64 = query_scalar(
+            "select count(*) from jobs where client = $1 and status = 'accepted' and coalesce(study, '') = ''",
         )
         .bind(&new.client)
         .fetch_one(&mut *connection)
@@ -153,7 +159,7 @@ async fn submit_one(
     };
 
     if let Some(key) = &new.idempotency_key {
-        sqlx::query("insert into idempotency_keys (client, key, body_hash, job, created_at) values (?1, ?2, ?3, ?4, ?5)")
+        query("insert into idempotency_keys (client, key, body_hash, job, created_at) values ($1, $2, $3, $4, $5)")
             .bind(&new.client)
             .bind(key)
             .bind(&body_hash)
@@ -167,25 +173,24 @@ async fn submit_one(
 
 /// What the key was answered with before.
 async fn earlier_answer(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     client: &str,
     key: &str,
     body_hash: &str,
 ) -> Result<Option<Outcome>, sqlx::Error> {
-    let earlier: Option<(String, String)> = sqlx::query_as(
-        "select body_hash, job from idempotency_keys where client = ?1 and key = ?2",
-    )
-    .bind(client)
-    .bind(key)
-    .fetch_optional(&mut *connection)
-    .await?;
+    let earlier: Option<(String, String)> =
+        query_as("select body_hash, job from idempotency_keys where client = $1 and key = $2")
+            .bind(client)
+            .bind(key)
+            .fetch_optional(&mut *connection)
+            .await?;
     let Some((earlier_hash, job)) = earlier else {
         return Ok(None);
     };
     if earlier_hash != body_hash {
         return Ok(Some(Outcome::KeyConflict));
     }
-    let job = sqlx::query_as("select * from jobs where id = ?1")
+    let job = query_as("select * from jobs where id = $1")
         .bind(job)
         .fetch_one(connection)
         .await?;
@@ -201,22 +206,17 @@ pub(super) struct Known {
 
 /// What the client has had computed of the same input by this version.
 pub(super) async fn find_known(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     client: &str,
     input_hash: &str,
     solver_version: &str,
 ) -> Result<Option<Known>, sqlx::Error> {
-    // The one that was computed comes before those that were given its results.
-    let earlier: Option<(String, String, i64)> = sqlx::query_as(
-        "select id, document, positions_total from jobs
-         where client = ?1 and input_hash = ?2 and solver_version = ?3 and status = 'successful'
-         order by same_as is not null, sequence limit 1",
-    )
-    .bind(client)
-    .bind(input_hash)
-    .bind(solver_version)
-    .fetch_optional(connection)
-    .await?;
+    let earlier: Option<(String, String, i64)> = query_as(dialect::known())
+        .bind(client)
+        .bind(input_hash)
+        .bind(solver_version)
+        .fetch_optional(connection)
+        .await?;
     Ok(earlier.map(|(job, document, positions)| Known {
         job,
         document,
@@ -226,7 +226,7 @@ pub(super) async fn find_known(
 
 /// A job that is successful at once, if the client has had the same input computed by this version.
 pub(super) async fn insert_known(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     new: &NewJob,
     solver_version: &str,
 ) -> Result<Option<Job>, sqlx::Error> {
@@ -234,73 +234,62 @@ pub(super) async fn insert_known(
     let Some(known) = known else {
         return Ok(None);
     };
-    let job: Job = sqlx::query_as(
-        "insert into jobs (id, sequence, client, method, tags, input_hash, cost, status, positions_done, positions_total,
-                           submitted_at, started_at, finished_at, elapsed, document, solver_version, same_as, study)
-         values (?1, (select coalesce(max(sequence), 0) + 1 from jobs), ?2, ?3, ?4, ?5, ?6, 'successful', ?7, ?7,
-                 ?8, ?8, ?8, 0, ?9, ?10, ?11, ?12)
-         returning *",
-    )
-    .bind(new.id.to_string())
-    .bind(&new.client)
-    .bind(&new.method)
-    .bind(words(&new.tags))
-    .bind(&new.input_hash)
-    .bind(column(new.cost))
-    .bind(known.positions)
-    .bind(new.submitted_at.as_microsecond())
-    .bind(known.document)
-    .bind(solver_version)
-    .bind(known.job)
-    .bind(new.study.map(|study| study.to_string()))
-    .fetch_one(&mut *connection)
-    .await?;
+    let job: Job = query_as(dialect::insert_known())
+        .bind(new.id.to_string())
+        .bind(&new.client)
+        .bind(&new.method)
+        .bind(words(&new.tags))
+        .bind(&new.input_hash)
+        .bind(column(new.cost))
+        .bind(known.positions)
+        .bind(new.submitted_at.as_microsecond())
+        .bind(known.document)
+        .bind(solver_version)
+        .bind(known.job)
+        .bind(new.study.map(|study| study.to_string()))
+        .fetch_one(&mut *connection)
+        .await?;
     insert_beside(connection, new, job.sequence).await?;
     Ok(Some(job))
 }
 
-/// A job that waits.
+/// A job that waits. Its lane is to be activated behind it.
 pub(super) async fn insert_waiting(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     new: &NewJob,
 ) -> Result<Job, sqlx::Error> {
-    let job: Job = sqlx::query_as(
-        "insert into jobs (id, sequence, client, method, tags, input_hash, cost, status, positions_total, submitted_at, study)
-         values (?1, (select coalesce(max(sequence), 0) + 1 from jobs), ?2, ?3, ?4, ?5, ?6, 'accepted', ?7, ?8, ?9)
-         returning *",
-    )
-    .bind(new.id.to_string())
-    .bind(&new.client)
-    .bind(&new.method)
-    .bind(words(&new.tags))
-    .bind(&new.input_hash)
-    .bind(column(new.cost))
-    .bind(column(new.positions_total))
-    .bind(new.submitted_at.as_microsecond())
-    .bind(new.study.map(|study| study.to_string()))
-    .fetch_one(&mut *connection)
-    .await?;
+    let job: Job = query_as(dialect::insert_waiting())
+        .bind(new.id.to_string())
+        .bind(&new.client)
+        .bind(&new.method)
+        .bind(words(&new.tags))
+        .bind(&new.input_hash)
+        .bind(column(new.cost))
+        .bind(column(new.positions_total))
+        .bind(new.submitted_at.as_microsecond())
+        .bind(new.study.map(|study| study.to_string()))
+        .fetch_one(&mut *connection)
+        .await?;
     insert_beside(connection, new, job.sequence).await?;
-    shares::activate(connection, &new.client, new.study).await?;
     Ok(job)
 }
 
 /// What of a job stands in other tables: its submission and its tags.
 async fn insert_beside(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     new: &NewJob,
     sequence: i64,
 ) -> Result<(), sqlx::Error> {
     let id = new.id.to_string();
-    sqlx::query("insert into submissions (job, body) values (?1, ?2)")
+    query("insert into submissions (job, body) values ($1, $2)")
         .bind(&id)
         .bind(&new.submission)
         .execute(&mut *connection)
         .await?;
     for tag in &new.tags {
         // A tag may stand twice in a submission.
-        sqlx::query(
-            "insert or ignore into job_tags (client, tag, sequence, job) values (?1, ?2, ?3, ?4)",
+        query(
+            "insert into job_tags (client, tag, sequence, job) values ($1, $2, $3, $4) on conflict do nothing",
         )
         .bind(&new.client)
         .bind(tag)

@@ -1,16 +1,19 @@
 //! Webhooks as they are kept, and the messages that wait for delivery. A message is written in the transaction of the
 //! change that it tells, so that none is lost and none tells what did not happen.
 
-use jiff::Timestamp;
+use jiff::{SignedDuration, Timestamp};
 use serde::{Deserialize, Serialize};
-use sqlx::sqlite::SqliteRow;
-use sqlx::{FromRow, Row, SqliteConnection};
+use sqlx::Row;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-use super::rows::{instant, json, optional_instant, uuid};
-use super::{Store, StoreError};
+use super::rows::{from_row, instant, json, optional_instant, small, uuid};
+use super::statement::{Connection, query, query_as, query_scalar};
+use super::{Store, StoreError, dialect, micros};
 use crate::wire::Status;
+
+/// Where several processes deliver, one that has taken a message has it for so long: more than an attempt takes.
+const TAKEN_FOR: SignedDuration = SignedDuration::from_secs(30);
 
 /// What can be told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -53,8 +56,8 @@ pub struct Webhook {
     pub problem: Option<String>,
 }
 
-impl FromRow<'_, SqliteRow> for Webhook {
-    fn from_row(row: &SqliteRow) -> Result<Self, sqlx::Error> {
+from_row! {
+    Webhook, |row| {
         Ok(Self {
             id: uuid(row, "id")?,
             url: row.try_get("url")?,
@@ -89,15 +92,15 @@ pub(in crate::jobs) struct Delivery {
     pub(in crate::jobs) attempts: u32,
 }
 
-impl FromRow<'_, SqliteRow> for Delivery {
-    fn from_row(row: &SqliteRow) -> Result<Self, sqlx::Error> {
+from_row! {
+    Delivery, |row| {
         Ok(Self {
             message: uuid(row, "message")?,
             webhook: uuid(row, "webhook")?,
             url: row.try_get("url")?,
             secret: row.try_get("secret")?,
             body: row.try_get("body")?,
-            attempts: row.try_get("attempts")?,
+            attempts: small(row, "attempts")?.unwrap_or(0),
         })
     }
 }
@@ -119,7 +122,7 @@ struct MessageData<'a> {
 
 /// Writes a message for each webhook of `client` that wants to be told.
 pub(super) async fn queue_messages(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     client: &str,
     kind: EventKind,
     id: Uuid,
@@ -127,7 +130,7 @@ pub(super) async fn queue_messages(
     now: Timestamp,
 ) -> Result<(), sqlx::Error> {
     let webhooks: Vec<Webhook> =
-        sqlx::query_as("select * from webhooks where client = ?1 and disabled_at is null")
+        query_as("select * from webhooks where client = $1 and disabled_at is null")
             .bind(client)
             .fetch_all(&mut *connection)
             .await?;
@@ -144,8 +147,8 @@ pub(super) async fn queue_messages(
             timestamp: now,
             data,
         };
-        sqlx::query(
-            "insert into messages (id, webhook, body, next_at, created_at) values (?1, ?2, ?3, 0, ?4)",
+        query(
+            "insert into messages (id, webhook, body, next_at, created_at) values ($1, $2, $3, 0, $4)",
         )
         .bind(Uuid::now_v7().to_string())
         .bind(webhook.id.to_string())
@@ -161,7 +164,8 @@ impl Store {
     /// Keeps a webhook. False if the client has as many as it may.
     pub(in crate::jobs) async fn add_webhook(&self, new: &NewWebhook) -> Result<bool, StoreError> {
         let mut write = self.begin().await?;
-        let count: i64 = sqlx::query_scalar("select count(*) from webhooks where client = ?1")
+        query(dialect::lock_webhooks()).execute(&mut *write).await?;
+        let count: i64 = query_scalar("select count(*) from webhooks where client = $1")
             .bind(&new.client)
             .fetch_one(&mut *write)
             .await?;
@@ -170,8 +174,8 @@ impl Store {
             return Ok(false);
         }
         let events = serde_json::to_string(&new.webhook.events).expect("words are JSON");
-        sqlx::query(
-            "insert into webhooks (id, client, url, events, secret, created_at) values (?1, ?2, ?3, ?4, ?5, ?6)",
+        query(
+            "insert into webhooks (id, client, url, events, secret, created_at) values ($1, $2, $3, $4, $5, $6)",
         )
         .bind(new.webhook.id.to_string())
         .bind(&new.client)
@@ -190,11 +194,10 @@ impl Store {
         &self,
         client: &str,
     ) -> Result<Vec<Webhook>, StoreError> {
-        let webhooks =
-            sqlx::query_as("select * from webhooks where client = ?1 order by created_at, id")
-                .bind(client)
-                .fetch_all(&self.readers)
-                .await?;
+        let webhooks = query_as("select * from webhooks where client = $1 order by created_at, id")
+            .bind(client)
+            .fetch_all(&self.readers)
+            .await?;
         Ok(webhooks)
     }
 
@@ -205,13 +208,13 @@ impl Store {
         id: Uuid,
     ) -> Result<bool, StoreError> {
         let mut write = self.begin().await?;
-        let deleted = sqlx::query("delete from webhooks where id = ?1 and client = ?2")
+        let deleted = query("delete from webhooks where id = $1 and client = $2")
             .bind(id.to_string())
             .bind(client)
             .execute(&mut *write)
             .await?;
         write.commit().await?;
-        Ok(deleted.rows_affected() == 1)
+        Ok(deleted == 1)
     }
 
     /// Messages that are due, the oldest first.
@@ -220,22 +223,18 @@ impl Store {
         steady: Timestamp,
         limit: u32,
     ) -> Result<Vec<Delivery>, StoreError> {
-        let due = sqlx::query_as(
-            "select m.id as message, m.webhook, w.url, w.secret, m.body, m.attempts
-             from messages m join webhooks w on w.id = m.webhook
-             where m.next_at <= ?1 and w.disabled_at is null
-             order by m.next_at limit ?2",
-        )
-        .bind(steady.as_microsecond())
-        .bind(limit)
-        .fetch_all(&self.readers)
-        .await?;
+        let due = query_as(dialect::due_messages())
+            .bind(steady.as_microsecond())
+            .bind(limit)
+            .bind(micros(TAKEN_FOR))
+            .fetch_all(&self.readers)
+            .await?;
         Ok(due)
     }
 
     /// When the next message is due, by the steady clock; `None` if none waits.
     pub(in crate::jobs) async fn next_message(&self) -> Result<Option<Timestamp>, StoreError> {
-        let next: Option<i64> = sqlx::query_scalar("select min(next_at) from messages")
+        let next: Option<i64> = query_scalar("select min(next_at) from messages")
             .fetch_one(&self.readers)
             .await?;
         Ok(next.and_then(|at| Timestamp::from_microsecond(at).ok()))
@@ -244,7 +243,7 @@ impl Store {
     /// A message has arrived.
     pub(in crate::jobs) async fn message_arrived(&self, message: Uuid) -> Result<(), StoreError> {
         let mut write = self.begin().await?;
-        sqlx::query("delete from messages where id = ?1")
+        query("delete from messages where id = $1")
             .bind(message.to_string())
             .execute(&mut *write)
             .await?;
@@ -262,7 +261,7 @@ impl Store {
     ) -> Result<(), StoreError> {
         let mut write = self.begin().await?;
         let webhook = delivery.webhook.to_string();
-        sqlx::query("update webhooks set problem = ?2, disabled_at = coalesce(disabled_at, ?3) where id = ?1")
+        query("update webhooks set problem = $2, disabled_at = coalesce(disabled_at, $3) where id = $1")
             .bind(&webhook)
             .bind(problem)
             .bind(next_at.is_none().then(|| now.as_microsecond()))
@@ -270,16 +269,14 @@ impl Store {
             .await?;
         match next_at {
             Some(next_at) => {
-                sqlx::query(
-                    "update messages set attempts = attempts + 1, next_at = ?2 where id = ?1",
-                )
-                .bind(delivery.message.to_string())
-                .bind(next_at.as_microsecond())
-                .execute(&mut *write)
-                .await?;
+                query("update messages set attempts = attempts + 1, next_at = $2 where id = $1")
+                    .bind(delivery.message.to_string())
+                    .bind(next_at.as_microsecond())
+                    .execute(&mut *write)
+                    .await?;
             }
             None => {
-                sqlx::query("delete from messages where webhook = ?1")
+                query("delete from messages where webhook = $1")
                     .bind(&webhook)
                     .execute(&mut *write)
                     .await?;

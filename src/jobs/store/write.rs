@@ -4,12 +4,11 @@ use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 use std::time::Duration;
 
-use sqlx::pool::PoolConnection;
-use sqlx::{Sqlite, SqliteConnection, SqlitePool};
 use tokio::sync::{Notify, watch};
 use tracing::{error, info};
 
-use super::{Store, StoreError};
+use super::statement::{Connection, Pool, query};
+use super::{Store, StoreError, dialect};
 
 /// While nothing can be stored, it is tried so often.
 const BETWEEN_TRIES: Duration = Duration::from_millis(500);
@@ -51,10 +50,10 @@ fn cause(error: &StoreError) -> String {
     std::error::Error::source(error).map_or_else(|| error.to_string(), ToString::to_string)
 }
 
-/// A transaction that has the write lock. Dropped without an end, it takes its connection with it: what SQLite, the
-/// driver and this program believe of the transaction need not agree any more, after an error least of all.
+/// A transaction that has the write lock. Dropped without an end, it takes its connection with it: what the
+/// database, the driver and this program believe of the transaction need not agree any more, after an error least of all.
 pub(super) struct Write {
-    connection: PoolConnection<Sqlite>,
+    connection: Connection,
     health: Arc<Health>,
     ended: bool,
 }
@@ -88,9 +87,7 @@ impl Store {
     /// [`StoreError`] if not.
     pub async fn probe(&self) -> Result<(), StoreError> {
         let mut write = self.begin().await?;
-        sqlx::query("update served set due = due")
-            .execute(&mut *write)
-            .await?;
+        query(dialect::probe()).execute(&mut *write).await?;
         write.commit().await
     }
 
@@ -112,7 +109,7 @@ impl Store {
                             if changed.is_err() { return; }
                         }
                         () = held.doubt.notified() => {}
-                        () = writer.close_event() => return,
+                        () = writer.closed() => return,
                     }
                 }
                 if writer.is_closed() {
@@ -124,12 +121,10 @@ impl Store {
     }
 }
 
-async fn try_out(writer: &SqlitePool, health: &Arc<Health>) {
+async fn try_out(writer: &Pool, health: &Arc<Health>) {
     let tried = async {
         let mut write = begin(writer, health).await?;
-        sqlx::query("update served set due = due")
-            .execute(&mut *write)
-            .await?;
+        query(dialect::probe()).execute(&mut *write).await?;
         write.commit().await
     };
     let result = tried.await;
@@ -139,13 +134,10 @@ async fn try_out(writer: &SqlitePool, health: &Arc<Health>) {
     }
 }
 
-async fn begin(writer: &SqlitePool, health: &Arc<Health>) -> Result<Write, StoreError> {
+async fn begin(writer: &Pool, health: &Arc<Health>) -> Result<Write, StoreError> {
     let mut connection = writer.acquire().await?;
     // In plain SQL, because the driver's count of open transactions survives an error that SQLite's does not.
-    if let Err(error) = sqlx::raw_sql("begin immediate")
-        .execute(&mut *connection)
-        .await
-    {
+    if let Err(error) = connection.say(dialect::begin()).await {
         connection.close_on_drop();
         return Err(error.into());
     }
@@ -159,8 +151,8 @@ async fn begin(writer: &SqlitePool, health: &Arc<Health>) -> Result<Write, Store
 impl Write {
     /// Makes the changes last.
     pub(super) async fn commit(mut self) -> Result<(), StoreError> {
-        let committed = sqlx::raw_sql("commit").execute(&mut *self.connection).await;
-        let committed = committed.map(|_| ()).map_err(StoreError::from);
+        let committed = self.connection.say("commit").await;
+        let committed = committed.map_err(StoreError::from);
         self.ended = committed.is_ok();
         self.health.found(committed.as_ref());
         committed
@@ -168,24 +160,22 @@ impl Write {
 
     /// Takes the changes back.
     pub(super) async fn rollback(mut self) -> Result<(), StoreError> {
-        sqlx::raw_sql("rollback")
-            .execute(&mut *self.connection)
-            .await?;
+        self.connection.say("rollback").await?;
         self.ended = true;
         Ok(())
     }
 }
 
 impl Deref for Write {
-    type Target = SqliteConnection;
+    type Target = Connection;
 
-    fn deref(&self) -> &SqliteConnection {
+    fn deref(&self) -> &Connection {
         &self.connection
     }
 }
 
 impl DerefMut for Write {
-    fn deref_mut(&mut self) -> &mut SqliteConnection {
+    fn deref_mut(&mut self) -> &mut Connection {
         &mut self.connection
     }
 }

@@ -9,12 +9,12 @@ use crate::wire::Status;
 /// Leaves the connection that writes no more pages than there are.
 async fn fill_disk(store: &Store) {
     let pages: i64 = sqlx::query_scalar("pragma page_count")
-        .fetch_one(&store.writer)
+        .fetch_one(writer(store))
         .await
         .unwrap();
     let statement = sqlx::AssertSqlSafe(format!("pragma max_page_count = {pages}"));
     sqlx::raw_sql(statement)
-        .execute(&store.writer)
+        .execute(writer(store))
         .await
         .unwrap();
 }
@@ -61,29 +61,12 @@ async fn a_full_disk_costs_one_answer_and_wedges_nothing() {
 }
 
 #[tokio::test]
-async fn a_transaction_that_is_dropped_half_way_leaves_nothing_and_blocks_nobody() {
-    let (store, _folder) = store().await;
-    let mut write = store.begin().await.unwrap();
-    sqlx::query("delete from served")
-        .execute(&mut *write)
-        .await
-        .unwrap();
-    drop(write);
-    queued(&store, 1, "a").await;
-    let rows: i64 = sqlx::query_scalar("select count(*) from served")
-        .fetch_one(&store.readers)
-        .await
-        .unwrap();
-    assert_eq!(rows, 1);
-}
-
-#[tokio::test]
 async fn a_locked_database_is_told_as_such_and_found_to_be_free_again() {
     let (store, folder) = store().await;
     let other = open(&folder).await;
     let held = other.begin().await.unwrap();
     sqlx::raw_sql("pragma busy_timeout = 20")
-        .execute(&store.writer)
+        .execute(writer(&store))
         .await
         .unwrap();
     let refused = store
@@ -108,13 +91,13 @@ async fn what_is_no_database_is_refused_and_not_touched() {
         b"short",
     ] {
         fs::write(&path, content).unwrap();
-        let refused = Store::open(&path).await.unwrap_err();
+        let refused = Store::open(&Place::File(path.clone())).await.unwrap_err();
         assert!(matches!(refused, OpenError::NotADatabase), "{refused:?}");
         assert_eq!(fs::read(&path).unwrap(), content);
     }
     // An empty file is what many programs make first.
     fs::write(&path, b"").unwrap();
-    assert!(Store::open(&path).await.is_ok());
+    assert!(Store::open(&Place::File(path.clone())).await.is_ok());
 }
 
 #[tokio::test]
@@ -128,7 +111,7 @@ async fn a_database_that_was_cut_off_is_refused() {
     let whole = fs::read(&path).unwrap();
     for kept in [whole.len() / 2, 5000, 200] {
         fs::write(&path, &whole[..kept]).unwrap();
-        let refused = Store::open(&path).await.unwrap_err();
+        let refused = Store::open(&Place::File(path.clone())).await.unwrap_err();
         assert!(
             matches!(refused, OpenError::Damaged(_) | OpenError::NotADatabase),
             "{kept}: {refused:?}"
@@ -140,7 +123,7 @@ async fn a_database_that_was_cut_off_is_refused() {
         );
     }
     fs::write(&path, &whole).unwrap();
-    assert!(Store::open(&path).await.is_ok());
+    assert!(Store::open(&Place::File(path.clone())).await.is_ok());
 }
 
 #[tokio::test]
@@ -155,7 +138,7 @@ async fn pages_of_garbage_are_found_at_the_start() {
     let middle = bytes.len() / 2;
     bytes[middle..middle + 16_384].fill(0x5a);
     fs::write(&path, &bytes).unwrap();
-    let refused = Store::open(&path).await.unwrap_err();
+    let refused = Store::open(&Place::File(path.clone())).await.unwrap_err();
     assert!(matches!(refused, OpenError::Damaged(_)), "{refused:?}");
 }
 
@@ -166,29 +149,13 @@ async fn a_database_of_a_later_version_is_left_alone() {
         "insert into _sqlx_migrations (version, description, success, checksum, execution_time)
          values (29990101000000, 'later', true, x'00', 0)",
     )
-    .execute(&store.writer)
+    .execute(writer(&store))
     .await
     .unwrap();
     store.close().await;
-    let refused = Store::open(&folder.path().join("jobs.db"))
-        .await
-        .unwrap_err();
+    let refused = Store::open(&place(&folder)).await.unwrap_err();
     assert!(
         matches!(refused, OpenError::Newer(29_990_101_000_000)),
         "{refused:?}"
     );
-}
-
-#[tokio::test]
-async fn a_document_that_is_damaged_is_not_given_out() {
-    let (store, _folder) = store().await;
-    let job = ended(&store, 1, "a").await;
-    let hash = job.document.unwrap();
-    sqlx::query("update documents set body = ?1")
-        .bind(Packed::of("{\"of\":\"b\"}").for_tests())
-        .execute(&store.writer)
-        .await
-        .unwrap();
-    let document = store.document(&hash).await.unwrap().unwrap();
-    assert!(document.text().is_err());
 }

@@ -50,7 +50,7 @@ async fn jobs_results_studies_and_keys_survive_the_upgrade() {
         .unwrap();
     connection.close().await.unwrap();
 
-    let store = Store::open(&path).await.unwrap();
+    let store = Store::open(&Place::File(path.clone())).await.unwrap();
     let jobs = store.list(CLIENT, &Filter::default(), 9).await.unwrap();
     let states: Vec<Status> = jobs.iter().map(|job| job.status).collect();
     assert_eq!(
@@ -98,13 +98,13 @@ async fn jobs_results_studies_and_keys_survive_the_upgrade() {
     let study = store.find_study(CLIENT, study.id).await.unwrap().unwrap();
     assert_eq!((study.running, study.successful, study.done()), (0, 1, 3));
     let rows: Vec<String> = sqlx::query_scalar("pragma integrity_check")
-        .fetch_all(&store.readers)
+        .fetch_all(readers(&store))
         .await
         .unwrap();
     assert_eq!(rows, ["ok"]);
     // It can shrink from now on.
     let mode: i64 = sqlx::query_scalar("pragma auto_vacuum")
-        .fetch_one(&store.readers)
+        .fetch_one(readers(&store))
         .await
         .unwrap();
     assert_eq!(mode, 2);

@@ -1,17 +1,20 @@
 //! The store: what each transition does, whose turn it is, what is damaged, what is old.
 
 mod faults;
-mod keeping;
-mod lists;
+mod file;
 mod migration;
-mod transitions;
-mod turns;
+mod on_postgres;
+mod on_sqlite;
+mod plans;
+#[path = "../../../../tests/postgres/server.rs"]
+mod server;
 
 use jiff::{SignedDuration, Timestamp};
 use tempfile::TempDir;
 use uuid::Uuid;
 
-use super::{Claim, End, Lost, NewJob, Outcome, Packed, QueueBounds, Store};
+use super::statement::{Pool, query, query_as, query_scalar};
+use super::{Claim, End, Lease, Lost, NewJob, Outcome, Packed, Place, QueueBounds, Store};
 use crate::jobs::job::Job;
 
 const VERSION: &str = "1.0";
@@ -23,7 +26,28 @@ async fn store() -> (Store, TempDir) {
 }
 
 async fn open(folder: &TempDir) -> Store {
-    Store::open(&folder.path().join("jobs.db")).await.unwrap()
+    Store::open(&place(folder)).await.unwrap()
+}
+
+fn place(folder: &TempDir) -> Place {
+    Place::File(folder.path().join("jobs.db"))
+}
+
+/// The connection that writes a file.
+fn writer(store: &Store) -> &sqlx::SqlitePool {
+    sqlite(&store.writer)
+}
+
+/// The connections that read a file.
+fn readers(store: &Store) -> &sqlx::SqlitePool {
+    sqlite(&store.readers)
+}
+
+fn sqlite(pool: &Pool) -> &sqlx::SqlitePool {
+    match pool {
+        Pool::Sqlite(pool) => pool,
+        Pool::Postgres(_) => panic!("this is about files"),
+    }
 }
 
 fn at(seconds: i64) -> Timestamp {
@@ -41,6 +65,7 @@ fn end(seconds: i64) -> End {
 fn expired(seconds: i64) -> Lost<'static> {
     Lost::Lease {
         steady: at(seconds),
+        lasts: SignedDuration::from_secs(30),
         alive: &[],
     }
 }
@@ -84,8 +109,16 @@ async fn queued(store: &Store, second: i64, input: &str) -> Job {
     }
 }
 
+/// Half a minute from a second on.
+fn lease(second: i64) -> Lease {
+    Lease {
+        steady: at(second),
+        lasts: SignedDuration::from_secs(30),
+    }
+}
+
 async fn next(store: &Store, second: i64) -> Option<Job> {
-    let claimed = store.claim(at(second), at(second + 30), VERSION).await;
+    let claimed = store.claim(at(second), lease(second), VERSION).await;
     claimed.unwrap().started.map(|started| started.job)
 }
 

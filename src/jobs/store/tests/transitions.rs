@@ -36,7 +36,7 @@ async fn a_job_ends_with_the_very_text_of_its_results() {
                     done: 50,
                     total: 200
                 },
-                at(60)
+                lease(30)
             )
             .await
             .unwrap()
@@ -85,7 +85,7 @@ async fn only_the_latest_attempt_may_report_or_finish() {
 
     assert!(
         !store
-            .report(lost, Progress::default(), at(90))
+            .report(lost, Progress::default(), lease(60))
             .await
             .unwrap()
     );
@@ -98,7 +98,7 @@ async fn only_the_latest_attempt_may_report_or_finish() {
     assert!(!store.fail(lost, end(35), "{}").await.unwrap());
     assert!(!store.release(lost).await.unwrap());
     assert_eq!(find(&store, job.id).await.status, Status::Running);
-    let documents: i64 = sqlx::query_scalar("select count(*) from documents")
+    let documents: i64 = query_scalar("select count(*) from documents")
         .fetch_one(&store.writer)
         .await
         .unwrap();
@@ -196,7 +196,7 @@ async fn a_waiting_and_a_running_job_can_be_cancelled_and_an_ended_one_cannot() 
     }
     assert!(
         !store
-            .report(claim, Progress::default(), at(50))
+            .report(claim, Progress::default(), lease(20))
             .await
             .unwrap()
     );

@@ -1,7 +1,6 @@
 //! Whose turn it is: clients, studies and jobs alone, equal jobs, and jobs that may have brought a process down.
 
 use super::*;
-use crate::jobs::store::claim::NEXT_WAITING;
 use crate::jobs::store::{NewRow, NewStudy, StudyOutcome};
 use crate::wire::Status;
 use crate::wire::warning::GearName;
@@ -204,34 +203,11 @@ async fn equal_jobs_are_computed_once_and_block_nobody() {
             .await
             .unwrap()
     );
-    let claimed = store.claim(at(7), at(40), VERSION).await.unwrap();
+    let claimed = store.claim(at(7), lease(7), VERSION).await.unwrap();
     assert!(claimed.started.is_none());
     assert_eq!(
         (claimed.given.len(), claimed.given[0].same_as),
         (1, Some(first.id))
-    );
-}
-
-#[tokio::test]
-async fn a_claim_looks_at_no_job_that_has_ended() {
-    let (store, _folder) = store().await;
-    let plan = sqlx::AssertSqlSafe(format!("explain query plan {NEXT_WAITING}"));
-    let steps: Vec<(i64, i64, i64, String)> = sqlx::query_as(plan)
-        .bind(CLIENT)
-        .bind("")
-        .fetch_all(&store.readers)
-        .await
-        .unwrap();
-    // Both indexes leave out what has ended, and the first one has the order of the lane: nothing is sorted.
-    let uses = |index: &str| steps.iter().filter(|step| step.3.contains(index)).count();
-    assert_eq!(
-        (
-            uses("jobs_waiting"),
-            uses("jobs_running"),
-            uses("TEMP B-TREE")
-        ),
-        (1, 1, 0),
-        "{steps:?}"
     );
 }
 

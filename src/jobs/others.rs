@@ -1,0 +1,76 @@
+//! Other processes on the same database: what they tell reaches those who wait here, and what is cancelled there stops here.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use tokio::time::{interval, sleep};
+use tokio_util::sync::CancellationToken;
+use tracing::warn;
+
+use super::live::Live;
+use super::store::{Listener, Store, StoreError, Told};
+use crate::wire::Status;
+
+/// So often everybody looks, also without news: what is told may be lost, and progress is not told at all.
+const LOOK: Duration = Duration::from_secs(2);
+
+/// Before it is tried to listen again.
+const PAUSE: Duration = Duration::from_millis(500);
+
+/// Hears other processes until the stop.
+pub(super) async fn hear(store: Store, live: Arc<Live>, stop: CancellationToken) {
+    let look = async {
+        let mut tick = interval(LOOK);
+        loop {
+            tick.tick().await;
+            live.look();
+        }
+    };
+    tokio::select! {
+        () = stop.cancelled() => {}
+        () = look => {}
+        () = listen(&store, &live) => {}
+    }
+}
+
+/// Listens until the store is closed.
+async fn listen(store: &Store, live: &Live) {
+    let mut listener = None;
+    loop {
+        match next(store, &mut listener).await {
+            Ok(told) => pass_on(told, live),
+            Err(_) if store.is_closed() => return,
+            Err(error) => {
+                warn!(%error, "other processes cannot be heard; looking every two seconds instead");
+                listener = None;
+                sleep(PAUSE).await;
+            }
+        }
+    }
+}
+
+async fn next(store: &Store, listener: &mut Option<Listener>) -> Result<Told, StoreError> {
+    match listener {
+        Some(listener) => listener.next().await,
+        None => {
+            *listener = store.listen().await?;
+            Ok(Told::Missed)
+        }
+    }
+}
+
+fn pass_on(told: Told, live: &Live) {
+    match told {
+        Told::Work => live.work.notify_one(),
+        Told::Job(id, status) => {
+            if status == Status::Dismissed
+                && let Some(running) = live.running(id)
+            {
+                running.stop();
+            }
+            live.changed(id);
+        }
+        Told::Study(id) => live.changed(id),
+        Told::Missed => live.look(),
+    }
+}

@@ -1,0 +1,118 @@
+//! The statements that the two databases do not say in the same words, and what only one of them has.
+//!
+//! Everything else in this folder is one text for both. [`sqlite`] and [`postgres`] have the same names in the same order;
+//! what one of them has no need of is `None`.
+
+/// A job that is successful at once; how the next place in the order of arrival is found differs.
+macro_rules! insert_known {
+    ($next:literal) => {
+        concat!(
+            "insert into jobs (id, sequence, client, method, tags, input_hash, cost, status, positions_done, positions_total,
+                               submitted_at, started_at, finished_at, elapsed, document, solver_version, same_as, study)
+             values ($1, ",
+            $next,
+            ", $2, $3, $4, $5, $6, 'successful', $7, $7, $8, $8, $8, 0, $9, $10, $11, $12)
+             returning *"
+        )
+    };
+}
+
+/// A job that waits.
+macro_rules! insert_waiting {
+    ($next:literal) => {
+        concat!(
+            "insert into jobs (id, sequence, client, method, tags, input_hash, cost, status, positions_total, submitted_at, study)
+             values ($1, ",
+            $next,
+            ", $2, $3, $4, $5, $6, 'accepted', $7, $8, $9)
+             returning *"
+        )
+    };
+}
+
+/// A study without rows.
+macro_rules! insert_study {
+    ($next:literal) => {
+        concat!(
+            "insert into studies (id, sequence, client, name, tags, body_hash, gear, total, expanded, submitted_at,
+                                  idempotency_key)
+             values ($1, ",
+            $next,
+            ", $2, $3, $4, $5, $6, $7, 0, $8, $9)
+             returning sequence"
+        )
+    };
+}
+
+pub(super) mod postgres;
+pub(super) mod sqlite;
+
+use super::statement::Text;
+
+/// Makes a function for each name that gives the statement of both dialects.
+macro_rules! pairs {
+    ($($(#[$doc:meta])* $function:ident = $name:ident;)*) => {
+        $(
+            $(#[$doc])*
+            pub(super) fn $function() -> Text {
+                Text::Differing { sqlite: sqlite::$name, postgres: postgres::$name }
+            }
+        )*
+    };
+}
+
+pairs! {
+    /// Begins a transaction that writes.
+    begin = BEGIN;
+    /// Writes something, to find out whether that works.
+    probe = PROBE;
+    /// From here to its end, no other transaction measures a job against the bounds of the queue.
+    lock_queue = LOCK_QUEUE;
+    /// The same of studies.
+    lock_studies = LOCK_STUDIES;
+    /// The same of webhooks.
+    lock_webhooks = LOCK_WEBHOOKS;
+    /// From here to its end, no other transaction decides whose turn it is.
+    lock_turn = LOCK_TURN;
+    /// From here to its end, no other transaction changes the shares of the client $1.
+    lock_shares = LOCK_SHARES;
+    /// Counts of jobs that run, and of those of them that are to run alone. $1: the process.
+    running_here = RUNNING_HERE;
+    /// The next job that is to be run alone.
+    next_suspect = NEXT_SUSPECT;
+    /// The job of a lane whose turn it is, unless an equal one is running. $1: client, $2: lane.
+    next_waiting = NEXT_WAITING;
+    /// What a client has had computed. $1: client, $2: input hash, $3: solver version.
+    known = KNOWN;
+    /// Accepted -> running. $1: id, $2: now, $3: the steady clock, $4: how long the lease lasts, $5: the process.
+    start = START;
+    /// Running -> running. $1: id, $2: attempt, $3 and $4: positions, $5: the steady clock, $6: how long the lease lasts.
+    report = REPORT;
+    /// The jobs that run: id, process, and whether the lease is over (1), and since another one (2). $1: the steady clock, $2:
+    /// how long a lease lasts.
+    running = RUNNING;
+    /// A job at once successful. $1 to $12: see `insert_known`.
+    insert_known = INSERT_KNOWN;
+    /// A job that waits. $1 to $9: see `insert_waiting`.
+    insert_waiting = INSERT_WAITING;
+    /// Counts the new jobs of studies now, for those who look before the end of the transaction.
+    count_designs = COUNT_DESIGNS;
+    /// A study. $1 to $9: see `insert_study`.
+    insert_study = INSERT_STUDY;
+    /// Keeps a document, unless it is kept already. $1: hash, $2: body, $3: size.
+    insert_document = INSERT_DOCUMENT;
+    /// From here to its end, no other transaction begins or ceases to need the document $1.
+    lock_document = LOCK_DOCUMENT;
+    /// The same of the jobs of study $1 that wait or run, of which none is to be locked after the study.
+    lock_designs = LOCK_DESIGNS;
+    /// From here to its end, no other transaction removes what is old.
+    keep_alone = KEEP_ALONE;
+    /// Studies without all their rows, which nobody expands. $1: the steady clock, $2: for how long they are taken.
+    unfinished_expansions = UNFINISHED_EXPANSIONS;
+    /// The study $1 is being expanded. $2: the steady clock, $3: for how long.
+    expanding = EXPANDING;
+    /// How many jobs wait and run.
+    depth = DEPTH;
+    /// Messages that are due. $1: the steady clock, $2: how many, $3: for how long they are taken.
+    due_messages = DUE_MESSAGES;
+}

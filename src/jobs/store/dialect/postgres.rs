@@ -1,0 +1,134 @@
+//! As PostgreSQL says it. Many processes write at the same time, at the isolation `read committed`, so each decision that
+//! needs to be the only one of its kind takes a lock first. Locks are taken in one order, which excludes deadlocks: a kind
+//! of decision, documents and jobs, studies (by the triggers), shares: clients by their names, each before its lanes.
+//!
+//! Leases run by the database's clock (`steady_now`), so that the clocks of the machines need not agree.
+
+type Words = Option<&'static str>;
+
+pub(in crate::jobs::store) const BEGIN: Words = Some("begin");
+
+pub(in crate::jobs::store) const PROBE: Words = Some("update probed set number = number + 1");
+
+// The bound of the queue is a count, and equal keys are looked for before they are written.
+pub(in crate::jobs::store) const LOCK_QUEUE: Words =
+    Some("select 1 from pg_advisory_xact_lock(hashtext('meshwright'), 1)");
+
+pub(in crate::jobs::store) const LOCK_STUDIES: Words =
+    Some("select 1 from pg_advisory_xact_lock(hashtext('meshwright'), 2)");
+
+pub(in crate::jobs::store) const LOCK_WEBHOOKS: Words =
+    Some("select 1 from pg_advisory_xact_lock(hashtext('meshwright'), 3)");
+
+// Whose turn it is follows from who was served before. What is claimed is skipped by those who would wait for it.
+pub(in crate::jobs::store) const LOCK_TURN: Words =
+    Some("select 1 from pg_advisory_xact_lock(hashtext('meshwright'), 4)");
+
+pub(in crate::jobs::store) const LOCK_SHARES: Words =
+    Some("select 1 from shares where client = $1 and lane = '*' for update");
+
+pub(in crate::jobs::store) const RUNNING_HERE: Words = Some(
+    "select count(*), cast(coalesce(sum(suspect), 0) as bigint) from jobs where status = 'running' and owner = $1",
+);
+
+pub(in crate::jobs::store) const NEXT_SUSPECT: Words = Some(
+    "select id from jobs as waiting
+     where suspect = 1 and status = 'accepted'
+       and not exists (select 1 from jobs as equal
+                       where equal.status = 'running' and equal.client = waiting.client
+                         and equal.input_hash = waiting.input_hash)
+     order by sequence limit 1 for update of waiting skip locked",
+);
+
+pub(in crate::jobs::store) const NEXT_WAITING: Words = Some(
+    "select id, input_hash, cost from jobs as waiting
+     where status = 'accepted' and client = $1 and coalesce(study, '') = $2
+       and not exists (select 1 from jobs as equal
+                       where equal.status = 'running' and equal.client = waiting.client
+                         and equal.input_hash = waiting.input_hash)
+     order by sequence limit 1 for update of waiting skip locked",
+);
+
+// Nobody removes what is about to be pointed to.
+pub(in crate::jobs::store) const KNOWN: Words = Some(
+    "select j.id, j.document, j.positions_total from jobs j join documents d on d.hash = j.document
+     where j.client = $1 and j.input_hash = $2 and j.solver_version = $3 and j.status = 'successful'
+     order by j.same_as is not null, j.sequence limit 1 for key share",
+);
+
+pub(in crate::jobs::store) const START: Words = Some(
+    "update jobs
+     set status = 'running', attempt = attempt + 1, started_at = max($2, submitted_at),
+         lease_until = steady_now($3) + $4, owner = $5, positions_done = 0
+     where id = $1 and status = 'accepted'
+     returning *",
+);
+
+pub(in crate::jobs::store) const REPORT: Words = Some(
+    "update jobs set positions_done = $3, positions_total = $4, lease_until = steady_now($5) + $6
+     where id = $1 and attempt = $2 and status = 'running'",
+);
+
+pub(in crate::jobs::store) const RUNNING: Words = Some(
+    "select id, owner,
+            cast(cast(lease_until < steady_now($1) as int) + cast(lease_until + $2 < steady_now($1) as int) as bigint)
+     from jobs where status = 'running' order by study, id for update skip locked",
+);
+
+pub(in crate::jobs::store) const INSERT_KNOWN: Words =
+    Some(insert_known!("nextval('jobs_arrived')"));
+
+pub(in crate::jobs::store) const INSERT_WAITING: Words =
+    Some(insert_waiting!("nextval('jobs_arrived')"));
+
+// A chunk of designs takes a while; were the study locked from the first of them, claims of its jobs would wait.
+pub(in crate::jobs::store) const COUNT_DESIGNS: Words =
+    Some("set constraints job_of_study_made immediate");
+
+pub(in crate::jobs::store) const INSERT_STUDY: Words =
+    Some(insert_study!("nextval('studies_arrived')"));
+
+// One that is kept is locked, so that it is not removed before a job points to it.
+pub(in crate::jobs::store) const INSERT_DOCUMENT: Words = Some(
+    "insert into documents (hash, encoding, body, size) values ($1, 'gzip', $2, $3)
+     on conflict (hash) do update set size = excluded.size",
+);
+
+pub(in crate::jobs::store) const LOCK_DOCUMENT: Words =
+    Some("select 1 from documents where hash = $1 for update");
+
+pub(in crate::jobs::store) const LOCK_DESIGNS: Words = Some(
+    "select 1 from jobs where study = $1 and status in ('accepted', 'running') order by id for update",
+);
+
+pub(in crate::jobs::store) const KEEP_ALONE: Words =
+    Some("select 1 from pg_advisory_xact_lock(hashtext('meshwright'), 5)");
+
+pub(in crate::jobs::store) const UNFINISHED_EXPANSIONS: Words = Some(
+    "update studies set expanding_until = steady_now($1) + $2
+     where id in (select id from studies
+                  where expanded < total and cancelled_at is null and expanding_until < steady_now($1)
+                  order by sequence for update skip locked)
+     returning id, client",
+);
+
+pub(in crate::jobs::store) const EXPANDING: Words =
+    Some("update studies set expanding_until = steady_now($2) + $3 where id = $1");
+
+pub(in crate::jobs::store) const DEPTH: Words = Some(
+    "select (select count(*) from jobs where status = 'accepted' and coalesce(study, '') = ''),
+            (select count(*) from jobs where status = 'accepted' and coalesce(study, '') <> ''),
+            (select count(*) from jobs where status = 'running'),
+            (select min(submitted_at) from jobs where status = 'accepted' and coalesce(study, '') = '')",
+);
+
+// Several processes deliver: who takes a message has it for a while, and another one takes it if that was in vain.
+pub(in crate::jobs::store) const DUE_MESSAGES: Words = Some(
+    "update messages as m set next_at = $1 + $3
+     from webhooks w
+     where w.id = m.webhook and m.id in (
+       select due.id from messages due join webhooks on webhooks.id = due.webhook
+       where due.next_at <= $1 and webhooks.disabled_at is null
+       order by due.next_at limit $2 for update of due skip locked)
+     returning m.id as message, m.webhook, w.url, w.secret, m.body, m.attempts",
+);

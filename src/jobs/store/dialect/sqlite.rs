@@ -1,0 +1,105 @@
+//! As SQLite says it. A transaction that writes has the file to itself, so that it needs no further locks; leases run by the
+//! steady clock of the one process that there is.
+
+type Words = Option<&'static str>;
+
+pub(in crate::jobs::store) const BEGIN: Words = Some("begin immediate");
+
+pub(in crate::jobs::store) const PROBE: Words = Some("update served set due = due");
+
+pub(in crate::jobs::store) const LOCK_QUEUE: Words = None;
+
+pub(in crate::jobs::store) const LOCK_STUDIES: Words = None;
+
+pub(in crate::jobs::store) const LOCK_WEBHOOKS: Words = None;
+
+pub(in crate::jobs::store) const LOCK_TURN: Words = None;
+
+pub(in crate::jobs::store) const LOCK_SHARES: Words = None;
+
+pub(in crate::jobs::store) const RUNNING_HERE: Words = Some(
+    "select count(*), coalesce(sum(suspect), 0) from jobs indexed by jobs_running where status = 'running'",
+);
+
+pub(in crate::jobs::store) const NEXT_SUSPECT: Words =
+    Some("select id from jobs where suspect = 1 and status = 'accepted' order by sequence limit 1");
+
+pub(in crate::jobs::store) const NEXT_WAITING: Words = Some(
+    "select id, input_hash, cost from jobs as waiting
+     where status = 'accepted' and client = $1 and coalesce(study, '') = $2
+       and not exists (select 1 from jobs as equal indexed by jobs_running
+                       where equal.status = 'running' and equal.client = waiting.client
+                         and equal.input_hash = waiting.input_hash)
+     order by sequence limit 1",
+);
+
+// The one that was computed comes before those that were given its results.
+pub(in crate::jobs::store) const KNOWN: Words = Some(
+    "select id, document, positions_total from jobs
+     where client = $1 and input_hash = $2 and solver_version = $3 and status = 'successful'
+     order by same_as is not null, sequence limit 1",
+);
+
+pub(in crate::jobs::store) const START: Words = Some(
+    "update jobs
+     set status = 'running', attempt = attempt + 1, started_at = max($2, submitted_at), lease_until = $3 + $4,
+         positions_done = 0
+     where id = $1 and status = 'accepted'
+     returning *",
+);
+
+pub(in crate::jobs::store) const REPORT: Words = Some(
+    "update jobs set positions_done = $3, positions_total = $4, lease_until = $5 + $6
+     where id = $1 and attempt = $2 and status = 'running'",
+);
+
+// One process: there is nobody else to have lost.
+pub(in crate::jobs::store) const RUNNING: Words = Some(
+    "select id, '', (lease_until < $1) + (lease_until + $2 < $1) from jobs indexed by jobs_running where status = 'running'",
+);
+
+pub(in crate::jobs::store) const INSERT_KNOWN: Words = Some(insert_known!(
+    "(select coalesce(max(sequence), 0) + 1 from jobs)"
+));
+
+pub(in crate::jobs::store) const INSERT_WAITING: Words = Some(insert_waiting!(
+    "(select coalesce(max(sequence), 0) + 1 from jobs)"
+));
+
+// The triggers count at once.
+pub(in crate::jobs::store) const COUNT_DESIGNS: Words = None;
+
+pub(in crate::jobs::store) const INSERT_STUDY: Words = Some(insert_study!(
+    "(select coalesce(max(sequence), 0) + 1 from studies)"
+));
+
+pub(in crate::jobs::store) const INSERT_DOCUMENT: Words = Some(
+    "insert into documents (hash, encoding, body, size) values ($1, 'gzip', $2, $3) on conflict (hash) do nothing",
+);
+
+pub(in crate::jobs::store) const LOCK_DOCUMENT: Words = None;
+
+pub(in crate::jobs::store) const LOCK_DESIGNS: Words = None;
+
+pub(in crate::jobs::store) const KEEP_ALONE: Words = None;
+
+// Only the start asks: this process expands what it has taken since.
+pub(in crate::jobs::store) const UNFINISHED_EXPANSIONS: Words = Some(
+    "select id, client from studies where expanded < total and cancelled_at is null order by sequence",
+);
+
+pub(in crate::jobs::store) const EXPANDING: Words = None;
+
+pub(in crate::jobs::store) const DEPTH: Words = Some(
+    "select (select count(*) from jobs where status = 'accepted' and coalesce(study, '') = ''),
+            (select count(*) from jobs where status = 'accepted' and coalesce(study, '') <> ''),
+            (select count(*) from jobs indexed by jobs_running where status = 'running'),
+            (select min(submitted_at) from jobs where status = 'accepted' and coalesce(study, '') = '')",
+);
+
+pub(in crate::jobs::store) const DUE_MESSAGES: Words = Some(
+    "select m.id as message, m.webhook, w.url, w.secret, m.body, m.attempts
+     from messages m join webhooks w on w.id = m.webhook
+     where m.next_at <= $1 and w.disabled_at is null
+     order by m.next_at limit $2",
+);

@@ -1,0 +1,87 @@
+//! What other processes tell, where there are any: the server passes it on with each commit (see `migrations/postgres`).
+
+use sqlx::postgres::PgListener;
+use uuid::Uuid;
+
+use super::statement::Pool;
+use super::{Store, StoreError};
+use crate::wire::Status;
+
+/// The channel on which the triggers tell.
+const CHANNEL: &str = "meshwright";
+
+/// Something that a process has done, this one perhaps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::jobs) enum Told {
+    /// A job waits.
+    Work,
+    /// The state of a job has changed.
+    Job(Uuid, Status),
+    /// A study has changed.
+    Study(Uuid),
+    /// Something may have been missed.
+    Missed,
+}
+
+/// Somebody who listens.
+pub(in crate::jobs) struct Listener(PgListener);
+
+impl Store {
+    /// Listens to other processes; none where there are no others.
+    pub(in crate::jobs) async fn listen(&self) -> Result<Option<Listener>, StoreError> {
+        let Pool::Postgres(pool) = &self.readers else {
+            return Ok(None);
+        };
+        let mut listener = PgListener::connect_with(pool).await?;
+        listener.listen(CHANNEL).await?;
+        Ok(Some(Listener(listener)))
+    }
+}
+
+impl Listener {
+    /// What is told next.
+    pub(in crate::jobs) async fn next(&mut self) -> Result<Told, StoreError> {
+        // Without a connection something may be told that nobody hears.
+        let heard = self.0.try_recv().await?;
+        Ok(heard.map_or(Told::Missed, |heard| told(heard.payload())))
+    }
+}
+
+/// What the words of a trigger mean. Those of a later version mean that something has happened.
+fn told(words: &str) -> Told {
+    let mut words = words.split(' ');
+    let told = match words.next() {
+        Some("work") => Some(Told::Work),
+        Some("job") => {
+            let status = words.next().and_then(Status::of_word);
+            let id = words.next().and_then(|id| id.parse().ok());
+            id.zip(status).map(|(id, status)| Told::Job(id, status))
+        }
+        Some("study") => words.next().and_then(|id| id.parse().ok()).map(Told::Study),
+        _ => None,
+    };
+    told.unwrap_or(Told::Missed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_told_is_understood_or_taken_for_news() {
+        let id = Uuid::now_v7();
+        for (words, meant) in [
+            ("work".to_owned(), Told::Work),
+            (
+                format!("job dismissed {id}"),
+                Told::Job(id, Status::Dismissed),
+            ),
+            (format!("study {id}"), Told::Study(id)),
+            ("job dismissed".to_owned(), Told::Missed),
+            ("weather fine".to_owned(), Told::Missed),
+            (String::new(), Told::Missed),
+        ] {
+            assert_eq!(told(&words), meant, "{words}");
+        }
+    }
+}

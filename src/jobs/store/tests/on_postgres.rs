@@ -1,0 +1,29 @@
+//! What the store does whatever is below it, on PostgreSQL; and what only several processes do to each other.
+
+#![expect(
+    clippy::duplicate_mod,
+    reason = "the suites of SQLite once more, on another store"
+)]
+
+use super::*;
+
+#[path = "doubt.rs"]
+mod doubt;
+#[path = "keeping.rs"]
+mod keeping;
+#[path = "lists.rs"]
+mod lists;
+mod many;
+#[path = "transitions.rs"]
+mod transitions;
+#[path = "turns.rs"]
+mod turns;
+
+/// A database whose leases run by the clock that a test gives.
+async fn store() -> (Store, Place) {
+    let address = server::database().await;
+    let place = Place::Postgres(address.clone());
+    let store = Store::open(&place).await.unwrap();
+    server::give_clock(&address).await;
+    (store, place)
+}

@@ -1,0 +1,420 @@
+//! Several processes on one PostgreSQL: three compute, two answer. Workers and an answering process are killed, the server is
+//! restarted, a worker is frozen beyond its lease: no job is lost, none is done twice in effect.
+//!
+//! A few hundred jobs run with the tests; five thousand, and the figures of `docs/scaling.md`, by `tests/fleet`.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::process::Command;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use meshwright::jobs::Place;
+use reqwest::Client;
+use rustix::process::Signal;
+use serde_json::{Value, json};
+use tokio::sync::Mutex;
+
+use crate::process::Process;
+use crate::{server, stores};
+
+/// A decomposition of some tens of milliseconds, each another one.
+fn job(number: u64) -> Value {
+    let gear = json!({
+        "tooth_count": 50, "module_mm": 2.0, "face_width_mm": 20.0, "blank": { "bore_radius_mm": 15.0 },
+        "tip_relief": { "amount_um": 5.0, "start": { "radial_length_mm": 1.75 } },
+    });
+    let mut driven = gear.clone();
+    driven["blank"]["holes"] = json!({ "count": 10, "circle_radius_mm": 34.0, "radius_mm": 7.5 });
+    json!({
+        "method": "projected_decomposition",
+        "pair": { "center_distance_mm": 100.5, "driving": gear, "driven": driven },
+        "output_torques_n_m": [20.0 + number as f64 * 0.25],
+        "resolution": { "positions_per_mesh_period": 10 },
+    })
+}
+
+/// Where requests go: an address that answers.
+type Bases = Arc<Mutex<Vec<String>>>;
+
+/// Submits jobs, each until somebody takes it. Gives back the ids.
+async fn submit_all(client: Client, bases: Bases, numbers: Vec<u64>) -> BTreeMap<u64, String> {
+    let mut taken = BTreeMap::new();
+    for number in numbers {
+        let mut turn = number;
+        let id = loop {
+            let base = {
+                let bases = bases.lock().await;
+                bases[usize::try_from(turn).unwrap() % bases.len()].clone()
+            };
+            turn += 1;
+            let request = client
+                .post(format!("{base}/v1/jobs"))
+                .header("idempotency-key", format!("job {number}"))
+                .json(&job(number));
+            if let Ok(answer) = request.send().await
+                && answer.status().is_success()
+                && let Ok(job) = answer.json::<Value>().await
+            {
+                break job["id"].as_str().unwrap().to_owned();
+            }
+            tokio::time::sleep(Duration::from_millis(20)).await;
+        };
+        taken.insert(number, id);
+    }
+    taken
+}
+
+/// The processes, and the database that they share.
+struct Fleet {
+    place: Place,
+    workers: Vec<Process>,
+    apis: Vec<Process>,
+    bases: Bases,
+    client: Client,
+}
+
+impl Fleet {
+    async fn start(address: &str, workers: usize, apis: usize, lease: &str) -> Self {
+        let place = Place::Postgres(address.to_owned());
+        let start = |role: &str| {
+            let arguments = ["--role", role, "--workers", "1", "--queue-limit", "100000"];
+            let lease = ["--lease", lease];
+            Process::start_with(&place, &[&arguments[..], &lease[..]].concat())
+        };
+        let apis: Vec<Process> = (0..apis).map(|_| start("api")).collect();
+        let workers = (0..workers).map(|_| start("worker")).collect();
+        let bases = apis.iter().map(|api| api.base.clone()).collect();
+        Self {
+            workers,
+            apis,
+            bases: Arc::new(Mutex::new(bases)),
+            client: meshwright::client()
+                .timeout(Duration::from_secs(20))
+                .build()
+                .unwrap(),
+            place,
+        }
+    }
+
+    fn submit(&self, count: u64) -> Vec<tokio::task::JoinHandle<BTreeMap<u64, String>>> {
+        const CLIENTS: u64 = 4;
+        let submit = |which| {
+            let numbers = (0..count).filter(|number| number % CLIENTS == which);
+            let bases = Arc::clone(&self.bases);
+            tokio::spawn(submit_all(self.client.clone(), bases, numbers.collect()))
+        };
+        (0..CLIENTS).map(submit).collect()
+    }
+
+    /// Comes back when so many jobs are successful.
+    async fn successful(&self, count: i64) {
+        while self
+            .number("select count(*) from jobs where status = 'successful'")
+            .await
+            < count
+        {
+            tokio::time::sleep(Duration::from_millis(50)).await;
+        }
+    }
+
+    async fn number(&self, query: &'static str) -> i64 {
+        stores::number(&self.place, query).await
+    }
+}
+
+/// Each job once, whatever happened meanwhile.
+async fn check(fleet: &Fleet, count: u64, taken: &BTreeMap<u64, String>) {
+    let ids: BTreeSet<&String> = taken.values().collect();
+    assert_eq!(
+        (taken.len() as u64, ids.len() as u64),
+        (count, count),
+        "each was taken once"
+    );
+    let count = i64::try_from(count).unwrap();
+    assert_eq!(fleet.number("select count(*) from jobs").await, count);
+    assert_eq!(
+        fleet
+            .number("select count(*) from jobs where status = 'successful' and same_as is null")
+            .await,
+        count,
+        "each was computed"
+    );
+    assert_eq!(
+        fleet
+            .number("select count(distinct document) from jobs")
+            .await,
+        count,
+        "each has the results of its own input"
+    );
+    assert_eq!(fleet.number("select count(*) from documents").await, count);
+}
+
+async fn share_of_workers(fleet: &Fleet) -> Vec<i64> {
+    let Place::Postgres(address) = &fleet.place else {
+        unreachable!("a fleet has a server")
+    };
+    let mut connection = server::connect(address).await;
+    sqlx::query_scalar("select count(*) from jobs group by owner order by 1 desc")
+        .fetch_all(&mut connection)
+        .await
+        .unwrap()
+}
+
+/// A round of `count` jobs in which everything happens that can happen. `lease` in seconds.
+async fn troubled(count: u64, lease: u64) {
+    // One of its own, because it is restarted.
+    let (server, folder) = tokio::task::spawn_blocking(server::start).await.unwrap();
+    let address = server::database_of(&server, "fleet").await;
+    let start = Instant::now();
+    let mut fleet = Fleet::start(&address, 3, 2, &format!("{lease}s")).await;
+    let submitters = fleet.submit(count);
+    let part = |of: u64| i64::try_from(count * of / 10).unwrap();
+
+    fleet.successful(part(2)).await;
+    // Frozen in the middle of something; it goes on long after its lease.
+    let frozen = fleet.workers.pop().unwrap();
+    frozen.signal(Signal::STOP);
+    let frozen_at = Instant::now();
+    fleet.workers.push(Process::start_with(
+        &fleet.place,
+        &[
+            "--role",
+            "worker",
+            "--workers",
+            "1",
+            "--lease",
+            &format!("{lease}s"),
+        ],
+    ));
+    fleet.successful(part(4)).await;
+    // Two workers and one that answers die; others take their places.
+    for _ in 0..2 {
+        fleet.workers.remove(0).kill();
+    }
+    fleet.bases.lock().await.remove(0);
+    fleet.apis.remove(0).kill();
+    for _ in 0..2 {
+        fleet.workers.push(Process::start_with(
+            &fleet.place,
+            &[
+                "--role",
+                "worker",
+                "--workers",
+                "1",
+                "--lease",
+                &format!("{lease}s"),
+            ],
+        ));
+    }
+    fleet.successful(part(5)).await;
+    let restart = Instant::now();
+    let program = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/postgres/restart");
+    let restarted = tokio::task::spawn_blocking(move || Command::new(program).arg(folder).status());
+    assert!(restarted.await.unwrap().unwrap().success());
+    let restarted = restart.elapsed();
+    fleet.successful(part(7)).await;
+    let frozen_for = Duration::from_secs(lease * 2).saturating_sub(frozen_at.elapsed());
+    tokio::time::sleep(frozen_for).await;
+    frozen.signal(Signal::CONT);
+
+    let mut taken = BTreeMap::new();
+    for submitter in submitters {
+        taken.extend(submitter.await.unwrap());
+    }
+    fleet.successful(count.try_into().unwrap()).await;
+    check(&fleet, count, &taken).await;
+    let again = fleet
+        .number("select count(*) from jobs where attempt > 1")
+        .await;
+    assert!(again >= 1, "what the dead ran was run again");
+    println!(
+        "{count} jobs in {:.1} s by 3 workers, of which 2 were killed and 1 frozen, and 2 that answer, of which 1 was killed; the server restarted in {restarted:?}; {again} jobs ran more than once, none is lost, none has two results; by process {:?}",
+        start.elapsed().as_secs_f64(),
+        share_of_workers(&fleet).await,
+    );
+}
+
+/// Comes back when all of `count` jobs are done that nobody disturbs; says how fast.
+async fn calm(count: u64, workers: usize) -> f64 {
+    let address = server::database().await;
+    let fleet = Fleet::start(&address, workers, 2, "30s").await;
+    let start = Instant::now();
+    let submitters = fleet.submit(count);
+    fleet.successful(count.try_into().unwrap()).await;
+    let seconds = start.elapsed().as_secs_f64();
+    let mut taken = BTreeMap::new();
+    for submitter in submitters {
+        taken.extend(submitter.await.unwrap());
+    }
+    check(&fleet, count, &taken).await;
+    let shares = share_of_workers(&fleet).await;
+    assert_eq!(
+        shares.len(),
+        workers,
+        "each worker had its share: {shares:?}"
+    );
+    let rate = count as f64 / seconds;
+    let memory: Vec<_> = fleet.workers.iter().map(Process::peak_memory_mb).collect();
+    let connections = fleet
+        .number("select count(*) from pg_stat_activity where datname = current_database()")
+        .await;
+    println!(
+        "{count} jobs, {workers} workers: {rate:.1} a second, shares {shares:?}, peak memory of workers {memory:?} MB, {connections} connections, {} bytes a job",
+        fleet
+            .number("select pg_database_size(current_database())")
+            .await
+            / i64::try_from(count).unwrap(),
+    );
+    rate
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn kills_a_restart_and_a_frozen_worker_lose_no_job_and_double_none() {
+    let _alone = stores::ALONE.lock().await;
+    troubled(300, 2).await;
+}
+
+#[tokio::test]
+async fn only_a_server_is_shared_by_processes_of_different_roles() {
+    let folder = tempfile::tempdir().unwrap();
+    for role in ["api", "worker"] {
+        let refused = Command::new(env!("CARGO_BIN_EXE_meshwright"))
+            .args([
+                "serve",
+                "--listen",
+                "127.0.0.1:0",
+                "--role",
+                role,
+                "--database",
+            ])
+            .arg(folder.path().join("meshwright.db"))
+            .output()
+            .unwrap();
+        assert!(!refused.status.success());
+        let told = String::from_utf8(refused.stderr).unwrap();
+        assert!(
+            told.contains("only a database of PostgreSQL can be shared"),
+            "{told}"
+        );
+    }
+}
+
+#[tokio::test]
+async fn a_password_stands_neither_in_the_help_nor_in_an_error() {
+    let address = "postgres://me:secret-word@127.0.0.1:1/gears";
+    for arguments in [
+        &["serve", "--help"][..],
+        &["serve"],
+        &["keys", "list"],
+        &["backup", "x"],
+    ] {
+        let told = Command::new(env!("CARGO_BIN_EXE_meshwright"))
+            .args(arguments)
+            .env("MESHWRIGHT_DATABASE", address)
+            .output()
+            .unwrap();
+        let all = [told.stdout, told.stderr].concat();
+        let all = String::from_utf8(all).unwrap();
+        assert!(!all.contains("secret-word"), "{arguments:?}: {all}");
+    }
+}
+
+/// The median time of a small job from its submission to its answer, one after the other, in milliseconds.
+async fn to_and_fro(place: &Place) -> f64 {
+    const JOBS: u32 = 200;
+    let process = Process::start(place);
+    let client = meshwright::client().build().unwrap();
+    let mut times = Vec::new();
+    for number in 0..JOBS {
+        let gear = json!({ "tooth_count": 50, "module_mm": 2.0, "face_width_mm": 20.0, "blank": { "bore_radius_mm": 15.0 } });
+        let small = json!({
+            "method": "load_distribution",
+            "pair": { "center_distance_mm": 100.5, "driving": gear, "driven": gear },
+            "output_torques_n_m": [20.0 + f64::from(number)],
+            "resolution": { "positions_per_mesh_period": 10 },
+        });
+        let start = Instant::now();
+        let request = client.post(format!("{}/v1/jobs", process.base));
+        let answer = request
+            .header("prefer", "wait=20")
+            .json(&small)
+            .send()
+            .await;
+        assert_eq!(answer.unwrap().status(), 200);
+        times.push(start.elapsed().as_secs_f64() * 1e3);
+    }
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
+
+#[tokio::test]
+#[ignore = "a measurement; tests/fleet runs it"]
+async fn a_job_takes_a_little_longer_to_and_fro_than_on_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = Place::File(folder.path().join("meshwright.db"));
+    let server = Place::Postgres(server::database().await);
+    for round in 0..2 {
+        println!(
+            "round {round}: a small job from submission to answer takes {:.2} ms on SQLite, {:.2} ms on PostgreSQL (median of 200)",
+            to_and_fro(&file).await,
+            to_and_fro(&server).await,
+        );
+    }
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[ignore = "takes some minutes; tests/fleet runs it"]
+async fn a_study_of_ten_thousand_designs_through_two_processes() {
+    let address = server::database().await;
+    let fleet = Fleet::start(&address, 2, 1, "30s").await;
+    let api = &fleet.apis[0];
+    let base = job(0);
+    let radii: Vec<f64> = (0..100).map(|i| 5.0 + f64::from(i) * 0.02).collect();
+    let torques: Vec<Value> = (0..100).map(|i| json!([50.0 + f64::from(i)])).collect();
+    let study = json!({
+        "base": base,
+        "axes": [
+            { "path": "/pair/driven/blank/holes/radius_mm", "values": radii },
+            { "path": "/output_torques_n_m", "values": torques },
+        ],
+    });
+    let start = Instant::now();
+    let path = api.submit(&fleet.client, &study).await;
+    let taken = start.elapsed();
+    let ended = api.done(&fleet.client, &path, 10_000).await;
+    let seconds = start.elapsed().as_secs_f64();
+    assert_eq!(ended["successful"], 10_000, "{ended}");
+    let read = Instant::now();
+    let table = fleet
+        .client
+        .get(format!("{}{path}/results/table.csv", api.base))
+        .timeout(Duration::from_secs(120));
+    let table = table.send().await.unwrap().text().await.unwrap();
+    assert_eq!(table.lines().count(), 10_001);
+    println!(
+        "10,000 designs taken after {taken:?}, done in {seconds:.1} s, {:.1} a second; the table of {} kB took {:?}; {} bytes a design; peak memory of workers {:?} MB, of the one that answers {:?} MB; shares {:?}",
+        10_000.0 / seconds,
+        table.len() / 1000,
+        read.elapsed(),
+        fleet
+            .number("select pg_database_size(current_database())")
+            .await
+            / 10_000,
+        fleet
+            .workers
+            .iter()
+            .map(Process::peak_memory_mb)
+            .collect::<Vec<_>>(),
+        api.peak_memory_mb(),
+        share_of_workers(&fleet).await,
+    );
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[ignore = "takes a quarter of an hour; tests/fleet runs it"]
+async fn five_thousand_jobs_with_and_without_trouble() {
+    let one = calm(1000, 1).await;
+    let three = calm(5000, 3).await;
+    println!("three workers are {:.2} times as fast as one", three / one);
+    troubled(5000, 10).await;
+}

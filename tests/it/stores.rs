@@ -1,0 +1,96 @@
+//! Which store the suites run on: files of SQLite, or, when the environment says so, databases of a PostgreSQL.
+
+use meshwright::jobs::Place;
+use sqlx::sqlite::SqlitePool;
+use tempfile::TempDir;
+use tokio::sync::Mutex;
+
+use crate::server;
+
+/// The variable that says so.
+pub(crate) const STORE: &str = "MESHWRIGHT_TEST_STORE";
+
+/// Held by what takes the whole machine for a while, and by what must not take longer than it may.
+pub(crate) static ALONE: Mutex<()> = Mutex::const_new(());
+
+/// Whether the suites run on PostgreSQL.
+pub(crate) fn on_postgres() -> bool {
+    std::env::var(STORE).is_ok_and(|store| store == "postgres")
+}
+
+/// A database without anything in it: a file in `folder`, or one of the server.
+pub(crate) async fn place(folder: &TempDir) -> Place {
+    if on_postgres() {
+        Place::Postgres(server::database().await)
+    } else {
+        Place::File(folder.path().join("meshwright.db"))
+    }
+}
+
+/// What the command line calls it.
+pub(crate) fn address(place: &Place) -> String {
+    match place {
+        Place::File(path) => path.to_str().unwrap().to_owned(),
+        Place::Postgres(address) => address.clone(),
+    }
+}
+
+/// What a service is told beside its database, so that tests need not wait long for the leases of processes that died.
+pub(crate) fn arguments() -> &'static [&'static str] {
+    if on_postgres() {
+        &["--lease", "1s"]
+    } else {
+        &[]
+    }
+}
+
+/// The number that a query gives.
+pub(crate) async fn number(place: &Place, query: &'static str) -> i64 {
+    match place {
+        Place::File(path) => {
+            let address = format!("sqlite://{}", path.display());
+            let file = SqlitePool::connect(&address).await.unwrap();
+            let number = sqlx::query_scalar(query);
+            number.fetch_one(&file).await.unwrap()
+        }
+        Place::Postgres(address) => {
+            let number = sqlx::query_scalar(query);
+            let mut connection = server::connect(address).await;
+            number.fetch_one(&mut connection).await.unwrap()
+        }
+    }
+}
+
+/// Bytes of a database.
+pub(crate) async fn bytes(place: &Place) -> u64 {
+    let bytes = match place {
+        Place::File(path) => std::fs::metadata(path).unwrap().len().try_into(),
+        Place::Postgres(_) => {
+            Ok(number(place, "select pg_database_size(current_database())").await)
+        }
+    };
+    bytes.unwrap().unsigned_abs()
+}
+
+/// Has all leases run out, as they do while nobody reports; on SQLite the next process does not wait for that.
+pub(crate) async fn pass_a_lease(place: &Place) {
+    if let Place::Postgres(address) = place {
+        let mut connection = server::connect(address).await;
+        for statement in [
+            "update jobs set lease_until = 1 where status = 'running'",
+            "update studies set expanding_until = 0",
+        ] {
+            sqlx::query(statement)
+                .execute(&mut connection)
+                .await
+                .unwrap();
+        }
+    }
+}
+
+/// Has leases run by the clock that a test gives, which on SQLite they do anyway.
+pub(crate) async fn give_clock(place: &Place) {
+    if let Place::Postgres(address) = place {
+        server::give_clock(address).await;
+    }
+}
