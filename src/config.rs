@@ -69,7 +69,7 @@ pub struct Config {
     pub time_limit_seconds: u64,
 
     /// Time after which a job whose worker has not been heard of is given to another one.
-    #[arg(long, env = "MESHWRIGHT_LEASE", default_value = "30s", value_parser = span, value_name = "TIME", hide = true)]
+    #[arg(long, env = "MESHWRIGHT_LEASE", default_value = "30s", value_parser = lasting, value_name = "TIME", hide = true)]
     pub lease: Duration,
 
     /// Memory for the teeth, blanks and gears that jobs and previews share, in MB of 2^20 bytes.
@@ -146,7 +146,7 @@ pub struct KeepOptions {
     pub keep_gb: f64,
 
     /// Time between two looks at what is old.
-    #[arg(long, env = "MESHWRIGHT_KEEP_EVERY", default_value = "5m", value_parser = span, value_name = "TIME", hide = true)]
+    #[arg(long, env = "MESHWRIGHT_KEEP_EVERY", default_value = "5m", value_parser = lasting, value_name = "TIME", hide = true)]
     pub keep_every: Duration,
 }
 
@@ -352,6 +352,12 @@ fn span(text: &str) -> Result<Duration, String> {
         .ok_or_else(|| "a century is the longest".to_owned())
 }
 
+/// A span that is not 0: something is done once in each.
+fn lasting(text: &str) -> Result<Duration, String> {
+    let wrong = || "0 is too short; 1s is the least".to_owned();
+    span(text).and_then(|span| Some(span).filter(|span| !span.is_zero()).ok_or_else(wrong))
+}
+
 /// Checks a public address, and takes the slash from its end.
 fn public_url(text: &str) -> Result<String, String> {
     let uri: Uri = text.parse().map_err(|error| format!("{error}"))?;
@@ -365,6 +371,12 @@ fn public_url(text: &str) -> Result<String, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_done_once_in_each_span_has_one() {
+        assert_eq!(lasting("1s"), Ok(Duration::from_secs(1)));
+        assert!(lasting("0").is_err() && lasting("0s").is_err());
+    }
 
     #[test]
     fn a_span_of_time_has_a_unit() {
