@@ -364,13 +364,13 @@ async fn a_job_takes_a_little_longer_to_and_fro_than_on_a_file() {
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 #[ignore = "takes some minutes; tests/fleet runs it"]
-async fn a_study_of_ten_thousand_designs_through_two_processes() {
+async fn a_study_of_twenty_thousand_designs_through_two_processes() {
     let address = server::database().await;
     let fleet = Fleet::start(&address, 2, 1, "30s").await;
     let api = &fleet.apis[0];
     let base = job(0);
     let radii: Vec<f64> = (0..100).map(|i| 5.0 + f64::from(i) * 0.02).collect();
-    let torques: Vec<Value> = (0..100).map(|i| json!([50.0 + f64::from(i)])).collect();
+    let torques: Vec<Value> = (0..200).map(|i| json!([50.0 + f64::from(i)])).collect();
     let study = json!({
         "base": base,
         "axes": [
@@ -381,25 +381,25 @@ async fn a_study_of_ten_thousand_designs_through_two_processes() {
     let start = Instant::now();
     let path = api.submit(&fleet.client, &study).await;
     let taken = start.elapsed();
-    let ended = api.done(&fleet.client, &path, 10_000).await;
+    let ended = api.done(&fleet.client, &path, 20_000).await;
     let seconds = start.elapsed().as_secs_f64();
-    assert_eq!(ended["successful"], 10_000, "{ended}");
+    assert_eq!(ended["successful"], 20_000, "{ended}");
     let read = Instant::now();
     let table = fleet
         .client
         .get(format!("{}{path}/results/table.csv", api.base))
         .timeout(Duration::from_secs(120));
     let table = table.send().await.unwrap().text().await.unwrap();
-    assert_eq!(table.lines().count(), 10_001);
+    assert_eq!(table.lines().count(), 20_001);
     println!(
-        "10,000 designs taken after {taken:?}, done in {seconds:.1} s, {:.1} a second; the table of {} kB took {:?}; {} bytes a design; peak memory of workers {:?} MB, of the one that answers {:?} MB; shares {:?}",
-        10_000.0 / seconds,
+        "20,000 designs taken after {taken:?}, done in {seconds:.1} s, {:.1} a second; the table of {} kB took {:?}; {} bytes a design; peak memory of workers {:?} MB, of the one that answers {:?} MB; shares {:?}",
+        20_000.0 / seconds,
         table.len() / 1000,
         read.elapsed(),
         fleet
             .number("select pg_database_size(current_database())")
             .await
-            / 10_000,
+            / 20_000,
         fleet
             .workers
             .iter()

@@ -340,7 +340,7 @@ async fn what_is_wrong_with_a_study_is_refused_with_its_place() {
     );
     let huge = json!({ "base": submission(1.0), "axes": axes });
     let refused = problem(send(huge).await, 422, "too_large").await;
-    assert!(refused["detail"].as_str().unwrap().contains("10000"));
+    assert!(refused["detail"].as_str().unwrap().contains("20000"));
 
     let twice = json!({ "base": submission(1.0), "designs": [{ "label": "a" }, { "label": "a" }] });
     problem(send(twice).await, 422, "out_of_range").await;

@@ -11,12 +11,12 @@ use crate::wire::size::{MOST_VALUES, refuse_many_values};
 use crate::wire::tree::{Errors, Node};
 
 /// The most designs of one study.
-pub const MOST_DESIGNS: usize = 10_000;
+pub const MOST_DESIGNS: usize = 20_000;
 
-/// The most values of the whole document: ten thousand designs with two dozen changes each.
+/// The most values of the whole document: twenty thousand designs with a dozen changes each.
 const MOST_VALUES_OF_ALL: u64 = 300_000;
 
-/// The most values that are looked at when each design is checked against the base: ten thousand designs of a base with two
+/// The most values that are looked at when each design is checked against the base: twenty thousand designs of a base with one
 /// thousand, or fewer of a larger one.
 const MOST_WORK: u64 = 20_000_000;
 
