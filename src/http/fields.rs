@@ -43,7 +43,7 @@ pub(super) struct FieldParameters {
         ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
     ),
     responses(
-        (status = 200, description = "The grid.", body = String, content_type = "application/xml", headers(
+        (status = 200, description = "The grid.", body = String, content_type = "text/xml", headers(
             ("ETag" = String, description = "Stands for this grid."),
         )),
         (status = 304, description = "The client has this grid."),
@@ -81,7 +81,7 @@ pub(super) async fn vtu(
         let grid = app.previews.work(None, work).await?.answer;
         let name = format!("attachment; filename=\"{id}-fields.vtu\"");
         let headers = [
-            (CONTENT_TYPE, "application/xml".to_owned()),
+            (CONTENT_TYPE, "text/xml".to_owned()),
             (CONTENT_DISPOSITION, name),
         ];
         Ok((headers, grid).into_response())

@@ -94,7 +94,7 @@ async fn fields_come_as_a_grid_at_any_position_and_torque_of_the_job() {
     };
     let answer = get("?torque=115&mesh_position=0.25").await;
     assert_eq!(answer.status(), StatusCode::OK);
-    assert_eq!(answer.headers()["content-type"], "application/xml");
+    assert_eq!(answer.headers()["content-type"], "text/xml");
     let tag = answer.headers()["etag"].clone();
     let text = answer.text().await.unwrap();
     for name in [
