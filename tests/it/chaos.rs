@@ -3,7 +3,6 @@
 //!
 //! Two rounds run with the tests; twenty of two hundred jobs by `./chaos`.
 
-use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -17,6 +16,7 @@ use tokio::sync::Mutex;
 
 use crate::process::Process;
 use crate::stores;
+use crate::submitters::{Bases, Submitters, Taken};
 
 /// A generator of chance: the same numbers for the same seed.
 struct Chance(u64);
@@ -51,35 +51,7 @@ struct Tally {
     ready: Vec<Duration>,
 }
 
-/// The address of the service, which is another one after each kill.
-type Base = Arc<Mutex<String>>;
-
-/// Submits jobs one after the other, each until it is taken. Gives back the ids.
-async fn submit_all(client: Client, base: Base, numbers: Vec<u64>) -> BTreeMap<u64, String> {
-    let mut taken = BTreeMap::new();
-    for number in numbers {
-        let id = loop {
-            let url = format!("{}/v1/jobs", base.lock().await);
-            let request = client
-                .post(url)
-                .header("idempotency-key", format!("job {number}"))
-                .json(&job(number));
-            if let Ok(answer) = request.send().await
-                // 200 where the answer to an earlier try was lost, and the job has ended meanwhile.
-                && answer.status().is_success()
-                && let Ok(job) = answer.json::<Value>().await
-            {
-                break job["id"].as_str().unwrap().to_owned();
-            }
-            tokio::time::sleep(Duration::from_millis(10)).await;
-        };
-        taken.insert(number, id);
-    }
-    taken
-}
-
 async fn round(seed: u64, jobs: u64, kills: u32, database: &Place) -> Tally {
-    const CLIENTS: u64 = 4;
     let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
     let client = meshwright::client()
         .timeout(Duration::from_secs(20))
@@ -87,15 +59,8 @@ async fn round(seed: u64, jobs: u64, kills: u32, database: &Place) -> Tally {
         .unwrap();
     let mut tally = Tally::default();
     let mut process = Process::start(database);
-    let base: Base = Arc::new(Mutex::new(process.base.clone()));
-    let submitters: Vec<_> = (0..CLIENTS)
-        .map(|which| {
-            let numbers = (0..jobs)
-                .filter(|number| number % CLIENTS == which)
-                .collect();
-            tokio::spawn(submit_all(client.clone(), Arc::clone(&base), numbers))
-        })
-        .collect();
+    let bases: Bases = Arc::new(Mutex::new(vec![process.base.clone()]));
+    let submitters = Submitters::start(&client, &bases, jobs, job);
     for _ in 0..kills {
         tokio::time::sleep(Duration::from_millis(30 + chance.below(400))).await;
         process.kill();
@@ -109,24 +74,14 @@ async fn round(seed: u64, jobs: u64, kills: u32, database: &Place) -> Tally {
             .unwrap();
         assert_eq!(ready.status(), 200);
         tally.ready.push(start.elapsed());
-        *base.lock().await = process.base.clone();
+        *bases.lock().await = vec![process.base.clone()];
     }
-    let mut taken = BTreeMap::new();
-    for submitter in submitters {
-        taken.extend(submitter.await.unwrap());
-    }
-    check(&client, &process, jobs, &taken).await;
+    check(&client, &process, &submitters.taken().await).await;
     tally
 }
 
 /// Every job that was taken has its one result, the one of a run that nobody disturbed.
-async fn check(client: &Client, process: &Process, jobs: u64, taken: &BTreeMap<u64, String>) {
-    let ids: BTreeSet<&String> = taken.values().collect();
-    assert_eq!(
-        (taken.len() as u64, ids.len() as u64),
-        (jobs, jobs),
-        "each was taken once"
-    );
+async fn check(client: &Client, process: &Process, taken: &Taken) {
     let library = Library::with_capacity(256 << 20);
     for (number, id) in taken {
         let url = format!("{}/v1/jobs/{id}", process.base);
@@ -157,13 +112,13 @@ async fn check(client: &Client, process: &Process, jobs: u64, taken: &BTreeMap<u
     let mut path = "/v1/jobs?limit=200".to_owned();
     loop {
         let page = process.get(client, &path).await;
-        listed += page["items"].as_array().unwrap().len() as u64;
+        listed += page["items"].as_array().unwrap().len();
         match page["next"].as_str() {
             Some(cursor) => path = format!("/v1/jobs?limit=200&cursor={cursor}"),
             None => break,
         }
     }
-    assert_eq!(listed, jobs, "no job that nobody knows of");
+    assert_eq!(listed, taken.len(), "no job that nobody knows of");
 }
 
 async fn rounds(seeds: std::ops::Range<u64>, jobs: u64, kills: u32) {

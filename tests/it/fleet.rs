@@ -3,7 +3,6 @@
 //!
 //! A few hundred jobs run with the tests; five thousand, and the figures of `docs/scaling.md`, by `tests/fleet`.
 
-use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -15,6 +14,7 @@ use serde_json::{Value, json};
 use tokio::sync::Mutex;
 
 use crate::process::Process;
+use crate::submitters::{Bases, Submitters};
 use crate::{server, stores};
 
 /// A decomposition of some tens of milliseconds, each another one.
@@ -33,37 +33,6 @@ fn job(number: u64) -> Value {
     })
 }
 
-/// Where requests go: an address that answers.
-type Bases = Arc<Mutex<Vec<String>>>;
-
-/// Submits jobs, each until somebody takes it. Gives back the ids.
-async fn submit_all(client: Client, bases: Bases, numbers: Vec<u64>) -> BTreeMap<u64, String> {
-    let mut taken = BTreeMap::new();
-    for number in numbers {
-        let mut turn = number;
-        let id = loop {
-            let base = {
-                let bases = bases.lock().await;
-                bases[usize::try_from(turn).unwrap() % bases.len()].clone()
-            };
-            turn += 1;
-            let request = client
-                .post(format!("{base}/v1/jobs"))
-                .header("idempotency-key", format!("job {number}"))
-                .json(&job(number));
-            if let Ok(answer) = request.send().await
-                && answer.status().is_success()
-                && let Ok(job) = answer.json::<Value>().await
-            {
-                break job["id"].as_str().unwrap().to_owned();
-            }
-            tokio::time::sleep(Duration::from_millis(20)).await;
-        };
-        taken.insert(number, id);
-    }
-    taken
-}
-
 /// The processes, and the database that they share.
 struct Fleet {
     place: Place,
@@ -71,18 +40,32 @@ struct Fleet {
     apis: Vec<Process>,
     bases: Bases,
     client: Client,
+    lease: String,
+}
+
+fn start(place: &Place, role: &str, lease: &str) -> Process {
+    Process::start_with(
+        place,
+        &[
+            "--role",
+            role,
+            "--workers",
+            "1",
+            "--queue-limit",
+            "100000",
+            "--lease",
+            lease,
+        ],
+    )
 }
 
 impl Fleet {
-    async fn start(address: &str, workers: usize, apis: usize, lease: &str) -> Self {
+    fn start(address: &str, workers: usize, apis: usize, lease: &str) -> Self {
         let place = Place::Postgres(address.to_owned());
-        let start = |role: &str| {
-            let arguments = ["--role", role, "--workers", "1", "--queue-limit", "100000"];
-            let lease = ["--lease", lease];
-            Process::start_with(&place, &[&arguments[..], &lease[..]].concat())
-        };
-        let apis: Vec<Process> = (0..apis).map(|_| start("api")).collect();
-        let workers = (0..workers).map(|_| start("worker")).collect();
+        let apis: Vec<Process> = (0..apis).map(|_| start(&place, "api", lease)).collect();
+        let workers = (0..workers)
+            .map(|_| start(&place, "worker", lease))
+            .collect();
         let bases = apis.iter().map(|api| api.base.clone()).collect();
         Self {
             workers,
@@ -93,17 +76,18 @@ impl Fleet {
                 .build()
                 .unwrap(),
             place,
+            lease: lease.to_owned(),
         }
     }
 
-    fn submit(&self, count: u64) -> Vec<tokio::task::JoinHandle<BTreeMap<u64, String>>> {
-        const CLIENTS: u64 = 4;
-        let submit = |which| {
-            let numbers = (0..count).filter(|number| number % CLIENTS == which);
-            let bases = Arc::clone(&self.bases);
-            tokio::spawn(submit_all(self.client.clone(), bases, numbers.collect()))
-        };
-        (0..CLIENTS).map(submit).collect()
+    fn submit(&self, count: u64) -> Submitters {
+        Submitters::start(&self.client, &self.bases, count, job)
+    }
+
+    /// Another worker.
+    fn hire(&mut self) {
+        let worker = start(&self.place, "worker", &self.lease);
+        self.workers.push(worker);
     }
 
     /// Comes back when so many jobs are successful.
@@ -123,13 +107,7 @@ impl Fleet {
 }
 
 /// Each job once, whatever happened meanwhile.
-async fn check(fleet: &Fleet, count: u64, taken: &BTreeMap<u64, String>) {
-    let ids: BTreeSet<&String> = taken.values().collect();
-    assert_eq!(
-        (taken.len() as u64, ids.len() as u64),
-        (count, count),
-        "each was taken once"
-    );
+async fn check(fleet: &Fleet, count: u64) {
     let count = i64::try_from(count).unwrap();
     assert_eq!(fleet.number("select count(*) from jobs").await, count);
     assert_eq!(
@@ -166,7 +144,7 @@ async fn troubled(count: u64, lease: u64) {
     let (server, folder) = tokio::task::spawn_blocking(server::start).await.unwrap();
     let address = server::database_of(&server, "fleet").await;
     let start = Instant::now();
-    let mut fleet = Fleet::start(&address, 3, 2, &format!("{lease}s")).await;
+    let mut fleet = Fleet::start(&address, 3, 2, &format!("{lease}s"));
     let submitters = fleet.submit(count);
     let part = |of: u64| i64::try_from(count * of / 10).unwrap();
 
@@ -175,17 +153,7 @@ async fn troubled(count: u64, lease: u64) {
     let frozen = fleet.workers.pop().unwrap();
     frozen.signal(Signal::STOP);
     let frozen_at = Instant::now();
-    fleet.workers.push(Process::start_with(
-        &fleet.place,
-        &[
-            "--role",
-            "worker",
-            "--workers",
-            "1",
-            "--lease",
-            &format!("{lease}s"),
-        ],
-    ));
+    fleet.hire();
     fleet.successful(part(4)).await;
     // Two workers and one that answers die; others take their places.
     for _ in 0..2 {
@@ -194,17 +162,7 @@ async fn troubled(count: u64, lease: u64) {
     fleet.bases.lock().await.remove(0);
     fleet.apis.remove(0).kill();
     for _ in 0..2 {
-        fleet.workers.push(Process::start_with(
-            &fleet.place,
-            &[
-                "--role",
-                "worker",
-                "--workers",
-                "1",
-                "--lease",
-                &format!("{lease}s"),
-            ],
-        ));
+        fleet.hire();
     }
     fleet.successful(part(5)).await;
     let restart = Instant::now();
@@ -217,12 +175,9 @@ async fn troubled(count: u64, lease: u64) {
     tokio::time::sleep(frozen_for).await;
     frozen.signal(Signal::CONT);
 
-    let mut taken = BTreeMap::new();
-    for submitter in submitters {
-        taken.extend(submitter.await.unwrap());
-    }
+    submitters.taken().await;
     fleet.successful(count.try_into().unwrap()).await;
-    check(&fleet, count, &taken).await;
+    check(&fleet, count).await;
     let again = fleet
         .number("select count(*) from jobs where attempt > 1")
         .await;
@@ -237,16 +192,13 @@ async fn troubled(count: u64, lease: u64) {
 /// Comes back when all of `count` jobs are done that nobody disturbs; says how fast.
 async fn calm(count: u64, workers: usize) -> f64 {
     let address = server::database().await;
-    let fleet = Fleet::start(&address, workers, 2, "30s").await;
+    let fleet = Fleet::start(&address, workers, 2, "30s");
     let start = Instant::now();
     let submitters = fleet.submit(count);
     fleet.successful(count.try_into().unwrap()).await;
     let seconds = start.elapsed().as_secs_f64();
-    let mut taken = BTreeMap::new();
-    for submitter in submitters {
-        taken.extend(submitter.await.unwrap());
-    }
-    check(&fleet, count, &taken).await;
+    submitters.taken().await;
+    check(&fleet, count).await;
     let shares = share_of_workers(&fleet).await;
     assert_eq!(
         shares.len(),
@@ -366,7 +318,7 @@ async fn a_job_takes_a_little_longer_to_and_fro_than_on_a_file() {
 #[ignore = "takes some minutes; tests/fleet runs it"]
 async fn a_study_of_twenty_thousand_designs_through_two_processes() {
     let address = server::database().await;
-    let fleet = Fleet::start(&address, 2, 1, "30s").await;
+    let fleet = Fleet::start(&address, 2, 1, "30s");
     let api = &fleet.apis[0];
     let base = job(0);
     let radii: Vec<f64> = (0..100).map(|i| 5.0 + f64::from(i) * 0.02).collect();

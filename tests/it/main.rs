@@ -9,6 +9,7 @@ mod bench;
 #[path = "../postgres/server.rs"]
 mod server;
 mod stores;
+mod submitters;
 
 mod batch;
 mod chaos;
