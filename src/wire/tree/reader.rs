@@ -55,7 +55,9 @@ impl<'a> ObjectReader<'a> {
 
     /// The field `name`, if it is there.
     pub(in crate::wire) fn get(&mut self, name: &'static str) -> Option<&'a Node> {
-        self.known.push(name);
+        if !self.known.contains(&name) {
+            self.known.push(name);
+        }
         self.fields
             .iter()
             .find(|(key, _)| key == name)
