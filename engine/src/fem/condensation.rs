@@ -8,7 +8,7 @@ use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, Mat, Par};
 
 use super::FemError;
-use super::assembly::{BlockMatrix, Failure, Numbering};
+use super::assembly::{BlockMatrix, Numbering};
 use super::dense::mirror_lower;
 use super::element::{self, ElementStiffness};
 use super::factor::Factor;
@@ -94,16 +94,7 @@ pub fn condense_with(
     for node in numbering.interior..numbering.count {
         matrix.add_to_diagonal(node, spring);
     }
-    let unknowns = 2 * numbering.count;
-    let failed = |error| match error {
-        Failure::Size => FemError::TooLarge { part, unknowns },
-        Failure::Indefinite => FemError::NotPositiveDefinite { part, unknowns },
-    };
-    let order = matrix
-        .fill_reducing_order(numbering.interior)
-        .map_err(failed)?;
-    let factor =
-        Factor::new(&matrix.into_unknowns(), order, 2 * numbering.interior).map_err(failed)?;
+    let factor = Factor::new(part, matrix, &numbering)?;
     let trailing = factor.trailing();
     let mut stiffness = squared(&trailing);
     for i in 0..stiffness.nrows() {

@@ -10,7 +10,8 @@ use faer::sparse::linalg::cholesky::{
 };
 use faer::{Conj, Mat, Par, Side};
 
-use super::assembly::{Failure, Numbering};
+use super::FemError;
+use super::assembly::{BlockMatrix, Failure, Numbering};
 use super::recovery::Functional;
 
 /// The supernodal Cholesky factor of a sparse matrix, the unknowns from `interior` on last.
@@ -22,9 +23,27 @@ pub(super) struct Factor {
 }
 
 impl Factor {
+    /// Factorizes `matrix`, that of `part`, in an order of few entries which leaves the kept nodes of `numbering` last.
+    pub(super) fn new(
+        part: &'static str,
+        matrix: BlockMatrix,
+        numbering: &Numbering,
+    ) -> Result<Self, FemError> {
+        let unknowns = 2 * numbering.count;
+        let order = matrix.fill_reducing_order(numbering.interior);
+        order
+            .and_then(|order| {
+                Self::in_order(&matrix.into_unknowns(), order, 2 * numbering.interior)
+            })
+            .map_err(|failure| match failure {
+                Failure::Size => FemError::TooLarge { part, unknowns },
+                Failure::Indefinite => FemError::NotPositiveDefinite { part, unknowns },
+            })
+    }
+
     /// Factorizes the symmetric matrix whose lower triangle is `a`; `order` leaves the unknowns from `interior` on in their
     /// places.
-    pub(super) fn new(
+    fn in_order(
         a: &SparseColMat<u32, f64>,
         order: Perm<u32>,
         interior: usize,

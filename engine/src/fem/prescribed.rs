@@ -3,7 +3,7 @@
 use faer::Mat;
 
 use super::FemError;
-use super::assembly::{BlockMatrix, Failure, Numbering};
+use super::assembly::{BlockMatrix, Numbering};
 use super::condensation::element_stiffnesses;
 use super::factor::Factor;
 use crate::gear::{Material, Vector};
@@ -51,19 +51,11 @@ pub fn displacements(
             reaching.push((element, stiffness));
         }
     }
-    let unknowns = 2 * numbering.count;
-    let failed = |error| match error {
-        Failure::Size => FemError::TooLarge { part, unknowns },
-        Failure::Indefinite => FemError::NotPositiveDefinite { part, unknowns },
-    };
-    let order = matrix
-        .fill_reducing_order(numbering.interior)
-        .map_err(failed)?;
-    let factor = Factor::new(&matrix.into_unknowns(), order, unknowns).map_err(failed)?;
+    let factor = Factor::new(part, matrix, &numbering)?;
 
     let mut answers = Vec::with_capacity(loads.len());
     for loads in loads.chunks(AT_ONCE) {
-        let mut columns = Mat::<f64>::zeros(unknowns, loads.len());
+        let mut columns = Mat::<f64>::zeros(2 * numbering.count, loads.len());
         for (j, load) in loads.iter().enumerate() {
             for (node, force) in &load.forces {
                 if let Some(place) = numbering.place(*node) {
