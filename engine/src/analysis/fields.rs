@@ -12,7 +12,7 @@ use crate::fem::FemError;
 use crate::fem::prescribed::{Load, displacements};
 use crate::fem::recovery::{Functional, stresses};
 use crate::fem::teeth::FARTHEST_COUPLED;
-use crate::gear::{Material, Member, SpurGear, Vector, radial, tangential};
+use crate::gear::{Member, SpurGear, Vector, radial, tangential};
 use crate::grid::{BlankGrid, Element, Grid, ToothGrid};
 use crate::run::Run;
 
@@ -86,29 +86,24 @@ fn of_gear(
     stand: Stand,
 ) -> Result<GearField, AnalysisError> {
     let gear = setup.case.pair.gear(member);
-    let mut grids = None;
-    let probes = |tooth: &ToothGrid, blank: Option<&BlankGrid>, _: &Material| {
-        let along =
-            |node: u32| [Vector::x(), Vector::y()].map(|axis| Functional::displacement(node, axis));
-        let in_tooth = interface_of(tooth).into_iter().flat_map(along).collect();
-        grids = Some((tooth.clone(), blank.cloned()));
-        Probes {
-            in_tooth,
-            in_blank: Vec::new(),
-        }
-    };
     let spec = setup.spec(Blanks::Flexible);
-    let inside = spec.inside(member, probes, setup.parts, setup.run)?;
+    let grids = spec.grids(member)?;
+    let along =
+        |node: u32| [Vector::x(), Vector::y()].map(|axis| Functional::displacement(node, axis));
+    let interface = interface_of(&grids.tooth).into_iter();
+    let probes = Probes {
+        in_tooth: interface.flat_map(along).collect(),
+        in_blank: Vec::new(),
+    };
+    let inside = spec.inside(member, &grids, &probes, setup.parts, setup.run)?;
     let fem = |error: FemError| PartError::from(error).of(member);
     let loaded = inside.loaded(setup.run).map_err(fem)?;
     let answer = loaded.under(loads);
     let mut field = GearField::default();
-    if let Some((tooth, blank)) = grids {
-        add_teeth(&mut field, gear, &tooth, loads, &answer, stand).map_err(fem)?;
-        setup.run.check()?;
-        if let Some(blank) = blank {
-            add_blank(&mut field, gear, &blank, &inside, &answer, stand).map_err(fem)?;
-        }
+    add_teeth(&mut field, gear, &grids.tooth, loads, &answer, stand).map_err(fem)?;
+    setup.run.check()?;
+    if let Some(blank) = &grids.blank {
+        add_blank(&mut field, gear, blank, &inside, &answer, stand).map_err(fem)?;
     }
     Ok(field)
 }

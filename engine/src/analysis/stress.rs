@@ -10,8 +10,8 @@ use crate::assembly::inside::LoadedGear;
 use crate::assembly::{Blanks, Inside, PartError, Probes};
 use crate::contact::{ContactCells, ContactSolution};
 use crate::fem::recovery::edge_stresses;
-use crate::gear::{Material, Member};
-use crate::grid::{BlankGrid, Grid, ToothGrid};
+use crate::gear::Member;
+use crate::grid::{BlankGrid, Grid};
 use crate::run::Run;
 
 /// The largest stress along some edges, and where.
@@ -40,6 +40,7 @@ pub(super) struct StressModel {
 struct StressedGear {
     member: Member,
     inside: Inside,
+    sector_angles: Vec<f64>,
     tooth_count: usize,
     /// The polar angles of the nodes along the fillet, from the centerline of their tooth.
     fillet: Vec<f64>,
@@ -55,29 +56,29 @@ impl StressModel {
     pub(super) fn new(setup: &Setup<'_>) -> Result<Self, AnalysisError> {
         let spec = setup.spec(Blanks::Flexible);
         let of = |member: Member| -> Result<StressedGear, AnalysisError> {
-            let (mut fillet, mut edges) = (Vec::new(), Vec::new());
-            let probes = |tooth: &ToothGrid, blank: Option<&BlankGrid>, material: &Material| {
-                fillet = angles(&tooth.grid, &tooth.fillet_nodes);
-                let mut probes = Probes {
-                    in_tooth: edge_stresses(&tooth.grid, material, &tooth.fillet_nodes, false),
-                    in_blank: Vec::new(),
-                };
-                if let Some(BlankGrid {
-                    grid, hole_edges, ..
-                }) = blank
-                {
-                    edges = angles(grid, &hole_edges.concat());
-                    let along = |edge: &Vec<u32>| edge_stresses(grid, material, edge, true);
-                    probes.in_blank = hole_edges.iter().flat_map(along).collect();
-                }
-                probes
+            let gear = setup.case.pair.gear(member);
+            let grids = spec.grids(member)?;
+            let (tooth, fillet) = (&grids.tooth.grid, &grids.tooth.fillet_nodes);
+            let (mut edges, mut in_blank) = (Vec::new(), Vec::new());
+            if let Some(BlankGrid {
+                grid, hole_edges, ..
+            }) = &grids.blank
+            {
+                edges = angles(grid, &hole_edges.concat());
+                let along = |edge: &Vec<u32>| edge_stresses(grid, gear.material(), edge, true);
+                in_blank = hole_edges.iter().flat_map(along).collect();
+            }
+            let probes = Probes {
+                in_tooth: edge_stresses(tooth, gear.material(), fillet, false),
+                in_blank,
             };
-            let inside = spec.inside(member, probes, setup.parts, setup.run)?;
+            let inside = spec.inside(member, &grids, &probes, setup.parts, setup.run)?;
             Ok(StressedGear {
                 member,
+                sector_angles: inside.sector_angles(),
                 inside,
-                tooth_count: setup.case.pair.gear(member).tooth_count() as usize,
-                fillet,
+                tooth_count: gear.tooth_count() as usize,
+                fillet: angles(tooth, fillet),
                 edges,
             })
         };
@@ -136,8 +137,8 @@ impl LoadedPair<'_> {
                 let along = answer.in_tooth(tooth).into_iter().zip(&gear.fillet);
                 along.map(move |(stress, angle)| (stress, turn + angle))
             });
-            let sectors = gear.inside.sector_angles().into_iter().enumerate();
-            let holes = sectors.flat_map(|(sector, turn)| {
+            let sectors = gear.sector_angles.iter().enumerate();
+            let holes = sectors.flat_map(|(sector, &turn)| {
                 let along = answer.in_blank(sector).into_iter().zip(&gear.edges);
                 along.map(move |(stress, angle)| (stress.abs(), turn + angle))
             });

@@ -9,7 +9,7 @@ use crate::contact::GearModel;
 use crate::fem::blank::BlankSubstructure;
 use crate::fem::body::Coupling;
 use crate::gear::{Member, SpurGear};
-use crate::grid::GridLevel;
+use crate::grid::{BlankGrid, GridLevel, ToothGrid};
 use crate::run::Run;
 
 /// What a gear depends on.
@@ -50,6 +50,15 @@ pub struct WantedGear {
     pub spec: GearSpec,
 }
 
+/// The grids of a gear.
+#[derive(Debug, Clone)]
+pub struct GearGrids {
+    /// That of one tooth.
+    pub tooth: ToothGrid,
+    /// That of its blank, or of one of its equal sectors; `None` for a rigid one.
+    pub blank: Option<BlankGrid>,
+}
+
 impl GearSpec {
     /// `gear` on a rigid blank.
     pub fn on_rigid_blank(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Self {
@@ -76,17 +85,26 @@ impl GearSpec {
         }
     }
 
-    /// The blanks of which it is made: its own, and beside a holed one the solid one that its highest orders find.
+    /// Its grids.
+    ///
+    /// # Errors
+    ///
+    /// [`PartError`].
+    pub fn grids(&self) -> Result<GearGrids, PartError> {
+        let blank = self.carrier.as_ref().map(|carrier| carrier.blank.grid());
+        Ok(GearGrids {
+            tooth: self.teeth.grid()?,
+            blank: blank.transpose()?,
+        })
+    }
+
+    /// The blanks of which it is made: its own, and the solid one that its highest orders find, where they do.
     fn blanks(&self) -> Vec<BlankSpec> {
-        let Some(Carrier { blank, .. }) = &self.carrier else {
+        let Some(carrier) = &self.carrier else {
             return Vec::new();
         };
-        let solid = blank.solid();
-        if blank.orders() == solid.orders() {
-            vec![blank.clone()]
-        } else {
-            vec![blank.clone(), solid]
-        }
+        let own = carrier.blank.clone();
+        [own].into_iter().chain(carrier.solid()).collect()
     }
 
     /// Joins `teeth` with the `blanks` of [`GearSpec::blanks`].
@@ -113,6 +131,12 @@ impl GearSpec {
 }
 
 impl Carrier {
+    /// The solid blank that the orders above those of its own find, if there are any.
+    pub(super) fn solid(&self) -> Option<BlankSpec> {
+        let solid = self.blank.solid();
+        (self.blank.orders() != solid.orders()).then_some(solid)
+    }
+
     /// How `teeth` move each other on `blank`, of which orders above its own find the `solid` one, if there are any.
     fn couple(
         &self,

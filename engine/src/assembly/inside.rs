@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use super::{GearSpec, PartError, Parts, Teeth};
+use super::{GearGrids, GearSpec, PartError, Parts, Teeth};
 use crate::contact::FlankLoad;
 use crate::fem::FemError;
 use crate::fem::blank::{BlankRecovery, BlankSubstructure};
@@ -11,8 +11,6 @@ use crate::fem::motion::InterfaceMotion;
 use crate::fem::recovery::Functional;
 use crate::fem::teeth_recovery::TeethRecovery;
 use crate::fem::tooth::ToothSubstructure;
-use crate::gear::Material;
-use crate::grid::{BlankGrid, ToothGrid};
 use crate::run::Run;
 
 /// What is asked of the inside of a gear.
@@ -35,8 +33,8 @@ pub struct Inside {
 
 struct InsideBlank {
     blank: BlankSubstructure,
-    /// What its highest orders find.
-    solid: Arc<BlankSubstructure>,
+    /// What its highest orders find, where that is another one.
+    solid: Option<Arc<BlankSubstructure>>,
     recovery: BlankRecovery,
     hole_angle: f64,
 }
@@ -58,31 +56,30 @@ pub struct Answer<'a> {
 }
 
 impl Inside {
-    /// The inside of the gear of `spec`, asked for what `probes` says of its grids and material.
+    /// The inside of the gear of `spec` on its `grids`, asked for `probes`.
     ///
     /// # Errors
     ///
     /// [`PartError`].
     pub fn new(
         spec: &GearSpec,
-        probes: impl FnOnce(&ToothGrid, Option<&BlankGrid>, &Material) -> Probes,
+        grids: &GearGrids,
+        probes: &Probes,
         parts: &dyn Parts,
         run: &Run,
     ) -> Result<Self, PartError> {
         let gear = spec.teeth.gear();
-        let tooth_grid = spec.teeth.grid()?;
-        let carrier = spec.carrier.as_ref();
-        let blank_grid = carrier.map(|carrier| carrier.blank.grid()).transpose()?;
-        let probes = probes(&tooth_grid, blank_grid.as_ref(), gear.material());
         let teeth = parts.teeth(&spec.teeth, run)?;
-        let (tooth, rows) = ToothSubstructure::with_recovery(gear, &tooth_grid, &probes.in_tooth)?;
+        let (tooth, rows) = ToothSubstructure::with_recovery(gear, &grids.tooth, &probes.in_tooth)?;
         run.check()?;
         let in_tooth = TeethRecovery::new(&tooth, &rows, teeth.ring.harmonics, run)?;
-        let blank = carrier.zip(blank_grid).map(|(carrier, grid)| {
-            let (blank, recovery) = carrier.blank.make_with(&grid, &probes.in_blank, run)?;
+        let blank = spec.carrier.as_ref().zip(grids.blank.as_ref());
+        let blank = blank.map(|(carrier, grid)| {
+            let (blank, recovery) = carrier.blank.make_with(grid, &probes.in_blank, run)?;
+            let solid = carrier.solid().map(|solid| parts.blank(&solid, run));
             Ok::<_, PartError>(InsideBlank {
                 blank,
-                solid: parts.blank(&carrier.blank.solid(), run)?,
+                solid: solid.transpose()?,
                 recovery,
                 hole_angle: carrier.hole_angle,
             })
@@ -103,7 +100,7 @@ impl Inside {
     pub fn loaded(&self, run: &Run) -> Result<LoadedGear<'_>, FemError> {
         let ring = &self.teeth.ring;
         let motion = self.blank.as_ref().map(|inside| {
-            let (blank, solid) = (&inside.blank, &inside.solid);
+            let (blank, solid) = (&inside.blank, inside.solid.as_deref());
             InterfaceMotion::new(ring, blank, inside.hole_angle, solid, run)
         });
         Ok(LoadedGear {

@@ -16,7 +16,7 @@ mod parts;
 pub mod teeth;
 
 pub use blank::BlankSpec;
-pub use gear::{Carrier, Gear, GearSpec, WantedGear, make_gears};
+pub use gear::{Carrier, Gear, GearGrids, GearSpec, WantedGear, make_gears};
 pub use inside::{Inside, Probes};
 pub use pair::{Blanks, Modeling, PairSpec};
 pub use parts::{AssemblyError, ContactsSpec, MakeAll, PartError, Parts};

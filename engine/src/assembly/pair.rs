@@ -1,10 +1,10 @@
 //! A pair of gears ready for contact: which blanks take part, and the rules of contact.
 
 use super::interface::interface_radius;
-use super::{AssemblyError, GearSpec, Inside, Parts, Probes, WantedGear};
+use super::{AssemblyError, GearGrids, GearSpec, Inside, Parts, Probes, WantedGear};
 use crate::contact::{ContactSolver, PairModel};
-use crate::gear::{GearPair, Material, Member};
-use crate::grid::{BlankGrid, GridLevel, ToothGrid};
+use crate::gear::{GearPair, Member};
+use crate::grid::GridLevel;
 use crate::run::Run;
 
 /// Which blanks take part in a model.
@@ -66,7 +66,17 @@ impl PairSpec {
         }
     }
 
-    /// The inside of the gear `member`, asked for what `probes` says of its grids and material.
+    /// The grids of the gear `member`.
+    ///
+    /// # Errors
+    ///
+    /// [`AssemblyError`].
+    pub fn grids(&self, member: Member) -> Result<GearGrids, AssemblyError> {
+        let spec = &self.gears[member.index()];
+        spec.grids().map_err(|error| error.of(member))
+    }
+
+    /// The inside of the gear `member` on its `grids`, asked for `probes`.
     ///
     /// # Errors
     ///
@@ -74,12 +84,13 @@ impl PairSpec {
     pub fn inside(
         &self,
         member: Member,
-        probes: impl FnOnce(&ToothGrid, Option<&BlankGrid>, &Material) -> Probes,
+        grids: &GearGrids,
+        probes: &Probes,
         parts: &dyn Parts,
         run: &Run,
     ) -> Result<Inside, AssemblyError> {
         let spec = &self.gears[member.index()];
-        Inside::new(spec, probes, parts, run).map_err(|error| error.of(member))
+        Inside::new(spec, grids, probes, parts, run).map_err(|error| error.of(member))
     }
 
     /// The model, and its unknowns before condensation, of what `parts` provides.

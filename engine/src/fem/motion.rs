@@ -33,7 +33,7 @@ struct OrdersAbove {
 
 impl<'a> InterfaceMotion<'a> {
     /// Joins `ring` with `blank`, whose hole 0 stands at `phase`; `solid` is the blank that the orders above those of `blank`
-    /// find, where there are any.
+    /// find, if there are any.
     ///
     /// # Errors
     ///
@@ -42,17 +42,16 @@ impl<'a> InterfaceMotion<'a> {
         ring: &'a TeethRing,
         blank: &BlankSubstructure,
         phase: f64,
-        solid: &BlankSubstructure,
+        solid: Option<&BlankSubstructure>,
         run: &Run,
     ) -> Result<Self, FemError> {
         let low = blank.harmonics;
-        let (seen, above) = if low == ring.harmonics {
-            (ring.clone(), Vec::new())
-        } else {
-            (
+        let (seen, above) = match solid {
+            None => (ring.clone(), Vec::new()),
+            Some(solid) => (
                 ring.above(low, solid, run)?,
                 orders_above(ring, low.largest, solid)?,
-            )
+            ),
         };
         let total = &seen.stiffness + blank.stiffness_at(phase);
         let unknowns = total.nrows();

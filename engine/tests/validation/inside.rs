@@ -97,7 +97,7 @@ fn by_recovery(level: GridLevel, teeth: &[usize], orders: (usize, usize)) -> Str
         .into_iter()
         .zip(forces.iter().map(|p| tooth.modal_loads(p)))
         .collect();
-    let motion = InterfaceMotion::new(&ring, &blank, 0.21, &solid, &run)
+    let motion = InterfaceMotion::new(&ring, &blank, 0.21, Some(&solid), &run)
         .expect("a gear")
         .under(&loads);
     let none = vec![0.0; forces[0].len()];
