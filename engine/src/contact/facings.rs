@@ -107,6 +107,11 @@ impl<'a> Facings<'a> {
         self.nearer
     }
 
+    /// How far apart deviations may bring the transmission errors of any two mesh periods.
+    pub(super) fn spread(&self) -> f64 {
+        self.nearer + self.farther
+    }
+
     /// The facing of `pair`, which was found.
     pub(super) fn of_pair(&self, pair: i64) -> Option<&Facing<'a>> {
         self.found.iter().find(|facing| facing.pair == pair)

@@ -4,6 +4,7 @@ use faer::Mat;
 
 use super::facing::Facing;
 use super::flank_table::{FlankPoint, FlankTable};
+use super::half_plane::in_row;
 use super::model::PairModel;
 use super::patch::Patch;
 
@@ -41,16 +42,7 @@ impl PairCells {
             held += flank.smooth_compliance(&points, &points);
             flank.shapes_at(&points)
         });
-        let near: Vec<f64> = (0..here)
-            .map(|distance| {
-                let fields = patch.near_fields.iter();
-                fields
-                    .map(|field| {
-                        field.between(distance as f64 * patch.cell_width, patch.cell_width)
-                    })
-                    .sum()
-            })
-            .collect();
+        let near = in_row(&patch.near_fields, 0.0, patch.cell_width, here);
         for j in 0..here {
             for i in j..here {
                 held[(i, j)] += near[i - j];

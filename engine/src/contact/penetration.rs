@@ -10,6 +10,7 @@ use faer::Mat;
 use super::ContactSolution;
 use super::cells::ContactCells;
 use super::facing::Facing;
+use super::half_plane::in_row;
 use super::model::PairModel;
 use super::pair_cells::PairCells;
 use super::patch::{Cell, Patch};
@@ -108,13 +109,19 @@ impl Stretches {
                 flank.arc_length(cell.roll_lengths[patch.seat.index()])
             })
             .collect();
-        let mut held = Mat::from_fn(found.len(), patch.cells.len(), |i, j| {
-            let center = patch.from + (j as f64 + 0.5) * patch.cell_width;
-            let fields = patch.near_fields.iter();
-            fields
-                .map(|field| field.between(arcs[i] - center, patch.cell_width))
-                .sum()
-        });
+        let first = patch.from + 0.5 * patch.cell_width;
+        let mut held = Mat::zeros(found.len(), patch.cells.len());
+        for (i, arc) in arcs.iter().enumerate() {
+            let row = in_row(
+                &patch.near_fields,
+                first - arc,
+                patch.cell_width,
+                held.ncols(),
+            );
+            for (j, near) in row.into_iter().enumerate() {
+                held[(i, j)] = near;
+            }
+        }
         let shapes = [0, 1].map(|gear| {
             let flank = &model.gears[gear].flank;
             let on_flank =
