@@ -177,20 +177,36 @@ impl<'a> ContactCells<'a> {
         moved
     }
 
-    /// The contact under `load`.
+    /// What the compliance of these cells depends on beside the cells themselves: how the blanks stand under their teeth.
+    pub(super) fn teeth_like(&self) -> [usize; 2] {
+        Member::BOTH.map(|member| {
+            let coupling = &self.model.gears[member.index()].coupling;
+            coupling.like(self.model.pair.tooth(member, self.period))
+        })
+    }
+
+    /// The problem on these cells, stated `before` for cells of the same compliance or anew.
+    pub(super) fn problem(
+        &self,
+        before: Option<&ContactProblem>,
+    ) -> Result<ContactProblem, PositionError> {
+        let gaps = self.gaps.clone();
+        Ok(match before {
+            Some(problem) => problem.with_gaps(gaps)?,
+            None => ContactProblem::of_lower_triangle(self.compliance(), gaps, self.arms.clone())?,
+        })
+    }
+
+    /// The solution of their `problem` under `load`.
     pub(super) fn solve(
         &self,
+        problem: &ContactProblem,
         load: f64,
         warm: &WarmStart,
-    ) -> Result<(ContactProblem, ContactSolution), PositionError> {
-        let problem = ContactProblem::of_lower_triangle(
-            self.compliance(),
-            self.gaps.clone(),
-            self.arms.clone(),
-        )?;
+    ) -> Result<ContactSolution, PositionError> {
         let solution = match self.model.solver {
             ContactSolver::ActiveSet => {
-                solve_active_set(&problem, load, self.touching(warm).as_deref())?
+                solve_active_set(problem, load, self.touching(warm).as_deref())?
             }
             ContactSolver::AugmentedLagrangian {
                 penalty,
@@ -201,10 +217,10 @@ impl<'a> ContactCells<'a> {
                     gap_tolerance,
                     max_iterations: MULTIPLIER_UPDATES,
                 };
-                solve_augmented_lagrangian(&problem, load, &settings)?
+                solve_augmented_lagrangian(problem, load, &settings)?
             }
         };
-        Ok((problem, solution))
+        Ok(solution)
     }
 
     /// H of both gears with these teeth; its lower triangle.

@@ -1,6 +1,7 @@
 //! The contact problem at one position of the mesh, and the form of its solution.
 
 use std::fmt;
+use std::sync::Arc;
 
 use faer::{Mat, MatRef};
 
@@ -15,7 +16,7 @@ const SYMMETRY_TOLERANCE: f64 = 1e-6;
 /// positive arms. That the compliance is positive definite is found out by the solver.
 #[derive(Clone, Debug)]
 pub struct ContactProblem {
-    compliance: Mat<f64>,
+    compliance: Arc<Mat<f64>>,
     gaps: Vec<f64>,
     arms: Vec<f64>,
 }
@@ -89,9 +90,32 @@ impl ContactProblem {
             return Err(ContactError::NotPositiveDefinite { points: 1 });
         }
         Ok(Self {
-            compliance,
+            compliance: Arc::new(compliance),
             gaps,
             arms,
+        })
+    }
+
+    /// The same points with other `gaps`.
+    ///
+    /// # Errors
+    ///
+    /// [`ContactError::SizesDiffer`] or [`ContactError::NotFinite`].
+    pub fn with_gaps(&self, gaps: Vec<f64>) -> Result<Self, ContactError> {
+        let points = self.point_count();
+        if gaps.len() != points {
+            return Err(ContactError::SizesDiffer {
+                rows: points,
+                columns: points,
+                gaps: gaps.len(),
+                arms: points,
+            });
+        }
+        all_finite(ContactQuantity::Gap, &gaps)?;
+        Ok(Self {
+            compliance: Arc::clone(&self.compliance),
+            gaps,
+            arms: self.arms.clone(),
         })
     }
 
@@ -102,7 +126,7 @@ impl ContactProblem {
 
     /// The compliance H of both bodies, in m/N, symmetric.
     pub fn compliance(&self) -> MatRef<'_, f64> {
-        self.compliance.as_ref()
+        Mat::as_ref(&self.compliance)
     }
 
     /// Column `point` of H: what a unit force at that point does to every gap, in m/N.

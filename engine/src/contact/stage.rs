@@ -4,6 +4,8 @@
 //! differs is which teeth they belong to, and so how the blanks under them yield. Gaps, cells and the compliance of the
 //! teeth themselves are therefore found once for a fraction of the mesh period, and each period adds W V X Vᵀ Wᵀ.
 
+use std::collections::VecDeque;
+
 use super::cells::{ContactCells, MeshCells, MeshContact};
 use super::facing::Facing;
 use super::facings::Facings;
@@ -18,6 +20,9 @@ const WIDENING: f64 = 1.5;
 /// Pairs are solved together whose gap is within this much of what load brings together: a little more than touch.
 const REACH: f64 = 1.1;
 
+/// Problems that a stage keeps: those of a gear with as many unlike teeth as a hole pattern usually leaves, on a few sets of pairs.
+const MOST_STATED: usize = 64;
+
 /// What a guess of the reach leaves for the solution to move.
 const GUESS: f64 = 1.2;
 
@@ -30,12 +35,21 @@ pub struct Stage<'a> {
     laid: Vec<Laid>,
     /// Where penetration was looked for, on each of them.
     looks: Vec<Look>,
+    /// The problems stated last.
+    stated: VecDeque<Stated>,
 }
 
 /// The cells of one pair, and how wide they were laid.
 struct Laid {
     widening: f64,
     cells: PairCells,
+}
+
+/// A problem, and what its compliance depends on.
+struct Stated {
+    pairs: Vec<i64>,
+    teeth_like: [usize; 2],
+    problem: ContactProblem,
 }
 
 /// The stretches of one pair whose gap as drawn is within `reach`.
@@ -60,6 +74,7 @@ impl<'a> Stage<'a> {
                 .ok_or(PositionError::NoContact)?,
             laid: Vec::new(),
             looks: Vec::new(),
+            stated: VecDeque::new(),
         })
     }
 
@@ -114,7 +129,8 @@ impl<'a> Stage<'a> {
                 .collect();
             let pairs = places.iter().map(|place| &self.laid[*place].cells);
             let cells = ContactCells::new(model, period, pairs.collect())?;
-            let (problem, solution) = cells.solve(load, warm)?;
+            let problem = state(&mut self.stated, &cells)?;
+            let solution = cells.solve(&problem, load, warm)?;
             let delta = solution.transmission_error;
             if facings.within(period, beyond(delta, REACH)).len() > near.len() {
                 reach = beyond(delta, GUESS);
@@ -153,6 +169,7 @@ impl<'a> Stage<'a> {
             for pair in wider {
                 widen(&mut self.laid, model, facings, pair, load);
                 self.looks.retain(|look| look.pair != pair);
+                self.stated.retain(|stated| !stated.pairs.contains(&pair));
             }
         }
     }
@@ -171,6 +188,32 @@ fn lay(laid: &mut Vec<Laid>, model: &PairModel, facing: &Facing<'_>, load: f64) 
         cells: PairCells::new(model, facing, load, 1.0)?,
     });
     Some(laid.len() - 1)
+}
+
+/// The problem on `cells`; of those `stated` before, one whose compliance is the same is told with other gaps.
+fn state(
+    stated: &mut VecDeque<Stated>,
+    cells: &ContactCells<'_>,
+) -> Result<ContactProblem, PositionError> {
+    let pairs: Vec<i64> = cells.pairs.iter().map(|pair| pair.patch.pair).collect();
+    let teeth_like = cells.teeth_like();
+    let before = stated
+        .iter()
+        .find(|stated| stated.teeth_like == teeth_like && stated.pairs == pairs)
+        .map(|stated| &stated.problem);
+    let known = before.is_some();
+    let problem = cells.problem(before)?;
+    if !known {
+        if stated.len() == MOST_STATED {
+            stated.pop_front();
+        }
+        stated.push_back(Stated {
+            pairs,
+            teeth_like,
+            problem: problem.clone(),
+        });
+    }
+    Ok(problem)
 }
 
 /// Lays the cells of `pair` anew, wider.

@@ -126,6 +126,11 @@ impl Coupling {
         self.blocks.len() / self.row_length
     }
 
+    /// The first tooth whose row of X is that of `tooth`.
+    pub fn like(&self, tooth: usize) -> usize {
+        tooth % self.rows()
+    }
+
     /// How far apart, in teeth, coupled teeth stand at most.
     pub fn farthest(&self) -> usize {
         self.row_length - 1
@@ -177,7 +182,7 @@ impl Coupling {
             i + self.tooth_count - distance % self.tooth_count
         };
         (
-            &self.blocks[first % self.rows() * self.row_length + distance],
+            &self.blocks[self.like(first) * self.row_length + distance],
             offset < 0,
         )
     }
