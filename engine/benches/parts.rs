@@ -2,6 +2,7 @@
 //! one position of their contact.
 
 use std::hint::black_box;
+use std::sync::Arc;
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main};
@@ -13,7 +14,7 @@ use meshwright_engine::assembly::interface::{
 use meshwright_engine::contact::WarmStart;
 use meshwright_engine::contact::facing::Facing;
 use meshwright_engine::contact::flank_table::FlankTable;
-use meshwright_engine::contact::{Stage, solve_active_set};
+use meshwright_engine::contact::{PairModel, Stage, solve_active_set};
 use meshwright_engine::fem::blank::BlankSubstructure;
 use meshwright_engine::fem::body::Coupling;
 use meshwright_engine::fem::harmonics::Harmonics;
@@ -155,11 +156,20 @@ fn positions(criterion: &mut Criterion) {
                 bencher.iter(|| black_box(solve_active_set(&cells.problem, load, Some(&touching))));
             });
             group.bench_function(format!("{pairs}: all of it, cold"), |bencher| {
-                bencher.iter(|| black_box(model.contact(eta, load, &mut WarmStart::default())));
+                bencher.iter(|| {
+                    let flanks_unknown = PairModel {
+                        drawn: Arc::default(),
+                        ..model.clone()
+                    };
+                    black_box(flanks_unknown.contact(eta, load, &mut WarmStart::default()))
+                });
             });
-            group.bench_function(format!("{pairs}: all of it, warm"), |bencher| {
-                bencher.iter(|| black_box(model.contact(eta, load, &mut warm)));
-            });
+            group.bench_function(
+                format!("{pairs}: all of it, warm, flanks known"),
+                |bencher| {
+                    bencher.iter(|| black_box(model.contact(eta, load, &mut warm)));
+                },
+            );
             // A curve meets the same fraction of the mesh period once in every mesh period.
             let mut stage = Stage::new(&model, eta, load).expect("flanks come near");
             let (mut period, periods) = (0, i64::from(case.pair.period()));

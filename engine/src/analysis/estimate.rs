@@ -37,8 +37,8 @@ const POSITION_MEMORY: f64 = 1e3;
 /// Patterns of force that a tooth exerts on the interface circle, about.
 const PATTERNS: f64 = 18.0;
 
-/// Memory that any case takes, in bytes.
-const BASE_MEMORY: f64 = 40e6;
+/// Memory that any case takes, in bytes, with what is kept of its flanks.
+const BASE_MEMORY: f64 = 56e6;
 
 /// What a case will cost.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -19,5 +19,5 @@ pub use blank::BlankSpec;
 pub use gear::{Carrier, Gear, GearGrids, GearSpec, WantedGear, make_gears};
 pub use inside::{Inside, Probes};
 pub use pair::{Blanks, Modeling, PairSpec};
-pub use parts::{AssemblyError, ContactsSpec, MakeAll, PartError, Parts};
+pub use parts::{AssemblyError, ContactsSpec, FlanksSpec, MakeAll, PartError, Parts};
 pub use teeth::{Teeth, TeethSpec};

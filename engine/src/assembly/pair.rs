@@ -1,7 +1,7 @@
 //! A pair of gears ready for contact: which blanks take part, and the rules of contact.
 
 use super::interface::interface_radius;
-use super::{AssemblyError, GearGrids, GearSpec, Inside, Parts, Probes, WantedGear};
+use super::{AssemblyError, FlanksSpec, GearGrids, GearSpec, Inside, Parts, Probes, WantedGear};
 use crate::contact::{ContactSolver, PairModel};
 use crate::gear::{GearPair, Member};
 use crate::grid::GridLevel;
@@ -93,6 +93,14 @@ impl PairSpec {
         Inside::new(spec, grids, probes, parts, run).map_err(|error| error.of(member))
     }
 
+    /// What its contact depends on but for the blanks and the deviations of teeth.
+    fn drawn(&self) -> FlanksSpec {
+        FlanksSpec {
+            pair: self.flanks.as_drawn(),
+            teeth: self.gears.each_ref().map(|gear| gear.teeth.clone()),
+        }
+    }
+
     /// The model, and its unknowns before condensation, of what `parts` provides.
     ///
     /// # Errors
@@ -117,6 +125,7 @@ impl PairSpec {
             gears: gears.map(|gear| gear.model.clone()),
             cells_per_patch: cells_per_patch(self.level),
             solver: self.solver,
+            drawn: parts.flanks(&self.drawn()),
         };
         let unknowns = gears.iter().map(|gear| gear.degrees_of_freedom).sum();
         Ok((model, unknowns))

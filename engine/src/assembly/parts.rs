@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use super::{BlankSpec, Gear, PairSpec, Teeth, TeethSpec, WantedGear, make_gears};
+use crate::contact::drawn::DrawnFlanks;
 use crate::contact::positions::{PositionsError, contacts};
 use crate::contact::{MeshContact, PairModel};
 use crate::fem::FemError;
 use crate::fem::blank::BlankSubstructure;
-use crate::gear::Member;
+use crate::gear::{GearPair, Member};
 use crate::grid::GridError;
 use crate::run::{Run, Stopped};
 
@@ -44,6 +45,11 @@ pub trait Parts: Sync {
         make_gears(wanted, self, run)
     }
 
+    /// What is known of the flanks of `spec`: a place for it, if nothing is.
+    fn flanks(&self, _spec: &FlanksSpec) -> Arc<DrawnFlanks> {
+        Arc::default()
+    }
+
     /// The contacts of `spec`, of whose pair `model` is the model.
     ///
     /// # Errors
@@ -64,6 +70,15 @@ pub trait Parts: Sync {
 pub struct MakeAll;
 
 impl Parts for MakeAll {}
+
+/// What the contact of flanks depends on, whatever carries their teeth and however each of these deviates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlanksSpec {
+    /// The pair as drawn, without its blanks.
+    pub pair: GearPair,
+    /// The teeth of the driving and of the driven gear.
+    pub teeth: [TeethSpec; 2],
+}
 
 /// What the contacts of a pair at some positions depend on.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,5 +1,8 @@
 //! Contact cells on the pairs that come near, the compliance between them, and what a solution on them says of the mesh.
 
+use std::ops::Range;
+use std::sync::Arc;
+
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 
@@ -23,7 +26,7 @@ const MULTIPLIER_UPDATES: u32 = 2000;
 pub struct ContactCells<'a> {
     model: &'a PairModel,
     period: i64,
-    pub(super) pairs: Vec<&'a PairCells>,
+    pub(super) pairs: Vec<Arc<PairCells>>,
     /// Where the cells of each pair begin.
     starts: Vec<usize>,
     /// With the deviations of these very teeth.
@@ -117,7 +120,7 @@ impl<'a> ContactCells<'a> {
     pub(super) fn new(
         model: &'a PairModel,
         period: i64,
-        mut pairs: Vec<&'a PairCells>,
+        mut pairs: Vec<Arc<PairCells>>,
     ) -> Result<Self, PositionError> {
         pairs.sort_by_key(|pair| pair.patch.pair);
         let (Some(first), Some(last)) = (pairs.first(), pairs.last()) else {
@@ -130,7 +133,8 @@ impl<'a> ContactCells<'a> {
         }
         let mut starts = vec![0];
         let (mut gaps, mut arms) = (Vec::new(), Vec::new());
-        for PairCells { patch, .. } in &pairs {
+        for pair in &pairs {
+            let patch = &pair.patch;
             starts.push(starts[starts.len() - 1] + patch.cells.len());
             let teeth = model.pair.teeth(period + patch.pair);
             gaps.extend(
@@ -152,9 +156,9 @@ impl<'a> ContactCells<'a> {
     }
 
     /// The pairs, and the cells of each.
-    pub(super) fn ranges(&self) -> impl Iterator<Item = (&'a PairCells, std::ops::Range<usize>)> {
+    pub(super) fn ranges(&self) -> impl Iterator<Item = (&PairCells, Range<usize>)> {
         let ranges = self.starts.windows(2).map(|range| range[0]..range[1]);
-        self.pairs.iter().copied().zip(ranges)
+        self.pairs.iter().map(Arc::as_ref).zip(ranges)
     }
 
     /// How the interface of `member` in `pair` moves under what loads the interfaces of all pairs.
@@ -373,7 +377,8 @@ impl<'a> ContactCells<'a> {
     /// open.
     fn touching(&self, warm: &WarmStart) -> Option<Vec<bool>> {
         warm.transmission_error?;
-        let touching = self.pairs.iter().flat_map(|PairCells { patch, .. }| {
+        let touching = self.pairs.iter().flat_map(|pair| {
+            let patch = &pair.patch;
             let before = warm
                 .active
                 .iter()

@@ -13,6 +13,8 @@ pub(super) struct Facings<'a> {
     nearer: f64,
     farther: f64,
     found: Vec<Facing<'a>>,
+    /// The least gap as drawn.
+    least: f64,
     /// The next pairs to look at, before and after those found, and the gap of the last one there.
     frontier: [Frontier; 2],
 }
@@ -52,6 +54,7 @@ impl<'a> Facings<'a> {
             nearer: ranges[0][0] + ranges[1][0],
             farther: -ranges[0][1] - ranges[1][1],
             frontier,
+            least: found.first().map_or(f64::INFINITY, |facing| facing.gap),
             found,
         })
     }
@@ -107,9 +110,9 @@ impl<'a> Facings<'a> {
         self.nearer
     }
 
-    /// How far apart deviations may bring the transmission errors of any two mesh periods.
-    pub(super) fn spread(&self) -> f64 {
-        self.nearer + self.farther
+    /// The least gap as drawn.
+    pub(super) fn least(&self) -> f64 {
+        self.least
     }
 
     /// The facing of `pair`, which was found.

@@ -6,6 +6,7 @@
 //! - [`flank_table`], [`half_plane`] and `corner`: the compliance of the cells, smooth part, logarithm, and near a sharp tip,
 //! - [`pair_cells`] and [`cells`]: the cells of one pair, and of all pairs of one mesh position with the deviations of the teeth that
 //!   stand there; H on them, and what their solution says of the mesh,
+//! - [`drawn`]: what of that the flanks as drawn have alike whatever carries their teeth,
 //! - [`stage`]: one fraction of the mesh period, from laying the cells to a solution that nothing penetrates,
 //! - `light`: what is left of it as the load vanishes,
 //! - `penetration`: the look over the whole flanks that proves it,
@@ -32,6 +33,7 @@ mod active_set;
 mod augmented_lagrangian;
 pub mod cells;
 mod corner;
+pub mod drawn;
 pub mod facing;
 mod facings;
 pub mod flank_table;

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::drawn::DrawnFlanks;
 use super::flank_table::FlankTable;
 use super::stage::Stage;
 use super::{ContactError, MeshCells, MeshContact};
@@ -42,6 +43,8 @@ pub struct PairModel {
     pub cells_per_patch: usize,
     /// The solver.
     pub solver: ContactSolver,
+    /// What is known of its flanks as drawn.
+    pub drawn: Arc<DrawnFlanks>,
 }
 
 /// What one position leaves for the next: where each pair was in contact, and the transmission error.

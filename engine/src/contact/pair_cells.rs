@@ -12,6 +12,7 @@ use super::patch::Patch;
 const MOST_WIDENED: f64 = 4.0;
 
 /// The cells of one pair at one fraction of the mesh period.
+#[derive(Debug)]
 pub struct PairCells {
     /// Where they lie.
     pub(super) patch: Patch,
@@ -58,6 +59,13 @@ impl PairCells {
     /// What `forces` on its cells are on the unknowns of `flank`, that of the gear of index `gear`.
     pub(super) fn nodal_forces(&self, flank: &FlankTable, gear: usize, forces: &[f64]) -> Vec<f64> {
         flank.nodal_forces(&points(&self.patch, flank, gear), forces)
+    }
+
+    /// About how much memory they take, in bytes.
+    pub(super) fn bytes(&self) -> usize {
+        let entries = |m: &Mat<f64>| m.nrows() * m.ncols();
+        let numbers = entries(&self.held) + self.shapes.iter().map(entries).sum::<usize>();
+        size_of::<Self>() + size_of_val(self.patch.cells.as_slice()) + size_of::<f64>() * numbers
     }
 
     /// Whether a wider patch would have more room.

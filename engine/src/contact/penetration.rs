@@ -5,6 +5,8 @@
 //! they are pressed, so that a stretch with g_0 > δ w stays open; of the others u is taken from the model. Stretches are as
 //! wide as a cell, since pressures that are even over a cell close gaps in the mean over one.
 
+use std::sync::Arc;
+
 use faer::Mat;
 
 use super::ContactSolution;
@@ -31,7 +33,7 @@ pub(super) struct Found {
 }
 
 /// Where a stretch lies.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 enum Place {
     /// Where there are cells.
     OnPatch,
@@ -42,6 +44,7 @@ enum Place {
 }
 
 /// The stretches of one pair that may penetrate, at one fraction of the mesh period.
+#[derive(Debug)]
 pub(super) struct Stretches {
     /// As cells, and where they lie.
     stretches: Vec<(Cell, Place)>,
@@ -56,7 +59,7 @@ pub(super) fn found(
     model: &PairModel,
     period: i64,
     cells: &ContactCells<'_>,
-    stretches: &[&Stretches],
+    stretches: &[Arc<Stretches>],
     solution: &ContactSolution,
 ) -> Found {
     let mut found = Found::default();
@@ -136,6 +139,13 @@ impl Stretches {
             held,
             shapes,
         }
+    }
+
+    /// About how much memory they take, in bytes.
+    pub(super) fn bytes(&self) -> usize {
+        let entries = |m: &Mat<f64>| m.nrows() * m.ncols();
+        let numbers = entries(&self.held) + self.shapes.iter().map(entries).sum::<usize>();
+        size_of::<Self>() + size_of_val(self.stretches.as_slice()) + size_of::<f64>() * numbers
     }
 
     /// u of each stretch under the `forces` on the cells of its pair, with the interfaces `moved`.

@@ -5,17 +5,14 @@
 //! teeth themselves are therefore found once for a fraction of the mesh period, and each period adds W V X Vᵀ Wᵀ.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use super::cells::{ContactCells, MeshCells, MeshContact};
-use super::facing::Facing;
+use super::drawn::DrawnStage;
 use super::facings::Facings;
 use super::model::{PairModel, PositionError, WarmStart};
-use super::pair_cells::PairCells;
 use super::penetration::{Found, Stretches, found};
 use super::{ContactProblem, ContactSolution};
-
-/// By how much patches are widened at a time where the contact does not fit inside them.
-const WIDENING: f64 = 1.5;
 
 /// Pairs are solved together whose gap is within this much of what load brings together: a little more than touch.
 const REACH: f64 = 1.1;
@@ -31,18 +28,11 @@ pub struct Stage<'a> {
     model: &'a PairModel,
     load: f64,
     facings: Facings<'a>,
-    /// The cells that have been laid so far, of each pair.
-    laid: Vec<Laid>,
-    /// Where penetration was looked for, on each of them.
-    looks: Vec<Look>,
+    drawn: Arc<DrawnStage>,
+    /// The pairs whose patches were widened, and how often.
+    widened: Vec<(i64, i32)>,
     /// The problems stated last.
     stated: VecDeque<Stated>,
-}
-
-/// The cells of one pair, and how wide they were laid.
-struct Laid {
-    widening: f64,
-    cells: PairCells,
 }
 
 /// A problem, and what its compliance depends on.
@@ -50,13 +40,6 @@ struct Stated {
     pairs: Vec<i64>,
     teeth_like: [usize; 2],
     problem: ContactProblem,
-}
-
-/// The stretches of one pair whose gap as drawn is within `reach`.
-struct Look {
-    pair: i64,
-    reach: f64,
-    stretches: Stretches,
 }
 
 impl<'a> Stage<'a> {
@@ -67,13 +50,19 @@ impl<'a> Stage<'a> {
     /// [`PositionError::NoContact`] if no flanks face each other.
     pub fn new(model: &'a PairModel, eta: f64, load: f64) -> Result<Self, PositionError> {
         let home = eta.floor();
+        let fraction = eta - home;
+        let facings = Facings::new(&model.pair, fraction, home as i64);
         Ok(Self {
             model,
             load,
-            facings: Facings::new(&model.pair, eta - home, home as i64)
-                .ok_or(PositionError::NoContact)?,
-            laid: Vec::new(),
-            looks: Vec::new(),
+            facings: facings.ok_or(PositionError::NoContact)?,
+            // Eccentric gears stand elsewhere in every mesh period.
+            drawn: if model.pair.is_concentric() {
+                model.drawn.stage(fraction, load, model.cells_per_patch)
+            } else {
+                Arc::default()
+            },
+            widened: Vec::new(),
             stated: VecDeque::new(),
         })
     }
@@ -118,16 +107,20 @@ impl<'a> Stage<'a> {
         answer: impl FnOnce(&ContactCells<'_>, ContactProblem, ContactSolution, Found) -> T,
     ) -> Result<T, PositionError> {
         let (model, load, facings) = (self.model, self.load, &mut self.facings);
+        let drawn = &self.drawn;
         let touch = facings.touch(period);
         let beyond = |delta: f64, factor: f64| touch + factor * (delta - touch).max(0.0);
         let mut reach = beyond(warm.transmission_error.unwrap_or(touch), GUESS);
         loop {
             let near = facings.within(period, reach);
-            let places: Vec<usize> = near
-                .iter()
-                .filter_map(|(i, _)| lay(&mut self.laid, model, &facings.all()[*i], load))
-                .collect();
-            let pairs = places.iter().map(|place| &self.laid[*place].cells);
+            let widened = |pair: i64| {
+                let known = self.widened.iter().find(|known| known.0 == pair);
+                known.map_or(0, |known| known.1)
+            };
+            let pairs = near.iter().filter_map(|(i, _)| {
+                let facing = &facings.all()[*i];
+                drawn.cells(model, facing, load, widened(facing.pair))
+            });
             let cells = ContactCells::new(model, period, pairs.collect())?;
             let problem = state(&mut self.stated, &cells)?;
             let solution = cells.solve(&problem, load, warm)?;
@@ -136,23 +129,13 @@ impl<'a> Stage<'a> {
                 reach = beyond(delta, GUESS);
                 continue;
             }
-            let as_drawn = delta + facings.nearer();
-            for pair in &cells.pairs {
-                look(
-                    &mut self.looks,
-                    model,
-                    pair,
-                    facings,
-                    as_drawn,
-                    beyond(delta, GUESS),
-                );
-            }
-            let looks: Vec<&Stretches> = cells
-                .pairs
-                .iter()
-                .filter_map(|pair| self.looks.iter().find(|look| look.pair == pair.patch.pair))
-                .map(|look| &look.stretches)
-                .collect();
+            let as_drawn = (facings.least(), delta + facings.nearer());
+            let looks = cells.pairs.iter().filter_map(|pair| {
+                let facing = facings.of_pair(pair.patch.pair)?;
+                let laid = (&**pair, widened(facing.pair));
+                Some(drawn.stretches(model, facing, laid, as_drawn))
+            });
+            let looks: Vec<Arc<Stretches>> = looks.collect();
             let found = found(model, period, &cells, &looks, &solution);
             let wider: Vec<i64> = cells
                 .ranges()
@@ -167,27 +150,14 @@ impl<'a> Stage<'a> {
                 return Ok(answer(&cells, problem, solution, found));
             }
             for pair in wider {
-                widen(&mut self.laid, model, facings, pair, load);
-                self.looks.retain(|look| look.pair != pair);
+                match self.widened.iter_mut().find(|known| known.0 == pair) {
+                    Some((_, times)) => *times += 1,
+                    None => self.widened.push((pair, 1)),
+                }
                 self.stated.retain(|stated| !stated.pairs.contains(&pair));
             }
         }
     }
-}
-
-/// Where in `laid` the cells of `facing` are, laid now if they never were; `None` where there is no room for any.
-fn lay(laid: &mut Vec<Laid>, model: &PairModel, facing: &Facing<'_>, load: f64) -> Option<usize> {
-    let known = laid
-        .iter()
-        .position(|laid| laid.cells.patch.pair == facing.pair);
-    if known.is_some() {
-        return known;
-    }
-    laid.push(Laid {
-        widening: 1.0,
-        cells: PairCells::new(model, facing, load, 1.0)?,
-    });
-    Some(laid.len() - 1)
 }
 
 /// The problem on `cells`; of those `stated` before, one whose compliance is the same is told with other gaps.
@@ -214,44 +184,4 @@ fn state(
         });
     }
     Ok(problem)
-}
-
-/// Lays the cells of `pair` anew, wider.
-fn widen(laid: &mut [Laid], model: &PairModel, facings: &Facings<'_>, pair: i64, load: f64) {
-    let known = laid.iter_mut().find(|laid| laid.cells.patch.pair == pair);
-    if let (Some(laid), Some(facing)) = (known, facings.of_pair(pair)) {
-        laid.widening *= WIDENING;
-        if let Some(cells) = PairCells::new(model, facing, load, laid.widening) {
-            laid.cells = cells;
-        }
-    }
-}
-
-/// Sees to it that `looks` has the stretches of `pair` whose gap as drawn is within `least`; those of a new look within `reach` and what
-/// deviations may add to it.
-fn look(
-    looks: &mut Vec<Look>,
-    model: &PairModel,
-    pair: &PairCells,
-    facings: &Facings<'_>,
-    least: f64,
-    reach: f64,
-) {
-    let number = pair.patch.pair;
-    let known = looks.iter().position(|look| look.pair == number);
-    if known.is_some_and(|place| looks[place].reach >= least) {
-        return;
-    }
-    if let Some(facing) = facings.of_pair(number) {
-        if let Some(place) = known {
-            looks.swap_remove(place);
-        }
-        // Other teeth may want more; looking once for all of them costs less than looking again.
-        let reach = reach + facings.spread() + facings.nearer();
-        looks.push(Look {
-            pair: number,
-            reach,
-            stretches: Stretches::new(model, pair, facing, reach),
-        });
-    }
 }

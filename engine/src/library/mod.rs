@@ -10,9 +10,10 @@ use std::sync::Arc;
 pub use shelf::ShelfUsage;
 
 use crate::assembly::{
-    AssemblyError, BlankSpec, ContactsSpec, Gear, GearSpec, PartError, Parts, Teeth, TeethSpec,
-    WantedGear, make_gears,
+    AssemblyError, BlankSpec, ContactsSpec, FlanksSpec, Gear, GearSpec, PartError, Parts, Teeth,
+    TeethSpec, WantedGear, make_gears,
 };
+use crate::contact::drawn::DrawnFlanks;
 use crate::contact::positions::{PositionsError, contacts};
 use crate::contact::{MeshContact, PairModel};
 use crate::fem::blank::BlankSubstructure;
@@ -28,6 +29,7 @@ struct Shelves {
     teeth: Shelf<TeethSpec, Teeth>,
     blanks: Shelf<BlankSpec, BlankSubstructure>,
     gears: Shelf<GearSpec, Gear>,
+    flanks: Shelf<FlanksSpec, DrawnFlanks>,
     contacts: Shelf<ContactsSpec, Vec<MeshContact>>,
 }
 
@@ -42,9 +44,10 @@ impl Library {
     /// A library that keeps at most `bytes` of parts, of each kind the least recently used leaving first.
     pub fn with_capacity(bytes: usize) -> Self {
         Self(Arc::new(Shelves {
-            teeth: Shelf::new(bytes / 2, bytes_of_teeth),
+            teeth: Shelf::new(bytes / 8 * 3, bytes_of_teeth),
             blanks: Shelf::new(bytes / 4, bytes_of_blank),
             gears: Shelf::new(bytes / 8, bytes_of_gear),
+            flanks: Shelf::new(bytes / 8, |_, flanks| flanks.bytes()),
             contacts: Shelf::new(bytes / 8, |spec, contacts| {
                 bytes_of_contacts(spec, contacts)
             }),
@@ -52,17 +55,19 @@ impl Library {
     }
 
     /// How each of its shelves is used, by what stands on it.
-    pub fn usage(&self) -> [(&'static str, ShelfUsage); 4] {
+    pub fn usage(&self) -> [(&'static str, ShelfUsage); 5] {
         let Shelves {
             teeth,
             blanks,
             gears,
+            flanks,
             contacts,
         } = &*self.0;
         [
             ("teeth", teeth.usage()),
             ("blanks", blanks.usage()),
             ("gears", gears.usage()),
+            ("flanks", flanks.usage()),
             ("contacts", contacts.usage()),
         ]
     }
@@ -100,6 +105,14 @@ impl Parts for Library {
             .into_iter()
             .filter_map(|known| known.or_else(|| made.next()))
             .collect())
+    }
+
+    fn flanks(&self, spec: &FlanksSpec) -> Arc<DrawnFlanks> {
+        let shelf = &self.0.flanks;
+        let flanks = shelf.find(spec).unwrap_or_default();
+        // They grow where they are used, and are weighed anew each time that somebody asks for them.
+        shelf.keep(spec, &flanks);
+        flanks
     }
 
     fn contacts(
