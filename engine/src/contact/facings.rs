@@ -15,6 +15,8 @@ pub(super) struct Facings<'a> {
     found: Vec<Facing<'a>>,
     /// The least gap as drawn.
     least: f64,
+    /// The mesh period asked about last, and the δ at which pairs touch there, as far as they were asked for.
+    touches: (i64, Vec<(i64, f64)>),
     /// The next pairs to look at, before and after those found, and the gap of the last one there.
     frontier: [Frontier; 2],
 }
@@ -53,6 +55,7 @@ impl<'a> Facings<'a> {
             home,
             nearer: ranges[0][0] + ranges[1][0],
             farther: -ranges[0][1] - ranges[1][1],
+            touches: (0, Vec::new()),
             frontier,
             least: found.first().map_or(f64::INFINITY, |facing| facing.gap),
             found,
@@ -75,11 +78,9 @@ impl<'a> Facings<'a> {
         let as_drawn = reach + self.nearer;
         self.look_as_far_as(as_drawn);
         let count = self.found.partition_point(|facing| facing.gap <= as_drawn);
-        let gap = |i: usize| {
-            let facing = &self.found[i];
-            facing.touch_of(self.gears.teeth(period + facing.pair))
-        };
-        let mut pairs: Vec<(usize, f64)> = (0..count.max(1)).map(|i| (i, gap(i))).collect();
+        let mut pairs: Vec<(usize, f64)> = (0..count.max(1))
+            .map(|i| (i, self.touch_of(i, period)))
+            .collect();
         if pairs.iter().any(|(_, gap)| *gap <= reach) {
             pairs.retain(|(_, gap)| *gap <= reach);
         } else {
@@ -87,6 +88,23 @@ impl<'a> Facings<'a> {
             pairs.truncate(1);
         }
         pairs
+    }
+
+    /// The δ at which the pair at place `i` touches in mesh period `period`.
+    fn touch_of(&mut self, i: usize, period: i64) -> f64 {
+        let facing = &self.found[i];
+        let (of_period, known) = &mut self.touches;
+        if *of_period != period {
+            *of_period = period;
+            known.clear();
+        }
+        // Each step of a solution asks again.
+        if let Some((_, touch)) = known.iter().find(|(pair, _)| *pair == facing.pair) {
+            return *touch;
+        }
+        let touch = facing.touch_of(self.gears.teeth(period + facing.pair));
+        known.push((facing.pair, touch));
+        touch
     }
 
     /// Finds the pairs whose gap as drawn is within `reach`.
