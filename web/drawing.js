@@ -5,6 +5,8 @@ import { HoleHandles } from "./holes.js";
 
 const TURN = Math.PI / 180;
 const MEMBERS = ["driving", "driven"];
+/** What a line may lie beside the profile where both gears are in view, in mm: a tenth of a pixel. */
+const FROM_AFAR = 0.02;
 
 export class Drawing {
   #outline = null;
@@ -32,6 +34,7 @@ export class Drawing {
 
   setView(view) {
     this.#view = view;
+    for (const { draw } of Object.values(this.#gears)) draw();
     this.#frame();
   }
 
@@ -76,11 +79,21 @@ export class Drawing {
     const holes = new HoleHandles(member, this.design, (event) => this.#inGear(member, event));
     const marks = s("g", { class: "circles", "aria-hidden": "true" }, pitch, base);
     const rotor = s("g", { class: `rotor ${member}`, "data-member": member }, body, marks, bore, holes.element, cross, tooth0);
-    const gear = { rotor, holes, outline: null };
+    const gear = { rotor, holes, outline: null, drawn: null };
+    // All points of the profile are painted anew at every move of a hole, so that there are no more than can be seen.
+    gear.draw = () => {
+      if (!gear.outline) return;
+      const { tooth_count: count, tooth_mm: all } = gear.outline;
+      const tooth = this.#view === "pair" ? thinned(all, FROM_AFAR) : all;
+      const path = outlinePath(tooth, count);
+      if (path !== gear.drawn) body.setAttribute("d", path);
+      gear.drawn = path;
+    };
     gear.show = (outline) => {
       const { tip_mm: tip, root_mm: root, pitch_mm, base_mm } = outline.circles;
-      if (JSON.stringify(outline.tooth_mm) !== JSON.stringify(gear.outline?.tooth_mm) || outline.tooth_count !== gear.outline.tooth_count) body.setAttribute("d", outlinePath(outline));
+      const same = JSON.stringify(outline.tooth_mm) === JSON.stringify(gear.outline?.tooth_mm) && outline.tooth_count === gear.outline.tooth_count;
       gear.outline = outline;
+      if (!same) gear.draw();
       for (const [circle, r] of [[pitch, pitch_mm], [base, base_mm], [bore, outline.bore_radius_mm], [tooth0, (tip - root) / 9]]) circle.setAttribute("r", r);
       tooth0.setAttribute("cx", (root + tip) / 2);
       cross.setAttribute("d", `M${-0.12 * root} 0H${0.12 * root}M0 ${-0.12 * root}V${0.12 * root}`);
@@ -188,7 +201,17 @@ export function indexAt(curve, position) {
   return ((Math.round((position - positions[0]) / step) % count) + count) % count;
 }
 
-function outlinePath({ tooth_mm: tooth, tooth_count: count }) {
+/** Those of `points` that a line needs to stay within `tolerance` of all of them. */
+function thinned(points, tolerance) {
+  const [[x0, y0], [x1, y1]] = [points[0], points.at(-1)];
+  const length = Math.hypot(x1 - x0, y1 - y0);
+  const beside = points.map(([x, y]) => Math.abs((x - x0) * (y1 - y0) - (y - y0) * (x1 - x0)) / length);
+  const farthest = beside.indexOf(Math.max(...beside));
+  if (!(beside[farthest] > tolerance)) return [points[0], points.at(-1)];
+  return [...thinned(points.slice(0, farthest + 1), tolerance).slice(0, -1), ...thinned(points.slice(farthest), tolerance)];
+}
+
+function outlinePath(tooth, count) {
   const points = [];
   for (let i = 0; i < count; i += 1) {
     const [cos, sin] = [Math.cos((2 * Math.PI * i) / count), Math.sin((2 * Math.PI * i) / count)];
