@@ -74,11 +74,12 @@ export class Drawing {
     const body = s("path", { class: `body ${member}` });
     const [pitch, base] = ["pitch", "base"].map((name) => s("circle", { class: name }));
     const bore = s("circle", { class: "opening" });
+    const web = s("path", { class: "web" });
     const tooth0 = s("circle", { class: "tooth0" });
     const cross = s("path", { class: "cross" });
     const holes = new HoleHandles(member, this.design, (event) => this.#inGear(member, event));
     const marks = s("g", { class: "circles", "aria-hidden": "true" }, pitch, base);
-    const rotor = s("g", { class: `rotor ${member}`, "data-member": member }, body, marks, bore, holes.element, cross, tooth0);
+    const rotor = s("g", { class: `rotor ${member}`, "data-member": member }, body, web, marks, bore, holes.element, cross, tooth0);
     const gear = { rotor, holes, outline: null, drawn: null };
     // All points of the profile are painted anew at every move of a hole, so that there are no more than can be seen.
     gear.draw = () => {
@@ -95,6 +96,7 @@ export class Drawing {
       gear.outline = outline;
       if (!same) gear.draw();
       for (const [circle, r] of [[pitch, pitch_mm], [base, base_mm], [bore, outline.bore_radius_mm], [tooth0, (tip - root) / 9]]) circle.setAttribute("r", r);
+      web.setAttribute("d", outline.web ? ringPath(outline.web) : "");
       tooth0.setAttribute("cx", (root + tip) / 2);
       cross.setAttribute("d", `M${-0.12 * root} 0H${0.12 * root}M0 ${-0.12 * root}V${0.12 * root}`);
     };
@@ -219,6 +221,12 @@ function outlinePath(tooth, count) {
     for (const [x, y] of tooth.slice(0, -1)) points.push(`${(x * cos - y * sin).toFixed(4)} ${(x * sin + y * cos).toFixed(4)}`);
   }
   return `M${points.join("L")}Z`;
+}
+
+/** The ring between the edges of a web. */
+function ringPath({ inner_radius_mm: inner, outer_radius_mm: outer }) {
+  const circle = (r, way) => `M${r} 0A${r} ${r} 0 0 ${way} ${-r} 0A${r} ${r} 0 0 ${way} ${r} 0Z`;
+  return circle(outer, 1) + circle(inner, 0);
 }
 
 function text(words, [x, y], size, name) {
