@@ -1,5 +1,6 @@
 // The pair as it is cut: turned by hand, its holes dragged, contact forces at the position shown.
 
+import { deformedShape } from "./deformed.js";
 import { s, number } from "./dom.js";
 import { HoleHandles } from "./holes.js";
 
@@ -14,6 +15,7 @@ export class Drawing {
   #gears = {};
   #view = "pair";
   #position = 0;
+  #deformed = null;
 
   /** Draws in `place`. `onTurn` is told the mesh position that a hand turned to. */
   constructor(place, design, { onTurn }) {
@@ -52,6 +54,15 @@ export class Drawing {
   setCurve(curve) {
     this.#curve = curve;
     this.#drawForces();
+  }
+
+  /** Shows the pair under load in place of the one without; null takes it away. Gives how it is drawn. */
+  setDeformed(edges) {
+    this.#deformed?.element.remove();
+    this.#deformed = edges && deformedShape(edges, this.#outline);
+    if (edges) this.world.prepend(this.#deformed.element);
+    this.svg.classList.toggle("under-load", Boolean(edges));
+    return this.#deformed;
   }
 
   /** Turns both gears to a mesh position. */

@@ -4,6 +4,7 @@ import { hasKey, json, onKeyNeeded, ProblemError, setKey } from "./api.js";
 import { byId, debounced, fixed, h } from "./dom.js";
 import { Charts, looks, stresses } from "./charts.js";
 import { Design, fromFragment, nameOf, toFragment } from "./design.js";
+import { Deformation } from "./deformed.js";
 import { chartsPicture, csv, drawingFile, save } from "./download.js";
 import { Drawing, indexAt } from "./drawing.js";
 import { Form } from "./form.js";
@@ -29,10 +30,20 @@ const drawing = new Drawing(byId("drawing"), design, { onTurn: (to) => turn(to) 
 const charts = new Charts(byId("charts"), { onPosition: (to) => turn(to) });
 const follower = new Follower({ onResults, onOutline: (outline) => drawing.setOutline(outline), onProblem, onBusy });
 
+const deformation = new Deformation({
+  drawing, button: byId("deformed"), note: byId("deformed-note"), position: () => position,
+  live: async () => {
+    await follower.settled();
+    return live;
+  },
+});
+
 /** Where the curves and the gears stand. */
 function turn(to) {
   const period = live?.results.pair.period_mesh_periods ?? 1;
+  const before = position;
   position = ((to % period) + period) % period;
+  if (position !== before) deformation.moved();
   drawing.setPosition(position);
   charts.setPosition(position);
   byId("position").value = position;
@@ -116,6 +127,7 @@ const carry = debounced(250, async () => {
 
 design.onChange((by) => {
   design.by = by;
+  deformation.off();
   form?.refresh();
   drawing.refreshHoles();
   follower.follow(design.submission, by === "drag" && live ? live.results.pair.period_mesh_periods : null);

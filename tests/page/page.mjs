@@ -197,6 +197,29 @@ await step("a job is submitted, followed and opened", service, async (page) => {
   assert.match((await fields).suggestedFilename(), /fields\.vtu$/);
 });
 
+await step("the pair is seen deformed at the position shown, by keys too", service, async (page) => {
+  await open(page, service);
+  await page.locator("#position").fill("0.3");
+  await page.locator("#deformed").focus();
+  await page.keyboard.press("Enter");
+  await page.locator(".deformation .strained.driven").waitFor({ state: "attached" });
+  assert.match(await page.locator("#deformed-note").innerText(), /^At 115 N m and position 0.3, displacements \d+ times enlarged/);
+  assert.ok((await page.locator(".deformation .stress.level-5").first().getAttribute("d")).length > 20, "something is stressed most");
+  await axe(page);
+  if (process.argv.includes("--screenshots")) await page.locator(".drawing-panel").screenshot({ path: `${process.env.PICTURES}/page-deformed.png` });
+  // A position further the shape is another one.
+  const shape = () => page.locator(".strained.driving").getAttribute("d");
+  const before = await shape();
+  await page.locator("#position").fill("0.6");
+  await page.locator(".deformation").waitFor({ state: "detached" });
+  await page.locator(".deformation").waitFor({ state: "attached" });
+  assert.notEqual(await shape(), before);
+  // Another design is shown without load until it is asked for.
+  await page.locator('[id="field-/pair/driven/blank/holes/count"]').fill("8");
+  await page.locator(".deformation").waitFor({ state: "detached" });
+  assert.equal(await page.locator("#deformed").getAttribute("aria-pressed"), "false");
+});
+
 await step("what is shown is downloaded", service, async (page) => {
   await open(page, service);
   for (const [kind, least] of [["json", 20_000], ["csv", 10_000], ["svg", 20_000], ["png", 20_000]]) {
