@@ -156,6 +156,47 @@ await step("stresses are shown where they are asked for", service, async (page) 
   await axe(page);
 });
 
+await step("lists of holes and slots are opened, changed and computed", service, async (page, context) => {
+  const blank = "/pair/driven/blank/holes";
+  const field = (name) => page.locator(`[id="field-${blank}${name}"]`);
+  const named = (words) => page.waitForFunction((name) => document.querySelector("#table tr.live th").innerText.includes(name), words);
+  await open(page, service);
+  await page.locator("#start").selectOption("slots");
+  await named("5×slot@34");
+  assert.equal(await field("/slot/width_mm").inputValue(), "9");
+  const slots = await cell(page, PEAK_TO_PEAK);
+  await field("/slot/width_mm").fill("7");
+  await page.waitForFunction((old) => Number(document.querySelector("#table tr.live td:nth-child(5)").innerText) !== old, slots);
+  // A slot that is taken away leaves round holes as wide, and comes back in place of them.
+  await field("/slot").uncheck();
+  await named("5×r3.5@34");
+  await field("/slot").check();
+  await named("5×slot@34");
+  assert.equal(await field("/radius_mm").inputValue(), "");
+  await page.locator("#start").selectOption("unequal-holes");
+  await named("4×r7.5@34+2×r6@34");
+  await field("/1/radius_mm").fill("5");
+  await named("4×r7.5@34+2×r5@34");
+  await page.locator("#share").click();
+  await page.waitForFunction(() => location.hash.startsWith("#design="));
+  const again = await context.newPage();
+  await again.goto(page.url());
+  await again.locator("#table tbody tr.live").waitFor();
+  assert.match(await again.locator("#table tr.live th").innerText(), /4×r7\.5@34\+2×r5@34/);
+  assert.equal(await again.locator(`[id="field-${blank}/0/at_deg"]`).inputValue(), "0, 85, 185, 268");
+  // One pattern becomes a list of them, and a further one stands between its holes.
+  await page.locator("#start").selectOption("test-case-2");
+  await field("/count").fill("5");
+  await named("5×r7.5@34");
+  await field("").selectOption({ index: 2 });
+  await page.locator("#form button", { hasText: "Add to several patterns" }).click();
+  await named("5×r7.5@34+5×r3@34");
+  assert.ok(await page.locator("#problem").isHidden());
+  await page.locator("#form .entry-of-list > button", { hasText: "Remove" }).first().click();
+  await named("5×r3@34");
+  await axe(page);
+});
+
 await step("several designs and methods stand in one plot", service, async (page) => {
   await open(page, service);
   await page.locator("#methods").click();
