@@ -66,9 +66,11 @@ export class Charts {
       const figure = h("figure", { className: "chart", id: `chart-${panel.id}`, aria: { label: panel.title } },
         h("figcaption", {}, h("strong", {}, panel.title), ` in ${panel.unit}`, legend), canvas);
       place.append(figure);
-      this.#panels.set(panel.id, { ...panel, canvas, legend, figure, plot: null, shape: "" });
+      this.#panels.set(panel.id, { ...panel, canvas, legend, figure, plot: null, shape: "", width: null, seen: true, late: false });
     }
     new ResizeObserver(() => this.#resize()).observe(place);
+    const sight = new IntersectionObserver((entries) => entries.forEach(({ target, isIntersecting }) => this.#sees(target, isIntersecting)), { rootMargin: "100px" });
+    for (const { figure } of this.#panels.values()) sight.observe(figure);
   }
 
   /** Draws everything anew, because the page looks different. */
@@ -77,14 +79,28 @@ export class Charts {
     if (this.shown) this.show(this.shown);
   }
 
-  /** Shows designs: `{ name, results, color }`, the live one first. */
-  show(designs) {
+  /** Shows designs: `{ name, results, color }`, the live one first. While a hand moves, curves out of sight wait until they are looked at. */
+  show(designs, moving = false) {
     this.shown = designs;
     const colors = looks();
     for (const panel of this.#panels.values()) {
-      if (panel.id === "spectrum") this.#spectrum(panel, designs, colors);
-      else this.#curves(panel, designs, colors);
+      panel.late = moving && !panel.seen;
+      if (!panel.late) this.#draw(panel, colors);
     }
+    this.setPosition(this.#position);
+  }
+
+  #draw(panel, colors) {
+    if (panel.id === "spectrum") this.#spectrum(panel, this.shown, colors);
+    else this.#curves(panel, this.shown, colors);
+  }
+
+  #sees(figure, seen) {
+    const panel = [...this.#panels.values()].find((each) => each.figure === figure);
+    panel.seen = seen;
+    if (!seen || !panel.late) return;
+    panel.late = false;
+    this.#draw(panel, looks());
     this.setPosition(this.#position);
   }
 
@@ -179,12 +195,15 @@ export class Charts {
     panel.plot = new uPlot(options, data, panel.canvas);
   }
 
+  /** Kept until the page changes its size, because asking lays the page out. */
   #width(panel) {
-    return Math.max(200, Math.floor(panel.canvas.clientWidth || 400));
+    panel.width ??= Math.max(200, Math.floor(panel.canvas.clientWidth || 400));
+    return panel.width;
   }
 
   #resize() {
     for (const panel of this.#panels.values()) {
+      panel.width = null;
       if (panel.plot && !panel.figure.hidden && panel.plot.width !== this.#width(panel)) panel.plot.setSize({ width: this.#width(panel), height: HEIGHT * looks().rem });
     }
     this.setPosition(this.#position);

@@ -37,7 +37,7 @@ export function drawingFile(svg) {
   const [from, to] = [svg.querySelectorAll("*"), copy.querySelectorAll("*")];
   from.forEach((element, i) => {
     const style = getComputedStyle(element);
-    for (const name of ["fill", "stroke", "stroke-width", "stroke-dasharray", "vector-effect", "font-family", "text-anchor", "paint-order"]) {
+    for (const name of ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "vector-effect", "font-family", "text-anchor", "paint-order"]) {
       const value = style.getPropertyValue(name);
       if (value && value !== "none" || name === "fill") to[i].setAttribute(name, value);
     }

@@ -1,10 +1,13 @@
 // The pair as it is cut: turned by hand, its holes dragged, contact forces at the position shown.
 
+import { deformedShape } from "./deformed.js";
 import { s, number } from "./dom.js";
 import { HoleHandles } from "./holes.js";
 
 const TURN = Math.PI / 180;
 const MEMBERS = ["driving", "driven"];
+/** What a line may lie beside the profile where both gears are in view, in mm: a tenth of a pixel. */
+const FROM_AFAR = 0.02;
 
 export class Drawing {
   #outline = null;
@@ -12,6 +15,7 @@ export class Drawing {
   #gears = {};
   #view = "pair";
   #position = 0;
+  #deformed = null;
 
   /** Draws in `place`. `onTurn` is told the mesh position that a hand turned to. */
   constructor(place, design, { onTurn }) {
@@ -32,6 +36,7 @@ export class Drawing {
 
   setView(view) {
     this.#view = view;
+    for (const { draw } of Object.values(this.#gears)) draw();
     this.#frame();
   }
 
@@ -49,6 +54,15 @@ export class Drawing {
   setCurve(curve) {
     this.#curve = curve;
     this.#drawForces();
+  }
+
+  /** Shows the pair under load in place of the one without; null takes it away. Gives how it is drawn. */
+  setDeformed(edges) {
+    this.#deformed?.element.remove();
+    this.#deformed = edges && deformedShape(edges, this.#outline);
+    if (edges) this.world.prepend(this.#deformed.element);
+    this.svg.classList.toggle("under-load", Boolean(edges));
+    return this.#deformed;
   }
 
   /** Turns both gears to a mesh position. */
@@ -71,17 +85,29 @@ export class Drawing {
     const body = s("path", { class: `body ${member}` });
     const [pitch, base] = ["pitch", "base"].map((name) => s("circle", { class: name }));
     const bore = s("circle", { class: "opening" });
+    const web = s("path", { class: "web" });
     const tooth0 = s("circle", { class: "tooth0" });
     const cross = s("path", { class: "cross" });
     const holes = new HoleHandles(member, this.design, (event) => this.#inGear(member, event));
     const marks = s("g", { class: "circles", "aria-hidden": "true" }, pitch, base);
-    const rotor = s("g", { class: `rotor ${member}`, "data-member": member }, body, marks, bore, holes.element, cross, tooth0);
-    const gear = { rotor, holes, outline: null };
+    const rotor = s("g", { class: `rotor ${member}`, "data-member": member }, body, web, marks, bore, holes.element, cross, tooth0);
+    const gear = { rotor, holes, outline: null, drawn: null };
+    // All points of the profile are painted anew at every move of a hole, so that there are no more than can be seen.
+    gear.draw = () => {
+      if (!gear.outline) return;
+      const { tooth_count: count, tooth_mm: all } = gear.outline;
+      const tooth = this.#view === "pair" ? thinned(all, FROM_AFAR) : all;
+      const path = outlinePath(tooth, count);
+      if (path !== gear.drawn) body.setAttribute("d", path);
+      gear.drawn = path;
+    };
     gear.show = (outline) => {
       const { tip_mm: tip, root_mm: root, pitch_mm, base_mm } = outline.circles;
-      if (JSON.stringify(outline.tooth_mm) !== JSON.stringify(gear.outline?.tooth_mm) || outline.tooth_count !== gear.outline.tooth_count) body.setAttribute("d", outlinePath(outline));
+      const same = JSON.stringify(outline.tooth_mm) === JSON.stringify(gear.outline?.tooth_mm) && outline.tooth_count === gear.outline.tooth_count;
       gear.outline = outline;
+      if (!same) gear.draw();
       for (const [circle, r] of [[pitch, pitch_mm], [base, base_mm], [bore, outline.bore_radius_mm], [tooth0, (tip - root) / 9]]) circle.setAttribute("r", r);
+      web.setAttribute("d", outline.web ? ringPath(outline.web) : "");
       tooth0.setAttribute("cx", (root + tip) / 2);
       cross.setAttribute("d", `M${-0.12 * root} 0H${0.12 * root}M0 ${-0.12 * root}V${0.12 * root}`);
     };
@@ -188,7 +214,17 @@ export function indexAt(curve, position) {
   return ((Math.round((position - positions[0]) / step) % count) + count) % count;
 }
 
-function outlinePath({ tooth_mm: tooth, tooth_count: count }) {
+/** Those of `points` that a line needs to stay within `tolerance` of all of them. */
+function thinned(points, tolerance) {
+  const [[x0, y0], [x1, y1]] = [points[0], points.at(-1)];
+  const length = Math.hypot(x1 - x0, y1 - y0);
+  const beside = points.map(([x, y]) => Math.abs((x - x0) * (y1 - y0) - (y - y0) * (x1 - x0)) / length);
+  const farthest = beside.indexOf(Math.max(...beside));
+  if (!(beside[farthest] > tolerance)) return [points[0], points.at(-1)];
+  return [...thinned(points.slice(0, farthest + 1), tolerance).slice(0, -1), ...thinned(points.slice(farthest), tolerance)];
+}
+
+function outlinePath(tooth, count) {
   const points = [];
   for (let i = 0; i < count; i += 1) {
     const [cos, sin] = [Math.cos((2 * Math.PI * i) / count), Math.sin((2 * Math.PI * i) / count)];
@@ -196,6 +232,12 @@ function outlinePath({ tooth_mm: tooth, tooth_count: count }) {
     for (const [x, y] of tooth.slice(0, -1)) points.push(`${(x * cos - y * sin).toFixed(4)} ${(x * sin + y * cos).toFixed(4)}`);
   }
   return `M${points.join("L")}Z`;
+}
+
+/** The ring between the edges of a web. */
+function ringPath({ inner_radius_mm: inner, outer_radius_mm: outer }) {
+  const circle = (r, way) => `M${r} 0A${r} ${r} 0 0 ${way} ${-r} 0A${r} ${r} 0 0 ${way} ${r} 0Z`;
+  return circle(outer, 1) + circle(inner, 0);
 }
 
 function text(words, [x, y], size, name) {

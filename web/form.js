@@ -7,6 +7,12 @@ import { help, kindOf, resolve, saidDefault } from "./schema.js";
 /** Fields that a designer looks for first; they stand above the others of their object. */
 const FIRST = ["holes", "tip_relief", "tooth_count", "module_mm"];
 
+/** Fields that stand in place of each other: one that gets a value takes those of the others away. */
+const INSTEAD = {
+  radius_mm: ["slot"], slot: ["radius_mm"], at_deg: ["count", "phase_deg"], count: ["at_deg"], phase_deg: ["at_deg"],
+  tip_diameter_mm: ["addendum_mm"], addendum_mm: ["tip_diameter_mm"], tip_rounding_mm: ["tip_chamfer_mm"], tip_chamfer_mm: ["tip_rounding_mm"],
+};
+
 export class Form {
   #fields = new Map();
 
@@ -144,9 +150,16 @@ export class Form {
     });
   }
 
+  /** Sets a field, and takes away what it stands in place of. */
+  #put(pointer, value) {
+    const holder = pointer.slice(0, pointer.lastIndexOf("/") + 1);
+    const others = value === undefined ? [] : (INSTEAD[pointer.slice(holder.length)] ?? []).filter((name) => this.design.get(holder + name) !== undefined);
+    this.design.setAll({ [pointer]: value, ...Object.fromEntries(others.map((name) => [holder + name, undefined])) }, "form");
+  }
+
   #control(kind, id, pointer) {
     const { schema } = kind;
-    const put = (value) => this.design.set(pointer, value, "form");
+    const put = (value) => this.#put(pointer, value);
     if (kind.kind === "choice") {
       const options = schema.enum.map((word) => h("option", { value: word }, word.replace(/_/g, " ")));
       return h("select", { id, on: { change: (event) => put(event.target.value) } }, ...options);
@@ -202,7 +215,7 @@ export class Form {
 
   #fieldset(pointer, kind, title, fields, optional) {
     const said = help(kind.schema);
-    const box = h("input", { type: "checkbox", id: `field-${pointer}`, on: { change: (event) => this.design.set(pointer, event.target.checked ? this.#start(pointer, kind) : undefined, "form") } });
+    const box = h("input", { type: "checkbox", id: `field-${pointer}`, on: { change: (event) => (event.target.checked ? this.#put(pointer, this.#start(pointer, kind)) : this.#takeAway(pointer)) } });
     const legend = optional ? h("legend", {}, h("label", { title: said }, box, ` ${title}`)) : h("legend", { title: said }, title);
     const element = h("fieldset", { className: "field" }, legend, ...fields);
     return this.#register(pointer, element, kind.schema, () => {
@@ -210,14 +223,36 @@ export class Form {
     });
   }
 
+  /** Takes an object away; holes that are no slots any more are round, and as wide. */
+  #takeAway(pointer) {
+    const { width_mm: width } = this.design.get(pointer) ?? {};
+    const round = pointer.endsWith("/slot") && width ? { [pointer.replace(/slot$/, "radius_mm")]: width / 2 } : {};
+    this.design.setAll({ [pointer]: undefined, ...round }, "form");
+  }
+
   /** Values to begin with, where an object is asked for: those that suit the pair, else defaults. */
   #start(pointer, kind) {
+    if (pointer.endsWith("/slot")) return slotOf(this.design.get(pointer.slice(0, -"/slot".length)));
     const member = /\/pair\/(driving|driven)/.exec(pointer)?.[0];
     const gear = member ? this.design.get(member) : null;
     const usual = gear ? usualValues(gear) : {};
     const name = pointer.split("/").pop();
     if (usual[name]) return usual[name];
     return this.#begin(kind);
+  }
+
+  /** One of several forms to begin with: what is there in the other form, as far as it goes. */
+  #startVariant(pointer, kind) {
+    const there = this.design.get(pointer);
+    if (!pointer.endsWith("/holes")) return this.#begin(kind);
+    const patterns = there ? [there].flat() : [this.#start(pointer, kind)];
+    return kind.kind === "list" ? patterns : patterns[0];
+  }
+
+  /** A further entry of a list. */
+  #further(pointer, kind, values) {
+    if (!pointer.endsWith("/holes")) return this.#begin(kind.items);
+    return values.length ? between(values.at(-1)) : this.#start(pointer, kind);
   }
 
   #begin(kind) {
@@ -237,10 +272,10 @@ export class Form {
     const none = kind.optional || kind.schema.default !== undefined ? [h("option", { value: "" }, "default")] : [];
     const options = kind.variants.map((variant, i) => h("option", { value: i }, variant.title ?? `variant ${i + 1}`));
     const id = `field-${pointer}`;
-    const select = h("select", { id, on: { change: (event) => this.design.set(pointer, event.target.value === "" ? undefined : this.#begin(kindOf(this.api, kind.variants[event.target.value])), "form") } }, ...none, ...options);
+    const select = h("select", { id, on: { change: (event) => this.design.set(pointer, event.target.value === "" ? undefined : this.#startVariant(pointer, kindOf(this.api, kind.variants[event.target.value])), "form") } }, ...none, ...options);
     const chosen = kind.variants[index];
     const inner = chosen ? kindOf(this.api, chosen) : null;
-    const fields = inner?.kind === "object" ? Object.entries(inner.schema.properties).map(([name, schema]) => this.#field(`${pointer}/${name}`, schema, true)) : inner?.kind === "list" ? [this.#list(pointer, inner)] : [];
+    const fields = inner?.kind === "object" ? Object.entries(inner.schema.properties).map(([name, schema]) => this.#field(`${pointer}/${name}`, schema, (inner.schema.required ?? []).includes(name))) : inner?.kind === "list" ? [this.#list(pointer, inner)] : [];
     const element = h("div", { className: "field variants" }, h("div", { className: "row" }, h("label", { htmlFor: id, title: help(kind.schema) }, kind.schema.title), select, h("span", { className: "unit" })), ...fields);
     return this.#register(pointer, element, kind.schema, () => {
       select.value = index < 0 ? "" : String(index);
@@ -252,7 +287,7 @@ export class Form {
     const entries = values.map((_, i) => h("div", { className: "entry-of-list" },
       this.#field(`${pointer}/${i}`, kind.items.schema, true),
       h("button", { type: "button", on: { click: () => this.design.set(`${pointer}/${i}`, undefined, "form") } }, "Remove")));
-    const add = h("button", { type: "button", on: { click: () => this.design.set(pointer, [...values, this.#begin(kind.items)], "form") } }, `Add to ${(kind.schema.title ?? "the list").toLowerCase()}`);
+    const add = h("button", { type: "button", on: { click: () => this.design.set(pointer, [...values, this.#further(pointer, kind, values)], "form") } }, `Add to ${(kind.schema.title ?? "the list").toLowerCase()}`);
     const element = h("fieldset", { className: "field list" }, h("legend", { title: help(kind.schema) }, kind.schema.title ?? ""), ...entries, add);
     return this.#fields.has(pointer) ? element : this.#register(pointer, element, kind.schema, () => {});
   }
@@ -311,6 +346,21 @@ function stepped(value, steps, kind) {
   const { minimum = -Infinity, maximum = Infinity } = kind.schema;
   const size = kind.whole ? 1 : 10 ** Math.floor(Math.log10(Math.max(Math.abs(value), 0.1)) - 1);
   return Math.min(maximum, Math.max(minimum, Number((Math.round(value / size + steps) * size).toPrecision(8))));
+}
+
+const numberOf = (pattern) => pattern.count ?? pattern.at_deg?.length ?? 1;
+const twoDigits = (value) => Number(value.toPrecision(2));
+
+/** Slots in place of the round holes of a pattern, with material left between them. */
+function slotOf(pattern) {
+  return { width_mm: twoDigits(pattern.radius_mm ?? pattern.circle_radius_mm / 10), angle_deg: twoDigits(180 / Math.max(numberOf(pattern), 3)) };
+}
+
+/** A further pattern: small round holes midway between those of `pattern`. */
+function between(pattern) {
+  const half = 180 / numberOf(pattern);
+  const places = pattern.at_deg ? { at_deg: pattern.at_deg.map((angle) => angle + half) } : { count: pattern.count, phase_deg: (pattern.phase_deg ?? 0) + half };
+  return { ...places, circle_radius_mm: pattern.circle_radius_mm, radius_mm: twoDigits(0.4 * (pattern.radius_mm ?? pattern.slot?.width_mm / 2)) };
 }
 
 /** What a gear gets where holes or a relief are added: six holes in the middle of the blank, a usual relief. */

@@ -4,6 +4,7 @@ import { hasKey, json, onKeyNeeded, ProblemError, setKey } from "./api.js";
 import { byId, debounced, fixed, h } from "./dom.js";
 import { Charts, looks, stresses } from "./charts.js";
 import { Design, fromFragment, nameOf, toFragment } from "./design.js";
+import { Deformation } from "./deformed.js";
 import { chartsPicture, csv, drawingFile, save } from "./download.js";
 import { Drawing, indexAt } from "./drawing.js";
 import { Form } from "./form.js";
@@ -29,10 +30,20 @@ const drawing = new Drawing(byId("drawing"), design, { onTurn: (to) => turn(to) 
 const charts = new Charts(byId("charts"), { onPosition: (to) => turn(to) });
 const follower = new Follower({ onResults, onOutline: (outline) => drawing.setOutline(outline), onProblem, onBusy });
 
+const deformation = new Deformation({
+  drawing, button: byId("deformed"), note: byId("deformed-note"), position: () => position,
+  live: async () => {
+    await follower.settled();
+    return live;
+  },
+});
+
 /** Where the curves and the gears stand. */
 function turn(to) {
   const period = live?.results.pair.period_mesh_periods ?? 1;
+  const before = position;
   position = ((to % period) + period) % period;
+  if (position !== before) deformation.moved();
   drawing.setPosition(position);
   charts.setPosition(position);
   byId("position").value = position;
@@ -50,19 +61,19 @@ function showReadout() {
   byId("readout").textContent = `Transmission error ${fixed(curve.transmission_error_um[i], 3)} µm, stiffness ${fixed(curve.mesh_stiffness_tangent_n_per_m[i] * 1e-6, 1)} N/µm, ${pairs} ${pairs === 1 ? "pair" : "pairs"} in contact, ${pressure === null ? "a tip corner carries" : `${fixed(pressure, 0)} MPa`}.${stresses(curve).map(({ name, values }, j) => `${j ? "," : " Stress in MPa:"} ${fixed(values[i], 1)} at a ${name.replace(",", " of the")}`).join("")}${curve.stress ? "." : ""}`;
 }
 
-function onResults(results, submission, { took, since }) {
+function onResults(results, submission, { took, since, draft }) {
   problem = null;
   const name = nameOf(submission);
   live = { name, results, submission, teeth: submission.pair.driven.tooth_count, color: looks().series[0] };
   byId("position").max = results.pair.period_mesh_periods;
   drawing.setCurve(results.curves[0]);
-  showDesigns();
+  showDesigns(draft);
   showProblem();
-  byId("state").textContent = `${results.curves[0].mesh_position.length} positions in ${fixed(took, 0)} ms`;
+  byId("state").textContent = `${results.curves[0].mesh_position.length} positions in ${fixed(took, 0)} ms${draft ? ", under the hand" : ""}`;
   byId("warnings").replaceChildren(...results.warnings.map(({ detail }) => h("li", {}, detail)));
   turn(position);
   // For those who measure: the curve of a change is on the screen.
-  requestAnimationFrame(() => document.dispatchEvent(new CustomEvent("drawn", { detail: { submission, milliseconds: performance.now() - since } })));
+  requestAnimationFrame(() => document.dispatchEvent(new CustomEvent("drawn", { detail: { submission, draft, milliseconds: performance.now() - since } })));
 }
 
 function onProblem(found) {
@@ -78,9 +89,10 @@ function onBusy(busy) {
 /** The last good curve stays; what is wrong stands above it and at its field. */
 function showProblem() {
   const errors = problem?.errors ?? [];
+  const place = byId("problem");
+  if (!problem && place.hidden) return;
   form?.showErrors(errors);
   drawing.refreshHoles(errors.map(({ pointer }) => pointer));
-  const place = byId("problem");
   place.hidden = !problem;
   byId("charts").classList.toggle("stale", Boolean(problem) && Boolean(live));
   if (!problem) return place.replaceChildren();
@@ -89,12 +101,14 @@ function showProblem() {
   byId("state").textContent = "";
 }
 
-function showDesigns() {
+function showDesigns(moving = false) {
   const colors = looks().series;
   live.color = colors[0];
   kept.forEach((each, i) => { each.color = colors[(i % 6) + 1]; });
   const designs = [live, ...kept];
-  charts.show(designs.map((each) => ({ ...each, name: legendOf(each, designs) })));
+  charts.show(designs.map((each) => ({ ...each, name: legendOf(each, designs) })), moving);
+  // Numbers that change with every move cannot be read, and a new table lays the page out.
+  if (moving) return;
   byId("table").replaceChildren(table(designs, {
     onRemove: (gone) => { kept.splice(kept.indexOf(gone), 1); showDesigns(); },
     onOpen: ({ submission }) => design.replace(submission, "open"),
@@ -113,9 +127,10 @@ const carry = debounced(250, async () => {
 
 design.onChange((by) => {
   design.by = by;
+  deformation.off();
   form?.refresh();
   drawing.refreshHoles();
-  follower.follow(design.submission);
+  follower.follow(design.submission, by === "drag" && live ? live.results.pair.period_mesh_periods : null);
   carry();
 });
 
@@ -139,6 +154,7 @@ async function compareMethods() {
 }
 
 async function download(kind) {
+  await follower.settled();
   if (!live) return;
   if (kind === "json") save("meshwright.json", "application/json", JSON.stringify({ submission: live.submission, results: live.results }, null, 1));
   if (kind === "csv") save("meshwright.csv", "text/csv", csv(live.results));
@@ -151,7 +167,10 @@ async function download(kind) {
 
 function setUpButtons() {
   byId("position").addEventListener("input", (event) => turn(Number(event.target.value)));
-  byId("pin").addEventListener("click", () => live && keep({ ...live }));
+  byId("pin").addEventListener("click", async () => {
+    await follower.settled();
+    if (live) keep({ ...live });
+  });
   byId("methods").addEventListener("click", compareMethods);
   byId("share").addEventListener("click", async () => {
     history.replaceState(null, "", await toFragment(design.submission));

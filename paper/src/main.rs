@@ -2,6 +2,7 @@
 
 mod measure;
 mod reproduce;
+mod validity;
 
 use clap::{Parser, Subcommand};
 
@@ -19,6 +20,8 @@ enum Command {
     Measure(measure::Measure),
     /// Recompute the paper's tables, figures and study.
     Reproduce(reproduce::Reproduce),
+    /// Draw the transmission error beside every series of reference solutions.
+    Validity(validity::Validity),
 }
 
 /// As in the service.
@@ -29,5 +32,6 @@ fn main() -> anyhow::Result<()> {
     match Arguments::parse().command {
         Command::Measure(measure) => measure.run(),
         Command::Reproduce(reproduce) => reproduce.run(),
+        Command::Validity(validity) => validity.run(),
     }
 }

@@ -117,11 +117,21 @@ pub fn window(pair: &GearPair) -> (Vector, Vector) {
     )
 }
 
-/// The gear with its teeth, bore and holes, filled with `fill`.
+/// The gear with its teeth, web, bore and holes, filled with `fill`.
 pub fn gear(gear: &SpurGear, place: Placement, fill: RGBColor) -> Vec<Shape> {
     let mut shapes = vec![Shape::Region(outline(gear, place), fill)];
+    shapes.extend(web_edges(gear, place));
     shapes.extend(openings(gear, place));
     shapes
+}
+
+/// The two circles between which the blank is not as thick as the face is wide.
+fn web_edges(gear: &SpurGear, place: Placement) -> Vec<Shape> {
+    let Some(web) = gear.data().blank.web_in(gear.face_width()) else {
+        return Vec::new();
+    };
+    let edge = |radius| Shape::Circle(place.center, radius, INK);
+    vec![edge(web.inner_radius), edge(web.outer_radius)]
 }
 
 /// The bore and the holes of a gear, and a mark on tooth 0's centerline at the bore.

@@ -2,8 +2,9 @@
 
 use axum::extract::{Path, State};
 use axum::http::HeaderMap;
-use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
+use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE, HeaderValue};
 use axum::response::{IntoResponse, Response};
+use meshwright_engine::analysis::fields::Fields;
 use serde::Deserialize;
 use utoipa::IntoParams;
 
@@ -14,7 +15,7 @@ use super::parameters::{Parameters, invalid, job_id};
 use super::problem::{internal, of_missing_results};
 use crate::exchange::vtu;
 use crate::wire::solve::fields;
-use crate::wire::{Code, Problem, Submission};
+use crate::wire::{Code, LoadedEdges, Problem, Submission};
 
 /// Where to look.
 #[derive(Deserialize, IntoParams)]
@@ -61,7 +62,83 @@ pub(super) async fn vtu(
     Parameters(place): Parameters<FieldParameters>,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
-    let job = app.jobs.find(client.name(), job_id(&id)?).await?;
+    let write = |found: &Fields, _, _| {
+        vtu::document(&found.gears).map_err(|error| {
+            tracing::error!(%error, "a field could not be written");
+            internal()
+        })
+    };
+    let file = File {
+        name: "fields.vtu",
+        media_type: "text/xml",
+        saved: true,
+    };
+    answer(app, client, &id, &place, &request, file, write).await
+}
+
+/// Get the edges of both gears under load at a mesh position
+///
+/// What a drawing of the deformed pair needs of `fields.vtu`: where the gears end, how far each node there moves against the hub of its
+/// gear, and its von Mises stress; and the transmission error, by which the driven gear is to be turned back for the flanks to touch. It
+/// is computed by the flexible method, whatever the job's was, while the request waits, and bounded as previews are.
+#[utoipa::path(
+    get, path = "/v1/jobs/{id}/results/edges.json", tag = "Results", operation_id = "get_edges",
+    params(
+        ("id" = String, Path, format = "uuid", description = "The id of the job."),
+        FieldParameters,
+        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
+    ),
+    responses(
+        (status = 200, description = "The edges.", body = LoadedEdges, headers(
+            ("ETag" = String, description = "Stands for these edges."),
+        )),
+        (status = 304, description = "The client has these edges."),
+        (status = 400, description = "A parameter is not understood, or the position is outside the span.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such job or torque, or the job has not ended.", body = Problem, content_type = "application/problem+json"),
+        (status = 409, description = "The job failed or was cancelled, and has no results.", body = Problem, content_type = "application/problem+json"),
+        (status = 422, description = "This position cannot be computed, or takes too long.", body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(super) async fn edges(
+    State(app): State<App>,
+    client: Client,
+    Path(id): Path<String>,
+    Parameters(place): Parameters<FieldParameters>,
+    request: HeaderMap,
+) -> Result<Response, Problem> {
+    let write = |found: &Fields, torque, position| {
+        let edges = LoadedEdges::of(found, torque, position);
+        let text = edges.to_json().map_err(|_| internal())?;
+        Ok(text.into_bytes())
+    };
+    let file = File {
+        name: "edges.json",
+        media_type: "application/json",
+        saved: false,
+    };
+    answer(app, client, &id, &place, &request, file, write).await
+}
+
+/// How an answer is called and what it is.
+struct File {
+    name: &'static str,
+    media_type: &'static str,
+    /// Whether a browser saves it rather than shows it.
+    saved: bool,
+}
+
+/// The fields of job `id` at `place`, as `write` writes them with their torque and mesh position.
+async fn answer(
+    app: App,
+    client: Client,
+    id: &str,
+    place: &FieldParameters,
+    request: &HeaderMap,
+    file: File,
+    write: impl FnOnce(&Fields, f64, f64) -> Result<Vec<u8>, Problem> + Send + 'static,
+) -> Result<Response, Problem> {
+    let job = app.jobs.find(client.name(), job_id(id)?).await?;
     let Some(hash) = &job.document else {
         return Err(of_missing_results(job.status, job.problem.as_ref()));
     };
@@ -69,25 +146,28 @@ pub(super) async fn vtu(
     let submission = Submission::parse(submission.as_bytes())?;
     let (torque, position) = place.within(&submission)?;
     app.jobs.check_memory(&submission)?;
+    let File {
+        name,
+        media_type,
+        saved,
+    } = file;
     let made = async {
         let library = app.library.clone();
         let work = move |run: &meshwright_engine::run::Run| {
-            let gears = fields(&submission, torque, position, &library, run)?;
-            vtu::document(&gears).map_err(|error| {
-                tracing::error!(%error, "a field could not be written");
-                internal()
-            })
+            let found = fields(&submission, torque, position, &library, run)?;
+            write(&found, torque, position)
         };
-        let grid = app.previews.work(None, work).await?.answer;
-        let name = format!("attachment; filename=\"{id}-fields.vtu\"");
-        let headers = [
-            (CONTENT_TYPE, "text/xml".to_owned()),
-            (CONTENT_DISPOSITION, name),
-        ];
-        Ok((headers, grid).into_response())
+        let document = app.previews.work(None, work).await?.answer;
+        let mut response = ([(CONTENT_TYPE, media_type)], document).into_response();
+        if saved {
+            let saved_as = HeaderValue::try_from(format!("attachment; filename=\"{id}-{name}\""));
+            let saved_as = saved_as.map_err(|_| internal())?;
+            response.headers_mut().insert(CONTENT_DISPOSITION, saved_as);
+        }
+        Ok(response)
     };
-    Tag::of_hash(hash, &format!("/fields.vtu/{torque}/{position}"))
-        .answer(Keep::ForGood, &request, made)
+    Tag::of_hash(hash, &format!("/{name}/{torque}/{position}"))
+        .answer(Keep::ForGood, request, made)
         .await
 }
 

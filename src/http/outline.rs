@@ -13,7 +13,7 @@ use crate::wire::{PairOutline, Problem, Submission};
 
 /// Get the outline of a pair
 ///
-/// Takes a submission and answers with the pair as it is cut: the profile of a tooth of each gear, its holes and circles, where both
+/// Takes a submission and answers with the pair as it is cut: the profile of a tooth of each gear, its holes, web and circles, where both
 /// gears stand, and the line of action with its points A to E. Makes no job and computes no load: a drawing can follow the hand.
 /// With `Accept: image/svg+xml` the answer is the drawing itself.
 #[utoipa::path(

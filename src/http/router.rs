@@ -123,6 +123,7 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(reference::validate))
         .routes(routes!(outline::outline))
         .routes(routes!(fields::vtu))
+        .routes(routes!(fields::edges))
         .routes(routes!(tables::table))
         .routes(routes!(studies::results))
         .routes(routes!(studies::file))

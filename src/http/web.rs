@@ -31,6 +31,7 @@ const FILES: &[File] = files! {
     "main.js"
     "api.js"
     "charts.js"
+    "deformed.js"
     "design.js"
     "drawing.js"
     "dom.js"

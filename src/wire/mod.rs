@@ -1,7 +1,7 @@
 //! The JSON documents of the interface as types, in the units of those who read them.
 //!
 //! Read in this order: [`problem`] (what goes wrong), [`submission`] with its parts [`pair`], [`gear`] and
-//! [`resolution`] (what is asked), [`geometry`], [`outline`], [`warning`] and [`results`] (what is answered), [`solve`](mod@solve)
+//! [`resolution`] (what is asked), [`geometry`], [`outline`], [`edges`], [`warning`] and [`results`] (what is answered), [`solve`](mod@solve)
 //! (what leads from the one to the other) and [`examples`](mod@examples); [`preview`], a submission that is answered at
 //! once; then [`study`] and [`study_table`], many
 //! submissions at once. `units`, `quantity`, `size`, `tree`, `edit`, `schema`, `tags` and `pointer` carry them: conversions,
@@ -29,6 +29,7 @@ pub mod pair;
 pub mod resolution;
 pub mod submission;
 
+pub mod edges;
 pub mod geometry;
 pub mod outline;
 pub mod results;
@@ -43,6 +44,7 @@ pub mod preview;
 pub mod study;
 pub mod study_table;
 
+pub use edges::LoadedEdges;
 pub use examples::{Example, examples};
 pub use memory::{memory_above, too_much_memory};
 pub use outline::PairOutline;

@@ -1,6 +1,6 @@
-//! The outline of a pair, for those who draw it: teeth, holes, circles and the line of action, in one frame.
+//! The outline of a pair, for those who draw it: teeth, holes, webs, circles and the line of action, in one frame.
 
-use meshwright_engine::gear::{GearPair, Hole, HoleShape, Member, Vector, radial, tangential};
+use meshwright_engine::gear::{GearPair, Hole, HoleShape, Member, Vector, Web, radial, tangential};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -48,6 +48,9 @@ pub struct GearOutline {
     pub bore_radius_mm: f64,
     /// The holes.
     pub holes: Vec<HoleOutline>,
+    /// The web, where the blank has one that is not as thick as the face is wide.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub web: Option<WebOutline>,
     /// The radii of its circles.
     pub circles: Circles,
 }
@@ -64,6 +67,16 @@ pub struct HoleOutline {
     /// The angle between the centers of the ends of a slot, about the center of the gear, in degrees; absent for a round hole.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slot_angle_deg: Option<f64>,
+}
+
+/// A web: a ring of its own thickness. Its edges are those two circles, less what the holes take of them.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+#[schema(title = "Web outline")]
+pub struct WebOutline {
+    /// The radius at which it begins, in mm.
+    pub inner_radius_mm: f64,
+    /// The radius at which it ends, in mm.
+    pub outer_radius_mm: f64,
 }
 
 /// The circles of a gear, in mm.
@@ -163,6 +176,7 @@ impl GearOutline {
             tooth_mm: outline.into_iter().map(point).collect(),
             bore_radius_mm: to_mm(gear.bore_radius()),
             holes: gear.holes().iter().map(hole).collect(),
+            web: gear.data().blank.web_in(gear.face_width()).map(web),
             circles: Circles {
                 tip_mm: to_mm(gear.tip_radius()),
                 reference_mm: to_mm(gear.reference_radius()),
@@ -183,6 +197,13 @@ fn hole(hole: &Hole) -> HoleOutline {
         at_mm: point(hole.circle_radius * radial(hole.angle)),
         radius_mm: to_mm(hole.half_width()),
         slot_angle_deg,
+    }
+}
+
+fn web(web: Web) -> WebOutline {
+    WebOutline {
+        inner_radius_mm: to_mm(web.inner_radius),
+        outer_radius_mm: to_mm(web.outer_radius),
     }
 }
 
@@ -258,6 +279,24 @@ mod tests {
             assert!((p_1 - p_2).norm() < 1e-10, "{p_1} {p_2}");
             assert!((p_1 - on_line).norm() < 1e-10, "{p_1} {on_line}");
         }
+    }
+
+    #[test]
+    fn a_web_is_drawn_where_it_is_thinner_than_the_face() {
+        let example = examples().iter().find(|example| example.name == "web");
+        let json = example.expect("ships").json;
+        let outline = |thickness_mm: f64| {
+            let mut document: serde_json::Value = serde_json::from_str(json).expect("JSON");
+            document["pair"]["driven"]["blank"]["web"]["thickness_mm"] = thickness_mm.into();
+            let submission = Submission::parse(document.to_string().as_bytes()).expect("valid");
+            PairOutline::of(&submission.case().pair)
+        };
+        let outlined = outline(8.0);
+        let web = outlined.driven.web.expect("as the example has it");
+        assert_eq!((web.inner_radius_mm, web.outer_radius_mm), (22.0, 43.0));
+        assert!(outlined.driving.web.is_none());
+        // As thick as the face is wide it has no edges.
+        assert!(outline(20.0).driven.web.is_none());
     }
 
     #[test]

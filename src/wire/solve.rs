@@ -1,6 +1,6 @@
 //! From a submission to its results, or to what it would come to.
 
-use meshwright_engine::analysis::fields::GearField;
+use meshwright_engine::analysis::fields::Fields;
 use meshwright_engine::analysis::{self, AnalysisError};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -50,7 +50,7 @@ pub fn fields(
     mesh_position: f64,
     library: &Library,
     run: &Run,
-) -> Result<[GearField; 2], Problem> {
+) -> Result<Fields, Problem> {
     analysis::fields::fields(
         submission.case(),
         output_torque_n_m,

@@ -116,6 +116,34 @@ async fn fields_come_as_a_grid_at_any_position_and_torque_of_the_job() {
         .await
         .unwrap();
     assert_eq!(again.status(), StatusCode::NOT_MODIFIED);
+    let edges: Value = bench
+        .get(&format!(
+            "{path}/results/edges.json?torque=115&mesh_position=0.25"
+        ))
+        .send()
+        .await
+        .unwrap()
+        .json()
+        .await
+        .unwrap();
+    assert_eq!(edges["mesh_position"], 0.25);
+    let submitted = submission(115.0);
+    for member in ["driving", "driven"] {
+        let teeth = edges[member]["teeth"].as_array().unwrap();
+        assert_eq!(
+            teeth.len() as u64,
+            submitted["pair"][member]["tooth_count"].as_u64().unwrap()
+        );
+        // Each tooth ends where the next begins.
+        for (tooth, next) in teeth.iter().zip(teeth.iter().cycle().skip(1)) {
+            let last = tooth["at_mm"].as_array().unwrap().last().unwrap();
+            let first = &next["at_mm"][0];
+            for axis in 0..2 {
+                let apart = last[axis].as_f64().unwrap() - first[axis].as_f64().unwrap();
+                assert!(apart.abs() < 1e-3, "{member}: {apart} mm");
+            }
+        }
+    }
     problem(get("?torque=116").await, 404, "not_found").await;
     problem(get("?mesh_position=-0.5").await, 400, "invalid_parameter").await;
     problem(get("?mesh_position=1e9").await, 400, "invalid_parameter").await;

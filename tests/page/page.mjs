@@ -156,6 +156,47 @@ await step("stresses are shown where they are asked for", service, async (page) 
   await axe(page);
 });
 
+await step("lists of holes and slots are opened, changed and computed", service, async (page, context) => {
+  const blank = "/pair/driven/blank/holes";
+  const field = (name) => page.locator(`[id="field-${blank}${name}"]`);
+  const named = (words) => page.waitForFunction((name) => document.querySelector("#table tr.live th").innerText.includes(name), words);
+  await open(page, service);
+  await page.locator("#start").selectOption("slots");
+  await named("5×slot@34");
+  assert.equal(await field("/slot/width_mm").inputValue(), "9");
+  const slots = await cell(page, PEAK_TO_PEAK);
+  await field("/slot/width_mm").fill("7");
+  await page.waitForFunction((old) => Number(document.querySelector("#table tr.live td:nth-child(5)").innerText) !== old, slots);
+  // A slot that is taken away leaves round holes as wide, and comes back in place of them.
+  await field("/slot").uncheck();
+  await named("5×r3.5@34");
+  await field("/slot").check();
+  await named("5×slot@34");
+  assert.equal(await field("/radius_mm").inputValue(), "");
+  await page.locator("#start").selectOption("unequal-holes");
+  await named("4×r7.5@34+2×r6@34");
+  await field("/1/radius_mm").fill("5");
+  await named("4×r7.5@34+2×r5@34");
+  await page.locator("#share").click();
+  await page.waitForFunction(() => location.hash.startsWith("#design="));
+  const again = await context.newPage();
+  await again.goto(page.url());
+  await again.locator("#table tbody tr.live").waitFor();
+  assert.match(await again.locator("#table tr.live th").innerText(), /4×r7\.5@34\+2×r5@34/);
+  assert.equal(await again.locator(`[id="field-${blank}/0/at_deg"]`).inputValue(), "0, 85, 185, 268");
+  // One pattern becomes a list of them, and a further one stands between its holes.
+  await page.locator("#start").selectOption("test-case-2");
+  await field("/count").fill("5");
+  await named("5×r7.5@34");
+  await field("").selectOption({ index: 2 });
+  await page.locator("#form button", { hasText: "Add to several patterns" }).click();
+  await named("5×r7.5@34+5×r3@34");
+  assert.ok(await page.locator("#problem").isHidden());
+  await page.locator("#form .entry-of-list > button", { hasText: "Remove" }).first().click();
+  await named("5×r3@34");
+  await axe(page);
+});
+
 await step("several designs and methods stand in one plot", service, async (page) => {
   await open(page, service);
   await page.locator("#methods").click();
@@ -197,6 +238,29 @@ await step("a job is submitted, followed and opened", service, async (page) => {
   assert.match((await fields).suggestedFilename(), /fields\.vtu$/);
 });
 
+await step("the pair is seen deformed at the position shown, by keys too", service, async (page) => {
+  await open(page, service);
+  await page.locator("#position").fill("0.3");
+  await page.locator("#deformed").focus();
+  await page.keyboard.press("Enter");
+  await page.locator(".deformation .strained.driven").waitFor({ state: "attached" });
+  assert.match(await page.locator("#deformed-note").innerText(), /^At 115 N m and position 0.3, displacements \d+ times enlarged/);
+  assert.ok((await page.locator(".deformation .stress.level-5").first().getAttribute("d")).length > 20, "something is stressed most");
+  await axe(page);
+  if (process.argv.includes("--screenshots")) await page.locator(".drawing-panel").screenshot({ path: `${process.env.PICTURES}/page-deformed.png` });
+  // A position further the shape is another one.
+  const shape = () => page.locator(".strained.driving").getAttribute("d");
+  const before = await shape();
+  await page.locator("#position").fill("0.6");
+  await page.locator(".deformation").waitFor({ state: "detached" });
+  await page.locator(".deformation").waitFor({ state: "attached" });
+  assert.notEqual(await shape(), before);
+  // Another design is shown without load until it is asked for.
+  await page.locator('[id="field-/pair/driven/blank/holes/count"]').fill("8");
+  await page.locator(".deformation").waitFor({ state: "detached" });
+  assert.equal(await page.locator("#deformed").getAttribute("aria-pressed"), "false");
+});
+
 await step("what is shown is downloaded", service, async (page) => {
   await open(page, service);
   for (const [kind, least] of [["json", 20_000], ["csv", 10_000], ["svg", 20_000], ["png", 20_000]]) {
@@ -220,7 +284,7 @@ await step("200 drags are followed in order", service, async (page) => {
   await open(page, service);
   await page.evaluate(() => {
     window.drawn = [];
-    document.addEventListener("drawn", ({ detail }) => window.drawn.push([detail.submission.pair.driven.blank.holes.circle_radius_mm, detail.milliseconds]));
+    document.addEventListener("drawn", ({ detail }) => window.drawn.push([detail.submission.pair.driven.blank.holes.circle_radius_mm, detail.milliseconds, detail.draft]));
   });
   const box = await page.locator(".rotor.driven .hole").nth(5).boundingBox();
   const gear = await page.locator(".rotor.driven .opening").boundingBox();
@@ -238,7 +302,8 @@ await step("200 drags are followed in order", service, async (page) => {
   const radii = drawn.map(([radius]) => radius);
   assert.deepEqual(radii, [...radii].sort((a, b) => b - a), "none out of order");
   assert.ok(drawn.length >= 10, `${drawn.length} curves were drawn`);
-  const times = drawn.map(([, milliseconds]) => milliseconds).sort((a, b) => a - b);
+  assert.ok(!drawn.at(-1)[2], "a hand that rests gets the curve itself");
+  const times = drawn.filter(([, , draft]) => draft).map(([, milliseconds]) => milliseconds).sort((a, b) => a - b);
   const at = (part) => times[Math.floor(part * (times.length - 1))].toFixed(0);
   console.log(`page: ${DRAGS} drags, ${drawn.length} curves drawn; from change to curve ${at(0.5)} ms median, ${at(0.95)} ms p95.`);
 });

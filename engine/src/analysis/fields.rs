@@ -1,5 +1,6 @@
 //! Displacements and stresses everywhere in both gears, at one mesh position.
 
+use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
 use super::setup::Setup;
@@ -32,6 +33,18 @@ pub struct GearField {
     pub elements: Vec<Element>,
     /// The thickness of each element in meters.
     pub thicknesses: Vec<f64>,
+    /// The edges at which the gear ends, each from a corner by a midside to a corner with the material on its left: those of the
+    /// teeth, tooth after tooth counter-clockwise, then those of the holes and of the bore.
+    pub edges: Vec<[u32; 3]>,
+}
+
+/// Both gears at one mesh position.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fields {
+    /// How far the driven gear lags, along the line of action, in meters: the hub of each gear turns by it or stands, as one looks at it.
+    pub transmission_error: f64,
+    /// The driving and the driven gear.
+    pub gears: [GearField; 2],
 }
 
 /// Where a part stands: its origin and the direction of its x axis.
@@ -52,14 +65,14 @@ pub fn fields(
     eta: f64,
     parts: &dyn Parts,
     run: &Run,
-) -> Result<[GearField; 2], AnalysisError> {
+) -> Result<Fields, AnalysisError> {
     faer::set_global_parallelism(faer::Par::Seq);
     let setup = Setup::new(case, case.resolution.grid, FARTHEST_COUPLED, parts, run);
     let (model, _) = setup.model(Blanks::Flexible)?;
     let at = |error| AnalysisError::at_position(error, eta);
     let mut stage = Stage::new(&model, eta, case.pair.load(output_torque)).map_err(at)?;
     let period = eta.floor() as i64;
-    let (_, loads) = stage
+    let (contact, loads) = stage
         .contact(period, &mut WarmStart::default(), |cells, solution| {
             Member::BOTH.map(|member| cells.flank_loads(member, &solution.forces))
         })
@@ -75,7 +88,10 @@ pub fn fields(
         )
     };
     let (driving, driven) = rayon::join(|| of(Member::Driving), || of(Member::Driven));
-    Ok([driving?, driven?])
+    Ok(Fields {
+        transmission_error: contact.transmission_error,
+        gears: [driving?, driven?],
+    })
 }
 
 /// The gear `member` under `loads`, with the centerline of tooth 0 along the x axis of `stand`.
@@ -152,7 +168,7 @@ fn add_teeth(
     let moved = displacements("the tooth", &tooth.grid, plate, &interface, &acting)?;
     for (number, moved) in moved.iter().enumerate() {
         let turn = TAU * number as f64 / count as f64;
-        field.add(&tooth.grid, moved, gear, stand.turned(turn));
+        field.add(&tooth.grid, &interface, moved, gear, stand.turned(turn));
     }
     Ok(())
 }
@@ -185,9 +201,37 @@ fn add_blank(
     let plate = (gear.material(), gear.face_width());
     let answers = displacements("the blank", &whole.grid, plate, &moved, &[acting])?;
     for moved in &answers {
-        field.add(&whole.grid, moved, gear, stand.turned(first));
+        field.add(
+            &whole.grid,
+            &whole.arc_nodes,
+            moved,
+            gear,
+            stand.turned(first),
+        );
     }
     Ok(())
+}
+
+/// The edges of `grid` that belong to one element alone and do not lie between nodes of `inner`.
+fn free_edges(grid: &Grid, inner: &[u32]) -> Vec<[u32; 3]> {
+    let all = || grid.elements.iter().flat_map(edges_of);
+    let ends = |[from, _, to]: [u32; 3]| (from.min(to), from.max(to));
+    let mut elements_at: HashMap<(u32, u32), u32> = HashMap::new();
+    for edge in all() {
+        *elements_at.entry(ends(edge)).or_default() += 1;
+    }
+    let inner: HashSet<u32> = inner.iter().copied().collect();
+    let meets_another = |edge: &[u32; 3]| edge.iter().all(|node| inner.contains(node));
+    all()
+        .filter(|edge| elements_at[&ends(*edge)] == 1 && !meets_another(edge))
+        .collect()
+}
+
+/// The edges of an element counter-clockwise.
+fn edges_of(element: &Element) -> impl Iterator<Item = [u32; 3]> + '_ {
+    let nodes = element.nodes();
+    let corners = element.kind().corner_count();
+    (0..corners).map(move |i| [nodes[i], nodes[corners + i], nodes[(i + 1) % corners]])
 }
 
 impl Stand {
@@ -200,8 +244,9 @@ impl Stand {
 }
 
 impl GearField {
-    /// Adds `grid`, a part of `gear` that stands at `stand` and moves by `moved`, both in its own axes.
-    fn add(&mut self, grid: &Grid, moved: &[Vector], gear: &SpurGear, stand: Stand) {
+    /// Adds `grid`, a part of `gear` that stands at `stand` and moves by `moved`, both in its own axes. At the nodes `inner` it meets
+    /// other parts.
+    fn add(&mut self, grid: &Grid, inner: &[u32], moved: &[Vector], gear: &SpurGear, stand: Stand) {
         let first = self.nodes.len() as u32;
         let (e_x, e_y) = (radial(stand.angle), tangential(stand.angle));
         let turned = |v: &Vector| v.x * e_x + v.y * e_y;
@@ -217,6 +262,9 @@ impl GearField {
             let (x, y) = (Vector::new(e_x.x, e_y.x), Vector::new(e_x.y, e_y.y));
             [along(&x, &x), along(&y, &y), along(&x, &y)]
         }));
+        let edges = free_edges(grid, inner).into_iter();
+        self.edges
+            .extend(edges.map(|edge| edge.map(|node| first + node)));
         for element in &grid.elements {
             self.elements.push(element.renumbered(|node| first + node));
             self.thicknesses

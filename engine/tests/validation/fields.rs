@@ -67,7 +67,9 @@ fn hubs_hold_the_torques_and_roots_and_holes_are_as_stressed_as_their_edges() {
     let stresses = curve.stresses.expect("asked for");
     let place = 7;
     let eta = curve.mesh_position[place];
-    let fields = fields(&case, TORQUE, eta, library(), &Run::unattended()).expect("a field");
+    let fields = fields(&case, TORQUE, eta, library(), &Run::unattended())
+        .expect("a field")
+        .gears;
     for member in Member::BOTH {
         let (field, peaks) = (&fields[member.index()], &stresses[member.index()]);
         let center = center(member);
@@ -166,7 +168,10 @@ fn a_field_turns_with_the_gears() {
     // A whole turn later the same teeth stand in the same places, loaded alike.
     let mut case = case(holed_pair(), &[TORQUE]);
     case.resolution.grid = GridLevel::Coarse;
-    let at = |eta: f64| fields(&case, TORQUE, eta, library(), &Run::unattended()).expect("a field");
+    let at = |eta: f64| {
+        let found = fields(&case, TORQUE, eta, library(), &Run::unattended());
+        found.expect("a field").gears
+    };
     let (now, later) = (at(0.5), at(50.5));
     let [now, later] = [now, later].map(|[driving, _]| driving);
     for (a, b) in now.displacements.iter().zip(&later.displacements) {

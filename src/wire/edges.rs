@@ -1,0 +1,150 @@
+//! The edges of both gears under load at one mesh position, for pages that draw how they deform.
+
+use std::collections::{HashMap, HashSet};
+
+use meshwright_engine::analysis::fields::{Fields, GearField};
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use super::units::{rounded_json, significant, to_mm, to_mpa, to_um};
+
+/// Digits of a place, and of what happens there: more than a drawing shows at any scale.
+const DIGITS: (usize, usize) = (6, 4);
+
+/// A point or a displacement.
+type Plane = [f64; 2];
+
+/// Where both gears end, how far their edges move under load and how stressed they are. The driving axis is the origin, the driven one
+/// lies on the x axis, and both gears stand as at this mesh position without load.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+#[schema(title = "Edges under load")]
+pub struct LoadedEdges {
+    /// The mesh position in mesh periods.
+    pub mesh_position: f64,
+    /// The output torque, in N m.
+    pub output_torque_n_m: f64,
+    /// The static transmission error, in um: turned back by it about its axis, the driven gear touches the driving one.
+    pub transmission_error_um: f64,
+    /// Gear 1.
+    pub driving: GearEdges,
+    /// Gear 2.
+    pub driven: GearEdges,
+}
+
+/// The edges of one gear.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+#[schema(title = "Edges of a gear")]
+pub struct GearEdges {
+    /// The edge around the teeth, counter-clockwise, in a piece for each tooth; only the corners of elements.
+    pub teeth: Vec<Edge>,
+    /// The edges of the holes and of the bore, closed; the bore is missing where the blank has no grid of its own.
+    pub openings: Vec<Edge>,
+}
+
+/// An edge, node by node with the material on its left.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
+#[schema(title = "Edge")]
+pub struct Edge {
+    /// Where its nodes lie before loading, in mm.
+    #[schema(value_type = Vec<Vec<f64>>)]
+    pub at_mm: Vec<Plane>,
+    /// How far each moves against the hub of its gear, in um.
+    #[schema(value_type = Vec<Vec<f64>>)]
+    pub displacement_um: Vec<Plane>,
+    /// The von Mises stress at each, in MPa. Near a contact it is that of the grid, which does not resolve the pressure.
+    pub von_mises_mpa: Vec<f64>,
+}
+
+impl LoadedEdges {
+    /// The edges of `fields`, found at this torque and place.
+    pub fn of(fields: &Fields, output_torque_n_m: f64, mesh_position: f64) -> Self {
+        let [driving, driven] = &fields.gears;
+        Self {
+            mesh_position,
+            output_torque_n_m,
+            transmission_error_um: significant(to_um(fields.transmission_error), DIGITS.0),
+            driving: GearEdges::of(driving),
+            driven: GearEdges::of(driven),
+        }
+    }
+
+    /// The document, rounded as results are.
+    ///
+    /// # Errors
+    ///
+    /// Where a number is not finite, which no solution has.
+    pub fn to_json(&self) -> serde_json::Result<String> {
+        rounded_json(self)
+    }
+}
+
+impl GearEdges {
+    fn of(field: &GearField) -> Self {
+        let von_mises = field.von_mises();
+        let along = |nodes: &Vec<u32>| {
+            let mut edge = Edge::default();
+            for &node in nodes {
+                let i = node as usize;
+                let (at, moved) = (field.nodes[i], field.displacements[i]);
+                let rounded = |value: f64| significant(value, DIGITS.1);
+                let placed = |value: f64| significant(to_mm(value), DIGITS.0);
+                edge.at_mm.push([at.x, at.y].map(placed));
+                edge.displacement_um
+                    .push([moved.x, moved.y].map(to_um).map(rounded));
+                edge.von_mises_mpa.push(rounded(to_mpa(von_mises[i])));
+            }
+            edge
+        };
+        let (closed, open): (Vec<_>, Vec<_>) = chains(&field.edges)
+            .into_iter()
+            .partition(|chain| chain.first() == chain.last());
+        Self {
+            // Flanks are divided so finely that their corners are enough.
+            teeth: open
+                .into_iter()
+                .map(|chain| along(&chain.into_iter().step_by(2).collect()))
+                .collect(),
+            openings: closed.iter().map(along).collect(),
+        }
+    }
+}
+
+/// Edges joined where one begins at the node at which another ends; a closed chain has its first node at its end too.
+fn chains(edges: &[[u32; 3]]) -> Vec<Vec<u32>> {
+    let ends: HashSet<u32> = edges.iter().map(|edge| edge[2]).collect();
+    let mut from: HashMap<u32, [u32; 3]> = edges.iter().map(|edge| (edge[0], *edge)).collect();
+    // Those that begin where nothing ends come first; what is left of the others are rings.
+    let (begins, rest): (Vec<u32>, Vec<u32>) = edges
+        .iter()
+        .map(|edge| edge[0])
+        .partition(|node| !ends.contains(node));
+    let mut chains = Vec::new();
+    for first in begins.into_iter().chain(rest) {
+        let mut chain = Vec::new();
+        let mut node = first;
+        while let Some([_, middle, to]) = from.remove(&node) {
+            chain.extend([node, middle]);
+            node = to;
+        }
+        if !chain.is_empty() {
+            chain.push(node);
+            chains.push(chain);
+        }
+    }
+    chains
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_are_joined_to_open_chains_and_to_rings() {
+        let edges = [[4, 5, 6], [0, 1, 2], [10, 11, 12], [2, 3, 4], [12, 13, 10]];
+        let joined = chains(&edges);
+        assert_eq!(
+            joined,
+            [vec![0, 1, 2, 3, 4, 5, 6], vec![10, 11, 12, 13, 10]]
+        );
+    }
+}
