@@ -16,7 +16,7 @@ use super::store::{
 };
 use super::study::StudyRecord;
 use crate::hash::sha256_hex;
-use crate::wire::{Design, RowState, Status, Study, memory_above, too_much_memory};
+use crate::wire::{Design, Kept, RowState, Status, Study, memory_above, too_much_memory};
 
 /// So many designs are expanded and written in one transaction. Others write in between.
 const CHUNK: usize = 500;
@@ -89,6 +89,7 @@ impl Jobs {
             client: member.client.clone(),
             submitted_at: now,
             memory_mb: self.rules.job_memory_mb,
+            keep: study.keep(),
         };
         let (study, rows, owner) = expand(study, 0, owner).await?;
         let outcome = self.store.begin_study(&new, &rows, self.bounds()).await?;
@@ -138,6 +139,7 @@ impl Jobs {
                         client,
                         submitted_at: record.submitted_at,
                         memory_mb: self.rules.job_memory_mb,
+                        keep: study.keep(),
                     };
                     let expanded = usize::try_from(record.expanded).unwrap_or(usize::MAX);
                     self.continue_in_background(study, expanded, owner);
@@ -391,6 +393,8 @@ struct Owner {
     submitted_at: Timestamp,
     /// So much memory may a design take.
     memory_mb: u64,
+    /// How much of their results is kept.
+    keep: Kept,
 }
 
 impl Owner {
@@ -404,6 +408,7 @@ impl Owner {
         let job = match submission {
             Ok(submission) => Ok(NewJob {
                 study: Some(self.study),
+                keep: self.keep,
                 ..NewJob::of(&submission, &self.client, self.submitted_at)
             }),
             Err(problem) => Err(problem.to_json()),
