@@ -116,8 +116,11 @@ impl Jobs {
         Ok(StudySubmitted { study, repeated })
     }
 
-    /// Goes on with the expansion of studies that another process has left.
+    /// Goes on with the expansion of studies, and with their cancellation, that another process has left.
     pub(super) async fn resume_studies(&self) -> Result<(), StoreError> {
+        for id in self.store.unfinished_cancellations().await? {
+            self.dismiss_designs(id).await?;
+        }
         for (id, client) in self
             .store
             .unfinished_expansions(self.clock.steady())
@@ -149,6 +152,7 @@ impl Jobs {
                     error!(study = %id, %problem, "a study is no longer understood, and cancelled");
                     let now = self.clock.now();
                     self.store.cancel_study(&client, id, now).await?;
+                    self.dismiss_designs(id).await?;
                 }
             }
         }
@@ -348,26 +352,40 @@ impl Jobs {
     ///
     /// # Errors
     ///
-    /// [`JobError::StudyEnded`], [`JobError::StudyNotFound`], [`JobError::Unavailable`], [`JobError::Database`].
+    /// [`JobError::StudyEnded`], [`JobError::StudyNotFound`], [`JobError::ShuttingDown`], [`JobError::Unavailable`],
+    /// [`JobError::Database`].
     pub async fn cancel_study(&self, client: &str, id: Uuid) -> Result<StudyRecord, JobError> {
-        let dismissed = self
+        let cancelled = self
             .store
             .cancel_study(client, id, self.clock.now())
             .await?;
-        let cancelled = dismissed.is_some();
-        for job in dismissed.into_iter().flatten() {
-            // One that enters only now finds at its first report that it is dismissed.
-            if let Some(running) = self.live.running(job) {
-                running.stop();
-            }
-            self.live.changed(job);
-        }
-        self.live.changed(id);
         let study = self.find_study(client, id).await?;
-        if cancelled || study.cancelled_at.is_some() {
-            Ok(study)
-        } else {
-            Err(JobError::StudyEnded(study.status()))
+        if !cancelled && study.cancelled_at.is_none() {
+            return Err(JobError::StudyEnded(study.status()));
+        }
+        let jobs = self.clone();
+        // A hundred thousand jobs take some seconds, and the client may go away meanwhile.
+        let dismissed = tokio::spawn(async move { jobs.dismiss_designs(id).await });
+        dismissed.await.map_err(|_| JobError::ShuttingDown)??;
+        self.find_study(client, id).await
+    }
+
+    /// Dismisses what waits or runs of a study that was cancelled, some jobs at a time. What a process leaves of it the next
+    /// one does.
+    async fn dismiss_designs(&self, id: Uuid) -> Result<(), StoreError> {
+        loop {
+            let (dismissed, more) = self.store.dismiss_designs(id, self.clock.now()).await?;
+            for job in dismissed {
+                // One that enters only now finds at its first report that it is dismissed.
+                if let Some(running) = self.live.running(job) {
+                    running.stop();
+                }
+                self.live.changed(job);
+            }
+            self.live.changed(id);
+            if !more || self.stop().is_cancelled() {
+                return Ok(());
+            }
         }
     }
 

@@ -93,9 +93,6 @@ impl Study {
             return Err(errors.into_problem());
         };
         if errors.count() == 0 {
-            study.refuse_work(&errors);
-        }
-        if errors.count() == 0 {
             study.refuse_faults(&errors, run)?;
         }
         if errors.count() == 0 {

@@ -18,7 +18,7 @@ documented!(
     [],
     schema::object(
         "Study",
-        "One submission in many variants, at most 20,000, each of which is computed as a job. Give either axes or designs. A design that cannot be built stands in the table with its problem.",
+        "One submission in many variants, at most 100,000, each of which is computed as a job. Give either axes or designs. A design that cannot be built stands in the table with its problem.",
         vec![
             (
                 "name",

@@ -326,8 +326,8 @@ fn ten_million_designs_are_refused_with_the_limit_before_any_is_expanded() {
     ));
     let problem = parse(&axes(product)).unwrap_err();
     assert_eq!((problem.code, problem.status), (Code::TooLarge, 422));
-    assert!(problem.detail.contains("10556001") && problem.detail.contains("20000"));
-    assert_eq!(problem.errors[0].nearest, Some(20_000.0));
+    assert!(problem.detail.contains("10556001") && problem.detail.contains("100000"));
+    assert_eq!(problem.errors[0].nearest, Some(100_000.0));
 
     let long = format!("[{}0]", "0,".repeat(9_999_999));
     let text =

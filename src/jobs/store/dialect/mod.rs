@@ -103,8 +103,8 @@ pairs! {
     insert_document = INSERT_DOCUMENT;
     /// From here to its end, no other transaction begins or ceases to need the document $1.
     lock_document = LOCK_DOCUMENT;
-    /// The same of the jobs of study $1 that wait or run, of which none is to be locked after the study.
-    lock_designs = LOCK_DESIGNS;
+    /// Accepted or running -> dismissed. $1: study, $2: now, $3: accepted or running, $4: how many.
+    dismiss_designs = DISMISS_DESIGNS;
     /// From here to its end, no other transaction removes what is old.
     keep_alone = KEEP_ALONE;
     /// Studies without all their rows, which nobody expands. $1: the steady clock, $2: for how long they are taken.

@@ -98,8 +98,11 @@ pub(in crate::jobs::store) const INSERT_DOCUMENT: Words = Some(
 pub(in crate::jobs::store) const LOCK_DOCUMENT: Words =
     Some("select 1 from documents where hash = $1 for update");
 
-pub(in crate::jobs::store) const LOCK_DESIGNS: Words = Some(
-    "select 1 from jobs where study = $1 and status in ('accepted', 'running') order by id for update",
+// Jobs are locked before their study, which the triggers change.
+pub(in crate::jobs::store) const DISMISS_DESIGNS: Words = Some(
+    "update jobs set status = 'dismissed', finished_at = max(max($2, submitted_at), coalesce(started_at, 0)), lease_until = null
+     where id in (select id from jobs where study = $1 and status = $3 order by sequence limit $4 for update)
+     returning id",
 );
 
 pub(in crate::jobs::store) const KEEP_ALONE: Words =

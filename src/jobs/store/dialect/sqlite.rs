@@ -81,7 +81,11 @@ pub(in crate::jobs::store) const INSERT_DOCUMENT: Words = Some(
 
 pub(in crate::jobs::store) const LOCK_DOCUMENT: Words = None;
 
-pub(in crate::jobs::store) const LOCK_DESIGNS: Words = None;
+pub(in crate::jobs::store) const DISMISS_DESIGNS: Words = Some(
+    "update jobs set status = 'dismissed', finished_at = max(max($2, submitted_at), coalesce(started_at, 0)), lease_until = null
+     where id in (select id from jobs where study = $1 and status = $3 order by sequence limit $4)
+     returning id",
+);
 
 pub(in crate::jobs::store) const KEEP_ALONE: Words = None;
 
