@@ -180,7 +180,7 @@ pub struct DoorOptions {
     pub client_queue_limit: Option<u32>,
 
     /// Designs of studies of one client that may wait.
-    #[arg(long, env = "MESHWRIGHT_CLIENT_DESIGN_LIMIT", default_value_t = 20_000, value_name = "NUMBER",
+    #[arg(long, env = "MESHWRIGHT_CLIENT_DESIGN_LIMIT", default_value_t = 100_000, value_name = "NUMBER",
           value_parser = clap::value_parser!(i64).range(1..))]
     pub client_design_limit: i64,
 

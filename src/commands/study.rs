@@ -10,7 +10,8 @@ use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
 use meshwright::wire::study_table::{TableRow, csv, table};
 use meshwright::wire::{
-    Code, Design, Problem, RowState, Status, Study as StudyDocument, StudyResults, Summary, solve,
+    Code, Design, Kept, Problem, RowState, Status, Study as StudyDocument, StudyResults, Summary,
+    solve,
 };
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -29,7 +30,7 @@ const MOST_PRINTED: usize = 40;
 pub(crate) struct Study {
     /// The study; - reads standard input.
     study: PathBuf,
-    /// Where to write table.json, table.csv and each result; the folder is made if it is absent. Without it, only a
+    /// Where to write table.json, table.csv and, unless the study keeps statistics only, each result; the folder is made if it is absent. Without it, only a
     /// short table is printed.
     #[arg(long, short, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -77,6 +78,8 @@ impl Study {
 
 /// Computes every design on all cores, equal ones once, and writes each result as it comes.
 fn compute(study: &StudyDocument, folder: Option<&ResultFolder>) -> anyhow::Result<Vec<RowState>> {
+    // What is kept of a study is the same here.
+    let folder = folder.filter(|_| study.keep() == Kept::Results);
     let total = study.total();
     let designs: Vec<Design> = (0..total)
         .into_par_iter()

@@ -130,6 +130,12 @@ impl From<JobError> for Problem {
             JobError::NotFound(_) => {
                 Problem::new(Code::JobNotFound, format!("{}.", sentence(&error)))
             }
+            JobError::ResultsNotKept(id) => Problem::new(
+                Code::ResultsNotKept,
+                format!(
+                    "Of this design only the statistics were kept, as its study asked; they stand in its table. POST /v1/jobs with the submission of GET /v1/jobs/{id} computes the curves and keeps them."
+                ),
+            ),
             JobError::StudyNotFound(_) => {
                 Problem::new(Code::StudyNotFound, format!("{}.", sentence(&error)))
             }

@@ -147,6 +147,7 @@ pub(super) struct TableParameters {
         (status = 400, description = "A parameter is not understood.", body = Problem, content_type = "application/problem+json"),
         (status = 404, description = "There is no such job, table or torque, or the job has not ended.", body = Problem, content_type = "application/problem+json"),
         (status = 409, description = "The job failed or was cancelled, and has no results.", body = Problem, content_type = "application/problem+json"),
+        (status = 410, description = "The study of the job keeps statistics only (`results_not_kept`); submitted alone, the design has results.", body = Problem, content_type = "application/problem+json"),
     ),
 )]
 pub(super) async fn table(

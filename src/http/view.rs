@@ -10,7 +10,7 @@ use uuid::Uuid;
 
 use super::app::Edge;
 use crate::jobs::Job;
-use crate::wire::{Status, method_schema};
+use crate::wire::{Kept, Status, method_schema};
 
 /// A job: one submission, where it stands, and where to find what belongs to it.
 #[derive(Serialize, ToSchema)]
@@ -46,6 +46,11 @@ pub(super) struct JobView<'a> {
     finished_at: Option<Timestamp>,
     /// What the computation took, in seconds; null until the job has ended.
     wall_time_seconds: Option<f64>,
+    /// `statistics` where the study of the job keeps no more of its results; absent where they are kept whole. They can be
+    /// had by submitting the design alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<String>, example = "statistics")]
+    keep: Option<Kept>,
     /// Of a failed job: why.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<crate::wire::Problem>)]
@@ -94,6 +99,7 @@ impl<'a> JobView<'a> {
             started_at: job.started_at,
             finished_at: job.finished_at,
             wall_time_seconds: job.elapsed.map(|time| time.as_secs_f64()),
+            keep: Some(job.keep).filter(|keep| *keep != Kept::Results),
             problem: job
                 .problem
                 .clone()

@@ -12,15 +12,14 @@ use rayon::ThreadPool;
 use tokio::sync::oneshot;
 use tokio::time::{Instant, MissedTickBehavior, interval_at, sleep};
 use tracing::{error, info, warn};
-use uuid::Uuid;
 
 use super::job::Job;
 use super::live::Running;
 use super::store::{Claim, End, Lease, Packed, Started, StoreError};
 use super::worker::Shop;
-use crate::wire::{Code, Problem, SOLVER_VERSION, Submission, Summary};
+use crate::wire::{Code, Kept, Problem, SOLVER_VERSION, Submission, Summary};
 
-/// What a computation leaves: the results document, and what the tables of studies show of it.
+/// What a computation leaves: the results document or its name, and what the tables of studies show of it.
 struct Solved {
     document: Packed,
     summary: Option<String>,
@@ -46,7 +45,7 @@ impl Shop {
         if !self.holds(claim).await {
             return;
         }
-        let mut outcome = self.launch(job.id, submission, running.run(), threads);
+        let mut outcome = self.launch(&job, submission, running.run(), threads);
         let mut deadline = pin!(sleep(self.pace.time_limit));
         let mut heartbeat = interval_at(Instant::now() + self.pace.heartbeat, self.pace.heartbeat);
         heartbeat.set_missed_tick_behavior(MissedTickBehavior::Delay);
@@ -89,13 +88,14 @@ impl Shop {
     /// requests. A panic in it is the engine's fault and ends this job only.
     fn launch(
         &self,
-        id: Uuid,
+        job: &Job,
         submission: String,
         run: Run,
         threads: &ThreadPool,
     ) -> oneshot::Receiver<Outcome> {
         let (sender, receiver) = oneshot::channel();
         let solve = Arc::clone(&self.solve);
+        let (id, keep) = (job.id, job.keep);
         threads.spawn(move || {
             let work = || {
                 let submission = Submission::parse(submission.as_bytes())?;
@@ -103,7 +103,10 @@ impl Shop {
                 let summary = Summary::of_document(&document).map(|summary| {
                     serde_json::to_string(&summary).expect("a summary is plain data")
                 });
-                let document = Packed::of(&document);
+                let document = match keep {
+                    Kept::Results => Packed::of(&document),
+                    Kept::Statistics => Packed::name_of(&document),
+                };
                 Ok(Solved { document, summary })
             };
             let result = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {

@@ -36,6 +36,9 @@ pub enum JobError {
     /// The client has no such job.
     #[error("there is no job {0}")]
     NotFound(Uuid),
+    /// The study of the job keeps statistics only.
+    #[error("of job {0} only the statistics were kept")]
+    ResultsNotKept(Uuid),
     /// The client has no such study.
     #[error("there is no study {0}")]
     StudyNotFound(Uuid),

@@ -4,7 +4,7 @@ use jiff::{SignedDuration, Timestamp};
 use serde_json::Value;
 use uuid::Uuid;
 
-use crate::wire::Status;
+use crate::wire::{Kept, Status};
 
 /// Mesh positions solved, of those to solve, over all torques. Never time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -54,6 +54,8 @@ pub struct Job {
     pub elapsed: Option<SignedDuration>,
     /// Of a failed job: the problem document.
     pub problem: Option<Value>,
+    /// How much of its results is kept.
+    pub keep: Kept,
     /// Of a successful job: the hash of its results.
     pub document: Option<String>,
     /// The earlier job whose results this one was given.

@@ -16,7 +16,7 @@ use super::others;
 use super::store::{
     Cursor, Depth, Document, Filter, NewJob, Outcome, QueueBounds, Store, StoreError,
 };
-use crate::wire::{SOLVER_VERSION, Status, Submission};
+use crate::wire::{Kept, SOLVER_VERSION, Status, Submission};
 
 /// So long a repeated request is recognized by its key.
 pub(super) const KEY_LIFETIME: jiff::SignedDuration = jiff::SignedDuration::from_hours(24);
@@ -265,16 +265,17 @@ impl Jobs {
     ///
     /// # Errors
     ///
-    /// [`JobError::NotFound`] if it has been deleted since, [`JobError::Ended`] if it has none, [`JobError::Unavailable`],
-    /// [`JobError::Database`].
+    /// [`JobError::NotFound`] if it has been deleted since, [`JobError::Ended`] if it has none,
+    /// [`JobError::ResultsNotKept`], [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn document(&self, job: &Job) -> Result<Document, JobError> {
         let Some(hash) = &job.document else {
             return Err(JobError::Ended(job.status));
         };
-        self.store
-            .document(hash)
-            .await?
-            .ok_or(JobError::NotFound(job.id))
+        let document = self.store.document(hash).await?;
+        document.ok_or(match job.keep {
+            Kept::Results => JobError::NotFound(job.id),
+            Kept::Statistics => JobError::ResultsNotKept(job.id),
+        })
     }
 
     /// Ends a job that waits or runs. A job that was cancelled before stays so.
@@ -395,6 +396,7 @@ impl NewJob {
             submitted_at: now,
             idempotency_key: None,
             study: None,
+            keep: Kept::Results,
             client_limit: u32::MAX,
         }
     }

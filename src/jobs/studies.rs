@@ -16,7 +16,7 @@ use super::store::{
 };
 use super::study::StudyRecord;
 use crate::hash::sha256_hex;
-use crate::wire::{Design, RowState, Status, Study, memory_above, too_much_memory};
+use crate::wire::{Design, Kept, RowState, Status, Study, memory_above, too_much_memory};
 
 /// So many designs are expanded and written in one transaction. Others write in between.
 const CHUNK: usize = 500;
@@ -89,6 +89,7 @@ impl Jobs {
             client: member.client.clone(),
             submitted_at: now,
             memory_mb: self.rules.job_memory_mb,
+            keep: study.keep(),
         };
         let (study, rows, owner) = expand(study, 0, owner).await?;
         let outcome = self.store.begin_study(&new, &rows, self.bounds()).await?;
@@ -115,8 +116,11 @@ impl Jobs {
         Ok(StudySubmitted { study, repeated })
     }
 
-    /// Goes on with the expansion of studies that another process has left.
+    /// Goes on with the expansion of studies, and with their cancellation, that another process has left.
     pub(super) async fn resume_studies(&self) -> Result<(), StoreError> {
+        for id in self.store.unfinished_cancellations().await? {
+            self.dismiss_designs(id).await?;
+        }
         for (id, client) in self
             .store
             .unfinished_expansions(self.clock.steady())
@@ -138,6 +142,7 @@ impl Jobs {
                         client,
                         submitted_at: record.submitted_at,
                         memory_mb: self.rules.job_memory_mb,
+                        keep: study.keep(),
                     };
                     let expanded = usize::try_from(record.expanded).unwrap_or(usize::MAX);
                     self.continue_in_background(study, expanded, owner);
@@ -147,6 +152,7 @@ impl Jobs {
                     error!(study = %id, %problem, "a study is no longer understood, and cancelled");
                     let now = self.clock.now();
                     self.store.cancel_study(&client, id, now).await?;
+                    self.dismiss_designs(id).await?;
                 }
             }
         }
@@ -346,26 +352,40 @@ impl Jobs {
     ///
     /// # Errors
     ///
-    /// [`JobError::StudyEnded`], [`JobError::StudyNotFound`], [`JobError::Unavailable`], [`JobError::Database`].
+    /// [`JobError::StudyEnded`], [`JobError::StudyNotFound`], [`JobError::ShuttingDown`], [`JobError::Unavailable`],
+    /// [`JobError::Database`].
     pub async fn cancel_study(&self, client: &str, id: Uuid) -> Result<StudyRecord, JobError> {
-        let dismissed = self
+        let cancelled = self
             .store
             .cancel_study(client, id, self.clock.now())
             .await?;
-        let cancelled = dismissed.is_some();
-        for job in dismissed.into_iter().flatten() {
-            // One that enters only now finds at its first report that it is dismissed.
-            if let Some(running) = self.live.running(job) {
-                running.stop();
-            }
-            self.live.changed(job);
-        }
-        self.live.changed(id);
         let study = self.find_study(client, id).await?;
-        if cancelled || study.cancelled_at.is_some() {
-            Ok(study)
-        } else {
-            Err(JobError::StudyEnded(study.status()))
+        if !cancelled && study.cancelled_at.is_none() {
+            return Err(JobError::StudyEnded(study.status()));
+        }
+        let jobs = self.clone();
+        // A hundred thousand jobs take some seconds, and the client may go away meanwhile.
+        let dismissed = tokio::spawn(async move { jobs.dismiss_designs(id).await });
+        dismissed.await.map_err(|_| JobError::ShuttingDown)??;
+        self.find_study(client, id).await
+    }
+
+    /// Dismisses what waits or runs of a study that was cancelled, some jobs at a time. What a process leaves of it the next
+    /// one does.
+    async fn dismiss_designs(&self, id: Uuid) -> Result<(), StoreError> {
+        loop {
+            let (dismissed, more) = self.store.dismiss_designs(id, self.clock.now()).await?;
+            for job in dismissed {
+                // One that enters only now finds at its first report that it is dismissed.
+                if let Some(running) = self.live.running(job) {
+                    running.stop();
+                }
+                self.live.changed(job);
+            }
+            self.live.changed(id);
+            if !more || self.stop().is_cancelled() {
+                return Ok(());
+            }
         }
     }
 
@@ -391,6 +411,8 @@ struct Owner {
     submitted_at: Timestamp,
     /// So much memory may a design take.
     memory_mb: u64,
+    /// How much of their results is kept.
+    keep: Kept,
 }
 
 impl Owner {
@@ -404,6 +426,7 @@ impl Owner {
         let job = match submission {
             Ok(submission) => Ok(NewJob {
                 study: Some(self.study),
+                keep: self.keep,
                 ..NewJob::of(&submission, &self.client, self.submitted_at)
             }),
             Err(problem) => Err(problem.to_json()),

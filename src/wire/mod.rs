@@ -20,6 +20,7 @@ mod tags;
 mod tree;
 mod units;
 
+mod kept;
 pub mod problem;
 pub mod status;
 
@@ -46,6 +47,7 @@ pub mod study_table;
 
 pub use edges::LoadedEdges;
 pub use examples::{Example, examples};
+pub use kept::Kept;
 pub use memory::{memory_above, too_much_memory};
 pub use outline::PairOutline;
 pub use preview::Preview;

@@ -100,6 +100,8 @@ codes! {
         "The study came to its end without any results: none of its designs could be built or computed. Each row of its table has its own problem."
     ResultNotReady "result-not-ready" 404 "The result is not ready"
         "The job is waiting or running. Ask again after the time in Retry-After, or follow its events."
+    ResultsNotKept "results-not-kept" 410 "Only the statistics were kept"
+        "The job computes a design of a study that keeps statistics only (\"keep\": \"statistics\"); they stand in the table of the study, and the curves are gone. To have them, submit the design alone: send what GET /v1/jobs/{id} has under submission to POST /v1/jobs."
     JobNotFound "job-not-found" 404 "There is no such job"
         "No job of yours has this identifier; it may have been deleted, or have been kept as long as the service keeps jobs that have ended."
     StudyNotFound "study-not-found" 404 "There is no such study"

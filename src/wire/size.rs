@@ -3,6 +3,7 @@
 use std::cell::Cell;
 use std::fmt;
 
+use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
 use super::problem::{Code, FieldError, Problem};
@@ -29,6 +30,18 @@ pub(super) fn refuse_many_values(document: &[u8], most: u64) -> Result<(), Probl
     Err(Problem::of_fields(vec![
         FieldError::new("", Code::TooLarge, detail).nearest(most as f64),
     ]))
+}
+
+/// The number of values that stand somewhere, none of which is kept.
+#[derive(Default)]
+pub(super) struct Values(pub(super) u64);
+
+impl<'de> Deserialize<'de> for Values {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let left = Cell::new(u64::MAX);
+        Count { left: &left }.deserialize(deserializer)?;
+        Ok(Self(u64::MAX - left.get()))
+    }
 }
 
 /// Counts the values of a document down, and keeps none.

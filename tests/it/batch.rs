@@ -134,6 +134,15 @@ async fn the_results_of_a_study_come_line_by_line_and_its_table_at_both_addresse
     let json: Value = bench.document(&format!("{path}/results/table.json")).await;
     assert_eq!(json, bench.document(&format!("{path}/results")).await);
     assert_eq!(json["rows"].as_array().unwrap().len(), 21);
+    let lines = bench.get(ended["links"]["table_ndjson"].as_str().unwrap());
+    let lines = lines.send().await.unwrap();
+    assert_eq!(lines.headers()["content-type"], "application/x-ndjson");
+    let lines = lines.text().await.unwrap();
+    let rows: Vec<Value> = lines
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    assert_eq!(json["rows"], json!(rows), "row by row the same");
     let document = bench
         .document(ended["links"]["document"].as_str().unwrap())
         .await;

@@ -25,6 +25,7 @@ mod life;
 mod lists;
 mod once_more;
 mod page;
+mod population;
 mod previews;
 mod process;
 mod real;

@@ -242,6 +242,54 @@ async fn equal_designs_are_computed_once() {
 }
 
 #[tokio::test]
+async fn a_study_that_keeps_statistics_has_its_table_and_no_curves() {
+    let (bench, mut engine) = Bench::steered().await;
+    let mut study = torques(&[20.0, 115.0]);
+    study["keep"] = json!("statistics");
+    let path = submit(&bench, &study).await;
+    engine.next().await.finish();
+    engine.next().await.finish();
+    assert_eq!(bench.ended(&path).await["successful"], 2);
+    let rows = table(&bench, &path).await["rows"].clone();
+    let mut designs = Vec::new();
+    for row in rows.as_array().unwrap() {
+        assert_eq!(row["curves"][0]["hole_order_um"], 0.1, "of the stub");
+        let design = format!("/v1/jobs/{}", row["job"].as_str().unwrap());
+        let job = bench.job(&design).await;
+        assert_eq!(
+            (&job["status"], &job["keep"]),
+            (&json!("successful"), &json!("statistics"))
+        );
+        for part in ["/results", "/results/ste.csv"] {
+            let asked = bench.get(&format!("{design}{part}")).send().await.unwrap();
+            let refused = problem(asked, 410, "results_not_kept").await;
+            let detail = refused["detail"].as_str().unwrap();
+            assert!(detail.contains(&design) && detail.contains("POST /v1/jobs"));
+        }
+        designs.push((design, job["submission"].clone()));
+    }
+    let documents = bench.get(&format!("{path}/results/documents.ndjson"));
+    let documents = documents.send().await.unwrap();
+    assert_eq!(documents.text().await.unwrap(), "");
+
+    // The numbers are there for the next study that wants no more.
+    let again = submit(&bench, &study).await;
+    assert_eq!(bench.job(&again).await["status"], "successful");
+    assert!(engine.is_idle());
+
+    // Alone it is computed, and the study's design has those results, too.
+    let (design, submission) = &designs[0];
+    let single = bench.submit(submission).await;
+    engine.next().await.finish();
+    let job = bench.ended(&single).await;
+    assert!(job["links"]["same_as"].is_null() && job["keep"].is_null());
+    for path in [&single, design] {
+        let results = bench.get(&format!("{path}/results")).send().await.unwrap();
+        assert_eq!(results.text().await.unwrap(), RESULTS);
+    }
+}
+
+#[tokio::test]
 async fn a_cancelled_study_keeps_what_it_has_and_computes_no_more() {
     let (bench, mut engine) = Bench::steered().await;
     let path = submit(&bench, &torques(&[1.0, 2.0, 3.0])).await;
@@ -340,11 +388,11 @@ async fn what_is_wrong_with_a_study_is_refused_with_its_place() {
     );
     let huge = json!({ "base": submission(1.0), "axes": axes });
     let refused = problem(send(huge).await, 422, "too_large").await;
-    assert!(refused["detail"].as_str().unwrap().contains("20000"));
+    assert!(refused["detail"].as_str().unwrap().contains("100000"));
 
     let twice = json!({ "base": submission(1.0), "designs": [{ "label": "a" }, { "label": "a" }] });
     problem(send(twice).await, 422, "out_of_range").await;
-    let long = json!({ "base": submission(1.0), "axes": [{ "path": "/output_torques_n_m/0", "values": vec![1.0; 2_000_000] }] });
+    let long = json!({ "base": submission(1.0), "axes": [{ "path": "/output_torques_n_m/0", "values": vec![1.0; 5_000_000] }] });
     problem(send(long).await, 413, "payload_too_large").await;
     let response = bench
         .client

@@ -28,8 +28,8 @@ use view::StudyView;
 pub(super) use events::*;
 pub(super) use table::*;
 
-/// A study may have so many MiB: twenty thousand designs, each listed with a few changes, have one or two.
-const MIB: usize = 4;
+/// A study may have so many MiB: a hundred thousand designs, each listed with two changes, have a dozen.
+const MIB: usize = 16;
 
 /// The document of a study is told with its state if it has no more bytes than this.
 const LONGEST_IN_VIEW: u64 = 64 << 10;
@@ -59,9 +59,9 @@ fn study_id(text: &str) -> Result<Uuid, Problem> {
         (status = 200, description = "With a repeated `Idempotency-Key`, the study that has ended meanwhile.", body = StudyView),
         (status = 400, description = "The body is no JSON, or a header is not understood.", body = Problem, content_type = "application/problem+json"),
         (status = 408, description = "The body came too slowly.", body = Problem, content_type = "application/problem+json"),
-        (status = 413, description = "The body has more than 4 MiB.", body = Problem, content_type = "application/problem+json"),
+        (status = 413, description = "The body has more than 16 MiB.", body = Problem, content_type = "application/problem+json"),
         (status = 415, description = "The body is not declared as JSON.", body = Problem, content_type = "application/problem+json"),
-        (status = 422, description = "The study is not understood, or has more than 20,000 designs; `errors` says which field is why. Or the key was used for another study.", body = Problem, content_type = "application/problem+json"),
+        (status = 422, description = "The study is not understood, or has more than 100,000 designs; `errors` says which field is why. Or the key was used for another study.", body = Problem, content_type = "application/problem+json"),
         (status = 429, description = "More designs of this client wait than may.", body = Problem, content_type = "application/problem+json"),
         (status = 503, description = "Too many designs wait, nothing can be stored, or the service is shutting down. Try again after `Retry-After` seconds.", body = Problem, content_type = "application/problem+json"),
     ),

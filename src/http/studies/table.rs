@@ -55,22 +55,22 @@ pub(in crate::http) async fn results(
 
 /// Get the table of a study, or its results, as a file
 ///
-/// `table.json` and `table.csv` are the table: in CSV one line for each row and torque, the columns named as in the JSON
-/// with dots between the names. `documents.ndjson` has the results of every design that has some, as
+/// `table.json`, `table.ndjson` and `table.csv` are the table: in NDJSON one row to a line, each as in the JSON; in CSV one line
+/// for each row and torque, the columns named as in the JSON with dots between the names. `documents.ndjson` has the results of every design that has some, as
 /// `/v1/jobs/{id}/results` gives them: one object to a line, with the place of the design in the table, its label and its
 /// job. All are sent as they are read.
 #[utoipa::path(
     get, path = "/v1/studies/{id}/results/{file}", tag = "Studies", operation_id = "get_study_file",
     params(
         ("id" = String, Path, format = "uuid", description = "The id of the study."),
-        ("file" = inline(StudyFile), Path, description = "`table.json`, `table.csv` or `documents.ndjson`."),
+        ("file" = inline(StudyFile), Path, description = "`table.json`, `table.ndjson`, `table.csv` or `documents.ndjson`."),
         ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
     ),
     responses(
-        (status = 200, description = "The table, or the results: of NDJSON, the schema is that of a line.", content(
+        (status = 200, description = "The table, or the results: of NDJSON, the schema is that of a line, `Row` in `table.ndjson`.", content(
             (StudyResults = "application/json"),
             (String = "text/csv"),
-            (DesignResults = "application/x-ndjson"),
+            (NdjsonLine = "application/x-ndjson"),
         ), headers(("ETag" = String, description = "Stands for this answer."))),
         (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
         (status = 404, description = "There is no such study, or no such file.", body = Problem, content_type = "application/problem+json"),
@@ -84,12 +84,13 @@ pub(in crate::http) async fn file(
 ) -> Result<Response, Problem> {
     let form = match file.as_str() {
         "table.json" => Form::Json,
+        "table.ndjson" => Form::Ndjson,
         "table.csv" => Form::Csv,
         "documents.ndjson" => Form::Documents,
         _ => {
             return Err(Problem::new(
                 Code::NotFound,
-                "The files are table.json, table.csv and documents.ndjson.",
+                "The files are table.json, table.ndjson, table.csv and documents.ndjson.",
             ));
         }
     };
@@ -128,6 +129,9 @@ pub(in crate::http) enum StudyFile {
     /// The table.
     #[serde(rename = "table.json")]
     Json,
+    /// The table, one row to a line.
+    #[serde(rename = "table.ndjson")]
+    Ndjson,
     /// The table as CSV.
     #[serde(rename = "table.csv")]
     Csv,
@@ -152,9 +156,22 @@ pub(in crate::http) struct DesignResults<'a> {
     results: &'a RawValue,
 }
 
+/// A line of NDJSON: a row in `table.ndjson`, the results of a design in `documents.ndjson`.
+#[derive(ToSchema)]
+#[schema(title = "StudyLine")]
+#[serde(untagged)]
+#[expect(dead_code, reason = "it stands for the lines in the OpenAPI document")]
+pub(in crate::http) enum NdjsonLine<'a> {
+    /// A row of the table.
+    Row(TableRow),
+    /// The results of a design.
+    Results(DesignResults<'a>),
+}
+
 #[derive(Clone, Copy)]
 enum Form {
     Json,
+    Ndjson,
     Csv,
     Documents,
 }
@@ -163,6 +180,7 @@ impl Form {
     fn word(self) -> &'static str {
         match self {
             Self::Json => "table.json",
+            Self::Ndjson => "table.ndjson",
             Self::Csv => "table.csv",
             Self::Documents => "documents.ndjson",
         }
@@ -172,7 +190,7 @@ impl Form {
         match self {
             Self::Json => "application/json",
             Self::Csv => "text/csv; charset=utf-8",
-            Self::Documents => "application/x-ndjson",
+            Self::Ndjson | Self::Documents => "application/x-ndjson",
         }
     }
 }
@@ -188,7 +206,7 @@ async fn send(
     let tag = tag_of(&study, form.word(), &app.edge);
     let made = async {
         let body = match form {
-            Form::Json | Form::Csv => table(app, &study, form).await?,
+            Form::Json | Form::Ndjson | Form::Csv => table(app, &study, form).await?,
             Form::Documents => documents(app, &study).await?,
         };
         let mut response = ([(CONTENT_TYPE, form.content_type())], body).into_response();
@@ -223,15 +241,18 @@ async fn table(app: App, study: &StudyRecord, form: Form) -> Result<Body, Proble
             outline.add(row);
         }
     }
-    let csv = CsvTable::new(outline.pointers().to_vec(), outline.has_stress());
-    let (head, foot) = match form {
-        Form::Csv => (csv.header(), ""),
-        Form::Json | Form::Documents => (head_of_json(study, &app), "]}"),
+    let (head, foot, layout) = match form {
+        Form::Csv => {
+            let csv = CsvTable::new(outline.pointers().to_vec(), outline.has_stress());
+            (csv.header(), "", Layout::Csv(csv))
+        }
+        Form::Ndjson => (String::new(), "", Layout::Lines),
+        Form::Json | Form::Documents => (head_of_json(study, &app), "]}", Layout::List),
     };
     let writer = RowWriter {
         study: study.clone(),
         front: outline.front(),
-        csv: matches!(form, Form::Csv).then_some(csv),
+        layout,
         public_url: Arc::from(app.edge.public_url.as_str()),
     };
     let rows = stream::unfold(Some((app, Arc::new(writer), 0)), async |at| {
@@ -267,11 +288,21 @@ fn head_of_json(study: &StudyRecord, app: &App) -> String {
     text
 }
 
+/// How rows follow each other.
+enum Layout {
+    /// In the list of a JSON document.
+    List,
+    /// As JSON, each on a line of its own.
+    Lines,
+    /// As CSV.
+    Csv(CsvTable),
+}
+
 /// How rows are written.
 struct RowWriter {
     study: StudyRecord,
     front: Vec<bool>,
-    csv: Option<CsvTable>,
+    layout: Layout,
     public_url: Arc<str>,
 }
 
@@ -283,14 +314,18 @@ impl RowWriter {
             let best = usize::try_from(i).ok().and_then(|i| self.front.get(i));
             let mut row = TableRow::new(self.study.gear, state, best.copied().unwrap_or(false));
             row.problem = row.problem.map(|problem| self.with_address(problem));
-            match &self.csv {
-                Some(csv) => text.push_str(&csv.lines([&row])),
-                None => {
+            let json = || serde_json::to_string(&row).expect("a row is plain data");
+            match &self.layout {
+                Layout::Csv(csv) => text.push_str(&csv.lines([&row])),
+                Layout::Lines => {
+                    text.push_str(&json());
+                    text.push('\n');
+                }
+                Layout::List => {
                     if i > 0 {
                         text.push(',');
                     }
-                    let row = serde_json::to_string(&row);
-                    text.push_str(&row.expect("a row is plain data"));
+                    text.push_str(&json());
                 }
             }
         }

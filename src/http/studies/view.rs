@@ -65,6 +65,8 @@ pub(in crate::http) struct StudyLinks {
     results: String,
     /// Its table as CSV.
     results_csv: String,
+    /// Its table, one row to a line.
+    table_ndjson: String,
     /// The results of all designs that have some, one to a line.
     results_ndjson: String,
     /// Its events, as they happen.
@@ -120,6 +122,7 @@ impl StudyLinks {
             results: format!("{self_}/results"),
             document: format!("{self_}/document"),
             results_csv: format!("{self_}/results/table.csv"),
+            table_ndjson: format!("{self_}/results/table.ndjson"),
             results_ndjson: format!("{self_}/results/documents.ndjson"),
             events: format!("{self_}/events"),
             jobs: format!("{}/v1/jobs?study={}", edge.public_url, study.id),

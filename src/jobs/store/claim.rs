@@ -11,6 +11,7 @@ use super::statement::{Connection, query, query_as, query_scalar};
 use super::submit::{Known, find_known};
 use super::{Store, StoreError, dialect, micros};
 use crate::jobs::job::Job;
+use crate::wire::Kept;
 
 /// A job that a worker is to compute.
 #[derive(Debug, Clone, PartialEq)]
@@ -131,16 +132,19 @@ async fn next_in_turn(
 ) -> Result<Option<String>, sqlx::Error> {
     for lane in shares::lanes(connection).await? {
         while claimed.given.len() < MOST_GIVEN {
-            let next: Option<(String, String, i64)> = query_as(dialect::next_waiting())
+            let next: Option<(String, String, i64, String)> = query_as(dialect::next_waiting())
                 .bind(&lane.client)
                 .bind(&lane.lane)
                 .fetch_optional(&mut *connection)
                 .await?;
-            let Some((id, input_hash, cost)) = next else {
+            let Some((id, input_hash, cost, keep)) = next else {
                 turn.empty.push(lane);
                 break;
             };
-            match find_known(connection, &lane.client, &input_hash, solver_version).await? {
+            // A word that is not known keeps everything.
+            let keep = Kept::named(&keep).unwrap_or(Kept::Results);
+            let known = find_known(connection, &lane.client, &input_hash, keep, solver_version);
+            match known.await? {
                 Some(known) => {
                     let job = give(connection, &id, &known, now, solver_version).await?;
                     tell_end(connection, &job, now).await?;

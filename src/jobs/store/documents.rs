@@ -20,6 +20,7 @@ pub(in crate::jobs) struct Packed {
     hash: String,
     body: Vec<u8>,
     size: u64,
+    whole: bool,
 }
 
 impl Packed {
@@ -32,6 +33,17 @@ impl Packed {
             hash: sha256_hex(text),
             body: body.expect("memory takes every byte"),
             size: text.len() as u64,
+            whole: true,
+        }
+    }
+
+    /// The name of a text, which itself is not kept.
+    pub(in crate::jobs) fn name_of(text: &str) -> Self {
+        Self {
+            hash: sha256_hex(text),
+            body: Vec::new(),
+            size: text.len() as u64,
+            whole: false,
         }
     }
 
@@ -45,12 +57,13 @@ impl Packed {
         &self.hash
     }
 
-    /// Keeps the document, unless it is kept already.
+    /// Keeps the document, unless it is kept already. One of which only the name was kept becomes whole.
     pub(super) async fn insert(&self, connection: &mut Connection) -> Result<(), sqlx::Error> {
         query(dialect::insert_document())
             .bind(&self.hash)
             .bind(&*self.body)
             .bind(super::column(self.size))
+            .bind(i64::from(self.whole))
             .execute(connection)
             .await?;
         Ok(())
@@ -107,13 +120,13 @@ impl Document {
 }
 
 impl Store {
-    /// A results document.
+    /// A results document, if more of it was kept than its name.
     pub(in crate::jobs) async fn document(
         &self,
         hash: &str,
     ) -> Result<Option<Document>, StoreError> {
         let found: Option<(String, Vec<u8>)> =
-            query_as("select encoding, body from documents where hash = $1")
+            query_as("select encoding, body from documents where hash = $1 and whole = 1")
                 .bind(hash)
                 .fetch_optional(&self.readers)
                 .await?;

@@ -34,7 +34,7 @@ pub(super) async fn note_study(
     let ended: Option<StudyRecord> = query_as(
         "update studies set ended_at = max(coalesce(cancelled_at, last_end, submitted_at), submitted_at)
          where id = $1 and ended_at is null
-           and (cancelled_at is not null or unbuildable + successful + failed + dismissed = total)
+           and (cancelled_at is not null and accepted + running = 0 or unbuildable + successful + failed + dismissed = total)
          returning *",
     )
     .bind(id.to_string())

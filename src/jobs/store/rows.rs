@@ -8,8 +8,8 @@ use uuid::Uuid;
 
 use crate::jobs::job::{Job, Progress};
 use crate::jobs::study::StudyRecord;
-use crate::wire::Status;
 use crate::wire::warning::GearName;
+use crate::wire::{Kept, Status};
 
 /// Reads a type from the rows of both databases by the same words.
 macro_rules! from_row {
@@ -75,6 +75,7 @@ from_row! {
                 .try_get::<Option<String>, _>("problem")?
                 .map(|text| json("problem", &text))
                 .transpose()?,
+            keep: keep(row, "keep")?,
             document: row.try_get("document")?,
             same_as: optional_uuid(row, "same_as")?,
             study: optional_uuid(row, "study")?,
@@ -135,6 +136,11 @@ pub(super) fn optional_uuid(
 pub(super) fn status(row: &impl Cells, column: &'static str) -> Result<Status, sqlx::Error> {
     let word = row.text(column)?.unwrap_or_default();
     Status::of_word(&word).ok_or_else(|| undecodable(column, UnknownWord(word)))
+}
+
+pub(super) fn keep(row: &impl Cells, column: &'static str) -> Result<Kept, sqlx::Error> {
+    let word = row.text(column)?.unwrap_or_default();
+    Kept::named(&word).ok_or_else(|| undecodable(column, UnknownWord(word)))
 }
 
 pub(super) fn json<T: serde::de::DeserializeOwned>(

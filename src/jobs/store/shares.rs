@@ -127,28 +127,37 @@ impl Lane {
         Ok(())
     }
 
-    /// Takes it out of the turn, because nothing waits in it. What it has had is remembered while that can matter.
+    /// Takes it out of the turn, because nothing waits in it.
     pub(super) async fn rest(&self, connection: &mut Connection) -> Result<(), sqlx::Error> {
-        query("update shares set active = 0 where client = $1 and lane = $2")
-            .bind(&self.client)
-            .bind(&self.lane)
-            .execute(&mut *connection)
-            .await?;
-        query(
+        rest(connection, &self.client, &self.lane).await
+    }
+}
+
+/// Takes a lane out of the turn. What it has had is remembered while that can matter.
+pub(super) async fn rest(
+    connection: &mut Connection,
+    client: &str,
+    lane: &str,
+) -> Result<(), sqlx::Error> {
+    query("update shares set active = 0 where client = $1 and lane = $2")
+        .bind(client)
+        .bind(lane)
+        .execute(&mut *connection)
+        .await?;
+    query(
             "update shares set active = 0 where client = $1 and lane = '*'
                and not exists (select 1 from shares where client = $1 and lane <> '*' and active = 1)",
         )
-        .bind(&self.client)
+        .bind(client)
         .execute(&mut *connection)
         .await?;
-        // A lane that others have caught up with begins anew where they are, remembered or not.
-        query(
-            "delete from shares where client = $1 and lane not in ('*', '') and active = 0
+    // A lane that others have caught up with begins anew where they are, remembered or not.
+    query(
+        "delete from shares where client = $1 and lane not in ('*', '') and active = 0
                and due <= (select served from shares where client = $1 and lane = '*')",
-        )
-        .bind(&self.client)
-        .execute(connection)
-        .await?;
-        Ok(())
-    }
+    )
+    .bind(client)
+    .execute(connection)
+    .await?;
+    Ok(())
 }

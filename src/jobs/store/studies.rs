@@ -11,13 +11,17 @@ use super::endings::note_study;
 use super::statement::{Connection, query, query_as, query_scalar};
 use super::submit::{QueueBounds, insert_known, insert_waiting, words};
 use super::{NewJob, Store, StoreError, column, dialect, micros, shares};
+use crate::wire::Status;
 use crate::wire::warning::GearName;
 
 /// So many jobs of studies may wait; further studies are refused.
-pub(in crate::jobs) const MOST_WAITING_DESIGNS: i64 = 50_000;
+pub(in crate::jobs) const MOST_WAITING_DESIGNS: i64 = 250_000;
 
 /// Where several processes expand studies, one that has taken a study has it for so long beyond each chunk.
 const EXPANDING_FOR: SignedDuration = SignedDuration::from_secs(20);
+
+/// So many jobs are dismissed in one commit, so that others write in between however large the study is.
+const DISMISSED_AT_ONCE: u32 = 500;
 
 /// So many jobs are deleted in one commit.
 const DELETED_AT_ONCE: u32 = 200;
@@ -140,19 +144,15 @@ impl Store {
             .collect())
     }
 
-    /// Accepted or running -> dismissed, for a study and its jobs. Gives back the ids of the jobs; none if the client
-    /// has no such study in these states.
+    /// Accepted or running -> dismissed, for a study: its designs without row get none. Its jobs follow by
+    /// [`Store::dismiss_designs`]. False if the client has no such study in these states.
     pub(in crate::jobs) async fn cancel_study(
         &self,
         client: &str,
         id: Uuid,
         now: Timestamp,
-    ) -> Result<Option<Vec<Uuid>>, StoreError> {
+    ) -> Result<bool, StoreError> {
         let mut write = self.begin().await?;
-        query(dialect::lock_designs())
-            .bind(id.to_string())
-            .execute(&mut *write)
-            .await?;
         let cancelled = query(
             "update studies set cancelled_at = max($3, submitted_at), version = version + 1
              where id = $1 and client = $2 and cancelled_at is null and (expanded < total or accepted + running > 0)",
@@ -162,23 +162,49 @@ impl Store {
         .bind(now.as_microsecond())
         .execute(&mut *write)
         .await?;
-        if cancelled == 0 {
-            write.rollback().await?;
-            return Ok(None);
+        if cancelled > 0 {
+            // Nobody is to begin a design while the others are being dismissed.
+            shares::lock(&mut write, [&client.to_owned()].into()).await?;
+            shares::rest(&mut write, client, &id.to_string()).await?;
         }
-        let jobs: Vec<String> = query_scalar(
-            "update jobs set status = 'dismissed', finished_at = max(max($2, submitted_at), coalesce(started_at, 0)),
-                             lease_until = null
-             where study = $1 and status in ('accepted', 'running')
-             returning id",
+        write.commit().await?;
+        Ok(cancelled > 0)
+    }
+
+    /// Accepted or running -> dismissed, for some jobs of a study that was cancelled: their ids, and whether there are more.
+    /// With the last of them the study has ended.
+    pub(in crate::jobs) async fn dismiss_designs(
+        &self,
+        id: Uuid,
+        now: Timestamp,
+    ) -> Result<(Vec<Uuid>, bool), StoreError> {
+        // What computes is stopped first. In a commit of its own, because jobs are locked before their study.
+        let mut write = self.begin().await?;
+        let mut dismissed = dismiss(&mut write, id, Status::Running, now).await?;
+        write.commit().await?;
+        let mut write = self.begin().await?;
+        dismissed.extend(dismiss(&mut write, id, Status::Accepted, now).await?);
+        let more = query(
+            "select 1 from studies where id = $1 and cancelled_at is not null and accepted + running > 0",
         )
         .bind(id.to_string())
-        .bind(now.as_microsecond())
-        .fetch_all(&mut *write)
+        .exists(&mut *write)
         .await?;
-        note_study(&mut write, id, now).await?;
+        if !more {
+            note_study(&mut write, id, now).await?;
+        }
         write.commit().await?;
-        Ok(Some(jobs.iter().filter_map(|id| id.parse().ok()).collect()))
+        Ok((dismissed, more))
+    }
+
+    /// The studies that were cancelled and whose jobs have not all been dismissed.
+    pub(in crate::jobs) async fn unfinished_cancellations(&self) -> Result<Vec<Uuid>, StoreError> {
+        let found: Vec<String> = query_scalar(
+            "select id from studies where cancelled_at is not null and ended_at is null order by sequence",
+        )
+        .fetch_all(&self.readers)
+        .await?;
+        Ok(found.iter().filter_map(|id| id.parse().ok()).collect())
     }
 
     /// Ended -> nothing, for a study, its jobs, and their results unless another job has the same. False if the client
@@ -237,6 +263,23 @@ impl Store {
             }
         }
     }
+}
+
+/// Dismisses some jobs of a study that are in this state.
+async fn dismiss(
+    connection: &mut Connection,
+    study: Uuid,
+    status: Status,
+    now: Timestamp,
+) -> Result<Vec<Uuid>, sqlx::Error> {
+    let jobs: Vec<String> = query_scalar(dialect::dismiss_designs())
+        .bind(study.to_string())
+        .bind(now.as_microsecond())
+        .bind(status.as_str())
+        .bind(DISMISSED_AT_ONCE)
+        .fetch_all(connection)
+        .await?;
+    Ok(jobs.iter().filter_map(|id| id.parse().ok()).collect())
 }
 
 /// Why the study is not taken, or which one was before.

@@ -56,7 +56,7 @@ impl Store {
             "select r.position, r.label, r.job, d.hash, d.encoding, d.body
              from study_rows r
              join jobs j on j.id = r.job
-             join documents d on d.hash = j.document
+             join documents d on d.hash = j.document and d.whole = 1
              where r.study = $1 and r.position > $2
              order by r.position limit $3",
         )

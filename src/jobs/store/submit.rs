@@ -9,6 +9,7 @@ use super::statement::{Connection, query, query_as, query_scalar};
 use super::{Store, StoreError, column, dialect, shares};
 use crate::hash::sha256_hex;
 use crate::jobs::job::Job;
+use crate::wire::Kept;
 
 /// A job to be queued.
 #[derive(Debug, Clone)]
@@ -27,6 +28,8 @@ pub(in crate::jobs) struct NewJob {
     pub(in crate::jobs) idempotency_key: Option<String>,
     /// The study that it computes a design of.
     pub(in crate::jobs) study: Option<Uuid>,
+    /// How much of its results is kept.
+    pub(in crate::jobs) keep: Kept,
     /// So many jobs of the client may wait, those of studies aside.
     pub(in crate::jobs) client_limit: u32,
 }
@@ -204,17 +207,19 @@ pub(super) struct Known {
     pub(super) positions: i64,
 }
 
-/// What the client has had computed of the same input by this version.
+/// What the client has had computed of the same input by this version, and of which enough was kept.
 pub(super) async fn find_known(
     connection: &mut Connection,
     client: &str,
     input_hash: &str,
+    keep: Kept,
     solver_version: &str,
 ) -> Result<Option<Known>, sqlx::Error> {
     let earlier: Option<(String, String, i64)> = query_as(dialect::known())
         .bind(client)
         .bind(input_hash)
         .bind(solver_version)
+        .bind(i64::from(keep == Kept::Results))
         .fetch_optional(connection)
         .await?;
     Ok(earlier.map(|(job, document, positions)| Known {
@@ -230,7 +235,14 @@ pub(super) async fn insert_known(
     new: &NewJob,
     solver_version: &str,
 ) -> Result<Option<Job>, sqlx::Error> {
-    let known = find_known(connection, &new.client, &new.input_hash, solver_version).await?;
+    let known = find_known(
+        connection,
+        &new.client,
+        &new.input_hash,
+        new.keep,
+        solver_version,
+    )
+    .await?;
     let Some(known) = known else {
         return Ok(None);
     };
@@ -247,6 +259,7 @@ pub(super) async fn insert_known(
         .bind(solver_version)
         .bind(known.job)
         .bind(new.study.map(|study| study.to_string()))
+        .bind(new.keep.as_str())
         .fetch_one(&mut *connection)
         .await?;
     insert_beside(connection, new, job.sequence).await?;
@@ -268,6 +281,7 @@ pub(super) async fn insert_waiting(
         .bind(column(new.positions_total))
         .bind(new.submitted_at.as_microsecond())
         .bind(new.study.map(|study| study.to_string()))
+        .bind(new.keep.as_str())
         .fetch_one(&mut *connection)
         .await?;
     insert_beside(connection, new, job.sequence).await?;

@@ -8,6 +8,7 @@ use super::constant_mass::ConstantMass;
 use super::labels::name_values;
 use super::size::{MOST_DESIGNS, too_many};
 use super::{Axis, Listed, Plan, Study};
+use crate::wire::kept::Kept;
 use crate::wire::pointer::Pointer;
 use crate::wire::problem::{Code, FieldError};
 use crate::wire::tags::{self, is_short_text};
@@ -24,6 +25,7 @@ pub(super) fn read(node: Node, value: Value, errors: &Errors) -> Option<Study> {
     let mut reader = ObjectReader::new(&node, String::new(), errors)?;
     let name = read_name(&mut reader);
     let tags = tags::read(&mut reader);
+    let keep = reader.choice("keep", Some(Kept::Results));
     let base = reader.needed_object("base").is_some();
     let plan = read_plan(&mut reader, &value, errors);
     let constant_mass = match reader.optional_object("constant_mass") {
@@ -33,11 +35,12 @@ pub(super) fn read(node: Node, value: Value, errors: &Errors) -> Option<Study> {
     };
     reader.finish();
     base.then_some(())?;
-    let (name, tags, plan, constant_mass) = (name?, tags?, plan?, constant_mass?);
+    let (name, tags, keep, plan, constant_mass) = (name?, tags?, keep?, plan?, constant_mass?);
     Some(Study {
         document: value.to_string(),
         name,
         tags,
+        keep,
         base: node.into_field("base")?,
         plan,
         constant_mass,

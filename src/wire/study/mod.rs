@@ -20,6 +20,7 @@ mod tests;
 use meshwright_engine::run::Run;
 use serde_json::{Map, Value};
 
+use super::kept::Kept;
 use super::pointer::Pointer;
 use super::problem::{Code, FieldError, Problem};
 use super::submission::Submission;
@@ -36,6 +37,7 @@ pub struct Study {
     document: String,
     name: Option<String>,
     tags: Vec<String>,
+    keep: Kept,
     base: Node,
     plan: Plan,
     constant_mass: Option<ConstantMass>,
@@ -91,9 +93,6 @@ impl Study {
             return Err(errors.into_problem());
         };
         if errors.count() == 0 {
-            study.refuse_work(&errors);
-        }
-        if errors.count() == 0 {
             study.refuse_faults(&errors, run)?;
         }
         if errors.count() == 0 {
@@ -124,6 +123,11 @@ impl Study {
     /// Short strings to find it by.
     pub fn tags(&self) -> &[String] {
         &self.tags
+    }
+
+    /// How much of what is computed is kept.
+    pub fn keep(&self) -> Kept {
+        self.keep
     }
 
     /// The gear that the table tells mass and holes of: the one of constant mass, else the only one that changes, else

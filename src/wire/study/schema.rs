@@ -8,6 +8,7 @@ use super::Study;
 use super::constant_mass::MASS_REMOVED;
 use super::document::{LONGEST_LABEL, MOST_CHANGES};
 use super::size::MOST_DESIGNS;
+use crate::wire::kept::Kept;
 use crate::wire::schema::{self, documented};
 use crate::wire::tags;
 
@@ -17,7 +18,7 @@ documented!(
     [],
     schema::object(
         "Study",
-        "One submission in many variants, at most 20,000, each of which is computed as a job. Give either axes or designs. A design that cannot be built stands in the table with its problem.",
+        "One submission in many variants, at most 100,000, each of which is computed as a job. Give either axes or designs. A design that cannot be built stands in the table with its problem.",
         vec![
             (
                 "name",
@@ -32,6 +33,7 @@ documented!(
                 false
             ),
             tags::property("study"),
+            schema::choice("keep", "Keep", "How much is kept of each design that has been computed.", Some(Kept::Results)),
             (
                 "base",
                 ObjectBuilder::new()

@@ -5,25 +5,26 @@ use std::fmt;
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, SeqAccess, Visitor};
 
-use super::{Plan, Study};
 use crate::wire::problem::{Code, FieldError, Problem};
-use crate::wire::size::{MOST_VALUES, refuse_many_values};
-use crate::wire::tree::{Errors, Node};
+use crate::wire::size::{MOST_VALUES, Values, refuse_many_values};
 
 /// The most designs of one study.
-pub const MOST_DESIGNS: usize = 20_000;
+pub const MOST_DESIGNS: usize = 100_000;
 
-/// The most values of the whole document: twenty thousand designs with a dozen changes each.
-const MOST_VALUES_OF_ALL: u64 = 300_000;
+/// The most values of the whole document: a hundred thousand designs with seven changes each.
+const MOST_VALUES_OF_ALL: u64 = 1_000_000;
 
-/// The most values that are looked at when each design is checked against the base: twenty thousand designs of a base with one
-/// thousand, or fewer of a larger one.
+/// The most values that are looked at when each design is checked against the base: a hundred thousand designs of a base with
+/// two hundred, which no usual one has, or fewer of a larger one.
 const MOST_WORK: u64 = 20_000_000;
 
-/// Refuses a document with too many designs or values. It keeps none, so that ten million of them cost no memory.
+/// Refuses a document with too many designs or values, or too much work. It keeps none, so that ten million of them cost no
+/// memory, and a bomb costs no more than to read it once.
 pub(super) fn refuse_too_many(document: &[u8]) -> Result<(), Problem> {
     #[derive(Deserialize)]
     struct Counted {
+        #[serde(default)]
+        base: Values,
         #[serde(default)]
         axes: Vec<CountedAxis>,
         #[serde(default)]
@@ -33,6 +34,20 @@ pub(super) fn refuse_too_many(document: &[u8]) -> Result<(), Problem> {
     struct CountedAxis {
         #[serde(default)]
         values: Count,
+    }
+
+    impl Counted {
+        /// That the base is too large for what is to be made of it.
+        fn work(&self) -> Option<FieldError> {
+            let lengths = || self.axes.iter().map(|axis| axis.values.0);
+            let combined = lengths().fold(1, |total: usize, values| {
+                total.saturating_mul(values.max(1))
+            });
+            let variants = lengths().sum::<usize>().max(self.designs.0).max(combined);
+            // Too many combinations are told by their number, when the axes are read.
+            let variants = if combined > MOST_DESIGNS { 1 } else { variants };
+            too_much_work(self.base.0, variants as u64)
+        }
     }
 
     // What is not of this form is told later, with its place.
@@ -51,7 +66,7 @@ pub(super) fn refuse_too_many(document: &[u8]) -> Result<(), Problem> {
             None if counted.designs.0 > MOST_DESIGNS => {
                 Some(too_many(counted.designs.0 as u128, "/designs"))
             }
-            None => None,
+            None => counted.work(),
         };
         if let Some(error) = error {
             return Err(Problem::of_fields(vec![error]));
@@ -68,41 +83,22 @@ pub(super) fn too_many(total: u128, pointer: &str) -> FieldError {
     FieldError::new(pointer, Code::TooLarge, detail).nearest(MOST_DESIGNS as f64)
 }
 
-impl Study {
-    /// Refuses a base that is no submission for its size alone, or whose check in every design would take seconds.
-    pub(super) fn refuse_work(&self, errors: &Errors) {
-        let values = self.base.count();
-        if values > MOST_VALUES {
-            let detail = format!(
-                "/base has {values} values; a submission has at most {MOST_VALUES}. Nothing was expanded."
-            );
-            let error = FieldError::new("/base", Code::TooLarge, detail);
-            return errors.push(error.nearest(MOST_VALUES as f64));
-        }
-        let checked: usize = match &self.plan {
-            Plan::Axes(axes) => axes.iter().map(|axis| axis.values.len()).sum(),
-            Plan::Designs(designs) => designs.len(),
-        };
-        let variants = checked.max(self.total()) as u64;
-        if values * variants > MOST_WORK {
-            let fitting = MOST_WORK / values;
-            let detail = format!(
-                "/base has {values} values, which {variants} variants would repeat; with a base of this size at most {fitting} are taken. Nothing was expanded."
-            );
-            errors.push(FieldError::new("/base", Code::TooLarge, detail).nearest(fitting as f64));
-        }
+/// That a base of so many values is no submission for its size alone, or that its check in every variant would take seconds.
+fn too_much_work(values: u64, variants: u64) -> Option<FieldError> {
+    if values > MOST_VALUES {
+        let detail = format!(
+            "/base has {values} values; a submission has at most {MOST_VALUES}. Nothing was expanded."
+        );
+        let error = FieldError::new("/base", Code::TooLarge, detail);
+        return Some(error.nearest(MOST_VALUES as f64));
     }
-}
-
-impl Node {
-    /// The number of values in it.
-    fn count(&self) -> u64 {
-        1 + match self {
-            Self::List(items) => items.iter().map(Self::count).sum(),
-            Self::Object(fields) => fields.iter().map(|(_, value)| value.count()).sum::<u64>(),
-            Self::Null | Self::Bool(_) | Self::Number(_) | Self::Text(_) => 0,
-        }
-    }
+    let fitting = MOST_WORK / values.max(1);
+    (variants > fitting).then(|| {
+        let detail = format!(
+            "/base has {values} values, which {variants} variants would repeat; with a base of this size at most {fitting} are taken. Nothing was expanded."
+        );
+        FieldError::new("/base", Code::TooLarge, detail).nearest(fitting as f64)
+    })
 }
 
 /// The length of a list.

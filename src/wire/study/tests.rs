@@ -303,6 +303,22 @@ fn a_change_that_undoes_another_is_refused() {
 }
 
 #[test]
+fn a_study_keeps_results_unless_it_asks_for_statistics_only() {
+    let mut document = listed(json!([{ "label": "a" }]));
+    assert_eq!(parse(&document).unwrap().keep(), Kept::Results);
+    document["keep"] = json!("statistics");
+    assert_eq!(parse(&document).unwrap().keep(), Kept::Statistics);
+    document["keep"] = json!("curves");
+    let problem = parse(&document).unwrap_err();
+    assert_eq!(problem.errors[0].pointer, "/keep");
+    assert!(
+        problem.detail.contains("one of results, statistics"),
+        "{}",
+        problem.detail
+    );
+}
+
+#[test]
 fn ten_million_designs_are_refused_with_the_limit_before_any_is_expanded() {
     let values: Vec<u32> = (0..57).collect();
     let product = json!(["count", "circle_radius_mm", "radius_mm", "phase_deg"].map(
@@ -310,8 +326,8 @@ fn ten_million_designs_are_refused_with_the_limit_before_any_is_expanded() {
     ));
     let problem = parse(&axes(product)).unwrap_err();
     assert_eq!((problem.code, problem.status), (Code::TooLarge, 422));
-    assert!(problem.detail.contains("10556001") && problem.detail.contains("20000"));
-    assert_eq!(problem.errors[0].nearest, Some(20_000.0));
+    assert!(problem.detail.contains("10556001") && problem.detail.contains("100000"));
+    assert_eq!(problem.errors[0].nearest, Some(100_000.0));
 
     let long = format!("[{}0]", "0,".repeat(9_999_999));
     let text =

@@ -8,10 +8,10 @@ macro_rules! insert_known {
     ($next:literal) => {
         concat!(
             "insert into jobs (id, sequence, client, method, tags, input_hash, cost, status, positions_done, positions_total,
-                               submitted_at, started_at, finished_at, elapsed, document, solver_version, same_as, study)
+                               submitted_at, started_at, finished_at, elapsed, document, solver_version, same_as, study, keep)
              values ($1, ",
             $next,
-            ", $2, $3, $4, $5, $6, 'successful', $7, $7, $8, $8, $8, 0, $9, $10, $11, $12)
+            ", $2, $3, $4, $5, $6, 'successful', $7, $7, $8, $8, $8, 0, $9, $10, $11, $12, $13)
              returning *"
         )
     };
@@ -21,10 +21,10 @@ macro_rules! insert_known {
 macro_rules! insert_waiting {
     ($next:literal) => {
         concat!(
-            "insert into jobs (id, sequence, client, method, tags, input_hash, cost, status, positions_total, submitted_at, study)
+            "insert into jobs (id, sequence, client, method, tags, input_hash, cost, status, positions_total, submitted_at, study, keep)
              values ($1, ",
             $next,
-            ", $2, $3, $4, $5, $6, 'accepted', $7, $8, $9)
+            ", $2, $3, $4, $5, $6, 'accepted', $7, $8, $9, $10)
              returning *"
         )
     };
@@ -82,7 +82,7 @@ pairs! {
     next_suspect = NEXT_SUSPECT;
     /// The job of a lane whose turn it is, unless an equal one is running. $1: client, $2: lane.
     next_waiting = NEXT_WAITING;
-    /// What a client has had computed. $1: client, $2: input hash, $3: solver version.
+    /// What a client has had computed. $1: client, $2: input hash, $3: solver version, $4: 1 if the whole results have to be kept.
     known = KNOWN;
     /// Accepted -> running. $1: id, $2: now, $3: the steady clock, $4: how long the lease lasts, $5: the process.
     start = START;
@@ -91,20 +91,20 @@ pairs! {
     /// The jobs that run: id, process, and whether the lease is over (1), and since another one (2). $1: the steady clock, $2:
     /// how long a lease lasts.
     running = RUNNING;
-    /// A job at once successful. $1 to $12: see `insert_known`.
+    /// A job at once successful. $1 to $13: see `insert_known`.
     insert_known = INSERT_KNOWN;
-    /// A job that waits. $1 to $9: see `insert_waiting`.
+    /// A job that waits. $1 to $10: see `insert_waiting`.
     insert_waiting = INSERT_WAITING;
     /// Counts the new jobs of studies now, for those who look before the end of the transaction.
     count_designs = COUNT_DESIGNS;
     /// A study. $1 to $9: see `insert_study`.
     insert_study = INSERT_STUDY;
-    /// Keeps a document, unless it is kept already. $1: hash, $2: body, $3: size.
+    /// Keeps a document, unless it is kept already. $1: hash, $2: body, $3: size, $4: 1 if the body is the whole of it.
     insert_document = INSERT_DOCUMENT;
     /// From here to its end, no other transaction begins or ceases to need the document $1.
     lock_document = LOCK_DOCUMENT;
-    /// The same of the jobs of study $1 that wait or run, of which none is to be locked after the study.
-    lock_designs = LOCK_DESIGNS;
+    /// Accepted or running -> dismissed. $1: study, $2: now, $3: accepted or running, $4: how many.
+    dismiss_designs = DISMISS_DESIGNS;
     /// From here to its end, no other transaction removes what is old.
     keep_alone = KEEP_ALONE;
     /// Studies without all their rows, which nobody expands. $1: the steady clock, $2: for how long they are taken.

@@ -41,7 +41,7 @@ pub(in crate::jobs::store) const NEXT_SUSPECT: Words = Some(
 );
 
 pub(in crate::jobs::store) const NEXT_WAITING: Words = Some(
-    "select id, input_hash, cost from jobs as waiting
+    "select id, input_hash, cost, keep from jobs as waiting
      where status = 'accepted' and client = $1 and coalesce(study, '') = $2
        and not exists (select 1 from jobs as equal
                        where equal.status = 'running' and equal.client = waiting.client
@@ -52,7 +52,7 @@ pub(in crate::jobs::store) const NEXT_WAITING: Words = Some(
 // Nobody removes what is about to be pointed to.
 pub(in crate::jobs::store) const KNOWN: Words = Some(
     "select j.id, j.document, j.positions_total from jobs j join documents d on d.hash = j.document
-     where j.client = $1 and j.input_hash = $2 and j.solver_version = $3 and j.status = 'successful'
+     where j.client = $1 and j.input_hash = $2 and j.solver_version = $3 and j.status = 'successful' and d.whole >= $4
      order by j.same_as is not null, j.sequence limit 1 for key share",
 );
 
@@ -90,15 +90,19 @@ pub(in crate::jobs::store) const INSERT_STUDY: Words =
 
 // One that is kept is locked, so that it is not removed before a job points to it.
 pub(in crate::jobs::store) const INSERT_DOCUMENT: Words = Some(
-    "insert into documents (hash, encoding, body, size) values ($1, 'gzip', $2, $3)
-     on conflict (hash) do update set size = excluded.size",
+    "insert into documents (hash, encoding, body, size, whole) values ($1, 'gzip', $2, $3, $4)
+     on conflict (hash) do update set size = excluded.size, whole = greatest(documents.whole, excluded.whole),
+       body = case when documents.whole < excluded.whole then excluded.body else documents.body end",
 );
 
 pub(in crate::jobs::store) const LOCK_DOCUMENT: Words =
     Some("select 1 from documents where hash = $1 for update");
 
-pub(in crate::jobs::store) const LOCK_DESIGNS: Words = Some(
-    "select 1 from jobs where study = $1 and status in ('accepted', 'running') order by id for update",
+// Jobs are locked before their study, which the triggers change.
+pub(in crate::jobs::store) const DISMISS_DESIGNS: Words = Some(
+    "update jobs set status = 'dismissed', finished_at = max(max($2, submitted_at), coalesce(started_at, 0)), lease_until = null
+     where id in (select id from jobs where study = $1 and status = $3 order by sequence limit $4 for update)
+     returning id",
 );
 
 pub(in crate::jobs::store) const KEEP_ALONE: Words =

@@ -25,7 +25,7 @@ pub(in crate::jobs::store) const NEXT_SUSPECT: Words =
     Some("select id from jobs where suspect = 1 and status = 'accepted' order by sequence limit 1");
 
 pub(in crate::jobs::store) const NEXT_WAITING: Words = Some(
-    "select id, input_hash, cost from jobs as waiting
+    "select id, input_hash, cost, keep from jobs as waiting
      where status = 'accepted' and client = $1 and coalesce(study, '') = $2
        and not exists (select 1 from jobs as equal indexed by jobs_running
                        where equal.status = 'running' and equal.client = waiting.client
@@ -37,6 +37,7 @@ pub(in crate::jobs::store) const NEXT_WAITING: Words = Some(
 pub(in crate::jobs::store) const KNOWN: Words = Some(
     "select id, document, positions_total from jobs
      where client = $1 and input_hash = $2 and solver_version = $3 and status = 'successful'
+       and (select whole from documents where hash = document) >= $4
      order by same_as is not null, sequence limit 1",
 );
 
@@ -74,12 +75,17 @@ pub(in crate::jobs::store) const INSERT_STUDY: Words = Some(insert_study!(
 ));
 
 pub(in crate::jobs::store) const INSERT_DOCUMENT: Words = Some(
-    "insert into documents (hash, encoding, body, size) values ($1, 'gzip', $2, $3) on conflict (hash) do nothing",
+    "insert into documents (hash, encoding, body, size, whole) values ($1, 'gzip', $2, $3, $4)
+     on conflict (hash) do update set body = excluded.body, whole = 1 where documents.whole < excluded.whole",
 );
 
 pub(in crate::jobs::store) const LOCK_DOCUMENT: Words = None;
 
-pub(in crate::jobs::store) const LOCK_DESIGNS: Words = None;
+pub(in crate::jobs::store) const DISMISS_DESIGNS: Words = Some(
+    "update jobs set status = 'dismissed', finished_at = max(max($2, submitted_at), coalesce(started_at, 0)), lease_until = null
+     where id in (select id from jobs where study = $1 and status = $3 order by sequence limit $4)
+     returning id",
+);
 
 pub(in crate::jobs::store) const KEEP_ALONE: Words = None;
 

@@ -16,6 +16,7 @@ use uuid::Uuid;
 use super::statement::{Pool, query, query_as, query_scalar};
 use super::{Claim, End, Lease, Lost, NewJob, Outcome, Packed, Place, QueueBounds, Store};
 use crate::jobs::job::Job;
+use crate::wire::Kept;
 
 const VERSION: &str = "1.0";
 const CLIENT: &str = "portal";
@@ -93,6 +94,7 @@ fn new(second: i64, input: &str) -> NewJob {
         submitted_at: at(second),
         idempotency_key: None,
         study: None,
+        keep: Kept::Results,
         client_limit: u32::MAX,
     }
 }

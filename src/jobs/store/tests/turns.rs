@@ -306,3 +306,36 @@ async fn a_full_lane_of_one_client_leaves_room_for_the_others() {
         Outcome::Queued(_)
     ));
 }
+
+#[tokio::test]
+async fn a_study_that_is_cancelled_ends_with_the_last_of_its_jobs() {
+    let (store, _folder) = store().await;
+    let id = study(&store, CLIENT, 1200).await;
+    let running = claim(&store, 2).await;
+    assert!(store.cancel_study(CLIENT, id, at(3)).await.unwrap());
+    assert_eq!(next(&store, 3).await, None, "no further one is begun");
+    // What ends meanwhile keeps its results, and does not end the study; another process finds it.
+    let text = Packed::of("{}");
+    let kept = store.succeed(running, end(4), &text, None, VERSION);
+    assert!(kept.await.unwrap());
+    assert_eq!(store.unfinished_cancellations().await.unwrap(), [id]);
+    let mut dismissed = Vec::new();
+    loop {
+        let (jobs, more) = store.dismiss_designs(id, at(5)).await.unwrap();
+        assert!(jobs.len() <= 500, "one commit does not grow with the study");
+        dismissed.extend(jobs);
+        if !more {
+            break;
+        }
+    }
+    assert_eq!(dismissed.len(), 1199);
+    let left = store.unfinished_cancellations().await.unwrap();
+    assert!(left.is_empty());
+    let study = store.find_study(CLIENT, id).await.unwrap().unwrap();
+    assert_eq!(
+        (study.successful, study.dismissed, study.accepted),
+        (1, 1199, 0)
+    );
+    assert_eq!(study.finished_at(), Some(at(3)));
+    assert!(!store.cancel_study(CLIENT, id, at(6)).await.unwrap());
+}

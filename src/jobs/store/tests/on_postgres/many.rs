@@ -352,6 +352,13 @@ async fn a_study_that_a_process_left_is_expanded_by_one_other() {
     );
 }
 
+/// Cancels a study, to the last of its jobs.
+async fn cancel(store: &Store, id: Uuid) -> Result<(), crate::jobs::store::StoreError> {
+    store.cancel_study(CLIENT, id, at(4)).await?;
+    while store.dismiss_designs(id, at(4)).await?.1 {}
+    Ok(())
+}
+
 #[tokio::test(flavor = "multi_thread", worker_threads = 4)]
 async fn ends_cancels_and_claims_of_one_study_at_once_count_every_design_once() {
     let stores = several::<4>().await;
@@ -374,7 +381,7 @@ async fn ends_cancels_and_claims_of_one_study_at_once_count_every_design_once() 
             );
             if index == 0 && done == 8 {
                 // It is cancelled while the others claim and finish; where a transaction had to give way it is tried again.
-                while let Err(error) = store.cancel_study(CLIENT, id, at(4)).await {
+                while let Err(error) = cancel(&store, id).await {
                     assert!(error.may_pass(), "{error:?}");
                 }
             }

@@ -1,0 +1,43 @@
+//! How much of what was computed is kept.
+
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use super::tree::Choice;
+
+/// How much of what was computed is kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Kept {
+    /// The results document.
+    Results,
+    /// What the table of a study shows.
+    Statistics,
+}
+
+impl Choice for Kept {
+    const OPTIONS: &'static [(&'static str, Self, &'static str)] = &[
+        (
+            "results",
+            Self::Results,
+            "the whole results of each design, with every curve",
+        ),
+        (
+            "statistics",
+            Self::Statistics,
+            "the numbers of the table only; a design has its curves when it is submitted alone",
+        ),
+    ];
+}
+
+impl Kept {
+    /// The word on the wire and in the database.
+    pub fn as_str(self) -> &'static str {
+        self.word()
+    }
+
+    /// What a word of the database stands for.
+    pub fn named(word: &str) -> Option<Self> {
+        Self::of_word(word)
+    }
+}
