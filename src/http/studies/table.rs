@@ -163,7 +163,7 @@ pub(in crate::http) struct DesignResults<'a> {
 #[expect(dead_code, reason = "it stands for the lines in the OpenAPI document")]
 pub(in crate::http) enum NdjsonLine<'a> {
     /// A row of the table.
-    Row(TableRow),
+    Row(Box<TableRow>),
     /// The results of a design.
     Results(DesignResults<'a>),
 }
