@@ -167,7 +167,7 @@ pub(in crate::http) struct DesignResults<'a> {
 )]
 pub(in crate::http) enum NdjsonLine<'a> {
     /// A row of the table.
-    Row(TableRow),
+    Row(Box<TableRow>),
     /// The results of a design.
     Results(DesignResults<'a>),
 }
