@@ -160,11 +160,7 @@ pub(in crate::http) struct DesignResults<'a> {
 #[derive(ToSchema)]
 #[schema(title = "StudyLine")]
 #[serde(untagged)]
-#[expect(
-    dead_code,
-    clippy::large_enum_variant,
-    reason = "it stands for the lines in the OpenAPI document"
-)]
+#[expect(dead_code, reason = "it stands for the lines in the OpenAPI document")]
 pub(in crate::http) enum NdjsonLine<'a> {
     /// A row of the table.
     Row(Box<TableRow>),
