@@ -11,7 +11,10 @@ use meshwright::jobs::Place;
 use reqwest::Client;
 use rustix::process::Signal;
 use serde_json::{Value, json};
-use tokio::sync::Mutex;
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::tcp::{OwnedReadHalf, OwnedWriteHalf};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::{Mutex, watch};
 
 use crate::process::Process;
 use crate::submitters::{Bases, Submitters};
@@ -92,11 +95,13 @@ impl Fleet {
 
     /// Comes back when so many jobs are successful.
     async fn successful(&self, count: i64) {
-        while self
-            .number("select count(*) from jobs where status = 'successful'")
-            .await
-            < count
-        {
+        let query = "select count(*) from jobs where status = 'successful'";
+        self.until(query, count).await;
+    }
+
+    /// Comes back when `query` counts as many.
+    async fn until(&self, query: &'static str, count: i64) {
+        while self.number(query).await < count {
             tokio::time::sleep(Duration::from_millis(50)).await;
         }
     }
@@ -369,4 +374,99 @@ async fn five_thousand_jobs_with_and_without_trouble() {
     let three = calm(5000, 3).await;
     println!("three workers are {:.2} times as fast as one", three / one);
     troubled(5000, 10).await;
+}
+
+/// A way to the server that can be cut: nothing comes through then, and nobody is told. What was under way comes when it is mended.
+struct Way {
+    address: String,
+    open: watch::Sender<bool>,
+}
+
+impl Way {
+    async fn to(address: &str) -> Self {
+        const HOST: &str = "127.0.0.1:";
+        let (before, behind) = address.split_once(HOST).unwrap();
+        let (port, name) = behind.split_once('/').unwrap();
+        let server = format!("{HOST}{port}");
+        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let own = listener.local_addr().unwrap();
+        let (open, is_open) = watch::channel(true);
+        tokio::spawn(async move {
+            while let Ok((client, _)) = listener.accept().await {
+                let server = TcpStream::connect(&server).await.unwrap();
+                let (to_client, to_server) = (client.into_split(), server.into_split());
+                tokio::spawn(carry(to_client.0, to_server.1, is_open.clone()));
+                tokio::spawn(carry(to_server.0, to_client.1, is_open.clone()));
+            }
+        });
+        let address = format!("{before}{own}/{name}");
+        Self { address, open }
+    }
+}
+
+async fn carry(mut from: OwnedReadHalf, mut to: OwnedWriteHalf, mut open: watch::Receiver<bool>) {
+    let mut bytes = vec![0; 1 << 16];
+    while let Ok(count @ 1..) = from.read(&mut bytes).await {
+        if open.wait_for(|open| *open).await.is_err()
+            || to.write_all(&bytes[..count]).await.is_err()
+        {
+            break;
+        }
+    }
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_worker_cut_off_from_the_server_gives_up_its_job_and_works_again_when_it_is_back() {
+    let _alone = stores::ALONE.lock().await;
+    const LEASE: Duration = Duration::from_secs(2);
+    let address = server::database().await;
+    let mut fleet = Fleet::start(&address, 0, 1, "2s");
+    let way = Way::to(&address).await;
+    let cut_off = start(&Place::Postgres(way.address.clone()), "worker", "2s");
+
+    // A job that nobody ends before the test does.
+    let mut long = job(0);
+    long["method"] = json!("flexible");
+    long["output_torques_n_m"] = (0..20).map(|i| json!(50.0 + f64::from(i))).collect();
+    long["resolution"] = json!({ "grid": "fine", "positions_per_mesh_period": 150 });
+    let url = format!("{}/v1/jobs", fleet.apis[0].base);
+    let taken = fleet.client.post(&url).json(&long).send().await.unwrap();
+    assert_eq!(taken.status(), 202);
+    let taken: Value = taken.json().await.unwrap();
+    fleet
+        .until(
+            "select count(*) from jobs where status = 'running' and attempt = 1",
+            1,
+        )
+        .await;
+
+    way.open.send(false).unwrap();
+    let cut_at = Instant::now();
+    fleet.hire();
+    fleet
+        .until(
+            "select count(*) from jobs where status = 'running' and attempt = 2",
+            1,
+        )
+        .await;
+    // Its reports go unanswered for a lease; then the engine is told, and obeys between two positions.
+    tokio::time::sleep((3 * LEASE).saturating_sub(cut_at.elapsed())).await;
+    let before = cut_off.processor_seconds();
+    tokio::time::sleep(LEASE / 2).await;
+    let spent = cut_off.processor_seconds() - before;
+    assert!(spent < 0.25, "it computes on: {spent} s of a second");
+
+    let cancelled = fleet
+        .client
+        .post(format!("{url}/{}/cancel", taken["id"].as_str().unwrap()));
+    assert!(cancelled.send().await.unwrap().status().is_success());
+    // What it reports late changes nothing, and what comes now has nobody else.
+    fleet.workers.remove(0).kill();
+    way.open.send(true).unwrap();
+    fleet.submit(20).taken().await;
+    fleet.successful(20).await;
+    let ended =
+        fleet.number("select count(*) from jobs where status = 'dismissed' and attempt = 2");
+    assert_eq!(ended.await, 1, "the job that was cancelled stays so");
+    assert_eq!(fleet.number("select count(*) from jobs").await, 21);
 }
