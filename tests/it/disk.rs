@@ -82,6 +82,8 @@ async fn a_full_disk_stops_nothing_for_longer_than_it_is_full() {
         .unwrap();
     let mut taken = Vec::new();
     let mut filler = None;
+    let ready = format!("{}/health/ready", process.base);
+    let mut not_ready = false;
     for number in 0..400 {
         let request = client
             .post(format!("{}/v1/jobs", process.base))
@@ -96,7 +98,11 @@ async fn a_full_disk_stops_nothing_for_longer_than_it_is_full() {
                 assert!(answer.headers().contains_key("retry-after"));
                 let problem: Value = answer.json().await.unwrap();
                 assert_eq!(problem["code"], "storage_unavailable");
-                break;
+                // A checkpoint that gives back some pages makes room for the next.
+                not_ready = status(&client, ready.clone()).await == 503;
+                if not_ready {
+                    break;
+                }
             }
             other => panic!("{other}"),
         }
@@ -108,10 +114,7 @@ async fn a_full_disk_stops_nothing_for_longer_than_it_is_full() {
         status(&client, format!("{}/health/live", process.base)).await,
         200
     );
-    assert_eq!(
-        status(&client, format!("{}/health/ready", process.base)).await,
-        503
-    );
+    assert!(not_ready, "the service is ready on a full disk");
     // What stands can be read all the while.
     assert_eq!(
         status(&client, format!("{}/v1/jobs/{}", process.base, taken[0])).await,
