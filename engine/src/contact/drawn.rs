@@ -47,11 +47,11 @@ pub(super) struct DrawnStage {
 
 /// How the cells of a pair are laid.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Laid {
+struct Laid {
     /// The pair, from the reference pair of the mesh period.
-    pub(super) pair: i64,
+    pair: i64,
     /// How often its patch was widened.
-    pub(super) widened: i32,
+    widened: i32,
 }
 
 impl DrawnFlanks {
