@@ -1,18 +1,16 @@
-//! What the mechanics must show: agreement with an independent solver, with the paper, with closed forms and with itself.
+//! What the mechanics must show: agreement with closed forms and with itself. `tests/reference` of the repository has its agreement with
+//! an independent solver and with the paper.
 //!
-//! Read in this order: [`calculix`] and [`paper`] (other people's numbers), [`closed_forms`], [`convergence`] (of grid,
-//! cells and positions), [`patch`], [`blanks`], [`uncondensed`] and [`inside`] (the substructures, their coupling and the
-//! stresses within them), [`invariants`] and
+//! Read in this order: [`closed_forms`], [`convergence`] (of grid, cells and positions), [`patch`], [`blanks`], [`uncondensed`]
+//! and [`inside`] (the substructures, their coupling and the stresses within them), [`stress`] and [`fields`], [`invariants`] and
 //! [`robustness`]. [`support`] makes the gears, [`whole`] assembles a gear without any condensation.
 
 mod blanks;
-mod calculix;
 mod closed_forms;
 mod convergence;
 mod fields;
 mod inside;
 mod invariants;
-mod paper;
 mod patch;
 mod robustness;
 mod stress;

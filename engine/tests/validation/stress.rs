@@ -1,71 +1,12 @@
-//! The largest stresses at roots and holes, against CalculiX and settled with the grid.
+//! The largest stresses at roots and holes, settled with the grid; `tests/reference` has them against CalculiX.
 
-use std::f64::consts::TAU;
-
-use meshwright_engine::analysis::Curve;
-use meshwright_engine::analysis::stress::{GearStresses, PeakStress};
-use meshwright_engine::gear::GearPair;
+use meshwright_engine::analysis::stress::PeakStress;
 use meshwright_engine::grid::GridLevel;
 
-use crate::support::{
-    case, gear, holed, pair, paper_case, reference, relieved, solve, standard_pair,
-};
-
-/// The curve of `pair` under `torque` with its stresses, at `positions` over one mesh period.
-fn stressed(pair: GearPair, torque: f64, positions: u32, level: GridLevel) -> Curve {
-    let mut case = case(pair, &[torque]);
-    case.stress = true;
-    case.resolution.grid = level;
-    case.resolution.span_mesh_periods = Some(1);
-    case.resolution.positions_per_mesh_period = positions;
-    solve(&case).curves.remove(0)
-}
-
-fn stresses(curve: &Curve) -> &[GearStresses; 2] {
-    curve.stresses.as_ref().expect("asked for")
-}
+use crate::support::{gear, holed, pair, paper_case, relieved, stressed, stresses};
 
 fn largest(peaks: &[PeakStress]) -> f64 {
     peaks.iter().map(|peak| peak.stress).fold(0.0, f64::max)
-}
-
-#[test]
-fn tension_along_the_fillets_is_that_of_calculix() {
-    // Asked for are 3 %; CalculiX moves by 0.3 % where its grid along the fillet is halved.
-    let document = reference("calculix-fillet.json");
-    let curve = stressed(standard_pair(true), 115.0, 16, GridLevel::Standard);
-    for position in document["positions"].as_array().expect("positions") {
-        let eta = position["mesh_position"].as_f64().expect("a position");
-        let place = (eta * 16.0).round() as usize;
-        assert!((curve.mesh_position[place] - eta).abs() < 1e-12);
-        let fillets = position["loads"][0]["fillets"].as_array().expect("fillets");
-        for (gear, name) in stresses(&curve).iter().zip(["driving", "driven"]) {
-            let of_gear = fillets.iter().filter(|fillet| fillet["gear"] == name);
-            let number =
-                |fillet: &serde_json::Value, key: &str| fillet[key].as_f64().expect("a number");
-            let (stress, angle) = of_gear
-                .map(|fillet| {
-                    (
-                        number(fillet, "largest_principal_mpa"),
-                        number(fillet, "largest_principal_at_angle_deg"),
-                    )
-                })
-                .max_by(|a, b| a.0.total_cmp(&b.0))
-                .expect("a fillet");
-            let found = gear.root[place];
-            let off = found.stress / (1e6 * stress) - 1.0;
-            // The place within its tooth; nodes stand 0.1 degrees apart.
-            let pitch = TAU / 50.0;
-            let within = (found.angle + pitch / 2.0).rem_euclid(pitch) - pitch / 2.0;
-            println!(
-                "{eta} {name}: {:.2} MPa at {:.3} degrees, CalculiX {stress} at {angle}: {off:+.4}",
-                found.stress / 1e6,
-                within.to_degrees()
-            );
-            assert!(off.abs() < 0.03, "{eta} {name}");
-            assert!((within.to_degrees() - angle).abs() < 0.3, "{eta} {name}");
-        }
-    }
 }
 
 #[test]

@@ -1,12 +1,19 @@
-//! What several tests share beside the cases: answers, pairs under load, reference data.
+//! What several tests share beside the cases: answers, pairs under load, stresses.
+
+#![allow(
+    dead_code,
+    reason = "these tests and those in `tests/reference` use some of it each"
+)]
 
 #[path = "../cases/mod.rs"]
 mod cases;
 
 use std::sync::OnceLock;
 
-use meshwright_engine::analysis::{Analysis, Case, analyze};
+use meshwright_engine::analysis::stress::GearStresses;
+use meshwright_engine::analysis::{Analysis, Case, Curve, analyze};
 use meshwright_engine::gear::GearPair;
+use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
@@ -41,12 +48,17 @@ pub(crate) fn beyond_path(pair: &GearPair, roll_length: f64) -> f64 {
     (s_a - roll_length).max(roll_length - s_e).max(0.0)
 }
 
-/// Where the reference data lie: `tests/reference` at the root of the repository.
-pub(crate) fn reference(file: &str) -> serde_json::Value {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../tests/reference")
-        .join(file);
-    let text = std::fs::read_to_string(&path)
-        .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{file}: {error}"))
+/// The curve of `pair` under `torque` with its stresses, at `positions` over one mesh period.
+pub(crate) fn stressed(pair: GearPair, torque: f64, positions: u32, level: GridLevel) -> Curve {
+    let mut case = case(pair, &[torque]);
+    case.stress = true;
+    case.resolution.grid = level;
+    case.resolution.span_mesh_periods = Some(1);
+    case.resolution.positions_per_mesh_period = positions;
+    solve(&case).curves.remove(0)
+}
+
+/// Those that the case asked for.
+pub(crate) fn stresses(curve: &Curve) -> &[GearStresses; 2] {
+    curve.stresses.as_ref().expect("asked for")
 }

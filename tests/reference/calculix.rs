@@ -15,8 +15,9 @@ use meshwright_engine::gear::{
 use meshwright_engine::run::Run;
 use serde_json::Value;
 
+use crate::reference;
 use crate::support::{
-    beyond_path, case, gear, holed, library, pair, reference, relieved, roll_length, standard_pair,
+    beyond_path, case, gear, holed, library, pair, relieved, roll_length, standard_pair,
 };
 
 /// Level of δ, relative: along the path of contact, and where a loaded pair lies outside A-E in either solution.

@@ -6,7 +6,8 @@
 use meshwright_engine::analysis::Statistics;
 use serde_json::Value;
 
-use crate::support::{case, paper_case, reference, solve};
+use crate::reference;
+use crate::support::{case, paper_case, solve};
 
 /// The stiffness of case 3 takes the load as T/R_b1 where it is T/R_b2.
 const CASE_3_LOAD: f64 = 85.0 / 29.0;
