@@ -30,8 +30,8 @@ const MOST_PRINTED: usize = 40;
 pub(crate) struct Study {
     /// The study; - reads standard input.
     study: PathBuf,
-    /// Where to write table.json, table.csv and, unless the study keeps statistics only, each result; the folder is made if it is absent. Without it, only a
-    /// short table is printed.
+    /// Where to write table.json, table.csv and, unless the study keeps statistics only, each result; the folder is made if it
+    /// is absent. Without it, only a short table is printed.
     #[arg(long, short, value_name = "DIR")]
     output: Option<PathBuf>,
 }

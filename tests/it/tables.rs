@@ -116,16 +116,11 @@ async fn fields_come_as_a_grid_at_any_position_and_torque_of_the_job() {
         .await
         .unwrap();
     assert_eq!(again.status(), StatusCode::NOT_MODIFIED);
-    let edges: Value = bench
-        .get(&format!(
+    let edges = bench
+        .document(&format!(
             "{path}/results/edges.json?torque=115&mesh_position=0.25"
         ))
-        .send()
-        .await
-        .unwrap()
-        .json()
-        .await
-        .unwrap();
+        .await;
     assert_eq!(edges["mesh_position"], 0.25);
     let submitted = submission(115.0);
     for member in ["driving", "driven"] {

@@ -166,9 +166,10 @@ fn add_teeth(
     let acting: Vec<Load> = (0..count).map(of_tooth).collect();
     let plate = (gear.material(), gear.face_width());
     let moved = displacements("the tooth", &tooth.grid, plate, &interface, &acting)?;
+    let edges = free_edges(&tooth.grid, &interface);
     for (number, moved) in moved.iter().enumerate() {
         let turn = TAU * number as f64 / count as f64;
-        field.add(&tooth.grid, &interface, moved, gear, stand.turned(turn));
+        field.add(&tooth.grid, &edges, moved, gear, stand.turned(turn));
     }
     Ok(())
 }
@@ -200,14 +201,9 @@ fn add_blank(
         .collect();
     let plate = (gear.material(), gear.face_width());
     let answers = displacements("the blank", &whole.grid, plate, &moved, &[acting])?;
+    let edges = free_edges(&whole.grid, &whole.arc_nodes);
     for moved in &answers {
-        field.add(
-            &whole.grid,
-            &whole.arc_nodes,
-            moved,
-            gear,
-            stand.turned(first),
-        );
+        field.add(&whole.grid, &edges, moved, gear, stand.turned(first));
     }
     Ok(())
 }
@@ -244,9 +240,15 @@ impl Stand {
 }
 
 impl GearField {
-    /// Adds `grid`, a part of `gear` that stands at `stand` and moves by `moved`, both in its own axes. At the nodes `inner` it meets
-    /// other parts.
-    fn add(&mut self, grid: &Grid, inner: &[u32], moved: &[Vector], gear: &SpurGear, stand: Stand) {
+    /// Adds `grid`, a part of `gear` that ends at `edges`, stands at `stand` and moves by `moved` in its own axes.
+    fn add(
+        &mut self,
+        grid: &Grid,
+        edges: &[[u32; 3]],
+        moved: &[Vector],
+        gear: &SpurGear,
+        stand: Stand,
+    ) {
         let first = self.nodes.len() as u32;
         let (e_x, e_y) = (radial(stand.angle), tangential(stand.angle));
         let turned = |v: &Vector| v.x * e_x + v.y * e_y;
@@ -262,9 +264,8 @@ impl GearField {
             let (x, y) = (Vector::new(e_x.x, e_y.x), Vector::new(e_x.y, e_y.y));
             [along(&x, &x), along(&y, &y), along(&x, &y)]
         }));
-        let edges = free_edges(grid, inner).into_iter();
         self.edges
-            .extend(edges.map(|edge| edge.map(|node| first + node)));
+            .extend(edges.iter().map(|edge| edge.map(|node| first + node)));
         for element in &grid.elements {
             self.elements.push(element.renumbered(|node| first + node));
             self.thicknesses

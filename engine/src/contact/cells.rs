@@ -208,7 +208,7 @@ impl<'a> ContactCells<'a> {
         load: f64,
         warm: &WarmStart,
     ) -> Result<ContactSolution, PositionError> {
-        let solution = match self.model.solver {
+        Ok(match self.model.solver {
             ContactSolver::ActiveSet => {
                 solve_active_set(problem, load, self.touching(warm).as_deref())?
             }
@@ -223,8 +223,7 @@ impl<'a> ContactCells<'a> {
                 };
                 solve_augmented_lagrangian(problem, load, &settings)?
             }
-        };
-        Ok(solution)
+        })
     }
 
     /// H of both gears with these teeth; its lower triangle.

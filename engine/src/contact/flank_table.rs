@@ -9,6 +9,7 @@ use faer::Mat;
 
 use super::corner::{Corner, block};
 use super::half_plane::logarithm_factor;
+use crate::fem::dense::entries;
 use crate::fem::tooth::ToothSubstructure;
 use crate::gear::{Involute, SpurGear};
 
@@ -92,7 +93,7 @@ impl FlankTable {
 
     /// The number of table entries, for the books of a cache.
     pub fn entries(&self) -> usize {
-        self.smooth.nrows() * (self.smooth.ncols() + self.modes.ncols())
+        entries(&self.smooth) + entries(&self.modes)
     }
 
     /// The number r of loading modes.

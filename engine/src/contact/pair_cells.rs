@@ -7,6 +7,7 @@ use super::flank_table::{FlankPoint, FlankTable};
 use super::half_plane::in_row;
 use super::model::PairModel;
 use super::patch::Patch;
+use crate::fem::dense::entries;
 
 /// Cells are laid as densely on widened patches, up to so many times as many.
 const MOST_WIDENED: f64 = 4.0;
@@ -63,7 +64,6 @@ impl PairCells {
 
     /// About how much memory they take, in bytes.
     pub(super) fn bytes(&self) -> usize {
-        let entries = |m: &Mat<f64>| m.nrows() * m.ncols();
         let numbers = entries(&self.held) + self.shapes.iter().map(entries).sum::<usize>();
         size_of::<Self>() + size_of_val(self.patch.cells.as_slice()) + size_of::<f64>() * numbers
     }

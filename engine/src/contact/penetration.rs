@@ -16,6 +16,7 @@ use super::half_plane::in_row;
 use super::model::PairModel;
 use super::pair_cells::PairCells;
 use super::patch::{Cell, Patch};
+use crate::fem::dense::entries;
 use crate::gear::Member;
 
 /// Stretches on the flank of the seat and on that of its mate.
@@ -143,7 +144,6 @@ impl Stretches {
 
     /// About how much memory they take, in bytes.
     pub(super) fn bytes(&self) -> usize {
-        let entries = |m: &Mat<f64>| m.nrows() * m.ncols();
         let numbers = entries(&self.held) + self.shapes.iter().map(entries).sum::<usize>();
         size_of::<Self>() + size_of_val(self.stretches.as_slice()) + size_of::<f64>() * numbers
     }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::FemError;
 use super::blank::BlankSubstructure;
-use super::dense::Cholesky;
+use super::dense::{Cholesky, entries};
 use super::teeth::TeethRing;
 use crate::gear::gcd;
 use crate::run::Run;
@@ -159,10 +159,7 @@ impl Coupling {
 
     /// The number of entries of all blocks, for the books of a cache.
     pub fn entries(&self) -> usize {
-        self.blocks
-            .iter()
-            .map(|block| block.nrows() * block.ncols())
-            .sum()
+        self.blocks.iter().map(entries).sum()
     }
 
     /// X between tooth `i` and the tooth `offset` places counter-clockwise of it, and whether it is to be transposed.

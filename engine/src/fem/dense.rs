@@ -100,6 +100,11 @@ impl Cholesky<f64> {
     }
 }
 
+/// The number of entries of `a`, for the books of a cache.
+pub fn entries(a: &Mat<f64>) -> usize {
+    a.nrows() * a.ncols()
+}
+
 /// Copies the lower triangle of `a` to its upper one.
 pub fn mirror_lower(a: &mut Mat<f64>) {
     for j in 0..a.ncols() {

@@ -56,9 +56,9 @@ pub(in crate::http) async fn results(
 /// Get the table of a study, or its results, as a file
 ///
 /// `table.json`, `table.ndjson` and `table.csv` are the table: in NDJSON one row to a line, each as in the JSON; in CSV one line
-/// for each row and torque, the columns named as in the JSON with dots between the names. `documents.ndjson` has the results of every design that has some, as
-/// `/v1/jobs/{id}/results` gives them: one object to a line, with the place of the design in the table, its label and its
-/// job. All are sent as they are read.
+/// for each row and torque, the columns named as in the JSON with dots between the names. `documents.ndjson` has the results of
+/// every design that has some, as `/v1/jobs/{id}/results` gives them: one object to a line, with the place of the design in the
+/// table, its label and its job. All are sent as they are read.
 #[utoipa::path(
     get, path = "/v1/studies/{id}/results/{file}", tag = "Studies", operation_id = "get_study_file",
     params(

@@ -145,16 +145,16 @@ pub(super) async fn rest(
         .execute(&mut *connection)
         .await?;
     query(
-            "update shares set active = 0 where client = $1 and lane = '*'
-               and not exists (select 1 from shares where client = $1 and lane <> '*' and active = 1)",
-        )
-        .bind(client)
-        .execute(&mut *connection)
-        .await?;
+        "update shares set active = 0 where client = $1 and lane = '*'
+           and not exists (select 1 from shares where client = $1 and lane <> '*' and active = 1)",
+    )
+    .bind(client)
+    .execute(&mut *connection)
+    .await?;
     // A lane that others have caught up with begins anew where they are, remembered or not.
     query(
         "delete from shares where client = $1 and lane not in ('*', '') and active = 0
-               and due <= (select served from shares where client = $1 and lane = '*')",
+           and due <= (select served from shares where client = $1 and lane = '*')",
     )
     .bind(client)
     .execute(connection)
