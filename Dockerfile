@@ -15,7 +15,7 @@ COPY plot/Cargo.toml plot/
 COPY migrations migrations
 RUN mkdir -p src benches/load engine/src engine/benches paper/src plot/src \
     && touch src/lib.rs engine/src/lib.rs plot/src/lib.rs \
-    && for file in src/main benches/process benches/load/main engine/benches/jobs engine/benches/parts paper/src/main; do \
+    && for file in src/main benches/load/main engine/benches/jobs engine/benches/parts paper/src/main; do \
          echo 'fn main() {}' > "$file.rs"; done \
     && cargo build --release --locked --bin meshwright
 COPY . .

@@ -5,15 +5,12 @@ use meshwright_engine::analysis::{Case, Method, pair_model};
 use meshwright_engine::gear::{BlankRegion, GearData, GearPair, HolePattern, SpurGear};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
-use serde::Serialize;
 
-use super::jobs::{answer, cold};
-use super::stopwatch::least;
+use super::stopwatch::{answer, cold, least};
 use crate::reproduce::cases::{at_torques, by, example, with_holes};
 
 /// What varies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Varied {
     /// The teeth of both gears.
     ToothCount,
@@ -26,14 +23,14 @@ pub(super) enum Varied {
 }
 
 /// How the time of a job grows with one number of its submission.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 pub(super) struct Growth {
     pub(super) varied: Varied,
     pub(super) series: Vec<TimeSeries>,
 }
 
 /// Times over the number that varies.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 pub(super) struct TimeSeries {
     pub(super) name: &'static str,
     pub(super) counts: Vec<u32>,

@@ -4,12 +4,18 @@ use anyhow::Context;
 use meshwright_engine::analysis::{Case, Curve};
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
-use serde::Serialize;
 
-use super::jobs::{PAIRS, answer};
-use super::stopwatch::least;
+use super::stopwatch::{answer, least};
 use crate::reproduce::cases::example;
 use crate::reproduce::computed::line;
+
+/// The examples, and how the table calls them.
+const PAIRS: [(&str, &str); 4] = [
+    ("test-case-1", "case 1"),
+    ("test-case-2", "case 2"),
+    ("test-case-3", "case 3"),
+    ("standard-pair", "standard pair"),
+];
 
 const LEVELS: [(GridLevel, &str); 3] = [
     (GridLevel::Coarse, "coarse"),
@@ -25,7 +31,7 @@ const HARMONICS: [&str; 3] = ["H_Z2", "H_2Z2", "H_3Z2"];
 const SMALL_HARMONIC: f64 = 0.2;
 
 /// One pair at one level, by the flexible method over the true period.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 pub(super) struct LevelRow {
     pub(super) pair: &'static str,
     pub(super) grid: &'static str,
@@ -36,7 +42,7 @@ pub(super) struct LevelRow {
 }
 
 /// Relative differences of the flexible curves of two levels.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Differences {
     pub(super) mean: f64,
     pub(super) peak_to_peak: f64,

@@ -1,10 +1,10 @@
 //! `meshwright-paper measure`: how fast this machine computes, and how the time grows with what is asked.
 //!
-//! Read in this order: [`stopwatch`] (what a time is here), [`jobs`] (the paper's cases), [`growth`] (one thing varied at a
-//! time), [`levels`] (what a finer grid costs and gains), [`report`] (the tables and figures of it).
+//! Read in this order: [`stopwatch`] (what a time is here), [`benchmarks`] (what `cargo bench` found), [`growth`] (one thing
+//! varied at a time), [`levels`] (what a finer grid costs and gains), [`report`] (the tables and figures of it).
 
+mod benchmarks;
 mod growth;
-mod jobs;
 mod levels;
 mod report;
 mod stopwatch;
@@ -14,32 +14,34 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use anyhow::Context;
-use serde::Serialize;
 
+use benchmarks::Benchmark;
 use growth::Growth;
-use jobs::JobTime;
 use levels::LevelRow;
 
-/// Measure how fast this machine computes, and how time grows with what is asked: a table, four figures and the numbers
-/// behind them. It takes a minute or two; other work on the machine makes its numbers worse.
+/// Measure how fast this machine computes, and how time grows with what is asked: tables and four figures. It takes a minute or
+/// two; other work on the machine makes its numbers worse.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Measure {
-    /// The folder to write measured.md, measured.json and the figures to.
-    #[arg(long, short, default_value = "measured")]
+    /// Where cargo bench has left what it found.
+    #[arg(long, default_value = "target/criterion", value_name = "DIR")]
+    criterion: PathBuf,
+    /// The folder to write measured.md and the figures to.
+    #[arg(long, short, default_value = "docs/performance", value_name = "DIR")]
     output: PathBuf,
 }
 
-/// Everything that is measured, as measured.json has it.
-#[derive(Debug, Serialize)]
+/// Everything that is measured.
+#[derive(Debug)]
 struct Measured {
     machine: Machine,
-    jobs: Vec<JobTime>,
+    benchmarks: Vec<Benchmark>,
     growth: Vec<Growth>,
     grid_levels: Vec<LevelRow>,
 }
 
 /// Where it was measured, and what.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 struct Machine {
     processor: String,
     threads: usize,
@@ -75,22 +77,17 @@ impl Measure {
     pub(crate) fn run(&self) -> anyhow::Result<()> {
         let started = Instant::now();
         let tell = |what: &str| println!("{:5.1} s  {what}", started.elapsed().as_secs_f64());
-        tell("The paper's cases by every method.");
-        let jobs = jobs::measured()?;
+        let benchmarks = benchmarks::found(&self.criterion)?;
         let growth = growth::measured(&|what| tell(what))?;
         tell("Grid levels.");
         let measured = Measured {
             machine: Machine::this(),
-            jobs,
+            benchmarks,
             growth,
             grid_levels: levels::measured()?,
         };
         fs::create_dir_all(&self.output)
             .with_context(|| format!("{} cannot be created", self.output.display()))?;
-        self.write(
-            "measured.json",
-            &(serde_json::to_string_pretty(&measured)? + "\n"),
-        )?;
         self.write("measured.md", &report::text(&measured))?;
         for growth in &measured.growth {
             self.write(&growth.file(), &report::figure(growth).to_svg()?)?;

@@ -1,7 +1,7 @@
 //! The tables and figures of what was measured.
 
+use super::benchmarks::{Benchmark, expectation};
 use super::growth::{Growth, TimeSeries, Varied};
-use super::jobs::JobTime;
 use super::levels::{Differences, LevelRow};
 use super::stopwatch::{PATIENCE, RUNS};
 use super::{Machine, Measured};
@@ -11,9 +11,9 @@ use meshwright_plot::{Axis, Chart, Figure, Look, PALETTE, Panel, Series};
 /// The text of measured.md.
 pub(super) fn text(measured: &Measured) -> String {
     let mut text = format!(
-        "{}\n\n### Jobs\n\n{}\n### How time grows\n\n",
+        "# Measured\n\n{}\n\n## Jobs and their parts\n\n{}\n## How time grows\n\n",
         opening(&measured.machine),
-        jobs(&measured.jobs)
+        benchmarks(&measured.benchmarks)
     );
     for growth in &measured.growth {
         let title = title(growth.varied);
@@ -25,7 +25,7 @@ pub(super) fn text(measured: &Measured) -> String {
         ));
     }
     text.push_str(&format!(
-        "### Grid levels\n\n{}",
+        "## Grid levels\n\n{}",
         levels(&measured.grid_levels)
     ));
     text
@@ -33,9 +33,9 @@ pub(super) fn text(measured: &Measured) -> String {
 
 fn opening(machine: &Machine) -> String {
     format!(
-        "Measured by `meshwright-paper measure` of version {}, {}, on {} with {} threads. Each time is the least of up to {RUNS} \
-         runs in one process (as many as begin within {PATIENCE} s), nothing computed before unless the column says so, without \
-         the time to start the process.",
+        "By `meshwright-paper measure` of version {}, {}, on {} with {} threads; [what it means](../performance.md). Jobs and their parts are \
+         the least of criterion's samples. All other times are the least of up to {RUNS} runs in one process (as many as begin within \
+         {PATIENCE} s), nothing computed before, without the time to start the process.",
         machine.version, machine.compiler, machine.processor, machine.threads
     )
 }
@@ -46,32 +46,35 @@ fn milliseconds(seconds: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-fn jobs(times: &[JobTime]) -> String {
-    let rows: Vec<Vec<String>> = times
-        .iter()
-        .map(|time| {
+/// A time in the unit that suits it.
+fn duration(seconds: f64) -> String {
+    match seconds * 1e3 {
+        t if t >= 100.0 => format!("{t:.0} ms"),
+        t if t >= 1.0 => format!("{t:.1} ms"),
+        t => format!("{:.1} µs", t * 1e3),
+    }
+}
+
+fn benchmarks(benchmarks: &[Benchmark]) -> String {
+    let mut rows = Vec::new();
+    for of_group in benchmarks.chunk_by(|a, b| a.group == b.group) {
+        rows.push(vec![
+            format!("**{}**", of_group[0].group),
+            String::new(),
+            String::new(),
+            String::new(),
+        ]);
+        rows.extend(of_group.iter().map(|benchmark| {
+            let (paper, goal) = expectation(benchmark);
             vec![
-                time.pair.to_owned(),
-                time.method.to_owned(),
-                time.positions.to_string(),
-                milliseconds(time.cold_seconds),
-                time.holes_moved_seconds
-                    .map_or("-".to_owned(), milliseconds),
-                milliseconds(time.further_torque_seconds),
+                benchmark.name.clone(),
+                paper.to_owned(),
+                goal.to_owned(),
+                duration(benchmark.seconds),
             ]
-        })
-        .collect();
-    table(
-        &[
-            "pair",
-            "method",
-            "positions",
-            "cold ms",
-            "holes moved ms",
-            "a further torque ms",
-        ],
-        &rows,
-    )
+        }));
+    }
+    table(&["what", "paper", "goal", "measured"], &rows)
 }
 
 fn title(varied: Varied) -> &'static str {

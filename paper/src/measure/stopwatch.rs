@@ -2,6 +2,13 @@
 
 use std::time::Instant;
 
+use anyhow::Context;
+use meshwright_engine::analysis::{Analysis, Case, analyze};
+use meshwright_engine::library::Library;
+use meshwright_engine::run::Run;
+
+use crate::reproduce::computed::method_name;
+
 /// Runs of one piece of work, at most.
 pub(super) const RUNS: u32 = 3;
 
@@ -40,6 +47,25 @@ pub(super) fn least<I, T>(
         }
     }
     Ok(best)
+}
+
+/// The least time of `case` in seconds, with nothing computed before.
+///
+/// # Errors
+///
+/// If it cannot be computed.
+pub(super) fn cold(case: &Case) -> anyhow::Result<f64> {
+    Ok(least(|| Ok(()), |()| answer(case, &Library::default()))?.0)
+}
+
+/// The answer to `case`.
+///
+/// # Errors
+///
+/// If it cannot be computed.
+pub(super) fn answer(case: &Case, library: &Library) -> anyhow::Result<Analysis> {
+    analyze(case, library, &Run::unattended())
+        .with_context(|| format!("the {} method failed", method_name(case.method)))
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
 //! Nothing -> accepted, or -> successful at once where the same has been computed before.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 use jiff::Timestamp;
 use uuid::Uuid;
 
-use super::statement::{Connection, query, query_as, query_scalar};
+use super::statement::{Connection, query, query_as};
 use super::{Store, StoreError, column, dialect, shares};
 use crate::hash::sha256_hex;
 use crate::jobs::job::Job;
@@ -97,8 +97,15 @@ impl Store {
 /// The room in the queue, within one transaction: nobody else queues a job meanwhile, so that one count serves all of it.
 struct Room {
     limit: i64,
-    waiting: Option<i64>,
+    /// How many jobs of each client wait, those of studies aside.
+    waiting: Option<HashMap<String, i64>>,
 }
+
+/// Only lanes in which a job waits are counted, so that designs of studies are not even passed over.
+pub(super) const WAITING_ALONE: &str = "select client, count(*) from jobs
+     where client in (select client from shares where lane = '' and active = 1)
+       and status = 'accepted' and coalesce(study, '') = ''
+     group by client";
 
 impl Room {
     fn new(limit: u32) -> Self {
@@ -108,24 +115,31 @@ impl Room {
         }
     }
 
-    /// Takes one place, or tells how many jobs wait if there is none.
-    async fn take(&mut self, connection: &mut Connection) -> Result<Result<(), i64>, sqlx::Error> {
-        let waiting = match self.waiting {
+    /// Takes a place for `client`, of which `client_limit` jobs may wait, or tells who has none left.
+    async fn take(
+        &mut self,
+        connection: &mut Connection,
+        client: &str,
+        client_limit: u32,
+    ) -> Result<Result<(), Outcome>, sqlx::Error> {
+        let waiting = match &mut self.waiting {
             Some(waiting) => waiting,
-            None => query_scalar(
-                "select count(*) from jobs where status = 'accepted' and coalesce(study, '') = ''",
-            )
-            .fetch_one(connection)
-            .await?,
+            none => {
+                let counts: Vec<(String, i64)> =
+                    query_as(WAITING_ALONE).fetch_all(connection).await?;
+                none.insert(counts.into_iter().collect())
+            }
         };
-        let has_room = waiting < self.limit;
-        self.waiting = Some(waiting + i64::from(has_room));
-        Ok(if has_room { Ok(()) } else { Err(waiting) })
-    }
-
-    /// Gives a place back that was taken.
-    fn give_back(&mut self) {
-        self.waiting = self.waiting.map(|waiting| waiting - 1);
+        let all: i64 = waiting.values().sum();
+        if all >= self.limit {
+            return Ok(Err(Outcome::QueueFull { waiting: all }));
+        }
+        let own = waiting.entry(client.to_owned()).or_default();
+        if *own >= i64::from(client_limit) {
+            return Ok(Err(Outcome::ClientQueueFull { waiting: *own }));
+        }
+        *own += 1;
+        Ok(Ok(()))
     }
 }
 
@@ -145,18 +159,9 @@ async fn submit_one(
     let outcome = if let Some(job) = insert_known(connection, new, bounds.solver_version).await? {
         Outcome::Known(job)
     } else {
-        if let Err(waiting) = room.take(connection).await? {
-            return Ok(Outcome::QueueFull { waiting });
-        }
-        let own: i64 = query_scalar(
-            "select count(*) from jobs where client = $1 and status = 'accepted' and coalesce(study, '') = ''",
-        )
-        .bind(&new.client)
-        .fetch_one(&mut *connection)
-        .await?;
-        if own >= i64::from(new.client_limit) {
-            room.give_back();
-            return Ok(Outcome::ClientQueueFull { waiting: own });
+        let taken = room.take(connection, &new.client, new.client_limit);
+        if let Err(full) = taken.await? {
+            return Ok(full);
         }
         Outcome::Queued(insert_waiting(connection, new).await?)
     };

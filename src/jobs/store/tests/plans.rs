@@ -3,6 +3,7 @@
 use super::*;
 use crate::jobs::store::dialect::sqlite::NEXT_WAITING;
 use crate::jobs::store::statement::Dialect;
+use crate::jobs::store::submit::WAITING_ALONE;
 use crate::jobs::store::{Filter, Membership, Span};
 use crate::wire::Status;
 
@@ -119,6 +120,22 @@ async fn a_claim_looks_at_no_job_that_has_ended() {
             uses("TEMP B-TREE")
         ),
         (1, 1, 0),
+        "{steps:?}"
+    );
+}
+
+#[tokio::test]
+async fn a_submission_counts_no_designs_of_studies() {
+    let (store, _folder) = store().await;
+    let plan = sqlx::AssertSqlSafe(format!("explain query plan {WAITING_ALONE}"));
+    let steps: Vec<(i64, i64, i64, String)> = sqlx::query_as(plan)
+        .fetch_all(readers(&store))
+        .await
+        .unwrap();
+    let lane = "jobs_waiting (client=? AND <expr>=?)";
+    assert!(
+        steps.iter().any(|step| step.3.contains(lane))
+            && !steps.iter().any(|step| step.3.contains("SCAN")),
         "{steps:?}"
     );
 }
