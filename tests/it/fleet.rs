@@ -3,6 +3,8 @@
 //!
 //! A few hundred jobs run with the tests; five thousand, and the figures of `docs/scaling.md`, by `tests/fleet`.
 
+mod hosts;
+
 use std::process::Command;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -46,29 +48,41 @@ struct Fleet {
     lease: String,
 }
 
+/// What a process of the fleet is told.
+fn told<'a>(role: &'a str, lease: &'a str) -> [&'a str; 8] {
+    [
+        "--role",
+        role,
+        "--workers",
+        "1",
+        "--queue-limit",
+        "100000",
+        "--lease",
+        lease,
+    ]
+}
+
 fn start(place: &Place, role: &str, lease: &str) -> Process {
-    Process::start_with(
-        place,
-        &[
-            "--role",
-            role,
-            "--workers",
-            "1",
-            "--queue-limit",
-            "100000",
-            "--lease",
-            lease,
-        ],
-    )
+    Process::start_with(place, &told(role, lease))
 }
 
 impl Fleet {
     fn start(address: &str, workers: usize, apis: usize, lease: &str) -> Self {
         let place = Place::Postgres(address.to_owned());
-        let apis: Vec<Process> = (0..apis).map(|_| start(&place, "api", lease)).collect();
+        let apis = (0..apis).map(|_| start(&place, "api", lease)).collect();
         let workers = (0..workers)
             .map(|_| start(&place, "worker", lease))
             .collect();
+        Self::of(place, apis, workers, lease)
+    }
+
+    /// One process that does everything.
+    fn alone(place: Place) -> Self {
+        let process = start(&place, "all", "30s");
+        Self::of(place, vec![process], Vec::new(), "30s")
+    }
+
+    fn of(place: Place, apis: Vec<Process>, workers: Vec<Process>, lease: &str) -> Self {
         let bases = apis.iter().map(|api| api.base.clone()).collect();
         Self {
             workers,
@@ -194,23 +208,34 @@ async fn troubled(count: u64, lease: u64) {
     );
 }
 
-/// Comes back when all of `count` jobs are done that nobody disturbs; says how fast.
-async fn calm(count: u64, workers: usize) -> f64 {
-    let address = server::database().await;
-    let fleet = Fleet::start(&address, workers, 2, "30s");
+/// Comes back when all of `count` jobs are done that nobody disturbs; says how many a second.
+async fn calm(fleet: &Fleet, count: u64) -> f64 {
     let start = Instant::now();
     let submitters = fleet.submit(count);
     fleet.successful(count.try_into().unwrap()).await;
     let seconds = start.elapsed().as_secs_f64();
     submitters.taken().await;
-    check(&fleet, count).await;
+    check(fleet, count).await;
+    count as f64 / seconds
+}
+
+async fn calm_on_a_file(count: u64) -> f64 {
+    let folder = tempfile::tempdir().unwrap();
+    let fleet = Fleet::alone(Place::File(folder.path().join("meshwright.db")));
+    let rate = calm(&fleet, count).await;
+    println!("{count} jobs, one process on a file, 1 worker: {rate:.1} a second");
+    rate
+}
+
+async fn calm_on_a_server(count: u64, workers: usize) -> f64 {
+    let fleet = Fleet::start(&server::database().await, workers, 2, "30s");
+    let rate = calm(&fleet, count).await;
     let shares = share_of_workers(&fleet).await;
     assert_eq!(
         shares.len(),
         workers,
         "each worker had its share: {shares:?}"
     );
-    let rate = count as f64 / seconds;
     let memory: Vec<_> = fleet.workers.iter().map(Process::peak_memory_mb).collect();
     let connections = fleet
         .number("select count(*) from pg_stat_activity where datname = current_database()")
@@ -368,11 +393,45 @@ async fn a_study_of_twenty_thousand_designs_through_two_processes() {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[ignore = "a measurement; tests/fleet runs it"]
+async fn a_study_of_designs_that_take_no_time_tells_how_fast_claims_take_turns() {
+    for workers in [1, 2, 4] {
+        let fleet = Fleet::start(&server::database().await, workers, 1, "30s");
+        let mut base = job(0);
+        base["method"] = json!("load_distribution");
+        base["resolution"]["span_mesh_periods"] = json!(1);
+        let torques: Vec<Value> = (0..3000)
+            .map(|i| json!([50.0 + f64::from(i) * 0.1]))
+            .collect();
+        let study = json!({
+            "base": base,
+            "axes": [{ "path": "/output_torques_n_m", "values": torques }],
+            "keep": "statistics",
+        });
+        let start = Instant::now();
+        let path = fleet.apis[0].submit(&fleet.client, &study).await;
+        fleet.apis[0].done(&fleet.client, &path, 3000).await;
+        let seconds = start.elapsed().as_secs_f64();
+        let processor: f64 = fleet.workers.iter().map(Process::processor_seconds).sum();
+        println!(
+            "{workers} workers: 3,000 designs that take no time in {seconds:.1} s, {:.0} a second; {:.2} ms of a core each in the workers",
+            3000.0 / seconds,
+            processor / 3.0,
+        );
+    }
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 #[ignore = "takes a quarter of an hour; tests/fleet runs it"]
 async fn five_thousand_jobs_with_and_without_trouble() {
-    let one = calm(1000, 1).await;
-    let three = calm(5000, 3).await;
-    println!("three workers are {:.2} times as fast as one", three / one);
+    let file = calm_on_a_file(1000).await;
+    let one = calm_on_a_server(1000, 1).await;
+    let three = calm_on_a_server(5000, 3).await;
+    println!(
+        "three workers are {:.2} times as fast as one, and one {:.2} times as fast as on a file",
+        three / one,
+        one / file
+    );
     troubled(5000, 10).await;
 }
 

@@ -36,6 +36,13 @@ impl Process {
         Self::spawn(shell, database, &[])
     }
 
+    /// The same on a host of its own, a network namespace.
+    pub(crate) fn start_on(host: &str, database: &Place, arguments: &[&str]) -> Self {
+        let mut program = Command::new("ip");
+        program.args(["netns", "exec", host, env!("CARGO_BIN_EXE_meshwright")]);
+        Self::spawn(program, database, arguments)
+    }
+
     fn spawn(mut program: Command, database: &Place, arguments: &[&str]) -> Self {
         let mut child = program
             .args(["serve", "--listen", "127.0.0.1:0", "--database"])

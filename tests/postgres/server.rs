@@ -20,8 +20,14 @@ fn server() -> &'static str {
 
 /// Starts a server that ends with this process. Gives back its address and its folder.
 pub(crate) fn start() -> (String, String) {
+    start_with(&[])
+}
+
+/// The same with settings of `tests/postgres/start`.
+pub(crate) fn start_with(settings: &[(&str, &str)]) -> (String, String) {
     let started = Command::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/postgres/start"))
         .arg(std::process::id().to_string())
+        .envs(settings.iter().copied())
         .stderr(Stdio::inherit())
         .output()
         .unwrap();

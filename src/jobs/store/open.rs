@@ -1,6 +1,7 @@
 //! Opening the database: what it has to be, and what it is brought to.
 
 use std::io::Read;
+use std::net::IpAddr;
 use std::path::Path;
 use std::str::FromStr;
 use std::time::Duration;
@@ -10,7 +11,7 @@ use sqlx::postgres::{PgConnectOptions, PgPoolOptions};
 use sqlx::sqlite::{
     SqliteAutoVacuum, SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous,
 };
-use sqlx::{ConnectOptions, Connection, SqliteConnection};
+use sqlx::{ConnectOptions, Connection, PgConnection, SqliteConnection};
 use tracing::{info, warn};
 use uuid::Uuid;
 
@@ -198,6 +199,11 @@ async fn open_server(address: &str) -> Result<(Pool, Pool), OpenError> {
             ("tcp_keepalives_count", "3"),
         ]);
     let mut connection = options.connect().await?;
+    if leaves_the_machine(&options) && !is_encrypted(&mut connection).await? {
+        warn!(
+            "the connections to the database are not encrypted; sslmode=verify-full in its address asks for it"
+        );
+    }
     let migrated = MIGRATIONS_OF_POSTGRES
         .run_direct(None, &mut connection, false)
         .await;
@@ -219,6 +225,25 @@ async fn open_server(address: &str) -> Result<(Pool, Pool), OpenError> {
         .connect_with(options)
         .await?;
     Ok((Pool::Postgres(pool.clone()), Pool::Postgres(pool)))
+}
+
+/// Whether what is told to the server crosses a network.
+fn leaves_the_machine(options: &PgConnectOptions) -> bool {
+    let host = options.get_host();
+    let by_number = host.trim_matches(['[', ']']).parse::<IpAddr>();
+    let here = host == "localhost"
+        || host.starts_with('/')
+        || by_number.is_ok_and(|address| address.is_loopback());
+    !here && options.get_socket().is_none()
+}
+
+/// Whether others on the way cannot read along.
+async fn is_encrypted(connection: &mut PgConnection) -> Result<bool, sqlx::Error> {
+    sqlx::query_scalar(
+        "select exists (select from pg_stat_ssl where pid = pg_backend_pid() and ssl)",
+    )
+    .fetch_one(connection)
+    .await
 }
 
 /// A file that is there and not empty has to be a database; SQLite would say so later, and less clearly. One that is absent is

@@ -9,6 +9,7 @@ use super::*;
 
 #[path = "doubt.rs"]
 mod doubt;
+mod encrypted;
 #[path = "keeping.rs"]
 mod keeping;
 #[path = "lists.rs"]
