@@ -23,7 +23,7 @@ COPY . .
 RUN touch src/lib.rs src/main.rs engine/src/lib.rs && cargo build --release --locked --bin meshwright
 
 FROM ${RUN_IMAGE}
-# The certificates are for webhooks.
+# The certificates are for webhooks and for a PostgreSQL elsewhere.
 RUN apt-get update && apt-get install --yes --no-install-recommends ca-certificates && rm -rf /var/lib/apt/lists/*
 RUN useradd --system --no-create-home meshwright && install --directory --owner=meshwright /data
 COPY --from=build /source/target/release/meshwright /usr/local/bin/meshwright
