@@ -1,7 +1,9 @@
 // The form of a submission, made from the schema: every field with its unit, bounds, default and words.
 
-import { h, number, unit } from "./dom.js";
+import { Beginnings } from "./beginnings.js";
 import { at } from "./design.js";
+import { h, number, unit } from "./dom.js";
+import { parsed, read, stepped, write } from "./inputs.js";
 import { help, kindOf, resolve, saidDefault } from "./schema.js";
 
 /** Fields that a designer looks for first; they stand above the others of their object. */
@@ -17,7 +19,7 @@ export class Form {
   #fields = new Map();
 
   constructor(place, api, design) {
-    Object.assign(this, { place, api, design });
+    Object.assign(this, { place, api, design, beginnings: new Beginnings(api, design) });
     place.addEventListener("submit", (event) => event.preventDefault());
     this.render();
   }
@@ -122,7 +124,13 @@ export class Form {
 
   /** What decides which fields there are: which objects, variants and list entries the design has. */
   #shape() {
-    const shape = (value) => (Array.isArray(value) ? (typeof value[0] === "object" ? value.map(shape) : 0) : value && typeof value === "object" ? Object.fromEntries(Object.entries(value).filter(([, each]) => each && typeof each === "object").map(([name, each]) => [name, Object.keys(each).length && shape(each)]).concat(variantOf(value))) : 0);
+    const isNested = (value) => value && typeof value === "object";
+    const shape = (value) => {
+      if (Array.isArray(value)) return isNested(value[0]) ? value.map(shape) : 0;
+      if (!isNested(value)) return 0;
+      const nested = Object.entries(value).filter(([, each]) => isNested(each));
+      return Object.fromEntries([...nested.map(([name, each]) => [name, Object.keys(each).length && shape(each)]), ...variantOf(value)]);
+    };
     return JSON.stringify(shape(this.design.submission));
   }
 
@@ -215,7 +223,7 @@ export class Form {
 
   #fieldset(pointer, kind, title, fields, optional) {
     const said = help(kind.schema);
-    const box = h("input", { type: "checkbox", id: `field-${pointer}`, on: { change: (event) => (event.target.checked ? this.#put(pointer, this.#start(pointer, kind)) : this.#takeAway(pointer)) } });
+    const box = h("input", { type: "checkbox", id: `field-${pointer}`, on: { change: (event) => (event.target.checked ? this.#put(pointer, this.beginnings.object(pointer, kind)) : this.#takeAway(pointer)) } });
     const legend = optional ? h("legend", {}, h("label", { title: said }, box, ` ${title}`)) : h("legend", { title: said }, title);
     const element = h("fieldset", { className: "field" }, legend, ...fields);
     return this.#register(pointer, element, kind.schema, () => {
@@ -230,49 +238,13 @@ export class Form {
     this.design.setAll({ [pointer]: undefined, ...round }, "form");
   }
 
-  /** Values to begin with, where an object is asked for: those that suit the pair, else defaults. */
-  #start(pointer, kind) {
-    if (pointer.endsWith("/slot")) return slotOf(this.design.get(pointer.slice(0, -"/slot".length)));
-    const member = /\/pair\/(driving|driven)/.exec(pointer)?.[0];
-    const gear = member ? this.design.get(member) : null;
-    const usual = gear ? usualValues(gear) : {};
-    const name = pointer.split("/").pop();
-    if (usual[name]) return usual[name];
-    return this.#begin(kind);
-  }
-
-  /** One of several forms to begin with: what is there in the other form, as far as it goes. */
-  #startVariant(pointer, kind) {
-    const there = this.design.get(pointer);
-    if (!pointer.endsWith("/holes")) return this.#begin(kind);
-    const patterns = there ? [there].flat() : [this.#start(pointer, kind)];
-    return kind.kind === "list" ? patterns : patterns[0];
-  }
-
-  /** A further entry of a list. */
-  #further(pointer, kind, values) {
-    if (!pointer.endsWith("/holes")) return this.#begin(kind.items);
-    return values.length ? between(values.at(-1)) : this.#start(pointer, kind);
-  }
-
-  #begin(kind) {
-    const { schema } = kind;
-    if (kind.kind === "object") return Object.fromEntries(Object.entries(schema.properties).filter(([name]) => (schema.required ?? []).includes(name)).map(([name, each]) => [name, this.#begin(kindOf(this.api, each))]));
-    if (kind.kind === "variants") return this.#begin(kindOf(this.api, kind.variants[0]));
-    if (kind.kind === "list") return [this.#begin(kind.items)];
-    if (kind.kind === "numbers") return [];
-    if (schema.default !== undefined && schema.default !== null) return schema.default;
-    if (kind.kind === "choice") return schema.enum[0];
-    return kind.kind === "number" ? Math.max(schema.minimum ?? 0, Math.min(1, schema.maximum ?? 1)) : "";
-  }
-
   #variants(pointer, kind) {
     const value = this.design.get(pointer);
     const index = value === undefined || value === null ? -1 : kind.variants.findIndex((variant) => fits(variant, value));
     const none = kind.optional || kind.schema.default !== undefined ? [h("option", { value: "" }, "default")] : [];
     const options = kind.variants.map((variant, i) => h("option", { value: i }, variant.title ?? `variant ${i + 1}`));
     const id = `field-${pointer}`;
-    const select = h("select", { id, on: { change: (event) => this.design.set(pointer, event.target.value === "" ? undefined : this.#startVariant(pointer, kindOf(this.api, kind.variants[event.target.value])), "form") } }, ...none, ...options);
+    const select = h("select", { id, on: { change: (event) => this.design.set(pointer, event.target.value === "" ? undefined : this.beginnings.variant(pointer, kindOf(this.api, kind.variants[event.target.value])), "form") } }, ...none, ...options);
     const chosen = kind.variants[index];
     const inner = chosen ? kindOf(this.api, chosen) : null;
     const fields = inner?.kind === "object" ? Object.entries(inner.schema.properties).map(([name, schema]) => this.#field(`${pointer}/${name}`, schema, (inner.schema.required ?? []).includes(name))) : inner?.kind === "list" ? [this.#list(pointer, inner)] : [];
@@ -287,7 +259,7 @@ export class Form {
     const entries = values.map((_, i) => h("div", { className: "entry-of-list" },
       this.#field(`${pointer}/${i}`, kind.items.schema, true),
       h("button", { type: "button", on: { click: () => this.design.set(`${pointer}/${i}`, undefined, "form") } }, "Remove")));
-    const add = h("button", { type: "button", on: { click: () => this.design.set(pointer, [...values, this.#further(pointer, kind, values)], "form") } }, `Add to ${(kind.schema.title ?? "the list").toLowerCase()}`);
+    const add = h("button", { type: "button", on: { click: () => this.design.set(pointer, [...values, this.beginnings.further(pointer, kind, values)], "form") } }, `Add to ${(kind.schema.title ?? "the list").toLowerCase()}`);
     const element = h("fieldset", { className: "field list" }, h("legend", { title: help(kind.schema) }, kind.schema.title ?? ""), ...entries, add);
     return this.#fields.has(pointer) ? element : this.#register(pointer, element, kind.schema, () => {});
   }
@@ -315,62 +287,4 @@ function bounds({ kind, schema }) {
 function toggle(button, words) {
   words.hidden = !words.hidden;
   button.setAttribute("aria-expanded", String(!words.hidden));
-}
-
-function read(input, kind) {
-  const text = input.value.trim();
-  if (text === "") return undefined;
-  if (kind.kind === "numbers") return text.split(/[\s,;]+/).filter(Boolean).map((word) => (Number.isNaN(Number(word)) ? word : Number(word)));
-  if (kind.kind === "texts") return text.split(",").map((word) => word.trim()).filter(Boolean);
-  return kind.kind === "number" ? Number(text) : text;
-}
-
-function parsed(text) {
-  if (text.trim() === "") return undefined;
-  try {
-    return JSON.parse(text);
-  } catch {
-    return text;
-  }
-}
-
-function write(input, kind, value) {
-  if (kind.kind === "flag") input.checked = value ?? kind.schema.default ?? false;
-  else if (kind.kind === "choice") input.value = value ?? kind.schema.default ?? kind.schema.enum[0];
-  else if (value === undefined || value === null) input.value = "";
-  else if (Array.isArray(value)) input.value = value.join(", ");
-  else input.value = typeof value === "object" ? JSON.stringify(value) : String(value);
-}
-
-function stepped(value, steps, kind) {
-  const { minimum = -Infinity, maximum = Infinity } = kind.schema;
-  const size = kind.whole ? 1 : 10 ** Math.floor(Math.log10(Math.max(Math.abs(value), 0.1)) - 1);
-  return Math.min(maximum, Math.max(minimum, Number((Math.round(value / size + steps) * size).toPrecision(8))));
-}
-
-const numberOf = (pattern) => pattern.count ?? pattern.at_deg?.length ?? 1;
-const twoDigits = (value) => Number(value.toPrecision(2));
-
-/** Slots in place of the round holes of a pattern, with material left between them. */
-function slotOf(pattern) {
-  return { width_mm: twoDigits(pattern.radius_mm ?? pattern.circle_radius_mm / 10), angle_deg: twoDigits(180 / Math.max(numberOf(pattern), 3)) };
-}
-
-/** A further pattern: small round holes midway between those of `pattern`. */
-function between(pattern) {
-  const half = 180 / numberOf(pattern);
-  const places = pattern.at_deg ? { at_deg: pattern.at_deg.map((angle) => angle + half) } : { count: pattern.count, phase_deg: (pattern.phase_deg ?? 0) + half };
-  return { ...places, circle_radius_mm: pattern.circle_radius_mm, radius_mm: twoDigits(0.4 * (pattern.radius_mm ?? pattern.slot?.width_mm / 2)) };
-}
-
-/** What a gear gets where holes or a relief are added: six holes in the middle of the blank, a usual relief. */
-function usualValues(gear) {
-  const root = (gear.module_mm * gear.tooth_count) / 2 - (gear.dedendum_mm ?? 1.25 * gear.module_mm);
-  const bore = gear.blank?.bore_radius_mm ?? root / 3;
-  const circle = Number(((root + bore) / 2).toPrecision(3));
-  const radius = Number(Math.min(0.27 * (root - bore), 0.3 * circle).toPrecision(2));
-  return {
-    holes: { count: 6, circle_radius_mm: circle, radius_mm: radius, phase_deg: 0 },
-    tip_relief: { amount_um: 10, shape: "linear", start: { radial_length_mm: Number((0.5 * gear.module_mm).toPrecision(2)) } },
-  };
 }
