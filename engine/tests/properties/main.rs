@@ -1,7 +1,7 @@
 //! What must hold of every pair that can be drawn, tried on pairs drawn at random.
 //!
 //! [`drawn`] draws the pairs, [`seen`] lists those on which a defect was once seen, [`truths`] says what must hold of them all. Each
-//! property is tried on a few dozen pairs in the test command, and on a thousand by `./test --test properties -- --ignored --nocapture`,
+//! property is tried on a few dozen pairs in the test command, and on two thousand by `./test --test properties -- --ignored --nocapture`,
 //! which prints the worst figures of each: docs/validity.md has them.
 
 #[path = "../cases/mod.rs"]
@@ -70,7 +70,7 @@ fn named(name: &str) -> &'static Truth {
         .unwrap_or_else(|| panic!("{name} is a truth"))
 }
 
-macro_rules! short_forms {
+macro_rules! forms {
     ($($name:ident)*) => {
         $(
             #[test]
@@ -82,15 +82,28 @@ macro_rules! short_forms {
             }
         )*
 
+        /// The same on many more pairs.
+        mod at_length {
+            use super::*;
+
+            $(
+                #[test]
+                #[ignore = "all of them take hours"]
+                fn $name() {
+                    hold(named(stringify!($name)), drawn(LONG).chain(as_made(LONG)));
+                }
+            )*
+        }
+
         #[test]
-        fn every_truth_has_its_short_form() {
+        fn every_truth_has_its_forms() {
             let names = [$(stringify!($name)),*];
             assert!(TRUTHS.iter().all(|truth| names.contains(&truth.name)));
         }
     };
 }
 
-short_forms! {
+forms! {
     no_flank_penetrates
     the_pair_that_touches_first_carries
     all_lengths_times_s_and_the_torque_times_s_cubed_make_delta_times_s
@@ -103,12 +116,4 @@ short_forms! {
     a_lone_contact_is_hertz
     both_contact_solvers_agree
     halving_every_element_changes_little
-}
-
-#[test]
-#[ignore = "the long form takes an hour"]
-fn a_thousand_pairs() {
-    for truth in TRUTHS {
-        hold(truth, drawn(LONG).chain(as_made(LONG)));
-    }
 }
