@@ -323,3 +323,23 @@ async fn make_shrinkable(connection: &mut SqliteConnection) {
         warn!(%error, "the database cannot be made anew now, and will not shrink");
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_goes_to_another_machine_crosses_a_network() {
+        for (address, leaves) in [
+            ("postgres://me@127.0.0.1/gears", false),
+            ("postgres://me@localhost:5433/gears", false),
+            ("postgres://me@[::1]/gears", false),
+            ("postgres://me@%2Fvar%2Frun%2Fpostgresql/gears", false),
+            ("postgres://me@db.example/gears", true),
+            ("postgres://me@10.0.0.7/gears", true),
+        ] {
+            let options = PgConnectOptions::from_str(address).unwrap();
+            assert_eq!(leaves_the_machine(&options), leaves, "{address}");
+        }
+    }
+}
