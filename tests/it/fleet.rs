@@ -38,6 +38,8 @@ fn job(number: u64) -> Value {
     })
 }
 
+const SUCCESSFUL: &str = "select count(*) from jobs where status = 'successful'";
+
 /// The processes, and the database that they share.
 struct Fleet {
     place: Place,
@@ -109,8 +111,7 @@ impl Fleet {
 
     /// Comes back when so many jobs are successful.
     async fn successful(&self, count: i64) {
-        let query = "select count(*) from jobs where status = 'successful'";
-        self.until(query, count).await;
+        self.until(SUCCESSFUL, count).await;
     }
 
     /// Comes back when `query` counts as many.
@@ -395,12 +396,13 @@ async fn a_study_of_twenty_thousand_designs_through_two_processes() {
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 #[ignore = "a measurement; tests/fleet runs it"]
 async fn a_study_of_designs_that_take_no_time_tells_how_fast_claims_take_turns() {
+    const DESIGNS: u16 = 3000;
     for workers in [1, 2, 4] {
         let fleet = Fleet::start(&server::database().await, workers, 1, "30s");
         let mut base = job(0);
         base["method"] = json!("load_distribution");
         base["resolution"]["span_mesh_periods"] = json!(1);
-        let torques: Vec<Value> = (0..3000)
+        let torques: Vec<Value> = (0..DESIGNS)
             .map(|i| json!([50.0 + f64::from(i) * 0.1]))
             .collect();
         let study = json!({
@@ -410,13 +412,15 @@ async fn a_study_of_designs_that_take_no_time_tells_how_fast_claims_take_turns()
         });
         let start = Instant::now();
         let path = fleet.apis[0].submit(&fleet.client, &study).await;
-        fleet.apis[0].done(&fleet.client, &path, 3000).await;
+        fleet.apis[0]
+            .done(&fleet.client, &path, DESIGNS.into())
+            .await;
         let seconds = start.elapsed().as_secs_f64();
         let processor: f64 = fleet.workers.iter().map(Process::processor_seconds).sum();
         println!(
-            "{workers} workers: 3,000 designs that take no time in {seconds:.1} s, {:.0} a second; {:.2} ms of a core each in the workers",
-            3000.0 / seconds,
-            processor / 3.0,
+            "{workers} workers: {DESIGNS} designs that take no time in {seconds:.1} s, {:.0} a second; {:.2} ms of a core each in the workers",
+            f64::from(DESIGNS) / seconds,
+            1e3 * processor / f64::from(DESIGNS),
         );
     }
 }
@@ -474,6 +478,16 @@ async fn carry(mut from: OwnedReadHalf, mut to: OwnedWriteHalf, mut open: watch:
     }
 }
 
+/// Looks at a worker that was cut off from the server at `cut`. Its reports go unanswered for a lease; then the engine is told, and
+/// obeys between two positions.
+async fn computes_no_more(worker: &Process, cut: Instant, lease: Duration) {
+    tokio::time::sleep((3 * lease).saturating_sub(cut.elapsed())).await;
+    let before = worker.processor_seconds();
+    tokio::time::sleep(lease / 2).await;
+    let spent = worker.processor_seconds() - before;
+    assert!(spent < 0.15, "it computes on: {spent} s of {:?}", lease / 2);
+}
+
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_worker_cut_off_from_the_server_gives_up_its_job_and_works_again_when_it_is_back() {
     let _alone = stores::ALONE.lock().await;
@@ -508,12 +522,7 @@ async fn a_worker_cut_off_from_the_server_gives_up_its_job_and_works_again_when_
             1,
         )
         .await;
-    // Its reports go unanswered for a lease; then the engine is told, and obeys between two positions.
-    tokio::time::sleep((3 * LEASE).saturating_sub(cut_at.elapsed())).await;
-    let before = cut_off.processor_seconds();
-    tokio::time::sleep(LEASE / 2).await;
-    let spent = cut_off.processor_seconds() - before;
-    assert!(spent < 0.15, "it computes on: {spent} s of half a second");
+    computes_no_more(&cut_off, cut_at, LEASE).await;
 
     let cancelled = fleet
         .client
