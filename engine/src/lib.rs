@@ -31,9 +31,9 @@
 //!    decomposition (ours), and the classical load distribution (eqs. 4 and 5) from closed-form compliances
 //!    (`analysis::load_distribution`).
 //!
-//! Where the rest of the paper went: K_in,in and K_in,ed (eqs. 11 and 12) are never formed as such, because the inner unknowns of
-//! the annulus are eliminated exactly with every blank ([`fem::condensation`]) and its rotation is then the difference of two
-//! solutions (`analysis::decomposition`). The frequency f_0 (eq. 2) is that of the true period ([`gear::GearPair::period`]), the
+//! Where the rest of the paper went: the inner unknowns of the annulus (K_in,in and K_in,ed of eqs. 11 and 12) are eliminated
+//! exactly with every blank ([`fem::condensation`]); what is left of it on the circle R_w is [`fem::annulus`], on which
+//! `analysis::decomposition` puts the displacement of the whole gear. The frequency f_0 (eq. 2) is that of the true period ([`gear::GearPair::period`]), the
 //! first order of a [`analysis::spectrum::Spectrum`]. M and C (eq. 8) are dropped: everything is quasi-static.
 //!
 //! *Mesh* always means gear teeth in engagement; finite elements live on a [`grid::Grid`].

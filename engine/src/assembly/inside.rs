@@ -3,10 +3,11 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use super::{GearGrids, GearSpec, PartError, Parts, Teeth};
+use super::cut::{CutBlank, CutGear};
+use super::{GearGrids, GearSpec, PartError, Parts};
 use crate::contact::FlankLoad;
 use crate::fem::FemError;
-use crate::fem::blank::{BlankRecovery, BlankSubstructure};
+use crate::fem::blank::BlankRecovery;
 use crate::fem::motion::InterfaceMotion;
 use crate::fem::recovery::Functional;
 use crate::fem::teeth_recovery::TeethRecovery;
@@ -24,19 +25,10 @@ pub struct Probes {
 
 /// A gear that can be asked what goes on inside it.
 pub struct Inside {
-    teeth: Arc<Teeth>,
-    tooth: ToothSubstructure,
+    cut: CutGear,
     in_tooth: TeethRecovery,
-    /// `None` if it is rigid.
-    blank: Option<InsideBlank>,
-}
-
-struct InsideBlank {
-    blank: BlankSubstructure,
-    /// What its highest orders find, where that is another one.
-    solid: Option<Arc<BlankSubstructure>>,
-    recovery: BlankRecovery,
-    hole_angle: f64,
+    /// `None` if the blank is rigid.
+    in_blank: Option<BlankRecovery>,
 }
 
 /// A gear that can be loaded.
@@ -73,22 +65,17 @@ impl Inside {
         let (tooth, rows) = ToothSubstructure::with_recovery(gear, &grids.tooth, &probes.in_tooth)?;
         run.check()?;
         let in_tooth = TeethRecovery::new(&tooth, &rows, teeth.ring.harmonics, run)?;
-        let blank = spec.carrier.as_ref().zip(grids.blank.as_ref());
-        let blank = blank.map(|(carrier, grid)| {
+        let carried = spec.carrier.as_ref().zip(grids.blank.as_ref());
+        let made = carried.map(|(carrier, grid)| {
             let (blank, recovery) = carrier.blank.make_with(grid, &probes.in_blank, run)?;
-            let solid = carrier.solid().map(|solid| parts.blank(&solid, run));
-            Ok::<_, PartError>(InsideBlank {
-                blank,
-                solid: solid.transpose()?,
-                recovery,
-                hole_angle: carrier.hole_angle,
-            })
+            let cut = CutBlank::new(carrier, Arc::new(blank), parts, run)?;
+            Ok::<_, PartError>((cut, recovery))
         });
+        let (blank, in_blank) = made.transpose()?.unzip();
         Ok(Self {
-            teeth,
-            tooth,
+            cut: CutGear { teeth, blank },
             in_tooth,
-            blank: blank.transpose()?,
+            in_blank,
         })
     }
 
@@ -98,24 +85,20 @@ impl Inside {
     ///
     /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`].
     pub fn loaded(&self, run: &Run) -> Result<LoadedGear<'_>, FemError> {
-        let ring = &self.teeth.ring;
-        let motion = self.blank.as_ref().map(|inside| {
-            let (blank, solid) = (&inside.blank, inside.solid.as_deref());
-            InterfaceMotion::new(ring, blank, inside.hole_angle, solid, run)
-        });
         Ok(LoadedGear {
             inside: self,
-            motion: motion.transpose()?,
+            motion: self.cut.motion(run)?,
         })
     }
 
     /// The angles from the centerline of tooth 0 to the frames of the equal sectors of its blank; none of a rigid one.
     pub fn sector_angles(&self) -> Vec<f64> {
-        self.blank.as_ref().map_or_else(Vec::new, |inside| {
-            let count = inside.recovery.sector_count;
+        let both = self.cut.blank.as_ref().zip(self.in_blank.as_ref());
+        both.map_or_else(Vec::new, |(blank, recovery)| {
+            let count = recovery.sector_count;
             let turn = |sector: usize| TAU * sector as f64 / count as f64;
             (0..count)
-                .map(|sector| inside.hole_angle + turn(sector))
+                .map(|sector| blank.hole_angle + turn(sector))
                 .collect()
         })
     }
@@ -124,11 +107,10 @@ impl Inside {
 impl<'a> LoadedGear<'a> {
     /// Under `loads` on its flanks.
     pub fn under(&self, loads: &'a [FlankLoad]) -> Answer<'a> {
-        let Inside { teeth, tooth, .. } = self.inside;
-        let modal = |load: &FlankLoad| (load.tooth, tooth.modal_loads(&load.forces));
-        let modal_loads: Vec<_> = loads.iter().map(modal).collect();
+        let cut = &self.inside.cut;
+        let modal_loads = cut.modal_loads(loads);
         let motion = self.motion.as_ref().map_or_else(
-            || vec![0.0; teeth.ring.harmonics.unknowns()],
+            || vec![0.0; cut.teeth.ring.harmonics.unknowns()],
             |motion| motion.under(&modal_loads),
         );
         Answer {
@@ -151,7 +133,7 @@ impl Answer<'_> {
 
     /// How the interface circle moves, radially and tangentially, at `angles` from the centerline of tooth 0.
     pub fn on_circle(&self, angles: &[f64]) -> Vec<[f64; 2]> {
-        let harmonics = self.inside.teeth.ring.harmonics;
+        let harmonics = self.inside.cut.teeth.ring.harmonics;
         let at = |angle: &f64| {
             let shapes = harmonics.on_circle(&[*angle]);
             [0, 1].map(|c| {
@@ -164,10 +146,10 @@ impl Answer<'_> {
 
     /// What was asked of the blank, in sector `sector`; nothing of a rigid one.
     pub fn in_blank(&self, sector: usize) -> Vec<f64> {
-        self.inside.blank.as_ref().map_or_else(Vec::new, |inside| {
-            inside
-                .recovery
-                .values(sector, inside.hole_angle, &self.motion)
+        let Inside { cut, in_blank, .. } = self.inside;
+        let both = cut.blank.as_ref().zip(in_blank.as_ref());
+        both.map_or_else(Vec::new, |(blank, recovery)| {
+            recovery.values(sector, blank.hole_angle, &self.motion)
         })
     }
 }

@@ -2,12 +2,13 @@
 //!
 //! In reading order: [`interface`] (the circle on which teeth and blank meet), [`teeth`] (all teeth of a gear down to it),
 //! [`blank`] (what carries them), [`gear`] (both joined), [`pair`] (two gears and the rules of their contact);
-//! beside them [`inside`] (what goes on in a gear whose flanks are loaded).
+//! beside them [`cut`] (a gear parted at that circle again) and [`inside`] (what goes on in a gear whose flanks are loaded).
 //!
 //! Each part is a pure function of its *spec*, a value that says all that the part depends on. Equal specs are equal parts;
 //! who makes them, and whether anyone keeps them, is asked of [`Parts`].
 
 pub mod blank;
+pub mod cut;
 pub mod gear;
 pub mod inside;
 pub mod interface;
@@ -16,6 +17,7 @@ mod parts;
 pub mod teeth;
 
 pub use blank::BlankSpec;
+pub use cut::CutGear;
 pub use gear::{Carrier, Gear, GearGrids, GearSpec, WantedGear, make_gears};
 pub use inside::{Inside, Probes};
 pub use pair::{Blanks, Modeling, PairSpec};

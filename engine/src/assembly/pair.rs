@@ -1,7 +1,9 @@
 //! A pair of gears ready for contact: which blanks take part, and the rules of contact.
 
 use super::interface::interface_radius;
-use super::{AssemblyError, FlanksSpec, GearGrids, GearSpec, Inside, Parts, Probes, WantedGear};
+use super::{
+    AssemblyError, CutGear, FlanksSpec, GearGrids, GearSpec, Inside, Parts, Probes, WantedGear,
+};
 use crate::contact::{ContactSolver, PairModel};
 use crate::gear::{GearPair, Member};
 use crate::grid::GridLevel;
@@ -91,6 +93,21 @@ impl PairSpec {
     ) -> Result<Inside, AssemblyError> {
         let spec = &self.gears[member.index()];
         Inside::new(spec, grids, probes, parts, run).map_err(|error| error.of(member))
+    }
+
+    /// The gear `member` cut at its interface circle.
+    ///
+    /// # Errors
+    ///
+    /// [`AssemblyError`].
+    pub fn cut(
+        &self,
+        member: Member,
+        parts: &dyn Parts,
+        run: &Run,
+    ) -> Result<CutGear, AssemblyError> {
+        let spec = &self.gears[member.index()];
+        CutGear::new(spec, parts, run).map_err(|error| error.of(member))
     }
 
     /// What its contact depends on but for the blanks and the deviations of teeth.

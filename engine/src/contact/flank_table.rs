@@ -10,7 +10,7 @@ use faer::Mat;
 use super::corner::{Corner, block};
 use super::half_plane::logarithm_factor;
 use crate::fem::dense::entries;
-use crate::fem::tooth::ToothSubstructure;
+use crate::fem::tooth::{ToothSubstructure, modal_loads};
 use crate::gear::{Involute, SpurGear};
 
 /// Nodes this near to each other (two elements) see the grid rather than the body in their compliance.
@@ -146,6 +146,23 @@ impl FlankTable {
             }
         }
         nodal
+    }
+
+    /// What `forces` on the flank's unknowns are on the loading modes.
+    pub fn modal_loads(&self, forces: &[f64]) -> Vec<f64> {
+        modal_loads(&self.modes, forces)
+    }
+
+    /// The moment of `forces` on the flank's unknowns about the axis of the gear, counter-clockwise.
+    pub fn moment(&self, forces: &[f64]) -> f64 {
+        // At r_b e_r + s e_t a force along the normal e_t has the arm r_b, one towards the tip, along e_r, the arm −s.
+        let arms = self.arcs.iter().flat_map(|arc| {
+            [
+                self.flank.base_radius(),
+                -self.flank.roll_length_at_arc(*arc),
+            ]
+        });
+        arms.zip(forces).map(|(arm, force)| arm * force).sum()
     }
 
     /// W V: how the flank follows its interface at `points`.

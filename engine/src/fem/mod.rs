@@ -4,9 +4,10 @@
 //! [`recovery`] (displacements and stresses of the others),
 //! [`harmonics`] (the unknowns of an interface circle), [`cyclic`] (N equal sectors joined into a ring on them), [`tooth`], [`teeth`] (the ring of them), [`blank`], and
 //! [`body`], which joins them into the compliance of a whole gear. What happens inside: [`motion`]
-//! (of the interface circle under loads), [`teeth_recovery`] and [`blank::BlankRecovery`], and [`prescribed`] (at every node). Beside them: [`dense`] and `factor`
+//! (of the interface circle under loads), [`teeth_recovery`] and [`blank::BlankRecovery`], and [`prescribed`] (at every node). A blank by itself: [`annulus`]. Beside them: [`dense`] and `factor`
 //! (factorizations), `axes` and `modes`.
 
+pub mod annulus;
 mod assembly;
 mod axes;
 pub mod blank;

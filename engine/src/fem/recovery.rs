@@ -7,7 +7,7 @@
 //!
 //! 1. The contact gives each loaded tooth j its forces p_j on the flank's unknowns: along the outward normal, so pressure is
 //!    negative, and towards the tip, node by node.
-//! 2. m_j = Vᵀ p_j are its modal loads ([`super::tooth::ToothSubstructure::modal_loads`]).
+//! 2. m_j = Vᵀ p_j are its modal loads ([`super::tooth::modal_loads`]).
 //! 3. q = C Σ_j F_j m_j is the motion of the interface circle ([`super::motion::InterfaceMotion::under`]).
 //! 4. Along the fillet of tooth i: [`super::teeth_recovery::TeethRecovery::values`] of p_i, all m_j and q, for the
 //!    [`edge_stresses`] of [`crate::grid::ToothGrid::fillet_nodes`].

@@ -11,7 +11,7 @@ use crate::run::Run;
 /// Functionals of one tooth, such as the stresses along its fillet, by what acts on the ring of teeth.
 ///
 /// The functionals of tooth i are R_p p_i + Σ_j R_{j−i} m_j + R_q q_i: p_i the forces on its own flank, m_j = Vᵀ p_j the modal
-/// loads of tooth j ([`ToothSubstructure::modal_loads`]), which reach it through the sides of the sectors between, and q_i the
+/// loads of tooth j ([`super::tooth::modal_loads`]), which reach it through the sides of the sectors between, and q_i the
 /// amplitudes of the whole interface circle ([`super::motion::InterfaceMotion`]) seen from the tooth.
 #[derive(Debug, Clone)]
 pub struct TeethRecovery {

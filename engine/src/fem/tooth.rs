@@ -153,17 +153,16 @@ impl ToothSubstructure {
         self.grid_nodes - self.sector.side_nodes - 1
     }
 
-    /// Vᵀ p: what the forces `flank_forces` on the flank's unknowns are on the loading modes.
-    pub fn modal_loads(&self, flank_forces: &[f64]) -> Vec<f64> {
-        let load = |mode: usize| {
-            let shape = self.modes.col_as_slice(mode).iter();
-            shape.zip(flank_forces).map(|(v, p)| v * p).sum()
-        };
-        (0..self.mode_count()).map(load).collect()
-    }
-
     /// The number r of loading modes.
     pub fn mode_count(&self) -> usize {
         self.modes.ncols()
     }
+}
+
+/// Vᵀ p: what the forces `flank_forces` on the flank's unknowns are on the loading `modes`.
+pub fn modal_loads(modes: &Mat<f64>, flank_forces: &[f64]) -> Vec<f64> {
+    let shapes = modes.col_iter();
+    shapes
+        .map(|shape| shape.iter().zip(flank_forces).map(|(v, p)| v * p).sum())
+        .collect()
 }

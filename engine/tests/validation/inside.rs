@@ -7,7 +7,7 @@ use meshwright_engine::fem::motion::InterfaceMotion;
 use meshwright_engine::fem::recovery::edge_stresses;
 use meshwright_engine::fem::teeth::TeethRing;
 use meshwright_engine::fem::teeth_recovery::TeethRecovery;
-use meshwright_engine::fem::tooth::ToothSubstructure;
+use meshwright_engine::fem::tooth::{ToothSubstructure, modal_loads};
 use meshwright_engine::gear::SpurGear;
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::run::Run;
@@ -95,7 +95,7 @@ fn by_recovery(level: GridLevel, teeth: &[usize], orders: (usize, usize)) -> Str
     let forces = [0.35, 0.8].map(|part| flank_forces(&tooth_grid, part));
     let loads: Vec<_> = LOADED
         .into_iter()
-        .zip(forces.iter().map(|p| tooth.modal_loads(p)))
+        .zip(forces.iter().map(|p| modal_loads(&tooth.modes, p)))
         .collect();
     let motion = InterfaceMotion::new(&ring, &blank, 0.21, Some(&solid), &run)
         .expect("a gear")

@@ -1,0 +1,98 @@
+//! A gear cut at its interface circle: how the circle moves under loads on the flanks, and the annulus inside it by itself.
+
+use std::sync::Arc;
+
+use super::{Carrier, GearSpec, PartError, Parts, Teeth};
+use crate::contact::FlankLoad;
+use crate::fem::FemError;
+use crate::fem::annulus::{Annulus, Imposed};
+use crate::fem::blank::BlankSubstructure;
+use crate::fem::motion::InterfaceMotion;
+use crate::run::Run;
+
+/// A gear cut at its interface circle.
+pub struct CutGear {
+    pub(super) teeth: Arc<Teeth>,
+    /// `None` if it is rigid.
+    pub(super) blank: Option<CutBlank>,
+}
+
+/// A flexible blank.
+pub(super) struct CutBlank {
+    blank: Arc<BlankSubstructure>,
+    /// What its highest orders find, where that is another one.
+    solid: Option<Arc<BlankSubstructure>>,
+    pub(super) hole_angle: f64,
+}
+
+impl CutGear {
+    /// The gear of `spec`.
+    ///
+    /// # Errors
+    ///
+    /// [`PartError`].
+    pub fn new(spec: &GearSpec, parts: &dyn Parts, run: &Run) -> Result<Self, PartError> {
+        let blank = spec.carrier.as_ref().map(|carrier| {
+            let blank = parts.blank(&carrier.blank, run)?;
+            CutBlank::new(carrier, blank, parts, run)
+        });
+        Ok(Self {
+            teeth: parts.teeth(&spec.teeth, run)?,
+            blank: blank.transpose()?,
+        })
+    }
+
+    /// How its circle moves; `None` if it is held.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`].
+    pub fn motion(&self, run: &Run) -> Result<Option<InterfaceMotion<'_>>, FemError> {
+        let of = |cut: &CutBlank| {
+            let (blank, solid) = (&cut.blank, cut.solid.as_deref());
+            InterfaceMotion::new(&self.teeth.ring, blank, cut.hole_angle, solid, run)
+        };
+        self.blank.as_ref().map(of).transpose()
+    }
+
+    /// What the loads on its flanks are on the loading modes of each tooth.
+    pub fn modal_loads(&self, loads: &[FlankLoad]) -> Vec<(usize, Vec<f64>)> {
+        let flank = &self.teeth.flank;
+        let modal = |load: &FlankLoad| (load.tooth, flank.modal_loads(&load.forces));
+        loads.iter().map(modal).collect()
+    }
+
+    /// The moment of the loads on its flanks about its axis, counter-clockwise.
+    pub fn moment(&self, loads: &[FlankLoad]) -> f64 {
+        let moments = loads.iter();
+        moments
+            .map(|load| self.teeth.flank.moment(&load.forces))
+            .sum()
+    }
+
+    /// Its blank by itself, on which displacements of the circle are `imposed`; `None` if it is rigid.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError::NotPositiveDefinite`].
+    pub fn annulus(&self, imposed: Imposed) -> Result<Option<Annulus>, FemError> {
+        let of = |cut: &CutBlank| Annulus::new(&cut.blank, cut.hole_angle, imposed);
+        self.blank.as_ref().map(of).transpose()
+    }
+}
+
+impl CutBlank {
+    pub(super) fn new(
+        carrier: &Carrier,
+        blank: Arc<BlankSubstructure>,
+        parts: &dyn Parts,
+        run: &Run,
+    ) -> Result<Self, PartError> {
+        let solid = carrier.solid().map(|solid| parts.blank(&solid, run));
+        Ok(Self {
+            blank,
+            solid: solid.transpose()?,
+            hole_angle: carrier.hole_angle,
+        })
+    }
+}
