@@ -8,7 +8,8 @@ use axum::http::{HeaderValue, Uri};
 use jiff::SignedDuration;
 
 use crate::http::{Bounds, DoorRules};
-use crate::jobs::{Cores, HookTarget, Keep, Pace, Place, PreviewRules, Rules};
+use crate::jobs::{Cores, Keep, Migrate, Pace, Place, PreviewRules, Rules};
+use crate::webhooks::HookTarget;
 use crate::wire;
 
 /// Where and how the service runs. Every option has its variable of the environment.
@@ -32,6 +33,10 @@ pub struct Config {
         value_name = "FILE or ADDRESS"
     )]
     pub database: Place,
+
+    /// Who brings the tables of the database up to date: this process when it starts, or `meshwright migrate` only.
+    #[arg(long, env = "MESHWRIGHT_MIGRATE", value_enum, default_value = "auto")]
+    pub migrate: Migrate,
 
     /// What this process does. Several on one PostgreSQL may divide the work.
     #[arg(long, env = "MESHWRIGHT_ROLE", value_enum, default_value = "all")]

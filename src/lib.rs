@@ -12,6 +12,8 @@ pub mod exchange;
 
 pub mod jobs;
 
+pub mod webhooks;
+
 pub mod keys;
 
 pub mod http;

@@ -27,6 +27,8 @@ enum Command {
     Rexs(commands::rexs::Rexs),
     /// Make, list and revoke API keys.
     Keys(commands::keys::Keys),
+    /// Bring the tables of the database up to date.
+    Migrate(commands::migrate::Migrate),
     /// Copy the database, while the service runs or not.
     Backup(commands::backup::Backup),
     /// Ask a running service whether it is ready; exit code 1 if not.
@@ -45,6 +47,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Command::Study(study) => study.run(),
         Command::Rexs(rexs) => rexs.run(),
         Command::Keys(keys) => keys.run(),
+        Command::Migrate(migrate) => migrate.run(),
         Command::Backup(backup) => backup.run(),
         Command::Health(health) => health.run(),
     }

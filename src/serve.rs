@@ -13,10 +13,9 @@ use tracing::{info, warn};
 
 use crate::config::{Config, Part};
 use crate::http::{App, Door, Edge, Readings, Server, router, router_of_metrics};
-use crate::jobs::{
-    Clock, Deliveries, HookRules, Jobs, Keeper, OpenError, Place, Previews, Solve, Store, Workers,
-};
+use crate::jobs::{Clock, Jobs, Keeper, OpenError, Place, Previews, Solve, Store, Workers};
 use crate::lock::DatabaseLock;
+use crate::webhooks::{Deliveries, HookRules, Webhooks};
 use crate::wire::{Problem, Submission};
 
 /// At a shutdown, running work and open answers get so long to end. A container gives ten seconds for all of it.
@@ -75,7 +74,7 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         Some(path) => Some(DatabaseLock::take(path)?),
         None => None,
     };
-    let opened = Store::open(&config.database).await;
+    let opened = Store::open_as(&config.database, config.migrate).await;
     let store = opened.map_err(|cause| UnusableDatabase {
         place: config.database.clone(),
         cause,
@@ -106,10 +105,11 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
     let in_order = lock.as_ref().is_some_and(DatabaseLock::ended_in_order);
     let workers =
         Workers::start(jobs.clone(), solve, config.worker_count(), pace, in_order).await?;
+    let webhooks = Webhooks::new(jobs.clone(), world.hooks);
     let (mut keeper, mut deliveries) = (None, None);
     if config.role.answers() {
         keeper = Some(Keeper::start(jobs.clone(), config.keep()));
-        let started = Deliveries::start(jobs.clone(), world.hooks.clone());
+        let started = Deliveries::start(webhooks.clone());
         deliveries = Some(started.context("webhooks cannot be sent")?);
     }
 
@@ -132,7 +132,7 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         library,
         computes: config.role.computes(),
         workers_alive: workers.alive(),
-        hooks: world.hooks,
+        webhooks,
         door: Arc::new(door),
         edge: Arc::new(edge),
         readings: Arc::new(Readings::default()),
@@ -161,6 +161,22 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         store,
         lock,
     })
+}
+
+/// Brings the tables of a database up to date, if it is no file that another process serves.
+///
+/// # Errors
+///
+/// [`UnusableDatabase`], or that the database belongs to another process.
+pub async fn migrate(place: &Place) -> anyhow::Result<()> {
+    let _alone = place.file().map(DatabaseLock::take).transpose()?;
+    let opened = Store::open(place).await;
+    let store = opened.map_err(|cause| UnusableDatabase {
+        place: place.clone(),
+        cause,
+    })?;
+    store.close().await;
+    Ok(())
 }
 
 async fn listen(address: SocketAddr) -> anyhow::Result<TcpListener> {

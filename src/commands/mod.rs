@@ -5,6 +5,7 @@ mod chart;
 mod demo;
 pub(crate) mod health;
 pub(crate) mod keys;
+pub(crate) mod migrate;
 pub(crate) mod rexs;
 pub(crate) mod serve;
 pub(crate) mod solve;

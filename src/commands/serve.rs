@@ -6,8 +6,9 @@ use std::sync::Arc;
 
 use anyhow::Context;
 use meshwright::config::Config;
-use meshwright::jobs::{Clock, HookRules};
+use meshwright::jobs::Clock;
 use meshwright::serve::{UnusableDatabase, World, serve};
+use meshwright::webhooks::HookRules;
 use meshwright::wire;
 use tracing_subscriber::EnvFilter;
 

@@ -8,7 +8,8 @@ use meshwright_engine::library::Library;
 
 use super::door::Door;
 use super::health::Readings;
-use crate::jobs::{HookRules, Jobs, Previews};
+use crate::jobs::{Jobs, Previews};
+use crate::webhooks::Webhooks;
 
 /// What handlers work with.
 #[derive(Clone)]
@@ -21,8 +22,8 @@ pub struct App {
     pub library: Library,
     /// The number of workers that live.
     pub workers_alive: Arc<AtomicUsize>,
-    /// Where messages may be sent.
-    pub hooks: HookRules,
+    /// Where clients are told.
+    pub webhooks: Webhooks,
     /// Who gets in, and how much of the service each gets.
     pub door: Arc<Door>,
     /// How the service looks from outside.

@@ -85,7 +85,7 @@ pub(super) async fn submit(
 ) -> Result<Response, Problem> {
     let read = aside(move |_| read(&document)).await??;
     let jobs = read.into_iter().enumerate().map(|(i, submission)| {
-        let key = key.as_ref().map(|key| format!("{key}/{i}"));
+        let key = key.as_ref().map(|key| key_within(key, i));
         let (app, client) = (&app, &client);
         async move {
             let submission = submission?;
@@ -113,6 +113,11 @@ pub(super) async fn submit(
         .collect();
     let taken = items.iter().filter(|item| item.job.is_some()).count();
     Ok((StatusCode::ACCEPTED, Json(BatchAnswer { taken, items })).into_response())
+}
+
+/// The key of a submission of a batch: none that a single submission can have, because no header has a line's end in it.
+fn key_within(key: &str, place: usize) -> String {
+    format!("{key}\n{place}")
 }
 
 fn read<const MIB: usize>(

@@ -15,7 +15,7 @@ use super::parameters::{Parameters, invalid, job_id};
 use super::problem::{internal, of_missing_results};
 use crate::exchange::vtu;
 use crate::wire::solve::fields;
-use crate::wire::{Code, LoadedEdges, Problem, Submission};
+use crate::wire::{Code, LoadedEdges, Problem, SOLVER_VERSION, Submission};
 
 /// Where to look.
 #[derive(Deserialize, IntoParams)]
@@ -45,7 +45,9 @@ pub(super) struct FieldParameters {
     ),
     responses(
         (status = 200, description = "The grid.", body = String, content_type = "text/xml", headers(
-            ("ETag" = String, description = "Stands for this grid."),
+            ("ETag" = String, description = "Stands for this grid, as this version of the solver computes it."),
+            ("Solver-Version" = String, description = "The version of the solver that has computed this grid."),
+            ("Results-Solver-Version" = Option<String>, description = "The version that computed the job's results, where it is another one: its curves may differ a little from what is seen here."),
         )),
         (status = 304, description = "The client has this grid."),
         (status = 400, description = "A parameter is not understood, or the position is outside the span.", body = Problem, content_type = "application/problem+json"),
@@ -90,7 +92,9 @@ pub(super) async fn vtu(
     ),
     responses(
         (status = 200, description = "The edges.", body = LoadedEdges, headers(
-            ("ETag" = String, description = "Stands for these edges."),
+            ("ETag" = String, description = "Stands for these edges, as this version of the solver computes them."),
+            ("Solver-Version" = String, description = "The version of the solver that has computed these edges."),
+            ("Results-Solver-Version" = Option<String>, description = "The version that computed the job's results, where it is another one: its curves may differ a little from what is seen here."),
         )),
         (status = 304, description = "The client has these edges."),
         (status = 400, description = "A parameter is not understood, or the position is outside the span.", body = Problem, content_type = "application/problem+json"),
@@ -142,7 +146,7 @@ async fn answer(
     let Some(hash) = &job.document else {
         return Err(of_missing_results(job.status, job.problem.as_ref()));
     };
-    let submission = app.jobs.submission(job.id).await?;
+    let submission = app.jobs.readable_submission(job.id).await?;
     let submission = Submission::parse(submission.as_bytes())?;
     let (torque, position) = place.within(&submission)?;
     app.jobs.check_memory(&submission)?;
@@ -164,11 +168,23 @@ async fn answer(
             let saved_as = saved_as.map_err(|_| internal())?;
             response.headers_mut().insert(CONTENT_DISPOSITION, saved_as);
         }
-        Ok(response)
+        Ok::<_, Problem>(response)
     };
-    Tag::of_hash(hash, &format!("/{name}/{torque}/{position}"))
-        .answer(Keep::ForGood, request, made)
-        .await
+    // What this version of the solver says of the job; another one that answers under the same address may say it otherwise.
+    let form = format!("/{name}/{torque}/{position}");
+    let mut response = Tag::of(&[hash, &form, SOLVER_VERSION])
+        .answer(Keep::AskAgain, request, made)
+        .await?;
+    let headers = response.headers_mut();
+    headers.insert("solver-version", HeaderValue::from_static(SOLVER_VERSION));
+    if let Some(version) = job
+        .solver_version
+        .filter(|version| version != SOLVER_VERSION)
+        && let Ok(version) = HeaderValue::try_from(version)
+    {
+        headers.insert("results-solver-version", version);
+    }
+    Ok(response)
 }
 
 impl FieldParameters {

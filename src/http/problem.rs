@@ -15,6 +15,7 @@ use tracing::error;
 
 use super::app::Edge;
 use crate::jobs::{JobError, PreviewError};
+use crate::webhooks::WebhookError;
 use crate::wire::{Code, Problem, Status, too_much_memory};
 
 const PROBLEM_JSON: HeaderValue = HeaderValue::from_static("application/problem+json");
@@ -117,12 +118,6 @@ impl From<JobError> for Problem {
                 needed_mb,
                 limit_mb,
             } => too_much_memory(*needed_mb, *limit_mb),
-            JobError::HookNotFound(_) => {
-                Problem::new(Code::WebhookNotFound, format!("{}.", sentence(&error)))
-            }
-            JobError::HookRefused(_) | JobError::TooManyHooks(_) => {
-                Problem::new(Code::WebhookRefused, sentence(&error))
-            }
             JobError::KeyConflict => Problem::new(
                 Code::IdempotencyConflict,
                 "The Idempotency-Key was used for another submission within the last day. Use a new key.",
@@ -160,6 +155,10 @@ impl From<JobError> for Problem {
                 Code::Unavailable,
                 "The service is shutting down and takes no more jobs.",
             ),
+            JobError::OfLaterVersion => Problem::new(
+                Code::Unavailable,
+                "A later version of the service took this job, which this process does not read. The processes are being renewed; try again.",
+            ),
             JobError::Unavailable(_) => Problem::new(
                 Code::StorageUnavailable,
                 "Nothing can be stored or read now. Nothing was changed; what was taken before is safe.",
@@ -173,6 +172,24 @@ impl From<JobError> for Problem {
                 error!(error = %damage, "the database is damaged");
                 internal()
             }
+        }
+    }
+}
+
+impl From<WebhookError> for Problem {
+    fn from(error: WebhookError) -> Self {
+        match &error {
+            WebhookError::Job(error) => error.clone().into(),
+            WebhookError::NotFound(_) => {
+                Problem::new(Code::WebhookNotFound, format!("{}.", sentence(&error)))
+            }
+            WebhookError::Refused(_) | WebhookError::TooMany(_) => {
+                Problem::new(Code::WebhookRefused, sentence(&error))
+            }
+            WebhookError::Disabled => Problem::new(
+                Code::WebhookDisabled,
+                "The webhook was given up because nobody took its messages; enable it first.",
+            ),
         }
     }
 }

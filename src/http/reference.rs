@@ -11,7 +11,7 @@ use super::aside::aside;
 use super::batch::MOST_IN_BATCH;
 use super::client::Onlooker;
 use super::document::Document;
-use crate::jobs::most_webhooks;
+use crate::webhooks::most_webhooks;
 use crate::wire::{self, Limits, Problem, Submission, Validation};
 
 /// Check a submission

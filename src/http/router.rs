@@ -112,7 +112,11 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(studies::events))
         .routes(routes!(studies::cancel))
         .routes(routes!(webhooks::make, webhooks::list))
-        .routes(routes!(webhooks::delete))
+        .routes(routes!(webhooks::show, webhooks::delete))
+        .routes(routes!(webhooks::ping))
+        .routes(routes!(webhooks::deliveries))
+        .routes(routes!(webhooks::enable))
+        .routes(routes!(webhooks::rotate))
         .routes(routes!(reference::examples))
         .routes(routes!(reference::limits))
         .routes(routes!(problem_pages::index))
@@ -200,7 +204,9 @@ fn cors(origins: &[HeaderValue]) -> CorsLayer {
             WWW_AUTHENTICATE,
             name("content-location"),
             name("preference-applied"),
+            name("results-solver-version"),
             name("server-timing"),
+            name("solver-version"),
             name("traceparent"),
             name("x-request-id"),
         ])

@@ -12,7 +12,9 @@ use uuid::Uuid;
 use super::app::App;
 use super::client::Client;
 use super::document::Document;
-use crate::jobs::{EventKind, Webhook};
+use super::parameters::IdempotencyKey;
+use crate::jobs::EventKind;
+use crate::webhooks::{Delivery, Webhook};
 use crate::wire::{Code, Problem};
 
 /// A webhook to be made.
@@ -47,12 +49,17 @@ pub(super) struct WebhookView {
     /// When it was made (UTC).
     #[schema(value_type = String, format = DateTime)]
     created_at: Timestamp,
-    /// When it was given up because nobody took its messages (UTC); null while it works.
+    /// When it was given up because nobody took its messages (UTC), from when on nothing is sent to it; null while it works.
     #[schema(value_type = Option<String>, format = DateTime)]
     disabled_at: Option<Timestamp>,
+    /// Attempts that have failed since the last one that did not.
+    failures: u32,
+    /// When it is tried again (UTC), because the last attempt has failed; null while it works.
+    #[schema(value_type = Option<String>, format = DateTime)]
+    retry_at: Option<Timestamp>,
     /// Why the last message that was not taken was not.
     problem: Option<String>,
-    /// What messages are signed with: HMAC-SHA-256 as Standard Webhooks has it. Told once, when the webhook is made.
+    /// What messages are signed with: HMAC-SHA-256 as Standard Webhooks has it. Told once, when the webhook is made or gets another one.
     #[serde(skip_serializing_if = "Option::is_none")]
     secret: Option<String>,
 }
@@ -73,10 +80,85 @@ impl WebhookView {
             events: webhook.events,
             created_at: webhook.created_at,
             disabled_at: webhook.disabled_at,
+            failures: webhook.failures,
+            retry_at: webhook.retry_at.filter(|_| webhook.disabled_at.is_none()),
             problem: webhook.problem,
             secret,
         }
     }
+}
+
+/// A message to a webhook, and what has come of it so far.
+#[derive(Serialize, ToSchema)]
+#[schema(as = Delivery, title = "Delivery")]
+pub(super) struct DeliveryView {
+    /// The id of the message, which its header `webhook-id` bears at every attempt.
+    #[schema(value_type = String, format = "uuid")]
+    id: Uuid,
+    /// What it tells: `job.ended`, `study.ended`, or `webhook.ping`, which tells nothing.
+    #[serde(rename = "type")]
+    kind: String,
+    /// Whose end it tells: the id of a job or a study; of a ping that of the webhook.
+    #[schema(value_type = Option<String>, format = "uuid")]
+    subject: Option<Uuid>,
+    /// Where it stands.
+    status: DeliveryStatus,
+    /// When what it tells happened (UTC).
+    #[schema(value_type = String, format = DateTime)]
+    created_at: Timestamp,
+    /// Attempts so far.
+    attempts: u32,
+    /// When it was last sent (UTC).
+    #[schema(value_type = Option<String>, format = DateTime)]
+    attempted_at: Option<Timestamp>,
+    /// What the receiver answered last, an HTTP status; null if it gave no answer.
+    answered: Option<u32>,
+    /// Why it was not taken.
+    problem: Option<String>,
+}
+
+/// Where a message stands.
+#[derive(Serialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+enum DeliveryStatus {
+    /// It is sent when its turn comes.
+    Waiting,
+    /// It was answered with 2xx.
+    Arrived,
+}
+
+/// The latest messages to a webhook.
+#[derive(Serialize, ToSchema)]
+#[schema(as = DeliveryList, title = "DeliveryList")]
+pub(super) struct DeliveryListView {
+    /// The messages, the newest first.
+    items: Vec<DeliveryView>,
+}
+
+impl DeliveryView {
+    fn new(delivery: Delivery) -> Self {
+        let status = match delivery.arrived_at {
+            Some(_) => DeliveryStatus::Arrived,
+            None => DeliveryStatus::Waiting,
+        };
+        Self {
+            id: delivery.id,
+            kind: delivery.kind,
+            subject: delivery.subject,
+            status,
+            created_at: delivery.created_at,
+            attempts: delivery.attempts,
+            attempted_at: delivery.attempted_at,
+            answered: delivery.answered,
+            problem: delivery.problem,
+        }
+    }
+}
+
+/// The id in a path. What is no id names no webhook.
+fn webhook_id(text: &str) -> Result<Uuid, Problem> {
+    text.parse()
+        .map_err(|_| Problem::new(Code::WebhookNotFound, "There is no webhook of this id."))
 }
 
 /// Make a webhook
@@ -84,22 +166,28 @@ impl WebhookView {
 /// From now on a message is sent to the address when a job that stands alone, or a study, has ended: a POST with a small
 /// JSON body `{"type", "timestamp", "data": {"id", "status"}}`, signed as Standard Webhooks has it (`webhook-id`,
 /// `webhook-timestamp`, `webhook-signature`). A message that is not answered with 2xx is sent again, for a day and a half;
-/// then the webhook is given up. Off unless the operator of the service allows hosts to send to.
+/// then the webhook is given up, and what waits is kept for a week from when it was told. Several messages may be under way at once, so
+/// that they need not come in their order. Off unless the operator of the service allows hosts to send to.
 #[utoipa::path(
     post, path = "/v1/webhooks", tag = "Webhooks", operation_id = "make_webhook",
     request_body(content = NewWebhookDocument, content_type = "application/json", description = "The webhook."),
+    params(
+        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[!-~]([ -~]*[!-~])?$", description = "A word of the client's choice, kept for a day: the same key and document get the same webhook, with its secret."),
+    ),
     responses(
+        (status = 200, description = "The webhook that an earlier request with this key has made, with its secret.", body = WebhookView),
         (status = 201, description = "The webhook, with its secret, which is told this once.", body = WebhookView),
-        (status = 400, description = "The body is no JSON.", body = Problem, content_type = "application/problem+json"),
+        (status = 400, description = "The body is no JSON, or a header is not understood.", body = Problem, content_type = "application/problem+json"),
         (status = 408, description = "The body came too slowly.", body = Problem, content_type = "application/problem+json"),
         (status = 413, description = "The body has more than 1 MiB.", body = Problem, content_type = "application/problem+json"),
         (status = 415, description = "The body is not declared as JSON.", body = Problem, content_type = "application/problem+json"),
-        (status = 422, description = "Webhooks are off, or the address is not one to send to.", body = Problem, content_type = "application/problem+json"),
+        (status = 422, description = "Webhooks are off, the address is not one to send to, or the key was used for another webhook.", body = Problem, content_type = "application/problem+json"),
     ),
 )]
 pub(super) async fn make(
     State(app): State<App>,
     client: Client,
+    IdempotencyKey(key): IdempotencyKey,
     document: Document,
 ) -> Result<Response, Problem> {
     let new: NewWebhookDocument = document.parse("webhook")?;
@@ -115,11 +203,16 @@ pub(super) async fn make(
         return Err(Problem::new(Code::OutOfRange, detail));
     }
     let made = app
-        .jobs
-        .add_webhook(client.name(), &app.hooks, new.url, events)
+        .webhooks
+        .make(client.name(), new.url, events, key)
         .await?;
+    let status = if made.repeated {
+        StatusCode::OK
+    } else {
+        StatusCode::CREATED
+    };
     let view = WebhookView::new(made.webhook, Some(made.secret));
-    Ok((StatusCode::CREATED, Json(view)).into_response())
+    Ok((status, Json(view)).into_response())
 }
 
 /// List webhooks
@@ -133,7 +226,7 @@ pub(super) async fn list(
     State(app): State<App>,
     client: Client,
 ) -> Result<Json<WebhookListView>, Problem> {
-    let webhooks = app.jobs.list_webhooks(client.name()).await?.into_iter();
+    let webhooks = app.webhooks.list(client.name()).await?.into_iter();
     Ok(Json(WebhookListView {
         items: webhooks
             .map(|webhook| WebhookView::new(webhook, None))
@@ -157,8 +250,117 @@ pub(super) async fn delete(
     client: Client,
     Path(id): Path<String>,
 ) -> Result<StatusCode, Problem> {
-    let unknown = |_| Problem::new(Code::WebhookNotFound, "There is no webhook of this id.");
-    let id = id.parse().map_err(unknown)?;
-    app.jobs.delete_webhook(client.name(), id).await?;
+    app.webhooks.delete(client.name(), webhook_id(&id)?).await?;
     Ok(StatusCode::NO_CONTENT)
+}
+
+/// Get a webhook
+///
+/// How it stands: whether messages arrive, and when it is tried again if not.
+#[utoipa::path(
+    get, path = "/v1/webhooks/{id}", tag = "Webhooks", operation_id = "get_webhook",
+    params(("id" = String, Path, format = "uuid", description = "The id of the webhook.")),
+    responses(
+        (status = 200, description = "The webhook, without its secret.", body = WebhookView),
+        (status = 404, description = "There is no such webhook.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(super) async fn show(
+    State(app): State<App>,
+    client: Client,
+    Path(id): Path<String>,
+) -> Result<Json<WebhookView>, Problem> {
+    let webhook = app.webhooks.find(client.name(), webhook_id(&id)?).await?;
+    Ok(Json(WebhookView::new(webhook, None)))
+}
+
+/// Ping a webhook
+///
+/// A message of the type `webhook.ping` is sent to it now, and whatever else waits with it. The deliveries tell what came of it.
+#[utoipa::path(
+    post, path = "/v1/webhooks/{id}/ping", tag = "Webhooks", operation_id = "ping_webhook",
+    params(("id" = String, Path, format = "uuid", description = "The id of the webhook.")),
+    responses(
+        (status = 202, description = "The message.", body = DeliveryView),
+        (status = 404, description = "There is no such webhook.", body = Problem, content_type = "application/problem+json"),
+        (status = 409, description = "The webhook was given up.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(super) async fn ping(
+    State(app): State<App>,
+    client: Client,
+    Path(id): Path<String>,
+) -> Result<Response, Problem> {
+    let ping = app.webhooks.ping(client.name(), webhook_id(&id)?).await?;
+    Ok((StatusCode::ACCEPTED, Json(DeliveryView::new(ping))).into_response())
+}
+
+/// List deliveries
+///
+/// The latest hundred messages to a webhook, the newest first, and what has come of each. They are kept for a week.
+#[utoipa::path(
+    get, path = "/v1/webhooks/{id}/deliveries", tag = "Webhooks", operation_id = "list_deliveries",
+    params(("id" = String, Path, format = "uuid", description = "The id of the webhook.")),
+    responses(
+        (status = 200, description = "The messages.", body = DeliveryListView),
+        (status = 404, description = "There is no such webhook.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(super) async fn deliveries(
+    State(app): State<App>,
+    client: Client,
+    Path(id): Path<String>,
+) -> Result<Json<DeliveryListView>, Problem> {
+    let deliveries = app
+        .webhooks
+        .deliveries(client.name(), webhook_id(&id)?)
+        .await?;
+    let items = deliveries.into_iter().map(DeliveryView::new).collect();
+    Ok(Json(DeliveryListView { items }))
+}
+
+/// Enable a webhook
+///
+/// One that was given up is taken up again, and one that is to be tried later is tried now: what has waited is sent. What happened while it
+/// was given up is not told.
+#[utoipa::path(
+    post, path = "/v1/webhooks/{id}/enable", tag = "Webhooks", operation_id = "enable_webhook",
+    params(("id" = String, Path, format = "uuid", description = "The id of the webhook.")),
+    responses(
+        (status = 200, description = "The webhook.", body = WebhookView),
+        (status = 404, description = "There is no such webhook.", body = Problem, content_type = "application/problem+json"),
+        (status = 422, description = "The address is no longer one to send to.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(super) async fn enable(
+    State(app): State<App>,
+    client: Client,
+    Path(id): Path<String>,
+) -> Result<Json<WebhookView>, Problem> {
+    let webhook = app.webhooks.enable(client.name(), webhook_id(&id)?).await?;
+    Ok(Json(WebhookView::new(webhook, None)))
+}
+
+/// Rotate the secret of a webhook
+///
+/// From now on messages are signed with a new secret, and for a day with the one before, too: `webhook-signature` has both signatures then,
+/// separated by a blank.
+#[utoipa::path(
+    post, path = "/v1/webhooks/{id}/rotate", tag = "Webhooks", operation_id = "rotate_webhook",
+    params(("id" = String, Path, format = "uuid", description = "The id of the webhook.")),
+    responses(
+        (status = 200, description = "The webhook, with its new secret, which is told this once.", body = WebhookView),
+        (status = 404, description = "There is no such webhook.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(super) async fn rotate(
+    State(app): State<App>,
+    client: Client,
+    Path(id): Path<String>,
+) -> Result<Json<WebhookView>, Problem> {
+    let rotated = app.webhooks.rotate(client.name(), webhook_id(&id)?).await?;
+    Ok(Json(WebhookView::new(
+        rotated.webhook,
+        Some(rotated.secret),
+    )))
 }

@@ -54,15 +54,9 @@ pub enum JobError {
     /// The job has ended.
     #[error("the job is {}", .0.as_str())]
     Ended(Status),
-    /// The client has no such webhook.
-    #[error("there is no webhook {0}")]
-    HookNotFound(Uuid),
-    /// The client has as many webhooks as it may.
-    #[error("a client has {0} webhooks at most")]
-    TooManyHooks(i64),
-    /// Webhooks are not served here, or not to this address.
-    #[error("{0}")]
-    HookRefused(String),
+    /// A later version of the service took the job, and this one does not read its submission.
+    #[error("a later version of the service took the job")]
+    OfLaterVersion,
     /// The service is shutting down.
     #[error("the service is shutting down")]
     ShuttingDown,

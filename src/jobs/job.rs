@@ -58,6 +58,8 @@ pub struct Job {
     pub keep: Kept,
     /// Of a successful job: the hash of its results.
     pub document: Option<String>,
+    /// Of a successful job: the version of the solver that computed its results.
+    pub solver_version: Option<String>,
     /// The earlier job whose results this one was given.
     pub same_as: Option<Uuid>,
     /// The study that it computes a design of.

@@ -16,6 +16,9 @@ const LONG_JOURNAL: u64 = 64 << 20;
 /// Between two commits of the keeper others write.
 const BREATH: Duration = Duration::from_millis(5);
 
+/// Messages to webhooks are kept so long, for the list of deliveries and for receivers that are away.
+const MESSAGES_FOR: SignedDuration = SignedDuration::from_hours(7 * 24);
+
 /// What is kept, and how often it is looked after.
 #[derive(Debug, Clone, Copy)]
 pub struct Keep {
@@ -78,7 +81,15 @@ impl Jobs {
         if self.store.journal_bytes() > LONG_JOURNAL {
             self.store.empty_journal().await?;
         }
-        self.forget_keys().await
+        self.forget_keys().await?;
+        self.forget_messages().await
+    }
+
+    /// Forgets messages to webhooks that are a week old, arrived or not.
+    async fn forget_messages(&self) -> Result<(), StoreError> {
+        let now = self.clock.now().min(self.clock.steady());
+        let before = now.saturating_sub(MESSAGES_FOR).unwrap_or(Timestamp::MIN);
+        self.store.forget_messages(before).await
     }
 
     /// What ended before this is old. The earlier of the two clocks decides: one that was set forward by mistake, at the

@@ -21,6 +21,8 @@ pub(super) struct Live {
     changes: broadcast::Sender<Uuid>,
     /// Rung when a job begins to wait. A worker that finds one rings again, so that one ring wakes as many as needed.
     pub(super) work: Notify,
+    /// Rung when a message to a webhook begins to wait.
+    pub(super) mail: Notify,
 }
 
 /// One attempt at one job, seen from outside of it.
@@ -65,6 +67,7 @@ impl Live {
             running: Mutex::default(),
             changes: broadcast::channel(1024).0,
             work: Notify::new(),
+            mail: Notify::new(),
         }
     }
 

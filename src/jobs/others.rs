@@ -70,6 +70,7 @@ fn pass_on(told: Told, live: &Live) {
             }
             live.changed(id);
         }
+        Told::Message => live.mail.notify_one(),
         Told::Study(id) => live.changed(id),
         Told::Missed => live.look(),
     }

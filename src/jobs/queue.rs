@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use jiff::Timestamp;
-use tokio::sync::{mpsc, oneshot};
+use tokio::sync::{Notify, broadcast, mpsc, oneshot};
 use tokio_util::sync::CancellationToken;
 use uuid::Uuid;
 
@@ -16,10 +16,10 @@ use super::others;
 use super::store::{
     Cursor, Depth, Document, Filter, NewJob, Outcome, QueueBounds, Store, StoreError,
 };
-use crate::wire::{Kept, SOLVER_VERSION, Status, Submission};
+use crate::wire::{DOCUMENT_VERSION, Kept, SOLVER_VERSION, Status, Submission};
 
 /// So long a repeated request is recognized by its key.
-pub(super) const KEY_LIFETIME: jiff::SignedDuration = jiff::SignedDuration::from_hours(24);
+pub(crate) const KEY_LIFETIME: jiff::SignedDuration = jiff::SignedDuration::from_hours(24);
 
 /// So many submissions share one commit at most.
 const BATCH: usize = 64;
@@ -159,7 +159,7 @@ impl Jobs {
     }
 
     /// Says no at once while nothing can be stored: each try would wait for the disk, or for a lock, behind all others.
-    pub(super) fn refuse_if_failing(&self) -> Result<(), JobError> {
+    pub(crate) fn refuse_if_failing(&self) -> Result<(), JobError> {
         match self.store.fault() {
             None => Ok(()),
             Some(cause) => {
@@ -198,6 +198,18 @@ impl Jobs {
     pub async fn submission(&self, id: Uuid) -> Result<String, JobError> {
         let text = self.store.submission(id).await?;
         text.ok_or(JobError::NotFound(id))
+    }
+
+    /// The same, to be read rather than shown.
+    ///
+    /// # Errors
+    ///
+    /// [`JobError::OfLaterVersion`], and as of [`Jobs::submission`].
+    pub async fn readable_submission(&self, id: Uuid) -> Result<String, JobError> {
+        match self.store.document_version(id).await? {
+            Some(version) if version > DOCUMENT_VERSION => Err(JobError::OfLaterVersion),
+            _ => self.submission(id).await,
+        }
     }
 
     /// A job as it stands now.
@@ -365,6 +377,16 @@ impl Jobs {
         }
     }
 
+    /// Everything that happens to jobs and studies, from now on.
+    pub(crate) fn changes(&self) -> broadcast::Receiver<Uuid> {
+        self.live.changes()
+    }
+
+    /// Rung when a message to a webhook begins to wait.
+    pub(crate) fn mail(&self) -> &Notify {
+        &self.live.mail
+    }
+
     /// Comes when the service shuts down.
     pub fn stop(&self) -> &CancellationToken {
         &self.stop
@@ -390,6 +412,7 @@ impl NewJob {
             method: submission.method().to_owned(),
             tags: submission.tags().to_vec(),
             submission: submission.canonical_json(),
+            document_version: DOCUMENT_VERSION,
             input_hash: submission.input_hash(),
             cost: rough_cost(submission),
             positions_total: submission.positions_total(),
@@ -441,6 +464,9 @@ async fn write_submissions(
             Ok(outcomes) => {
                 live.work.notify_one();
                 for (answer, outcome) in answers.into_iter().zip(outcomes) {
+                    if matches!(outcome, Outcome::Known(_)) {
+                        live.mail.notify_one();
+                    }
                     let _ = answer.send(Ok(outcome));
                 }
             }

@@ -16,7 +16,9 @@ use super::store::{
 };
 use super::study::StudyRecord;
 use crate::hash::sha256_hex;
-use crate::wire::{Design, Kept, RowState, Status, Study, memory_above, too_much_memory};
+use crate::wire::{
+    DOCUMENT_VERSION, Design, Kept, RowState, Status, Study, memory_above, too_much_memory,
+};
 
 /// So many designs are expanded and written in one transaction. Others write in between.
 const CHUNK: usize = 500;
@@ -78,6 +80,7 @@ impl Jobs {
             tags: study.tags().to_vec(),
             body_hash: sha256_hex(study.document()),
             document: study.document().to_owned(),
+            document_version: DOCUMENT_VERSION,
             gear: study.gear(),
             total: study.total() as u64,
             submitted_at: now,
@@ -97,6 +100,8 @@ impl Jobs {
             StudyOutcome::Taken => {
                 info!(study = %new.id, client = new.client, designs = new.total, "study taken");
                 self.live.work.notify_one();
+                // It may have ended with its beginning.
+                self.live.changed(new.id);
                 if rows.len() < study.total() {
                     self.continue_in_background(study, rows.len(), owner);
                 }
@@ -123,7 +128,7 @@ impl Jobs {
         }
         for (id, client) in self
             .store
-            .unfinished_expansions(self.clock.steady())
+            .unfinished_expansions(self.clock.steady(), DOCUMENT_VERSION)
             .await?
         {
             let Some(record) = self.store.find_study(&client, id).await? else {
@@ -217,7 +222,7 @@ impl Jobs {
     }
 
     /// Comes back when it is worth writing again, or the service stops.
-    pub(super) async fn wait_for_storage(&self) {
+    pub(crate) async fn wait_for_storage(&self) {
         const PAUSE: Duration = Duration::from_millis(100);
         let writable = async {
             tokio::time::sleep(PAUSE).await;

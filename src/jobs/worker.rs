@@ -7,14 +7,14 @@ use std::time::Duration;
 use meshwright_engine::run::Run;
 use rayon::ThreadPool;
 use tokio::task::JoinSet;
-use tokio::time::{Instant, interval_at, sleep};
+use tokio::time::{Instant, MissedTickBehavior, interval, interval_at, sleep};
 use tracing::{error, info, warn};
 use uuid::Uuid;
 
 use super::queue::Jobs;
-use super::store::{Claimed, Lease, Lost, StoreError};
+use super::store::{Claimed, Lease, Lost, Reader, StoreError};
 use super::threads::{Cores, Work, engine_threads};
-use crate::wire::{Code, Problem, SOLVER_VERSION, Submission};
+use crate::wire::{Code, DOCUMENT_VERSION, Problem, SOLVER_VERSION, Submission};
 
 /// The computation of a submission: long work that fills a core, reports to the run and obeys its stop. Gives the
 /// text of the results document.
@@ -93,9 +93,11 @@ impl Workers {
             lost
         };
         shop.recover(lost).await.map_err(StartError::Database)?;
-        let resumed = shop.jobs.resume_studies().await;
-        resumed.map_err(StartError::Database)?;
-        Self::hire(shop, count)
+        let mut workers = Self::hire(Arc::clone(&shop), count)?;
+        workers
+            .tasks
+            .spawn(async move { shop.watch_studies().await });
+        Ok(workers)
     }
 
     /// Starts `count` workers beside those of another process on the same database, whose jobs are left alone as long as it
@@ -215,23 +217,17 @@ impl Shop {
 
     async fn claim(&self) -> Result<Claimed, StoreError> {
         let now = self.jobs.clock.now();
-        self.jobs
-            .store
-            .claim(now, self.lease(), SOLVER_VERSION)
-            .await
+        let reader = Reader {
+            solver: SOLVER_VERSION,
+            documents: DOCUMENT_VERSION,
+        };
+        self.jobs.store.claim(now, self.lease(), reader).await
     }
 
     /// Looks for leases that have run out until the stop.
     async fn watch_leases(&self) {
         let stop = self.jobs.stop();
-        let shared = self.jobs.store.is_shared();
-        // Of several processes each may be the one that is left.
-        let every = if shared {
-            self.pace.lease / 3
-        } else {
-            self.pace.lease
-        };
-        let mut tick = interval_at(Instant::now() + every, every);
+        let mut tick = interval_at(Instant::now() + self.watch(), self.watch());
         loop {
             tokio::select! {
                 _ = tick.tick() => {}
@@ -241,9 +237,36 @@ impl Shop {
             if let Err(error) = self.recover(self.over(&alive)).await {
                 error!(error = %error, "lost jobs cannot be recovered");
             }
-            if shared && let Err(error) = self.jobs.resume_studies().await {
-                error!(error = %error, "studies that were left cannot be expanded");
+        }
+    }
+
+    /// Goes on with the studies that another process has left, which may take long: leases are watched meanwhile. Where there is one
+    /// process, only one before it can have left something.
+    async fn watch_studies(&self) {
+        let mut tick = interval(self.watch());
+        tick.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        loop {
+            tokio::select! {
+                _ = tick.tick() => {}
+                () = self.jobs.stop().cancelled() => return,
             }
+            match self.jobs.resume_studies().await {
+                Ok(()) if !self.jobs.store.is_shared() => return,
+                Ok(()) => {}
+                Err(error) => {
+                    error!(error = %error, "studies that were left cannot be gone on with");
+                }
+            }
+        }
+    }
+
+    /// Between two looks at what others have left.
+    fn watch(&self) -> Duration {
+        if self.jobs.store.is_shared() {
+            // Of several processes each may be the one that is left.
+            self.pace.lease / 3
+        } else {
+            self.pace.lease
         }
     }
 

@@ -58,5 +58,5 @@ pub use solve::{Limits, Validation, limits, solve, validate};
 pub use status::Status;
 pub use study::{Design, Study};
 pub use study_table::{RowState, StudyResults, Summary};
-pub use submission::{SOLVER_VERSION, Submission};
+pub use submission::{DOCUMENT_VERSION, SOLVER_VERSION, Submission};
 pub(crate) use units::significant;

@@ -108,6 +108,8 @@ codes! {
         "No study of yours has this identifier; it may have been deleted, or have been kept as long as the service keeps studies that have ended."
     WebhookNotFound "webhook-not-found" 404 "There is no such webhook"
         "No webhook of yours has this identifier; it may have been deleted."
+    WebhookDisabled "webhook-disabled" 409 "The webhook was given up"
+        "Nobody took its messages for a day and a half, or its receiver answered 410. POST to its `enable` address takes it up again."
     WebhookRefused "webhook-refused" 422 "The webhook is not taken"
         "Webhooks are off here, the address is not among those that the operator allows, it is not a public one, or you have as many as one client may."
     NotFound "not-found" 404 "There is nothing here"

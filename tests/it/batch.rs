@@ -38,6 +38,16 @@ async fn each_submission_of_a_batch_is_taken_or_refused_by_itself() {
     }
     let list = bench.job("/v1/jobs").await;
     assert_eq!(list["items"].as_array().unwrap().len(), 2);
+    // A single submission whose key looks like that of a place in the batch is another one.
+    let single = bench.post("/v1/jobs", &submission(3.0));
+    let single = single
+        .header("idempotency-key", "b/0")
+        .send()
+        .await
+        .unwrap();
+    assert_eq!(single.status(), StatusCode::ACCEPTED);
+    let single: Value = single.json().await.unwrap();
+    assert_ne!(single["id"], answer["items"][0]["job"]["id"]);
 }
 
 #[tokio::test]

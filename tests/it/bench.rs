@@ -4,8 +4,9 @@ use std::sync::{Arc, mpsc as blocking};
 use std::time::Duration;
 
 use meshwright::config::Config;
-use meshwright::jobs::{Clock, HookRules, Place, Solve};
+use meshwright::jobs::{Clock, Place, Solve};
 use meshwright::serve::{Compute, Service, World, serve};
+use meshwright::webhooks::HookRules;
 use meshwright::wire::{self, Code, Problem, Submission};
 use meshwright_engine::run::Run;
 use reqwest::{Client, RequestBuilder, Response, StatusCode};

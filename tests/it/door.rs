@@ -33,7 +33,7 @@ async fn make_key(
     key.reveal()
 }
 
-async fn key_of(bench: &Bench, client: &str) -> String {
+pub(crate) async fn key_of(bench: &Bench, client: &str) -> String {
     make_key(bench, client, Role::Client, |_| {}).await
 }
 

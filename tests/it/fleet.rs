@@ -302,6 +302,42 @@ async fn a_password_stands_neither_in_the_help_nor_in_an_error() {
     }
 }
 
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_dismissal_that_takes_long_keeps_no_lost_job_waiting() {
+    let address = server::database().await;
+    let fleet = Fleet::start(&address, 0, 1, "1s");
+    let torques: Vec<Value> = (0..10).map(|i| json!([50 + i])).collect();
+    let study =
+        json!({ "base": job(0), "axes": [{ "path": "/output_torques_n_m", "values": torques }] });
+    fleet.apis[0].submit(&fleet.client, &study).await;
+    fleet.submit(1).taken().await;
+    // Nobody can dismiss the designs as long as one is locked.
+    let mut lock = server::connect(&address).await;
+    for words in [
+        "begin",
+        "select id from jobs where study is not null order by sequence limit 1 for update",
+    ] {
+        sqlx::raw_sql(words).execute(&mut lock).await.unwrap();
+    }
+    let mut other = server::connect(&address).await;
+    for words in [
+        "update studies set cancelled_at = submitted_at",
+        "update jobs set status = 'running', attempt = 1, owner = 'gone', lease_until = 1 where study is null",
+    ] {
+        sqlx::query(words).execute(&mut other).await.unwrap();
+    }
+    let waits =
+        "select count(*) from jobs where study is null and status = 'accepted' and attempt = 1";
+    tokio::time::timeout(Duration::from_secs(20), fleet.until(waits, 1))
+        .await
+        .expect("the lost job is found meanwhile");
+    sqlx::raw_sql("rollback").execute(&mut lock).await.unwrap();
+    let dismissed = "select count(*) from jobs where status = 'dismissed'";
+    tokio::time::timeout(Duration::from_secs(20), fleet.until(dismissed, 10))
+        .await
+        .expect("the designs are dismissed then");
+}
+
 /// The median time of a small job from its submission to its answer, one after the other, in milliseconds.
 async fn to_and_fro(place: &Place) -> f64 {
     const JOBS: u32 = 200;

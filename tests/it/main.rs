@@ -5,6 +5,9 @@
     reason = "a test may end where its assumption does"
 )]
 
+/// Which store the suites run on.
+const ON_POSTGRES: bool = false;
+
 mod bench;
 #[path = "../postgres/server.rs"]
 mod server;
@@ -23,7 +26,7 @@ mod fleet;
 mod growth;
 mod life;
 mod lists;
-mod once_more;
+mod one_process;
 mod page;
 mod population;
 mod previews;
@@ -39,4 +42,5 @@ mod strain;
 mod studies;
 mod tables;
 mod time;
+mod upgrade;
 mod webhooks;

@@ -28,6 +28,11 @@ impl Process {
         Self::spawn(program, database, arguments)
     }
 
+    /// The same of another program.
+    pub(crate) fn start_program(program: &str, database: &Place, arguments: &[&str]) -> Self {
+        Self::spawn(Command::new(program), database, arguments)
+    }
+
     /// The same with so many descriptors.
     pub(crate) fn start_with_descriptors(database: &Place, descriptors: u32) -> Self {
         let mut shell = Command::new("sh");

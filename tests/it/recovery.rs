@@ -1,7 +1,5 @@
 //! The service ends in mid-job, in order or not, and starts again on the same database.
 
-use meshwright::jobs::Place;
-
 use crate::bench::{Bench, submission};
 
 #[tokio::test]
@@ -82,31 +80,6 @@ async fn jobs_and_results_outlive_the_process() {
             .status(),
         200
     );
-}
-
-#[tokio::test]
-async fn a_database_is_served_by_one_process_only() {
-    let mut bench = Bench::quick().await;
-    let refusal = bench.another().await.err().unwrap();
-    assert!(refusal.to_string().contains("another process"), "{refusal}");
-    bench.shut_down().await;
-    bench.another().await.unwrap().shut_down().await;
-}
-
-#[cfg(unix)]
-#[tokio::test]
-async fn links_of_both_kinds_lead_to_the_same_lock() {
-    let bench = Bench::quick().await;
-    let database = bench.config.database.file().unwrap();
-    let folder = tempfile::tempdir_in(database.parent().unwrap()).unwrap();
-    let symbolic = folder.path().join("symbolic.db");
-    let hard = folder.path().join("hard.db");
-    std::os::unix::fs::symlink(database, &symbolic).unwrap();
-    std::fs::hard_link(database, &hard).unwrap();
-    for path in [symbolic, hard] {
-        let refusal = bench.another_on(Place::File(path)).await.err().unwrap();
-        assert!(refusal.to_string().contains("another process"), "{refusal}");
-    }
 }
 
 #[tokio::test]

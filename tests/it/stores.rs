@@ -1,4 +1,4 @@
-//! Which store the suites run on: files of SQLite, or, when the environment says so, databases of a PostgreSQL.
+//! The store that the suites run on: files of SQLite, or databases of a PostgreSQL.
 
 use meshwright::jobs::Place;
 use sqlx::sqlite::SqlitePool;
@@ -7,15 +7,12 @@ use tokio::sync::Mutex;
 
 use crate::server;
 
-/// The variable that says so.
-pub(crate) const STORE: &str = "MESHWRIGHT_TEST_STORE";
-
 /// Held by what takes the whole machine for a while, and by what must not take longer than it may.
 pub(crate) static ALONE: Mutex<()> = Mutex::const_new(());
 
 /// Whether the suites run on PostgreSQL.
 pub(crate) fn on_postgres() -> bool {
-    std::env::var(STORE).is_ok_and(|store| store == "postgres")
+    crate::ON_POSTGRES
 }
 
 /// A database without anything in it: a file in `folder`, or one of the server.

@@ -4,6 +4,7 @@ use reqwest::StatusCode;
 use serde_json::Value;
 
 use crate::bench::{Bench, problem, submission};
+use crate::stores;
 
 #[tokio::test]
 async fn curves_and_spectra_come_as_csv_and_json() {
@@ -116,6 +117,18 @@ async fn fields_come_as_a_grid_at_any_position_and_torque_of_the_job() {
         .await
         .unwrap();
     assert_eq!(again.status(), StatusCode::NOT_MODIFIED);
+    // Another version of the solver says it otherwise, under the same address: nobody keeps it unasked.
+    assert_eq!(again.headers()["cache-control"], "private, no-cache");
+    let here = meshwright::wire::SOLVER_VERSION;
+    assert_eq!(again.headers()["solver-version"], here);
+    assert!(!again.headers().contains_key("results-solver-version"));
+    let older = "update jobs set solver_version = 'meshwright 0.1.0' returning 1";
+    stores::number(&bench.config.database, older).await;
+    let of_older = get("?torque=115&mesh_position=0.25").await;
+    assert_eq!(
+        of_older.headers()["results-solver-version"],
+        "meshwright 0.1.0"
+    );
     let edges = bench
         .document(&format!(
             "{path}/results/edges.json?torque=115&mesh_position=0.25"

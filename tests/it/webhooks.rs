@@ -2,14 +2,20 @@
 
 use std::net::IpAddr;
 use std::sync::Arc;
+use std::time::Duration;
 
-use meshwright::jobs::HookRules;
+use jiff::{SignedDuration, Timestamp};
+use meshwright::jobs::Clock;
+
+use meshwright::webhooks::HookRules;
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpListener;
 
 use crate::bench::{Bench, PATIENCE, RESULTS, problem, submission};
+use crate::door::key_of;
+use crate::stores;
 
 /// A receiver that answers one request after the other with these statuses, and tells what it was sent.
 async fn receiver(
@@ -37,12 +43,34 @@ async fn receiver(
     (port, received)
 }
 
+/// A receiver that takes every connection and answers nothing.
+async fn silent_receiver() -> u16 {
+    let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let port = listener.local_addr().unwrap().port();
+    tokio::spawn(async move {
+        let mut held = Vec::new();
+        while let Ok((stream, _)) = listener.accept().await {
+            held.push(stream);
+        }
+    });
+    port
+}
+
 /// A service that may send to a port of this machine, which only a test may.
 async fn bench(port: u16) -> Bench {
+    bench_of(&[port], Clock::system()).await
+}
+
+/// The same with several ports, and a clock.
+async fn bench_of(ports: &[u16], clock: Clock) -> Bench {
     let mut bench = Bench::quick().await;
     bench.shut_down().await;
+    bench.clock = clock;
+    let allowed = ports
+        .iter()
+        .map(|port| format!("http://localhost:{port}").parse().unwrap());
     bench.hooks = HookRules {
-        allowed: vec![format!("http://localhost:{port}").parse().unwrap()],
+        allowed: allowed.collect(),
         reachable: Arc::new(|address: IpAddr| address.is_loopback()),
     };
     bench.start_again().await;
@@ -97,6 +125,172 @@ async fn the_end_of_a_job_and_of_a_study_is_told_and_signed() {
         message.contains("study.ended") && !message.contains("job.ended"),
         "one message for all of it: {message}"
     );
+}
+
+#[tokio::test]
+async fn what_is_answered_from_earlier_results_has_an_end_that_is_told_at_once() {
+    let (port, mut received) = receiver(&["200 OK"; 3]).await;
+    let bench = bench(port).await;
+    let first = bench.submit(&submission(5.0)).await;
+    bench.ended(&first).await;
+    let hook = json!({ "url": format!("http://localhost:{port}/") });
+    bench.post("/v1/webhooks", &hook).send().await.unwrap();
+
+    let again = bench
+        .post("/v1/jobs", &submission(5.0))
+        .send()
+        .await
+        .unwrap();
+    let again: Value = again.json().await.unwrap();
+    assert_eq!(again["links"]["same_as"], first);
+    let message = next(&mut received).await;
+    assert!(message.contains(again["id"].as_str().unwrap()), "{message}");
+    let study = json!({ "base": submission(1.0), "axes": [{ "path": "/output_torques_n_m/0", "values": [5] }] });
+    let study = bench.post("/v1/studies", &study).send().await.unwrap();
+    let study: Value = study.json().await.unwrap();
+    let message = next(&mut received).await;
+    assert!(message.contains("study.ended"), "{message}");
+    assert!(message.contains(study["id"].as_str().unwrap()), "{message}");
+}
+
+#[tokio::test]
+async fn a_clients_receivers_that_hang_keep_no_other_client_waiting() {
+    let hangs = silent_receiver().await;
+    let (port, mut received) = receiver(&["200 OK"]).await;
+    let bench = bench_of(&[hangs, port], Clock::system()).await;
+    let (bad, good) = (key_of(&bench, "bad").await, key_of(&bench, "good").await);
+    let send = async |path: &str, document: Value, key: &str| {
+        let request = bench.post(path, &document).bearer_auth(key);
+        let answer = request.send().await.unwrap();
+        assert!(answer.status().is_success(), "{}", answer.status());
+    };
+    for i in 0..16 {
+        let url = format!("http://localhost:{hangs}/{i}");
+        send("/v1/webhooks", json!({ "url": url }), &bad).await;
+    }
+    for i in 0..30 {
+        send("/v1/jobs", submission(1.0 + f64::from(i)), &bad).await;
+    }
+    let url = format!("http://localhost:{port}/");
+    send("/v1/webhooks", json!({ "url": url }), &good).await;
+    send("/v1/jobs", submission(99.0), &good).await;
+    let message = tokio::time::timeout(Duration::from_secs(8), received.recv());
+    assert!(
+        message.await.is_ok(),
+        "before any of the others is given up"
+    );
+}
+
+#[tokio::test]
+async fn a_webhook_that_was_given_up_is_taken_up_again_with_what_waited() {
+    let (port, mut received) = receiver(&["410 Gone", "200 OK", "200 OK"]).await;
+    let bench = bench(port).await;
+    let hook = json!({ "url": format!("http://localhost:{port}/") });
+    let made = bench.post("/v1/webhooks", &hook).send().await.unwrap();
+    let made: Value = made.json().await.unwrap();
+    let path = format!("/v1/webhooks/{}", made["id"].as_str().unwrap());
+    let post = async |what: &str| {
+        let request = bench.client.post(bench.url(&format!("{path}/{what}")));
+        request.send().await.unwrap()
+    };
+    bench.submit(&submission(1.0)).await;
+    let first = next(&mut received).await;
+    let told = async |path: &str, pointer: &str, value: &Value| {
+        let found = async {
+            while bench.job(path).await.pointer(pointer) != Some(value) {
+                tokio::time::sleep(Duration::from_millis(10)).await;
+            }
+        };
+        let found = tokio::time::timeout(PATIENCE, found).await;
+        assert!(found.is_ok(), "{path}{pointer} is never {value}");
+    };
+    let list = format!("{path}/deliveries");
+    told(&list, "/items/0/answered", &json!(410)).await;
+    assert_eq!(bench.job(&list).await["items"][0]["status"], "waiting");
+    problem(post("ping").await, 409, "webhook_disabled").await;
+
+    let enabled: Value = post("enable").await.json().await.unwrap();
+    assert_eq!(
+        (&enabled["disabled_at"], &enabled["failures"]),
+        (&Value::Null, &json!(0))
+    );
+    let again = next(&mut received).await;
+    assert_eq!(header(&first, "webhook-id"), header(&again, "webhook-id"));
+    told(&list, "/items/0/status", &json!("arrived")).await;
+
+    // Another secret, and for a day the one before, too.
+    let rotated: Value = post("rotate").await.json().await.unwrap();
+    assert_ne!(rotated["secret"], made["secret"]);
+    let ping = post("ping").await;
+    assert_eq!(ping.status(), StatusCode::ACCEPTED);
+    let ping: Value = ping.json().await.unwrap();
+    let message = next(&mut received).await;
+    assert_eq!(header(&message, "webhook-id"), ping["id"].as_str().unwrap());
+    assert!(message.contains("webhook.ping"), "{message}");
+    let signatures: Vec<_> = header(&message, "webhook-signature").split(' ').collect();
+    assert_eq!(signatures.len(), 2, "{signatures:?}");
+    assert!(
+        signatures
+            .iter()
+            .all(|signature| signature.starts_with("v1,"))
+    );
+    assert_ne!(signatures[0], signatures[1]);
+    told(&list, "/items/0/status", &json!("arrived")).await;
+    let list = bench.job(&list).await;
+    assert_eq!(list["items"].as_array().unwrap().len(), 2, "{list}");
+    assert_eq!(
+        (&list["items"][0]["type"], &list["items"][1]["attempts"]),
+        (&json!("webhook.ping"), &json!(2))
+    );
+}
+
+#[tokio::test]
+async fn a_webhook_is_made_once_under_a_key_and_its_secret_told_again() {
+    let bench = bench(1).await;
+    let make = async |url: &str| {
+        let request = bench
+            .post("/v1/webhooks", &json!({ "url": url }))
+            .header("idempotency-key", "k");
+        request.send().await.unwrap()
+    };
+    let first = make("http://localhost:1/a").await;
+    assert_eq!(first.status(), StatusCode::CREATED);
+    let first: Value = first.json().await.unwrap();
+    let again = make("http://localhost:1/a").await;
+    assert_eq!(again.status(), StatusCode::OK);
+    let again: Value = again.json().await.unwrap();
+    assert_eq!(
+        (&first["id"], &first["secret"]),
+        (&again["id"], &again["secret"])
+    );
+    let other = make("http://localhost:1/b").await;
+    problem(other, 422, "idempotency_conflict").await;
+    let list = bench.job("/v1/webhooks").await;
+    assert_eq!(list["items"].as_array().unwrap().len(), 1);
+}
+
+#[tokio::test]
+async fn patience_goes_by_the_clock_that_all_processes_share() {
+    let (port, mut received) = receiver(&["500 Oops"]).await;
+    // The clocks of this process are a year late; where there is one process, its own is the one that all share.
+    let late = || Timestamp::now() - SignedDuration::from_hours(365 * 24);
+    let bench = bench_of(&[port], Clock::given(late, late)).await;
+    let hook = json!({ "url": format!("http://localhost:{port}/") });
+    bench.post("/v1/webhooks", &hook).send().await.unwrap();
+    bench.submit(&submission(1.0)).await;
+    next(&mut received).await;
+    let retry_at = async {
+        loop {
+            let list = bench.job("/v1/webhooks").await;
+            if let Some(at) = list["items"][0]["retry_at"].as_str() {
+                return at.parse::<Timestamp>().unwrap();
+            }
+            tokio::time::sleep(Duration::from_millis(10)).await;
+        }
+    };
+    let retry_at = tokio::time::timeout(PATIENCE, retry_at).await.unwrap();
+    let late = retry_at.duration_until(Timestamp::now()) > SignedDuration::from_hours(24);
+    assert_eq!(late, !stores::on_postgres(), "{retry_at}");
 }
 
 #[tokio::test]
@@ -206,6 +400,8 @@ async fn webhooks_are_off_unless_hosts_are_allowed_and_private_addresses_never_a
     for url in [
         "https://10.0.0.1/",
         "http://169.254.169.254/latest",
+        "http://0xa9fea9fe/latest",
+        "http://2852039166/latest",
         "https://evil.example/",
         "file:///etc/passwd",
     ] {

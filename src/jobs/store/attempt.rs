@@ -5,6 +5,7 @@ use uuid::Uuid;
 
 use super::documents::Packed;
 use super::endings::tell_end;
+use super::rows::job_columns;
 use super::statement::{query, query_as};
 use super::{Store, StoreError, column, dialect, micros, shares};
 use crate::jobs::job::{Job, Progress};
@@ -96,11 +97,14 @@ impl Store {
             .await?;
         }
         let job: Option<Job> = query_as(
+            concat!(
             "update jobs
              set status = 'successful', finished_at = max($3, started_at), elapsed = $4, lease_until = null,
                  document = $5, solver_version = $6, positions_done = positions_total
              where id = $1 and attempt = $2 and status = 'running'
-             returning *",
+             returning ",
+            job_columns!()
+        ),
         )
         .bind(claim.id.to_string())
         .bind(claim.attempt)
@@ -129,10 +133,13 @@ impl Store {
         let (at, elapsed) = end.columns();
         let mut write = self.begin().await?;
         let job: Option<Job> = query_as(
+            concat!(
             "update jobs
              set status = 'failed', finished_at = max($3, started_at), elapsed = $4, lease_until = null, problem = $5
              where id = $1 and attempt = $2 and status = 'running'
-             returning *",
+             returning ",
+            job_columns!()
+        ),
         )
         .bind(claim.id.to_string())
         .bind(claim.attempt)
@@ -152,10 +159,13 @@ impl Store {
     pub(in crate::jobs) async fn release(&self, claim: Claim) -> Result<bool, StoreError> {
         let mut write = self.begin().await?;
         let job: Option<Job> = query_as(
+            concat!(
             "update jobs
              set status = 'accepted', returned = returned + 1, started_at = null, lease_until = null, positions_done = 0
              where id = $1 and attempt = $2 and status = 'running'
-             returning *",
+             returning ",
+            job_columns!()
+        ),
         )
         .bind(claim.id.to_string())
         .bind(claim.attempt)

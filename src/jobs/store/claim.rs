@@ -6,6 +6,7 @@ use jiff::Timestamp;
 
 use super::attempt::Lease;
 use super::endings::tell_end;
+use super::rows::job_columns;
 use super::shares::{self, Lane};
 use super::statement::{Connection, query, query_as, query_scalar};
 use super::submit::{Known, find_known};
@@ -30,6 +31,15 @@ pub(in crate::jobs) struct Claimed {
     pub(in crate::jobs) given: Vec<Job>,
 }
 
+/// What a worker can do.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::jobs) struct Reader<'a> {
+    /// The version of its solver, whose results are given again.
+    pub(in crate::jobs) solver: &'a str,
+    /// The latest version of documents that it reads.
+    pub(in crate::jobs) documents: i64,
+}
+
 /// So many jobs are given results in one commit at most.
 const MOST_GIVEN: usize = 100;
 
@@ -44,16 +54,16 @@ impl Store {
         &self,
         now: Timestamp,
         lease: Lease,
-        solver_version: &str,
+        reader: Reader<'_>,
     ) -> Result<Claimed, StoreError> {
         let mut write = self.begin().await?;
         query(dialect::lock_turn()).execute(&mut *write).await?;
         let process = self.process.to_string();
         let mut claimed = Claimed::default();
         let mut turn = Turn::default();
-        let next = match suspects(&mut write, &process).await? {
+        let next = match suspects(&mut write, &process, reader).await? {
             Suspects::None => {
-                next_in_turn(&mut write, now, solver_version, &mut claimed, &mut turn).await?
+                next_in_turn(&mut write, now, reader, &mut claimed, &mut turn).await?
             }
             Suspects::Next(id) => Some(id),
             Suspects::Wait => None,
@@ -77,7 +87,11 @@ enum Suspects {
     Wait,
 }
 
-async fn suspects(connection: &mut Connection, process: &str) -> Result<Suspects, sqlx::Error> {
+async fn suspects(
+    connection: &mut Connection,
+    process: &str,
+    reader: Reader<'_>,
+) -> Result<Suspects, sqlx::Error> {
     let (running, alone): (i64, i64) = query_as(dialect::running_here())
         .bind(process)
         .fetch_one(&mut *connection)
@@ -86,6 +100,7 @@ async fn suspects(connection: &mut Connection, process: &str) -> Result<Suspects
         return Ok(Suspects::Wait);
     }
     let next: Option<String> = query_scalar(dialect::next_suspect())
+        .bind(reader.documents)
         .fetch_optional(connection)
         .await?;
     Ok(match next {
@@ -126,7 +141,7 @@ impl Turn {
 async fn next_in_turn(
     connection: &mut Connection,
     now: Timestamp,
-    solver_version: &str,
+    reader: Reader<'_>,
     claimed: &mut Claimed,
     turn: &mut Turn,
 ) -> Result<Option<String>, sqlx::Error> {
@@ -135,6 +150,7 @@ async fn next_in_turn(
             let next: Option<(String, String, i64, String)> = query_as(dialect::next_waiting())
                 .bind(&lane.client)
                 .bind(&lane.lane)
+                .bind(reader.documents)
                 .fetch_optional(&mut *connection)
                 .await?;
             let Some((id, input_hash, cost, keep)) = next else {
@@ -143,10 +159,10 @@ async fn next_in_turn(
             };
             // A word that is not known keeps everything.
             let keep = Kept::named(&keep).unwrap_or(Kept::Results);
-            let known = find_known(connection, &lane.client, &input_hash, keep, solver_version);
+            let known = find_known(connection, &lane.client, &input_hash, keep, reader.solver);
             match known.await? {
                 Some(known) => {
-                    let job = give(connection, &id, &known, now, solver_version).await?;
+                    let job = give(connection, &id, &known, now, reader.solver).await?;
                     tell_end(connection, &job, now).await?;
                     claimed.given.push(job);
                 }
@@ -155,6 +171,10 @@ async fn next_in_turn(
                     return Ok(Some(id));
                 }
             }
+        }
+        if !claimed.given.is_empty() {
+            // Studies are locked in the order of their ids: what is given in one transaction is of one of them.
+            return Ok(None);
         }
     }
     Ok(None)
@@ -184,11 +204,14 @@ async fn give(
     solver_version: &str,
 ) -> Result<Job, sqlx::Error> {
     query_as(
-        "update jobs
+        concat!(
+            "update jobs
          set status = 'successful', started_at = max($2, submitted_at), finished_at = max($2, submitted_at), elapsed = 0,
              document = $3, solver_version = $4, same_as = $5, positions_done = $6, positions_total = $6
          where id = $1 and status = 'accepted'
-         returning *",
+         returning ",
+            job_columns!()
+        ),
     )
     .bind(id)
     .bind(now.as_microsecond())

@@ -7,6 +7,7 @@ use uuid::Uuid;
 
 use super::documents::forget_document;
 use super::endings::{note_study, tell_end};
+use super::rows::job_columns;
 use super::statement::query_as;
 use super::{Store, StoreError, dialect, micros, shares};
 use crate::jobs::job::Job;
@@ -55,10 +56,13 @@ impl Store {
         for (id, (returned, suspect)) in &lost_jobs {
             let (returned, suspect) = (*returned, *suspect);
             let job: Job = query_as(
-                "update jobs set status = 'accepted', started_at = null, lease_until = null, positions_done = 0,
+                concat!(
+            "update jobs set status = 'accepted', started_at = null, lease_until = null, positions_done = 0,
                                  returned = returned + $2, suspect = max(suspect, $3)
                  where id = $1 and status = 'running'
-                 returning *",
+                 returning ",
+            job_columns!()
+        ),
             )
             .bind(id)
             .bind(returned)
@@ -69,11 +73,12 @@ impl Store {
                 to_activate.insert((job.client, job.study));
                 continue;
             }
-            let job: Job = query_as(
-                "update jobs set status = 'failed', finished_at = max($2, submitted_at), problem = $3
+            let job: Job = query_as(concat!(
+            "update jobs set status = 'failed', finished_at = max($2, submitted_at), problem = $3
                  where id = $1 and status = 'accepted'
-                 returning *",
-            )
+                 returning ",
+            job_columns!()
+        ))
             .bind(id)
             .bind(now.as_microsecond())
             .bind(problem)
@@ -96,10 +101,13 @@ impl Store {
     ) -> Result<Option<Job>, StoreError> {
         let mut write = self.begin().await?;
         let job: Option<Job> = query_as(
+            concat!(
             "update jobs set status = 'dismissed', finished_at = max(max($3, submitted_at), coalesce(started_at, 0)),
                              lease_until = null
              where id = $1 and client = $2 and status in ('accepted', 'running')
-             returning *",
+             returning ",
+            job_columns!()
+        ),
         )
         .bind(id.to_string())
         .bind(client)
@@ -117,9 +125,10 @@ impl Store {
     /// no such job in these states.
     pub(in crate::jobs) async fn delete(&self, client: &str, id: Uuid) -> Result<bool, StoreError> {
         let mut write = self.begin().await?;
-        let deleted: Option<Job> = query_as(
-            "delete from jobs where id = $1 and client = $2 and status <> 'running' returning *",
-        )
+        let deleted: Option<Job> = query_as(concat!(
+            "delete from jobs where id = $1 and client = $2 and status <> 'running' returning ",
+            job_columns!()
+        ))
         .bind(id.to_string())
         .bind(client)
         .fetch_optional(&mut *write)

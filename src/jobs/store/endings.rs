@@ -3,8 +3,9 @@
 use jiff::Timestamp;
 use uuid::Uuid;
 
+use super::outbox::{EventKind, tell};
+use super::rows::study_columns;
 use super::statement::{Connection, query_as, query_scalar};
-use super::webhooks::{EventKind, queue_messages};
 use crate::jobs::job::Job;
 use crate::jobs::study::StudyRecord;
 
@@ -19,7 +20,7 @@ pub(super) async fn tell_end(
         Some(study) => note_study(connection, study, now).await,
         None if job.status.has_ended() => {
             let kind = EventKind::JobEnded;
-            queue_messages(connection, &job.client, kind, job.id, job.status, now).await
+            tell(connection, &job.client, kind, job.id, job.status, now).await
         }
         None => Ok(()),
     }
@@ -31,12 +32,13 @@ pub(super) async fn note_study(
     id: Uuid,
     now: Timestamp,
 ) -> Result<(), sqlx::Error> {
-    let ended: Option<StudyRecord> = query_as(
+    let ended: Option<StudyRecord> = query_as(concat!(
         "update studies set ended_at = max(coalesce(cancelled_at, last_end, submitted_at), submitted_at)
          where id = $1 and ended_at is null
            and (cancelled_at is not null and accepted + running = 0 or unbuildable + successful + failed + dismissed = total)
-         returning *",
-    )
+         returning ",
+        study_columns!()
+    ))
     .bind(id.to_string())
     .fetch_optional(&mut *connection)
     .await?;
@@ -46,7 +48,7 @@ pub(super) async fn note_study(
             .fetch_one(&mut *connection)
             .await?;
         let kind = EventKind::StudyEnded;
-        queue_messages(connection, &client, kind, id, study.status(), now).await?;
+        tell(connection, &client, kind, id, study.status(), now).await?;
     }
     Ok(())
 }

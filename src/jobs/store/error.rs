@@ -46,8 +46,9 @@ const OF_THE_WORLD: [u32; 7] = [
 ];
 
 /// The beginnings of PostgreSQL's codes (its manual, appendix A) that speak of the world around the statement.
-const OF_THE_SERVER: [&str; 8] = [
+const OF_THE_SERVER: [&str; 9] = [
     "08",    // the connection
+    "0A000", // the tables have changed under a statement that was prepared
     "25006", // read-only: a standby
     "40",    // taken back because of another transaction
     "53",    // no room, no memory, too many connections

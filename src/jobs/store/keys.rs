@@ -77,6 +77,13 @@ from_row! {
     }
 }
 
+/// The columns of a key.
+macro_rules! key_columns {
+    () => {
+        "id, client, name, role, secret_hash, requests_per_second, queue_limit, created_at, revoked_at"
+    };
+}
+
 impl Store {
     /// Keeps a key.
     pub async fn add_key(&self, key: &KeyRecord) -> Result<(), StoreError> {
@@ -112,18 +119,26 @@ impl Store {
 
     /// A key that was not revoked.
     pub async fn find_key(&self, id: &str) -> Result<Option<KeyRecord>, StoreError> {
-        let key = query_as("select * from keys where id = $1 and revoked_at is null")
-            .bind(id)
-            .fetch_optional(&self.readers)
-            .await?;
+        let key = query_as(concat!(
+            "select ",
+            key_columns!(),
+            " from keys where id = $1 and revoked_at is null"
+        ))
+        .bind(id)
+        .fetch_optional(&self.readers)
+        .await?;
         Ok(key)
     }
 
     /// All keys, the oldest first.
     pub async fn list_keys(&self) -> Result<Vec<KeyRecord>, StoreError> {
-        let keys = query_as("select * from keys order by created_at, id")
-            .fetch_all(&self.readers)
-            .await?;
+        let keys = query_as(concat!(
+            "select ",
+            key_columns!(),
+            " from keys order by created_at, id"
+        ))
+        .fetch_all(&self.readers)
+        .await?;
         Ok(keys)
     }
 

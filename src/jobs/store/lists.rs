@@ -6,6 +6,7 @@ use std::str::FromStr;
 use jiff::Timestamp;
 use uuid::Uuid;
 
+use super::rows::{job_columns, of_table, study_columns};
 use super::statement::{Dialect, Record, Statement, Text, query_as, query_scalar};
 use super::{Store, StoreError, dialect};
 use crate::jobs::job::Job;
@@ -64,11 +65,15 @@ pub enum Membership {
 impl Store {
     /// A job of a client.
     pub async fn find(&self, client: &str, id: Uuid) -> Result<Option<Job>, StoreError> {
-        let job = query_as("select * from jobs where id = $1 and client = $2")
-            .bind(id.to_string())
-            .bind(client)
-            .fetch_optional(&self.readers)
-            .await?;
+        let job = query_as(concat!(
+            "select ",
+            job_columns!(),
+            " from jobs where id = $1 and client = $2"
+        ))
+        .bind(id.to_string())
+        .bind(client)
+        .fetch_optional(&self.readers)
+        .await?;
         Ok(job)
     }
 
@@ -79,6 +84,15 @@ impl Store {
             .fetch_optional(&self.readers)
             .await?;
         Ok(text)
+    }
+
+    /// The version of the document of a submission.
+    pub async fn document_version(&self, id: Uuid) -> Result<Option<i64>, StoreError> {
+        let version = query_scalar("select document_version from jobs where id = $1")
+            .bind(id.to_string())
+            .fetch_optional(&self.readers)
+            .await?;
+        Ok(version)
     }
 
     /// At most `limit` jobs of a client, newest first.
@@ -119,11 +133,15 @@ impl Store {
         client: &str,
         id: Uuid,
     ) -> Result<Option<StudyRecord>, StoreError> {
-        let study = query_as("select * from studies where id = $1 and client = $2")
-            .bind(id.to_string())
-            .bind(client)
-            .fetch_optional(&self.readers)
-            .await?;
+        let study = query_as(concat!(
+            "select ",
+            study_columns!(),
+            " from studies where id = $1 and client = $2"
+        ))
+        .bind(id.to_string())
+        .bind(client)
+        .fetch_optional(&self.readers)
+        .await?;
         Ok(study)
     }
 
@@ -212,11 +230,12 @@ impl Filter {
         limit: u32,
     ) -> Statement<Job> {
         let Hints { join, no_index } = Hints::of(dialect);
+        let columns = of_table("jobs", job_columns!());
         let named = self.ids.is_some() || matches!(self.study, Some(Membership::Of(_)));
         let mut query = match &self.tag {
             Some(tag) => {
                 let mut query = query_as(Text::Made(format!(
-                    "select jobs.* from job_tags {join} jobs on jobs.id = job_tags.job where job_tags.client = "
+                    "select {columns} from job_tags {join} jobs on jobs.id = job_tags.job where job_tags.client = "
                 )));
                 query.push_bind(client);
                 query.push(" and job_tags.tag = ").push_bind(tag);
@@ -225,7 +244,7 @@ impl Filter {
             None => {
                 let sign = if named { no_index } else { "" };
                 let mut query = query_as(Text::Made(format!(
-                    "select jobs.* from jobs where {sign}jobs.client = "
+                    "select {columns} from jobs where {sign}jobs.client = "
                 )));
                 query.push_bind(client);
                 query
@@ -269,10 +288,11 @@ impl Filter {
 impl StudyFilter {
     fn query(&self, dialect: Dialect, client: &str, limit: u32) -> Statement<StudyRecord> {
         let Hints { join, .. } = Hints::of(dialect);
+        let columns = of_table("studies", study_columns!());
         let mut query = match &self.tag {
             Some(tag) => {
                 let mut query = query_as(Text::Made(format!(
-                    "select studies.* from study_tags {join} studies on studies.id = study_tags.study
+                    "select {columns} from study_tags {join} studies on studies.id = study_tags.study
                      where study_tags.client = "
                 )));
                 query.push_bind(client);
@@ -280,8 +300,9 @@ impl StudyFilter {
                 query
             }
             None => {
-                let words = "select studies.* from studies where studies.client = ";
-                let mut query = query_as(Text::Made(words.to_owned()));
+                let mut query = query_as(Text::Made(format!(
+                    "select {columns} from studies where studies.client = "
+                )));
                 query.push_bind(client);
                 query
             }

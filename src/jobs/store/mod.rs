@@ -5,7 +5,7 @@
 //! [differ](dialect); how the database is [opened](open), how it is [written](write) and what can go wrong with it
 //! ([`StoreError`]); what a row is (`rows`); the transitions of a job: it is submitted (`submit`), claimed in its turn
 //! (`claim`, `shares`), attempted (`attempt`), and ends otherwise (`end`); those of a study (`studies`); what is read:
-//! lists, documents, tables; what other processes tell (`news`); what else is kept: keys, webhooks; and what an operator
+//! lists, documents, tables; what other processes tell (`news`); what else is kept: keys, and the messages to webhooks as they come to be (`outbox`); and what an operator
 //! needs: retention and backup.
 //!
 //! Each transition is one transaction that names the state it leaves; when the job is not in that state the transition does
@@ -22,7 +22,7 @@
 mod attempt;
 mod backup;
 mod claim;
-mod dialect;
+pub(crate) mod dialect;
 mod documents;
 mod end;
 mod endings;
@@ -31,17 +31,17 @@ mod keys;
 mod lists;
 mod news;
 mod open;
+pub(crate) mod outbox;
 mod place;
 mod retention;
-mod rows;
+pub(crate) mod rows;
 mod shares;
-mod statement;
+pub(crate) mod statement;
 mod studies;
 mod study_tables;
 mod submit;
 #[cfg(test)]
 mod tests;
-mod webhooks;
 mod write;
 
 use std::sync::Arc;
@@ -57,20 +57,19 @@ pub use documents::{Damaged, Document};
 pub use error::StoreError;
 pub use keys::{KeyRecord, Role};
 pub use lists::{Cursor, Depth, Filter, Membership, NoCursor, Span, StudyFilter};
-pub use open::OpenError;
+pub use open::{Migrate, OpenError};
+pub use outbox::EventKind;
 pub use place::Place;
 pub use retention::{Removed, Space};
-pub use webhooks::{EventKind, Webhook};
 
 pub(super) use attempt::{Claim, End, Lease};
-pub(super) use claim::{Claimed, Started};
+pub(super) use claim::{Claimed, Reader, Started};
 pub(super) use documents::Packed;
 pub(super) use end::Lost;
 pub(super) use news::{Listener, Told};
 pub(super) use studies::{NewRow, NewStudy, StudyOutcome};
 pub(super) use study_tables::StoredRow;
 pub(super) use submit::{NewJob, Outcome, QueueBounds};
-pub(super) use webhooks::{Delivery, NewWebhook};
 
 /// The database.
 ///
@@ -80,7 +79,7 @@ pub(super) use webhooks::{Delivery, NewWebhook};
 pub struct Store {
     place: Place,
     writer: Pool,
-    readers: Pool,
+    pub(crate) readers: Pool,
     health: Arc<Health>,
     /// This process, among those that work on the same database. Another one at each start.
     process: Uuid,
@@ -105,7 +104,7 @@ impl Store {
 }
 
 /// A span of time as a column.
-fn micros(span: SignedDuration) -> i64 {
+pub(crate) fn micros(span: SignedDuration) -> i64 {
     i64::try_from(span.as_micros()).unwrap_or(i64::MAX)
 }
 

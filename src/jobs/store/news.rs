@@ -19,6 +19,8 @@ pub(in crate::jobs) enum Told {
     Job(Uuid, Status),
     /// A study has changed.
     Study(Uuid),
+    /// A message to a webhook waits.
+    Message,
     /// Something may have been missed.
     Missed,
 }
@@ -29,7 +31,7 @@ pub(in crate::jobs) struct Listener(PgListener);
 impl Store {
     /// Listens to other processes; none where there are no others.
     pub(in crate::jobs) async fn listen(&self) -> Result<Option<Listener>, StoreError> {
-        let Pool::Postgres(pool) = &self.readers else {
+        let Pool::Postgres(pool, _) = &self.readers else {
             return Ok(None);
         };
         let mut listener = PgListener::connect_with(pool).await?;
@@ -57,6 +59,7 @@ fn told(words: &str) -> Told {
             let id = words.next().and_then(|id| id.parse().ok());
             id.zip(status).map(|(id, status)| Told::Job(id, status))
         }
+        Some("message") => Some(Told::Message),
         Some("study") => words.next().and_then(|id| id.parse().ok()).map(Told::Study),
         _ => None,
     };
@@ -76,6 +79,7 @@ mod tests {
                 format!("job dismissed {id}"),
                 Told::Job(id, Status::Dismissed),
             ),
+            ("message".to_owned(), Told::Message),
             (format!("study {id}"), Told::Study(id)),
             ("job dismissed".to_owned(), Told::Missed),
             ("weather fine".to_owned(), Told::Missed),

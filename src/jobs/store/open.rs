@@ -16,13 +16,29 @@ use tracing::{info, warn};
 use uuid::Uuid;
 
 use super::error::primary_code;
-use super::statement::Pool;
+use super::statement::{Dialect, Pool, Renewal};
 use super::write::Health;
 use super::{Place, Store, StoreError};
 use crate::private::open_or_make;
 
-static MIGRATIONS: Migrator = sqlx::migrate!();
-static MIGRATIONS_OF_POSTGRES: Migrator = sqlx::migrate!("migrations/postgres");
+/// What brings the tables up to date. Those of a later version may be there already.
+fn migrations(dialect: Dialect) -> Migrator {
+    let mut migrations = match dialect {
+        Dialect::Sqlite => sqlx::migrate!(),
+        Dialect::Postgres => sqlx::migrate!("migrations/postgres"),
+    };
+    migrations.set_ignore_missing(true);
+    migrations
+}
+
+/// Who brings the tables up to date.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Migrate {
+    /// Every process that starts, where there is something to do.
+    Auto,
+    /// `meshwright migrate` only, with the rights that it takes.
+    Never,
+}
 
 /// Connections of one process to a server at most, the one for news aside. A transaction needs one for some milliseconds.
 const CONNECTIONS: u32 = 10;
@@ -56,9 +72,12 @@ pub enum OpenError {
         "it is damaged ({0}); nothing was changed in it. Restore a backup, or copy what can be read with the sqlite3 program's .recover"
     )]
     Damaged(String),
-    /// A later version of this program made it.
+    /// A later version of this program made it, and this one cannot work on it.
     #[error("it was made by a later version of Meshwright (schema {0}); nothing was changed in it")]
     Newer(i64),
+    /// An earlier version made it, and this process may not bring it up to date.
+    #[error("its tables are of an earlier version; `meshwright migrate` brings them up to date")]
+    Older,
     /// The file or its folder cannot be written.
     #[error(
         "it cannot be written: the file, its folder or the file system is read-only, or this user may not"
@@ -111,7 +130,6 @@ impl From<StoreError> for OpenError {
 impl From<MigrateError> for OpenError {
     fn from(error: MigrateError) -> Self {
         match error {
-            MigrateError::VersionMissing(version) => Self::Newer(version),
             MigrateError::Execute(error) | MigrateError::ExecuteMigration(error, _) => error.into(),
             other => Self::Migrate(other),
         }
@@ -125,9 +143,18 @@ impl Store {
     ///
     /// [`OpenError`].
     pub async fn open(place: &Place) -> Result<Self, OpenError> {
+        Self::open_as(place, Migrate::Auto).await
+    }
+
+    /// The same, with tables that are brought up to date or have to be.
+    ///
+    /// # Errors
+    ///
+    /// [`OpenError`].
+    pub async fn open_as(place: &Place, migrate: Migrate) -> Result<Self, OpenError> {
         let (writer, readers) = match place {
-            Place::File(path) => open_file(path).await?,
-            Place::Postgres(address) => open_server(address).await?,
+            Place::File(path) => open_file(path, migrate).await?,
+            Place::Postgres(address) => open_server(address, migrate).await?,
         };
         let store = Self {
             place: place.clone(),
@@ -161,10 +188,10 @@ impl Store {
     }
 }
 
-async fn open_file(path: &Path) -> Result<(Pool, Pool), OpenError> {
+async fn open_file(path: &Path, migrate: Migrate) -> Result<(Pool, Pool), OpenError> {
     refuse_other_files(path)?;
     let options = options(path);
-    bring_up_to_date(&options).await?;
+    bring_up_to_date(&options, migrate).await?;
     // From here on the file is there. Made anew behind our back, it would be an empty one.
     let options = options.create_if_missing(false).foreign_keys(true);
     let pool = || {
@@ -186,7 +213,7 @@ async fn open_file(path: &Path) -> Result<(Pool, Pool), OpenError> {
 }
 
 /// Connects to a server, and brings the tables up to date: one process at a time, by a lock that the driver takes.
-async fn open_server(address: &str) -> Result<(Pool, Pool), OpenError> {
+async fn open_server(address: &str, migrate: Migrate) -> Result<(Pool, Pool), OpenError> {
     let options = PgConnectOptions::from_str(address)
         .map_err(|error| OpenError::Address(Box::new(error)))?
         .application_name("meshwright")
@@ -204,18 +231,22 @@ async fn open_server(address: &str) -> Result<(Pool, Pool), OpenError> {
             "the connections to the database are not encrypted; sslmode=verify-full in its address asks for it"
         );
     }
-    let migrated = MIGRATIONS_OF_POSTGRES
-        .run_direct(None, &mut connection, false)
-        .await;
+    let migrated = migrate_server(&mut connection, migrate).await;
     connection.close().await?;
     migrated?;
+    let renewal = Renewal::default();
+    let renewed = renewal.clone();
     let pool = PgPoolOptions::new()
         .max_connections(CONNECTIONS)
         .acquire_timeout(CONNECTING)
         .test_before_acquire(false)
         // After a restart of the server all idle connections are dead.
-        .before_acquire(|connection, meta| {
+        .before_acquire(move |connection, meta| {
+            let outdated = renewed.outdates(meta.age);
             Box::pin(async move {
+                if outdated {
+                    return Ok(false);
+                }
                 if meta.idle_for < IDLE {
                     return Ok(true);
                 }
@@ -224,7 +255,66 @@ async fn open_server(address: &str) -> Result<(Pool, Pool), OpenError> {
         })
         .connect_with(options)
         .await?;
-    Ok((Pool::Postgres(pool.clone()), Pool::Postgres(pool)))
+    let pool = Pool::Postgres(pool, renewal);
+    Ok((pool.clone(), pool))
+}
+
+async fn migrate_server(connection: &mut PgConnection, migrate: Migrate) -> Result<(), OpenError> {
+    let migrations = migrations(Dialect::Postgres);
+    let applied: Vec<i64> =
+        if sqlx::query_scalar("select to_regclass('_sqlx_migrations') is not null")
+            .fetch_one(&mut *connection)
+            .await?
+        {
+            sqlx::query_scalar(APPLIED)
+                .fetch_all(&mut *connection)
+                .await?
+        } else {
+            Vec::new()
+        };
+    let least = async {
+        let least = sqlx::query_scalar(LEAST_MIGRATION);
+        least.fetch_one(&mut *connection).await.ok()
+    };
+    if !is_to_be_done(&migrations, &applied, least, migrate).await? {
+        return Ok(());
+    }
+    Ok(migrations.run_direct(None, connection, false).await?)
+}
+
+const APPLIED: &str = "select version from _sqlx_migrations where success order by version";
+const LEAST_MIGRATION: &str = "select least_migration from compatibility";
+
+/// Whether there is something to do on tables with these migrations, and this process may. `least` is the migration that a program
+/// has to know to work on tables of a later version.
+async fn is_to_be_done(
+    migrations: &Migrator,
+    applied: &[i64],
+    least: impl Future<Output = Option<i64>>,
+    migrate: Migrate,
+) -> Result<bool, OpenError> {
+    let known = migrations.iter().map(|migration| migration.version);
+    if let Some(later) = applied
+        .last()
+        .copied()
+        .filter(|last| known.clone().all(|own| own < *last))
+    {
+        // Tables that do not say who can work on them are none of ours.
+        let least = least.await.unwrap_or(i64::MAX);
+        if !known.clone().any(|own| own >= least) {
+            return Err(OpenError::Newer(later));
+        }
+        info!(
+            schema = later,
+            "the tables are of a later version, which this one can work on"
+        );
+    }
+    let missing = known.clone().any(|own| !applied.contains(&own));
+    match migrate {
+        Migrate::Never if missing => Err(OpenError::Older),
+        Migrate::Never => Ok(false),
+        Migrate::Auto => Ok(missing),
+    }
 }
 
 /// Whether what is told to the server crosses a network.
@@ -275,17 +365,18 @@ fn options(path: &Path) -> SqliteConnectOptions {
 }
 
 /// Migrates on a connection of its own: tables are made anew, which foreign keys would take for deletions.
-async fn bring_up_to_date(options: &SqliteConnectOptions) -> Result<(), OpenError> {
+async fn bring_up_to_date(
+    options: &SqliteConnectOptions,
+    migrate: Migrate,
+) -> Result<(), OpenError> {
     // In a new file space of what was deleted can be given back a little at a time. (The statement writes, so it is not for
     // readers.)
     let options = options.clone().auto_vacuum(SqliteAutoVacuum::Incremental);
     let mut connection = options.foreign_keys(false).connect().await?;
-    let before = version(&mut connection).await;
-    let migrated = MIGRATIONS.run_direct(None, &mut connection, false).await;
-    let migrated = migrated.map_err(OpenError::from);
-    if migrated.is_ok() {
+    let migrated = migrate_file(&mut connection, migrate).await;
+    if let Ok(done) = migrated {
         // Looking through everything takes as long as there is much of it; only tables made anew can have lost a row.
-        if version(&mut connection).await != before {
+        if done {
             let dangling = sqlx::query("pragma foreign_key_check")
                 .fetch_optional(&mut connection)
                 .await?;
@@ -296,13 +387,35 @@ async fn bring_up_to_date(options: &SqliteConnectOptions) -> Result<(), OpenErro
         make_shrinkable(&mut connection).await;
     }
     connection.close().await?;
-    migrated
+    migrated.map(|_| ())
 }
 
-/// The last migration that was applied; none in a database that is new.
-async fn version(connection: &mut SqliteConnection) -> Option<i64> {
-    let version = sqlx::query_scalar("select max(version) from _sqlx_migrations");
-    version.fetch_one(connection).await.ok().flatten()
+/// Whether there was something to do.
+async fn migrate_file(
+    connection: &mut SqliteConnection,
+    migrate: Migrate,
+) -> Result<bool, OpenError> {
+    let migrations = migrations(Dialect::Sqlite);
+    let named = sqlx::query("select 1 from sqlite_master where name = '_sqlx_migrations'")
+        .fetch_optional(&mut *connection)
+        .await?;
+    let applied: Vec<i64> = match named {
+        Some(_) => {
+            sqlx::query_scalar(APPLIED)
+                .fetch_all(&mut *connection)
+                .await?
+        }
+        None => Vec::new(),
+    };
+    let least = async {
+        let least = sqlx::query_scalar(LEAST_MIGRATION);
+        least.fetch_one(&mut *connection).await.ok()
+    };
+    let to_be_done = is_to_be_done(&migrations, &applied, least, migrate).await?;
+    if to_be_done {
+        migrations.run_direct(None, connection, false).await?;
+    }
+    Ok(to_be_done)
 }
 
 /// A database of an earlier version keeps the space of what is deleted until it is made anew, which takes as much space

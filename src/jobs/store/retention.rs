@@ -6,6 +6,7 @@ use jiff::Timestamp;
 use uuid::Uuid;
 
 use super::documents::forget_document;
+use super::rows::job_columns;
 use super::statement::{Pool, query, query_as, query_scalar};
 use super::{Place, Store, StoreError, dialect};
 use crate::jobs::job::Job;
@@ -90,9 +91,12 @@ impl Store {
         let mut write = self.begin().await?;
         query(dialect::keep_alone()).execute(&mut *write).await?;
         let jobs: Vec<Job> = query_as(
+            concat!(
             "delete from jobs where id in
                (select id from jobs where study is null and finished_at < $1 order by finished_at limit $2)
-             returning *",
+             returning ",
+            job_columns!()
+        ),
         )
         .bind(before)
         .bind(REMOVED_AT_ONCE)

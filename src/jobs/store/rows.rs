@@ -24,10 +24,38 @@ macro_rules! from_row {
     };
 }
 
-pub(super) use from_row;
+pub(crate) use from_row;
+
+/// The columns of a job by their names, which is what every statement reads: a later version may add one meanwhile, and what
+/// `*` means would change under the statements that a server has prepared.
+macro_rules! job_columns {
+    () => {
+        "id, sequence, client, method, tags, status, attempt, returned, positions_done, positions_total, submitted_at, started_at, \
+         finished_at, elapsed, problem, keep, document, solver_version, same_as, study"
+    };
+}
+
+/// The columns of a study.
+macro_rules! study_columns {
+    () => {
+        "id, sequence, name, tags, gear, total, expanded, unbuildable, accepted, running, successful, failed, dismissed, version, \
+         submitted_at, last_end, cancelled_at"
+    };
+}
+
+pub(crate) use {job_columns, study_columns};
+
+/// Columns as those of a table, where another one has columns of the same names.
+pub(crate) fn of_table(table: &str, columns: &str) -> String {
+    let columns: Vec<String> = columns
+        .split(", ")
+        .map(|column| format!("{table}.{column}"))
+        .collect();
+    columns.join(", ")
+}
 
 /// A row of either database, by the kinds of columns that there are.
-pub(super) trait Cells {
+pub(crate) trait Cells {
     fn integer(&self, column: &'static str) -> Result<Option<i64>, sqlx::Error>;
     fn text(&self, column: &'static str) -> Result<Option<String>, sqlx::Error>;
 }
@@ -77,6 +105,7 @@ from_row! {
                 .transpose()?,
             keep: keep(row, "keep")?,
             document: row.try_get("document")?,
+            solver_version: row.try_get("solver_version")?,
             same_as: optional_uuid(row, "same_as")?,
             study: optional_uuid(row, "study")?,
         })
@@ -109,11 +138,11 @@ from_row! {
     }
 }
 
-pub(super) fn instant(row: &impl Cells, column: &'static str) -> Result<Timestamp, sqlx::Error> {
+pub(crate) fn instant(row: &impl Cells, column: &'static str) -> Result<Timestamp, sqlx::Error> {
     optional_instant(row, column)?.ok_or_else(|| undecodable(column, Absent))
 }
 
-pub(super) fn optional_instant(
+pub(crate) fn optional_instant(
     row: &impl Cells,
     column: &'static str,
 ) -> Result<Option<Timestamp>, sqlx::Error> {
@@ -121,11 +150,11 @@ pub(super) fn optional_instant(
     at.transpose().map_err(|error| undecodable(column, error))
 }
 
-pub(super) fn uuid(row: &impl Cells, column: &'static str) -> Result<Uuid, sqlx::Error> {
+pub(crate) fn uuid(row: &impl Cells, column: &'static str) -> Result<Uuid, sqlx::Error> {
     optional_uuid(row, column)?.ok_or_else(|| undecodable(column, Absent))
 }
 
-pub(super) fn optional_uuid(
+pub(crate) fn optional_uuid(
     row: &impl Cells,
     column: &'static str,
 ) -> Result<Option<Uuid>, sqlx::Error> {
@@ -133,24 +162,24 @@ pub(super) fn optional_uuid(
     id.transpose().map_err(|error| undecodable(column, error))
 }
 
-pub(super) fn status(row: &impl Cells, column: &'static str) -> Result<Status, sqlx::Error> {
+pub(crate) fn status(row: &impl Cells, column: &'static str) -> Result<Status, sqlx::Error> {
     let word = row.text(column)?.unwrap_or_default();
     Status::of_word(&word).ok_or_else(|| undecodable(column, UnknownWord(word)))
 }
 
-pub(super) fn keep(row: &impl Cells, column: &'static str) -> Result<Kept, sqlx::Error> {
+pub(crate) fn keep(row: &impl Cells, column: &'static str) -> Result<Kept, sqlx::Error> {
     let word = row.text(column)?.unwrap_or_default();
     Kept::named(&word).ok_or_else(|| undecodable(column, UnknownWord(word)))
 }
 
-pub(super) fn json<T: serde::de::DeserializeOwned>(
+pub(crate) fn json<T: serde::de::DeserializeOwned>(
     column: &'static str,
     text: &str,
 ) -> Result<T, sqlx::Error> {
     serde_json::from_str(text).map_err(|error| undecodable(column, error))
 }
 
-pub(super) fn count(row: &impl Cells, column: &'static str) -> Result<u64, sqlx::Error> {
+pub(crate) fn count(row: &impl Cells, column: &'static str) -> Result<u64, sqlx::Error> {
     let count = row
         .integer(column)?
         .ok_or_else(|| undecodable(column, Absent))?;
@@ -158,7 +187,7 @@ pub(super) fn count(row: &impl Cells, column: &'static str) -> Result<u64, sqlx:
 }
 
 /// A number that is never large.
-pub(super) fn small(row: &impl Cells, column: &'static str) -> Result<Option<u32>, sqlx::Error> {
+pub(crate) fn small(row: &impl Cells, column: &'static str) -> Result<Option<u32>, sqlx::Error> {
     let number = row.integer(column)?.map(u32::try_from);
     number
         .transpose()

@@ -4,80 +4,119 @@
 //! The drivers are typed by their database. Here the choice is a value, made once when the store is opened; a statement
 //! keeps its parameters until it knows which driver takes them.
 
+use std::sync::{Arc, Mutex, MutexGuard};
+use std::time::{Duration, Instant};
+
 use sqlx::postgres::{PgPool, PgRow, Postgres};
 use sqlx::sqlite::{Sqlite, SqlitePool, SqliteRow};
 use sqlx::{AssertSqlSafe, Executor, FromRow, PgConnection, SqlSafeStr, SqlStr, SqliteConnection};
 
 /// What is kept of a database: its connections.
 #[derive(Debug, Clone)]
-pub(super) enum Pool {
+pub(crate) enum Pool {
     /// A file.
     Sqlite(SqlitePool),
     /// A server.
-    Postgres(PgPool),
+    Postgres(PgPool, Renewal),
+}
+
+/// When connections to a server were last found to be out of date: older ones are given up before they are used again.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Renewal(Arc<Mutex<Option<Instant>>>);
+
+impl Renewal {
+    /// Whether a connection of this age has to go.
+    pub(crate) fn outdates(&self, age: Duration) -> bool {
+        self.lock().is_some_and(|since| age >= since.elapsed())
+    }
+
+    /// Looks at an error. True if the connection that met it is out of date: the tables have changed under the statements that it
+    /// has prepared.
+    fn finds<T>(&self, result: &Result<T, sqlx::Error>) -> bool {
+        let outdated = result.as_ref().is_err_and(is_outdated);
+        if outdated {
+            *self.lock() = Some(Instant::now());
+        }
+        outdated
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Option<Instant>> {
+        self.0
+            .lock()
+            .expect("nothing panics while it holds this lock")
+    }
+}
+
+/// "Cached plan must not change result type."
+pub(crate) fn is_outdated(error: &sqlx::Error) -> bool {
+    const FEATURE_NOT_SUPPORTED: &str = "0A000";
+    let error = error.as_database_error();
+    error.is_some_and(|error| error.code().as_deref() == Some(FEATURE_NOT_SUPPORTED))
 }
 
 impl Pool {
-    pub(super) fn dialect(&self) -> Dialect {
+    pub(crate) fn dialect(&self) -> Dialect {
         match self {
             Self::Sqlite(_) => Dialect::Sqlite,
-            Self::Postgres(_) => Dialect::Postgres,
+            Self::Postgres(..) => Dialect::Postgres,
         }
     }
 
-    pub(super) async fn acquire(&self) -> Result<Connection, sqlx::Error> {
+    pub(crate) async fn acquire(&self) -> Result<Connection, sqlx::Error> {
         Ok(match self {
             Self::Sqlite(pool) => Connection::Sqlite(pool.acquire().await?),
-            Self::Postgres(pool) => Connection::Postgres(pool.acquire().await?),
+            Self::Postgres(pool, renewal) => {
+                Connection::Postgres(pool.acquire().await?, renewal.clone())
+            }
         })
     }
 
-    pub(super) fn is_closed(&self) -> bool {
+    pub(crate) fn is_closed(&self) -> bool {
         match self {
             Self::Sqlite(pool) => pool.is_closed(),
-            Self::Postgres(pool) => pool.is_closed(),
+            Self::Postgres(pool, _) => pool.is_closed(),
         }
     }
 
     /// Comes when it is closed.
-    pub(super) async fn closed(&self) {
+    pub(crate) async fn closed(&self) {
         match self {
             Self::Sqlite(pool) => pool.close_event().await,
-            Self::Postgres(pool) => pool.close_event().await,
+            Self::Postgres(pool, _) => pool.close_event().await,
         }
     }
 
-    pub(super) async fn close(&self) {
+    pub(crate) async fn close(&self) {
         match self {
             Self::Sqlite(pool) => pool.close().await,
-            Self::Postgres(pool) => pool.close().await,
+            Self::Postgres(pool, _) => pool.close().await,
         }
     }
 }
 
 /// Which of the two texts of a statement is run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Dialect {
+pub(crate) enum Dialect {
     Sqlite,
     Postgres,
 }
 
 /// A connection that is held for a while.
-pub(super) enum Connection {
+pub(crate) enum Connection {
     Sqlite(sqlx::pool::PoolConnection<Sqlite>),
-    Postgres(sqlx::pool::PoolConnection<Postgres>),
+    Postgres(sqlx::pool::PoolConnection<Postgres>, Renewal),
 }
 
 impl Connection {
-    pub(super) fn close_on_drop(&mut self) {
+    pub(crate) fn close_on_drop(&mut self) {
         match self {
             Self::Sqlite(connection) => connection.close_on_drop(),
-            Self::Postgres(connection) => connection.close_on_drop(),
+            Self::Postgres(connection, _) => connection.close_on_drop(),
         }
     }
 
     /// Says something that is no query, without a statement of the driver's.
-    pub(super) async fn say(&mut self, words: impl Into<Text>) -> Result<(), sqlx::Error> {
+    pub(crate) async fn say(&mut self, words: impl Into<Text>) -> Result<(), sqlx::Error> {
         let words = words.into();
         match self {
             Self::Sqlite(connection) => {
@@ -85,7 +124,7 @@ impl Connection {
                     sqlx::raw_sql(words).execute(&mut **connection).await?;
                 }
             }
-            Self::Postgres(connection) => {
+            Self::Postgres(connection, _) => {
                 if let Some(words) = words.of(Dialect::Postgres) {
                     sqlx::raw_sql(words).execute(&mut **connection).await?;
                 }
@@ -96,18 +135,18 @@ impl Connection {
 }
 
 /// What a statement is run on.
-pub(super) enum On<'c> {
+pub(crate) enum On<'c> {
     Sqlite(&'c mut SqliteConnection),
     SqlitePool(&'c SqlitePool),
-    Postgres(&'c mut PgConnection),
-    PostgresPool(&'c PgPool),
+    Postgres(&'c mut PgConnection, &'c Renewal),
+    PostgresPool(&'c PgPool, &'c Renewal),
 }
 
 impl<'c> From<&'c Pool> for On<'c> {
     fn from(pool: &'c Pool) -> Self {
         match pool {
             Pool::Sqlite(pool) => Self::SqlitePool(pool),
-            Pool::Postgres(pool) => Self::PostgresPool(pool),
+            Pool::Postgres(pool, renewal) => Self::PostgresPool(pool, renewal),
         }
     }
 }
@@ -116,13 +155,13 @@ impl<'c> From<&'c mut Connection> for On<'c> {
     fn from(connection: &'c mut Connection) -> Self {
         match connection {
             Connection::Sqlite(connection) => Self::Sqlite(connection),
-            Connection::Postgres(connection) => Self::Postgres(connection),
+            Connection::Postgres(connection, renewal) => Self::Postgres(connection, renewal),
         }
     }
 }
 
 /// What can be read from a row of either database.
-pub(super) trait Record:
+pub(crate) trait Record:
     for<'r> FromRow<'r, SqliteRow> + for<'r> FromRow<'r, PgRow> + Send + Unpin
 {
 }
@@ -133,7 +172,7 @@ impl<T> Record for T where
 }
 
 /// A row of which nothing is read.
-pub(super) struct Nothing;
+pub(crate) struct Nothing;
 
 impl<R: sqlx::Row> FromRow<'_, R> for Nothing {
     fn from_row(_row: &R) -> Result<Self, sqlx::Error> {
@@ -143,7 +182,7 @@ impl<R: sqlx::Row> FromRow<'_, R> for Nothing {
 
 /// The text of a statement.
 #[derive(Debug, Clone)]
-pub(super) enum Text {
+pub(crate) enum Text {
     /// The same for both.
     Common(&'static str),
     /// One for each. Without one there is nothing to be done.
@@ -179,7 +218,7 @@ impl Text {
 
 /// A parameter. Both databases know these kinds, and nothing else is kept.
 #[derive(Debug, Clone)]
-pub(super) enum Value {
+pub(crate) enum Value {
     Integer(Option<i64>),
     Text(Option<String>),
     Bytes(Vec<u8>),
@@ -210,19 +249,19 @@ value_of! {
 }
 
 /// A statement with its parameters.
-pub(super) struct Statement<T> {
+pub(crate) struct Statement<T> {
     text: Text,
     values: Vec<Value>,
     reads: std::marker::PhantomData<fn() -> T>,
 }
 
 /// A statement of which no row is read.
-pub(super) fn query(text: impl Into<Text>) -> Statement<Nothing> {
+pub(crate) fn query(text: impl Into<Text>) -> Statement<Nothing> {
     query_as(text)
 }
 
 /// A statement whose rows are read as `T`.
-pub(super) fn query_as<T: Record>(text: impl Into<Text>) -> Statement<T> {
+pub(crate) fn query_as<T: Record>(text: impl Into<Text>) -> Statement<T> {
     Statement {
         text: text.into(),
         values: Vec::new(),
@@ -236,29 +275,38 @@ macro_rules! run {
         match $on.into() {
             On::Sqlite($executor) => match text.of(Dialect::Sqlite) {
                 Some(text) => {
-                    let $query = bind_sqlite::<T>(text, values);
+                    let $query = bind_sqlite::<T>(text, &values);
                     $run
                 }
                 None => $none,
             },
             On::SqlitePool($executor) => match text.of(Dialect::Sqlite) {
                 Some(text) => {
-                    let $query = bind_sqlite::<T>(text, values);
+                    let $query = bind_sqlite::<T>(text, &values);
                     $run
                 }
                 None => $none,
             },
-            On::Postgres($executor) => match text.of(Dialect::Postgres) {
+            On::Postgres($executor, renewal) => match text.of(Dialect::Postgres) {
                 Some(text) => {
-                    let $query = bind_postgres::<T>(text, values);
-                    $run
+                    let $query = bind_postgres::<T>(text, &values);
+                    let result = $run;
+                    // The transaction is lost with its connection; whoever tries it again gets a new one.
+                    renewal.finds(&result);
+                    result
                 }
                 None => $none,
             },
-            On::PostgresPool($executor) => match text.of(Dialect::Postgres) {
+            On::PostgresPool($executor, renewal) => match text.of(Dialect::Postgres) {
                 Some(text) => {
-                    let $query = bind_postgres::<T>(text, values);
-                    $run
+                    let $query = bind_postgres::<T>(text.clone(), &values);
+                    let result = $run;
+                    if renewal.finds(&result) {
+                        let $query = bind_postgres::<T>(text, &values);
+                        $run
+                    } else {
+                        result
+                    }
                 }
                 None => $none,
             },
@@ -270,14 +318,14 @@ macro_rules! binding {
     ($name:ident, $database:ty) => {
         fn $name<T: Record>(
             text: SqlStr,
-            values: Vec<Value>,
-        ) -> sqlx::query::QueryAs<'static, $database, T, <$database as sqlx::Database>::Arguments> {
+            values: &[Value],
+        ) -> sqlx::query::QueryAs<'_, $database, T, <$database as sqlx::Database>::Arguments> {
             let mut query = sqlx::query_as::<$database, T>(text);
             for value in values {
                 query = match value {
-                    Value::Integer(value) => query.bind(value),
-                    Value::Text(value) => query.bind(value),
-                    Value::Bytes(value) => query.bind(value),
+                    Value::Integer(value) => query.bind(*value),
+                    Value::Text(value) => query.bind(value.as_deref()),
+                    Value::Bytes(value) => query.bind(value.as_slice()),
                 };
             }
             query
@@ -290,13 +338,13 @@ binding!(bind_postgres, Postgres);
 
 impl<T: Record> Statement<T> {
     /// The value of the next parameter: `$1`, then `$2`.
-    pub(super) fn bind(mut self, value: impl Into<Value>) -> Self {
+    pub(crate) fn bind(mut self, value: impl Into<Value>) -> Self {
         self.values.push(value.into());
         self
     }
 
     /// Goes on with the text of a statement that is put together.
-    pub(super) fn push(&mut self, words: &str) -> &mut Self {
+    pub(crate) fn push(&mut self, words: &str) -> &mut Self {
         if let Text::Made(text) = &mut self.text {
             text.push_str(words);
         }
@@ -304,14 +352,14 @@ impl<T: Record> Statement<T> {
     }
 
     /// The same with a parameter.
-    pub(super) fn push_bind(&mut self, value: impl Into<Value>) -> &mut Self {
+    pub(crate) fn push_bind(&mut self, value: impl Into<Value>) -> &mut Self {
         self.values.push(value.into());
         let parameter = format!("${}", self.values.len());
         self.push(&parameter)
     }
 
     #[cfg(test)]
-    pub(super) fn text(&self) -> &str {
+    pub(crate) fn text(&self) -> &str {
         match &self.text {
             Text::Made(text) => text,
             Text::Common(text) => text,
@@ -319,13 +367,13 @@ impl<T: Record> Statement<T> {
         }
     }
 
-    pub(super) async fn fetch_all<'c>(self, on: impl Into<On<'c>>) -> Result<Vec<T>, sqlx::Error> {
+    pub(crate) async fn fetch_all<'c>(self, on: impl Into<On<'c>>) -> Result<Vec<T>, sqlx::Error> {
         run!(self, on, Ok(Vec::new()), |executor, query| query
             .fetch_all(executor)
             .await)
     }
 
-    pub(super) async fn fetch_optional<'c>(
+    pub(crate) async fn fetch_optional<'c>(
         self,
         on: impl Into<On<'c>>,
     ) -> Result<Option<T>, sqlx::Error> {
@@ -334,7 +382,7 @@ impl<T: Record> Statement<T> {
             .await)
     }
 
-    pub(super) async fn fetch_one<'c>(self, on: impl Into<On<'c>>) -> Result<T, sqlx::Error> {
+    pub(crate) async fn fetch_one<'c>(self, on: impl Into<On<'c>>) -> Result<T, sqlx::Error> {
         run!(
             self,
             on,
@@ -344,7 +392,7 @@ impl<T: Record> Statement<T> {
     }
 
     /// Runs it. Gives back how many rows it has changed.
-    pub(super) async fn execute<'c>(self, on: impl Into<On<'c>>) -> Result<u64, sqlx::Error> {
+    pub(crate) async fn execute<'c>(self, on: impl Into<On<'c>>) -> Result<u64, sqlx::Error> {
         run!(self, on, Ok(0), |executor, query| executor
             .execute(query)
             .await
@@ -352,16 +400,16 @@ impl<T: Record> Statement<T> {
     }
 
     /// Whether it finds a row.
-    pub(super) async fn exists<'c>(self, on: impl Into<On<'c>>) -> Result<bool, sqlx::Error> {
+    pub(crate) async fn exists<'c>(self, on: impl Into<On<'c>>) -> Result<bool, sqlx::Error> {
         Ok(self.fetch_optional(on).await?.is_some())
     }
 }
 
 /// A statement of one column.
-pub(super) struct Scalar<T>(Statement<(T,)>);
+pub(crate) struct Scalar<T>(Statement<(T,)>);
 
 /// A statement whose rows have one column.
-pub(super) fn query_scalar<T>(text: impl Into<Text>) -> Scalar<T>
+pub(crate) fn query_scalar<T>(text: impl Into<Text>) -> Scalar<T>
 where
     (T,): Record,
 {
@@ -372,23 +420,23 @@ impl<T> Scalar<T>
 where
     (T,): Record,
 {
-    pub(super) fn bind(self, value: impl Into<Value>) -> Self {
+    pub(crate) fn bind(self, value: impl Into<Value>) -> Self {
         Self(self.0.bind(value))
     }
 
-    pub(super) async fn fetch_all<'c>(self, on: impl Into<On<'c>>) -> Result<Vec<T>, sqlx::Error> {
+    pub(crate) async fn fetch_all<'c>(self, on: impl Into<On<'c>>) -> Result<Vec<T>, sqlx::Error> {
         let rows = self.0.fetch_all(on).await?;
         Ok(rows.into_iter().map(|(value,)| value).collect())
     }
 
-    pub(super) async fn fetch_optional<'c>(
+    pub(crate) async fn fetch_optional<'c>(
         self,
         on: impl Into<On<'c>>,
     ) -> Result<Option<T>, sqlx::Error> {
         Ok(self.0.fetch_optional(on).await?.map(|(value,)| value))
     }
 
-    pub(super) async fn fetch_one<'c>(self, on: impl Into<On<'c>>) -> Result<T, sqlx::Error> {
+    pub(crate) async fn fetch_one<'c>(self, on: impl Into<On<'c>>) -> Result<T, sqlx::Error> {
         Ok(self.0.fetch_one(on).await?.0)
     }
 }

@@ -34,6 +34,8 @@ pub(in crate::jobs) struct NewStudy {
     pub(in crate::jobs) name: Option<String>,
     pub(in crate::jobs) tags: Vec<String>,
     pub(in crate::jobs) document: String,
+    /// The version of its base's document.
+    pub(in crate::jobs) document_version: i64,
     pub(in crate::jobs) body_hash: String,
     pub(in crate::jobs) gear: GearName,
     pub(in crate::jobs) total: u64,
@@ -127,14 +129,17 @@ impl Store {
     }
 
     /// The studies that do not have all their rows, and that nobody expands: ids and clients. They are this process's now.
+    /// Studies whose documents it does not read, of a later version than `reads`, are left to others.
     pub(in crate::jobs) async fn unfinished_expansions(
         &self,
         steady: Timestamp,
+        reads: i64,
     ) -> Result<Vec<(Uuid, String)>, StoreError> {
         let mut write = self.begin().await?;
         let found: Vec<(String, String)> = query_as(dialect::unfinished_expansions())
             .bind(steady.as_microsecond())
             .bind(micros(EXPANDING_FOR))
+            .bind(reads)
             .fetch_all(&mut *write)
             .await?;
         write.commit().await?;
@@ -334,6 +339,7 @@ async fn insert_study(connection: &mut Connection, study: &NewStudy) -> Result<(
         .bind(column(study.total))
         .bind(study.submitted_at.as_microsecond())
         .bind(&study.idempotency_key)
+        .bind(study.document_version)
         .fetch_one(&mut *connection)
         .await?;
     query("insert into study_documents (study, body) values ($1, $2)")

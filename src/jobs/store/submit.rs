@@ -5,6 +5,8 @@ use std::collections::{BTreeSet, HashMap};
 use jiff::Timestamp;
 use uuid::Uuid;
 
+use super::endings::tell_end;
+use super::rows::job_columns;
 use super::statement::{Connection, query, query_as};
 use super::{Store, StoreError, column, dialect, shares};
 use crate::hash::sha256_hex;
@@ -19,6 +21,8 @@ pub(in crate::jobs) struct NewJob {
     pub(in crate::jobs) method: String,
     pub(in crate::jobs) tags: Vec<String>,
     pub(in crate::jobs) submission: String,
+    /// The version of the submission's document: who reads only earlier ones leaves the job to others.
+    pub(in crate::jobs) document_version: i64,
     pub(in crate::jobs) input_hash: String,
     /// What it will take of a core, in microseconds.
     pub(in crate::jobs) cost: u64,
@@ -151,12 +155,13 @@ async fn submit_one(
 ) -> Result<Outcome, sqlx::Error> {
     let body_hash = sha256_hex(&new.submission);
     if let Some(key) = &new.idempotency_key
-        && let Some(outcome) = earlier_answer(connection, &new.client, key, &body_hash).await?
+        && let Some(outcome) = earlier_answer(connection, new, key, &body_hash).await?
     {
         return Ok(outcome);
     }
 
     let outcome = if let Some(job) = insert_known(connection, new, bounds.solver_version).await? {
+        tell_end(connection, &job, new.submitted_at).await?;
         Outcome::Known(job)
     } else {
         let taken = room.take(connection, &new.client, new.client_limit);
@@ -182,26 +187,34 @@ async fn submit_one(
 /// What the key was answered with before.
 async fn earlier_answer(
     connection: &mut Connection,
-    client: &str,
+    new: &NewJob,
     key: &str,
     body_hash: &str,
 ) -> Result<Option<Outcome>, sqlx::Error> {
-    let earlier: Option<(String, String)> =
-        query_as("select body_hash, job from idempotency_keys where client = $1 and key = $2")
-            .bind(client)
-            .bind(key)
-            .fetch_optional(&mut *connection)
-            .await?;
-    let Some((earlier_hash, job)) = earlier else {
+    let earlier: Option<(String, String, i64)> = query_as(
+        "select k.body_hash, k.job, j.document_version from idempotency_keys k join jobs j on j.id = k.job
+         where k.client = $1 and k.key = $2",
+    )
+    .bind(&new.client)
+    .bind(key)
+    .fetch_optional(&mut *connection)
+    .await?;
+    let Some((earlier_hash, job, document_version)) = earlier else {
         return Ok(None);
     };
-    if earlier_hash != body_hash {
+    // Versions that fill in other defaults write the same submission in other words; between them the key has to do.
+    let comparable = document_version == new.document_version;
+    if comparable && earlier_hash != body_hash {
         return Ok(Some(Outcome::KeyConflict));
     }
-    let job = query_as("select * from jobs where id = $1")
-        .bind(job)
-        .fetch_one(connection)
-        .await?;
+    let job = query_as(concat!(
+        "select ",
+        job_columns!(),
+        " from jobs where id = $1"
+    ))
+    .bind(job)
+    .fetch_one(connection)
+    .await?;
     Ok(Some(Outcome::Repeated(job)))
 }
 
@@ -265,6 +278,7 @@ pub(super) async fn insert_known(
         .bind(known.job)
         .bind(new.study.map(|study| study.to_string()))
         .bind(new.keep.as_str())
+        .bind(new.document_version)
         .fetch_one(&mut *connection)
         .await?;
     insert_beside(connection, new, job.sequence).await?;
@@ -287,6 +301,7 @@ pub(super) async fn insert_waiting(
         .bind(new.submitted_at.as_microsecond())
         .bind(new.study.map(|study| study.to_string()))
         .bind(new.keep.as_str())
+        .bind(new.document_version)
         .fetch_one(&mut *connection)
         .await?;
     insert_beside(connection, new, job.sequence).await?;

@@ -52,7 +52,7 @@ fn cause(error: &StoreError) -> String {
 
 /// A transaction that has the write lock. Dropped without an end, it takes its connection with it: what the
 /// database, the driver and this program believe of the transaction need not agree any more, after an error least of all.
-pub(super) struct Write {
+pub(crate) struct Write {
     connection: Connection,
     health: Arc<Health>,
     ended: bool,
@@ -60,7 +60,7 @@ pub(super) struct Write {
 
 impl Store {
     /// Begins a transaction that writes.
-    pub(super) async fn begin(&self) -> Result<Write, StoreError> {
+    pub(crate) async fn begin(&self) -> Result<Write, StoreError> {
         let begun = begin(&self.writer, &self.health).await;
         if let Err(error) = &begun {
             self.health.found(Err(error));
@@ -150,7 +150,7 @@ async fn begin(writer: &Pool, health: &Arc<Health>) -> Result<Write, StoreError>
 
 impl Write {
     /// Makes the changes last.
-    pub(super) async fn commit(mut self) -> Result<(), StoreError> {
+    pub(crate) async fn commit(mut self) -> Result<(), StoreError> {
         let committed = self.connection.say("commit").await;
         let committed = committed.map_err(StoreError::from);
         self.ended = committed.is_ok();
@@ -159,7 +159,7 @@ impl Write {
     }
 
     /// Takes the changes back.
-    pub(super) async fn rollback(mut self) -> Result<(), StoreError> {
+    pub(crate) async fn rollback(mut self) -> Result<(), StoreError> {
         self.connection.say("rollback").await?;
         self.ended = true;
         Ok(())

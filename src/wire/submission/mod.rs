@@ -22,6 +22,10 @@ use crate::hash::sha256_hex;
 /// The version of the solver, which a result belongs to.
 pub const SOLVER_VERSION: &str = concat!("meshwright ", env!("CARGO_PKG_VERSION"));
 
+/// The version of the document of a submission: one more with every field that it gains, in whichever part. A process that reads only
+/// earlier ones leaves the job to others instead of refusing what it does not know.
+pub const DOCUMENT_VERSION: i64 = 1;
+
 /// What is asked: a gear pair, torques, and how to compute.
 ///
 /// A value of this type can be computed: its gears can be made and mesh, and the work is within the limits.

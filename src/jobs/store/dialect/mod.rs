@@ -8,11 +8,12 @@ macro_rules! insert_known {
     ($next:literal) => {
         concat!(
             "insert into jobs (id, sequence, client, method, tags, input_hash, cost, status, positions_done, positions_total,
-                               submitted_at, started_at, finished_at, elapsed, document, solver_version, same_as, study, keep)
+                               submitted_at, started_at, finished_at, elapsed, document, solver_version, same_as, study, keep, document_version)
              values ($1, ",
             $next,
-            ", $2, $3, $4, $5, $6, 'successful', $7, $7, $8, $8, $8, 0, $9, $10, $11, $12, $13)
-             returning *"
+            ", $2, $3, $4, $5, $6, 'successful', $7, $7, $8, $8, $8, 0, $9, $10, $11, $12, $13, $14)
+             returning ",
+            $crate::jobs::store::rows::job_columns!()
         )
     };
 }
@@ -21,11 +22,12 @@ macro_rules! insert_known {
 macro_rules! insert_waiting {
     ($next:literal) => {
         concat!(
-            "insert into jobs (id, sequence, client, method, tags, input_hash, cost, status, positions_total, submitted_at, study, keep)
+            "insert into jobs (id, sequence, client, method, tags, input_hash, cost, status, positions_total, submitted_at, study, keep, document_version)
              values ($1, ",
             $next,
-            ", $2, $3, $4, $5, $6, 'accepted', $7, $8, $9, $10)
-             returning *"
+            ", $2, $3, $4, $5, $6, 'accepted', $7, $8, $9, $10, $11)
+             returning ",
+            $crate::jobs::store::rows::job_columns!()
         )
     };
 }
@@ -35,11 +37,26 @@ macro_rules! insert_study {
     ($next:literal) => {
         concat!(
             "insert into studies (id, sequence, client, name, tags, body_hash, gear, total, expanded, submitted_at,
-                                  idempotency_key)
+                                  idempotency_key, document_version)
              values ($1, ",
             $next,
-            ", $2, $3, $4, $5, $6, $7, 0, $8, $9)
+            ", $2, $3, $4, $5, $6, $7, 0, $8, $9, $10)
              returning sequence"
+        )
+    };
+}
+
+/// Messages to a webhook that nobody sends now.
+macro_rules! take_messages {
+    ($which:literal, $locked:literal) => {
+        concat!(
+            "update messages set next_at = $3 where id in (
+               select id from messages where webhook = $1 and arrived_at is null and next_at <= $2 ",
+            $which,
+            " order by id limit $4 ",
+            $locked,
+            ")
+             returning id, body"
         )
     };
 }
@@ -54,7 +71,7 @@ macro_rules! pairs {
     ($($(#[$doc:meta])* $function:ident = $name:ident;)*) => {
         $(
             $(#[$doc])*
-            pub(super) fn $function() -> Text {
+            pub(crate) fn $function() -> Text {
                 Text::Differing { sqlite: sqlite::$name, postgres: postgres::$name }
             }
         )*
@@ -78,9 +95,10 @@ pairs! {
     lock_shares = LOCK_SHARES;
     /// Counts of jobs that run, and of those of them that are to run alone. $1: the process.
     running_here = RUNNING_HERE;
-    /// The next job that is to be run alone.
+    /// The next job that is to be run alone. $1: the latest version of documents that is read.
     next_suspect = NEXT_SUSPECT;
-    /// The job of a lane whose turn it is, unless an equal one is running. $1: client, $2: lane.
+    /// The job of a lane whose turn it is, unless an equal one is running. $1: client, $2: lane, $3: the latest version of
+    /// documents that is read.
     next_waiting = NEXT_WAITING;
     /// What a client has had computed. $1: client, $2: input hash, $3: solver version, $4: 1 if the whole results have to be kept.
     known = KNOWN;
@@ -91,13 +109,13 @@ pairs! {
     /// The jobs that run: id, process, and whether the lease is over (1), and since another one (2). $1: the steady clock, $2:
     /// how long a lease lasts.
     running = RUNNING;
-    /// A job at once successful. $1 to $13: see `insert_known`.
+    /// A job at once successful. $1 to $14: see `insert_known`.
     insert_known = INSERT_KNOWN;
-    /// A job that waits. $1 to $10: see `insert_waiting`.
+    /// A job that waits. $1 to $11: see `insert_waiting`.
     insert_waiting = INSERT_WAITING;
     /// Counts the new jobs of studies now, for those who look before the end of the transaction.
     count_designs = COUNT_DESIGNS;
-    /// A study. $1 to $9: see `insert_study`.
+    /// A study. $1 to $10: see `insert_study`.
     insert_study = INSERT_STUDY;
     /// Keeps a document, unless it is kept already. $1: hash, $2: body, $3: size, $4: 1 if the body is the whole of it.
     insert_document = INSERT_DOCUMENT;
@@ -107,12 +125,17 @@ pairs! {
     dismiss_designs = DISMISS_DESIGNS;
     /// From here to its end, no other transaction removes what is old.
     keep_alone = KEEP_ALONE;
-    /// Studies without all their rows, which nobody expands. $1: the steady clock, $2: for how long they are taken.
+    /// Studies without all their rows, which nobody expands. $1: the steady clock, $2: for how long they are taken, $3: the
+    /// latest version of documents that is read.
     unfinished_expansions = UNFINISHED_EXPANSIONS;
     /// The study $1 is being expanded. $2: the steady clock, $3: for how long.
     expanding = EXPANDING;
     /// How many jobs wait and run.
     depth = DEPTH;
-    /// Messages that are due. $1: the steady clock, $2: how many, $3: for how long they are taken.
-    due_messages = DUE_MESSAGES;
+    /// Now, by the clock that all processes share. $1: the steady clock.
+    steady_now = STEADY_NOW;
+    /// Takes pings that wait. $1: webhook, $2: now, $3: until when, $4: how many.
+    take_pings = TAKE_PINGS;
+    /// Takes messages that wait, the oldest first. Parameters as above.
+    take_messages = TAKE_MESSAGES;
 }

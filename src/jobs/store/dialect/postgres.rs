@@ -4,6 +4,8 @@
 //!
 //! Leases run by the database's clock (`steady_now`), so that the clocks of the machines need not agree.
 
+use crate::jobs::store::rows::job_columns;
+
 type Words = Option<&'static str>;
 
 pub(in crate::jobs::store) const BEGIN: Words = Some("begin");
@@ -33,7 +35,7 @@ pub(in crate::jobs::store) const RUNNING_HERE: Words = Some(
 
 pub(in crate::jobs::store) const NEXT_SUSPECT: Words = Some(
     "select id from jobs as waiting
-     where suspect = 1 and status = 'accepted'
+     where suspect = 1 and status = 'accepted' and document_version <= $1
        and not exists (select 1 from jobs as equal
                        where equal.status = 'running' and equal.client = waiting.client
                          and equal.input_hash = waiting.input_hash)
@@ -42,7 +44,7 @@ pub(in crate::jobs::store) const NEXT_SUSPECT: Words = Some(
 
 pub(in crate::jobs::store) const NEXT_WAITING: Words = Some(
     "select id, input_hash, cost, keep from jobs as waiting
-     where status = 'accepted' and client = $1 and coalesce(study, '') = $2
+     where status = 'accepted' and client = $1 and coalesce(study, '') = $2 and document_version <= $3
        and not exists (select 1 from jobs as equal
                        where equal.status = 'running' and equal.client = waiting.client
                          and equal.input_hash = waiting.input_hash)
@@ -56,13 +58,14 @@ pub(in crate::jobs::store) const KNOWN: Words = Some(
      order by j.same_as is not null, j.sequence limit 1 for key share",
 );
 
-pub(in crate::jobs::store) const START: Words = Some(
+pub(in crate::jobs::store) const START: Words = Some(concat!(
     "update jobs
      set status = 'running', attempt = attempt + 1, started_at = max($2, submitted_at),
          lease_until = steady_now($3) + $4, owner = $5, positions_done = 0
      where id = $1 and status = 'accepted'
-     returning *",
-);
+     returning ",
+    job_columns!()
+));
 
 pub(in crate::jobs::store) const REPORT: Words = Some(
     "update jobs set positions_done = $3, positions_total = $4, lease_until = steady_now($5) + $6
@@ -111,7 +114,7 @@ pub(in crate::jobs::store) const KEEP_ALONE: Words =
 pub(in crate::jobs::store) const UNFINISHED_EXPANSIONS: Words = Some(
     "update studies set expanding_until = steady_now($1) + $2
      where id in (select id from studies
-                  where expanded < total and cancelled_at is null and expanding_until < steady_now($1)
+                  where expanded < total and cancelled_at is null and expanding_until < steady_now($1) and document_version <= $3
                   order by sequence for update skip locked)
      returning id, client",
 );
@@ -126,13 +129,13 @@ pub(in crate::jobs::store) const DEPTH: Words = Some(
             (select min(submitted_at) from jobs where status = 'accepted' and coalesce(study, '') = '')",
 );
 
+pub(in crate::jobs::store) const STEADY_NOW: Words = Some("select steady_now($1)");
+
 // Several processes deliver: who takes a message has it for a while, and another one takes it if that was in vain.
-pub(in crate::jobs::store) const DUE_MESSAGES: Words = Some(
-    "update messages as m set next_at = $1 + $3
-     from webhooks w
-     where w.id = m.webhook and m.id in (
-       select due.id from messages due join webhooks on webhooks.id = due.webhook
-       where due.next_at <= $1 and webhooks.disabled_at is null
-       order by due.next_at limit $2 for update of due skip locked)
-     returning m.id as message, m.webhook, w.url, w.secret, m.body, m.attempts",
-);
+pub(in crate::jobs::store) const TAKE_PINGS: Words = Some(take_messages!(
+    "and kind = 'webhook.ping'",
+    "for update skip locked"
+));
+
+pub(in crate::jobs::store) const TAKE_MESSAGES: Words =
+    Some(take_messages!("", "for update skip locked"));

@@ -1,6 +1,8 @@
 //! As SQLite says it. A transaction that writes has the file to itself, so that it needs no further locks; leases run by the
 //! steady clock of the one process that there is.
 
+use crate::jobs::store::rows::job_columns;
+
 type Words = Option<&'static str>;
 
 pub(in crate::jobs::store) const BEGIN: Words = Some("begin immediate");
@@ -21,12 +23,13 @@ pub(in crate::jobs::store) const RUNNING_HERE: Words = Some(
     "select count(*), coalesce(sum(suspect), 0) from jobs indexed by jobs_running where status = 'running'",
 );
 
-pub(in crate::jobs::store) const NEXT_SUSPECT: Words =
-    Some("select id from jobs where suspect = 1 and status = 'accepted' order by sequence limit 1");
+pub(in crate::jobs::store) const NEXT_SUSPECT: Words = Some(
+    "select id from jobs where suspect = 1 and status = 'accepted' and document_version <= $1 order by sequence limit 1",
+);
 
 pub(in crate::jobs::store) const NEXT_WAITING: Words = Some(
     "select id, input_hash, cost, keep from jobs as waiting
-     where status = 'accepted' and client = $1 and coalesce(study, '') = $2
+     where status = 'accepted' and client = $1 and coalesce(study, '') = $2 and document_version <= $3
        and not exists (select 1 from jobs as equal indexed by jobs_running
                        where equal.status = 'running' and equal.client = waiting.client
                          and equal.input_hash = waiting.input_hash)
@@ -41,13 +44,14 @@ pub(in crate::jobs::store) const KNOWN: Words = Some(
      order by same_as is not null, sequence limit 1",
 );
 
-pub(in crate::jobs::store) const START: Words = Some(
+pub(in crate::jobs::store) const START: Words = Some(concat!(
     "update jobs
      set status = 'running', attempt = attempt + 1, started_at = max($2, submitted_at), lease_until = $3 + $4,
          positions_done = 0
      where id = $1 and status = 'accepted'
-     returning *",
-);
+     returning ",
+    job_columns!()
+));
 
 pub(in crate::jobs::store) const REPORT: Words = Some(
     "update jobs set positions_done = $3, positions_total = $4, lease_until = $5 + $6
@@ -91,7 +95,7 @@ pub(in crate::jobs::store) const KEEP_ALONE: Words = None;
 
 // Only the start asks: this process expands what it has taken since.
 pub(in crate::jobs::store) const UNFINISHED_EXPANSIONS: Words = Some(
-    "select id, client from studies where expanded < total and cancelled_at is null order by sequence",
+    "select id, client from studies where expanded < total and cancelled_at is null and document_version <= $3 order by sequence",
 );
 
 pub(in crate::jobs::store) const EXPANDING: Words = None;
@@ -103,9 +107,9 @@ pub(in crate::jobs::store) const DEPTH: Words = Some(
             (select min(submitted_at) from jobs where status = 'accepted' and coalesce(study, '') = '')",
 );
 
-pub(in crate::jobs::store) const DUE_MESSAGES: Words = Some(
-    "select m.id as message, m.webhook, w.url, w.secret, m.body, m.attempts
-     from messages m join webhooks w on w.id = m.webhook
-     where m.next_at <= $1 and w.disabled_at is null
-     order by m.next_at limit $2",
-);
+pub(in crate::jobs::store) const STEADY_NOW: Words = Some("select cast($1 as integer)");
+
+pub(in crate::jobs::store) const TAKE_PINGS: Words =
+    Some(take_messages!("and kind = 'webhook.ping'", ""));
+
+pub(in crate::jobs::store) const TAKE_MESSAGES: Words = Some(take_messages!("", ""));

@@ -143,7 +143,7 @@ async fn pages_of_garbage_are_found_at_the_start() {
 }
 
 #[tokio::test]
-async fn a_database_of_a_later_version_is_left_alone() {
+async fn a_database_of_a_later_version_is_used_or_left_alone_as_it_says() {
     let (store, folder) = store().await;
     sqlx::raw_sql(
         "insert into _sqlx_migrations (version, description, success, checksum, execution_time)
@@ -152,6 +152,14 @@ async fn a_database_of_a_later_version_is_left_alone() {
     .execute(writer(&store))
     .await
     .unwrap();
+    // It says that this version can work on it, and then that it cannot.
+    let beside = open(&folder).await;
+    queued(&beside, 1, "a").await;
+    beside.close().await;
+    query("update compatibility set least_migration = 29990101000000")
+        .execute(&store.writer)
+        .await
+        .unwrap();
     store.close().await;
     let refused = Store::open(&place(&folder)).await.unwrap_err();
     assert!(

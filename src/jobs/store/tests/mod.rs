@@ -14,11 +14,15 @@ use tempfile::TempDir;
 use uuid::Uuid;
 
 use super::statement::{Pool, query, query_as, query_scalar};
-use super::{Claim, End, Lease, Lost, NewJob, Outcome, Packed, Place, QueueBounds, Store};
+use super::{Claim, End, Lease, Lost, NewJob, Outcome, Packed, Place, QueueBounds, Reader, Store};
 use crate::jobs::job::Job;
 use crate::wire::Kept;
 
 const VERSION: &str = "1.0";
+const READER: Reader<'static> = Reader {
+    solver: VERSION,
+    documents: 1,
+};
 const CLIENT: &str = "portal";
 
 async fn store() -> (Store, TempDir) {
@@ -47,7 +51,7 @@ fn readers(store: &Store) -> &sqlx::SqlitePool {
 fn sqlite(pool: &Pool) -> &sqlx::SqlitePool {
     match pool {
         Pool::Sqlite(pool) => pool,
-        Pool::Postgres(_) => panic!("this is about files"),
+        Pool::Postgres(..) => panic!("this is about files"),
     }
 }
 
@@ -89,6 +93,7 @@ fn new(second: i64, input: &str) -> NewJob {
         tags: vec![input.to_owned()],
         submission: format!("{{\"input\":\"{input}\"}}"),
         input_hash: input.to_owned(),
+        document_version: 1,
         cost: 1000,
         positions_total: 200,
         submitted_at: at(second),
@@ -120,7 +125,7 @@ fn lease(second: i64) -> Lease {
 }
 
 async fn next(store: &Store, second: i64) -> Option<Job> {
-    let claimed = store.claim(at(second), lease(second), VERSION).await;
+    let claimed = store.claim(at(second), lease(second), READER).await;
     claimed.unwrap().started.map(|started| started.job)
 }
 

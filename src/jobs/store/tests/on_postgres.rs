@@ -19,6 +19,7 @@ mod many;
 mod transitions;
 #[path = "turns.rs"]
 mod turns;
+mod upgrades;
 
 /// A database whose leases run by the clock that a test gives.
 async fn store() -> (Store, Place) {

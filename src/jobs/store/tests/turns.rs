@@ -15,28 +15,40 @@ fn of_client(client: &str, input: &str) -> NewJob {
 /// A study of as many designs, and its id.
 async fn study(store: &Store, client: &str, designs: u32) -> Uuid {
     let id = Uuid::now_v7();
+    let inputs = (0..designs).map(|i| format!("{id} {i}")).collect();
+    study_with(store, id, client, inputs).await
+}
+
+/// A study of designs with these inputs.
+async fn study_of(store: &Store, inputs: &[&str]) -> Uuid {
+    let inputs = inputs.iter().map(|&input| input.to_owned()).collect();
+    study_with(store, Uuid::now_v7(), CLIENT, inputs).await
+}
+
+async fn study_with(store: &Store, id: Uuid, client: &str, inputs: Vec<String>) -> Uuid {
     let study = NewStudy {
         id,
         client: client.to_owned(),
         name: None,
         tags: Vec::new(),
         document: "{}".to_owned(),
+        document_version: 1,
         body_hash: String::new(),
         gear: GearName::Driven,
-        total: designs.into(),
+        total: inputs.len() as u64,
         submitted_at: at(1),
         idempotency_key: None,
         client_limit: i64::MAX,
     };
-    let row = |i: u32| NewRow {
-        label: i.to_string(),
+    let row = |input: &String| NewRow {
+        label: input.clone(),
         changes: "{}".to_owned(),
         job: Ok(NewJob {
             study: Some(id),
-            ..of_client(client, &format!("{id} {i}"))
+            ..of_client(client, input)
         }),
     };
-    let rows: Vec<NewRow> = (0..designs).map(row).collect();
+    let rows: Vec<NewRow> = inputs.iter().map(row).collect();
     let outcome = store
         .begin_study(&study, &rows, bounds(1, 10))
         .await
@@ -203,12 +215,64 @@ async fn equal_jobs_are_computed_once_and_block_nobody() {
             .await
             .unwrap()
     );
-    let claimed = store.claim(at(7), lease(7), VERSION).await.unwrap();
+    let claimed = store.claim(at(7), lease(7), READER).await.unwrap();
     assert!(claimed.started.is_none());
     assert_eq!(
         (claimed.given.len(), claimed.given[0].same_as),
         (1, Some(first.id))
     );
+}
+
+#[tokio::test]
+async fn a_job_whose_document_is_not_read_is_left_to_who_reads_it() {
+    let (store, _folder) = store().await;
+    let later = NewJob {
+        document_version: 2,
+        ..new(1, "later")
+    };
+    let later_id = later.id;
+    submit(&store, later).await;
+    let earlier = queued(&store, 2, "earlier").await;
+    assert_eq!(claim(&store, 3).await.id, earlier.id);
+    assert_eq!(next(&store, 3).await, None);
+    // Nor when it has taken a process with it.
+    let reads_both = Reader {
+        documents: 2,
+        ..READER
+    };
+    let claimed = store.claim(at(4), lease(4), reads_both).await.unwrap();
+    assert_eq!(claimed.started.unwrap().job.id, later_id);
+    store.recover(at(5), Lost::Process, 3, "{}").await.unwrap();
+    assert_eq!(claim(&store, 6).await.id, earlier.id);
+    assert_eq!(next(&store, 6).await, None);
+}
+
+#[tokio::test]
+async fn what_is_given_at_once_is_of_one_study() {
+    // Jobs of a study lock it; two claims that gave in two studies each, in another order, would wait for each other.
+    let (store, _folder) = store().await;
+    for input in ["b", "c"] {
+        queued(&store, 1, input).await;
+    }
+    let held = [claim(&store, 2).await, claim(&store, 2).await];
+    let studies = [
+        study_of(&store, &["b"]).await,
+        study_of(&store, &["c"]).await,
+    ];
+    assert_eq!(next(&store, 3).await, None, "their equals run");
+    for (i, held) in held.into_iter().enumerate() {
+        let document = Packed::of(&i.to_string());
+        let ended = store.succeed(held, end(3), &document, None, VERSION);
+        assert!(ended.await.unwrap());
+    }
+    let mut given = Vec::new();
+    for _ in studies {
+        let claimed = store.claim(at(4), lease(4), READER).await.unwrap();
+        assert_eq!((claimed.started, claimed.given.len()), (None, 1));
+        given.push(claimed.given[0].study.unwrap());
+    }
+    assert_ne!(given[0], given[1]);
+    assert!(given.iter().all(|study| studies.contains(study)));
 }
 
 #[tokio::test]

@@ -10,7 +10,7 @@ async fn open(address: &str, settings: &str) -> Result<Store, OpenError> {
 
 /// What the server says of all our connections.
 async fn are_encrypted(store: &Store) -> bool {
-    let Pool::Postgres(pool) = &store.readers else {
+    let Pool::Postgres(pool, _) = &store.readers else {
         panic!("a store on PostgreSQL");
     };
     sqlx::query_scalar(

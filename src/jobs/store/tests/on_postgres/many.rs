@@ -6,7 +6,7 @@ use std::sync::Arc;
 use tokio::sync::Barrier;
 
 use super::*;
-use crate::jobs::store::{NewRow, NewStudy, OpenError, StudyOutcome, Told};
+use crate::jobs::store::{NewRow, NewStudy, StudyOutcome, Told};
 use crate::jobs::study::StudyRecord;
 use crate::wire::Status;
 use crate::wire::warning::GearName;
@@ -130,7 +130,7 @@ async fn equal_work_is_done_once_whoever_takes_it() {
             .unwrap()
     );
     let given = at_once(&stores, async |_, store: Store| {
-        let claimed = store.claim(at(4), lease(4), VERSION).await.unwrap();
+        let claimed = store.claim(at(4), lease(4), READER).await.unwrap();
         assert_eq!(claimed.started, None);
         claimed.given.len()
     })
@@ -257,6 +257,7 @@ fn study(total: u64) -> NewStudy {
         name: None,
         tags: Vec::new(),
         document: "{}".to_owned(),
+        document_version: 1,
         body_hash: "h".to_owned(),
         gear: GearName::Driven,
         total,
@@ -336,16 +337,18 @@ async fn a_study_that_a_process_left_is_expanded_by_one_other() {
         .unwrap();
     assert!(
         second
-            .unfinished_expansions(at(20))
+            .unfinished_expansions(at(20), 1)
             .await
             .unwrap()
             .is_empty()
     );
-    let left = second.unfinished_expansions(at(22)).await.unwrap();
+    let of_earlier = second.unfinished_expansions(at(22), 0).await.unwrap();
+    assert!(of_earlier.is_empty(), "it does not read the document");
+    let left = second.unfinished_expansions(at(22), 1).await.unwrap();
     assert_eq!(left, [(study.id, CLIENT.to_owned())]);
     assert!(
         third
-            .unfinished_expansions(at(22))
+            .unfinished_expansions(at(22), 1)
             .await
             .unwrap()
             .is_empty()
@@ -450,27 +453,6 @@ async fn a_document_that_jobs_come_to_need_is_not_removed_under_them() {
 }
 
 #[tokio::test]
-async fn a_message_is_on_its_way_from_one_process_at_a_time() {
-    let [first, second] = several().await;
-    query("insert into webhooks (id, client, url, events, secret, created_at) values ($1, 'c', 'https://x', '[]', 's', 0)")
-        .bind(Uuid::nil().to_string())
-        .execute(&first.writer)
-        .await
-        .unwrap();
-    query(
-        "insert into messages (id, webhook, body, next_at, created_at) values ($1, $1, '{}', 0, 0)",
-    )
-    .bind(Uuid::nil().to_string())
-    .execute(&first.writer)
-    .await
-    .unwrap();
-    assert_eq!(first.due_messages(at(1), 8).await.unwrap().len(), 1);
-    assert!(second.due_messages(at(1), 8).await.unwrap().is_empty());
-    // The first one has died with it.
-    assert_eq!(second.due_messages(at(32), 8).await.unwrap().len(), 1);
-}
-
-#[tokio::test]
 async fn what_one_process_does_another_one_hears() {
     let [speaker, hearer] = several().await;
     let mut listener = hearer.listen().await.unwrap().unwrap();
@@ -486,23 +468,6 @@ async fn what_one_process_does_another_one_hears() {
         .unwrap();
     assert_eq!(heard().await, Told::Job(job.id, Status::Dismissed));
     assert!(!speaker.holds(claim).await.unwrap());
-}
-
-#[tokio::test]
-async fn a_database_of_a_later_version_is_left_alone() {
-    let (store, place) = store().await;
-    query(
-        "insert into _sqlx_migrations (version, description, success, checksum, execution_time)
-         values (29990101000000, 'later', true, decode('00', 'hex'), 0)",
-    )
-    .execute(&store.writer)
-    .await
-    .unwrap();
-    let refused = Store::open(&place).await.unwrap_err();
-    assert!(
-        matches!(refused, OpenError::Newer(29_990_101_000_000)),
-        "{refused:?}"
-    );
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 4)]

@@ -1,29 +1,11 @@
-//! Webhooks as handlers see them: make, list, delete. Where they may lead is decided here and again at each delivery.
+//! Where messages may go: hosts that the operator names, at addresses that belong to everybody. A service that sends requests where its
+//! clients say must not be sent to its own neighbors.
 
-use std::net::IpAddr;
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
 use std::str::FromStr;
 use std::sync::Arc;
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD as BASE64;
-use http::Uri;
-use uuid::Uuid;
-
-use super::addresses::is_public;
-use super::error::JobError;
-use super::queue::Jobs;
-use super::store::{EventKind, NewWebhook, Webhook};
-
-/// So many webhooks may a client have.
-const MOST: i64 = 16;
-
-/// So many bytes has the key of the signatures, as Standard Webhooks asks (24 to 64).
-const SECRET_BYTES: usize = 32;
-
-/// So many webhooks may a client have.
-pub fn most_webhooks() -> i64 {
-    MOST
-}
+use reqwest::Url;
 
 /// Where messages may be sent.
 #[derive(Clone)]
@@ -54,27 +36,22 @@ impl HookRules {
         if self.allowed.is_empty() {
             return Err("Webhooks are off in this service.".to_owned());
         }
-        let parsed = url
-            .parse::<Uri>()
-            .ok()
-            .filter(|uri| url.len() <= LONGEST && uri.authority().is_some());
-        let Some(uri) = parsed else {
+        // As the sender reads it, to whom 127.1, 0x7f000001 and 2130706433 are addresses, too.
+        let parsed = Url::parse(url).ok().filter(|_| url.len() <= LONGEST);
+        let target = parsed
+            .as_ref()
+            .and_then(|url| Some((url, url.host_str()?, url.port_or_known_default()?)));
+        let Some((url, host, port)) = target else {
             return Err(format!("{url:?} is not an address that can be sent to."));
         };
-        if uri
-            .authority()
-            .is_some_and(|authority| authority.as_str().contains('@'))
-        {
+        if !url.username().is_empty() || url.password().is_some() {
             return Err("The address of a webhook has no user or password in it.".to_owned());
         }
-        let host = uri.host().unwrap_or_default().to_ascii_lowercase();
-        let scheme = uri.scheme_str().unwrap_or_default();
-        let usual = if scheme == "http" { 80 } else { 443 };
-        let port = uri.port_u16().unwrap_or(usual);
+        let scheme = url.scheme();
         if !self
             .allowed
             .iter()
-            .any(|target| target.takes(scheme, &host, port))
+            .any(|target| target.takes(scheme, host, port))
         {
             return Err(format!(
                 "{scheme}://{host}:{port} is not among the hosts that this service sends to; ask its operator."
@@ -142,82 +119,109 @@ impl FromStr for HookTarget {
     }
 }
 
-/// A webhook that was made. The secret is told this once.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NewHook {
-    /// The webhook.
-    pub webhook: Webhook,
-    /// What its messages are signed with: `whsec_` and base64.
-    pub secret: String,
+/// Whether an address is one of the public internet: not this host, not its network, not one that is set aside (IANA's
+/// registries of special-purpose addresses).
+pub fn is_public(address: IpAddr) -> bool {
+    match address {
+        IpAddr::V4(address) => is_public_v4(address),
+        IpAddr::V6(address) => is_public_v6(address),
+    }
 }
 
-impl Jobs {
-    /// Makes a webhook.
-    ///
-    /// # Errors
-    ///
-    /// [`JobError::HookRefused`], [`JobError::TooManyHooks`], [`JobError::Unavailable`], [`JobError::Database`].
-    pub async fn add_webhook(
-        &self,
-        client: &str,
-        rules: &HookRules,
-        url: String,
-        events: Vec<EventKind>,
-    ) -> Result<NewHook, JobError> {
-        self.refuse_if_failing()?;
-        rules.check(&url).map_err(JobError::HookRefused)?;
-        let mut secret = [0; SECRET_BYTES];
-        getrandom::fill(&mut secret).map_err(|error| JobError::HookRefused(error.to_string()))?;
-        let secret = BASE64.encode(secret);
-        let webhook = Webhook {
-            id: Uuid::now_v7(),
-            url,
-            events,
-            created_at: self.clock.now(),
-            disabled_at: None,
-            problem: None,
-        };
-        let new = NewWebhook {
-            webhook,
-            client: client.to_owned(),
-            secret,
-            most: MOST,
-        };
-        if !self.store.add_webhook(&new).await? {
-            return Err(JobError::TooManyHooks(MOST));
-        }
-        Ok(NewHook {
-            secret: format!("whsec_{}", new.secret),
-            webhook: new.webhook,
-        })
-    }
+fn is_public_v4(address: Ipv4Addr) -> bool {
+    let [a, b, c, _] = address.octets();
+    let set_aside = address.is_private()
+        || address.is_loopback()
+        || address.is_link_local()
+        || address.is_documentation()
+        || address.is_multicast()
+        || a == 0
+        || (a == 100 && (64..128).contains(&b)) // shared by carriers
+        || (a == 192 && b == 0 && c == 0) // protocol assignments
+        || (a == 192 && b == 88 && c == 99) // relays of 6to4, no longer in use
+        || (a == 198 && (18..20).contains(&b)) // benchmarks
+        || a >= 240; // reserved, and broadcast
+    !set_aside
+}
 
-    /// The webhooks of a client, the oldest first.
-    ///
-    /// # Errors
-    ///
-    /// [`JobError::Unavailable`], [`JobError::Database`].
-    pub async fn list_webhooks(&self, client: &str) -> Result<Vec<Webhook>, JobError> {
-        Ok(self.store.list_webhooks(client).await?)
+fn is_public_v6(address: Ipv6Addr) -> bool {
+    let parts = address.segments();
+    // Addresses that carry one of version 4 lead there. Of those only the translation that is public may be used.
+    if parts[..6] == [0x64, 0xff9b, 0, 0, 0, 0] {
+        let [.., a, b] = parts;
+        return is_public_v4(Ipv4Addr::from((u32::from(a) << 16) | u32::from(b)));
     }
-
-    /// Removes a webhook and the messages that wait for it.
-    ///
-    /// # Errors
-    ///
-    /// [`JobError::HookNotFound`], [`JobError::Unavailable`], [`JobError::Database`].
-    pub async fn delete_webhook(&self, client: &str, id: Uuid) -> Result<(), JobError> {
-        if self.store.delete_webhook(client, id).await? {
-            Ok(())
-        } else {
-            Err(JobError::HookNotFound(id))
-        }
-    }
+    let is_unicast = parts[0] & 0xe000 == 0x2000;
+    let set_aside = match (parts[0], parts[1]) {
+        // Protocol assignments, Teredo among them; documentation.
+        (0x2001, second) => second < 0x200 || second == 0xdb8,
+        // 6to4, which carries version 4.
+        (0x2002, _) => true,
+        // Documentation.
+        (0x3fff, second) => second < 0x1000,
+        _ => false,
+    };
+    is_unicast && !set_aside
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn nothing_but_the_public_internet_is_public() {
+        for address in [
+            "1.1.1.1",
+            "8.8.8.8",
+            "203.0.114.1",
+            "100.128.0.1",
+            "2606:4700::1",
+            "64:ff9b::8.8.8.8",
+        ] {
+            assert!(is_public(address.parse().unwrap()), "{address}");
+        }
+        for address in [
+            "0.0.0.0",
+            "0.1.2.3",
+            "10.0.0.1",
+            "100.64.0.1",
+            "127.0.0.1",
+            "127.255.0.1",
+            "169.254.169.254",
+            "172.16.0.1",
+            "172.31.255.255",
+            "192.0.0.1",
+            "192.0.2.1",
+            "192.88.99.1",
+            "192.168.1.1",
+            "198.18.0.1",
+            "198.51.100.1",
+            "203.0.113.1",
+            "224.0.0.1",
+            "240.0.0.1",
+            "255.255.255.255",
+            "::",
+            "::1",
+            "::ffff:127.0.0.1",
+            "::ffff:8.8.8.8",
+            "::127.0.0.1",
+            "64:ff9b::10.0.0.1",
+            "64:ff9b:1::1",
+            "100::1",
+            "2001::1",
+            "2001:db8::1",
+            "2002:7f00:1::",
+            "3fff::1",
+            "5f00::1",
+            "fc00::1",
+            "fd12::1",
+            "fe80::1",
+            "fec0::1",
+            "ff02::1",
+        ] {
+            assert!(!is_public(address.parse().unwrap()), "{address}");
+        }
+    }
 
     #[test]
     fn messages_go_to_allowed_hosts_at_public_addresses_only() {
@@ -227,6 +231,7 @@ mod tests {
             "http://plain.example",
             "10.0.0.1",
             "[::1]",
+            "127.0.0.1",
         ];
         let rules = HookRules::to_public(targets.map(|target| target.parse().unwrap()).to_vec());
         for url in [
@@ -249,6 +254,10 @@ mod tests {
             "https://evilportal.example:8443/",
             "https://plain.example/",
             "https://10.0.0.1/",
+            "https://10.1/",
+            "https://0xa000001/",
+            "https://167772161/",
+            "https://012.0.0.1/",
             "https://[::1]/",
             "ftp://hooks.example.com/",
             "hooks.example.com",

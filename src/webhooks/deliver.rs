@@ -1,0 +1,434 @@
+//! The messages on their way: signed as Standard Webhooks asks, tried again with growing patience, and never sent to an address that
+//! is not public, whatever a name means by the time it is looked up.
+//!
+//! Each webhook is patient by itself, and each client has its share of what is under way, so that receivers that hang keep nobody
+//! waiting but who named them.
+
+use std::collections::{BTreeMap, HashMap};
+use std::net::IpAddr;
+use std::sync::Arc;
+use std::time::Duration;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD as BASE64;
+use hmac::{Hmac, KeyInit, Mac};
+use reqwest::dns::{Addrs, Name, Resolve, Resolving};
+use reqwest::redirect::Policy;
+use reqwest::{Client, StatusCode};
+use sha2::Sha256;
+use tokio::task::{JoinHandle, JoinSet};
+use tokio::time::sleep;
+use tracing::{info, warn};
+use uuid::Uuid;
+
+use super::addresses::HookRules;
+use super::hooks::Webhooks;
+use super::store::{Attempt, Message, Refusal, Waiting};
+use crate::jobs::StoreError;
+
+/// One attempt takes so long at most.
+const TIME_OUT: Duration = Duration::from_secs(10);
+
+/// So many messages are on their way at the same time, so many of them of one client, and so many to one webhook. One that fails
+/// is tried with one message.
+const AT_ONCE: usize = 32;
+const OF_CLIENT: usize = 8;
+const TO_WEBHOOK: usize = 4;
+
+/// Without any news the messages are looked at so often.
+const QUIET: Duration = Duration::from_secs(30);
+
+/// The task that delivers.
+pub struct Deliveries(JoinHandle<()>);
+
+impl Deliveries {
+    /// Starts to deliver, until the jobs' stop comes. Without hosts to send to, nothing is done.
+    ///
+    /// # Errors
+    ///
+    /// When there is no encryption to be had.
+    pub fn start(webhooks: Webhooks) -> Result<Self, reqwest::Error> {
+        if webhooks.rules.allowed.is_empty() {
+            return Ok(Self(tokio::spawn(async {})));
+        }
+        let courier = Courier {
+            client: client(&webhooks.rules)?,
+            webhooks,
+        };
+        Ok(Self(tokio::spawn(Arc::new(courier).work())))
+    }
+
+    /// Comes back when the last attempt has ended.
+    pub async fn ended(self) {
+        // It neither panics nor is aborted.
+        let _ = self.0.await;
+    }
+}
+
+fn client(rules: &HookRules) -> Result<Client, reqwest::Error> {
+    crate::client()
+        .timeout(TIME_OUT)
+        .redirect(Policy::none())
+        .no_proxy()
+        .dns_resolver(Arc::new(PublicOnly(Arc::clone(&rules.reachable))))
+        .user_agent(concat!("Meshwright/", env!("CARGO_PKG_VERSION")))
+        .build()
+}
+
+/// Looks names up, and keeps the addresses that may be connected to. The connection is made to one of these: nobody looks
+/// the name up again.
+struct PublicOnly(Arc<dyn Fn(IpAddr) -> bool + Send + Sync>);
+
+impl Resolve for PublicOnly {
+    fn resolve(&self, name: Name) -> Resolving {
+        let reachable = Arc::clone(&self.0);
+        Box::pin(async move {
+            let found = tokio::net::lookup_host((name.as_str(), 0)).await?;
+            let public: Vec<_> = found.filter(|address| reachable(address.ip())).collect();
+            if public.is_empty() {
+                return Err(format!("{} has no public address", name.as_str()).into());
+            }
+            Ok(Box::new(public.into_iter()) as Addrs)
+        })
+    }
+}
+
+struct Courier {
+    webhooks: Webhooks,
+    client: Client,
+}
+
+/// The messages under way: to each webhook so many, of this client.
+#[derive(Debug, Default)]
+struct UnderWay(BTreeMap<Uuid, (String, usize)>);
+
+impl UnderWay {
+    fn all(&self) -> usize {
+        self.0.values().map(|(_, count)| count).sum()
+    }
+
+    fn to(&self, webhook: Uuid) -> usize {
+        self.0.get(&webhook).map_or(0, |(_, count)| *count)
+    }
+
+    fn of_clients(&self) -> HashMap<String, usize> {
+        let mut counts = HashMap::new();
+        for (client, count) in self.0.values() {
+            *counts.entry(client.clone()).or_default() += count;
+        }
+        counts
+    }
+
+    fn begin(&mut self, webhook: Uuid, client: &str, count: usize) {
+        let entry = self.0.entry(webhook);
+        entry.or_insert_with(|| (client.to_owned(), 0)).1 += count;
+    }
+
+    fn end(&mut self, webhook: Uuid) {
+        if let Some((_, count)) = self.0.get_mut(&webhook) {
+            *count -= 1;
+            if *count == 0 {
+                self.0.remove(&webhook);
+            }
+        }
+    }
+
+    /// How many messages to which of the webhooks may begin now: one after the other to the client that has the fewest under way.
+    fn shares<'a>(&self, waiting: &'a [Waiting]) -> Vec<(&'a Waiting, usize)> {
+        let mut clients = self.of_clients();
+        let mut free = AT_ONCE.saturating_sub(self.all());
+        let mut shares: Vec<(&Waiting, usize)> = waiting
+            .iter()
+            .filter(|webhook| webhook.patience.is_zero())
+            .map(|webhook| (webhook, 0))
+            .collect();
+        while free > 0 {
+            let next = shares
+                .iter_mut()
+                .filter(|(webhook, share)| {
+                    let most = if webhook.is_failing { 1 } else { TO_WEBHOOK };
+                    self.to(webhook.webhook) + *share < most
+                })
+                .map(|entry| (*clients.entry(entry.0.client.clone()).or_default(), entry))
+                .filter(|(of_client, _)| *of_client < OF_CLIENT)
+                .min_by_key(|(of_client, (webhook, share))| {
+                    (*of_client, self.to(webhook.webhook) + *share)
+                });
+            let Some((_, (webhook, share))) = next else {
+                break;
+            };
+            *share += 1;
+            free -= 1;
+            *clients.entry(webhook.client.clone()).or_default() += 1;
+        }
+        shares.retain(|(_, share)| *share > 0);
+        shares
+    }
+}
+
+impl Courier {
+    async fn work(self: Arc<Self>) {
+        let jobs = &self.webhooks.jobs;
+        let stop = jobs.stop().clone();
+        let mut news = jobs.changes();
+        let mut under_way = UnderWay::default();
+        let mut attempts = JoinSet::new();
+        if let Err(error) = self.webhooks.give_back_all().await {
+            warn!(%error, "messages that were under way wait for a while");
+        }
+        while !stop.is_cancelled() {
+            let wait = match self.begin(&mut under_way, &mut attempts).await {
+                Ok(wait) => wait,
+                Err(error) => {
+                    warn!(%error, "messages cannot be read");
+                    jobs.wait_for_storage().await;
+                    QUIET
+                }
+            };
+            tokio::select! {
+                Some(ended) = attempts.join_next() => {
+                    // An attempt neither panics nor is aborted before the end of all.
+                    if let Ok(webhook) = ended {
+                        under_way.end(webhook);
+                    }
+                }
+                // Whoever lags has missed news, which is news.
+                _ = news.recv() => {}
+                () = jobs.mail().notified() => {}
+                () = sleep(wait) => {}
+                () = stop.cancelled() => {}
+            }
+        }
+        // An attempt that a shutdown interrupts is repeated by the next process; the receiver knows it by its id.
+        attempts.shutdown().await;
+    }
+
+    /// Begins what may begin. Gives back how long to wait if nothing happens.
+    async fn begin(
+        self: &Arc<Self>,
+        under_way: &mut UnderWay,
+        attempts: &mut JoinSet<Uuid>,
+    ) -> Result<Duration, StoreError> {
+        loop {
+            let waiting = self.webhooks.waiting().await?;
+            let mut begun = false;
+            for (webhook, share) in under_way.shares(&waiting) {
+                let messages = self.webhooks.take(webhook.webhook, share).await?;
+                begun |= !messages.is_empty();
+                under_way.begin(webhook.webhook, &webhook.client, messages.len());
+                for message in messages {
+                    let courier = Arc::clone(self);
+                    attempts.spawn(async move {
+                        courier.attempt(&message).await;
+                        message.webhook
+                    });
+                }
+            }
+            // What one had no use for another one may have.
+            if !begun {
+                let patience = waiting.iter().filter_map(|webhook| {
+                    let patience = webhook.patience;
+                    Duration::try_from(patience)
+                        .ok()
+                        .filter(|_| patience.is_positive())
+                });
+                let next = patience.min().unwrap_or(QUIET);
+                return Ok(next.clamp(Duration::from_millis(10), QUIET));
+            }
+        }
+    }
+
+    async fn attempt(&self, message: &Message) {
+        let sent = self.send(message).await;
+        let (result, refusal) = match &sent.refusal {
+            None => ("arrived", None),
+            Some(Refused::Again(why)) => ("refused", Some(Refusal::Again(why))),
+            Some(Refused::Never(why)) => ("given_up", Some(Refusal::Never(why))),
+        };
+        metrics::counter!("meshwright_webhook_attempts_total", "result" => result).increment(1);
+        let attempt = Attempt {
+            answered: sent.answered,
+            refusal,
+        };
+        match self.webhooks.attempted(message, attempt).await {
+            Ok(true) => info!(webhook = %message.webhook, "a webhook is given up"),
+            Ok(false) => {}
+            Err(error) => {
+                warn!(message = %message.id, %error, "the fate of a message cannot be written; it is sent again");
+                self.webhooks.jobs.wait_for_storage().await;
+            }
+        }
+    }
+
+    async fn send(&self, message: &Message) -> Sent {
+        // The list may be another one than when the webhook was made.
+        if let Err(why) = self.webhooks.rules.check(&message.url) {
+            return Sent::not(Refused::Again(why));
+        }
+        let timestamp = self.webhooks.jobs.clock().now().as_second();
+        let id = message.id.to_string();
+        let Some(signature) = signatures(&message.secrets, &id, timestamp, &message.body) else {
+            return Sent::not(Refused::Never("its secret is damaged".to_owned()));
+        };
+        let request = self
+            .client
+            .post(&message.url)
+            .header("content-type", "application/json")
+            .header("webhook-id", &id)
+            .header("webhook-timestamp", timestamp)
+            .header("webhook-signature", signature)
+            .body(message.body.clone());
+        match request.send().await {
+            Ok(answer) => Sent::answered(answer.status()),
+            Err(error) => Sent::not(Refused::Again(told(&error))),
+        }
+    }
+}
+
+/// What came of a message that was sent.
+struct Sent {
+    answered: Option<u16>,
+    refusal: Option<Refused>,
+}
+
+/// Why a message was not taken.
+enum Refused {
+    /// It may be the next time.
+    Again(String),
+    /// It will not be.
+    Never(String),
+}
+
+impl Sent {
+    fn not(refusal: Refused) -> Self {
+        Self {
+            answered: None,
+            refusal: Some(refusal),
+        }
+    }
+
+    fn answered(status: StatusCode) -> Self {
+        let code = status.as_u16();
+        let refusal = match status {
+            status if status.is_success() => None,
+            // Standard Webhooks: the receiver wants no more.
+            StatusCode::GONE => Some(Refused::Never("it answered 410".to_owned())),
+            _ => Some(Refused::Again(format!("it answered {code}"))),
+        };
+        Self {
+            answered: Some(code),
+            refusal,
+        }
+    }
+}
+
+/// The signatures of a message, one by each secret. None by a secret that is none: anybody could forge that.
+fn signatures(secrets: &[String], id: &str, timestamp: i64, body: &str) -> Option<String> {
+    let signatures = secrets
+        .iter()
+        .map(|secret| signature(secret, id, timestamp, body));
+    let signatures: Option<Vec<String>> = signatures.collect();
+    Some(signatures?.join(" "))
+}
+
+/// The signature of a message: HMAC-SHA-256 of id, time and body.
+fn signature(secret: &str, id: &str, timestamp: i64, body: &str) -> Option<String> {
+    let key = BASE64.decode(secret).ok().filter(|key| !key.is_empty())?;
+    let mut mac = Hmac::<Sha256>::new_from_slice(&key).expect("a key of any length will do");
+    mac.update(format!("{id}.{timestamp}.{body}").as_bytes());
+    Some(format!("v1,{}", BASE64.encode(mac.finalize().into_bytes())))
+}
+
+/// An error with its causes, without the address, which may have a secret in it.
+fn told(error: &reqwest::Error) -> String {
+    let mut causes = Vec::new();
+    let mut cause = std::error::Error::source(error);
+    while let Some(error) = cause {
+        causes.push(error.to_string());
+        cause = error.source();
+    }
+    if error.is_timeout() {
+        format!("no answer within {} s", TIME_OUT.as_secs())
+    } else if causes.is_empty() {
+        "it cannot be reached".to_owned()
+    } else {
+        format!("it cannot be reached: {}", causes.join(": "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use jiff::SignedDuration;
+
+    use super::*;
+
+    #[test]
+    fn the_signature_is_that_of_the_standard() {
+        // The example of the specification (standard-webhooks, "Signature scheme"), as its reference libraries test it.
+        let signed = signature(
+            "MfKQ9r8GKYqrTwjUPD8ILPZIo2LaLaSw",
+            "msg_p5jXN8AQM9LWM0D4loKWxJek",
+            1_614_265_330,
+            r#"{"test": 2432232314}"#,
+        );
+        let expected = "v1,g0hM9SsE+OTPJTGt/tmIKtSyZlE3uFJELVlNIOLJ1OE=";
+        assert_eq!(signed.as_deref(), Some(expected));
+        assert_eq!(signature("", "id", 0, "body"), None);
+    }
+
+    fn waiting(client: &str, count: u128, is_failing: bool) -> Vec<Waiting> {
+        let webhook = |i| Waiting {
+            webhook: Uuid::from_u128(i + client.len() as u128 * 1000),
+            client: client.to_owned(),
+            is_failing,
+            patience: SignedDuration::ZERO,
+        };
+        (0..count).map(webhook).collect()
+    }
+
+    fn of(client: &str, shares: &[(&Waiting, usize)]) -> usize {
+        let own = shares
+            .iter()
+            .filter(|(webhook, _)| webhook.client == client);
+        own.map(|(_, share)| share).sum()
+    }
+
+    #[test]
+    fn no_client_has_more_under_way_than_its_part_and_no_webhook_more_than_its_own() {
+        let mut all = waiting("a", 16, false);
+        all.extend(waiting("bb", 1, false));
+        let mut under_way = UnderWay::default();
+        let shares = under_way.shares(&all);
+        assert_eq!(
+            (of("a", &shares), of("bb", &shares)),
+            (OF_CLIENT, TO_WEBHOOK)
+        );
+        // Whose webhooks hang waits for them; others do not.
+        for (webhook, share) in shares.iter().filter(|(webhook, _)| webhook.client == "a") {
+            under_way.begin(webhook.webhook, "a", *share);
+        }
+        let shares = under_way.shares(&all);
+        assert_eq!((of("a", &shares), of("bb", &shares)), (0, TO_WEBHOOK));
+    }
+
+    #[test]
+    fn the_last_places_go_to_who_has_the_fewest_under_way() {
+        let mut under_way = UnderWay::default();
+        let names = ["a", "bb", "ccc", "dddd"];
+        for (name, count) in names.into_iter().zip([8, 8, 8, 6]) {
+            under_way.begin(Uuid::from_u128(name.len() as u128), name, count);
+        }
+        let mut all = waiting("dddd", 2, false);
+        all.extend(waiting("eeeee", 2, false));
+        let shares = under_way.shares(&all);
+        assert_eq!((of("dddd", &shares), of("eeeee", &shares)), (0, 2));
+    }
+
+    #[test]
+    fn a_webhook_that_fails_is_tried_with_one_message_when_its_time_has_come() {
+        let mut all = waiting("a", 2, true);
+        all[1].patience = SignedDuration::from_secs(5);
+        let shares = UnderWay::default().shares(&all);
+        assert_eq!(shares, [(&all[0], 1)]);
+    }
+}
