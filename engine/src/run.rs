@@ -1,5 +1,6 @@
 //! The handle that a caller gives to long work.
 
+use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -18,6 +19,12 @@ pub struct Run {
     done: Arc<AtomicU64>,
     total: Arc<AtomicU64>,
     observer: Arc<dyn Fn(u64, u64) + Send + Sync>,
+}
+
+impl fmt::Debug for Run {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Run").field("stop", &self.stop).finish()
+    }
 }
 
 impl Run {

@@ -8,6 +8,7 @@ use meshwright_engine::contact::{
     AugmentedLagrangian, ContactProblem, ContactSolution, solve_active_set,
     solve_augmented_lagrangian,
 };
+use meshwright_engine::run::Run;
 
 /// Young's modulus of steel, in Pa.
 const YOUNG: f64 = 210e9;
@@ -149,8 +150,8 @@ fn the_solvers_agree_on_500_random_problems_and_both_obey_signorini() {
     for _ in 0..500 {
         let (problem, load) = random_problem(&mut numbers);
         let exact = solve_active_set(&problem, load, None).expect("a sound problem");
-        let augmented =
-            solve_augmented_lagrangian(&problem, load, &STIFF).expect("a sound problem");
+        let augmented = solve_augmented_lagrangian(&problem, load, &STIFF, &Run::unattended())
+            .expect("a sound problem");
         assert_signorini(&problem, load, &exact);
 
         assert!(
@@ -180,7 +181,8 @@ fn a_soft_penalty_takes_more_updates_and_ends_at_the_same_delta() {
                 max_iterations: 2000,
             };
             let augmented =
-                solve_augmented_lagrangian(&problem, load, &settings).expect("a sound problem");
+                solve_augmented_lagrangian(&problem, load, &settings, &Run::unattended())
+                    .expect("a sound problem");
             updates.push(augmented.multiplier_updates);
             // A gap of 1e-12 m at every point would shift delta by as much.
             assert!(
@@ -223,7 +225,8 @@ fn looseness_of_the_papers_tolerance(penalty: f64) -> Looseness {
     for _ in 0..200 {
         let (problem, load) = random_problem(&mut numbers);
         let exact = solve_active_set(&problem, load, None).expect("a sound problem");
-        let loose = solve_augmented_lagrangian(&problem, load, &settings).expect("a sound problem");
+        let loose = solve_augmented_lagrangian(&problem, load, &settings, &Run::unattended())
+            .expect("a sound problem");
         let force = largest_difference(&exact.forces, &loose.forces) / largest(&exact.forces);
         worst.updates = worst.updates.max(loose.multiplier_updates);
         worst.delta = worst

@@ -2,17 +2,20 @@
 
 mod cases;
 
-use std::sync::Barrier;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Barrier};
 
 use cases::{case, gear, holed, study_design, test_case};
-use meshwright_engine::analysis::{Analysis, Case, Curve, Method, Statistics, Warning, analyze};
+use meshwright_engine::analysis::{
+    Analysis, Case, ContactSolver, Curve, Method, Statistics, Warning, analyze, pair_model,
+};
 use meshwright_engine::assembly::{Blanks, MakeAll, Modeling, PairSpec};
 use meshwright_engine::contact::positions::{contacts, contacts_keeping};
-use meshwright_engine::contact::{FlankLoad, MeshContact};
+use meshwright_engine::contact::{ContactError, FlankLoad, MeshContact, PositionError, WarmStart};
 use meshwright_engine::fem::annulus::Imposed;
 use meshwright_engine::gear::{GearData, GearPair, Material, Member, Rack, SpurGear};
 use meshwright_engine::library::Library;
-use meshwright_engine::run::Run;
+use meshwright_engine::run::{Run, Stopped};
 
 fn solve(case: &Case, method: Method) -> Analysis {
     let case = Case {
@@ -81,6 +84,24 @@ fn decomposition_and_projection_follow_the_flexible_method_on_the_three_test_cas
         let farthest = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(farthest < 0.1e-6, "projected, case {number}: {farthest} m");
     }
+}
+
+#[test]
+fn the_augmented_lagrangian_obeys_a_stop_within_a_position() {
+    let mut case = test_case(2);
+    case.resolution.contact_solver = ContactSolver::AugmentedLagrangian {
+        penalty: None,
+        gap_tolerance: 1e-12,
+    };
+    let stop = Arc::new(AtomicBool::new(false));
+    let run = Run::new(stop.clone(), |_, _| ());
+    let model = pair_model(&case, &MakeAll, &run).expect("a model");
+    stop.store(true, Ordering::Relaxed);
+    let refused = model.contact(0.1, 2000.0, &mut WarmStart::default());
+    assert_eq!(
+        refused,
+        Err(PositionError::Contact(ContactError::Stopped(Stopped)))
+    );
 }
 
 /// δ_whole − δ_wh at the samples of the holed blank of `member`, and how far its hub turns, R_b θ_gb, under what is imposed of the

@@ -392,6 +392,14 @@ fn a_rounded_tip_that_carries_follows_calculix() {
     check("calculix-rounding.json", pair, Corners::Settled, 6);
 }
 
+#[test]
+fn a_chamfered_tip_that_carries_follows_calculix() {
+    let mut data = gear(50, 15e-3);
+    data.tip_edge = TipEdge::Chamfered(0.2e-3);
+    let pair = pair(data.clone(), data, 100.5e-3);
+    check("calculix-chamfer.json", pair, Corners::Settled, 7);
+}
+
 /// The standard pair with relief, its driven gear on a blank of a bore of 15 mm, these round holes (circle and own radius in mm, angle in
 /// degrees), and this web.
 fn on_blank(holes: &[(f64, f64, f64)], web: Option<Web>) -> GearPair {

@@ -106,6 +106,7 @@ impl AnalysisError {
                 apart,
                 coupled,
             },
+            PositionError::Contact(ContactError::Stopped(stopped)) => Self::Stopped(stopped),
             PositionError::Contact(ContactError::NotConverged {
                 iterations, gap, ..
             }) => Self::NotConverged {

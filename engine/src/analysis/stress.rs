@@ -6,18 +6,21 @@ use std::f64::consts::TAU;
 
 use super::AnalysisError;
 use super::setup::Setup;
-use crate::assembly::inside::LoadedGear;
+use crate::assembly::inside::{Answer, LoadedGear};
 use crate::assembly::{Blanks, Inside, PartError, Probes};
-use crate::contact::{ContactCells, ContactSolution};
+use crate::contact::{ContactCells, ContactSolution, FlankLoad};
 use crate::fem::recovery::edge_stresses;
 use crate::gear::Member;
 use crate::grid::{BlankGrid, Grid};
 use crate::run::Run;
 
+/// How far from a loaded tooth, in teeth, the roots are looked at: a rim bends between the ends of a slot or the spokes under it.
+const REACH: usize = 8;
+
 /// The largest stress along some edges, and where.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PeakStress {
-    /// The von Mises stress in Pa.
+    /// The stress in Pa: of von Mises at holes, along the edge at roots, where pressure is negative.
     pub stress: f64,
     /// The polar angle of the place from the centerline of tooth 0 in radians, from 0 to 2π, in the frame of the gear.
     pub angle: f64,
@@ -26,8 +29,12 @@ pub struct PeakStress {
 /// The largest stresses of one gear at each position of a curve.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct GearStresses {
-    /// The largest tension along the fillets and root lands beside the loaded flanks.
+    /// The largest tension along the fillets and root lands beside the loaded flanks, of the loaded teeth and their neighbors.
     pub root: Vec<PeakStress>,
+    /// The largest first principal stress along the fillets and root lands on both sides of all teeth in reach.
+    pub root_tension: Vec<PeakStress>,
+    /// The smallest one: the largest compression, which is negative.
+    pub root_compression: Vec<PeakStress>,
     /// The largest stress along the edges of the holes; empty without holes.
     pub holes: Vec<PeakStress>,
 }
@@ -42,14 +49,27 @@ struct StressedGear {
     inside: Inside,
     sector_angles: Vec<f64>,
     tooth_count: usize,
-    /// The polar angles of the nodes along the fillet, from the centerline of their tooth.
-    fillet: Vec<f64>,
+    /// The polar angles of the nodes along the fillet beside the loaded flank and along the other one, from the centerline of their
+    /// tooth.
+    fillets: Vec<f64>,
+    /// How many of them are beside the loaded flank.
+    beside_loaded: usize,
     /// The polar angles of the nodes along the edges of holes, in the frame of sector 0.
     edges: Vec<f64>,
 }
 
-/// The peaks of both gears at one position: root, and hole where there is any.
-pub(super) type PositionPeaks = [(PeakStress, Option<PeakStress>); 2];
+/// The peaks of one gear at one position.
+#[derive(Clone, Copy)]
+pub(super) struct GearPeaks {
+    root: PeakStress,
+    tension: PeakStress,
+    compression: PeakStress,
+    /// `None` without holes.
+    hole: Option<PeakStress>,
+}
+
+/// The peaks of both gears at one position.
+pub(super) type PositionPeaks = [GearPeaks; 2];
 
 impl StressModel {
     /// That of both gears as `setup` has them, blanks flexible.
@@ -58,7 +78,8 @@ impl StressModel {
         let of = |member: Member| -> Result<StressedGear, AnalysisError> {
             let gear = setup.case.pair.gear(member);
             let grids = spec.grids(member)?;
-            let (tooth, fillet) = (&grids.tooth.grid, &grids.tooth.fillet_nodes);
+            let (tooth, loaded) = (&grids.tooth.grid, &grids.tooth.fillet_nodes);
+            let sides = [loaded, &grids.tooth.back_fillet_nodes];
             let (mut edges, mut in_blank) = (Vec::new(), Vec::new());
             if let Some(BlankGrid {
                 grid, hole_edges, ..
@@ -69,7 +90,10 @@ impl StressModel {
                 in_blank = hole_edges.iter().flat_map(along).collect();
             }
             let probes = Probes {
-                in_tooth: edge_stresses(tooth, gear.material(), fillet, false),
+                in_tooth: sides
+                    .into_iter()
+                    .flat_map(|side| edge_stresses(tooth, gear.material(), side, false))
+                    .collect(),
                 in_blank,
             };
             let inside = spec.inside(member, &grids, &probes, setup.parts, setup.run)?;
@@ -78,7 +102,8 @@ impl StressModel {
                 sector_angles: inside.sector_angles(),
                 inside,
                 tooth_count: gear.tooth_count() as usize,
-                fillet: angles(tooth, fillet),
+                fillets: angles(tooth, &sides.map(Vec::as_slice).concat()),
+                beside_loaded: loaded.len(),
                 edges,
             })
         };
@@ -123,28 +148,53 @@ impl LoadedPair<'_> {
             );
             let loads = cells.flank_loads(member, &solution.forces);
             let answer = loaded.under(&loads);
-            // A thin rim bends most beside the tooth that is loaded.
-            let z = gear.tooth_count;
-            let mut teeth: Vec<usize> = loads
-                .iter()
-                .flat_map(|load| [load.tooth + z - 1, load.tooth, load.tooth + 1])
-                .map(|tooth| tooth % z)
-                .collect();
-            teeth.sort_unstable();
-            teeth.dedup();
-            let roots = teeth.into_iter().flat_map(|tooth| {
-                let turn = TAU * tooth as f64 / z as f64;
-                let along = answer.in_tooth(tooth).into_iter().zip(&gear.fillet);
-                along.map(move |(stress, angle)| (stress, turn + angle))
-            });
+            let roots = gear.roots(&loads, &answer);
+            let all = || roots.iter().map(|root| (root.stress, root.angle));
+            let loaded_sides = roots.iter().filter(|root| root.in_mesh);
             let sectors = gear.sector_angles.iter().enumerate();
             let holes = sectors.flat_map(|(sector, &turn)| {
                 let along = answer.in_blank(sector).into_iter().zip(&gear.edges);
                 along.map(move |(stress, angle)| (stress.abs(), turn + angle))
             });
-            let holes = (!gear.edges.is_empty()).then(|| largest(holes));
-            (largest(roots), holes)
+            GearPeaks {
+                root: largest(loaded_sides.map(|root| (root.stress, root.angle))),
+                tension: largest(all()),
+                compression: smallest(all()),
+                hole: (!gear.edges.is_empty()).then(|| largest(holes)),
+            }
         })
+    }
+}
+
+/// The stress along a fillet at one of its nodes.
+struct RootStress {
+    stress: f64,
+    angle: f64,
+    /// Whether it is beside the loaded flank of a loaded tooth or of its neighbor.
+    in_mesh: bool,
+}
+
+impl StressedGear {
+    /// The stresses at the roots of all teeth that `loads` reach, tooth by tooth.
+    fn roots(&self, loads: &[FlankLoad], answer: &Answer<'_>) -> Vec<RootStress> {
+        let z = self.tooth_count;
+        let away = |tooth: usize| {
+            let apart = loads.iter().map(|load| load.tooth.abs_diff(tooth));
+            apart.map(|d| d.min(z - d)).min().unwrap_or(z)
+        };
+        let reached = (0..z).filter(|tooth| away(*tooth) <= REACH);
+        let of_tooth = |tooth: usize| {
+            let turn = TAU * tooth as f64 / z as f64;
+            let along = answer.in_tooth(tooth).into_iter().zip(&self.fillets);
+            along
+                .enumerate()
+                .map(move |(i, (stress, angle))| RootStress {
+                    stress,
+                    angle: turn + angle,
+                    in_mesh: i < self.beside_loaded && away(tooth) <= 1,
+                })
+        };
+        reached.flat_map(of_tooth).collect()
     }
 }
 
@@ -152,8 +202,10 @@ impl GearStresses {
     /// Those of both gears, of the peaks at each position.
     pub(super) fn of_positions(peaks: &[PositionPeaks]) -> [Self; 2] {
         [0, 1].map(|gear| Self {
-            root: peaks.iter().map(|both| both[gear].0).collect(),
-            holes: peaks.iter().filter_map(|both| both[gear].1).collect(),
+            root: peaks.iter().map(|both| both[gear].root).collect(),
+            root_tension: peaks.iter().map(|both| both[gear].tension).collect(),
+            root_compression: peaks.iter().map(|both| both[gear].compression).collect(),
+            holes: peaks.iter().filter_map(|both| both[gear].hole).collect(),
         })
     }
 }
@@ -180,4 +232,13 @@ fn largest(stresses: impl Iterator<Item = (f64, f64)>) -> PeakStress {
             most
         }
     })
+}
+
+/// The first of the smallest of `stresses` with their angles.
+fn smallest(stresses: impl Iterator<Item = (f64, f64)>) -> PeakStress {
+    let most = largest(stresses.map(|(stress, angle)| (-stress, angle)));
+    PeakStress {
+        stress: -most.stress,
+        ..most
+    }
 }

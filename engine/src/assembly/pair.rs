@@ -142,6 +142,7 @@ impl PairSpec {
             gears: gears.map(|gear| gear.model.clone()),
             cells_per_patch: cells_per_patch(self.level),
             solver: self.solver,
+            run: run.clone(),
             drawn: parts.flanks(&self.drawn()),
         };
         let unknowns = gears.iter().map(|gear| gear.degrees_of_freedom).sum();

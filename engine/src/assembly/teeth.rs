@@ -38,7 +38,7 @@ impl TeethSpec {
     /// deviation: they are gaps and hardly change how a tooth bends.
     pub fn new(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Self {
         Self {
-            gear: gear.without_blank().with_plain_flanks(),
+            gear: gear.without_blank().with_unmodified_flanks(),
             interface_radius,
             level,
         }

@@ -26,6 +26,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::problem::{ContactError, ContactProblem, ContactSolution, Equilibrium, check_load};
 use crate::gear::{GearPair, Member};
+use crate::run::Run;
 
 /// Newton steps of full length for one set of multipliers; what has not settled then steps to the least Phi.
 const FULL_STEP_LIMIT: u32 = 30;
@@ -70,11 +71,13 @@ pub fn default_penalty(pair: &GearPair) -> f64 {
 /// # Errors
 ///
 /// [`ContactError::LoadNotPositive`], [`ContactError::SettingsNotPositive`], [`ContactError::NotPositiveDefinite`] if
-/// the compliance is not, [`ContactError::NotConverged`] if the gaps are not below the tolerance in time.
+/// the compliance is not, [`ContactError::NotConverged`] if the gaps are not below the tolerance in time, [`ContactError::Stopped`]:
+/// `run` is asked before each update of the multipliers.
 pub fn solve_augmented_lagrangian(
     problem: &ContactProblem,
     load: f64,
     settings: &AugmentedLagrangian,
+    run: &Run,
 ) -> Result<ContactSolution, ContactError> {
     check_load(load)?;
     let &AugmentedLagrangian {
@@ -95,6 +98,7 @@ pub fn solve_augmented_lagrangian(
     let mut iterations = 0;
     let mut gap_error = f64::INFINITY;
     for update in 1..=max_iterations {
+        run.check()?;
         let balance = springs.balance(&multipliers, &pressed, FULL_STEP_LIMIT, iterations)?;
         iterations = balance.iterations;
         gap_error = springs.gap_error(&balance);
@@ -374,7 +378,11 @@ impl Springs {
 mod tests {
     use faer::Mat;
 
+    use std::sync::Arc;
+    use std::sync::atomic::AtomicBool;
+
     use super::*;
+    use crate::run::Stopped;
 
     const SETTINGS: AugmentedLagrangian = AugmentedLagrangian {
         penalty: 1e12,
@@ -399,7 +407,8 @@ mod tests {
             gap_tolerance: 1e-6,
             max_iterations: 1,
         };
-        let soft = solve_augmented_lagrangian(&problem, load, &once).expect("a sound problem");
+        let soft = solve_augmented_lagrangian(&problem, load, &once, &Run::unattended())
+            .expect("a sound problem");
         // The body and the spring in series: delta = F (h + 1/kappa).
         assert!((soft.transmission_error - load * (h + 1.0 / penalty)).abs() <= 1e-20);
         assert!((soft.penetration - load / penalty).abs() <= 1e-20);
@@ -409,7 +418,8 @@ mod tests {
             gap_tolerance: 1e-12,
             max_iterations: 100,
         };
-        let hard = solve_augmented_lagrangian(&problem, load, &twice).expect("a sound problem");
+        let hard = solve_augmented_lagrangian(&problem, load, &twice, &Run::unattended())
+            .expect("a sound problem");
         assert_eq!((hard.multiplier_updates, hard.iterations), (2, 2));
         assert!((hard.transmission_error - load * h).abs() <= 1e-20);
     }
@@ -418,14 +428,14 @@ mod tests {
     fn the_farther_of_two_springs_helps_once_the_nearer_has_closed_its_gap() {
         let (h_1, h_2, gap) = (2e-9, 5e-9, 1e-6);
         let problem = springs(&[h_1, h_2], &[0.0, gap]);
-        let alone =
-            solve_augmented_lagrangian(&problem, 499.0, &SETTINGS).expect("a sound problem");
+        let alone = solve_augmented_lagrangian(&problem, 499.0, &SETTINGS, &Run::unattended())
+            .expect("a sound problem");
         assert_eq!(alone.active, [true, false]);
         assert!((alone.transmission_error - 499.0 * h_1).abs() <= 1e-14);
 
         // In parallel: k = 1/h_1 + 1/h_2, F = delta / h_1 + (delta - gap) / h_2; delta is off by the gap tolerance.
-        let both =
-            solve_augmented_lagrangian(&problem, 1500.0, &SETTINGS).expect("a sound problem");
+        let both = solve_augmented_lagrangian(&problem, 1500.0, &SETTINGS, &Run::unattended())
+            .expect("a sound problem");
         let stiffness = h_1.recip() + h_2.recip();
         assert!((both.stiffness - stiffness).abs() <= 1e-12 * stiffness);
         assert!((both.transmission_error - (1500.0 + gap / h_2) / stiffness).abs() <= 1e-14);
@@ -480,8 +490,8 @@ mod tests {
     fn what_cannot_be_solved_ends_in_an_error() {
         let problem = springs(&[1e-9, 1e-9], &[0.0, 0.0]);
         for load in [0.0, -5.0, f64::NAN, f64::INFINITY] {
-            let refused =
-                solve_augmented_lagrangian(&problem, load, &SETTINGS).expect_err("a refusal");
+            let refused = solve_augmented_lagrangian(&problem, load, &SETTINGS, &Run::unattended())
+                .expect_err("a refusal");
             assert!(matches!(refused, ContactError::LoadNotPositive { .. }));
         }
         for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY] {
@@ -492,6 +502,7 @@ mod tests {
                     penalty: wrong,
                     ..SETTINGS
                 },
+                &Run::unattended(),
             );
             assert!(matches!(
                 refused,
@@ -504,6 +515,7 @@ mod tests {
                     gap_tolerance: wrong,
                     ..SETTINGS
                 },
+                &Run::unattended(),
             );
             assert!(matches!(
                 refused,
@@ -517,18 +529,23 @@ mod tests {
         };
         let two = springs(&[1e-9, 3e-9], &[0.0, 1e-7]);
         assert!(matches!(
-            solve_augmented_lagrangian(&two, 1000.0, &hopeless),
+            solve_augmented_lagrangian(&two, 1000.0, &hopeless, &Run::unattended()),
             Err(ContactError::NotConverged {
                 iterations: 5..,
                 ..
             })
         ));
+        let stop = Arc::new(AtomicBool::new(true));
+        assert_eq!(
+            solve_augmented_lagrangian(&two, 1000.0, &hopeless, &Run::new(stop, |_, _| ())),
+            Err(ContactError::Stopped(Stopped))
+        );
         let never = AugmentedLagrangian {
             max_iterations: 0,
             ..SETTINGS
         };
         assert!(matches!(
-            solve_augmented_lagrangian(&two, 1000.0, &never),
+            solve_augmented_lagrangian(&two, 1000.0, &never, &Run::unattended()),
             Err(ContactError::NotConverged { iterations: 0, .. })
         ));
         for (load, penalty) in [(1e300, 1e300), (1e300, 1e12), (1e300, 1e-300)] {
@@ -540,13 +557,15 @@ mod tests {
                 &springs(&[1e100, 1e100], &[0.0, 1e250]),
                 load,
                 &settings,
+                &Run::unattended(),
             );
             assert!(matches!(result, Err(ContactError::NotConverged { .. })));
         }
         let compliance = Mat::from_fn(2, 2, |row, column| if row == column { 1e-9 } else { 2e-9 });
         let problem =
             ContactProblem::new(compliance, vec![0.0; 2], vec![1.0; 2]).expect("a sound problem");
-        let refused = solve_augmented_lagrangian(&problem, 1.0, &SETTINGS).expect_err("a refusal");
+        let refused = solve_augmented_lagrangian(&problem, 1.0, &SETTINGS, &Run::unattended())
+            .expect_err("a refusal");
         assert_eq!(refused, ContactError::NotPositiveDefinite { points: 2 });
     }
 }

@@ -221,7 +221,7 @@ impl<'a> ContactCells<'a> {
                     gap_tolerance,
                     max_iterations: MULTIPLIER_UPDATES,
                 };
-                solve_augmented_lagrangian(problem, load, &settings)?
+                solve_augmented_lagrangian(problem, load, &settings, &self.model.run)?
             }
         })
     }

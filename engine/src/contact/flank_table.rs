@@ -11,7 +11,7 @@ use super::corner::{Corner, block};
 use super::half_plane::logarithm_factor;
 use crate::fem::dense::entries;
 use crate::fem::tooth::{ToothSubstructure, modal_loads};
-use crate::gear::{Involute, SpurGear};
+use crate::gear::{Involute, SpurGear, TipEdge};
 
 /// Nodes this near to each other (two elements) see the grid rather than the body in their compliance.
 const NEAR: usize = 4;
@@ -27,7 +27,8 @@ pub struct FlankTable {
     /// V on the same unknowns.
     modes: Mat<f64>,
     flank: Involute,
-    corner: Corner,
+    /// `None` where the edge at the tip is broken: it bends so little that the table tells all of it.
+    corner: Option<Corner>,
 }
 
 /// A point on a flank in terms of the nodes around it: four nodes from `first`, their weights, and the components of the
@@ -81,7 +82,8 @@ impl FlankTable {
             }
             sum
         };
-        let corner = Corner::new(gear, &arcs, factor, between);
+        let sharp = gear.data().tip_edge == TipEdge::Sharp;
+        let corner = sharp.then(|| Corner::new(gear, &arcs, factor, between));
         Self {
             arcs,
             smooth,
@@ -104,7 +106,9 @@ impl FlankTable {
     /// The point at roll length `s`, pressed along `direction` (against the outward normal, against the way to the tip).
     pub fn point(&self, s: f64, direction: [f64; 2]) -> FlankPoint {
         let arc = self.flank.arc_length(s);
-        let (first, weights) = stencil(&self.arcs, arc);
+        // A broken edge goes on beyond the last node, where nothing presses.
+        let known = arc.min(self.arcs[self.arcs.len() - 1]);
+        let (first, weights) = stencil(&self.arcs, known);
         FlankPoint {
             first,
             weights,
@@ -123,7 +127,8 @@ impl FlankTable {
         let mut compliance = &weights * around * loads.transpose();
         for (j, load) in loaded.iter().enumerate() {
             for (i, point) in points.iter().enumerate() {
-                if let Some(block) = self.corner.compliance(point.arc, load.arc) {
+                let near_corner = |corner: &Corner| corner.compliance(point.arc, load.arc);
+                if let Some(block) = self.corner.as_ref().and_then(near_corner) {
                     compliance[(i, j)] = (0..2)
                         .flat_map(|a| (0..2).map(move |b| (a, b)))
                         .map(|(a, b)| point.direction[a] * block[a][b] * load.direction[b])

@@ -8,6 +8,7 @@ use super::stage::Stage;
 use super::{ContactError, MeshCells, MeshContact};
 use crate::fem::body::Coupling;
 use crate::gear::GearPair;
+use crate::run::Run;
 
 /// The solver of the contact conditions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,6 +44,8 @@ pub struct PairModel {
     pub cells_per_patch: usize,
     /// The solver.
     pub solver: ContactSolver,
+    /// Whom a solver that takes many steps asks whether to go on.
+    pub run: Run,
     /// What is known of its flanks as drawn.
     pub drawn: Arc<DrawnFlanks>,
 }

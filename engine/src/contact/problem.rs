@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use faer::{Mat, MatRef};
 
+use crate::run::Stopped;
+
 /// Entries of the compliance that mirror each other may differ by this much, relative to the diagonal.
 ///
 /// A condensed compliance is symmetric to about 1e-12; more than this is a fault in its making and not rounding.
@@ -306,6 +308,9 @@ impl fmt::Display for ContactQuantity {
 /// Why a contact problem could not be stated or solved.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ContactError {
+    /// The caller stopped the work.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
     /// There is no candidate point.
     #[error("no point where the bodies could touch")]
     NoPoints,

@@ -13,13 +13,15 @@ use crate::gear::SpurGear;
 pub struct ToothGrid {
     /// The elements.
     pub grid: Grid,
-    /// The nodes of the loaded flank, corners and midsides, from the form point to the tip corner.
+    /// The nodes of the loaded flank, corners and midsides, from the form point to the tip corner, and on a broken edge beyond the flank.
     pub flank_nodes: Vec<u32>,
-    /// The roll length of each of these, on the exact involute.
+    /// The roll length of each of these on the exact involute, or at their radius beyond it.
     pub flank_roll_lengths: Vec<f64>,
     /// The nodes of the fillet on the loaded side and of the root land after it, corners and midsides, from the form point to
     /// the side at π/Z: a free edge, in tension while the flank is loaded.
     pub fillet_nodes: Vec<u32>,
+    /// Those on the unloaded side: its mirror images, in the same order.
+    pub back_fillet_nodes: Vec<u32>,
     /// The nodes on the interface circle, corners and midsides, from −π/Z to π/Z.
     pub arc_nodes: Vec<u32>,
     /// The polar angle of each of these.

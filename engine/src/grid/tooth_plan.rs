@@ -6,7 +6,7 @@ use super::block::{Edge, GridBuilder};
 use super::division::{Grading, reversed, uniform};
 use super::root_curve::RootCurve;
 use super::{GridLevel, ToothGrid};
-use crate::gear::{SpurGear, Vector, radial};
+use crate::gear::{SpurGear, TipEdge, Vector, radial};
 
 // Sizes are chosen for what the levels promise ([`GridLevel`]): none of them moves the sharpest corner by a tenth of a degree when
 // it is a third smaller or half as large again. The shape of the blocks is chosen for that corner, which is 30.8 degrees over all
@@ -17,6 +17,12 @@ use crate::gear::{SpurGear, Vector, radial};
 pub(super) const SIZE_AT_TIP: f64 = 0.005;
 /// The growth of that size per distance from the tip corner: two neighbors differ by a seventh.
 const GROWTH_FROM_TIP: f64 = 0.15;
+/// The element size on both sides of where a broken edge leaves the flank, in modules: the edge bends less than a sharp corner.
+const SIZE_AT_EDGE: f64 = 0.01;
+/// The last part of the turn of a rounding that is left out, in radians: 30 degrees, the corner of the blocks there.
+const TURN_LEFT_OUT: f64 = std::f64::consts::FRAC_PI_6;
+/// The part of the half angle at the beginning of a chamfer that is left at the end of its grid.
+const LEAST_LAND: f64 = 0.25;
 /// The largest size along the flank, in modules: two to three elements to the width of a usual contact.
 pub(super) const SIZE_ON_FLANK: f64 = 0.06;
 /// The growth of the layers across the tooth at its tip, inward from the loaded flank.
@@ -56,6 +62,8 @@ pub(super) struct Plan<'a> {
     /// The number of leading entries of `side` below the form point.
     below_form: usize,
     roll_lengths: Vec<f64>,
+    /// The radius and the half angle at which the side ends: those of the tip land, or somewhat below it.
+    tip: (f64, f64),
     /// The fractions across the tooth, from the unloaded flank, at the tip.
     across_tip: Vec<f64>,
     across_count: usize,
@@ -76,16 +84,22 @@ impl<'a> Plan<'a> {
         let (gamma_0, gamma_1) = curve.fillet.ends();
         let division = curve.length_at(gamma_0 + PART_OF_FILLET * (gamma_1 - gamma_0));
 
-        // The flank, by the distance from the tip corner.
+        // The flank, by the distance from the tip corner, or from the broken edge.
         let flank = gear.flank();
+        let edge = edge(gear, level);
         let (a_form, a_tip) = (
             flank.arc_length(gear.form_roll_length()),
-            flank.arc_length(gear.tip_roll_length()),
+            flank.arc_length(gear.tip_form_roll_length()),
         );
         let length = a_tip - a_form;
+        let finest = if edge.is_empty() {
+            SIZE_AT_TIP
+        } else {
+            SIZE_AT_EDGE
+        };
         let sizes = Grading {
             length,
-            first: SIZE_AT_TIP * m,
+            first: finest * m,
             last: f64::INFINITY,
             growth: GROWTH_FROM_TIP,
             largest: SIZE_ON_FLANK * m,
@@ -95,7 +109,7 @@ impl<'a> Plan<'a> {
         let roll_lengths: Vec<f64> = (0..=last)
             .map(|i| match i {
                 0 => gear.form_roll_length(),
-                i if i == last => gear.tip_roll_length(),
+                i if i == last => gear.tip_form_roll_length(),
                 i => flank.roll_length_at_arc(a_form + length * fractions[i]),
             })
             .collect();
@@ -121,10 +135,27 @@ impl<'a> Plan<'a> {
                     .zip(&fractions)
                     .map(|(s, f)| (flank.point(*s), division + length * f)),
             )
+            .chain(
+                edge.iter()
+                    .map(|(point, beyond)| (*point, division + length + beyond)),
+            )
             .collect::<Vec<_>>();
+        let (tip, thickness) = match edge.last() {
+            None => {
+                let r_a = gear.tip_radius();
+                ((r_a, flank.half_angle(r_a)), gear.tip_thickness())
+            }
+            Some((end, _)) => {
+                let (radius, half_angle) = (end.norm(), end.y.atan2(end.x));
+                ((radius, half_angle), 2.0 * radius * half_angle)
+            }
+        };
+        let beyond = edge
+            .iter()
+            .map(|(point, _)| flank.roll_length(point.norm()));
+        let roll_lengths: Vec<f64> = roll_lengths.into_iter().chain(beyond).collect();
 
         // Across the tip, from the loaded flank inward.
-        let thickness = gear.tip_thickness();
         let across = Grading {
             length: thickness,
             last: f64::INFINITY,
@@ -161,6 +192,7 @@ impl<'a> Plan<'a> {
             side,
             below_form,
             roll_lengths,
+            tip,
             across_tip,
             across_count,
             root,
@@ -220,11 +252,11 @@ impl<'a> Plan<'a> {
             let to = builder.node(points[last]);
             builder.curve(from, to, &points)
         });
-        let psi_a = gear.flank().half_angle(gear.tip_radius());
+        let (r_a, psi_a) = self.tip;
         let tip: Vec<_> = self
             .across_tip
             .iter()
-            .map(|w| gear.tip_radius() * radial(psi_a * (2.0 * w - 1.0)))
+            .map(|w| r_a * radial(psi_a * (2.0 * w - 1.0)))
             .collect();
         let tip_edge = builder.curve(lower[last], upper[last], &tip);
         let across_root = uniform(self.across_count);
@@ -297,6 +329,12 @@ impl<'a> Plan<'a> {
                 .chain(&left_curve[1..])
                 .copied()
                 .collect(),
+            back_fillet_nodes: lower[..=self.below_form]
+                .iter()
+                .rev()
+                .chain(right_curve.iter().rev().skip(1))
+                .copied()
+                .collect(),
             arc_nodes: join([&right_arc, &core_arc, &left_arc]),
             arc_angles: angles.into_iter().map(|(_, angle)| angle).collect(),
             side_nodes: (right_side[1..].to_vec(), left_side[1..].to_vec()),
@@ -333,6 +371,43 @@ impl<'a> Plan<'a> {
             Vector::new(point.x + bulge, point.y * (2.0 * w - 1.0))
         });
     }
+}
+
+/// The nodes on the broken edge of `gear` beyond its flank, each with its distance along the edge; none on a sharp one.
+///
+/// A rounding ends in the tip circle without a corner, which no block of quadrilaterals can have: it is left [`TURN_LEFT_OUT`] before
+/// that, where the mate cannot press, and the tooth ends in a circle there. So does a chamfer where hardly any land is left.
+fn edge(gear: &SpurGear, level: GridLevel) -> Vec<(Vector, f64)> {
+    let at = |t: f64| gear.edge_point(t).unwrap_or_default();
+    let half_angle = |t: f64| at(t).y.atan2(at(t).x);
+    let (whole, top) = match gear.data().tip_edge {
+        TipEdge::Sharp => return Vec::new(),
+        TipEdge::Rounded(radius) => {
+            // Half of the chord is ρ sin of half of the turn.
+            let turn = 2.0 * ((at(0.0) - at(1.0)).norm() / (2.0 * radius)).asin();
+            (radius * turn, (TURN_LEFT_OUT / turn).min(0.5))
+        }
+        TipEdge::Chamfered(_) => {
+            let thin = LEAST_LAND * half_angle(1.0);
+            let parts = (0..=10).map(|i| 0.05 * f64::from(i));
+            let top = parts.clone().find(|t| half_angle(*t) >= thin);
+            ((at(0.0) - at(1.0)).norm(), top.unwrap_or(0.5))
+        }
+    };
+    let length = (1.0 - top) * whole;
+    let m = gear.data().rack.module;
+    let sizes = Grading {
+        length,
+        first: SIZE_AT_EDGE * m,
+        last: f64::INFINITY,
+        growth: GROWTH_FROM_TIP,
+        largest: SIZE_ON_FLANK * m,
+    };
+    let fractions = sizes.divide(sizes.count_at(2, level));
+    let nodes = fractions.into_iter().skip(1);
+    nodes
+        .map(|f| (at(1.0 - f * (1.0 - top)), f * length))
+        .collect()
 }
 
 /// The half angle of the core on the interface circle, and the angles under the fillet from there to π/Z.

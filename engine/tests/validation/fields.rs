@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use meshwright_engine::analysis::fields::{GearField, fields};
 use meshwright_engine::fem::element;
-use meshwright_engine::gear::{GearPair, Member, Vector};
+use meshwright_engine::gear::{GearPair, Hole, HoleShape, Member, Vector};
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::run::Run;
 
@@ -122,6 +122,75 @@ fn hubs_hold_the_torques_and_roots_and_holes_are_as_stressed_as_their_edges() {
         println!("{member}: tears by {apart:.2e} m, moves by {most:.2e} m");
         assert!(apart < 2e-3 * most);
     }
+}
+
+/// The largest and the smallest stress along the edges of `field` between two radii, by the stresses of its elements.
+fn along_roots(field: &GearField, center: Vector, radii: (f64, f64)) -> [f64; 2] {
+    let place = |node: u32| field.nodes[node as usize] - center;
+    let at_root = |edge: &&[u32; 3]| {
+        let mut nodes = edge.iter();
+        nodes.all(|node| (radii.0..radii.1).contains(&place(*node).norm()))
+    };
+    let stresses = field.edges.iter().filter(at_root).flat_map(|edge| {
+        let along = (place(edge[2]) - place(edge[0])).normalize();
+        edge.map(|node| {
+            let [xx, yy, xy] = field.stresses[node as usize];
+            along.x * along.x * xx + along.y * along.y * yy + 2.0 * along.x * along.y * xy
+        })
+    });
+    stresses.fold([0.0, 0.0], |[most, least], stress| {
+        [f64::max(most, stress), f64::min(least, stress)]
+    })
+}
+
+#[test]
+fn tension_and_compression_at_roots_are_the_extremes_of_the_whole_field() {
+    let solid = relieved(gear(50, 15e-3));
+    // A rim of one and a half modules over four slots bends at their ends, far from the teeth in mesh.
+    let mut thin = solid.clone();
+    thin.blank.holes = (0..4)
+        .map(|i| Hole {
+            circle_radius: 40e-3,
+            angle: 0.1 + TAU / 4.0 * f64::from(i),
+            shape: HoleShape::Slot {
+                width: 9e-3,
+                angle: TAU / 6.0,
+            },
+        })
+        .collect();
+    let mut elsewhere = 0.0_f64;
+    for driven in [holed(solid.clone(), 8, 34e-3, 8.385e-3, 0.1), thin] {
+        let mut case = case(pair(solid.clone(), driven, CENTER_DISTANCE), &[TORQUE]);
+        case.resolution.grid = GridLevel::Standard;
+        case.resolution.positions_per_mesh_period = 1;
+        case.stress = true;
+        let curve = solve(&case).curves.remove(0);
+        let stresses = curve.stresses.expect("asked for");
+        for (place, eta) in curve.mesh_position.iter().enumerate().take(3) {
+            let fields = fields(&case, TORQUE, *eta, library(), &Run::unattended());
+            let fields = fields.expect("a field").gears;
+            for member in Member::BOTH {
+                let peaks = &stresses[member.index()];
+                let spur = case.pair.gear(member);
+                let radii = (spur.root_radius() - 1e-6, spur.form_radius() + 1e-6);
+                let found = along_roots(&fields[member.index()], center(member), radii);
+                let said = [peaks.root_tension[place], peaks.root_compression[place]];
+                for (said, found) in said.iter().zip(found) {
+                    println!(
+                        "{member} at {eta}: {:.2} MPa, field {:.2}",
+                        said.stress / 1e6,
+                        found / 1e6
+                    );
+                    assert!((found / said.stress - 1.0).abs() < 0.03);
+                }
+                let in_mesh = peaks.root[place].stress;
+                assert!(said[0].stress >= in_mesh && said[1].stress < -0.5 * in_mesh);
+                elsewhere = elsewhere.max(said[0].stress / in_mesh - 1.0);
+            }
+        }
+    }
+    println!("up to {elsewhere:+.3} beside the loaded flanks");
+    assert!(elsewhere > 0.05, "a thin rim is worst elsewhere");
 }
 
 /// The angle of the centerline of the first tooth, whose nodes come first: the mean of its tip corners.

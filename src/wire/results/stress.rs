@@ -24,6 +24,14 @@ pub struct GearStressDocument {
     pub root_mpa: Vec<f64>,
     /// Where that is, in degrees.
     pub root_angle_deg: Vec<f64>,
+    /// The largest first principal stress along the root fillets on both sides of all teeth in reach of the load, in MPa.
+    pub root_tension_mpa: Vec<f64>,
+    /// Where that is, in degrees.
+    pub root_tension_angle_deg: Vec<f64>,
+    /// The smallest one, in MPa: the largest compression, which is negative.
+    pub root_compression_mpa: Vec<f64>,
+    /// Where that is, in degrees.
+    pub root_compression_angle_deg: Vec<f64>,
     /// The largest von Mises stress along the edges of the holes, in MPa; absent without holes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub hole_mpa: Vec<f64>,
@@ -48,6 +56,12 @@ pub struct PeakStressDocument {
 pub struct GearPeakStress {
     /// The largest von Mises stress along the tensile root fillets, in MPa.
     pub root_mpa: f64,
+    /// The largest first principal stress along all root fillets, in MPa.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub root_tension_mpa: Option<f64>,
+    /// The smallest one, in MPa: the largest compression, which is negative.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub root_compression_mpa: Option<f64>,
     /// The largest von Mises stress along the edges of the holes, in MPa; absent without holes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hole_mpa: Option<f64>,
@@ -62,6 +76,10 @@ impl StressDocument {
         let of = |gear: &GearStresses| GearStressDocument {
             root_mpa: stresses(&gear.root),
             root_angle_deg: angles(&gear.root),
+            root_tension_mpa: stresses(&gear.root_tension),
+            root_tension_angle_deg: angles(&gear.root_tension),
+            root_compression_mpa: stresses(&gear.root_compression),
+            root_compression_angle_deg: angles(&gear.root_compression),
             hole_mpa: stresses(&gear.holes),
             hole_angle_deg: angles(&gear.holes),
         };
@@ -78,8 +96,14 @@ impl PeakStressDocument {
             let stresses = peaks.iter().map(|peak| to_mpa(peak.stress));
             stresses.reduce(f64::max)
         };
+        let smallest = |peaks: &[PeakStress]| {
+            let stresses = peaks.iter().map(|peak| to_mpa(peak.stress));
+            stresses.reduce(f64::min)
+        };
         let of = |gear: &GearStresses| GearPeakStress {
             root_mpa: largest(&gear.root).unwrap_or(0.0),
+            root_tension_mpa: largest(&gear.root_tension),
+            root_compression_mpa: smallest(&gear.root_compression),
             hole_mpa: largest(&gear.holes),
         };
         Self {

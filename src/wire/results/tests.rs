@@ -70,10 +70,14 @@ fn analysis(case: &Case) -> Analysis {
             stresses: Some([
                 GearStresses {
                     root: peaks(&[100e6, 140e6]),
+                    root_tension: peaks(&[100e6, 150e6]),
+                    root_compression: peaks(&[-160e6, -120e6]),
                     holes: Vec::new(),
                 },
                 GearStresses {
                     root: peaks(&[120e6, 110e6]),
+                    root_tension: peaks(&[120e6, 110e6]),
+                    root_compression: peaks(&[-130e6, -140e6]),
                     holes: peaks(&[30e6, 31e6]),
                 },
             ]),
@@ -153,6 +157,13 @@ fn the_document_speaks_the_units_of_its_names() {
     near("/curves/0/stress/driven/hole_angle_deg/0", 180.0);
     near("/curves/0/statistics/stress/driving/root_mpa", 140.0);
     near("/curves/0/statistics/stress/driven/hole_mpa", 31.0);
+    near("/curves/0/stress/driving/root_compression_mpa/0", -160.0);
+    for (name, expected) in [("tension", 150.0), ("compression", -160.0)] {
+        near(
+            &format!("/curves/0/statistics/stress/driving/root_{name}_mpa"),
+            expected,
+        );
+    }
     for without_holes in [
         "/stress/driving/hole_mpa",
         "/statistics/stress/driving/hole_mpa",

@@ -18,10 +18,14 @@ const FIXED: [&str; 10] = [
 ];
 
 /// The largest stresses, in the tables of studies that ask for them.
-const STRESSES: [&str; 4] = [
+const STRESSES: [&str; 8] = [
     "statistics.stress.driving.root_mpa",
+    "statistics.stress.driving.root_tension_mpa",
+    "statistics.stress.driving.root_compression_mpa",
     "statistics.stress.driving.hole_mpa",
     "statistics.stress.driven.root_mpa",
+    "statistics.stress.driven.root_tension_mpa",
+    "statistics.stress.driven.root_compression_mpa",
     "statistics.stress.driven.hole_mpa",
 ];
 
@@ -134,6 +138,8 @@ fn cells_of_curve(text: &mut CsvWriter, curve: Option<&RowCurve>, with_stress: b
         let (driving, driven) = (stress.map(|s| &s.driving), stress.map(|s| &s.driven));
         for gear in [driving, driven] {
             text.number(gear.map(|gear| gear.root_mpa));
+            text.number(gear.and_then(|gear| gear.root_tension_mpa));
+            text.number(gear.and_then(|gear| gear.root_compression_mpa));
             text.number(gear.and_then(|gear| gear.hole_mpa));
         }
     }

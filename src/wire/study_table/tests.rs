@@ -188,7 +188,7 @@ fn the_csv_has_a_line_for_each_row_and_torque_and_names_joined_by_dots() {
 fn the_csv_has_columns_for_stresses_where_any_row_tells_them() {
     let mut document: Value =
         serde_json::from_str(&document(0.9, [1.7, 2.5], 2.2e8)).expect("a document");
-    document["curves"][0]["statistics"]["stress"] = json!({ "driving": { "root_mpa": 151.0 }, "driven": { "root_mpa": 157.5, "hole_mpa": 38.9 } });
+    document["curves"][0]["statistics"]["stress"] = json!({ "driving": { "root_mpa": 151.0 }, "driven": { "root_mpa": 157.5, "root_tension_mpa": 160.0, "root_compression_mpa": -181.0, "hole_mpa": 38.9 } });
     let mut stressed = state("stressed", 0.9, [1.7, 2.5], 2.2e8);
     stressed.summary = Summary::of_document(&document.to_string());
     let rows = table(
@@ -205,8 +205,11 @@ fn the_csv_has_columns_for_stresses_where_any_row_tells_them() {
     };
     for (name, value) in [
         ("statistics.stress.driving.root_mpa", "151.0"),
+        ("statistics.stress.driving.root_tension_mpa", ""),
         ("statistics.stress.driving.hole_mpa", ""),
         ("statistics.stress.driven.root_mpa", "157.5"),
+        ("statistics.stress.driven.root_tension_mpa", "160.0"),
+        ("statistics.stress.driven.root_compression_mpa", "-181.0"),
         ("statistics.stress.driven.hole_mpa", "38.9"),
         ("hole_order_um", "0.31"),
     ] {

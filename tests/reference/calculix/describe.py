@@ -80,6 +80,7 @@ def gear_inputs(gear):
         "web": gear.web and asdict(gear.web),
         "profile_table": table and {"roll_length_mm": list(map(float, table[0])), "removed_mm": list(map(float, table[1]))},
         "tip_rounding": gear.tip_rounding,
+        "tip_chamfer": gear.tip_chamfer,
         "pitch_deviation_base_tangent_mm": {str(n): float(p) for n, p in gear.pitch_deviations.items()} or None,
         "fillet": f"generated trochoid, rho={gear.rho:g} mm, hfP={gear.hf:g} mm",
         "r_form": gear.form_radius,
@@ -144,6 +145,8 @@ def gear_submission(gear, face_width):
         ]
     if gear.tip_rounding:
         document["tip_rounding_mm"] = gear.tip_rounding
+    if gear.tip_chamfer:
+        document["tip_chamfer_mm"] = gear.tip_chamfer
     if gear.pitch_deviations:
         on_reference = gear.rp / gear.rb * 1e3
         cumulative = [round(gear.pitch_deviations.get(n, 0.0) * on_reference, 9) for n in range(gear.z)]

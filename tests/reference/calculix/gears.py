@@ -73,6 +73,8 @@ class Gear:
     crowning: float = None
     crowning_points: int = 41
     tip_rounding: float = 0.0
+    # Depth below the tip circle at which a straight cut begins, at 45 degrees to the radius there.
+    tip_chamfer: float = 0.0
     # Pitch deviation (mm) along the base tangent by tooth number, towards the loaded flank.
     pitch_deviations: dict = field(default_factory=dict)
     youngs_modulus: float = 210000.0
@@ -132,11 +134,13 @@ class Gear:
 
     @property
     def flank_end_roll_length(self):
-        """Roll length where the flank meets the tip circle or the tip rounding.
+        """Roll length where the flank meets the tip circle, the tip rounding or the tip chamfer.
 
         The rounding's center lies on the flank's parallel curve at distance rho, which is an involute of the same base
         circle, and on the circle ra - rho.
         """
+        if self.tip_chamfer:
+            return sqrt((self.ra - self.tip_chamfer) ** 2 - self.rb**2)
         if not self.tip_rounding:
             return self.tip_roll_length
         center_radius = self.ra - self.tip_rounding
@@ -197,6 +201,14 @@ class Gear:
         tip_angle = atan2(center[1], center[0])
         return center + rho * polar(1.0, normal_angle + np.asarray(t, float) * (tip_angle - normal_angle))
 
+    def chamfer(self, t):
+        """Point of the tip chamfer: t = 0 at the flank, 1 at the tip circle."""
+        start = self.flank(self.flank_end_roll_length)
+        along = polar(1.0, atan2(start[1], start[0]) - pi / 4)
+        half = start @ along
+        length = -half + sqrt(half**2 + self.ra**2 - start @ start)
+        return start + length * np.multiply.outer(np.asarray(t, float), along)
+
     def half_profile(self):
         """The loaded half of a tooth from the middle of the root land to the tip's center.
 
@@ -220,6 +232,9 @@ class Gear:
         if self.tip_rounding:
             pieces.append(("rounding", self.rounding, whole))
             tip_corner = self.rounding(1.0)
+        if self.tip_chamfer:
+            pieces.append(("chamfer", self.chamfer, whole))
+            tip_corner = self.chamfer(1.0)
         tip_angle = stretch(atan2(tip_corner[1], tip_corner[0]), 0.0)
         pieces.append(("tip", lambda t: polar(self.ra, tip_angle(t)), whole))
         return pieces
@@ -288,7 +303,7 @@ class Pair:
         t = np.linspace(0.0, 1.0, count)
         turn = gear.pitch_deviations.get(n % gear.z, 0.0) / gear.rb
         angle = self.tooth_angle(which, eta, n) + turn
-        pieces = [curve(t) for name, curve, _ in gear.half_profile() if name in ("flank", "rounding", "tip")]
+        pieces = [curve(t) for name, curve, _ in gear.half_profile() if name in ("flank", "rounding", "chamfer", "tip")]
         return rotate(np.concatenate(pieces), angle) + self.centers[which]
 
     def gap(self, eta, n):

@@ -97,6 +97,7 @@ def all_series():
         crowning(),
         fillet(),
         rounding(),
+        chamfer(),
     ]
     return {series.name: series for series in listed}
 
@@ -205,6 +206,17 @@ def fillet():
         refinement=0.5,
         refined=("stress_fillet",),
         stress=True,
+    )
+
+
+def chamfer():
+    return Series(
+        "calculix-chamfer",
+        "tip chamfer of 0.2 mm on both gears, no relief: its edge carries early and late",
+        standard_pair(relief=None, tip_chamfer=0.2),
+        (115.0,),
+        (0.1, 0.2, 0.24, 0.28, 0.32, 0.36, 0.5),
+        check_at=0.28,
     )
 
 

@@ -11,7 +11,7 @@ use super::rack::Trochoid;
 use super::tip::BrokenEdge;
 use super::{
     BlankRegion, GearData, GearError, Hole, HolePattern, Involute, Material, TipEdge,
-    ToothDeviations,
+    ToothDeviations, Vector,
 };
 
 /// A spur gear that can be made: neither undercut nor pointed, with its holes inside its blank.
@@ -84,14 +84,25 @@ impl SpurGear {
 
     /// The same gear with flanks as the rack cuts them, each like the other, up to a sharp tip.
     pub fn with_plain_flanks(&self) -> Self {
+        let plain = self.with_unmodified_flanks();
         Self {
             data: GearData {
                 tip_edge: TipEdge::Sharp,
+                ..plain.data
+            },
+            broken_edge: None,
+            ..plain
+        }
+    }
+
+    /// The same gear with flanks as the rack cuts them, each like the other, and the edge at the tip as it is.
+    pub fn with_unmodified_flanks(&self) -> Self {
+        Self {
+            data: GearData {
                 modifications: Vec::new(),
                 deviations: ToothDeviations::default(),
                 ..self.data.clone()
             },
-            broken_edge: None,
             modifications: Vec::new(),
             ..self.clone()
         }
@@ -245,6 +256,11 @@ impl SpurGear {
             || self.flank.half_angle(self.tip_radius()),
             |edge| edge.half_angle(),
         )
+    }
+
+    /// The point of the broken edge of tooth 0 at the part `t` of the way from the tip circle down to the flank; `None` of a sharp one.
+    pub fn edge_point(&self, t: f64) -> Option<Vector> {
+        self.broken_edge.map(|edge| edge.point(&self.flank, t).0)
     }
 
     /// The edge between flank and tip circle, if it is broken.
