@@ -15,14 +15,14 @@ use meshwright_engine::contact::WarmStart;
 use meshwright_engine::contact::facing::Facing;
 use meshwright_engine::contact::flank_table::FlankTable;
 use meshwright_engine::contact::{PairModel, Stage, solve_active_set};
-use meshwright_engine::fem::blank::BlankSubstructure;
-use meshwright_engine::fem::body::Coupling;
-use meshwright_engine::fem::harmonics::Harmonics;
-use meshwright_engine::fem::teeth::TeethRing;
-use meshwright_engine::fem::tooth::ToothSubstructure;
 use meshwright_engine::gear::{BlankRegion, Hole, HoleShape, SpurGear};
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::library::Library;
+use meshwright_engine::ring::blank::BlankSubstructure;
+use meshwright_engine::ring::body::Coupling;
+use meshwright_engine::ring::harmonics::Harmonics;
+use meshwright_engine::ring::teeth::TeethRing;
+use meshwright_engine::ring::tooth::ToothSubstructure;
 use meshwright_engine::run::Run;
 
 /// As in the program.

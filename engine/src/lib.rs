@@ -15,11 +15,11 @@
 //!    between flanks follow in closed form: the normal of an involute through any point is a tangent of its base circle
 //!    ([`contact::facing`], [`contact::patch`]).
 //! 2. **Substructures** ([`grid`], [`fem`]). One tooth sector is condensed exactly to its loaded flank and its interface:
-//!    H_0 is the flank's compliance with the interface held, Ψ its answer to the interface ([`fem::tooth`]). The blank
+//!    H_0 is the flank's compliance with the interface held, Ψ its answer to the interface ([`ring::tooth`]). The blank
 //!    between bore and R_w is any plane region with a thickness by region ([`gear::BlankRegion`]), condensed as a whole or, where
-//!    it is a pattern of holes, by the sector of one ([`fem::blank`]). Both meet on the circle R_w in trigonometric
-//!    polynomials, whatever Z, N and the angle of the holes ([`fem::harmonics`], [`fem::cyclic`], [`assembly::interface`]).
-//! 3. **Whole gears** ([`fem::body`], [`assembly::gear`]). C = (S_blank + S_teeth)⁻¹ on that circle, and between the flanks of
+//!    it is a pattern of holes, by the sector of one ([`ring::blank`]). Both meet on the circle R_w in trigonometric
+//!    polynomials, whatever Z, N and the angle of the holes ([`ring::harmonics`], [`ring::cyclic`], [`assembly::interface`]).
+//! 3. **Whole gears** ([`ring::body`], [`assembly::gear`]). C = (S_blank + S_teeth)⁻¹ on that circle, and between the flanks of
 //!    teeth i and j H_ij = δ_ij H_0 + Ψ_i C_ij Ψ_jᵀ, for every tooth on its own. Stresses inside follow from the same factors
 //!    ([`fem::recovery`]).
 //! 4. **Contact** ([`contact`]). At each position: minimize ½ pᵀHp + g_0ᵀp subject to wᵀp = F, p ≥ 0 (eqs. 4 to 6); δ is
@@ -29,16 +29,16 @@
 //!    and w: an exact active set and the augmented Lagrangian of eq. 7.
 //! 5. **Methods** ([`analysis`]). Flexible (section 2 of the paper), decomposition (section 3, eqs. 9 to 15), projected
 //!    decomposition (ours), and the classical load distribution (eqs. 4 and 5) from closed-form compliances
-//!    (`analysis::load_distribution`).
+//!    ([`load_distribution`], a room of its own).
 //!
 //! Where the rest of the paper went: the inner unknowns of the annulus (K_in,in and K_in,ed of eqs. 11 and 12) are eliminated
-//! exactly with every blank ([`fem::condensation`]); what is left of it on the circle R_w is [`fem::annulus`], on which
+//! exactly with every blank ([`fem::condensation`]); what is left of it on the circle R_w is [`ring::annulus`], on which
 //! `analysis::decomposition` puts the displacement of the whole gear. The frequency f_0 (eq. 2) is that of the true period ([`gear::GearPair::period`]), the
 //! first order of a [`analysis::spectrum::Spectrum`]. M and C (eq. 8) are dropped: everything is quasi-static.
 //!
 //! *Mesh* always means gear teeth in engagement; finite elements live on a [`grid::Grid`].
 //!
-//! The arrow: analysis → assembly → contact → fem → grid → gear. [`assembly`] makes a pair that is ready for contact of two drawings,
+//! The arrow: analysis → assembly → contact → fem → grid → gear; the load distribution stands beside, on the drawings and on Hertz. [`assembly`] makes a pair that is ready for contact of two drawings,
 //! part by part: teeth, blank, gear, pair. It asks [`assembly::Parts`] for each part; [`library`] is a layer around all of this that
 //! keeps parts for other cases, and no file of the mechanics knows it.
 
@@ -49,6 +49,8 @@ pub mod fem;
 pub mod gear;
 pub mod grid;
 pub mod library;
+pub mod load_distribution;
 pub mod quadrature;
+pub mod ring;
 pub mod root_finding;
 pub mod run;

@@ -12,9 +12,9 @@ use meshwright_engine::analysis::{
 use meshwright_engine::assembly::{Blanks, MakeAll, Modeling, PairSpec};
 use meshwright_engine::contact::positions::{contacts, contacts_keeping};
 use meshwright_engine::contact::{ContactError, FlankLoad, MeshContact, PositionError, WarmStart};
-use meshwright_engine::fem::annulus::Imposed;
 use meshwright_engine::gear::{GearData, GearPair, Material, Member, Rack, SpurGear};
 use meshwright_engine::library::Library;
+use meshwright_engine::ring::annulus::Imposed;
 use meshwright_engine::run::{Run, Stopped};
 
 fn solve(case: &Case, method: Method) -> Analysis {

@@ -126,10 +126,19 @@ fn each_part_knows_only_the_parts_below_it() {
     }
 }
 
-/// Inside the engine: analysis -> contact -> fem -> grid -> gear.
+/// Inside the engine: analysis -> assembly -> load_distribution, contact -> ring -> fem -> grid -> gear.
 #[test]
 fn the_mechanics_build_on_each_other_in_one_direction() {
-    let layers = ["gear", "grid", "fem", "contact", "analysis"];
+    let layers = [
+        "gear",
+        "grid",
+        "fem",
+        "ring",
+        "contact",
+        "load_distribution",
+        "assembly",
+        "analysis",
+    ];
     for (level, layer) in layers.iter().enumerate() {
         for file in rust_files(&root().join("engine/src").join(layer)) {
             let text = fs::read_to_string(&file).unwrap();

@@ -2,8 +2,9 @@
 
 use super::spectrum::RotationSpeed;
 use crate::contact::ContactSolver;
-use crate::gear::{GearPair, Member, PlaneState};
+use crate::gear::{GearPair, Member};
 use crate::grid::GridLevel;
+use crate::load_distribution::Formulas;
 
 /// The method that turns a gear pair into curves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -28,37 +29,6 @@ pub enum StiffnessRule {
         /// The step to either side over the torque.
         fraction: f64,
     },
-}
-
-/// The tooth compliance of the load distribution.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum ToothFormula {
-    /// Bending, shear and compression of the true profile (Weber and Banaschek).
-    WeberBanaschek,
-    /// The theoretical single stiffness of ISO 6336-1, which contains body and local deformation.
-    Iso6336,
-}
-
-/// The gear-body compliance of the load distribution.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum BodyFormula {
-    /// Sainsot, Velex and Duverger (2004).
-    Sainsot,
-    /// The half plane of Weber and Banaschek.
-    HalfPlane,
-    /// No body compliance.
-    Rigid,
-}
-
-/// The formulas of the load distribution.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Formulas {
-    /// The tooth's compliance.
-    pub tooth: ToothFormula,
-    /// The body's compliance.
-    pub body: BodyFormula,
-    /// The plane state of tooth, half plane and local deformation.
-    pub plane_state: PlaneState,
 }
 
 /// How finely and by which rules a case is computed.

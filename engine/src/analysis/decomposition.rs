@@ -16,9 +16,9 @@ use crate::assembly::{Blanks, CutGear, PartError};
 use crate::contact::positions::contacts_keeping;
 use crate::contact::{MeshContact, PairModel};
 use crate::fem::FemError;
-use crate::fem::annulus::{Annulus, Imposed};
-use crate::fem::motion::InterfaceMotion;
 use crate::gear::{Member, SpurGear};
+use crate::ring::annulus::{Annulus, Imposed};
+use crate::ring::motion::InterfaceMotion;
 
 /// The torque step to either side, over the torque, with which the paper's route differentiates.
 const TORQUE_STEP: f64 = 0.01;

@@ -1,10 +1,10 @@
 //! Why a case could not be computed.
 
-use super::load_distribution::Formula;
 use crate::assembly::AssemblyError;
 use crate::contact::positions::PositionsError;
 use crate::contact::{ContactError, PositionError};
 use crate::gear::Member;
+use crate::load_distribution::{Formula, FormulaError};
 use crate::run::Stopped;
 
 /// Why a case could not be computed.
@@ -93,6 +93,23 @@ impl From<PositionsError> for AnalysisError {
                 error,
             } => Self::at_position(error, mesh_position),
             PositionsError::Stopped(stopped) => Self::Stopped(stopped),
+        }
+    }
+}
+
+impl From<FormulaError> for AnalysisError {
+    fn from(error: FormulaError) -> Self {
+        match error {
+            FormulaError::NoContact { mesh_position } => Self::NoContact { mesh_position },
+            FormulaError::NoCompliance {
+                formula,
+                member,
+                compliance,
+            } => Self::NoFormula {
+                formula,
+                member,
+                compliance,
+            },
         }
     }
 }

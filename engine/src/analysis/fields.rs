@@ -12,9 +12,9 @@ use crate::contact::{FlankLoad, Stage, WarmStart};
 use crate::fem::FemError;
 use crate::fem::prescribed::{Load, displacements};
 use crate::fem::recovery::{Functional, stresses};
-use crate::fem::teeth::FARTHEST_COUPLED;
 use crate::gear::{Member, SpurGear, Vector, radial, tangential};
 use crate::grid::{BlankGrid, Element, Grid, ToothGrid};
+use crate::ring::teeth::FARTHEST_COUPLED;
 use crate::run::Run;
 
 /// What goes on in one gear, node by node, where it stands at a mesh position: the driving axis is the origin, the driven one lies on

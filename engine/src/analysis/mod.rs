@@ -23,22 +23,24 @@ pub mod spectrum;
 pub mod stress;
 pub mod warning;
 
-pub use case::{BodyFormula, Case, Formulas, Method, Resolution, StiffnessRule, ToothFormula};
+pub use case::{Case, Method, Resolution, StiffnessRule};
 pub use curve::{Analysis, Curve, Statistics};
 pub use error::AnalysisError;
 pub use estimate::{Estimate, estimate};
 pub use evidence::{ErrorEstimate, Evidence};
-pub use load_distribution::{Formula, FormulaQuantity, FormulaRange};
 pub use orders::{OrderCause, OrderKind};
 pub use warning::{Warning, warnings};
 
 pub use crate::contact::ContactSolver;
 pub use crate::gear::PlaneState;
+pub use crate::load_distribution::{
+    BodyFormula, Formula, FormulaQuantity, FormulaRange, Formulas, ToothFormula,
+};
 
 use crate::assembly::{Blanks, Parts};
 use crate::contact::PairModel;
-use crate::fem::teeth::FARTHEST_COUPLED;
 use crate::grid::GridLevel;
+use crate::ring::teeth::FARTHEST_COUPLED;
 use crate::run::Run;
 use setup::Setup;
 use warning::warn_of_pressures;
@@ -91,7 +93,7 @@ fn analyze_at(
             Method::Flexible => flexible::solve(setup),
             Method::Decomposition => decomposition::solve(setup),
             Method::ProjectedDecomposition => projected::solve(setup),
-            Method::LoadDistribution => load_distribution::distribute(case, run),
+            Method::LoadDistribution => load_distribution::solve(case, run),
         };
         match answer {
             Err(AnalysisError::TooFarApart { .. }) if farthest < FARTHEST_COUPLED => farthest *= 2,

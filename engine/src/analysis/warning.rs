@@ -1,9 +1,10 @@
 //! What a reader of a result should know beside the numbers.
 
-use super::load_distribution::{FormulaRange, out_of_range};
+use super::load_distribution::out_of_range;
 use super::{Case, Curve, Method, Statistics};
 use crate::contact::MeshContact;
 use crate::gear::Member;
+use crate::load_distribution::FormulaRange;
 
 /// Backlash below this, in modules, counts as none.
 const NO_BACKLASH: f64 = 1e-6;

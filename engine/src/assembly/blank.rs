@@ -2,12 +2,12 @@
 
 use super::PartError;
 use super::interface::orders_of_blank;
-use crate::fem::blank::{BlankRecovery, BlankSubstructure};
-use crate::fem::cyclic::Harmonics;
 use crate::fem::recovery::Functional;
 use crate::gear::SpurGear;
 use crate::grid::blank::ELEMENTS_PER_TOOTH;
 use crate::grid::{BlankGrid, GridError, GridLevel};
+use crate::ring::blank::{BlankRecovery, BlankSubstructure};
+use crate::ring::cyclic::Harmonics;
 use crate::run::Run;
 
 /// Elements of the blank along the interface circle for each tooth, at most: a rim so thin that it would want more is
@@ -92,9 +92,15 @@ pub fn blank_grid(
     level: GridLevel,
 ) -> Result<BlankGrid, GridError> {
     let z = f64::from(gear.tooth_count());
-    let orders = orders_of_blank(gear, interface_radius, GridLevel::Standard).largest;
+    let orders = |level| orders_of_blank(gear, interface_radius, level).largest as f64 / z;
     // Seven nodes, three and a half elements, for two wavelengths of the highest order.
-    let of_orders = 1.75 * orders as f64 / z;
+    let of_orders = 1.75 * orders(GridLevel::Standard);
+    // The coarse level has half of them, and needs five nodes: with four and fewer an order is mistaken for a low one, which makes a
+    // solid blank softer than a holed one, whose highest orders are solved apart.
+    let of_coarse = match level {
+        GridLevel::Coarse => 2.0 * (1.25 * orders(level)).ceil(),
+        GridLevel::Standard | GridLevel::Fine => 0.0,
+    };
     // Holes are as large as their gear and not as its teeth.
     let least = if gear.holes().is_empty() {
         ELEMENTS_PER_TOOTH
@@ -115,7 +121,9 @@ pub fn blank_grid(
         gear.face_width(),
         interface_radius,
         gear.tooth_count(),
-        of_orders.clamp(least, MOST_ELEMENTS_PER_TOOTH),
+        of_orders
+            .clamp(least, MOST_ELEMENTS_PER_TOOTH)
+            .max(of_coarse),
         level,
     )
 }

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use super::{Carrier, GearSpec, PartError, Parts, Teeth};
 use crate::contact::FlankLoad;
 use crate::fem::FemError;
-use crate::fem::annulus::{Annulus, Imposed};
-use crate::fem::blank::BlankSubstructure;
-use crate::fem::motion::InterfaceMotion;
+use crate::ring::annulus::{Annulus, Imposed};
+use crate::ring::blank::BlankSubstructure;
+use crate::ring::motion::InterfaceMotion;
 use crate::run::Run;
 
 /// A gear cut at its interface circle.

@@ -6,10 +6,10 @@ use rayon::prelude::*;
 
 use super::{AssemblyError, BlankSpec, PartError, Parts, Teeth, TeethSpec};
 use crate::contact::GearModel;
-use crate::fem::blank::BlankSubstructure;
-use crate::fem::body::Coupling;
 use crate::gear::{Member, SpurGear};
 use crate::grid::{BlankGrid, GridLevel, ToothGrid};
+use crate::ring::blank::BlankSubstructure;
+use crate::ring::body::Coupling;
 use crate::run::Run;
 
 /// What a gear depends on.

@@ -7,11 +7,11 @@ use super::cut::{CutBlank, CutGear};
 use super::{GearGrids, GearSpec, PartError, Parts};
 use crate::contact::FlankLoad;
 use crate::fem::FemError;
-use crate::fem::blank::BlankRecovery;
-use crate::fem::motion::InterfaceMotion;
 use crate::fem::recovery::Functional;
-use crate::fem::teeth_recovery::TeethRecovery;
-use crate::fem::tooth::ToothSubstructure;
+use crate::ring::blank::BlankRecovery;
+use crate::ring::motion::InterfaceMotion;
+use crate::ring::teeth_recovery::TeethRecovery;
+use crate::ring::tooth::ToothSubstructure;
 use crate::run::Run;
 
 /// What is asked of the inside of a gear.

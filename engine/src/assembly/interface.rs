@@ -1,8 +1,8 @@
 //! The interface circle, on which teeth and blank meet: where it lies, and the orders that it carries.
 
-use crate::fem::cyclic::Harmonics;
 use crate::gear::SpurGear;
 use crate::grid::GridLevel;
+use crate::ring::cyclic::Harmonics;
 
 /// Orders on the interface circle for each tooth, at most: beyond, the grids do not follow.
 const MOST_ORDERS_PER_TOOTH: usize = 8;

@@ -7,9 +7,9 @@ use crate::contact::drawn::DrawnFlanks;
 use crate::contact::positions::{PositionsError, contacts};
 use crate::contact::{MeshContact, PairModel};
 use crate::fem::FemError;
-use crate::fem::blank::BlankSubstructure;
 use crate::gear::{GearPair, Member};
 use crate::grid::GridError;
+use crate::ring::blank::BlankSubstructure;
 use crate::run::{Run, Stopped};
 
 /// Who provides parts: whoever makes them all ([`MakeAll`]), or keeps what others have made ([`crate::library::Library`]).

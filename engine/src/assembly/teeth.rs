@@ -5,11 +5,11 @@ use std::sync::Arc;
 use super::PartError;
 use super::interface::harmonics;
 use crate::contact::flank_table::FlankTable;
-use crate::fem::body::Coupling;
-use crate::fem::teeth::{FARTHEST_COUPLED, TeethRing};
-use crate::fem::tooth::ToothSubstructure;
 use crate::gear::SpurGear;
 use crate::grid::{GridError, GridLevel, ToothGrid};
+use crate::ring::body::Coupling;
+use crate::ring::teeth::{FARTHEST_COUPLED, TeethRing};
+use crate::ring::tooth::ToothSubstructure;
 use crate::run::Run;
 
 /// What the teeth of a gear depend on.

@@ -95,7 +95,7 @@ pub struct PairLoads {
 pub struct FlankLoad {
     /// The tooth.
     pub tooth: usize,
-    /// The forces in N on the unknowns of its flank ([`crate::fem::tooth::ToothSubstructure`]).
+    /// The forces in N on the unknowns of its flank ([`crate::ring::tooth::ToothSubstructure`]).
     pub forces: Vec<f64>,
 }
 

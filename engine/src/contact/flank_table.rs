@@ -10,8 +10,8 @@ use faer::Mat;
 use super::corner::{Corner, block};
 use super::half_plane::logarithm_factor;
 use crate::fem::dense::entries;
-use crate::fem::tooth::{ToothSubstructure, modal_loads};
 use crate::gear::{Involute, SpurGear, TipEdge};
+use crate::ring::tooth::{ToothSubstructure, modal_loads};
 
 /// Nodes this near to each other (two elements) see the grid rather than the body in their compliance.
 const NEAR: usize = 4;

@@ -6,8 +6,8 @@ use super::drawn::DrawnFlanks;
 use super::flank_table::FlankTable;
 use super::stage::Stage;
 use super::{ContactError, MeshCells, MeshContact};
-use crate::fem::body::Coupling;
 use crate::gear::GearPair;
+use crate::ring::body::Coupling;
 use crate::run::Run;
 
 /// The solver of the contact conditions.

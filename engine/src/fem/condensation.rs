@@ -8,11 +8,11 @@ use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, Mat, Par};
 
 use super::FemError;
-use super::assembly::{BlockMatrix, Numbering};
 use super::dense::mirror_lower;
-use super::element::{self, ElementStiffness};
+use super::element::{self, COMPONENTS, ElementStiffness};
 use super::factor::Factor;
 use super::recovery::Functional;
+use super::sparse::{BlockMatrix, Numbering};
 use crate::gear::Material;
 use crate::grid::Grid;
 
@@ -76,13 +76,13 @@ pub fn condense_with(
     asked: &[Functional],
 ) -> Result<Condensed, FemError> {
     let numbering = Numbering::new(grid.nodes.len(), kept, fixed);
-    let mut matrix = BlockMatrix::new(&grid.elements, &numbering);
+    let mut matrix = BlockMatrix::<COMPONENTS>::new(&grid.elements, &numbering);
     for (element, k) in grid
         .elements
         .iter()
         .zip(element_stiffnesses(grid, material, thickness))
     {
-        matrix.add(element, &k, &numbering);
+        matrix.add(element, |i, j| k[(i, j)], &numbering);
     }
     // Springs on the kept unknowns make a floating grid definite; they add to the Schur complement exactly and are taken
     // off again below.

@@ -2,9 +2,13 @@
 
 use nalgebra::{Matrix2, SMatrix};
 
+use super::law::Law;
 use crate::gear::{Material, Vector};
 use crate::grid::ElementKind;
 use crate::grid::element::MOST_NODES;
+
+/// The components of the displacement of a node.
+pub const COMPONENTS: usize = 2;
 
 /// The stiffness of one element, in N/m: unknowns (u_x, u_y) node by node. A triangle fills the first 12 rows and columns.
 pub type ElementStiffness = SMatrix<f64, 16, 16>;
@@ -36,23 +40,19 @@ pub fn gradients(
 }
 
 /// The stiffness of the element on `nodes`, of thickness `thickness` in meters, by its rule of degree 5.
-///
-/// Plane stress: D = E/(1 − ν²) [[1, ν, 0], [ν, 1, 0], [0, 0, (1 − ν)/2]].
 pub fn stiffness(
     kind: ElementKind,
     nodes: &[Vector; MOST_NODES],
     material: &Material,
     thickness: f64,
 ) -> ElementStiffness {
-    let (e, nu) = (material.youngs_modulus, material.poisson_ratio);
-    let d = e / (1.0 - nu * nu);
-    let g = e / (2.0 * (1.0 + nu));
+    let law = Law::plane_stress(material);
     let mut k = ElementStiffness::zeros();
     let count = kind.node_places().len();
     for &(xi, eta, w) in kind.rule() {
         let (gradient, det) = gradients(kind, nodes, xi, eta);
         let weight = w * det * thickness;
-        let (dd, dn, dg) = (d * weight, d * nu * weight, g * weight);
+        let (dd, dn, dg) = (law.along * weight, law.across * weight, law.shear * weight);
         for (j, &(xj, yj)) in gradient.iter().enumerate().take(count) {
             let (ddx, ddy, dnx, dny) = (dd * xj, dd * yj, dn * xj, dn * yj);
             let (dgx, dgy) = (dg * xj, dg * yj);

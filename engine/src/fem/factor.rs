@@ -11,8 +11,9 @@ use faer::sparse::linalg::cholesky::{
 use faer::{Conj, Mat, Par, Side};
 
 use super::FemError;
-use super::assembly::{BlockMatrix, Failure, Numbering};
+use super::element::COMPONENTS;
 use super::recovery::Functional;
+use super::sparse::{BlockMatrix, Failure, Numbering};
 
 /// The supernodal Cholesky factor of a sparse matrix, the unknowns from `interior` on last.
 pub(super) struct Factor {
@@ -24,16 +25,16 @@ pub(super) struct Factor {
 
 impl Factor {
     /// Factorizes `matrix`, that of `part`, in an order of few entries which leaves the kept nodes of `numbering` last.
-    pub(super) fn new(
+    pub(super) fn new<const C: usize>(
         part: &'static str,
-        matrix: BlockMatrix,
+        matrix: BlockMatrix<C>,
         numbering: &Numbering,
     ) -> Result<Self, FemError> {
-        let unknowns = 2 * numbering.count;
+        let unknowns = C * numbering.count;
         let order = matrix.fill_reducing_order(numbering.interior);
         order
             .and_then(|order| {
-                Self::in_order(&matrix.into_unknowns(), order, 2 * numbering.interior)
+                Self::in_order(&matrix.into_unknowns(), order, C * numbering.interior)
             })
             .map_err(|failure| match failure {
                 Failure::Size => FemError::TooLarge { part, unknowns },
@@ -137,8 +138,8 @@ impl Factor {
                 let Some(node) = numbering.place(node) else {
                     continue;
                 };
-                solved[(place[2 * node] as usize, column)] += weight.x;
-                solved[(place[2 * node + 1] as usize, column)] += weight.y;
+                solved[(place[COMPONENTS * node] as usize, column)] += weight.x;
+                solved[(place[COMPONENTS * node + 1] as usize, column)] += weight.y;
             }
         }
         let scratch = self

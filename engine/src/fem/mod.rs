@@ -1,30 +1,17 @@
-//! Plane-stress finite elements and exact substructuring.
+//! The kernel of finite elements: from the elements of a grid to what is left of it on some of its unknowns.
 //!
-//! Read in this order: [`element`] (one element), [`condensation`] (a grid's stiffness on the unknowns that are kept),
-//! [`recovery`] (displacements and stresses of the others),
-//! [`harmonics`] (the unknowns of an interface circle), [`cyclic`] (N equal sectors joined into a ring on them), [`tooth`], [`teeth`] (the ring of them), [`blank`], and
-//! [`body`], which joins them into the compliance of a whole gear. What happens inside: [`motion`]
-//! (of the interface circle under loads), [`teeth_recovery`] and [`blank::BlankRecovery`], and [`prescribed`] (at every node). A blank by itself: [`annulus`]. Beside them: [`dense`] and `factor`
-//! (factorizations), `axes` and `modes`.
+//! Read in this order: [`law`] (what strains stress), [`element`] (one element), `sparse` (the matrix of a grid) and `factor`,
+//! [`condensation`] (a grid's stiffness on the unknowns that are kept), [`recovery`] (displacements and stresses of the others), and
+//! [`prescribed`] (at every node). Beside them: [`dense`]. It knows grids and materials, and nothing of gears.
 
-pub mod annulus;
-mod assembly;
-mod axes;
-pub mod blank;
-pub mod body;
 pub mod condensation;
-pub mod cyclic;
 pub mod dense;
 pub mod element;
 mod factor;
-pub mod harmonics;
-mod modes;
-pub mod motion;
+pub mod law;
 pub mod prescribed;
 pub mod recovery;
-pub mod teeth;
-pub mod teeth_recovery;
-pub mod tooth;
+mod sparse;
 
 use crate::run::Stopped;
 

@@ -3,9 +3,10 @@
 use faer::Mat;
 
 use super::FemError;
-use super::assembly::{BlockMatrix, Numbering};
 use super::condensation::element_stiffnesses;
+use super::element::COMPONENTS;
 use super::factor::Factor;
+use super::sparse::{BlockMatrix, Numbering};
 use crate::gear::{Material, Vector};
 use crate::grid::Grid;
 
@@ -40,12 +41,12 @@ pub fn displacements(
     for (place, node) in moved.iter().enumerate() {
         places[*node as usize] = place;
     }
-    let mut matrix = BlockMatrix::new(&grid.elements, &numbering);
+    let mut matrix = BlockMatrix::<COMPONENTS>::new(&grid.elements, &numbering);
     // The elements that reach a moved node pull at the free ones.
     let mut reaching = Vec::new();
     let stiffnesses = element_stiffnesses(grid, material, thickness);
     for (element, stiffness) in grid.elements.iter().zip(stiffnesses) {
-        matrix.add(element, &stiffness, &numbering);
+        matrix.add(element, |i, j| stiffness[(i, j)], &numbering);
         let mut nodes = element.nodes().iter();
         if nodes.any(|node| places[*node as usize] != usize::MAX) {
             reaching.push((element, stiffness));

@@ -7,11 +7,11 @@
 //!
 //! 1. The contact gives each loaded tooth j its forces p_j on the flank's unknowns: along the outward normal, so pressure is
 //!    negative, and towards the tip, node by node.
-//! 2. m_j = Vᵀ p_j are its modal loads ([`super::tooth::modal_loads`]).
-//! 3. q = C Σ_j F_j m_j is the motion of the interface circle ([`super::motion::InterfaceMotion::under`]).
-//! 4. Along the fillet of tooth i: [`super::teeth_recovery::TeethRecovery::values`] of p_i, all m_j and q, for the
+//! 2. m_j = Vᵀ p_j are its modal loads ([`crate::ring::tooth::modal_loads`]).
+//! 3. q = C Σ_j F_j m_j is the motion of the interface circle ([`crate::ring::motion::InterfaceMotion::under`]).
+//! 4. Along the fillet of tooth i: [`crate::ring::teeth_recovery::TeethRecovery::values`] of p_i, all m_j and q, for the
 //!    [`edge_stresses`] of [`crate::grid::ToothGrid::fillet_nodes`].
-//! 5. Along the edge of a hole: [`super::blank::BlankRecovery::values`] of q, for the [`edge_stresses`] of
+//! 5. Along the edge of a hole: [`crate::ring::blank::BlankRecovery::values`] of q, for the [`edge_stresses`] of
 //!    [`crate::grid::BlankGrid::hole_edges`].
 //!
 //! On a free edge the von Mises stress is the absolute value of the stress along it. Elsewhere, and on loaded edges, take
@@ -20,6 +20,7 @@
 use std::collections::HashMap;
 
 use super::element::gradients;
+use super::law::Law;
 use crate::gear::{Material, Vector};
 use crate::grid::{Element, Grid};
 
@@ -151,16 +152,15 @@ fn stress_at(
     element: &Element,
     local: usize,
 ) -> impl Iterator<Item = (u32, [Vector; 3])> {
-    let (e, nu) = (material.youngs_modulus, material.poisson_ratio);
-    let (d, g) = (e / (1.0 - nu * nu), e / (2.0 * (1.0 + nu)));
+    let law = Law::plane_stress(material);
     let (xi, eta) = element.kind().node_places()[local];
     let (gradient, _) = gradients(element.kind(), &element.places(&grid.nodes), xi, eta);
     let nodes = element.nodes().iter().copied().zip(gradient);
     nodes.map(move |(node, (by_x, by_y))| {
         let weights = [
-            d * Vector::new(by_x, nu * by_y),
-            d * Vector::new(nu * by_x, by_y),
-            g * Vector::new(by_y, by_x),
+            Vector::new(law.along * by_x, law.across * by_y),
+            Vector::new(law.across * by_x, law.along * by_y),
+            law.shear * Vector::new(by_y, by_x),
         ];
         (node, weights)
     })

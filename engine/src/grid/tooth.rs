@@ -64,8 +64,8 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::*;
-    use crate::gear::radial;
     use crate::gear::spur::tests::paper_gear;
+    use crate::gear::{TipEdge, radial};
     use crate::grid::root_curve::RootCurve;
     use crate::grid::tooth_plan::{SIZE_AT_TIP, SIZE_ON_FLANK};
 
@@ -157,6 +157,59 @@ mod tests {
                 grid.area()
             );
         }
+    }
+
+    #[test]
+    fn broken_edges_are_followed_by_sound_elements_and_take_off_the_area_that_they_should() {
+        let mut count = 0;
+        for (gear, depth) in sweep().into_iter().step_by(7) {
+            let m = gear.data().rack.module;
+            for edge in [0.05, 0.1, 0.2, 0.35]
+                .into_iter()
+                .flat_map(|part| [TipEdge::Rounded(part * m), TipEdge::Chamfered(part * m)])
+            {
+                let mut data = gear.data().clone();
+                data.tip_edge = edge;
+                let Ok(broken) = SpurGear::new(data) else {
+                    continue;
+                };
+                for level in LEVELS {
+                    let tooth = divided(&broken, depth, level);
+                    let quality = tooth.grid.quality();
+                    assert!(
+                        quality.smallest_angle.to_degrees() > 18.0,
+                        "{edge:?} {:?} {:?}",
+                        gear.data(),
+                        quality
+                    );
+                    let rolls = &tooth.flank_roll_lengths;
+                    assert_eq!(rolls.len(), tooth.flank_nodes.len());
+                    assert!(rolls.windows(2).all(|s| s[0] < s[1]));
+                    assert!(rolls.contains(&broken.tip_form_roll_length()));
+                }
+                let grid = divided(&broken, depth, GridLevel::Standard).grid;
+                let r_w = gear.root_radius() - depth * m;
+                let ring = broken.mass() / (gear.data().material.density * gear.face_width());
+                let bore = gear.bore_radius();
+                let area = (ring + PI * (bore * bore - r_w * r_w)) / f64::from(gear.tooth_count());
+                // The cap that is left out of a rounding, and of a chamfer that leaves hardly any land.
+                let thin =
+                    broken.tip_half_angle() < 0.3 * gear.flank().half_angle(gear.tip_radius());
+                let cap = match edge {
+                    TipEdge::Rounded(amount) => 0.2 * amount * gear.tip_thickness(),
+                    TipEdge::Chamfered(amount) if thin => 0.2 * amount * gear.tip_thickness(),
+                    _ => 0.0,
+                };
+                let missing = area - grid.area();
+                assert!(
+                    (-3e-4 * area..3e-4 * area + cap).contains(&missing),
+                    "{edge:?} {:e} of {area:e}, cap {cap:e}",
+                    missing
+                );
+                count += 1;
+            }
+        }
+        assert!(count > 100, "{count}");
     }
 
     #[test]

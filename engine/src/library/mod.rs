@@ -16,7 +16,7 @@ use crate::assembly::{
 use crate::contact::drawn::DrawnFlanks;
 use crate::contact::positions::{PositionsError, contacts};
 use crate::contact::{MeshContact, PairModel};
-use crate::fem::blank::BlankSubstructure;
+use crate::ring::blank::BlankSubstructure;
 use crate::run::Run;
 use shelf::Shelf;
 

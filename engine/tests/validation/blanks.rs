@@ -7,20 +7,20 @@
 use std::f64::consts::{PI, TAU};
 
 use faer::Mat;
-use meshwright_engine::fem::blank::BlankSubstructure;
-use meshwright_engine::fem::body::Coupling;
 use meshwright_engine::fem::condensation::condense_with;
-use meshwright_engine::fem::cyclic::{Component, Harmonics};
 use meshwright_engine::fem::recovery::{Functional, edge_stresses, nodal_stresses};
-use meshwright_engine::fem::teeth::TeethRing;
-use meshwright_engine::fem::tooth::ToothSubstructure;
 use meshwright_engine::gear::{
     BlankRegion, Hole, HolePattern, HoleShape, SpurGear, Vector, Web, radial, tangential,
 };
 use meshwright_engine::grid::{BlankGrid, Grid, GridLevel, ToothGrid};
+use meshwright_engine::ring::blank::BlankSubstructure;
+use meshwright_engine::ring::body::Coupling;
+use meshwright_engine::ring::cyclic::{Component, Harmonics};
+use meshwright_engine::ring::teeth::TeethRing;
+use meshwright_engine::ring::tooth::ToothSubstructure;
 use meshwright_engine::run::Run;
 
-use crate::support::{STEEL, gear};
+use crate::support::{STEEL, case, gear, pair, solve};
 
 const LEVELS: [GridLevel; 3] = [GridLevel::Coarse, GridLevel::Standard, GridLevel::Fine];
 const FACE_WIDTH: f64 = 20e-3;
@@ -291,6 +291,42 @@ fn slots_of_no_angle_are_round_holes() {
     println!("a slot of 1e-9 rad: apart by {change:.1e}");
     // Points of its grid may be moved by another step; that shows far below what the coarse level resolves.
     assert!(change < 1e-4);
+}
+
+#[test]
+fn a_lone_hole_across_the_edge_of_a_web_stiffens_nothing_on_the_coarse_grid() {
+    // The web ends close below the roots, so that the interface circle carries two orders a tooth. On the fine grid the hole makes δ
+    // larger by 2e-4.
+    let mut solid = gear(77, 34.52e-3);
+    let module = 1.302_404_634_622_604e-3;
+    solid.rack.module = module;
+    solid.rack.addendum = module;
+    solid.rack.dedendum = 1.25 * module;
+    solid.rack.tip_radius = 0.38 * module;
+    solid.profile_shift = 0.613_679_920_163_884_9;
+    solid.blank.web = Some(Web {
+        inner_radius: 39.698e-3,
+        outer_radius: 47.314e-3,
+        thickness: 0.876 * FACE_WIDTH,
+    });
+    let mut holed = solid.clone();
+    holed.blank.holes = vec![round(40.564e-3, -1.3869, 4.265e-3)];
+    let mut mate = solid.clone();
+    mate.tooth_count = 29;
+    mate.profile_shift = -0.154_821_749_953_125_2;
+    mate.blank = BlankRegion::solid(2.56e-3);
+    let delta = |driving| {
+        let pair = pair(driving, mate.clone(), 69.792_574e-3);
+        let mut case = case(pair, &[5.0]);
+        case.resolution.grid = GridLevel::Coarse;
+        case.resolution.positions_per_mesh_period = 4;
+        case.resolution.span_mesh_periods = Some(1);
+        solve(&case).curves.remove(0).transmission_error
+    };
+    for (holed, solid) in delta(holed).into_iter().zip(delta(solid)) {
+        println!("{:+.2e}", holed / solid - 1.0);
+        assert!(holed > (1.0 - 1e-4) * solid);
+    }
 }
 
 /// The thickness of rings from the bore out, each with its inner radius.

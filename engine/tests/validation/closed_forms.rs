@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 
 use meshwright_engine::analysis::pair_model;
 use meshwright_engine::contact::WarmStart;
-use meshwright_engine::fem::blank::BlankSubstructure;
-use meshwright_engine::fem::cyclic::{Component, Harmonics};
 use meshwright_engine::grid::{BlankGrid, GridLevel};
+use meshwright_engine::ring::blank::BlankSubstructure;
+use meshwright_engine::ring::cyclic::{Component, Harmonics};
 use meshwright_engine::run::Run;
 
 use crate::support::{STEEL, case, gear, library, pair, standard_pair};

@@ -1,15 +1,15 @@
 //! Stresses inside a whole gear by recovery rows against the same gear solved whole, and settled with the grid.
 
 use meshwright_engine::assembly::interface::default_interface_radius;
-use meshwright_engine::fem::blank::BlankSubstructure;
-use meshwright_engine::fem::cyclic::Harmonics;
-use meshwright_engine::fem::motion::InterfaceMotion;
 use meshwright_engine::fem::recovery::edge_stresses;
-use meshwright_engine::fem::teeth::TeethRing;
-use meshwright_engine::fem::teeth_recovery::TeethRecovery;
-use meshwright_engine::fem::tooth::{ToothSubstructure, modal_loads};
 use meshwright_engine::gear::SpurGear;
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
+use meshwright_engine::ring::blank::BlankSubstructure;
+use meshwright_engine::ring::cyclic::Harmonics;
+use meshwright_engine::ring::motion::InterfaceMotion;
+use meshwright_engine::ring::teeth::TeethRing;
+use meshwright_engine::ring::teeth_recovery::TeethRecovery;
+use meshwright_engine::ring::tooth::{ToothSubstructure, modal_loads};
 use meshwright_engine::run::Run;
 
 use crate::support::{gear, holed};
@@ -130,7 +130,7 @@ fn by_the_whole(level: GridLevel, teeth: &[usize], orders: usize) -> Stresses {
     for (loaded, forces) in LOADED.into_iter().zip(&forces) {
         for (i, force) in forces.chunks(2).enumerate() {
             let t = gear.flank().tangent_angle(tooth.flank_roll_lengths[i])
-                + meshwright_engine::fem::body::tooth_angle(loaded, 18);
+                + meshwright_engine::ring::body::tooth_angle(loaded, 18);
             nodal[whole.flank_node(loaded, i) as usize] +=
                 force[0] * meshwright_engine::gear::tangential(t);
         }
@@ -161,7 +161,7 @@ fn by_the_whole(level: GridLevel, teeth: &[usize], orders: usize) -> Stresses {
                 along(
                     &fillet,
                     &whole.teeth[*t],
-                    meshwright_engine::fem::body::tooth_angle(*t, 18),
+                    meshwright_engine::ring::body::tooth_angle(*t, 18),
                 )
             })
             .collect(),

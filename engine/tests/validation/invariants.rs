@@ -7,13 +7,13 @@ use meshwright_engine::analysis::{Case, ContactSolver, Curve, StiffnessRule, ana
 use meshwright_engine::assembly::interface::{default_interface_radius, harmonics};
 use meshwright_engine::assembly::{Parts, TeethSpec};
 use meshwright_engine::contact::{MeshCells, WarmStart};
-use meshwright_engine::fem::blank::BlankSubstructure;
-use meshwright_engine::fem::body::{Coupling, tooth_angle};
 use meshwright_engine::gear::{GearPair, Member, SpurGear, Vector, radial, tangential};
 use meshwright_engine::grid::blank::ELEMENTS_PER_TOOTH;
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::library::Library;
 use meshwright_engine::quadrature::GAUSS_3;
+use meshwright_engine::ring::blank::BlankSubstructure;
+use meshwright_engine::ring::body::{Coupling, tooth_angle};
 use meshwright_engine::run::Run;
 use nalgebra::DMatrix;
 

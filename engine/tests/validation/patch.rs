@@ -7,11 +7,11 @@
 //! substructure holds its bore; so the linear field is imposed on two rings of the blank's own elements.)
 
 use meshwright_engine::assembly::interface::default_interface_radius;
-use meshwright_engine::fem::cyclic::{Component, Harmonics};
-use meshwright_engine::fem::teeth::TeethRing;
-use meshwright_engine::fem::tooth::ToothSubstructure;
 use meshwright_engine::gear::{SpurGear, Vector, radial};
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
+use meshwright_engine::ring::cyclic::{Component, Harmonics};
+use meshwright_engine::ring::teeth::TeethRing;
+use meshwright_engine::ring::tooth::ToothSubstructure;
 use meshwright_engine::run::Run;
 
 use crate::support::{STEEL, gear, holed};

@@ -4,13 +4,13 @@ use std::collections::HashMap;
 
 use faer::Mat;
 use meshwright_engine::assembly::interface::{default_interface_radius, harmonics};
-use meshwright_engine::fem::blank::BlankSubstructure;
-use meshwright_engine::fem::body::{Coupling, tooth_angle};
-use meshwright_engine::fem::cyclic::Harmonics;
-use meshwright_engine::fem::teeth::TeethRing;
-use meshwright_engine::fem::tooth::ToothSubstructure;
 use meshwright_engine::gear::{SpurGear, Vector, radial, tangential};
 use meshwright_engine::grid::{BlankGrid, Element, Grid, GridLevel, ToothGrid};
+use meshwright_engine::ring::blank::BlankSubstructure;
+use meshwright_engine::ring::body::{Coupling, tooth_angle};
+use meshwright_engine::ring::cyclic::Harmonics;
+use meshwright_engine::ring::teeth::TeethRing;
+use meshwright_engine::ring::tooth::ToothSubstructure;
 use meshwright_engine::run::Run;
 
 use crate::support::{gear, holed};

@@ -1,54 +1,15 @@
-//! The classical route: contact on the theoretical line of contact, compliances from formulas (eqs. 4-5 of the
-//! paper).
-//!
-//! A loaded pair of teeth gives way in three places, and for each there is a closed form. Forces act along the line
-//! of action, so compliances (m/N) add up in series over the two gears:
-//!
-//! | what gives way | formula | file |
-//! | --- | --- | --- |
-//! | the tooth, a cantilever of varying section | Weber and Banaschek's integral over the true profile | `weber_banaschek` |
-//! | the body under the tooth, as a ring on a rigid bore | Sainsot, Velex and Duverger | `sainsot` |
-//! | the body under the tooth, as a half plane | Weber and Banaschek | `half_plane` |
-//! | the flanks at the contact | Hertz, and Weber's approach of points at a depth | `approach` |
-//! | all of it at once, per pair of teeth | ISO 6336-1, method B, single stiffness | `iso6336` |
-//!
-//! Reading order: `tooth_load` and `profile` (where the load line meets the tooth, and how thick it is), then the table from
-//! top to bottom, `compliance` (which pairs touch, and their formulas), `sharing` (how they share the load) and `range`
-//! (where formulas are used outside the range for which they were published: computed, and flagged).
-//!
-//! Where the face widths differ, each tooth and body yields by its own width, and the flanks touch on the common one; ISO's
-//! stiffness is that of the common width.
-//!
-//! What this route cannot see: holes (a body is a ring or a half plane), and the body that neighboring pairs share -
-//! each pair carries a body of its own, so that the deflection of one tooth does not tilt the next. ISO's single
-//! stiffness knows neither position nor bore nor load.
+//! The load distribution ([`crate::load_distribution`]) as a method: position by position, torque by torque.
 
-mod approach;
-mod compliance;
-mod half_plane;
-mod iso6336;
-mod profile;
-mod range;
-mod sainsot;
-mod sharing;
-mod tooth_load;
-mod weber_banaschek;
-
-pub use range::{Formula, FormulaQuantity, FormulaRange};
-
-use super::case::{BodyFormula, Case, StiffnessRule, ToothFormula};
+use super::case::{Case, StiffnessRule};
 use super::curve::LoadShare;
 use super::curve_parts::CurveParts;
 use super::warning::warnings;
 use super::{Analysis, AnalysisError, Evidence};
-use crate::gear::Member;
+use crate::load_distribution::{FormulaRange, LinePair, PairFormulas, Shared, rise, share};
 use crate::run::Run;
-use compliance::PairFormulas;
-use sainsot::Ring;
-use sharing::{LinePair, Shared, rise, share};
 
 /// Computes `case` by the load distribution.
-pub(super) fn distribute(case: &Case, run: &Run) -> Result<Analysis, AnalysisError> {
+pub(super) fn solve(case: &Case, run: &Run) -> Result<Analysis, AnalysisError> {
     let formulas = PairFormulas::new(&case.pair, case.resolution.formulas);
     let positions = case
         .repeating_positions()
@@ -78,18 +39,9 @@ pub(super) fn distribute(case: &Case, run: &Run) -> Result<Analysis, AnalysisErr
 
 /// What of `case` lies outside the ranges of the formulas that it asks for.
 pub(super) fn out_of_range(case: &Case) -> Vec<FormulaRange> {
-    let (pair, formulas) = (&case.pair, case.resolution.formulas);
-    match (formulas.tooth, formulas.body) {
-        (ToothFormula::Iso6336, _) => {
-            let torques = case.output_torques.iter().copied();
-            iso6336::out_of_range(pair, torques.fold(f64::INFINITY, f64::min))
-        }
-        (ToothFormula::WeberBanaschek, BodyFormula::Sainsot) => Member::BOTH
-            .into_iter()
-            .flat_map(|member| Ring::of(pair.gear(member)).out_of_range(member))
-            .collect(),
-        (ToothFormula::WeberBanaschek, BodyFormula::HalfPlane | BodyFormula::Rigid) => Vec::new(),
-    }
+    let torques = case.output_torques.iter().copied();
+    let least = torques.fold(f64::INFINITY, f64::min);
+    crate::load_distribution::out_of_range(&case.pair, case.resolution.formulas, least)
 }
 
 /// `load` shared among `pairs`, with the stiffness by `rule`.

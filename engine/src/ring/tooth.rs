@@ -2,13 +2,13 @@
 
 use faer::Mat;
 
-use super::FemError;
 use super::axes::{in_axes, polar_axes, rows_in_axes};
-use super::condensation::condense_with;
 use super::cyclic::Sector;
-use super::dense::{Cholesky, mirror_lower, symmetrize};
 use super::modes::compress;
-use super::recovery::Functional;
+use crate::fem::FemError;
+use crate::fem::condensation::condense_with;
+use crate::fem::dense::{Cholesky, mirror_lower, symmetrize};
+use crate::fem::recovery::Functional;
 use crate::gear::{SpurGear, Vector, radial};
 use crate::grid::ToothGrid;
 

@@ -2,10 +2,10 @@
 
 use faer::Mat;
 
-use super::FemError;
 use super::blank::BlankSubstructure;
 use super::cyclic::Component;
-use super::dense::Cholesky;
+use crate::fem::FemError;
+use crate::fem::dense::Cholesky;
 
 /// Which components of the displacement of its circle are imposed on an annulus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,10 +2,10 @@
 
 use faer::{Mat, c64};
 
-use super::FemError;
 use super::cyclic::Harmonics;
 use super::teeth::FARTHEST_COUPLED;
 use super::tooth::{ToothRows, ToothSubstructure};
+use crate::fem::FemError;
 use crate::run::Run;
 
 /// Functionals of one tooth, such as the stresses along its fillet, by what acts on the ring of teeth.

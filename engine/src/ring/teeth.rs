@@ -2,13 +2,13 @@
 
 use faer::{Mat, c64};
 
-use super::FemError;
 use super::blank::BlankSubstructure;
 use super::body::tooth_angle;
 use super::cyclic::{Component, Harmonics};
-use super::dense::Cholesky;
 use super::modes::compress;
 use super::tooth::ToothSubstructure;
+use crate::fem::FemError;
+use crate::fem::dense::Cholesky;
 use crate::run::Run;
 
 /// How far apart, in teeth, two teeth of one gear may be loaded together: several times what the heaviest load makes of the contact
@@ -262,7 +262,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::fem::cyclic::tests::{arc, assembled, sector};
+    use crate::ring::cyclic::tests::{arc, assembled, sector};
 
     /// A tooth of which only what makes the ring is filled in: a sector, and two loading modes on all its unknowns.
     fn tooth(count: usize, side_nodes: usize) -> ToothSubstructure {

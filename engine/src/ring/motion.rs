@@ -2,11 +2,11 @@
 
 use faer::Mat;
 
-use super::FemError;
 use super::blank::BlankSubstructure;
 use super::body::tooth_angle;
-use super::dense::Cholesky;
 use super::teeth::TeethRing;
+use crate::fem::FemError;
+use crate::fem::dense::Cholesky;
 use crate::run::Run;
 
 /// A gear whose interface circle can be moved: q = C Σ_j F_j m_j.

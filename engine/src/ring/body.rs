@@ -3,10 +3,10 @@
 use faer::Mat;
 use rayon::prelude::*;
 
-use super::FemError;
 use super::blank::BlankSubstructure;
-use super::dense::{Cholesky, entries};
 use super::teeth::TeethRing;
+use crate::fem::FemError;
+use crate::fem::dense::{Cholesky, entries};
 use crate::gear::gcd;
 use crate::run::Run;
 

@@ -5,7 +5,6 @@ use faer::perm::Perm;
 use faer::sparse::linalg::amd;
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
 
-use super::element::ElementStiffness;
 use crate::grid::Element;
 use crate::grid::element::MOST_NODES;
 
@@ -15,17 +14,20 @@ pub(super) enum Failure {
     Indefinite,
 }
 
-/// The lower triangle of a symmetric matrix of 2 x 2 blocks, one for each pair of nodes of a common element.
-pub(super) struct BlockMatrix {
+/// The lower triangle of a symmetric matrix of C x C blocks, one for each pair of nodes of a common element.
+pub(super) struct BlockMatrix<const C: usize> {
     /// Where the rows of each block column begin in `rows`.
     starts: Vec<usize>,
     /// The block rows of each column, rising, the diagonal first.
     rows: Vec<u32>,
-    /// The unknowns' own columns one after the other; without the entry above the diagonal.
+    /// The unknowns' own columns one after the other; without the entries above the diagonal.
     values: Vec<f64>,
 }
 
-impl BlockMatrix {
+impl<const C: usize> BlockMatrix<C> {
+    /// Entries of a block above its diagonal.
+    const ABOVE: usize = C * (C - 1) / 2;
+
     /// A matrix of zeros with the pattern of `elements`.
     pub(super) fn new(elements: &[Element], numbering: &Numbering) -> Self {
         let pairs = || {
@@ -60,7 +62,7 @@ impl BlockMatrix {
             }
             starts.push(rows.len());
         }
-        let values = vec![0.0; 4 * rows.len() - numbering.count];
+        let values = vec![0.0; C * C * rows.len() - Self::ABOVE * numbering.count];
         Self {
             starts,
             rows,
@@ -68,65 +70,74 @@ impl BlockMatrix {
         }
     }
 
-    /// Where the first unknown of a block column has its values, and how many blocks there are; those of the second
-    /// unknown follow.
-    fn column(&self, column: usize) -> (usize, usize) {
+    /// Where the diagonal entry of each unknown of a block column stands; the entries below it follow.
+    fn diagonals(&self, column: usize) -> [usize; C] {
         let (first, end) = (self.starts[column], self.starts[column + 1]);
-        (4 * first - column, end - first)
+        let mut next = C * C * first - Self::ABOVE * column;
+        std::array::from_fn(|c| {
+            let diagonal = next;
+            next += C * (end - first) - c;
+            diagonal
+        })
     }
 
-    /// Adds the stiffness `k` of `element`.
-    pub(super) fn add(&mut self, element: &Element, k: &ElementStiffness, numbering: &Numbering) {
+    /// Adds the stiffness `k` of `element`: its entries by unknowns, node by node.
+    pub(super) fn add(
+        &mut self,
+        element: &Element,
+        k: impl Fn(usize, usize) -> f64,
+        numbering: &Numbering,
+    ) {
         let mut places = [None; MOST_NODES];
         for (place, node) in places.iter_mut().zip(element.nodes()) {
             *place = numbering.place(*node);
         }
         for (b, column) in places.iter().enumerate() {
             let Some(column) = *column else { continue };
-            let (first, blocks) = self.column(column);
+            let diagonals = self.diagonals(column);
             let rows = &self.rows[self.starts[column]..self.starts[column + 1]];
             for (a, row) in places.iter().enumerate() {
                 let Some(row) = row.filter(|row| *row >= column) else {
                     continue;
                 };
                 let block = rows.partition_point(|&known| (known as usize) < row);
-                let (left, right) = (first + 2 * block, first + 2 * (blocks + block));
-                self.values[left] += k[(2 * a, 2 * b)];
-                self.values[left + 1] += k[(2 * a + 1, 2 * b)];
-                if row > column {
-                    self.values[right - 1] += k[(2 * a, 2 * b + 1)];
+                for (c, diagonal) in diagonals.into_iter().enumerate() {
+                    // The block on the diagonal has no entries above it.
+                    let first = if row == column { c } else { 0 };
+                    for r in first..C {
+                        self.values[diagonal + C * block + r - c] += k(C * a + r, C * b + c);
+                    }
                 }
-                self.values[right] += k[(2 * a + 1, 2 * b + 1)];
             }
         }
     }
 
-    /// Adds `value` to both diagonal entries of a block.
+    /// Adds `value` to the diagonal entries of a block.
     pub(super) fn add_to_diagonal(&mut self, block: usize, value: f64) {
-        let (first, blocks) = self.column(block);
-        self.values[first] += value;
-        self.values[first + 2 * blocks] += value;
+        for diagonal in self.diagonals(block) {
+            self.values[diagonal] += value;
+        }
     }
 
     /// The matrix on single unknowns.
     pub(super) fn into_unknowns(self) -> SparseColMat<u32, f64> {
         let count = self.starts.len() - 1;
-        let mut pointers = Vec::with_capacity(2 * count + 1);
+        let mut pointers = Vec::with_capacity(C * count + 1);
         let mut rows = Vec::with_capacity(self.values.len());
         pointers.push(0);
         for column in 0..count {
             let blocks = &self.rows[self.starts[column]..self.starts[column + 1]];
-            for unknown in 0..2 {
+            for unknown in 0..C {
                 rows.extend(
                     blocks
                         .iter()
-                        .flat_map(|row| [2 * row, 2 * row + 1])
+                        .flat_map(|row| unknowns_of::<C>(*row))
                         .skip(unknown),
                 );
                 pointers.push(rows.len() as u32);
             }
         }
-        let pattern = SymbolicSparseColMat::new_checked(2 * count, 2 * count, pointers, None, rows);
+        let pattern = SymbolicSparseColMat::new_checked(C * count, C * count, pointers, None, rows);
         SparseColMat::new(pattern, self.values)
     }
 
@@ -155,14 +166,17 @@ impl BlockMatrix {
         let of_unknowns = |blocks: Vec<u32>| -> Box<[u32]> {
             let kept = all.clone().skip(interior);
             let blocks = blocks.into_iter().chain(kept);
-            blocks
-                .flat_map(|block| [2 * block, 2 * block + 1])
-                .collect()
+            blocks.flat_map(unknowns_of::<C>).collect()
         };
         let (forward, inverse) = (of_unknowns(forward), of_unknowns(inverse));
         let unknowns = forward.len();
         Ok(Perm::new_checked(forward, inverse, unknowns))
     }
+}
+
+/// The unknowns of a block.
+fn unknowns_of<const C: usize>(block: u32) -> [u32; C] {
+    std::array::from_fn(|c| C as u32 * block + c as u32)
 }
 
 /// The places of the nodes that move: interior ones first, kept ones last, fixed ones nowhere.
@@ -200,5 +214,68 @@ impl Numbering {
     pub(super) fn place(&self, node: u32) -> Option<usize> {
         let place = self.places[node as usize];
         (place != Self::FIXED).then_some(place as usize)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use faer::Mat;
+
+    use super::*;
+    use crate::gear::Vector;
+
+    /// The matrix of two elements with C unknowns at each node, entry by entry, and the same by adding up.
+    fn assembled<const C: usize>() {
+        let elements = [
+            Element::triangle([0, 1, 2, 3, 4, 5]),
+            Element::triangle([2, 1, 6, 4, 7, 8]),
+        ];
+        let nodes = vec![Vector::zeros(); 9];
+        let numbering = Numbering::new(nodes.len(), &[4, 0], &[8]);
+        let k = |e: usize, i: usize, j: usize| {
+            let (low, high) = (i.min(j), i.max(j));
+            (1.0 + (7 * e + 3 * low) as f64 + 0.1 * high as f64).sin()
+        };
+        let mut matrix = BlockMatrix::<C>::new(&elements, &numbering);
+        let mut expected = Mat::<f64>::zeros(C * numbering.count, C * numbering.count);
+        for (e, element) in elements.iter().enumerate() {
+            matrix.add(element, |i, j| k(e, i, j), &numbering);
+            for (a, node) in element.nodes().iter().enumerate() {
+                for (b, other) in element.nodes().iter().enumerate() {
+                    let places = numbering.place(*node).zip(numbering.place(*other));
+                    let Some((row, column)) = places else {
+                        continue;
+                    };
+                    for (r, c) in (0..C).flat_map(|r| (0..C).map(move |c| (r, c))) {
+                        expected[(C * row + r, C * column + c)] += k(e, C * a + r, C * b + c);
+                    }
+                }
+            }
+        }
+        matrix.add_to_diagonal(3, 0.5);
+        for c in 0..C {
+            expected[(C * 3 + c, C * 3 + c)] += 0.5;
+        }
+        let order = matrix.fill_reducing_order(numbering.interior);
+        let order = order.unwrap_or_else(|_| panic!("a small matrix"));
+        let (forward, _) = order.as_ref().arrays();
+        let (interior, count) = (C * numbering.interior, C * numbering.count);
+        assert!((interior..count).all(|i| forward[i] as usize == i));
+        let found = matrix.into_unknowns().to_dense();
+        for j in 0..count {
+            for i in j..count {
+                assert!(
+                    (found[(i, j)] - expected[(i, j)]).abs() < 1e-14,
+                    "{C}: {i} {j}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn blocks_of_any_size_add_up_to_the_matrix_of_single_unknowns() {
+        assembled::<1>();
+        assembled::<2>();
+        assembled::<3>();
     }
 }

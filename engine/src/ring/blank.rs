@@ -2,11 +2,11 @@
 
 use faer::Mat;
 
-use super::FemError;
 use super::axes::{in_axes, polar_axes, rows_in_axes};
-use super::condensation::condense_with;
 use super::cyclic::{Component, Harmonics, Sector};
-use super::recovery::Functional;
+use crate::fem::FemError;
+use crate::fem::condensation::condense_with;
+use crate::fem::recovery::Functional;
 
 use crate::gear::Material;
 use crate::grid::BlankGrid;

@@ -7,9 +7,9 @@
 
 use faer::{Mat, c64};
 
-use super::FemError;
-use super::dense::Cholesky;
 pub use super::harmonics::{Component, Harmonics};
+use crate::fem::FemError;
+use crate::fem::dense::Cholesky;
 use crate::run::Run;
 
 /// Columns of a product between two looks at the run: a tenth of a second for the largest rings of one sector.
@@ -252,7 +252,7 @@ pub(super) mod tests {
     use super::*;
 
     /// A sector of `count` with any symmetric positive definite stiffness: nothing below depends on where it comes from.
-    pub(in crate::fem) fn sector(count: usize, side_nodes: usize) -> Sector {
+    pub(in crate::ring) fn sector(count: usize, side_nodes: usize) -> Sector {
         let pitch = 2.0 * std::f64::consts::PI / count as f64;
         let arc_angles = [-0.5, -0.3, 0.1, 0.5].map(|part| part * pitch).to_vec();
         let n = 4 * side_nodes + 2 * arc_angles.len();
@@ -269,7 +269,7 @@ pub(super) mod tests {
     /// The stiffness of the whole ring, sector by sector, on its sides and then on the real amplitudes of its arcs.
     ///
     /// The unknowns of side i are shared by sector i − 1, on its left, and sector i, on its right.
-    pub(in crate::fem) fn assembled(sector: &Sector, harmonics: &Harmonics) -> DMatrix<f64> {
+    pub(in crate::ring) fn assembled(sector: &Sector, harmonics: &Harmonics) -> DMatrix<f64> {
         let (ns, s) = (2 * sector.side_nodes, sector.count);
         let (na, nq) = (2 * sector.arc_angles.len(), harmonics.unknowns());
         let n = s * ns + nq;
@@ -290,7 +290,7 @@ pub(super) mod tests {
     }
 
     /// The polar displacements of the arc of sector `i` for unit amplitudes: a_n cos nθ + b_n sin nθ as documented.
-    pub(in crate::fem) fn arc(sector: &Sector, harmonics: &Harmonics, i: usize) -> DMatrix<f64> {
+    pub(in crate::ring) fn arc(sector: &Sector, harmonics: &Harmonics, i: usize) -> DMatrix<f64> {
         let mut arc = DMatrix::zeros(2 * sector.arc_angles.len(), harmonics.unknowns());
         for (node, angle) in sector.arc_angles.iter().enumerate() {
             let angle = angle + 2.0 * std::f64::consts::PI * i as f64 / sector.count as f64;

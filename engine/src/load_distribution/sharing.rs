@@ -8,7 +8,7 @@ use crate::root_finding::bisect;
 
 /// A pair of teeth on the line of contact.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct LinePair {
+pub struct LinePair {
     /// n − floor(η).
     pub(super) offset: i32,
     /// C, in m/N; positive.
@@ -57,22 +57,22 @@ impl LinePair {
 
 /// What the pairs at one position do under a load.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Shared {
+pub struct Shared {
     /// δ in m.
-    pub(super) transmission_error: f64,
+    pub transmission_error: f64,
     /// dF/dδ in N/m.
-    pub(super) stiffness: f64,
+    pub stiffness: f64,
     /// The largest p_0 in Pa.
-    pub(super) peak_pressure: f64,
+    pub peak_pressure: f64,
     /// Offset and force (N) of each pair.
-    pub(super) forces: Vec<(i32, f64)>,
+    pub forces: Vec<(i32, f64)>,
     /// |Σ F_n − F|/F.
-    pub(super) residual: f64,
+    pub residual: f64,
 }
 
 impl Shared {
     /// The pairs that carry load.
-    pub(super) fn loaded(&self) -> impl Iterator<Item = (i32, f64)> {
+    pub fn loaded(&self) -> impl Iterator<Item = (i32, f64)> {
         self.forces
             .iter()
             .copied()
@@ -80,7 +80,7 @@ impl Shared {
     }
 
     /// The share of `load` (N) that the pair at `offset` carries.
-    pub(super) fn share(&self, offset: i32, load: f64) -> f64 {
+    pub fn share(&self, offset: i32, load: f64) -> f64 {
         self.forces
             .iter()
             .find(|force| force.0 == offset)
@@ -89,7 +89,7 @@ impl Shared {
 }
 
 /// Shares `load` (N, positive) among `pairs`, of which there is at least one.
-pub(super) fn share(pairs: &[LinePair], load: f64) -> Shared {
+pub fn share(pairs: &[LinePair], load: f64) -> Shared {
     let first = first_gap(pairs);
     let rise = rise(pairs, load);
     let forces: Vec<f64> = pairs
@@ -121,7 +121,7 @@ fn first_gap(pairs: &[LinePair]) -> f64 {
 /// The deflections grow slower than the forces, so each F_n(δ) is convex: from above, where one pair carries the whole load
 /// alone, no step goes too far, and δ falls until rounding ends it. Counted from the first touch, δ keeps its digits under
 /// loads that deflect by far less than the reliefs.
-pub(super) fn rise(pairs: &[LinePair], load: f64) -> f64 {
+pub fn rise(pairs: &[LinePair], load: f64) -> f64 {
     let first = first_gap(pairs);
     let mut rise = pairs
         .iter()

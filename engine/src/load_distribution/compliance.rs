@@ -9,8 +9,7 @@ use super::sainsot::Ring;
 use super::sharing::LinePair;
 use super::tooth_load::ToothLoad;
 use super::weber_banaschek::ToothCompliance;
-use crate::analysis::AnalysisError;
-use crate::analysis::case::{BodyFormula, Formulas, ToothFormula};
+use super::{BodyFormula, FormulaError, Formulas, ToothFormula};
 use crate::gear::{GearPair, Member};
 
 /// What rounding may take off the path of contact, in base pitches: at a contact ratio of one no position stays empty.
@@ -20,7 +19,7 @@ const ROUNDING: f64 = 1e-9;
 const LEAST_CURVATURE: f64 = 1e-6;
 
 /// The formulas of a pair, what they need of its gears made once.
-pub(super) struct PairFormulas<'a> {
+pub struct PairFormulas<'a> {
     pair: &'a GearPair,
     formulas: Formulas,
     law: Law,
@@ -42,7 +41,7 @@ struct GearParts {
 
 impl<'a> PairFormulas<'a> {
     /// The `formulas` of `pair`.
-    pub(super) fn new(pair: &'a GearPair, formulas: Formulas) -> Self {
+    pub fn new(pair: &'a GearPair, formulas: Formulas) -> Self {
         let parts = |member| {
             let gear = pair.gear(member);
             GearParts {
@@ -65,15 +64,15 @@ impl<'a> PairFormulas<'a> {
     ///
     /// # Errors
     ///
-    /// [`AnalysisError::NoFormula`] where a formula gives no positive compliance, [`AnalysisError::NoContact`].
-    pub(super) fn pairs_at(&self, eta: f64) -> Result<Vec<LinePair>, AnalysisError> {
+    /// [`FormulaError::NoCompliance`] where a formula gives no positive compliance, [`FormulaError::NoContact`].
+    pub fn pairs_at(&self, eta: f64) -> Result<Vec<LinePair>, FormulaError> {
         let (s_a, s_e) = self.pair.path_of_contact();
         let (s_c, p_b) = (self.pair.pitch_roll_length(), self.pair.base_pitch());
         // The pair that passes the pitch point at mesh position n touches at s_C + (η − n) p_b.
         let first = (eta - (s_e - s_c) / p_b - ROUNDING).ceil() as i64;
         let last = (eta - (s_a - s_c) / p_b + ROUNDING).floor() as i64;
         if first > last {
-            return Err(AnalysisError::NoContact { mesh_position: eta });
+            return Err(FormulaError::NoContact { mesh_position: eta });
         }
         (first..=last)
             .map(|n| {
@@ -84,7 +83,7 @@ impl<'a> PairFormulas<'a> {
     }
 
     /// The pair n of teeth, at `offset`, that touches at the roll length `s` of the driving gear.
-    fn line_pair(&self, n: i64, offset: i32, s: f64) -> Result<LinePair, AnalysisError> {
+    fn line_pair(&self, n: i64, offset: i32, s: f64) -> Result<LinePair, FormulaError> {
         let (line, width) = (self.pair.line_of_action(), self.pair.common_face_width());
         let least = LEAST_CURVATURE * line;
         let rolls = [s, line - s].map(|roll| roll.max(least));
@@ -122,7 +121,7 @@ impl<'a> PairFormulas<'a> {
         &self,
         parts: &[GearParts; 2],
         loads: [ToothLoad; 2],
-    ) -> Result<f64, AnalysisError> {
+    ) -> Result<f64, FormulaError> {
         let mut sum = 0.0;
         for member in Member::BOTH {
             let (parts, load) = (&parts[member.index()], &loads[member.index()]);
@@ -137,7 +136,7 @@ impl<'a> PairFormulas<'a> {
         member: Member,
         profile: &ToothProfile,
         load: &ToothLoad,
-    ) -> Result<f64, AnalysisError> {
+    ) -> Result<f64, FormulaError> {
         let gear = self.pair.gear(member);
         let tooth = ToothCompliance::new(
             |y| profile.half_thickness(y),
@@ -149,7 +148,7 @@ impl<'a> PairFormulas<'a> {
         positive(tooth.total(), Formula::WeberBanaschek, Some(member))
     }
 
-    fn body(&self, member: Member, ring: &Ring, load: &ToothLoad) -> Result<f64, AnalysisError> {
+    fn body(&self, member: Member, ring: &Ring, load: &ToothLoad) -> Result<f64, FormulaError> {
         let gear = self.pair.gear(member);
         let (b, material) = (gear.face_width(), gear.material());
         match self.formulas.body {
@@ -172,11 +171,11 @@ fn positive(
     compliance: f64,
     formula: Formula,
     member: Option<Member>,
-) -> Result<f64, AnalysisError> {
+) -> Result<f64, FormulaError> {
     if compliance > 0.0 && compliance.is_finite() {
         Ok(compliance)
     } else {
-        Err(AnalysisError::NoFormula {
+        Err(FormulaError::NoCompliance {
             formula,
             member,
             compliance,
