@@ -30,13 +30,17 @@ pub struct Annulus {
 }
 
 impl Annulus {
-    /// The one that `blank` is with its hole 0 at `phase`.
+    /// The one that `blank` is with its hole 0 at `hole_angle`.
     ///
     /// # Errors
     ///
     /// [`FemError::NotPositiveDefinite`].
-    pub fn new(blank: &BlankSubstructure, phase: f64, imposed: Imposed) -> Result<Self, FemError> {
-        let (stiffness, radius) = (blank.stiffness_at(phase), blank.interface_radius);
+    pub fn new(
+        blank: &BlankSubstructure,
+        hole_angle: f64,
+        imposed: Imposed,
+    ) -> Result<Self, FemError> {
+        let (stiffness, radius) = (blank.stiffness_at(hole_angle), blank.interface_radius);
         let round = blank.harmonics.cosine(0, Component::Tangential);
         let mut moments: Vec<f64> = (0..stiffness.ncols())
             .map(|j| radius * stiffness[(round, j)])

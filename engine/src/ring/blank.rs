@@ -111,12 +111,12 @@ impl BlankSubstructure {
         Ok((substructure, recovery))
     }
 
-    /// The stiffness with hole 0 at the angle `phase`.
-    pub fn stiffness_at(&self, phase: f64) -> Mat<f64> {
-        if phase == 0.0 {
+    /// The stiffness with hole 0 at the angle `hole_angle`.
+    pub fn stiffness_at(&self, hole_angle: f64) -> Mat<f64> {
+        if hole_angle == 0.0 {
             self.stiffness.clone()
         } else {
-            turned(&self.stiffness, &self.harmonics, phase)
+            turned(&self.stiffness, &self.harmonics, hole_angle)
         }
     }
 }
@@ -134,12 +134,12 @@ pub struct BlankRecovery {
 
 impl BlankRecovery {
     /// The functionals of sector `sector` for the amplitudes `q` of the interface circle in the frame of the gear, with hole
-    /// 0 at the angle `phase`; amplitudes beyond the harmonics of the blank do not reach them.
-    pub fn values(&self, sector: usize, phase: f64, q: &[f64]) -> Vec<f64> {
+    /// 0 at the angle `hole_angle`; amplitudes beyond the harmonics of the blank do not reach them.
+    pub fn values(&self, sector: usize, hole_angle: f64, q: &[f64]) -> Vec<f64> {
         let turn = std::f64::consts::TAU * sector as f64 / self.sector_count as f64;
         let seen = self
             .harmonics
-            .turned(&q[..self.harmonics.unknowns()], phase + turn);
+            .turned(&q[..self.harmonics.unknowns()], hole_angle + turn);
         let row = |i: usize| {
             seen.iter()
                 .enumerate()
@@ -150,19 +150,19 @@ impl BlankRecovery {
     }
 }
 
-/// The stiffness `k` on `harmonics` of a body turned by `phase`: Rᵀ k R with R turning each pair (a_n, b_n) by −n `phase`.
-fn turned(k: &Mat<f64>, harmonics: &Harmonics, phase: f64) -> Mat<f64> {
+/// The stiffness `k` on `harmonics` of a body turned by `hole_angle`: Rᵀ k R with R turning each pair (a_n, b_n) by −n `hole_angle`.
+fn turned(k: &Mat<f64>, harmonics: &Harmonics, hole_angle: f64) -> Mat<f64> {
     let mut half = k.clone();
     for _ in 0..2 {
-        turn_rows(&mut half, harmonics, phase);
+        turn_rows(&mut half, harmonics, hole_angle);
         half = half.transpose().to_owned();
     }
     half
 }
 
-fn turn_rows(a: &mut Mat<f64>, harmonics: &Harmonics, phase: f64) {
+fn turn_rows(a: &mut Mat<f64>, harmonics: &Harmonics, hole_angle: f64) {
     for n in 1..=harmonics.largest {
-        let (sin, cos) = (n as f64 * phase).sin_cos();
+        let (sin, cos) = (n as f64 * hole_angle).sin_cos();
         for component in [Component::Radial, Component::Tangential] {
             let i = harmonics.cosine(n, component);
             for j in 0..a.ncols() {

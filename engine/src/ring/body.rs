@@ -38,7 +38,7 @@ impl Coupling {
         }
     }
 
-    /// Teeth on a flexible blank whose hole 0 stands at the angle `phase`. Teeth up to `farthest` apart are coupled.
+    /// Teeth on a flexible blank whose hole 0 stands at the angle `hole_angle`. Teeth up to `farthest` apart are coupled.
     ///
     /// C = (S_blank + S_teeth)⁻¹ on the harmonics of the interface circle, and X_ij adds F_iᵀ C F_j. With Z teeth and a
     /// blank of N equal sectors the gear repeats g = gcd(Z, N) times: only orders that differ by a multiple of g meet in C,
@@ -50,12 +50,12 @@ impl Coupling {
     pub fn on_blank(
         teeth: &TeethRing,
         blank: &BlankSubstructure,
-        phase: f64,
+        hole_angle: f64,
         farthest: usize,
         run: &Run,
     ) -> Result<Self, FemError> {
         let repeats = gcd(teeth.tooth_count as u32, blank.sector_count as u32);
-        Self::repeating(teeth, blank, phase, repeats as usize, farthest, run)
+        Self::repeating(teeth, blank, hole_angle, repeats as usize, farthest, run)
     }
 
     /// As [`Coupling::on_blank`], with every tooth's own row and nothing taken from symmetry: an oracle for tests.
@@ -66,24 +66,24 @@ impl Coupling {
     pub fn tooth_by_tooth(
         teeth: &TeethRing,
         blank: &BlankSubstructure,
-        phase: f64,
+        hole_angle: f64,
         farthest: usize,
         run: &Run,
     ) -> Result<Self, FemError> {
-        Self::repeating(teeth, blank, phase, 1, farthest, run)
+        Self::repeating(teeth, blank, hole_angle, 1, farthest, run)
     }
 
     fn repeating(
         teeth: &TeethRing,
         blank: &BlankSubstructure,
-        phase: f64,
+        hole_angle: f64,
         repeats: usize,
         farthest: usize,
         run: &Run,
     ) -> Result<Self, FemError> {
         let rows = teeth.tooth_count / repeats;
         let row_length = row_length(teeth, farthest);
-        let stiffness = blank.stiffness_at(phase);
+        let stiffness = blank.stiffness_at(hole_angle);
         let mut blocks: Vec<Mat<f64>> = (0..rows)
             .flat_map(|_| teeth.held_coupling[..row_length].iter().cloned())
             .collect();

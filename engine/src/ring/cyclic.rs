@@ -3,7 +3,7 @@
 //! On the interface circle of radius R_w the displacement is a trigonometric polynomial: in polar components
 //! u(θ) = Σ_n c_n e^{inθ}, |n| ≤ M. A ring of S equal sectors couples the orders n ≡ n' (mod S) only, so that each class
 //! is condensed on one sector. Teeth (S = Z) and holed blanks (S = N) meet in the same harmonics, whatever Z, N and the
-//! phase between them: rigid motions and linear fields are the orders 0, 1 and 2 and are exact.
+//! angle between them: rigid motions and linear fields are the orders 0, 1 and 2 and are exact.
 
 use faer::{Mat, c64};
 
@@ -30,7 +30,7 @@ pub struct Sector {
 
 /// The displacements of the sides of one class of a ring when its arc moves or its sides are loaded.
 pub struct ClassSolution {
-    /// The factor of the sides' stiffness with the phase of the class across a sector; `None` without side nodes.
+    /// The factor of the sides' stiffness with the turn of the class across a sector; `None` without side nodes.
     pub sides: Option<Cholesky<c64>>,
     /// The stiffness between sides and the harmonics of the class.
     pub sides_to_harmonics: Mat<c64>,
@@ -39,13 +39,8 @@ pub struct ClassSolution {
 }
 
 impl Sector {
-    /// The phase factor e^{i class 2π/S} from the right side of a sector to its left side.
-    pub fn phase(&self, class: usize) -> c64 {
-        let (sin, cos) = (2.0 * std::f64::consts::PI * class as f64 / self.count as f64).sin_cos();
-        c64::new(cos, sin)
-    }
-
-    /// The phase factor e^{i class 2πd/S} from a sector to the one `distance` places counter-clockwise of it.
+    /// The factor e^{i class 2πd/S} from a sector to the one `distance` places counter-clockwise of it; with 1, from the right side of
+    /// a sector to its left one.
     pub fn turn(&self, class: usize, distance: usize) -> c64 {
         let part = ((class * distance) % self.count) as f64 / self.count as f64;
         let (sin, cos) = (2.0 * std::f64::consts::PI * part).sin_cos();
@@ -76,13 +71,13 @@ impl Sector {
         harmonics: &Harmonics,
         run: &Run,
     ) -> Result<(Mat<c64>, ClassSolution), FemError> {
-        let orders = harmonics.class(class, self.count);
+        let orders = harmonics.orders_of_class(class, self.count);
         let ns = 2 * self.side_nodes;
         let na = 2 * self.arc_angles.len();
         let k = &self.stiffness;
         let e = self.arc_of_harmonics(&orders);
-        // Displacements of (right, left) are (1, phase) times those of the right side.
-        let phase = self.phase(class);
+        // Displacements of (right, left) are (1, turn) times those of the right side.
+        let turn = self.turn(class, 1);
         let real = |i: usize, j: usize| c64::new(k[(i, j)], 0.0);
         let arc = Mat::<c64>::from_fn(na, na, |i, j| real(2 * ns + i, 2 * ns + j));
         let mut condensed = Mat::<c64>::zeros(e.ncols(), e.ncols());
@@ -105,11 +100,11 @@ impl Sector {
             let sides = Mat::<c64>::from_fn(ns, ns, |i, j| {
                 real(i, j)
                     + real(ns + i, ns + j)
-                    + phase * real(i, ns + j)
-                    + phase.conj() * real(ns + i, j)
+                    + turn * real(i, ns + j)
+                    + turn.conj() * real(ns + i, j)
             });
             let sides_to_arc = Mat::<c64>::from_fn(ns, na, |i, j| {
-                real(i, 2 * ns + j) + phase.conj() * real(ns + i, 2 * ns + j)
+                real(i, 2 * ns + j) + turn.conj() * real(ns + i, 2 * ns + j)
             });
             let sides_to_harmonics = &sides_to_arc * &e;
             let sides = Cholesky::new(sides).ok_or(FemError::NotPositiveDefinite {
@@ -213,9 +208,9 @@ impl Sector {
 
     /// Rows on both sides of sector 0 as rows on the amplitudes of its right side in one class.
     pub fn side_rows(&self, rows: &Mat<f64>, class: usize) -> Mat<c64> {
-        let (ns, phase) = (2 * self.side_nodes, self.phase(class));
+        let (ns, turn) = (2 * self.side_nodes, self.turn(class, 1));
         Mat::<c64>::from_fn(rows.nrows(), ns, |i, j| {
-            c64::new(rows[(i, j)], 0.0) + phase * rows[(i, ns + j)]
+            c64::new(rows[(i, j)], 0.0) + turn * rows[(i, ns + j)]
         })
     }
 

@@ -65,7 +65,7 @@ impl Harmonics {
     }
 
     /// The orders n in −M … M with n ≡ `class` (mod `sectors`).
-    pub fn class(&self, class: usize, sectors: usize) -> Vec<i64> {
+    pub fn orders_of_class(&self, class: usize, sectors: usize) -> Vec<i64> {
         let (m, s) = (self.largest as i64, sectors as i64);
         let first = -m + (class as i64 + m).rem_euclid(s);
         (0..)
@@ -167,10 +167,12 @@ mod tests {
     #[test]
     fn classes_share_out_all_orders_each_once() {
         let harmonics = Harmonics { largest: 11 };
-        let mut orders: Vec<i64> = (0..4).flat_map(|class| harmonics.class(class, 4)).collect();
+        let mut orders: Vec<i64> = (0..4)
+            .flat_map(|class| harmonics.orders_of_class(class, 4))
+            .collect();
         orders.sort_unstable();
         assert_eq!(orders, (-11..=11).collect::<Vec<i64>>());
-        assert_eq!(harmonics.class(1, 4), [-11, -7, -3, 1, 5, 9]);
+        assert_eq!(harmonics.orders_of_class(1, 4), [-11, -7, -3, 1, 5, 9]);
     }
 
     #[test]

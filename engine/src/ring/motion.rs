@@ -32,7 +32,7 @@ struct OrdersAbove {
 }
 
 impl<'a> InterfaceMotion<'a> {
-    /// Joins `ring` with `blank`, whose hole 0 stands at `phase`; `solid` is the blank that the orders above those of `blank`
+    /// Joins `ring` with `blank`, whose hole 0 stands at `hole_angle`; `solid` is the blank that the orders above those of `blank`
     /// find, if there are any.
     ///
     /// # Errors
@@ -41,7 +41,7 @@ impl<'a> InterfaceMotion<'a> {
     pub fn new(
         ring: &'a TeethRing,
         blank: &BlankSubstructure,
-        phase: f64,
+        hole_angle: f64,
         solid: Option<&BlankSubstructure>,
         run: &Run,
     ) -> Result<Self, FemError> {
@@ -53,7 +53,7 @@ impl<'a> InterfaceMotion<'a> {
                 orders_above(ring, low.largest, solid)?,
             ),
         };
-        let total = &seen.stiffness + blank.stiffness_at(phase);
+        let total = &seen.stiffness + blank.stiffness_at(hole_angle);
         let unknowns = total.nrows();
         let gear = Cholesky::new_watched(total, run)?.ok_or(FemError::NotPositiveDefinite {
             part: "the gear's interface",

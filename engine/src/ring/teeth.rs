@@ -62,9 +62,9 @@ impl TeethRing {
             );
 
             // Work of the modes on the sides and on the arc, as amplitudes of this class.
-            let phase = sector.phase(class);
+            let turn = sector.turn(class, 1);
             let mut on_sides = Mat::<c64>::from_fn(ns, r, |i, j| {
-                c64::new(forces[(i, j)], 0.0) + phase.conj() * forces[(ns + i, j)]
+                c64::new(forces[(i, j)], 0.0) + turn.conj() * forces[(ns + i, j)]
             });
             let arc = Mat::<c64>::from_fn(2 * sector.arc_angles.len(), r, |i, j| {
                 c64::new(forces[(2 * ns + i, j)], 0.0)

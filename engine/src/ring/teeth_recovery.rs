@@ -53,9 +53,9 @@ impl TeethRecovery {
                 continue;
             };
             // The sides of this class under unit modal loads.
-            let phase = sector.phase(class);
+            let turn = sector.turn(class, 1);
             let mut moved = Mat::<c64>::from_fn(ns, r, |i, j| {
-                c64::new(forces[(i, j)], 0.0) + phase.conj() * forces[(ns + i, j)]
+                c64::new(forces[(i, j)], 0.0) + turn.conj() * forces[(ns + i, j)]
             });
             sides.solve_in_place(moved.as_mut());
             let answer = sector.side_rows(rows_b, class) * moved;
