@@ -1,6 +1,8 @@
-//! One attempt at one job: it is computed on its worker's threads, watched over, and what comes of it is written down.
+//! An attempt at a job, or at several small ones: they are computed on their worker's threads, watched over, and what comes of them is
+//! written down.
 
 use std::any::Any;
+use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::pin::pin;
 use std::sync::Arc;
@@ -9,14 +11,15 @@ use std::time::Duration;
 use jiff::{SignedDuration, Timestamp};
 use meshwright_engine::run::Run;
 use rayon::ThreadPool;
-use tokio::sync::oneshot;
+use tokio::sync::mpsc;
 use tokio::time::{Instant, MissedTickBehavior, interval_at, sleep};
 use tracing::{error, info, warn};
+use uuid::Uuid;
 
 use super::job::Job;
-use super::live::Running;
-use super::store::{Claim, End, Lease, Packed, Started, StoreError};
-use super::worker::Shop;
+use super::live::{Entered, Running};
+use super::store::{Claim, End, Lease, Packed, Results, Started, StoreError};
+use super::worker::{Shop, Solve};
 use crate::wire::{Code, Kept, Problem, SOLVER_VERSION, Submission, Summary};
 
 /// What a computation leaves: the results document or its name, and what the tables of studies show of it.
@@ -28,141 +31,263 @@ struct Solved {
 /// What an attempt came to.
 type Outcome = Result<Solved, Problem>;
 
-impl Shop {
-    /// Has a claimed job computed, and watches over it: heartbeat, time limit, shutdown.
-    pub(super) async fn compute(&self, started: Started, threads: &ThreadPool) {
-        let Started { job, submission } = started;
+/// An attempt that is under way.
+struct Attempt {
+    job: Job,
+    claim: Claim,
+    entered: Entered,
+}
+
+/// An attempt that has come to something, and when.
+struct Done {
+    attempt: Attempt,
+    end: End,
+    outcome: Outcome,
+}
+
+/// What the engine's threads tell: the attempt by its place, what it came to, and what it took.
+type Told = (usize, Outcome, SignedDuration);
+
+/// After so long it is looked up whether the claims still hold. What is computed by then is not worth the look.
+const LOOK_AFTER: Duration = Duration::from_millis(50);
+
+/// So many outcomes are written in one commit at most.
+const WRITTEN_AT_ONCE: usize = 64;
+
+impl Attempt {
+    fn of(shop: &Shop, job: Job) -> Self {
+        info!(job = %job.id, client = job.client, attempt = job.attempt, method = job.method, "job started");
         let claim = Claim {
             id: job.id,
             attempt: job.attempt,
         };
-        let begin = self.jobs.clock.steady();
-        info!(job = %job.id, client = job.client, attempt = job.attempt, method = job.method, "job started");
-        let entered = self.jobs.live.enter(job.id, job.progress);
-        let running = &entered.running;
-        // A cancel that came after the claim and before the entry found nothing to stop; it shows in the row.
-        // A look is enough for that: a report would be one more commit for every job of a study.
-        if !self.holds(claim).await {
-            return;
+        let entered = shop.jobs.live.enter(job.id, job.progress);
+        Self {
+            job,
+            claim,
+            entered,
         }
-        let mut outcome = self.launch(&job, submission, running.run(), threads);
+    }
+}
+
+impl Shop {
+    /// Has claimed jobs computed, one after the other, and watches over them: heartbeat, time limit, shutdown.
+    pub(super) async fn compute(&self, started: Vec<Started>, threads: &ThreadPool) {
+        let mut work = Vec::with_capacity(started.len());
+        // Those whose rows are theirs, as far as is known. What the engine still gives of others is not asked for.
+        let mut held = BTreeMap::new();
+        for (place, Started { job, submission }) in started.into_iter().enumerate() {
+            let attempt = Attempt::of(self, job);
+            work.push((
+                attempt.job.id,
+                attempt.job.keep,
+                submission,
+                attempt.entered.running.run(),
+            ));
+            held.insert(place, attempt);
+        }
+        let mut outcomes = self.launch(work, threads);
+        let mut told: Vec<Told> = Vec::new();
+        // The place of the one that is being computed, and since when.
+        let mut current = 0;
+        let mut begin = self.jobs.clock.steady();
         let mut deadline = pin!(sleep(self.pace.time_limit));
+        let mut look = pin!(sleep(LOOK_AFTER));
+        let mut looked = false;
         let mut heartbeat = interval_at(Instant::now() + self.pace.heartbeat, self.pace.heartbeat);
         heartbeat.set_missed_tick_behavior(MissedTickBehavior::Delay);
-        // False once the row says that this attempt is over: what the engine still gives is not asked for.
-        let mut held = true;
         let mut reported = Instant::now();
 
         loop {
             tokio::select! {
-                result = &mut outcome => {
-                    if held {
-                        let result = result.unwrap_or_else(|_| Err(internal_problem()));
-                        self.settle(&job, claim, begin, result).await;
+                count = outcomes.recv_many(&mut told, WRITTEN_AT_ONCE) => {
+                    if count == 0 {
+                        break;
                     }
-                    return;
+                    current += count;
+                    begin = self.jobs.clock.steady();
+                    deadline.as_mut().reset(Instant::now() + self.pace.time_limit);
+                    let done = told.drain(..).filter_map(|(place, outcome, elapsed)| {
+                        let attempt = held.remove(&place)?;
+                        let end = End { at: self.jobs.clock.now(), elapsed };
+                        Some(Done { attempt, end, outcome })
+                    });
+                    self.settle_all(done.collect()).await;
                 }
-                () = &mut deadline, if held => {
-                    held = false;
-                    running.stop();
-                    let limit = self.pace.time_limit.as_secs_f64();
-                    let problem = Problem::new(Code::TimeLimit, format!(
-                        "The job was stopped after {limit} s, the limit for one job, with {} of {} positions solved.",
-                        running.progress().done, running.progress().total,
-                    ));
-                    self.settle(&job, claim, begin, Err(problem)).await;
+                () = &mut deadline, if held.contains_key(&current) => {
+                    if let Some(attempt) = held.remove(&current) {
+                        let done = self.beyond_limit(attempt, begin);
+                        self.settle(done).await;
+                    }
                 }
-                () = self.jobs.stop().cancelled(), if held => {
-                    held = false;
-                    self.release(claim).await;
+                () = self.jobs.stop().cancelled(), if !held.is_empty() => {
+                    for attempt in std::mem::take(&mut held).into_values() {
+                        self.release(attempt.claim).await;
+                        attempt.entered.running.stop();
+                    }
                 }
-                _ = heartbeat.tick(), if held => held = self.report(claim, running, &mut reported).await,
+                // A cancel that came after the claim and before the entry found nothing to stop; it shows in the row.
+                () = &mut look, if !looked => {
+                    looked = true;
+                    for place in held.keys().copied().collect::<Vec<_>>() {
+                        if !self.holds(held[&place].claim).await && let Some(attempt) = held.remove(&place) {
+                            attempt.entered.running.stop();
+                        }
+                    }
+                }
+                _ = heartbeat.tick(), if !held.is_empty() => {
+                    for place in held.keys().copied().collect::<Vec<_>>() {
+                        let attempt = &held[&place];
+                        let holds = self.report(attempt.claim, &attempt.entered.running, &mut reported).await;
+                        if !holds && let Some(attempt) = held.remove(&place) {
+                            attempt.entered.running.stop();
+                        }
+                    }
+                }
             }
-            if !held {
-                running.stop();
-            }
+        }
+        // The engine has ended without a word of these.
+        for attempt in held.into_values() {
+            let elapsed = begin.duration_until(self.jobs.clock.steady());
+            let end = End {
+                at: self.jobs.clock.now(),
+                elapsed,
+            };
+            let outcome = Err(internal_problem());
+            self.settle(Done {
+                attempt,
+                end,
+                outcome,
+            })
+            .await;
         }
     }
 
-    /// Starts the computation on the worker's own threads: it is long, so it must not sit on a thread that answers
-    /// requests. A panic in it is the engine's fault and ends this job only.
+    /// Stops an attempt that has taken too long.
+    fn beyond_limit(&self, attempt: Attempt, begin: Timestamp) -> Done {
+        let running = &attempt.entered.running;
+        running.stop();
+        let limit = self.pace.time_limit.as_secs_f64();
+        let problem = Problem::new(
+            Code::TimeLimit,
+            format!(
+                "The job was stopped after {limit} s, the limit for one job, with {} of {} positions solved.",
+                running.progress().done,
+                running.progress().total,
+            ),
+        );
+        Done {
+            attempt,
+            end: End {
+                at: self.jobs.clock.now(),
+                elapsed: begin.duration_until(self.jobs.clock.steady()),
+            },
+            outcome: Err(problem),
+        }
+    }
+
+    /// Starts the computations on the worker's own threads, one after the other: they are long, so they must not sit on a thread that
+    /// answers requests. A panic in one is the engine's fault and ends this job only.
     fn launch(
         &self,
-        job: &Job,
-        submission: String,
-        run: Run,
+        work: Vec<(Uuid, Kept, String, Run)>,
         threads: &ThreadPool,
-    ) -> oneshot::Receiver<Outcome> {
-        let (sender, receiver) = oneshot::channel();
-        let solve = Arc::clone(&self.solve);
-        let (id, keep) = (job.id, job.keep);
+    ) -> mpsc::UnboundedReceiver<Told> {
+        let (sender, receiver) = mpsc::unbounded_channel();
+        let (solve, clock) = (Arc::clone(&self.solve), self.jobs.clock.clone());
         threads.spawn(move || {
-            let work = || {
-                let submission = Submission::parse(submission.as_bytes())?;
-                let document = solve(&submission, &run)?;
-                let summary = Summary::of_document(&document).map(|summary| {
-                    serde_json::to_string(&summary).expect("a summary is plain data")
+            for (place, (id, keep, submission, run)) in work.into_iter().enumerate() {
+                let begin = clock.steady();
+                let result =
+                    catch_unwind(AssertUnwindSafe(|| solved(&solve, &submission, keep, &run)));
+                let result = result.unwrap_or_else(|panic| {
+                    error!(job = %id, panic = message_of(&*panic), "the engine panicked");
+                    Err(internal_problem())
                 });
-                let document = match keep {
-                    Kept::Results => Packed::of(&document),
-                    Kept::Statistics => Packed::name_of(&document),
-                };
-                Ok(Solved { document, summary })
-            };
-            let result = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
-                error!(job = %id, panic = message_of(&*panic), "the engine panicked");
-                Err(internal_problem())
-            });
-            // The worker may have gone meanwhile; then the attempt is lost and the fence holds.
-            let _ = sender.send(result);
+                let elapsed = begin.duration_until(clock.steady());
+                // The worker may have gone meanwhile; then the attempt is lost and the fence holds.
+                let _ = sender.send((place, result, elapsed));
+            }
         });
         receiver
     }
 
-    /// Writes down what came of an attempt. While nothing can be stored it waits: what was computed is not given up for
-    /// the disk's sake, nor is the job.
-    async fn settle(&self, job: &Job, claim: Claim, begin: Timestamp, outcome: Outcome) {
-        let end = End {
-            at: self.jobs.clock.now(),
-            elapsed: begin.duration_until(self.jobs.clock.steady()),
-        };
-        let written = loop {
-            let written = self.write_down(claim, end, &outcome).await;
-            match written {
+    /// Writes down what came of attempts: their results in one commit.
+    async fn settle_all(&self, done: Vec<Done>) {
+        let (results, others): (Vec<Done>, Vec<Done>) =
+            done.into_iter().partition(|done| done.outcome.is_ok());
+        if !results.is_empty() {
+            let written = self.written(|| self.write_results(&results)).await;
+            for (i, done) in results.iter().enumerate() {
+                self.tell(done, written.as_ref().map(|held| held[i]));
+            }
+        }
+        for done in others {
+            self.settle(done).await;
+        }
+    }
+
+    /// The same of one that has no results.
+    async fn settle(&self, done: Done) {
+        let written = self.written(|| self.write_fault(&done)).await;
+        self.tell(&done, written.as_ref().copied());
+    }
+
+    /// Has something written. While nothing can be stored it waits: what was computed is not given up for the disk's sake, nor is the job.
+    async fn written<T, F: Future<Output = Result<T, StoreError>>>(
+        &self,
+        write: impl Fn() -> F,
+    ) -> Result<T, StoreError> {
+        loop {
+            match write().await {
                 Err(error) if error.may_pass() && !self.jobs.stop().is_cancelled() => {
-                    warn!(job = %job.id, error = %error, "the outcome waits until it can be written");
+                    warn!(error = %error, "an outcome waits until it can be written");
                     self.jobs.wait_for_storage().await;
                 }
-                written => break written,
+                written => return written,
             }
-        };
+        }
+    }
+
+    async fn write_results(&self, done: &[Done]) -> Result<Vec<bool>, StoreError> {
+        let results: Vec<Results<'_>> = done
+            .iter()
+            .filter_map(|done| {
+                let solved = done.outcome.as_ref().ok()?;
+                Some(Results {
+                    claim: done.attempt.claim,
+                    end: done.end,
+                    document: &solved.document,
+                    summary: solved.summary.as_deref(),
+                })
+            })
+            .collect();
+        self.jobs.store.succeed_all(&results, SOLVER_VERSION).await
+    }
+
+    async fn write_fault(&self, done: &Done) -> Result<bool, StoreError> {
+        match &done.outcome {
+            Ok(_) => Ok(false),
+            Err(problem) => {
+                let problem = problem.to_json();
+                let store = &self.jobs.store;
+                store.fail(done.attempt.claim, done.end, &problem).await
+            }
+        }
+    }
+
+    /// Tells those who wait, and the log.
+    fn tell(&self, done: &Done, written: Result<bool, &StoreError>) {
+        let job = &done.attempt.job;
         match written {
-            Ok(true) => tell_end(job, end, &outcome),
+            Ok(true) => tell_end(job, done.end, &done.outcome),
             Ok(false) => {
-                info!(job = %job.id, attempt = claim.attempt, "the attempt was over before it ended")
+                info!(job = %job.id, attempt = job.attempt, "the attempt was over before it ended");
             }
             // The next process finds the job running, and begins it anew.
             Err(error) => error!(job = %job.id, error = %error, "the outcome cannot be written"),
         }
         self.jobs.live.changed_job(job);
-    }
-
-    async fn write_down(
-        &self,
-        claim: Claim,
-        end: End,
-        outcome: &Outcome,
-    ) -> Result<bool, StoreError> {
-        let store = &self.jobs.store;
-        match outcome {
-            Ok(Solved { document, summary }) => {
-                let summary = summary.as_deref();
-                store
-                    .succeed(claim, end, document, summary, SOLVER_VERSION)
-                    .await
-            }
-            Err(problem) => store.fail(claim, end, &problem.to_json()).await,
-        }
     }
 
     /// Gives a job back to the queue.
@@ -233,6 +358,19 @@ impl Shop {
             lasts: SignedDuration::try_from(self.pace.lease).unwrap_or(SignedDuration::MAX),
         }
     }
+}
+
+/// Computes a job: reads it, solves it, and packs what it leaves.
+fn solved(solve: &Solve, submission: &str, keep: Kept, run: &Run) -> Outcome {
+    let submission = Submission::parse(submission.as_bytes())?;
+    let document = solve(&submission, run)?;
+    let summary = Summary::of_document(&document)
+        .map(|summary| serde_json::to_string(&summary).expect("a summary is plain data"));
+    let document = match keep {
+        Kept::Results => Packed::of(&document),
+        Kept::Statistics => Packed::name_of(&document),
+    };
+    Ok(Solved { document, summary })
 }
 
 fn tell_end(job: &Job, end: End, outcome: &Outcome) {

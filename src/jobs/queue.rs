@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use jiff::Timestamp;
+use meshwright_engine::analysis::Method;
 use tokio::sync::{Notify, broadcast, mpsc, oneshot};
 use tokio_util::sync::CancellationToken;
 use uuid::Uuid;
@@ -428,9 +429,15 @@ impl NewJob {
 /// What a submission takes of a core, in microseconds, as far as its size tells. The engine's own estimate is better, and
 /// takes a tenth of a job; for fair shares the order of magnitude is enough.
 fn rough_cost(submission: &Submission) -> u64 {
-    const FIXED: u64 = 20_000;
-    const PER_POSITION: u64 = 50;
-    FIXED.saturating_add(submission.positions_total().saturating_mul(PER_POSITION))
+    // The closed form of the load distribution needs no grid.
+    let (fixed, per_position) = match submission.case().method {
+        Method::LoadDistribution => (200, 5),
+        _ => (20_000, 50),
+    };
+    submission
+        .positions_total()
+        .saturating_mul(per_position)
+        .saturating_add(fixed)
 }
 
 fn bounds(rules: &Rules, clock: &Clock) -> QueueBounds<'static> {

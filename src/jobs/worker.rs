@@ -12,7 +12,7 @@ use tracing::{error, info, warn};
 use uuid::Uuid;
 
 use super::queue::Jobs;
-use super::store::{Claimed, Lease, Lost, Reader, StoreError};
+use super::store::{Claimed, Lease, Lost, Reader, Started, StoreError};
 use super::threads::{Cores, Work, engine_threads};
 use crate::wire::{Code, DOCUMENT_VERSION, Problem, SOLVER_VERSION, Submission};
 
@@ -49,6 +49,9 @@ impl Pace {
         }
     }
 }
+
+/// So much of a core is claimed at once, in microseconds by the rough estimate: several jobs of a millisecond, or one that takes longer.
+const AT_ONCE: i64 = 20_000;
 
 /// The workers of this process.
 pub struct Workers {
@@ -182,15 +185,17 @@ impl Shop {
         while !stop.is_cancelled() {
             match self.claim().await {
                 Ok(Claimed { started, given }) => {
-                    let found = started.is_some() || !given.is_empty();
+                    let found = !started.is_empty() || !given.is_empty();
                     for job in given {
                         info!(job = %job.id, "job given the results of an equal one");
                         self.jobs.live.changed_job(&job);
                     }
-                    if let Some(started) = started {
+                    if !started.is_empty() {
                         // Where one job waited there may be another for the next worker.
                         self.jobs.live.work.notify_one();
-                        self.jobs.live.changed_job(&started.job);
+                        for Started { job, .. } in &started {
+                            self.jobs.live.changed_job(job);
+                        }
                         self.compute(started, threads).await;
                         // What had to wait for this one may begin, be it for a worker of its own.
                         self.jobs.live.work.notify_one();
@@ -220,6 +225,7 @@ impl Shop {
         let reader = Reader {
             solver: SOLVER_VERSION,
             documents: DOCUMENT_VERSION,
+            at_once: AT_ONCE,
         };
         self.jobs.store.claim(now, self.lease(), reader).await
     }

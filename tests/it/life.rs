@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use meshwright::jobs::Solve;
 use meshwright::wire::{Code, Problem, Submission};
 use meshwright_engine::run::Run;
 use reqwest::StatusCode;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::bench::{Bench, RESULTS, problem, submission};
 
@@ -308,4 +309,36 @@ async fn the_engine_gives_way_to_those_who_answer() {
     assert_eq!(preview.send().await.unwrap().status(), 200);
     let of_preview = told.recv().await.unwrap();
     assert!(niceness() < of_preview && of_preview < of_job);
+}
+
+#[tokio::test]
+async fn of_small_jobs_that_are_computed_together_each_has_its_own_end() {
+    // The one at 7 N m panics, the one at 8 is refused; jobs of the load distribution are claimed several at once.
+    let solve: Solve = Arc::new(|submission, _| match submission.case().output_torques[0] {
+        7.0 => panic!("as the test ordered"),
+        8.0 => Err(Problem::new(Code::NotConverged, "as the test ordered")),
+        _ => Ok(RESULTS.to_owned()),
+    });
+    let bench = Bench::start(|_| {}, solve).await;
+    let mut base = submission(1.0);
+    base["method"] = json!("load_distribution");
+    let torques: Vec<Value> = (1..=40).map(|torque| json!([torque])).collect();
+    let study =
+        json!({ "base": base, "axes": [{ "path": "/output_torques_n_m", "values": torques }] });
+    let taken = bench.post("/v1/studies", &study).send().await.unwrap();
+    let path = taken.headers()["location"].to_str().unwrap().to_owned();
+    let study = bench.ended(&path).await;
+    assert_eq!(
+        (&study["successful"], &study["failed"]),
+        (&json!(38), &json!(2))
+    );
+    let failed = bench.job("/v1/jobs?status=failed").await;
+    let mut codes: Vec<&str> = failed["items"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|job| job["problem"]["code"].as_str().unwrap())
+        .collect();
+    codes.sort_unstable();
+    assert_eq!(codes, ["internal_error", "not_converged"]);
 }

@@ -1,10 +1,12 @@
 //! What comes of a job that runs: running -> running, successful, failed, or accepted again.
 
+use std::collections::BTreeMap;
+
 use jiff::{SignedDuration, Timestamp};
 use uuid::Uuid;
 
-use super::documents::Packed;
-use super::endings::tell_end;
+use super::documents::{Packed, forget_document};
+use super::endings::{tell_end, tell_ends};
 use super::rows::job_columns;
 use super::statement::{query, query_as};
 use super::{Store, StoreError, column, dialect, micros, shares};
@@ -35,6 +37,16 @@ pub(in crate::jobs) struct End {
     pub(in crate::jobs) elapsed: SignedDuration,
 }
 
+/// The results of an attempt.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::jobs) struct Results<'a> {
+    pub(in crate::jobs) claim: Claim,
+    pub(in crate::jobs) end: End,
+    pub(in crate::jobs) document: &'a Packed,
+    /// What the tables of studies show of it.
+    pub(in crate::jobs) summary: Option<&'a str>,
+}
+
 impl End {
     fn columns(self) -> (i64, i64) {
         (self.at.as_microsecond(), micros(self.elapsed).max(0))
@@ -60,7 +72,7 @@ impl Store {
         progress: Progress,
         lease: Lease,
     ) -> Result<bool, StoreError> {
-        let mut write = self.begin().await?;
+        let mut write = self.begin_relaxed().await?;
         let updated = query(dialect::report())
             .bind(claim.id.to_string())
             .bind(claim.attempt)
@@ -74,53 +86,74 @@ impl Store {
         Ok(updated == 1)
     }
 
-    /// Running -> successful, with the results document and what the tables of studies show of it. False if the claim
-    /// holds no more; then nothing is kept.
-    pub(in crate::jobs) async fn succeed(
+    /// Running -> successful for several jobs in one commit, each with its results document and what the tables of studies show of it.
+    /// For each, false if its claim holds no more; then nothing of it is kept.
+    pub(in crate::jobs) async fn succeed_all(
         &self,
-        claim: Claim,
-        end: End,
-        document: &Packed,
-        summary: Option<&str>,
+        results: &[Results<'_>],
         solver_version: &str,
-    ) -> Result<bool, StoreError> {
-        let (at, elapsed) = end.columns();
+    ) -> Result<Vec<bool>, StoreError> {
         let mut write = self.begin().await?;
-        document.insert(&mut write).await?;
-        if let Some(summary) = summary {
-            query(
-                "insert into summaries (document, body) values ($1, $2) on conflict (document) do nothing",
-            )
-            .bind(document.hash())
-            .bind(summary)
-            .execute(&mut *write)
-            .await?;
+        // Whoever keeps equal documents, or dismisses these jobs, takes them in the same order.
+        let by_hash: BTreeMap<&str, &Results<'_>> = results
+            .iter()
+            .map(|result| (result.document.hash(), result))
+            .collect();
+        for (hash, result) in by_hash {
+            result.document.insert(&mut write).await?;
+            if let Some(summary) = result.summary {
+                query(
+                    "insert into summaries (document, body) values ($1, $2) on conflict (document) do nothing",
+                )
+                .bind(hash)
+                .bind(summary)
+                .execute(&mut *write)
+                .await?;
+            }
         }
-        let job: Option<Job> = query_as(
-            concat!(
-            "update jobs
-             set status = 'successful', finished_at = max($3, started_at), elapsed = $4, lease_until = null,
-                 document = $5, solver_version = $6, positions_done = positions_total
-             where id = $1 and attempt = $2 and status = 'running'
-             returning ",
-            job_columns!()
-        ),
-        )
-        .bind(claim.id.to_string())
-        .bind(claim.attempt)
-        .bind(at)
-        .bind(elapsed)
-        .bind(document.hash())
-        .bind(solver_version)
-        .fetch_optional(&mut *write)
-        .await?;
-        let Some(job) = job else {
+        if results.len() > 1 {
+            let ids: Vec<String> = results
+                .iter()
+                .map(|result| result.claim.id.to_string())
+                .collect();
+            query(dialect::lock_jobs())
+                .bind(ids.join(","))
+                .execute(&mut *write)
+                .await?;
+        }
+        let mut ended = Vec::new();
+        let mut held = Vec::with_capacity(results.len());
+        for result in results {
+            let (at, elapsed) = result.end.columns();
+            let job: Option<Job> = query_as(concat!(
+                "update jobs
+                 set status = 'successful', finished_at = max($3, started_at), elapsed = $4, lease_until = null,
+                     document = $5, solver_version = $6, positions_done = positions_total
+                 where id = $1 and attempt = $2 and status = 'running'
+                 returning ",
+                job_columns!()
+            ))
+            .bind(result.claim.id.to_string())
+            .bind(result.claim.attempt)
+            .bind(at)
+            .bind(elapsed)
+            .bind(result.document.hash())
+            .bind(solver_version)
+            .fetch_optional(&mut *write)
+            .await?;
+            held.push(job.is_some());
+            ended.extend(job.map(|job| (job, result.end.at)));
+        }
+        if ended.is_empty() {
             write.rollback().await?;
-            return Ok(false);
-        };
-        tell_end(&mut write, &job, end.at).await?;
+            return Ok(held);
+        }
+        for (result, _) in results.iter().zip(&held).filter(|(_, held)| !**held) {
+            forget_document(&mut write, result.document.hash()).await?;
+        }
+        tell_ends(&mut write, &ended).await?;
         write.commit().await?;
-        Ok(true)
+        Ok(held)
     }
 
     /// Running -> failed, with the problem document. False if the claim holds no more.

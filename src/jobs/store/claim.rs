@@ -1,12 +1,13 @@
-//! Accepted -> running: the job whose turn it is.
+//! Accepted -> running: the job whose turn it is, and small ones behind it.
 
 use std::collections::BTreeSet;
 
 use jiff::Timestamp;
+use sqlx::Row;
 
 use super::attempt::Lease;
 use super::endings::tell_end;
-use super::rows::job_columns;
+use super::rows::{from_row, job_columns};
 use super::shares::{self, Lane};
 use super::statement::{Connection, query, query_as, query_scalar};
 use super::submit::{Known, find_known};
@@ -22,11 +23,20 @@ pub(in crate::jobs) struct Started {
     pub(in crate::jobs) submission: String,
 }
 
+from_row! {
+    Started, |row| {
+        Ok(Self {
+            job: sqlx::FromRow::from_row(row)?,
+            submission: row.try_get("submission")?,
+        })
+    }
+}
+
 /// What a worker finds in the queue.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(in crate::jobs) struct Claimed {
-    /// The job to compute.
-    pub(in crate::jobs) started: Option<Started>,
+    /// The jobs to compute, one after the other: one, or several small ones of one lane.
+    pub(in crate::jobs) started: Vec<Started>,
     /// Jobs that were next, but have been given the results of an equal one.
     pub(in crate::jobs) given: Vec<Job>,
 }
@@ -38,10 +48,15 @@ pub(in crate::jobs) struct Reader<'a> {
     pub(in crate::jobs) solver: &'a str,
     /// The latest version of documents that it reads.
     pub(in crate::jobs) documents: i64,
+    /// It takes several jobs at once as long as they cost no more together, in microseconds of a core.
+    pub(in crate::jobs) at_once: i64,
 }
 
 /// So many jobs are given results in one commit at most.
 const MOST_GIVEN: usize = 100;
+
+/// So many are begun in one commit at most.
+const MOST_STARTED: usize = 64;
 
 impl Store {
     /// Accepted -> running: the job whose turn it is, leased. Equal work is done once: a job whose equal
@@ -56,20 +71,23 @@ impl Store {
         lease: Lease,
         reader: Reader<'_>,
     ) -> Result<Claimed, StoreError> {
-        let mut write = self.begin().await?;
+        // A claim that is lost with the power leaves a job that waits, and a worker whose claim holds no more.
+        let mut write = self.begin_relaxed().await?;
         query(dialect::lock_turn()).execute(&mut *write).await?;
         let process = self.process.to_string();
         let mut claimed = Claimed::default();
         let mut turn = Turn::default();
-        let next = match suspects(&mut write, &process, reader).await? {
-            Suspects::None => {
-                next_in_turn(&mut write, now, reader, &mut claimed, &mut turn).await?
-            }
-            Suspects::Next(id) => Some(id),
-            Suspects::Wait => None,
+        let begin = Begin {
+            now,
+            lease,
+            process: &process,
         };
-        if let Some(id) = next {
-            claimed.started = Some(start(&mut write, &id, now, lease, &process).await?);
+        match suspects(&mut write, &process, reader).await? {
+            Suspects::None => {
+                take_turn(&mut write, begin, reader, &mut claimed, &mut turn).await?;
+            }
+            Suspects::Next(id) => claimed.started.push(begin.start(&mut write, &id).await?),
+            Suspects::Wait => {}
         }
         turn.settle(&mut write).await?;
         write.commit().await?;
@@ -137,16 +155,21 @@ impl Turn {
     }
 }
 
-/// The job whose turn it is, its lane to be charged. Jobs before it that need no computing are given their results.
-async fn next_in_turn(
+/// Begins the job whose turn it is, and small ones behind it in its lane, which is to be charged. Jobs before them that need no computing
+/// are given their results.
+///
+/// All of it is in one lane: jobs of a study lock it, and studies are locked one at a time.
+async fn take_turn(
     connection: &mut Connection,
-    now: Timestamp,
+    begin: Begin<'_>,
     reader: Reader<'_>,
     claimed: &mut Claimed,
     turn: &mut Turn,
-) -> Result<Option<String>, sqlx::Error> {
+) -> Result<(), sqlx::Error> {
     for lane in shares::lanes(connection).await? {
-        while claimed.given.len() < MOST_GIVEN {
+        let mut charge = 0;
+        let mut is_empty = false;
+        while claimed.given.len() < MOST_GIVEN && claimed.started.len() < MOST_STARTED {
             let next: Option<(String, String, i64, String)> = query_as(dialect::next_waiting())
                 .bind(&lane.client)
                 .bind(&lane.lane)
@@ -154,30 +177,38 @@ async fn next_in_turn(
                 .fetch_optional(&mut *connection)
                 .await?;
             let Some((id, input_hash, cost, keep)) = next else {
-                turn.empty.push(lane);
+                is_empty = true;
                 break;
             };
             // A word that is not known keeps everything.
             let keep = Kept::named(&keep).unwrap_or(Kept::Results);
             let known = find_known(connection, &lane.client, &input_hash, keep, reader.solver);
-            match known.await? {
-                Some(known) => {
-                    let job = give(connection, &id, &known, now, reader.solver).await?;
-                    tell_end(connection, &job, now).await?;
-                    claimed.given.push(job);
-                }
-                None => {
-                    turn.charged = Some((lane, cost));
-                    return Ok(Some(id));
-                }
+            if let Some(known) = known.await? {
+                let job = give(connection, &id, &known, begin.now, reader.solver).await?;
+                tell_end(connection, &job, begin.now).await?;
+                claimed.given.push(job);
+                continue;
+            }
+            if !claimed.started.is_empty() && charge + cost > reader.at_once {
+                break;
+            }
+            claimed.started.push(begin.start(connection, &id).await?);
+            charge += cost;
+            if charge >= reader.at_once {
+                break;
             }
         }
-        if !claimed.given.is_empty() {
-            // Studies are locked in the order of their ids: what is given in one transaction is of one of them.
-            return Ok(None);
+        if is_empty {
+            turn.empty.push(lane.clone());
+        }
+        if !claimed.started.is_empty() {
+            turn.charged = Some((lane, charge));
+        }
+        if !claimed.started.is_empty() || !claimed.given.is_empty() {
+            break;
         }
     }
-    Ok(None)
+    Ok(())
 }
 
 /// A lane whose jobs all wait for an equal one keeps its turn.
@@ -223,25 +254,24 @@ async fn give(
     .await
 }
 
-/// Accepted -> running.
-async fn start(
-    connection: &mut Connection,
-    id: &str,
+/// How a job is begun.
+#[derive(Clone, Copy)]
+struct Begin<'a> {
     now: Timestamp,
     lease: Lease,
-    process: &str,
-) -> Result<Started, sqlx::Error> {
-    let job = query_as(dialect::start())
-        .bind(id)
-        .bind(now.as_microsecond())
-        .bind(lease.steady.as_microsecond())
-        .bind(micros(lease.lasts))
-        .bind(process)
-        .fetch_one(&mut *connection)
-        .await?;
-    let submission = query_scalar("select body from submissions where job = $1")
-        .bind(id)
-        .fetch_one(connection)
-        .await?;
-    Ok(Started { job, submission })
+    process: &'a str,
+}
+
+impl Begin<'_> {
+    /// Accepted -> running.
+    async fn start(self, connection: &mut Connection, id: &str) -> Result<Started, sqlx::Error> {
+        query_as(dialect::start())
+            .bind(id)
+            .bind(self.now.as_microsecond())
+            .bind(self.lease.steady.as_microsecond())
+            .bind(micros(self.lease.lasts))
+            .bind(self.process)
+            .fetch_one(connection)
+            .await
+    }
 }

@@ -1,5 +1,7 @@
 //! What follows when a job ends: its study may have ended with it, and somebody may want to be told.
 
+use std::collections::BTreeMap;
+
 use jiff::Timestamp;
 use uuid::Uuid;
 
@@ -24,6 +26,26 @@ pub(super) async fn tell_end(
         }
         None => Ok(()),
     }
+}
+
+/// The same of several jobs with their times, the latest last: a study is looked at once.
+pub(super) async fn tell_ends(
+    connection: &mut Connection,
+    ended: &[(Job, Timestamp)],
+) -> Result<(), sqlx::Error> {
+    let mut studies = BTreeMap::new();
+    for (job, at) in ended {
+        match job.study {
+            Some(study) => {
+                studies.insert(study, *at);
+            }
+            None => tell_end(connection, job, *at).await?,
+        }
+    }
+    for (study, at) in studies {
+        note_study(connection, study, at).await?;
+    }
+    Ok(())
 }
 
 /// Notes that a study has ended, if it has, once.

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use tokio::sync::{Notify, watch};
-use tracing::{error, info};
+use tracing::{error, info, warn};
 
-use super::statement::{Connection, Pool, query};
+use super::statement::{Connection, Pool, Text, query};
 use super::{Store, StoreError, dialect};
 
 /// While nothing can be stored, it is tried so often.
@@ -55,10 +55,28 @@ fn cause(error: &StoreError) -> String {
 pub(crate) struct Write {
     connection: Connection,
     health: Arc<Health>,
+    /// What is said behind the commit.
+    after: Option<Text>,
     ended: bool,
 }
 
 impl Store {
+    /// Begins a transaction whose commit does not wait for the disk: for what may be lost with the power, because what follows from the
+    /// loss is that it is done again. A process that dies loses nothing of it, and every later commit that waits has it with it.
+    pub(super) async fn begin_relaxed(&self) -> Result<Write, StoreError> {
+        let begun = begin_with(
+            &self.writer,
+            &self.health,
+            dialect::begin_relaxed(),
+            Some(dialect::after_relaxed()),
+        );
+        let begun = begun.await;
+        if let Err(error) = &begun {
+            self.health.found(Err(error));
+        }
+        begun
+    }
+
     /// Begins a transaction that writes.
     pub(crate) async fn begin(&self) -> Result<Write, StoreError> {
         let begun = begin(&self.writer, &self.health).await;
@@ -135,15 +153,25 @@ async fn try_out(writer: &Pool, health: &Arc<Health>) {
 }
 
 async fn begin(writer: &Pool, health: &Arc<Health>) -> Result<Write, StoreError> {
+    begin_with(writer, health, dialect::begin(), None).await
+}
+
+async fn begin_with(
+    writer: &Pool,
+    health: &Arc<Health>,
+    words: Text,
+    after: Option<Text>,
+) -> Result<Write, StoreError> {
     let mut connection = writer.acquire().await?;
     // In plain SQL, because the driver's count of open transactions survives an error that SQLite's does not.
-    if let Err(error) = connection.say(dialect::begin()).await {
+    if let Err(error) = connection.say(words).await {
         connection.close_on_drop();
         return Err(error.into());
     }
     Ok(Write {
         connection,
         health: Arc::clone(health),
+        after,
         ended: false,
     })
 }
@@ -153,16 +181,28 @@ impl Write {
     pub(crate) async fn commit(mut self) -> Result<(), StoreError> {
         let committed = self.connection.say("commit").await;
         let committed = committed.map_err(StoreError::from);
-        self.ended = committed.is_ok();
         self.health.found(committed.as_ref());
-        committed
+        committed?;
+        self.end().await
+    }
+
+    /// A connection that does not wait for the disk is for one transaction.
+    async fn end(&mut self) -> Result<(), StoreError> {
+        if let Some(words) = self.after.take()
+            && let Err(error) = self.connection.say(words).await
+        {
+            // What was committed stands; the connection goes.
+            warn!(%error, "a connection is given up");
+            return Ok(());
+        }
+        self.ended = true;
+        Ok(())
     }
 
     /// Takes the changes back.
     pub(crate) async fn rollback(mut self) -> Result<(), StoreError> {
         self.connection.say("rollback").await?;
-        self.ended = true;
-        Ok(())
+        self.end().await
     }
 }
 

@@ -81,6 +81,10 @@ macro_rules! pairs {
 pairs! {
     /// Begins a transaction that writes.
     begin = BEGIN;
+    /// Begins a transaction whose commit does not wait for the disk.
+    begin_relaxed = BEGIN_RELAXED;
+    /// What is said behind such a one.
+    after_relaxed = AFTER_RELAXED;
     /// Writes something, to find out whether that works.
     probe = PROBE;
     /// From here to its end, no other transaction measures a job against the bounds of the queue.
@@ -104,6 +108,8 @@ pairs! {
     known = KNOWN;
     /// Accepted -> running. $1: id, $2: now, $3: the steady clock, $4: how long the lease lasts, $5: the process.
     start = START;
+    /// Keeps others from changing some jobs until the end of the transaction, in one order. $1: their ids, joined by commas.
+    lock_jobs = LOCK_JOBS;
     /// Running -> running. $1: id, $2: attempt, $3 and $4: positions, $5: the steady clock, $6: how long the lease lasts.
     report = REPORT;
     /// The jobs that run: id, process, and whether the lease is over (1), and since another one (2). $1: the steady clock, $2:

@@ -10,6 +10,11 @@ type Words = Option<&'static str>;
 
 pub(in crate::jobs::store) const BEGIN: Words = Some("begin");
 
+pub(in crate::jobs::store) const BEGIN_RELAXED: Words =
+    Some("begin; set local synchronous_commit = off");
+
+pub(in crate::jobs::store) const AFTER_RELAXED: Words = None;
+
 pub(in crate::jobs::store) const PROBE: Words = Some("update probed set number = number + 1");
 
 // The bound of the queue is a count, and equal keys are looked for before they are written.
@@ -64,8 +69,13 @@ pub(in crate::jobs::store) const START: Words = Some(concat!(
          lease_until = steady_now($3) + $4, owner = $5, positions_done = 0
      where id = $1 and status = 'accepted'
      returning ",
-    job_columns!()
+    job_columns!(),
+    ", (select body from submissions where job = jobs.id) as submission"
 ));
+
+pub(in crate::jobs::store) const LOCK_JOBS: Words = Some(
+    "select 1 from jobs where id = any(string_to_array($1, ',')) order by sequence for update",
+);
 
 pub(in crate::jobs::store) const REPORT: Words = Some(
     "update jobs set positions_done = $3, positions_total = $4, lease_until = steady_now($5) + $6

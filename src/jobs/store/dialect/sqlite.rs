@@ -7,6 +7,12 @@ type Words = Option<&'static str>;
 
 pub(in crate::jobs::store) const BEGIN: Words = Some("begin immediate");
 
+// In the journal's mode, what a commit has not waited for is lost with the power and not with the process.
+pub(in crate::jobs::store) const BEGIN_RELAXED: Words =
+    Some("pragma synchronous = normal; begin immediate");
+
+pub(in crate::jobs::store) const AFTER_RELAXED: Words = Some("pragma synchronous = full");
+
 pub(in crate::jobs::store) const PROBE: Words = Some("update served set due = due");
 
 pub(in crate::jobs::store) const LOCK_QUEUE: Words = None;
@@ -50,8 +56,11 @@ pub(in crate::jobs::store) const START: Words = Some(concat!(
          positions_done = 0
      where id = $1 and status = 'accepted'
      returning ",
-    job_columns!()
+    job_columns!(),
+    ", (select body from submissions where job = jobs.id) as submission"
 ));
+
+pub(in crate::jobs::store) const LOCK_JOBS: Words = None;
 
 pub(in crate::jobs::store) const REPORT: Words = Some(
     "update jobs set positions_done = $3, positions_total = $4, lease_until = $5 + $6

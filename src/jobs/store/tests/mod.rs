@@ -14,7 +14,10 @@ use tempfile::TempDir;
 use uuid::Uuid;
 
 use super::statement::{Pool, query, query_as, query_scalar};
-use super::{Claim, End, Lease, Lost, NewJob, Outcome, Packed, Place, QueueBounds, Reader, Store};
+use super::{
+    Claim, End, Lease, Lost, NewJob, Outcome, Packed, Place, QueueBounds, Reader, Results, Store,
+    StoreError,
+};
 use crate::jobs::job::Job;
 use crate::wire::Kept;
 
@@ -22,7 +25,30 @@ const VERSION: &str = "1.0";
 const READER: Reader<'static> = Reader {
     solver: VERSION,
     documents: 1,
+    at_once: 0,
 };
+
+impl Store {
+    /// Running -> successful, for one job.
+    pub(super) async fn succeed(
+        &self,
+        claim: Claim,
+        end: End,
+        document: &Packed,
+        summary: Option<&str>,
+        solver_version: &str,
+    ) -> Result<bool, StoreError> {
+        let results = Results {
+            claim,
+            end,
+            document,
+            summary,
+        };
+        let held = self.succeed_all(&[results], solver_version).await?;
+        Ok(held[0])
+    }
+}
+
 const CLIENT: &str = "portal";
 
 async fn store() -> (Store, TempDir) {
@@ -126,7 +152,7 @@ fn lease(second: i64) -> Lease {
 
 async fn next(store: &Store, second: i64) -> Option<Job> {
     let claimed = store.claim(at(second), lease(second), READER).await;
-    claimed.unwrap().started.map(|started| started.job)
+    claimed.unwrap().started.pop().map(|started| started.job)
 }
 
 async fn claim(store: &Store, second: i64) -> Claim {

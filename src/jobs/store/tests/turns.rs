@@ -216,7 +216,7 @@ async fn equal_jobs_are_computed_once_and_block_nobody() {
             .unwrap()
     );
     let claimed = store.claim(at(7), lease(7), READER).await.unwrap();
-    assert!(claimed.started.is_none());
+    assert!(claimed.started.is_empty());
     assert_eq!(
         (claimed.given.len(), claimed.given[0].same_as),
         (1, Some(first.id))
@@ -241,10 +241,67 @@ async fn a_job_whose_document_is_not_read_is_left_to_who_reads_it() {
         ..READER
     };
     let claimed = store.claim(at(4), lease(4), reads_both).await.unwrap();
-    assert_eq!(claimed.started.unwrap().job.id, later_id);
+    assert_eq!(claimed.started[0].job.id, later_id);
     store.recover(at(5), Lost::Process, 3, "{}").await.unwrap();
     assert_eq!(claim(&store, 6).await.id, earlier.id);
     assert_eq!(next(&store, 6).await, None);
+}
+
+#[tokio::test]
+async fn small_jobs_of_one_lane_are_claimed_together_and_charged_together() {
+    let (store, _folder) = store().await;
+    let first = study(&store, "a", 8).await;
+    let second = study(&store, "b", 8).await;
+    // Each costs 1000.
+    let several = Reader {
+        at_once: 3500,
+        ..READER
+    };
+    let mut lanes = Vec::new();
+    for _ in 0..4 {
+        let claimed = store.claim(at(4), lease(4), several).await.unwrap();
+        let studies: Vec<_> = claimed.started.iter().map(|it| it.job.study).collect();
+        assert_eq!(studies, [studies[0]; 3], "as many as cost no more together");
+        lanes.push(studies[0].unwrap());
+    }
+    assert_eq!((count(&lanes, &first), count(&lanes, &second)), (2, 2));
+    assert_ne!(lanes[0], lanes[1], "each pays for all that it was given");
+    let rest = store.claim(at(5), lease(5), several).await.unwrap();
+    assert_eq!(rest.started.len(), 2);
+}
+
+#[tokio::test]
+async fn results_that_are_written_together_stand_or_fall_each_by_its_own_claim() {
+    let (store, _folder) = store().await;
+    let inputs = ["a", "b", "c"];
+    for input in inputs {
+        queued(&store, 1, input).await;
+    }
+    let several = Reader {
+        at_once: 9000,
+        ..READER
+    };
+    let claimed = store.claim(at(2), lease(2), several).await.unwrap();
+    let claims: Vec<Claim> = claimed.started.iter().map(|it| of(&it.job)).collect();
+    assert_eq!(claims.len(), 3);
+    let cancelled = store.cancel(CLIENT, claims[1].id, at(3)).await.unwrap();
+    assert!(cancelled.is_some());
+    let documents = inputs.map(Packed::of);
+    let results: Vec<Results<'_>> = claims
+        .iter()
+        .zip(&documents)
+        .map(|(claim, document)| Results {
+            claim: *claim,
+            end: end(4),
+            document,
+            summary: None,
+        })
+        .collect();
+    let held = store.succeed_all(&results, VERSION).await.unwrap();
+    assert_eq!(held, [true, false, true]);
+    assert_eq!(find(&store, claims[1].id).await.status, Status::Dismissed);
+    assert!(store.document(documents[1].hash()).await.unwrap().is_none());
+    assert!(store.document(documents[2].hash()).await.unwrap().is_some());
 }
 
 #[tokio::test]
@@ -268,7 +325,7 @@ async fn what_is_given_at_once_is_of_one_study() {
     let mut given = Vec::new();
     for _ in studies {
         let claimed = store.claim(at(4), lease(4), READER).await.unwrap();
-        assert_eq!((claimed.started, claimed.given.len()), (None, 1));
+        assert_eq!((claimed.started.len(), claimed.given.len()), (0, 1));
         given.push(claimed.given[0].study.unwrap());
     }
     assert_ne!(given[0], given[1]);

@@ -131,7 +131,7 @@ async fn equal_work_is_done_once_whoever_takes_it() {
     );
     let given = at_once(&stores, async |_, store: Store| {
         let claimed = store.claim(at(4), lease(4), READER).await.unwrap();
-        assert_eq!(claimed.started, None);
+        assert_eq!(claimed.started, []);
         claimed.given.len()
     })
     .await;
