@@ -55,8 +55,9 @@ export function help(schema) {
   return (schema.description ?? "").replace(/ ?Unit: [^.]*\.(?= |$)/, "").replace(/`/g, "").trim();
 }
 
-/** The default that stands in the words of a description. */
+/** What stands for a field that is left out, in words, where it is no value: so many modules, or what its absence means. */
 export function saidDefault(schema) {
-  const said = /Default: (.*?)\.?$/.exec(schema.description ?? "");
-  return said ? said[1].replace(/^1 modules$/, "1 module") : "";
+  const modules = schema["x-default-modules"];
+  if (modules !== undefined) return modules === 1 ? "1 module" : `${modules} modules`;
+  return schema["x-absent"] ?? "";
 }

@@ -4,6 +4,7 @@ use axum::Router;
 use axum::body::Bytes;
 use axum::http::header::CONTENT_TYPE;
 use axum::routing::get;
+use serde_json::Value;
 use utoipa::OpenApi as _;
 use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityRequirement, SecurityScheme};
 use utoipa::openapi::{
@@ -71,10 +72,11 @@ pub(super) fn add_common_answers(openapi: &mut OpenApi) {
             "Nothing can be stored or read now, or too much comes at once. Try again after `Retry-After` seconds.",
         ),
     ];
-    const ALWAYS: [(&str, &str); 3] = [
+    const ALWAYS: [(&str, &str); 4] = [
         ("400", "The request is not understood."),
         ("408", "The request was not over in time."),
         ("421", "The service is not called so."),
+        ("default", "Any other problem."),
     ];
     for item in openapi.paths.paths.values_mut() {
         let operations = [&mut item.get, &mut item.post, &mut item.delete];
@@ -113,11 +115,28 @@ pub(super) fn say_whether_keys_are_needed(openapi: &mut OpenApi, needed: bool) {
 }
 
 /// The OpenAPI document of the service, as it is without a public address.
-pub fn openapi() -> OpenApi {
+pub fn openapi() -> Value {
     let mut openapi = routes().into_openapi();
     add_common_answers(&mut openapi);
     openapi.servers = Some(vec![server("")]);
-    openapi
+    finished(&openapi)
+}
+
+/// The document with the schemas of what is declared, of which utoipa knows the names alone.
+fn finished(openapi: &OpenApi) -> Value {
+    fn put_declared(value: &mut Value) {
+        if let Some(declared) = value.get_mut("x-declared").map(Value::take) {
+            *value = declared;
+        }
+        match value {
+            Value::Array(items) => items.iter_mut().for_each(put_declared),
+            Value::Object(fields) => fields.values_mut().for_each(put_declared),
+            _ => {}
+        }
+    }
+    let mut document = serde_json::to_value(openapi).expect("the document is plain data");
+    put_declared(&mut document);
+    document
 }
 
 /// Where the service is.
@@ -133,7 +152,7 @@ pub(super) fn server(public_url: &str) -> Server {
 
 /// The document at /openapi.json and the page at /docs, which needs nothing from elsewhere.
 pub(super) fn routes_of_docs(openapi: &OpenApi) -> Router<App> {
-    let json = Bytes::from(openapi.to_json().expect("the document is plain data"));
+    let json = Bytes::from(finished(openapi).to_string());
     // Relative to /docs/, so that the page also works behind a prefix; the usual validator is on another host.
     let config = Config::new(["../openapi.json"]).validator_url("none");
     Router::new()

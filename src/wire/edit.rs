@@ -1,6 +1,6 @@
 //! Changing a document in place and back again, so that thousands of variants of it cost no copy.
 
-use super::tree::Node;
+use super::declare::Node;
 
 /// What takes a change back.
 #[derive(Debug)]

@@ -1,104 +1,114 @@
 //! The radii at which holed blanks are cut: one for both gears, or one for each.
 
 use meshwright_engine::gear::{GearPair, Member, SpurGear};
-use serde::ser::{Serialize, SerializeMap, Serializer};
-use serde_json::Value;
+use serde::Serializer;
+use serde_json::{Value, json};
 
+use super::declare::{
+    Choice, Kind, Named, Nested, Node, Number, ObjectReader, Optional, Place, absent, document,
+    nested, number,
+};
 use super::problem::{Code, FieldError};
-use super::quantity;
-use super::schema::{self, Property, documented};
-use super::tree::{Choice, Node, ObjectReader};
 use super::units::{Side, from_mm, plain, rounded_inward, to_mm};
 
+document! {
+    /// One radius for each gear that has holes.
+    pub(super) struct EachRadius as "InterfaceRadii", "Interface radius of each gear" {
+        /// That of the driving gear.
+        driving: Option<f64> = RADIUS,
+        /// That of the driven gear.
+        driven: Option<f64> = RADIUS,
+    }
+}
+
+const RADIUS: Optional<Number> = absent(
+    number("Interface radius of holed gears", "mm", 0.1, 7_500.0),
+    "for each holed gear one module below its root circle, or halfway to the holes where they come closer",
+);
+
+const EACH: Nested = nested("");
+
 /// The interface radii of both gears, in mm.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) enum InterfaceRadii {
     /// The same for both; none where each gear has its own default.
     Common(Option<f64>),
-    /// One each, driving and driven; none where that gear has its default.
-    Each([Option<f64>; 2]),
+    /// One each; none where that gear has its default.
+    Each(EachRadius),
 }
 
-/// What the schema says of the field.
-pub(super) fn property() -> Property {
-    let quantity = &quantity::INTERFACE_RADIUS;
-    let (name, number, _) = schema::number(quantity);
-    let either = schema::one_of(
-        quantity.title,
-        quantity.description,
-        Some(Value::Null),
-        vec![number, schema::reference::<EachRadius>()],
-    );
-    (name, either, false)
-}
+impl Kind for InterfaceRadii {
+    type Spec = ();
 
-/// Names the object with a radius for each gear in the contract.
-pub(super) enum EachRadius {}
+    fn read(node: &Node, place: &Place<'_>, _: &()) -> Option<Self> {
+        match node {
+            Node::Null => Some(Self::Common(None)),
+            Node::Object(_) => EachRadius::read(node, place, &EACH).map(Self::Each),
+            _ => f64::read(node, place, &RADIUS.spec).map(|radius| Self::Common(Some(radius))),
+        }
+    }
 
-documented!(
-    EachRadius,
-    "InterfaceRadii",
-    [],
-    schema::object(
-        "Interface radius of each gear",
-        "One radius for each gear that has holes.",
-        Member::BOTH.map(radius_of).to_vec(),
-    )
-);
+    fn absent(_: &mut ObjectReader<'_>, _: &'static str, _: &()) -> Option<Self> {
+        Some(Self::Common(None))
+    }
 
-fn radius_of(member: Member) -> Property {
-    let (_, number, _) = schema::number(&quantity::INTERFACE_RADIUS);
-    (member.word(), number, false)
+    fn is_needed(_: &()) -> bool {
+        false
+    }
+
+    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Common(radius) => radius.write(serializer),
+            Self::Each(radii) => radii.write(serializer),
+        }
+    }
+
+    fn describe(about: &str, _: &()) -> Value {
+        let number = Option::<f64>::describe(about, &RADIUS);
+        json!({
+            "title": number["title"],
+            "description": about,
+            "default": null,
+            "oneOf": [number, EachRadius::describe("", &EACH)],
+        })
+    }
+
+    fn name_parts(named: &mut Named) {
+        EachRadius::name_parts(named);
+    }
 }
 
 impl InterfaceRadii {
-    /// Reads a number, an object with one for each gear, or nothing.
-    pub(super) fn read(reader: &mut ObjectReader<'_>) -> Option<Self> {
-        let quantity = &quantity::INTERFACE_RADIUS;
-        let Some(node @ Node::Object(_)) = reader.present(quantity.name) else {
-            return reader.optional_number(quantity).map(Self::Common);
-        };
-        let pointer = reader.pointer_to(quantity.name);
-        let mut object = reader.object(node, pointer)?;
-        let radii = Member::BOTH.map(|member| {
-            let name = member.word();
-            match object.present(name) {
-                None => Some(None),
-                Some(node) => object
-                    .checked_number(node, &object.pointer_to(name), quantity)
-                    .map(Some),
-            }
-        });
-        object.finish();
-        Some(Self::Each([radii[0]?, radii[1]?]))
+    fn of(&self, member: Member) -> Option<f64> {
+        match (self, member) {
+            (Self::Common(radius), _) => *radius,
+            (Self::Each(radii), Member::Driving) => radii.driving,
+            (Self::Each(radii), Member::Driven) => radii.driven,
+        }
     }
 
     /// Those of both gears in meters; `None` for a gear's default.
-    pub(super) fn data(self) -> [Option<f64>; 2] {
-        let radii = match self {
-            Self::Common(radius) => [radius; 2],
-            Self::Each(radii) => radii,
-        };
-        radii.map(|radius| radius.map(from_mm))
+    pub(super) fn data(&self) -> [Option<f64>; 2] {
+        Member::BOTH.map(|member| self.of(member).map(from_mm))
     }
 
     /// What is wrong with them on `pair`, whose submission has them at `pointer`: the interface has to stay clear of the holes and
     /// of the roots by a quarter of the material between them, or of a module where that is less.
-    pub(super) fn faults(self, pair: &GearPair, pointer: &str) -> Vec<FieldError> {
+    pub(super) fn faults(&self, pair: &GearPair, pointer: &str) -> Vec<FieldError> {
         match self {
             Self::Common(None) => Vec::new(),
             Self::Common(Some(radius)) => {
                 let ranges = Member::BOTH.map(|member| range(pair.gear(member)));
                 let both = (ranges[0].0.max(ranges[1].0), ranges[0].1.min(ranges[1].1));
-                fault(radius, both, pointer.to_owned())
+                fault(*radius, both, pointer.to_owned())
                     .into_iter()
                     .collect()
             }
-            Self::Each(radii) => Member::BOTH
+            Self::Each(_) => Member::BOTH
                 .into_iter()
                 .filter_map(|member| {
                     let place = format!("{pointer}/{}", member.word());
-                    fault(radii[member.index()]?, range(pair.gear(member)), place)
+                    fault(self.of(member)?, range(pair.gear(member)), place)
                 })
                 .collect(),
         }
@@ -141,19 +151,4 @@ fn fault(radius: f64, (least, most): (f64, f64), pointer: String) -> Option<Fiel
     let detail = format!("{pointer} is {} mm; {said}.", plain(radius));
     let nearest = nearest.filter(|nearest| (least..=most).contains(nearest));
     Some(FieldError::new(pointer, Code::OutOfRange, detail).nearest(nearest))
-}
-
-impl Serialize for InterfaceRadii {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Self::Common(radius) => radius.serialize(serializer),
-            Self::Each(radii) => {
-                let mut map = serializer.serialize_map(Some(2))?;
-                for member in Member::BOTH {
-                    map.serialize_entry(member.word(), &radii[member.index()])?;
-                }
-                map.end()
-            }
-        }
-    }
 }

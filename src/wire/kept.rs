@@ -3,7 +3,7 @@
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::tree::Choice;
+use super::declare::{Choice, words};
 
 /// How much of what was computed is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
@@ -15,19 +15,11 @@ pub enum Kept {
     Statistics,
 }
 
-impl Choice for Kept {
-    const OPTIONS: &'static [(&'static str, Self, &'static str)] = &[
-        (
-            "results",
-            Self::Results,
-            "the whole results of each design, with every curve",
-        ),
-        (
-            "statistics",
-            Self::Statistics,
-            "the numbers of the table only; a design has its curves when it is submitted alone",
-        ),
-    ];
+words! {
+    Kept {
+        Results = "results": "the whole results of each design, with every curve",
+        Statistics = "statistics": "the numbers of the table only; a design has its curves when it is submitted alone",
+    }
 }
 
 impl Kept {

@@ -3,21 +3,16 @@
 //! Read in this order: [`problem`] (what goes wrong), [`submission`] with its parts [`pair`], [`gear`] and
 //! [`resolution`] (what is asked), [`geometry`], [`outline`], [`edges`], [`warning`] and [`results`] (what is answered), [`solve`](mod@solve)
 //! (what leads from the one to the other) and [`examples`](mod@examples); [`preview`], a submission that is answered at
-//! once; then [`study`] and [`study_table`], many
-//! submissions at once. `units`, `quantity`, `size`, `tree`, `edit`, `schema`, `tags` and `pointer` carry them: conversions,
-//! the table of bounds, how much is read at all, JSON with its places, changes in place, OpenAPI, and places in a
-//! submission.
+//! once; then [`study`] and [`study_table`], many submissions at once. `declare`, `units`, `size`, `edit` and `pointer` carry
+//! them: the one declaration of each object, conversions, how much is read at all, changes in place, and places in a submission.
 //!
 //! This is the only place where domain data meets serde, and where mm, um, degrees, GPa and MPa meet SI.
 
 pub(crate) mod csv;
+mod declare;
 mod edit;
 mod pointer;
-mod quantity;
-mod schema;
 mod size;
-mod tags;
-mod tree;
 mod units;
 
 mod kept;
@@ -53,10 +48,9 @@ pub use outline::PairOutline;
 pub use preview::Preview;
 pub use problem::{Code, FieldError, Problem};
 pub use results::Results;
-pub use schema::method_schema;
 pub use solve::{Limits, Validation, limits, solve, validate};
 pub use status::Status;
 pub use study::{Design, Study};
 pub use study_table::{RowState, StudyResults, Summary};
-pub use submission::{DOCUMENT_VERSION, SOLVER_VERSION, Submission};
+pub use submission::{DOCUMENT_VERSION, SOLVER_VERSION, Submission, method_schema};
 pub(crate) use units::significant;

@@ -1,51 +1,26 @@
 //! The pair of a submission, and what is wrong with gears that cannot mesh.
 
 use meshwright_engine::gear::{GearPair, GearPairError, Member, SpurGear};
-use serde::Serialize;
 
+use super::declare::{Errors, document, nested, number};
 use super::gear::GearDocument;
 use super::problem::{Code, FieldError};
-use super::quantity;
-use super::schema::{self, documented};
-use super::tree::{Errors, ObjectReader};
 use super::units::{Side, from_mm, plain, rounded_inward, to_mm};
 
-/// Two gears at a center distance, in the reader's units, with every default filled in.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct PairDocument {
-    center_distance_mm: f64,
-    pub(super) driving: GearDocument,
-    pub(super) driven: GearDocument,
+document! {
+    /// Two spur gears at a center distance, the first driving the second.
+    pub struct PairDocument as "Pair", "Gear pair" {
+        /// The operating center distance, not the reference one. Teeth have to reach each other with a contact ratio of at least one,
+        /// without negative backlash and without interference.
+        center_distance_mm: f64 = number("Center distance", "mm", 0.5, 20_000.0),
+        /// Gear 1, which drives.
+        pub(super) driving: GearDocument = nested(""),
+        /// Gear 2, which is driven.
+        pub(super) driven: GearDocument = nested(""),
+    }
 }
 
-documented!(
-    PairDocument,
-    "Pair",
-    [GearDocument],
-    schema::object(
-        "Gear pair",
-        "Two spur gears at a center distance, the first driving the second.",
-        vec![
-            schema::number(&quantity::CENTER_DISTANCE),
-            schema::document::<GearDocument>("driving", true),
-            schema::document::<GearDocument>("driven", true),
-        ]
-    )
-);
-
 impl PairDocument {
-    pub(super) fn read(mut reader: ObjectReader<'_>) -> Option<Self> {
-        let center_distance_mm = reader.number(&quantity::CENTER_DISTANCE, None);
-        let driving = reader.needed_object("driving").and_then(GearDocument::read);
-        let driven = reader.needed_object("driven").and_then(GearDocument::read);
-        reader.finish();
-        Some(Self {
-            center_distance_mm: center_distance_mm?,
-            driving: driving?,
-            driven: driven?,
-        })
-    }
-
     /// The pair, if its gears can be made and mesh; what prevents it is reported to `errors`.
     pub(super) fn to_pair(&self, errors: &Errors) -> Option<GearPair> {
         let made =

@@ -3,10 +3,10 @@
 use std::sync::LazyLock;
 
 use serde_json::{Map, Value};
-use utoipa::{PartialSchema, ToSchema};
 
+use super::declare::Document as _;
 use super::problem::Code;
-use super::submission::Submission;
+use super::submission::Document;
 
 /// A place in a submission.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -138,14 +138,13 @@ struct Schema {
 }
 
 static SCHEMA: LazyLock<Schema> = LazyLock::new(|| {
-    let plain = |schema| serde_json::to_value(schema).expect("a schema is plain data");
     let mut named = Vec::new();
-    Submission::schemas(&mut named);
+    Document::name_fields(&mut named);
+    let named = named.into_iter();
     Schema {
-        root: plain(Submission::schema()),
+        root: Document::json_schema(),
         named: named
-            .into_iter()
-            .map(|(name, schema)| (name, plain(schema)))
+            .map(|(name, schema)| (name.to_owned(), schema))
             .collect(),
     }
 });

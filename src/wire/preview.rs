@@ -1,21 +1,22 @@
 //! A preview: a submission whose results are wanted at once and kept by nobody.
 
-use utoipa::openapi::schema::{ObjectBuilder, SchemaType, Type};
-
-use super::pair::PairDocument;
-use super::problem::{Code, FieldError, Problem};
-use super::resolution::ResolutionDocument;
-use super::schema::{self, documented};
+use super::declare::{
+    Declared, Document as _, Errors, Node, ObjectReader, Optional, Place, Text, absent, object,
+    text, utoipa_schema,
+};
+use super::problem::Problem;
 use super::size::{MOST_VALUES, refuse_many_values};
-use super::submission::{Purpose, Submission};
-use super::tags::is_short_text;
-use super::tree::{Errors, Node, ObjectReader};
+use super::submission::{Document, Purpose, Submission};
 
 /// The field beside those of the submission.
-const PREVIEW_ID: &str = "preview_id";
-
-/// The most characters of an id.
-const LONGEST_ID: usize = 64;
+const PREVIEW_ID: Declared<Optional<Text>> = Declared::new(
+    "preview_id",
+    "A word of the client's choice, such as one for each open form. A newer preview with the same id stops the older one. It does not change the result.",
+    absent(
+        text("Preview id", 64),
+        "none; nothing stops this preview and it stops no other",
+    ),
+);
 
 /// A submission, and the word by which a newer preview replaces this one.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,30 +27,19 @@ pub struct Preview {
     pub id: Option<String>,
 }
 
-documented!(
-    Preview,
-    "Preview",
-    [PairDocument, ResolutionDocument],
-    schema::object(
-        "Preview",
-        "What is asked, as for a job, and perhaps which older preview it replaces. Unknown fields are refused.",
-        [(PREVIEW_ID, id_schema(), false)]
-            .into_iter()
-            .chain(Submission::properties())
-            .collect(),
-    )
-);
+impl utoipa::PartialSchema for Preview {
+    fn schema() -> utoipa::openapi::RefOr<utoipa::openapi::Schema> {
+        let about = "What is asked, as for a job, and perhaps which older preview it replaces. Unknown fields are refused.";
+        let mut properties = vec![PREVIEW_ID.property::<Option<String>>()];
+        properties.extend(Document::properties());
+        utoipa_schema(object("Preview", about, properties))
+    }
+}
 
-fn id_schema() -> utoipa::openapi::RefOr<utoipa::openapi::Schema> {
-    let types: SchemaType = [Type::String, Type::Null].into_iter().collect();
-    ObjectBuilder::new()
-        .schema_type(types)
-        .title(Some("Preview id"))
-        .description(Some("A word of the client's choice, such as one for each open form. A newer preview with the same id stops the older one. It does not change the result. Default: none; nothing stops this preview and it stops no other."))
-        .min_length(Some(1))
-        .max_length(Some(LONGEST_ID))
-        .default(Some(serde_json::Value::Null))
-        .into()
+impl utoipa::ToSchema for Preview {
+    fn schemas(schemas: &mut Vec<(String, utoipa::openapi::RefOr<utoipa::openapi::Schema>)>) {
+        <Submission as utoipa::ToSchema>::schemas(schemas);
+    }
 }
 
 impl Preview {
@@ -63,8 +53,8 @@ impl Preview {
         let node = Node::parse(document)?;
         let errors = Errors::default();
         let read = || {
-            let mut reader = ObjectReader::new(&node, String::new(), &errors)?;
-            let id = read_id(&mut reader);
+            let mut reader = ObjectReader::new(&node, Place::root(&errors))?;
+            let id = PREVIEW_ID.read::<Option<String>>(&mut reader);
             // The same reader goes on, so that each half knows the fields of the other.
             let submission = Submission::read(reader, Purpose::Preview { most_positions }, &errors);
             Some(Self {
@@ -79,33 +69,13 @@ impl Preview {
     }
 }
 
-/// The id, if there is one. `None` if what stands there is none.
-fn read_id(reader: &mut ObjectReader<'_>) -> Option<Option<String>> {
-    match reader.present(PREVIEW_ID) {
-        None => Some(None),
-        Some(Node::Text(id)) if is_short_text(id, LONGEST_ID) => Some(Some(id.clone())),
-        Some(Node::Text(id)) => {
-            let pointer = reader.pointer_to(PREVIEW_ID);
-            let detail = format!(
-                "{pointer} has {} characters; it has to have 1 to {LONGEST_ID}, none of them a control character.",
-                id.chars().count()
-            );
-            reader.report(FieldError::new(pointer, Code::OutOfRange, detail));
-            None
-        }
-        Some(other) => {
-            reader.wrong_kind(PREVIEW_ID, other, "a text");
-            None
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use serde_json::{Value, json};
 
     use super::*;
     use crate::wire::examples;
+    use crate::wire::problem::Code;
 
     fn case_2() -> Value {
         let example = examples()

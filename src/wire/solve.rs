@@ -7,14 +7,12 @@ use meshwright_engine::run::Run;
 use serde::Serialize;
 use utoipa::ToSchema;
 
+use super::gear::{GearDocument, MOST_ENTRIES, MOST_HOLES, MOST_MODIFICATIONS};
 use super::geometry::PairGeometry;
 use super::problem::{Code, Problem};
-use super::quantity::{
-    self, MOST_HOLES, MOST_MODIFICATIONS, MOST_POSITIONS, MOST_TABLE_ENTRIES, MOST_TAGS,
-    MOST_TORQUES,
-};
+use super::resolution::ResolutionDocument;
 use super::results::Results;
-use super::submission::{SOLVER_VERSION, Submission};
+use super::submission::{MOST_POSITIONS, MOST_TAGS, MOST_TORQUES, SOLVER_VERSION, Submission};
 use super::units::{plain, to_um};
 use super::warning::WarningDocument;
 
@@ -217,12 +215,14 @@ pub fn limits() -> Limits {
         solver_version: SOLVER_VERSION,
         torques: MOST_TORQUES,
         positions: MOST_POSITIONS,
-        positions_per_mesh_period: counts(quantity::POSITIONS.bounds)[1],
+        positions_per_mesh_period: counts(
+            ResolutionDocument::positions_per_mesh_period.spec.bounds,
+        )[1],
         holes: MOST_HOLES,
-        tooth_count: counts(quantity::TOOTH_COUNT.bounds),
-        module_mm: quantity::MODULE.bounds.into(),
+        tooth_count: counts(GearDocument::tooth_count.spec.bounds),
+        module_mm: GearDocument::module_mm.spec.bounds.into(),
         profile_modifications: MOST_MODIFICATIONS,
-        table_entries: MOST_TABLE_ENTRIES,
+        table_entries: MOST_ENTRIES,
         tags: MOST_TAGS.0,
         tag_length: MOST_TAGS.1,
         designs: super::study::MOST_DESIGNS,

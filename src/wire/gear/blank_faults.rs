@@ -40,7 +40,7 @@ impl GearDocument {
         let width = self.half_width(pattern);
         let apart = self.apart(one, other);
         let circle = document.circle_radius_mm;
-        if document.shape.span_deg() > 0.0 {
+        if document.span_deg() > 0.0 {
             let chord = ((2.0 * width + least) / (2.0 * circle)).min(1.0);
             let span = (apart - 2.0 * chord.asin()).to_degrees();
             if span > 0.0 {
@@ -77,7 +77,7 @@ impl GearDocument {
 
     /// That the holes of a pattern are wider by `missing` mm to each side than would do, if holes so narrow can be made.
     fn narrower(&self, pattern: usize, missing: f64, code: Code, detail: &str) -> Option<Fault> {
-        let shape = self.blank.holes.patterns()[pattern].shape;
+        let shape = &self.blank.holes.patterns()[pattern];
         let largest = shape.of_half_width(self.half_width(pattern) - missing);
         let field = Field::HoleWidth(pattern);
         let rounded = rounded_inward(largest, Side::AtMost, 0);
@@ -90,8 +90,8 @@ impl GearDocument {
     }
 
     fn half_width(&self, pattern: usize) -> f64 {
-        let shape = self.blank.holes.patterns()[pattern].shape;
-        shape.width_value() / shape.of_half_width(1.0)
+        let shape = &self.blank.holes.patterns()[pattern];
+        shape.width() / shape.of_half_width(1.0)
     }
 
     /// The angle between the middles of two holes, a whole turn for a hole and itself.
@@ -129,7 +129,7 @@ impl GearDocument {
 
     /// A web is a ring of some width, away from the bore or up to it, and of some thickness.
     pub(super) fn check_web(&self) -> Result<(), Fault> {
-        let Some(web) = self.blank.web else {
+        let Some(web) = &self.blank.web else {
             return Ok(());
         };
         let (least, bore) = (self.least_web_mm(), self.blank.bore_radius_mm);

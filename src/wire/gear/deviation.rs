@@ -1,139 +1,61 @@
 //! What the teeth of a gear deviate from each other by, as measured.
 
 use meshwright_engine::gear::{Eccentricity, ToothDeviations};
-use serde::Serialize;
 
-use super::tip::either;
+use super::GearDocument;
+use crate::wire::declare::{List, Number, absent, document, list, nested, number};
 use crate::wire::problem::{Code, FieldError};
-use crate::wire::quantity::{self, Quantity};
-use crate::wire::schema::{self, documented};
-use crate::wire::tree::{ObjectReader, OptionalObject};
 use crate::wire::units::{from_um, plain};
-
-/// The most teeth that deviations are given for. How few are too few depends on the gear, which says so.
-const MOST_TEETH: usize = quantity::TOOTH_COUNT.bounds.1 as usize;
 
 /// How far the sum of all single pitch deviations may be from zero, in um.
 const CLOSURE: f64 = 0.01;
 
-/// What the teeth of a gear deviate by.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DeviationsDocument {
-    #[serde(flatten)]
-    pitch: Pitch,
-    profile_slope_um: Option<Vec<f64>>,
-    eccentricity: Option<EccentricityDocument>,
-}
-
-documented!(
-    DeviationsDocument,
-    "ToothDeviations",
-    [EccentricityDocument],
-    schema::object(
-        "Tooth deviations",
-        "What the teeth of a gear deviate from each other by. Positive is towards the mate, so that contact is earlier.",
-        vec![
-            schema::numbers(&quantity::PITCH_CUMULATIVE, (0, MOST_TEETH), false),
-            schema::numbers(&quantity::PITCH_SINGLE, (0, MOST_TEETH), false),
-            schema::numbers(&quantity::PROFILE_SLOPES, (0, MOST_TEETH), false),
-            schema::optional_document::<EccentricityDocument>(
-                "eccentricity",
-                "Eccentricity",
-                "The gear's own axis beside the axis of rotation. Default: none."
-            ),
-        ]
-    )
-);
-
-/// The pitch, said in one of two ways or not at all.
-#[derive(Debug, Clone, PartialEq)]
-enum Pitch {
-    Cumulative(Option<Vec<f64>>),
-    Single(Vec<f64>),
-}
-
-impl Serialize for Pitch {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let (cumulative, single) = match self {
-            Self::Cumulative(values) => (values.as_ref(), None),
-            Self::Single(values) => (None, Some(values)),
-        };
-        either(
-            serializer,
-            (quantity::PITCH_CUMULATIVE.name, cumulative),
-            (quantity::PITCH_SINGLE.name, single),
-        )
+document! {
+    /// What the teeth of a gear deviate from each other by. Positive is towards the mate, so that contact is earlier.
+    pub struct DeviationsDocument as "ToothDeviations", "Tooth deviations" {
+        /// How far the loaded flank of each tooth, tooth 0 first, stands from its place towards its mate, as a transverse arc on the
+        /// reference circle (ISO 1328-1). Along the base tangent it is times the cosine of the pressure angle.
+        pitch_cumulative_um: Option<Vec<f64>> =
+            absent(each_tooth("Cumulative pitch deviations"), "none").not_beside("pitch_single_um"),
+        /// The deviation of each tooth, tooth 0 first, against the tooth before it, as a transverse arc on the reference circle (ISO
+        /// 1328-1); that of tooth 0 is against the last tooth. Their sum has to be zero within 0.01 um. Summed up they are cumulative
+        /// deviations from the last tooth.
+        pitch_single_um: Option<Vec<f64>> = absent(each_tooth("Single pitch deviations"), "none"),
+        /// The slope deviation of the loaded flank of each tooth, tooth 0 first: nothing at the form circle, this much towards the mate at
+        /// the tip circle, linear in the roll length.
+        profile_slope_um: Option<Vec<f64>> = absent(each_tooth("Profile slope deviations"), "none"),
+        /// The gear's own axis beside the axis of rotation.
+        eccentricity: Option<EccentricityDocument> = absent(nested("Eccentricity"), "none"),
     }
 }
 
-/// The gear's own axis beside the axis of rotation.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct EccentricityDocument {
-    amount_um: f64,
-    phase_deg: f64,
+document! {
+    /// The gear's own axis beside the axis of rotation.
+    pub struct EccentricityDocument as "Eccentricity", "Eccentricity" {
+        /// The distance of the gear's own axis from the axis of rotation.
+        amount_um: f64 = number("Amount of the eccentricity", "um", 0.0, 1_000.0),
+        /// The direction of the gear's own axis from the axis of rotation: an angle from the centerline of tooth 0, positive towards the
+        /// loaded flank of that tooth.
+        phase_deg: f64 = number("Phase of the eccentricity", "deg", -360.0, 360.0).or(0.0),
+    }
 }
 
-documented!(
-    EccentricityDocument,
-    "Eccentricity",
-    [],
-    schema::object(
-        "Eccentricity",
-        "The gear's own axis beside the axis of rotation.",
-        vec![
-            schema::number(&quantity::ECCENTRICITY_AMOUNT),
-            schema::number(&quantity::ECCENTRICITY_PHASE),
-        ]
-    )
-);
-
-impl EccentricityDocument {
-    fn read(mut reader: ObjectReader<'_>) -> Option<Self> {
-        let amount_um = reader.number(&quantity::ECCENTRICITY_AMOUNT, None);
-        let phase_deg = reader.number(&quantity::ECCENTRICITY_PHASE, None);
-        reader.finish();
-        Some(Self {
-            amount_um: amount_um?,
-            phase_deg: phase_deg?,
-        })
-    }
+/// A deviation for each tooth. How few are too few depends on the gear, which says so.
+const fn each_tooth(title: &'static str) -> List<Number> {
+    let most = GearDocument::tooth_count.spec.bounds.1 as usize;
+    list(title, number("", "um", -1_000.0, 1_000.0), most)
 }
 
 impl DeviationsDocument {
-    pub(super) fn read(mut reader: ObjectReader<'_>) -> Option<Self> {
-        let (of_cumulative, of_single) = (&quantity::PITCH_CUMULATIVE, &quantity::PITCH_SINGLE);
-        let conflict = reader.conflict(of_cumulative.name, of_single.name);
-        let cumulative = reader.optional_numbers(of_cumulative, MOST_TEETH);
-        let single = reader.optional_numbers(of_single, MOST_TEETH);
-        let slopes = reader.optional_numbers(&quantity::PROFILE_SLOPES, MOST_TEETH);
-        let eccentricity = match reader.optional_object("eccentricity") {
-            OptionalObject::Absent => Some(None),
-            OptionalObject::Wrong => None,
-            OptionalObject::Present(object) => EccentricityDocument::read(object).map(Some),
-        };
-        reader.finish();
-        let pitch = match single? {
-            Some(single) => Pitch::Single(single),
-            None => Pitch::Cumulative(cumulative?),
-        };
-        Some(Self {
-            pitch,
-            profile_slope_um: slopes?,
-            eccentricity: eccentricity?,
-        })
-        .filter(|_| !conflict)
-    }
-
-    /// Its lists, each with what it is.
-    fn lists(&self) -> impl Iterator<Item = (&'static Quantity, &[f64])> {
-        let pitch: (_, Option<&[f64]>) = match &self.pitch {
-            Pitch::Cumulative(values) => (&quantity::PITCH_CUMULATIVE, values.as_deref()),
-            Pitch::Single(values) => (&quantity::PITCH_SINGLE, Some(values)),
-        };
-        let slopes = (&quantity::PROFILE_SLOPES, self.profile_slope_um.as_deref());
-        [pitch, slopes]
-            .into_iter()
-            .filter_map(|(quantity, values)| Some((quantity, values?)))
+    /// Its lists, each with its field.
+    fn lists(&self) -> impl Iterator<Item = (&'static str, &[f64])> {
+        let lists = [
+            (Self::pitch_cumulative_um.name, &self.pitch_cumulative_um),
+            (Self::pitch_single_um.name, &self.pitch_single_um),
+            (Self::profile_slope_um.name, &self.profile_slope_um),
+        ];
+        let given = lists.into_iter();
+        given.filter_map(|(name, values)| Some((name, values.as_deref()?)))
     }
 
     /// What is wrong with it on a gear of so many teeth and of `module` mm, which has it at `pointer`.
@@ -141,8 +63,8 @@ impl DeviationsDocument {
         let wrong_length = self
             .lists()
             .filter(|(_, values)| values.len() != tooth_count as usize)
-            .map(|(quantity, values)| {
-                let pointer = format!("{pointer}/{}", quantity.name);
+            .map(|(name, values)| {
+                let pointer = format!("{pointer}/{name}");
                 let detail = format!(
                     "{pointer} has {} numbers; {tooth_count} are needed, one for each tooth.",
                     values.len()
@@ -164,13 +86,13 @@ impl DeviationsDocument {
     fn too_large(&self, pointer: &str, module: f64) -> Option<FieldError> {
         const LARGEST: f64 = 0.25;
         let most = 1e3 * LARGEST * module;
-        let listed = self.lists().flat_map(|(quantity, values)| {
-            let place = |i| format!("{}/{i}", quantity.name);
+        let listed = self.lists().flat_map(|(name, values)| {
+            let place = move |i| format!("{name}/{i}");
             let each = values.iter().enumerate();
             each.map(move |(i, value)| (place(i), *value))
         });
-        let eccentricity = self.eccentricity.map(|eccentricity| {
-            let place = format!("eccentricity/{}", quantity::ECCENTRICITY_AMOUNT.name);
+        let eccentricity = self.eccentricity.as_ref().map(|eccentricity| {
+            let place = format!("eccentricity/{}", EccentricityDocument::amount_um.name);
             (place, eccentricity.amount_um)
         });
         let (place, value) = listed
@@ -187,15 +109,13 @@ impl DeviationsDocument {
     }
 
     fn does_not_close(&self, pointer: &str) -> Option<FieldError> {
-        let Pitch::Single(values) = &self.pitch else {
-            return None;
-        };
+        let values = self.pitch_single_um.as_ref()?;
         let sum: f64 = values.iter().sum();
         // Rounding of a sum of hundreds of numbers is no gap.
         if sum.abs() <= CLOSURE * (1.0 + 1e-6) {
             return None;
         }
-        let pointer = format!("{pointer}/{}", quantity::PITCH_SINGLE.name);
+        let pointer = format!("{pointer}/{}", Self::pitch_single_um.name);
         let detail = format!(
             "{pointer} sums to {} um, and once around it has to be zero within {CLOSURE} um; {} um less in each of the {} closes it.",
             plain(sum),
@@ -209,12 +129,12 @@ impl DeviationsDocument {
     pub(super) fn data(&self) -> ToothDeviations {
         let meters = |values: &[f64]| values.iter().copied().map(from_um).collect();
         ToothDeviations {
-            cumulative_pitch: match &self.pitch {
-                Pitch::Cumulative(values) => meters(values.as_deref().unwrap_or_default()),
-                Pitch::Single(values) => summed(values).into_iter().map(from_um).collect(),
+            cumulative_pitch: match &self.pitch_single_um {
+                None => meters(self.pitch_cumulative_um.as_deref().unwrap_or_default()),
+                Some(values) => summed(values).into_iter().map(from_um).collect(),
             },
             profile_slope: meters(self.profile_slope_um.as_deref().unwrap_or_default()),
-            eccentricity: self.eccentricity.map(|eccentricity| Eccentricity {
+            eccentricity: self.eccentricity.as_ref().map(|eccentricity| Eccentricity {
                 amount: from_um(eccentricity.amount_um),
                 direction: eccentricity.phase_deg.to_radians(),
             }),

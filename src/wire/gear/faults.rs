@@ -205,11 +205,6 @@ impl GearDocument {
         }
     }
 
-    /// What the tip circle's own field would say of another addendum, in mm.
-    fn tip_said(&self, addendum: f64) -> f64 {
-        self.tip_circle.said(addendum, self.shifted_radius_mm())
-    }
-
     /// The radii at which a relief with its amount at `end` can start, of a flank between these radii.
     pub(super) fn relief_range(&self, end: ReliefEnd, [form, tip]: [f64; 2]) -> (f64, f64) {
         match end {

@@ -1,9 +1,10 @@
 //! The fields that may have to change to make a gear: their values, bounds and places.
 
 use super::GearDocument;
-use super::blank::WebDocument;
-use super::relief::ReliefDocument;
-use crate::wire::quantity::{self, Quantity};
+use super::blank::{BlankDocument, WebDocument};
+use super::holes::{PatternDocument, SlotDocument};
+use super::relief::{Relief, StartDocument};
+use crate::wire::declare::{Declared, Number, Optional};
 
 /// The fields that may have to change to make a gear.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,18 +57,24 @@ impl GearDocument {
         let web = |value: fn(&WebDocument) -> f64| self.blank.web.as_ref().map_or(0.0, value);
         match field {
             Field::ProfileShift => self.profile_shift,
-            Field::Tip => self.tip_circle.value(),
+            Field::Tip => {
+                let said = self.tip_diameter_mm.or(self.addendum_mm);
+                said.unwrap_or(0.0)
+            }
             Field::Dedendum => self.dedendum_mm,
             Field::RackTipRadius => self.rack_tip_radius_mm,
             Field::ThicknessDeviation => self.tooth_thickness_deviation_um,
-            Field::TipEdge => self.tip_edge.value(),
+            Field::TipEdge => {
+                let edge = self.tip_rounding_mm.or(self.tip_chamfer_mm);
+                edge.unwrap_or(0.0)
+            }
             Field::ReliefStart(place) => {
                 self.relief(place).map_or(0.0, |relief| relief.start.value)
             }
             Field::Bore => self.blank.bore_radius_mm,
             Field::HoleCircle(i) => holes[i].circle_radius_mm,
-            Field::HoleWidth(i) => holes[i].shape.width_value(),
-            Field::SlotAngle(i) => holes[i].shape.span_deg(),
+            Field::HoleWidth(i) => holes[i].width(),
+            Field::SlotAngle(i) => holes[i].span_deg(),
             Field::WebInner => web(|web| web.inner_radius_mm),
             Field::WebOuter => web(|web| web.outer_radius_mm),
             Field::WebThickness => web(|web| web.thickness_mm),
@@ -78,23 +85,29 @@ impl GearDocument {
     pub(super) fn set(&mut self, field: Field, value: f64) {
         match field {
             Field::ProfileShift => self.profile_shift = value,
-            Field::Tip => self.tip_circle = self.tip_circle.with(value),
+            Field::Tip => put_first([&mut self.tip_diameter_mm, &mut self.addendum_mm], value),
             Field::Dedendum => self.dedendum_mm = value,
             Field::RackTipRadius => self.rack_tip_radius_mm = value,
             Field::ThicknessDeviation => self.tooth_thickness_deviation_um = value,
-            Field::TipEdge => self.tip_edge = self.tip_edge.with(value),
+            Field::TipEdge => {
+                put_first([&mut self.tip_rounding_mm, &mut self.tip_chamfer_mm], value);
+            }
             Field::Bore => self.blank.bore_radius_mm = value,
             Field::ReliefStart(place) => {
-                if let Some(relief) = self.relief_mut(place) {
-                    relief.start.value = value;
+                if let Some(start) = self.start_mut(place) {
+                    start.value = value;
                 }
             }
             Field::HoleCircle(i) | Field::HoleWidth(i) | Field::SlotAngle(i) => {
                 if let Some(pattern) = self.blank.holes.pattern_mut(i) {
                     match field {
                         Field::HoleCircle(_) => pattern.circle_radius_mm = value,
-                        Field::HoleWidth(_) => pattern.shape.set_width(value),
-                        _ => pattern.shape.set_span(value),
+                        Field::HoleWidth(_) => pattern.set_width(value),
+                        _ => {
+                            if let Some(slot) = &mut pattern.slot {
+                                slot.angle_deg = value;
+                            }
+                        }
                     }
                 }
             }
@@ -111,28 +124,32 @@ impl GearDocument {
         }
     }
 
-    pub(super) fn quantity(&self, field: Field) -> Option<&'static Quantity> {
+    /// The declaration of `field`.
+    pub(super) fn declared(&self, field: Field) -> Option<Declared<Number>> {
+        let optional = |field: Declared<Optional<Number>>| field.map(|optional| optional.spec);
         Some(match field {
-            Field::ProfileShift => &quantity::PROFILE_SHIFT,
-            Field::Tip => self.tip_circle.quantity(),
-            Field::Dedendum => &quantity::DEDENDUM,
-            Field::RackTipRadius => &quantity::RACK_TIP_RADIUS,
-            Field::ThicknessDeviation => &quantity::THICKNESS_DEVIATION,
-            Field::TipEdge => self.tip_edge.quantity()?,
-            Field::ReliefStart(place) => self.relief(place)?.start.quantity(),
-            Field::Bore => &quantity::BORE_RADIUS,
-            Field::HoleCircle(_) => &quantity::HOLE_CIRCLE,
-            Field::HoleWidth(i) => self.blank.holes.patterns()[i].shape.width().0,
-            Field::SlotAngle(_) => &quantity::SLOT_ANGLE,
-            Field::WebInner => &quantity::WEB_INNER,
-            Field::WebOuter => &quantity::WEB_OUTER,
-            Field::WebThickness => &quantity::WEB_THICKNESS,
-            Field::Modification(_) | Field::Deviations => return None,
+            Field::ProfileShift => Self::profile_shift,
+            Field::Tip if self.tip_diameter_mm.is_some() => optional(Self::tip_diameter_mm),
+            Field::Tip => optional(Self::addendum_mm),
+            Field::Dedendum => Self::dedendum_mm,
+            Field::RackTipRadius => Self::rack_tip_radius_mm,
+            Field::ThicknessDeviation => Self::tooth_thickness_deviation_um,
+            Field::TipEdge if self.tip_rounding_mm.is_some() => optional(Self::tip_rounding_mm),
+            Field::TipEdge if self.tip_chamfer_mm.is_some() => optional(Self::tip_chamfer_mm),
+            Field::ReliefStart(place) => self.relief(place)?.start.field(),
+            Field::Bore => BlankDocument::bore_radius_mm,
+            Field::HoleCircle(_) => PatternDocument::circle_radius_mm,
+            Field::HoleWidth(i) => self.blank.holes.patterns()[i].width_field().1,
+            Field::SlotAngle(_) => SlotDocument::angle_deg,
+            Field::WebInner => WebDocument::inner_radius_mm,
+            Field::WebOuter => WebDocument::outer_radius_mm,
+            Field::WebThickness => WebDocument::thickness_mm,
+            Field::TipEdge | Field::Modification(_) | Field::Deviations => return None,
         })
     }
 
     pub(super) fn pointer_within(&self, field: Field) -> String {
-        let name = self.quantity(field).map_or("", |quantity| quantity.name);
+        let name = self.declared(field).map_or("", |declared| declared.name);
         match field {
             Field::ReliefStart(place) => format!("{}/start/{name}", place.pointer_within()),
             Field::Modification(place) => place.pointer_within(),
@@ -140,7 +157,7 @@ impl GearDocument {
             Field::Bore => format!("blank/{name}"),
             Field::HoleCircle(i) => format!("{}/{name}", self.blank.holes.pointer_within(i)),
             Field::HoleWidth(i) => {
-                let (_, folder) = self.blank.holes.patterns()[i].shape.width();
+                let (folder, _) = self.blank.holes.patterns()[i].width_field();
                 format!("{}/{folder}{name}", self.blank.holes.pointer_within(i))
             }
             Field::SlotAngle(i) => format!("{}/slot/{name}", self.blank.holes.pointer_within(i)),
@@ -151,8 +168,10 @@ impl GearDocument {
 
     /// Whether `value` is within the bounds of `field`.
     pub(super) fn accepts(&self, field: Field, value: f64) -> bool {
-        self.quantity(field)
-            .is_some_and(|quantity| (quantity.bounds.0..=quantity.bounds.1).contains(&value))
+        self.declared(field).is_some_and(|declared| {
+            let (least, most) = declared.spec.bounds;
+            (least..=most).contains(&value)
+        })
     }
 
     /// The places of all reliefs, in the order in which the engine is told of them.
@@ -171,17 +190,24 @@ impl GearDocument {
     }
 
     /// The relief at `place`, if there is one.
-    pub(super) fn relief(&self, place: ReliefPlace) -> Option<&ReliefDocument> {
+    pub(super) fn relief(&self, place: ReliefPlace) -> Option<Relief> {
         match place {
-            ReliefPlace::Short => self.tip_relief.as_ref(),
+            ReliefPlace::Short => Some(self.tip_relief.as_ref()?.relief()),
             ReliefPlace::Listed(i) => self.profile_modifications.get(i)?.relief(),
         }
     }
 
-    fn relief_mut(&mut self, place: ReliefPlace) -> Option<&mut ReliefDocument> {
+    fn start_mut(&mut self, place: ReliefPlace) -> Option<&mut StartDocument> {
         match place {
-            ReliefPlace::Short => self.tip_relief.as_mut(),
-            ReliefPlace::Listed(i) => self.profile_modifications.get_mut(i)?.relief_mut(),
+            ReliefPlace::Short => Some(&mut self.tip_relief.as_mut()?.start),
+            ReliefPlace::Listed(i) => self.profile_modifications.get_mut(i)?.start_mut(),
         }
+    }
+}
+
+/// Gives `value` to the first of two fields of which one stands in the place of the other.
+fn put_first(fields: [&mut Option<f64>; 2], value: f64) {
+    if let Some(given) = fields.into_iter().flatten().next() {
+        *given = value;
     }
 }

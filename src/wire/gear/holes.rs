@@ -3,127 +3,124 @@
 use std::f64::consts::TAU;
 
 use meshwright_engine::gear::{Hole, HolePattern, HoleShape};
-use serde::Serialize;
-use serde::ser::{SerializeMap, Serializer};
+use serde::Serializer;
+use serde_json::{Value, json};
 
+use super::EACH;
+use crate::wire::declare::{
+    Declared, Kind, List, Named, Nested, Node, Number, ObjectReader, Place, absent, document, list,
+    nested, number, unless,
+};
 use crate::wire::problem::{Code, FieldError};
-use crate::wire::quantity::{self, MOST_HOLES, MOST_PATTERNS, Quantity};
-use crate::wire::schema::{self, Property, documented};
-use crate::wire::tree::{Node, ObjectReader, OptionalObject};
 use crate::wire::units::from_mm;
+
+/// The most patterns of holes in one blank.
+const MOST_PATTERNS: usize = 12;
+
+/// The most holes in one blank.
+pub(in crate::wire) const MOST_HOLES: usize = 60;
+
+document! {
+    /// Equal holes on a circle: count of them evenly spaced from phase_deg on, or one at each angle of at_deg; each round with
+    /// radius_mm, or a slot.
+    pub struct PatternDocument as "Holes", "Holes" {
+        /// The number N of equal, evenly spaced holes.
+        count: Option<u32> =
+            unless("at_deg", number("Number of holes", "1", 1.0, MOST_HOLES as f64)).left_out(),
+        /// The radius R of the circle through the holes' centers.
+        pub(super) circle_radius_mm: f64 = number("Radius of the hole circle", "mm", 0.1, 7_500.0),
+        /// The radius r of each hole: at least 1 % of the root radius. At least 0.5 mm of material has to be left between holes, to the
+        /// bore and to the root circle; below one module there is a warning.
+        radius_mm: Option<f64> =
+            unless("slot", number("Radius of a hole", "mm", 0.05, 3_750.0)).left_out(),
+        /// The shape of the holes, where they are not round.
+        pub(super) slot: Option<SlotDocument> = absent(nested("Slot"), "round holes").left_out(),
+        /// The angle of a hole's center from the centerline of tooth 0 of its own gear, positive towards the loaded flank of that tooth.
+        phase_deg: Option<f64> =
+            unless("at_deg", number("Phase of the holes", "deg", -360.0, 360.0).or(0.0)).left_out(),
+        /// The angle of each hole's center from the centerline of tooth 0 of its own gear, positive towards the loaded flank of that
+        /// tooth; instead of count and phase_deg. Unequal angles spread the order of the holes over those of a revolution.
+        at_deg: Option<Vec<f64>> = absent(
+            list("Angles of the holes", number("", "deg", -360.0, 360.0), MOST_HOLES)
+                .not_empty(Code::WrongLength, "give the angle of a hole"),
+            "even spacing",
+        )
+        .left_out(),
+    }
+}
+
+document! {
+    /// A kidney along the hole circle, with round ends.
+    pub struct SlotDocument as "Slot", "Slot" {
+        /// The width across the hole circle, which is the diameter of the round ends: at least 2 % of the root radius.
+        width_mm: f64 = number("Width of a slot", "mm", 0.1, 7_500.0),
+        /// The angle between the centers of the ends; with 0 the slot is a round hole.
+        pub(super) angle_deg: f64 = number("Angle of a slot", "deg", 0.0, 350.0),
+    }
+}
 
 /// The holes of a blank, as the document has them.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum HolesDocument {
+pub enum HolesDocument {
+    /// None.
     None,
-    One(PatternDocument),
+    /// One pattern, as an object.
+    One(Box<PatternDocument>),
+    /// A list of patterns.
     Several(Vec<PatternDocument>),
 }
 
-/// Equal holes on a circle.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PatternDocument {
-    pub(super) angles: HoleAngles,
-    pub(super) circle_radius_mm: f64,
-    pub(super) shape: ShapeDocument,
-}
+const PATTERNS: List<Nested> = list("Several patterns of holes", EACH, MOST_PATTERNS);
 
-/// Where the holes of a pattern stand.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum HoleAngles {
-    Even { count: u32, phase_deg: f64 },
-    At(Vec<f64>),
-}
+impl Kind for HolesDocument {
+    type Spec = ();
 
-/// The shape of the holes of a pattern.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum ShapeDocument {
-    Round { radius_mm: f64 },
-    Slot(SlotDocument),
-}
-
-/// A kidney along the hole circle.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct SlotDocument {
-    pub(super) width_mm: f64,
-    pub(super) angle_deg: f64,
-}
-
-documented!(
-    SlotDocument,
-    "Slot",
-    [],
-    schema::object(
-        "Slot",
-        "A kidney along the hole circle, with round ends.",
-        vec![
-            schema::number(&quantity::SLOT_WIDTH),
-            schema::number(&quantity::SLOT_ANGLE),
-        ]
-    )
-);
-
-documented!(
-    PatternDocument,
-    "Holes",
-    [SlotDocument],
-    schema::object(
-        "Holes",
-        "Equal holes on a circle: count of them evenly spaced from phase_deg on, or one at each angle of at_deg; each round with radius_mm, or a slot.",
-        vec![
-            schema::number(&quantity::HOLE_COUNT),
-            schema::number(&quantity::HOLE_PHASE),
-            schema::numbers(&quantity::HOLE_ANGLES, (1, MOST_HOLES), false),
-            schema::number(&quantity::HOLE_CIRCLE),
-            schema::number(&quantity::HOLE_RADIUS),
-            schema::optional_document::<SlotDocument>(
-                "slot",
-                "Slot",
-                "The shape of the holes, where they are not round."
-            ),
-        ]
-    )
-);
-
-/// What the schema says of the holes of a blank.
-pub(super) fn property() -> Property {
-    let null = utoipa::openapi::schema::Object::with_type(utoipa::openapi::schema::Type::Null);
-    let several = schema::list(
-        "Several patterns of holes",
-        "Holes on several circles, of unlike sizes or shapes.",
-        schema::reference::<PatternDocument>(),
-        (0, MOST_PATTERNS),
-    );
-    let either = schema::one_of(
-        "Holes",
-        "The holes of the blank: a pattern, or a list of patterns. Default: none.",
-        Some(serde_json::Value::Null),
-        vec![
-            null.into(),
-            schema::reference::<PatternDocument>(),
-            several.into(),
-        ],
-    );
-    ("holes", either, false)
-}
-
-impl HolesDocument {
-    pub(super) fn read(reader: &mut ObjectReader<'_>) -> Option<Self> {
-        match reader.present("holes") {
-            None => Some(Self::None),
-            Some(Node::List(_)) => {
-                let items = reader.objects("holes", MOST_PATTERNS)?;
-                let read: Vec<_> = items.into_iter().map(PatternDocument::read).collect();
-                let patterns: Option<Vec<_>> = read.into_iter().collect();
-                patterns.map(Self::Several)
-            }
-            Some(_) => match reader.optional_object("holes") {
-                OptionalObject::Present(pattern) => PatternDocument::read(pattern).map(Self::One),
-                OptionalObject::Absent | OptionalObject::Wrong => None,
-            },
+    fn read(node: &Node, place: &Place<'_>, _: &()) -> Option<Self> {
+        match node {
+            Node::Null => Some(Self::None),
+            Node::List(_) => Kind::read(node, place, &PATTERNS).map(Self::Several),
+            _ => PatternDocument::read(node, place, &EACH).map(|one| Self::One(Box::new(one))),
         }
     }
 
+    fn absent(_: &mut ObjectReader<'_>, _: &'static str, _: &()) -> Option<Self> {
+        Some(Self::None)
+    }
+
+    fn is_needed(_: &()) -> bool {
+        false
+    }
+
+    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::None => serializer.serialize_none(),
+            Self::One(pattern) => pattern.write(serializer),
+            Self::Several(patterns) => patterns.write(serializer),
+        }
+    }
+
+    fn describe(about: &str, _: &()) -> Value {
+        json!({
+            "title": "Holes",
+            "description": format!("{about} Default: none."),
+            "default": null,
+            "oneOf": [
+                { "type": "null" },
+                PatternDocument::describe("", &EACH),
+                Vec::<PatternDocument>::describe(
+                    "Holes on several circles, of unlike sizes or shapes.",
+                    &PATTERNS,
+                ),
+            ],
+        })
+    }
+
+    fn name_parts(named: &mut Named) {
+        PatternDocument::name_parts(named);
+    }
+}
+
+impl HolesDocument {
     /// The patterns, in the order of the document.
     pub(super) fn patterns(&self) -> &[PatternDocument] {
         match self {
@@ -161,7 +158,7 @@ impl HolesDocument {
     pub(super) fn pattern_of(&self, hole: usize) -> usize {
         let mut end = 0;
         let ends = self.patterns().iter().map(|pattern| {
-            end += pattern.count();
+            end += pattern.hole_count();
             end
         });
         ends.into_iter().position(|end| hole < end).unwrap_or(0)
@@ -169,7 +166,11 @@ impl HolesDocument {
 
     /// That there are more holes than a blank may have.
     pub(super) fn too_many(&self, pointer: &str) -> Option<FieldError> {
-        let count: usize = self.patterns().iter().map(PatternDocument::count).sum();
+        let count: usize = self
+            .patterns()
+            .iter()
+            .map(PatternDocument::hole_count)
+            .sum();
         if count <= MOST_HOLES {
             return None;
         }
@@ -179,58 +180,45 @@ impl HolesDocument {
     }
 }
 
-impl Serialize for HolesDocument {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Self::None => serializer.serialize_none(),
-            Self::One(pattern) => pattern.serialize(serializer),
-            Self::Several(patterns) => patterns.serialize(serializer),
-        }
-    }
-}
-
 impl PatternDocument {
-    fn read(mut reader: ObjectReader<'_>) -> Option<Self> {
-        let angles = HoleAngles::read(&mut reader);
-        let circle_radius_mm = reader.number(&quantity::HOLE_CIRCLE, None);
-        let shape = ShapeDocument::read(&mut reader);
-        reader.finish();
-        Some(Self {
-            angles: angles?,
-            circle_radius_mm: circle_radius_mm?,
-            shape: shape?,
-        })
-    }
-
     /// The number of its holes.
-    pub(super) fn count(&self) -> usize {
-        match &self.angles {
-            HoleAngles::Even { count, .. } => *count as usize,
-            HoleAngles::At(angles) => angles.len(),
+    pub(super) fn hole_count(&self) -> usize {
+        match &self.at_deg {
+            None => self.count.unwrap_or(0) as usize,
+            Some(angles) => angles.len(),
         }
     }
 
     fn data(&self) -> Vec<Hole> {
         let circle_radius = from_mm(self.circle_radius_mm);
-        let shape = self.shape.data();
-        let angles: Vec<f64> = match (&self.angles, self.shape) {
+        let (count, phase) = (self.count.unwrap_or(0), self.phase_deg.unwrap_or(0.0));
+        let shape = match &self.slot {
+            None => HoleShape::Round {
+                radius: from_mm(self.width()),
+            },
+            Some(slot) => HoleShape::Slot {
+                width: from_mm(slot.width_mm),
+                angle: slot.angle_deg.to_radians(),
+            },
+        };
+        let angles: Vec<f64> = match (&self.at_deg, shape) {
             // The engine's own pattern, so that its digits are those that they always were.
-            (&HoleAngles::Even { count, phase_deg }, ShapeDocument::Round { radius_mm }) => {
+            (None, HoleShape::Round { radius }) => {
                 let pattern = HolePattern {
                     count,
                     circle_radius,
-                    radius: from_mm(radius_mm),
-                    phase: phase_deg.to_radians(),
+                    radius,
+                    phase: phase.to_radians(),
                 };
                 return pattern.holes();
             }
-            (&HoleAngles::Even { count, phase_deg }, ShapeDocument::Slot(_)) => {
+            (None, HoleShape::Slot { .. }) => {
                 let turn = TAU / f64::from(count);
                 (0..count)
-                    .map(|i| phase_deg.to_radians() + f64::from(i) * turn)
+                    .map(|i| phase.to_radians() + f64::from(i) * turn)
                     .collect()
             }
-            (HoleAngles::At(angles), _) => angles.iter().map(|angle| angle.to_radians()).collect(),
+            (Some(angles), _) => angles.iter().map(|angle| angle.to_radians()).collect(),
         };
         let hole = |angle| Hole {
             circle_radius,
@@ -239,139 +227,40 @@ impl PatternDocument {
         };
         angles.into_iter().map(hole).collect()
     }
-}
 
-impl HoleAngles {
-    fn read(reader: &mut ObjectReader<'_>) -> Option<Self> {
-        let (of_count, of_phase) = (&quantity::HOLE_COUNT, &quantity::HOLE_PHASE);
-        let of_angles = &quantity::HOLE_ANGLES;
-        let by_count = reader.conflict(of_count.name, of_angles.name);
-        let by_phase = !by_count && reader.conflict(of_phase.name, of_angles.name);
-        let phase = match reader.present(of_phase.name) {
-            Some(_) => reader.number(of_phase, None),
-            None => of_phase.preset_for(None),
-        };
-        let read = match reader.optional_numbers(of_angles, MOST_HOLES)? {
-            Some(angles) if angles.is_empty() => {
-                let pointer = reader.pointer_to(of_angles.name);
-                let detail = format!("{pointer} is empty; give the angle of a hole.");
-                reader.report(FieldError::new(pointer, Code::WrongLength, detail).nearest(1.0));
-                None
-            }
-            Some(angles) => Some(Self::At(angles)),
-            None => {
-                let count = reader.given_number(of_count).map(|count| count as u32);
-                count
-                    .zip(phase)
-                    .map(|(count, phase_deg)| Self::Even { count, phase_deg })
-            }
-        };
-        read.filter(|_| !by_count && !by_phase)
-    }
-}
-
-impl ShapeDocument {
-    fn read(reader: &mut ObjectReader<'_>) -> Option<Self> {
-        let of_radius = &quantity::HOLE_RADIUS;
-        let conflict = reader.conflict(of_radius.name, "slot");
-        let read = match reader.optional_object("slot") {
-            OptionalObject::Absent => reader
-                .given_number(of_radius)
-                .map(|radius_mm| Self::Round { radius_mm }),
-            OptionalObject::Wrong => None,
-            OptionalObject::Present(mut slot) => {
-                let width_mm = slot.number(&quantity::SLOT_WIDTH, None);
-                let angle_deg = slot.number(&quantity::SLOT_ANGLE, None);
-                slot.finish();
-                let both = width_mm.zip(angle_deg);
-                both.map(|(width_mm, angle_deg)| {
-                    Self::Slot(SlotDocument {
-                        width_mm,
-                        angle_deg,
-                    })
-                })
-            }
-        };
-        read.filter(|_| !conflict)
-    }
-
-    /// The quantity that says how wide a hole is, and where it stands in the pattern.
-    pub(super) fn width(self) -> (&'static Quantity, &'static str) {
-        match self {
-            Self::Round { .. } => (&quantity::HOLE_RADIUS, ""),
-            Self::Slot(_) => (&quantity::SLOT_WIDTH, "slot/"),
+    /// The field that says how wide a hole is, and where it stands in the pattern.
+    pub(super) fn width_field(&self) -> (&'static str, Declared<Number>) {
+        match self.slot {
+            None => ("", Self::radius_mm.map(|optional| optional.spec)),
+            Some(_) => ("slot/", SlotDocument::width_mm),
         }
     }
 
-    /// The value of that quantity.
-    pub(super) fn width_value(self) -> f64 {
-        match self {
-            Self::Round { radius_mm } => radius_mm,
-            Self::Slot(slot) => slot.width_mm,
-        }
-    }
-
-    /// What that quantity would be for holes of another half width.
-    pub(super) fn of_half_width(self, half_width: f64) -> f64 {
-        match self {
-            Self::Round { .. } => half_width,
-            Self::Slot(_) => 2.0 * half_width,
+    /// The value of that field.
+    pub(super) fn width(&self) -> f64 {
+        match &self.slot {
+            None => self.radius_mm.unwrap_or(0.0),
+            Some(slot) => slot.width_mm,
         }
     }
 
     pub(super) fn set_width(&mut self, value: f64) {
-        match self {
-            Self::Round { radius_mm } => *radius_mm = value,
-            Self::Slot(slot) => slot.width_mm = value,
+        match &mut self.slot {
+            None => self.radius_mm = Some(value),
+            Some(slot) => slot.width_mm = value,
+        }
+    }
+
+    /// What that field would say of holes of another half width.
+    pub(super) fn of_half_width(&self, half_width: f64) -> f64 {
+        match self.slot {
+            None => half_width,
+            Some(_) => 2.0 * half_width,
         }
     }
 
     /// The angle between the ends of a hole, in degrees.
-    pub(super) fn span_deg(self) -> f64 {
-        match self {
-            Self::Round { .. } => 0.0,
-            Self::Slot(slot) => slot.angle_deg,
-        }
-    }
-
-    pub(super) fn set_span(&mut self, angle_deg: f64) {
-        if let Self::Slot(slot) = self {
-            slot.angle_deg = angle_deg;
-        }
-    }
-
-    fn data(self) -> HoleShape {
-        match self {
-            Self::Round { radius_mm } => HoleShape::Round {
-                radius: from_mm(radius_mm),
-            },
-            Self::Slot(slot) => HoleShape::Slot {
-                width: from_mm(slot.width_mm),
-                angle: slot.angle_deg.to_radians(),
-            },
-        }
-    }
-}
-
-impl Serialize for PatternDocument {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        if let HoleAngles::Even { count, .. } = &self.angles {
-            map.serialize_entry(quantity::HOLE_COUNT.name, count)?;
-        }
-        map.serialize_entry(quantity::HOLE_CIRCLE.name, &self.circle_radius_mm)?;
-        match &self.shape {
-            ShapeDocument::Round { radius_mm } => {
-                map.serialize_entry(quantity::HOLE_RADIUS.name, radius_mm)?;
-            }
-            ShapeDocument::Slot(slot) => map.serialize_entry("slot", slot)?,
-        }
-        match &self.angles {
-            HoleAngles::Even { phase_deg, .. } => {
-                map.serialize_entry(quantity::HOLE_PHASE.name, phase_deg)?;
-            }
-            HoleAngles::At(angles) => map.serialize_entry(quantity::HOLE_ANGLES.name, angles)?,
-        }
-        map.end()
+    pub(super) fn span_deg(&self) -> f64 {
+        self.slot.as_ref().map_or(0.0, |slot| slot.angle_deg)
     }
 }

@@ -1,54 +1,25 @@
 //! An elastic material.
 
 use meshwright_engine::gear::Material;
-use serde::Serialize;
 
-use crate::wire::quantity;
-use crate::wire::schema::{self, documented};
-use crate::wire::tree::ObjectReader;
+use crate::wire::declare::{document, number};
 use crate::wire::units::from_gpa;
 
-/// An elastic material.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct MaterialDocument {
-    pub(in crate::wire) youngs_modulus_gpa: f64,
-    poisson_ratio: f64,
-    density_kg_m3: f64,
+document! {
+    /// An isotropic elastic material. Default: steel.
+    pub struct MaterialDocument as "Material", "Material" {
+        /// Young's modulus E of teeth and blank.
+        pub(in crate::wire) youngs_modulus_gpa: f64 =
+            number("Young's modulus", "GPa", 0.1, 1_000.0).or(210.0),
+        /// Poisson's ratio of teeth and blank.
+        poisson_ratio: f64 = number("Poisson's ratio", "1", 0.0, 0.49).or(0.3),
+        /// The density, for mass and inertia only.
+        density_kg_m3: f64 = number("Density", "kg/m3", 10.0, 25_000.0).or(7850.0),
+    }
 }
 
-documented!(
-    MaterialDocument,
-    "Material",
-    [],
-    schema::object(
-        "Material",
-        "An isotropic elastic material. Default: steel.",
-        vec![
-            schema::number(&quantity::YOUNGS_MODULUS),
-            schema::number(&quantity::POISSON_RATIO),
-            schema::number(&quantity::DENSITY),
-        ]
-    )
-);
-
 impl MaterialDocument {
-    pub(super) const STEEL: Self = Self {
-        youngs_modulus_gpa: 210.0,
-        poisson_ratio: 0.3,
-        density_kg_m3: 7850.0,
-    };
-
-    pub(super) fn read(mut reader: ObjectReader<'_>) -> Option<Self> {
-        let youngs_modulus_gpa = reader.number(&quantity::YOUNGS_MODULUS, None);
-        let poisson_ratio = reader.number(&quantity::POISSON_RATIO, None);
-        let density_kg_m3 = reader.number(&quantity::DENSITY, None);
-        reader.finish();
-        Some(Self {
-            youngs_modulus_gpa: youngs_modulus_gpa?,
-            poisson_ratio: poisson_ratio?,
-            density_kg_m3: density_kg_m3?,
-        })
-    }
+    /// What the engine is told.
     pub(super) fn data(&self) -> Material {
         Material {
             youngs_modulus: from_gpa(self.youngs_modulus_gpa),

@@ -16,96 +16,98 @@ mod relief;
 mod repair;
 #[cfg(test)]
 mod tests;
-mod tip;
 
-use meshwright_engine::gear::{GearData, Rack, ToothDeviations};
-use serde::Serialize;
+use meshwright_engine::gear::{GearData, Rack, TipEdge, ToothDeviations};
 
 pub use blank::{BlankDocument, WebDocument};
 pub use deviation::{DeviationsDocument, EccentricityDocument};
-pub use holes::{PatternDocument, SlotDocument};
+pub(super) use holes::MOST_HOLES;
+pub use holes::{HolesDocument, PatternDocument, SlotDocument};
 pub use material::MaterialDocument;
-pub use modification::{ModificationDocument, TableDocument};
-pub use relief::{ReliefDocument, StartDocument};
+pub(super) use modification::MOST_ENTRIES;
+pub use modification::{CrowningDocument, ModificationDocument, SlopeDocument, TableDocument};
+pub use relief::{ReliefEnd, RootReliefDocument, StartDocument, StartWay, TipReliefDocument};
 
-use relief::ReliefEnd;
-use tip::{EdgeDocument, TipCircle};
-
-use super::quantity;
-use super::schema::{self, documented};
-use super::tree::{ObjectReader, OptionalObject};
+use super::declare::{Nested, ObjectReader, absent, document, list, nested, number, unless};
 use super::units::{Side, from_mm, from_um, rounded_inward};
 
-/// A gear, in the reader's units, with every default filled in.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct GearDocument {
-    tooth_count: u32,
-    pub(super) module_mm: f64,
-    pub(super) pressure_angle_deg: f64,
-    profile_shift: f64,
-    #[serde(flatten)]
-    tip_circle: TipCircle,
-    dedendum_mm: f64,
-    rack_tip_radius_mm: f64,
-    tooth_thickness_deviation_um: f64,
-    #[serde(flatten)]
-    tip_edge: EdgeDocument,
-    face_width_mm: f64,
-    tip_relief: Option<ReliefDocument>,
-    profile_modifications: Vec<ModificationDocument>,
-    tooth_deviations: Option<DeviationsDocument>,
-    material: MaterialDocument,
-    blank: BlankDocument,
+/// The most profile modifications of one gear, beside its tip relief.
+pub(super) const MOST_MODIFICATIONS: usize = 16;
+
+document! {
+    /// A spur gear as its drawing describes it.
+    pub struct GearDocument as "Gear", "Gear" {
+        /// The number of teeth Z. Few teeth need profile shift against undercut.
+        tooth_count: u32 = number("Number of teeth", "1", 5.0, 300.0),
+        /// The module m, the same for both gears.
+        pub(super) module_mm: f64 = number("Module", "mm", 0.1, 50.0),
+        /// The pressure angle of the basic rack, the same for both gears.
+        pub(super) pressure_angle_deg: f64 = number("Pressure angle", "deg", 12.0, 32.0).or(20.0),
+        /// The profile shift x in modules, positive outward.
+        profile_shift: f64 = number("Profile shift coefficient", "1", -2.0, 2.0).or(0.0),
+        /// The tip radius is the reference radius plus the addendum plus the profile shift; tips are not shortened. Between 0.2 and 2
+        /// modules.
+        addendum_mm: Option<f64> = unless(
+            "tip_diameter_mm",
+            number("Addendum of the basic rack", "mm", 0.02, 100.0).or_modules(1.0),
+        ),
+        /// The diameter of the tip circle, said instead of the addendum, which it then decides: the same bounds hold for that.
+        tip_diameter_mm: Option<f64> =
+            absent(number("Tip diameter", "mm", 0.1, 16_000.0), "the addendum decides"),
+        /// The root radius is the reference radius less the dedendum plus the profile shift. Between 0.5 and 2.5 modules.
+        dedendum_mm: f64 = number("Dedendum of the basic rack", "mm", 0.05, 125.0).or_modules(1.25),
+        /// The radius of the rack's tip rounding, which generates the fillet. At least 0.05 modules, and it has to fit between the
+        /// rack's flanks; where the default does not, the largest that does is taken.
+        rack_tip_radius_mm: f64 = number("Tip rounding of the basic rack", "mm", 0.005, 50.0)
+            .or_modules(0.38)
+            .fitted(usual_tip_radius),
+        /// How much thicker the teeth are than the rack leaves them, as a transverse arc on the reference circle; negative is thinner and
+        /// gives backlash. Half a module to either side, and a space has to be left between fillets.
+        tooth_thickness_deviation_um: f64 =
+            number("Deviation of the tooth thickness", "um", -25_000.0, 25_000.0).or(0.0),
+        /// The radius of an arc between flank and tip circle, tangent to both, on both flanks alike: 0, or at least 0.01 modules.
+        tip_rounding_mm: Option<f64> = absent(
+            number("Rounding of the tip edges", "mm", 0.001, 50.0).or_zero(),
+            "sharp edges",
+        )
+        .not_beside("tip_chamfer_mm"),
+        /// How far below the tip circle a cut at 45 deg begins, on both flanks alike: 0, or at least 0.01 modules.
+        tip_chamfer_mm: Option<f64> = absent(
+            number("Chamfer of the tip edges", "mm", 0.001, 50.0).or_zero(),
+            "sharp edges",
+        ),
+        /// The width of the gear. Contact is on the smaller of the two widths; each body has its own.
+        face_width_mm: f64 = number("Face width", "mm", 0.1, 2_000.0),
+        /// Material taken off the loaded flanks near the tip, as a drawing usually gives it: the first of the profile modifications.
+        tip_relief: Option<TipReliefDocument> = absent(nested("Tip relief"), "none"),
+        /// What is taken off the loaded flanks beside the tip relief; they add up. Default: none.
+        profile_modifications: Vec<ModificationDocument> =
+            list("Profile modifications", EACH, MOST_MODIFICATIONS).or_empty().or_null(),
+        /// What the teeth deviate from each other by. The contact then repeats once a revolution.
+        tooth_deviations: Option<DeviationsDocument> = absent(nested("Tooth deviations"), "nothing"),
+        /// What teeth and blank are made of. Default: steel.
+        material: MaterialDocument = nested("Material").or_defaults(),
+        /// What carries the teeth.
+        blank: BlankDocument = EACH,
+    }
 }
 
-documented!(
-    GearDocument,
-    "Gear",
-    [
-        ReliefDocument,
-        ModificationDocument,
-        DeviationsDocument,
-        MaterialDocument,
-        BlankDocument
-    ],
-    schema::object(
-        "Gear",
-        "A spur gear as its drawing describes it.",
-        vec![
-            schema::number(&quantity::TOOTH_COUNT),
-            schema::number(&quantity::MODULE),
-            schema::number(&quantity::PRESSURE_ANGLE),
-            schema::number(&quantity::PROFILE_SHIFT),
-            schema::number(&quantity::ADDENDUM),
-            schema::number(&quantity::TIP_DIAMETER),
-            schema::number(&quantity::DEDENDUM),
-            schema::number(&quantity::RACK_TIP_RADIUS),
-            schema::number(&quantity::THICKNESS_DEVIATION),
-            schema::number(&quantity::TIP_ROUNDING),
-            schema::number(&quantity::TIP_CHAMFER),
-            schema::number(&quantity::FACE_WIDTH),
-            schema::optional_document::<ReliefDocument>(
-                "tip_relief",
-                "Tip relief",
-                "Material taken off the loaded flanks near the tip, as a drawing usually gives it: the first of the profile modifications. Default: none."
-            ),
-            modification::list_property(),
-            schema::optional_document::<DeviationsDocument>(
-                "tooth_deviations",
-                "Tooth deviations",
-                "What the teeth deviate from each other by. The contact then repeats once a revolution. Default: nothing."
-            ),
-            schema::document::<MaterialDocument>("material", false),
-            schema::document::<BlankDocument>("blank", true),
-        ]
-    )
-);
+/// An object that has to be there, of which there is nothing to say beside what it says itself.
+const EACH: Nested = nested("");
 
-/// The rounding of a rack's tip where none is given: `usual`, or the largest that fits between its flanks. In mm and degrees.
-fn usual_tip_radius(usual: f64, module: f64, pressure_angle: f64, dedendum: f64) -> f64 {
+/// The rounding of a rack's tip where none is given: `usual`, or the largest that fits between its flanks. In mm.
+fn usual_tip_radius(usual: f64, gear: &ObjectReader<'_>) -> f64 {
+    let read = |name| gear.number(name);
+    let (Some(module), Some(angle), Some(dedendum)) = (
+        read(GearDocument::module_mm.name),
+        read(GearDocument::pressure_angle_deg.name),
+        read(GearDocument::dedendum_mm.name),
+    ) else {
+        return usual;
+    };
     let rack = Rack {
         module,
-        pressure_angle: pressure_angle.to_radians(),
+        pressure_angle: angle.to_radians(),
         addendum: module,
         dedendum,
         tip_radius: usual,
@@ -119,71 +121,25 @@ fn usual_tip_radius(usual: f64, module: f64, pressure_angle: f64, dedendum: f64)
 }
 
 impl GearDocument {
-    /// Reads a gear; what is wrong is reported to the reader's errors.
-    pub(super) fn read(mut reader: ObjectReader<'_>) -> Option<Self> {
-        let tooth_count = reader.count(&quantity::TOOTH_COUNT);
-        let module_mm = reader.number(&quantity::MODULE, None);
-        let pressure_angle_deg = reader.number(&quantity::PRESSURE_ANGLE, None);
-        let profile_shift = reader.number(&quantity::PROFILE_SHIFT, None);
-        let tip_circle = TipCircle::read(&mut reader, module_mm);
-        let dedendum_mm = reader.number(&quantity::DEDENDUM, module_mm);
-        let given = reader.present(quantity::RACK_TIP_RADIUS.name).is_some();
-        let mut rack_tip_radius_mm = reader.number(&quantity::RACK_TIP_RADIUS, module_mm);
-        if !given
-            && let (Some(radius), Some(module), Some(angle), Some(dedendum)) = (
-                rack_tip_radius_mm,
-                module_mm,
-                pressure_angle_deg,
-                dedendum_mm,
-            )
-        {
-            rack_tip_radius_mm = Some(usual_tip_radius(radius, module, angle, dedendum));
-        }
-        let tooth_thickness_deviation_um = reader.number(&quantity::THICKNESS_DEVIATION, None);
-        let tip_edge = EdgeDocument::read(&mut reader);
-        let face_width_mm = reader.number(&quantity::FACE_WIDTH, None);
-        let tip_relief = match reader.optional_object("tip_relief") {
-            OptionalObject::Absent => Some(None),
-            OptionalObject::Wrong => None,
-            OptionalObject::Present(relief) => {
-                ReliefDocument::read(relief, ReliefEnd::Tip).map(Some)
-            }
-        };
-        let profile_modifications = modification::read_list(&mut reader);
-        let tooth_deviations = match reader.optional_object("tooth_deviations") {
-            OptionalObject::Absent => Some(None),
-            OptionalObject::Wrong => None,
-            OptionalObject::Present(deviations) => DeviationsDocument::read(deviations).map(Some),
-        };
-        let material = match reader.optional_object("material") {
-            OptionalObject::Absent => Some(MaterialDocument::STEEL),
-            OptionalObject::Wrong => None,
-            OptionalObject::Present(material) => MaterialDocument::read(material),
-        };
-        let blank = reader.needed_object("blank").and_then(BlankDocument::read);
-        reader.finish();
-        Some(Self {
-            tooth_count: tooth_count?,
-            module_mm: module_mm?,
-            pressure_angle_deg: pressure_angle_deg?,
-            profile_shift: profile_shift?,
-            tip_circle: tip_circle?,
-            dedendum_mm: dedendum_mm?,
-            rack_tip_radius_mm: rack_tip_radius_mm?,
-            tooth_thickness_deviation_um: tooth_thickness_deviation_um?,
-            tip_edge: tip_edge?,
-            face_width_mm: face_width_mm?,
-            tip_relief: tip_relief?,
-            profile_modifications: profile_modifications?,
-            tooth_deviations: tooth_deviations?,
-            material: material?,
-            blank: blank?,
-        })
-    }
-
     /// The radius from which the addendum counts, in mm: the reference radius plus the profile shift.
     fn shifted_radius_mm(&self) -> f64 {
         self.module_mm * (f64::from(self.tooth_count) / 2.0 + self.profile_shift)
+    }
+
+    /// The addendum in mm, however the tip circle is said.
+    fn addendum(&self) -> f64 {
+        match self.tip_diameter_mm {
+            Some(diameter) => diameter / 2.0 - self.shifted_radius_mm(),
+            None => self.addendum_mm.unwrap_or(self.module_mm),
+        }
+    }
+
+    /// What the field of the tip circle would say of another addendum, in mm.
+    fn tip_said(&self, addendum: f64) -> f64 {
+        match self.tip_diameter_mm {
+            Some(_) => 2.0 * (self.shifted_radius_mm() + addendum),
+            None => addendum,
+        }
     }
 
     /// What the engine is told.
@@ -193,18 +149,22 @@ impl GearDocument {
             rack: Rack {
                 module: from_mm(self.module_mm),
                 pressure_angle: self.pressure_angle_deg.to_radians(),
-                addendum: from_mm(self.tip_circle.addendum(self.shifted_radius_mm())),
+                addendum: from_mm(self.addendum()),
                 dedendum: from_mm(self.dedendum_mm),
                 tip_radius: from_mm(self.rack_tip_radius_mm),
             },
             profile_shift: self.profile_shift,
             face_width: from_mm(self.face_width_mm),
             thickness_deviation: from_um(self.tooth_thickness_deviation_um),
-            tip_edge: self.tip_edge.data(),
+            tip_edge: match (self.tip_rounding_mm, self.tip_chamfer_mm) {
+                (Some(radius), _) if radius > 0.0 => TipEdge::Rounded(from_mm(radius)),
+                (None, Some(depth)) if depth > 0.0 => TipEdge::Chamfered(from_mm(depth)),
+                _ => TipEdge::Sharp,
+            },
             modifications: self
                 .tip_relief
                 .iter()
-                .map(ReliefDocument::data)
+                .map(|relief| relief.relief().data())
                 .chain(
                     self.profile_modifications
                         .iter()

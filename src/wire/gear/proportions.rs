@@ -6,6 +6,7 @@ use super::GearDocument;
 use super::faults::Fault;
 use super::field::Field;
 use super::holes::HolesDocument;
+use super::relief::Relief;
 use crate::wire::problem::{Code, FieldError};
 use crate::wire::units::{Side, from_mm, plain};
 
@@ -16,7 +17,7 @@ impl GearDocument {
         let gear = SpurGear::new(self.data()).map_err(|error| self.fault(&error))?;
         // A relief that begins where it ends is a step, which no grid and no contact search can follow.
         let short = self.relief_places().find_map(|place| {
-            let relief = self.relief(place).filter(|relief| relief.is_there())?;
+            let relief = self.relief(place).filter(Relief::is_there)?;
             let start = relief.start.radius(&gear);
             let (least, most) =
                 self.relief_range(relief.start.end, [gear.form_radius(), gear.tip_radius()]);
@@ -48,7 +49,7 @@ impl GearDocument {
             half,
             "half a module to either side",
         )?;
-        if self.tip_edge.value() > 0.0 {
+        if self.value(Field::TipEdge) > 0.0 {
             self.check_between(
                 Field::TipEdge,
                 0.01 * m,
@@ -67,7 +68,7 @@ impl GearDocument {
         for (i, pattern) in self.blank.holes.patterns().iter().enumerate() {
             self.check_between(
                 Field::HoleWidth(i),
-                pattern.shape.of_half_width(self.least_hole_mm()),
+                pattern.of_half_width(self.least_hole_mm()),
                 f64::INFINITY,
                 "1 % of the root radius to each side and more",
             )?;
@@ -77,8 +78,7 @@ impl GearDocument {
 
     /// The addendum has its bounds in modules, and they are those of the tip diameter too.
     fn check_addendum(&self) -> Result<(), Fault> {
-        let from_radius = self.shifted_radius_mm();
-        let said = |modules: f64| self.tip_circle.said(modules * self.module_mm, from_radius);
+        let said = |modules: f64| self.tip_said(modules * self.module_mm);
         self.check_between(
             Field::Tip,
             said(0.2),
@@ -104,7 +104,7 @@ impl GearDocument {
         } else {
             return Ok(());
         };
-        let unit = self.quantity(field).map_or("mm", |quantity| quantity.unit);
+        let unit = self.declared(field).map_or("mm", |field| field.spec.unit);
         let detail = format!("{} {unit} is outside {said}.", plain(value));
         Err(Fault::new(field, Code::OutOfRange, detail, Some(bound)))
     }

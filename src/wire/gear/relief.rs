@@ -4,51 +4,92 @@ use meshwright_engine::gear::{
     ModificationData, ReliefData, ReliefShape, ReliefStart, RootReliefData, RootReliefStart,
     SpurGear,
 };
-use serde::Serialize;
-use serde::ser::{SerializeMap, Serializer};
-use utoipa::openapi::RefOr;
-use utoipa::openapi::schema::Schema;
+use serde::Serializer;
+use serde::ser::SerializeMap;
+use serde_json::{Value, json};
 
-use crate::wire::problem::{Code, FieldError};
-use crate::wire::quantity::{self, Quantity};
-use crate::wire::schema::{self, Property, documented};
-use crate::wire::tree::{Choice, Node, ObjectReader, as_word};
+use crate::wire::declare::{
+    Declared, Kind, Named, Node, Number, ObjectReader, Place, document, number, object, word, words,
+};
+use crate::wire::problem::Code;
 use crate::wire::units::{from_mm, from_um};
 
-/// A relief of the tip or of the root.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ReliefDocument {
-    amount_um: f64,
-    #[serde(serialize_with = "as_word")]
-    shape: ReliefShape,
-    pub(super) start: StartDocument,
+document! {
+    /// c(r) = amount ((r - r_s)/(r_a - r_s))^n, normal to the flank, in the radius however the start r_s is given.
+    pub struct TipReliefDocument as "TipRelief", "Tip relief" {
+        /// The material taken off at the tip circle, normal to the flank.
+        amount_um: f64 = number("Amount of tip relief", "um", 0.0, 1_000.0),
+        /// How the relief grows towards the tip.
+        shape: ReliefShape = word("Shape").or(ReliefShape::Linear),
+        /// Where the relief starts.
+        pub(super) start: StartDocument = ReliefEnd::Tip,
+    }
 }
 
-documented!(
-    ReliefDocument,
-    "TipRelief",
-    [StartDocument],
-    schema::object(
-        "Tip relief",
-        "c(r) = amount ((r - r_s)/(r_a - r_s))^n, normal to the flank, in the radius however the start r_s is given.",
-        ReliefDocument::properties(ReliefEnd::Tip)
-    )
-);
+document! {
+    /// The same in the radius from the form circle.
+    pub struct RootReliefDocument as "RootRelief", "Root relief" {
+        /// The material taken off at the form circle, where the flank ends, normal to the flank.
+        amount_um: f64 = number("Amount of root relief", "um", 0.0, 1_000.0),
+        /// How the relief grows towards the form circle.
+        shape: ReliefShape = word("Shape").or(ReliefShape::Linear),
+        /// Where the relief starts.
+        pub(super) start: StartDocument = ReliefEnd::Form,
+    }
+}
 
-impl Choice for ReliefShape {
-    const OPTIONS: &'static [(&'static str, Self, &'static str)] = &[
-        ("linear", Self::Linear, "in proportion to the radius, n = 1"),
-        ("parabolic", Self::Parabolic, "with its square, n = 2"),
-    ];
+words! {
+    ReliefShape {
+        Linear = "linear": "in proportion to the radius, n = 1",
+        Parabolic = "parabolic": "with its square, n = 2",
+    }
 }
 
 /// Where a relief has its amount.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum ReliefEnd {
+pub enum ReliefEnd {
     /// At the tip circle.
     Tip,
     /// At the form circle.
     Form,
+}
+
+/// A relief of either end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Relief {
+    amount_um: f64,
+    shape: ReliefShape,
+    pub(super) start: StartDocument,
+}
+
+impl TipReliefDocument {
+    pub(super) fn relief(&self) -> Relief {
+        let &Self {
+            amount_um,
+            shape,
+            start,
+        } = self;
+        Relief {
+            amount_um,
+            shape,
+            start,
+        }
+    }
+}
+
+impl RootReliefDocument {
+    pub(super) fn relief(&self) -> Relief {
+        let &Self {
+            amount_um,
+            shape,
+            start,
+        } = self;
+        Relief {
+            amount_um,
+            shape,
+            start,
+        }
+    }
 }
 
 /// Where a relief starts: exactly one of four ways to say it.
@@ -59,11 +100,16 @@ pub struct StartDocument {
     pub(super) value: f64,
 }
 
+/// How the start of a relief is said.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum StartWay {
+pub enum StartWay {
+    /// By the radial length from the end.
     RadialLength,
+    /// By the roll length from the end.
     RollLength,
+    /// By the diameter.
     Diameter,
+    /// By the roll angle.
     RollAngle,
 }
 
@@ -75,104 +121,131 @@ impl StartWay {
         Self::RollAngle,
     ];
 
-    fn quantity(self, end: ReliefEnd) -> &'static Quantity {
+    /// The field that says it so.
+    fn field(self, end: ReliefEnd) -> Declared<Number> {
         match (self, end) {
-            (Self::RadialLength, ReliefEnd::Tip) => &quantity::RELIEF_RADIAL_LENGTH,
-            (Self::RadialLength, ReliefEnd::Form) => &quantity::ROOT_RELIEF_RADIAL_LENGTH,
-            (Self::RollLength, ReliefEnd::Tip) => &quantity::RELIEF_ROLL_LENGTH,
-            (Self::RollLength, ReliefEnd::Form) => &quantity::ROOT_RELIEF_ROLL_LENGTH,
-            (Self::Diameter, _) => &quantity::RELIEF_DIAMETER,
-            (Self::RollAngle, _) => &quantity::RELIEF_ROLL_ANGLE,
+            (Self::RadialLength, ReliefEnd::Tip) => Declared::new(
+                "radial_length_mm",
+                "The relief starts at the tip radius less this length. However the start is given, it is at least 0.01 modules below the tip circle.",
+                number("Radial length below the tip circle", "mm", 0.001, 225.0),
+            ),
+            (Self::RadialLength, ReliefEnd::Form) => Declared::new(
+                "radial_length_mm",
+                "The relief starts at the form radius plus this length. However the start is given, it is at least 0.01 modules above the form circle.",
+                number("Radial length above the form circle", "mm", 0.001, 225.0),
+            ),
+            (Self::RollLength, ReliefEnd::Tip) => Declared::new(
+                "roll_length_from_tip_mm",
+                "The relief starts where the roll length is this much less than at the tip circle.",
+                number(
+                    "Length along the path of contact from the tip",
+                    "mm",
+                    0.001,
+                    2_000.0,
+                ),
+            ),
+            (Self::RollLength, ReliefEnd::Form) => Declared::new(
+                "roll_length_from_form_mm",
+                "The relief starts where the roll length is this much more than at the form circle.",
+                number(
+                    "Length along the path of contact from the form circle",
+                    "mm",
+                    0.001,
+                    2_000.0,
+                ),
+            ),
+            (Self::Diameter, _) => Declared::new(
+                "diameter_mm",
+                "The relief starts at this diameter.",
+                number("Start diameter", "mm", 0.1, 16_000.0),
+            ),
+            (Self::RollAngle, _) => Declared::new(
+                "roll_angle_deg",
+                "The relief starts at this roll angle of the flank, the roll length over the base radius.",
+                number("Start roll angle", "deg", 0.001, 180.0),
+            ),
         }
     }
 }
 
-documented!(
-    StartDocument,
-    "ReliefStart",
-    [],
-    start_schema(ReliefEnd::Tip)
-);
-
-/// Names the start of a root relief in the contract.
-pub(super) enum RootStart {}
-
-documented!(
-    RootStart,
-    "RootReliefStart",
-    [],
-    start_schema(ReliefEnd::Form)
-);
-
-fn start_schema(end: ReliefEnd) -> RefOr<Schema> {
-    let ways = StartWay::ALL.iter().map(|way| {
-        let quantity = way.quantity(end);
-        // Generators of clients name types by their titles.
-        let title = match end {
-            ReliefEnd::Tip => quantity.title.to_owned(),
-            ReliefEnd::Form => format!("{} of a root relief", quantity.title),
-        };
-        schema::object(&title, quantity.description, vec![schema::number(quantity)])
-    });
-    schema::one_of(
-        "Start of the relief",
-        "Where the relief starts: exactly one of the four. A bare length is not accepted, because drawings mean different ones by it.",
-        None,
-        ways.collect(),
-    )
-}
-
-impl Serialize for StartDocument {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(1))?;
-        map.serialize_entry(self.quantity().name, &self.value)?;
-        map.end()
-    }
-}
-
-impl ReliefDocument {
-    /// What the schema says of its fields.
-    pub(super) fn properties(end: ReliefEnd) -> Vec<Property> {
-        let (amount, grows, start) = match end {
-            ReliefEnd::Tip => (
-                &quantity::RELIEF_AMOUNT,
-                "How the relief grows towards the tip.",
-                schema::document::<StartDocument>("start", true),
-            ),
-            ReliefEnd::Form => (
-                &quantity::ROOT_RELIEF_AMOUNT,
-                "How the relief grows towards the form circle.",
-                schema::document::<RootStart>("start", true),
-            ),
-        };
-        let shape = schema::choice("shape", "Shape", grows, Some(ReliefShape::Linear));
-        vec![schema::number(amount), shape, start]
+impl ReliefEnd {
+    /// What the start of a relief there is called in the contract.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Tip => "ReliefStart",
+            Self::Form => "RootReliefStart",
+        }
     }
 
-    pub(super) fn read(mut reader: ObjectReader<'_>, end: ReliefEnd) -> Option<Self> {
-        let relief = Self::read_fields(&mut reader, end);
-        reader.finish();
-        relief
-    }
-
-    /// Reads its fields, beside which there may be others.
-    pub(super) fn read_fields(reader: &mut ObjectReader<'_>, end: ReliefEnd) -> Option<Self> {
-        let amount = match end {
-            ReliefEnd::Tip => &quantity::RELIEF_AMOUNT,
-            ReliefEnd::Form => &quantity::ROOT_RELIEF_AMOUNT,
-        };
-        let amount_um = reader.number(amount, None);
-        let shape = reader.choice("shape", Some(ReliefShape::Linear));
-        let start = reader
-            .needed("start")
-            .and_then(|node| StartDocument::read(node, reader, end));
-        Some(Self {
-            amount_um: amount_um?,
-            shape: shape?,
-            start: start?,
+    fn json_schema(self) -> Value {
+        let ways = StartWay::ALL.map(|way| {
+            let field = way.field(self);
+            let (name, schema, _) = field.property::<f64>();
+            // Generators of clients name types by their titles.
+            let title = schema["title"].as_str().unwrap_or_default();
+            let title = match self {
+                Self::Tip => title.to_owned(),
+                Self::Form => format!("{title} of a root relief"),
+            };
+            object(&title, field.about, vec![(name, schema, true)])
+        });
+        json!({
+            "title": "Start of the relief",
+            "description": "Where the relief starts: exactly one of the four. A bare length is not accepted, because drawings mean different ones by it.",
+            "oneOf": ways,
         })
     }
+}
 
+impl Kind for StartDocument {
+    type Spec = ReliefEnd;
+
+    fn read(node: &Node, place: &Place<'_>, &end: &ReliefEnd) -> Option<Self> {
+        let mut reader = ObjectReader::new(node, place.clone())?;
+        let mut found = Vec::new();
+        let mut wrong = false;
+        for way in StartWay::ALL {
+            let field = way.field(end);
+            if let Some(node) = reader.present(field.name) {
+                match f64::read(node, &reader.place_of(field.name), &field.spec) {
+                    Some(value) => found.push(Self { end, way, value }),
+                    None => wrong = true,
+                }
+            }
+        }
+        let names = StartWay::ALL.map(|way| way.field(end).name).join(", ");
+        let refuse = |code, has: &str| {
+            let detail = format!("{place} needs exactly one of {names}; it has {has}.");
+            place.wrong(code, detail, None)
+        };
+        let one = match (found.as_slice(), wrong) {
+            (_, true) => None,
+            ([one], false) => Some(*one),
+            ([], false) => refuse(Code::MissingField, "none"),
+            (several, false) => refuse(Code::OutOfRange, &several.len().to_string()),
+        };
+        reader.finish();
+        one
+    }
+
+    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(1))?;
+        self.field().write(&self.value, &mut map)?;
+        map.end()
+    }
+
+    fn describe(_: &str, end: &ReliefEnd) -> Value {
+        json!({ "$ref": format!("#/components/schemas/{}", end.name()) })
+    }
+
+    fn name_parts(named: &mut Named) {
+        for end in [ReliefEnd::Tip, ReliefEnd::Form] {
+            named.push((end.name(), end.json_schema()));
+        }
+    }
+}
+
+impl Relief {
     /// Whether it takes anything off.
     pub(super) fn is_there(&self) -> bool {
         self.amount_um != 0.0
@@ -203,8 +276,9 @@ enum Start {
 }
 
 impl StartDocument {
-    pub(super) fn quantity(self) -> &'static Quantity {
-        self.way.quantity(self.end)
+    /// The field that says it.
+    pub(super) fn field(self) -> Declared<Number> {
+        self.way.field(self.end)
     }
 
     /// The radius in meters at which it starts on the flank of `gear`.
@@ -231,43 +305,5 @@ impl StartDocument {
                 StartWay::RollAngle => RootReliefStart::RollAngle(angle),
             }),
         }
-    }
-
-    fn read(node: &Node, parent: &ObjectReader<'_>, end: ReliefEnd) -> Option<Self> {
-        let pointer = parent.pointer_to("start");
-        let mut reader = parent.object(node, pointer.clone())?;
-        let mut found = Vec::new();
-        let mut wrong = false;
-        for way in StartWay::ALL {
-            match reader.optional_number(way.quantity(end)) {
-                Some(Some(value)) => found.push(Self { end, way, value }),
-                Some(None) => {}
-                None => wrong = true,
-            }
-        }
-        let names: Vec<_> = StartWay::ALL
-            .iter()
-            .map(|way| way.quantity(end).name)
-            .collect();
-        let names = names.join(", ");
-        let one = match (found.as_slice(), wrong) {
-            ([one], false) => Some(*one),
-            ([], false) => {
-                let detail = format!("{pointer} needs exactly one of {names}; it has none.");
-                reader.report(FieldError::new(pointer, Code::MissingField, detail));
-                None
-            }
-            (several, false) => {
-                let detail = format!(
-                    "{pointer} needs exactly one of {names}; it has {}.",
-                    several.len()
-                );
-                reader.report(FieldError::new(pointer, Code::OutOfRange, detail));
-                None
-            }
-            (_, true) => None,
-        };
-        reader.finish();
-        one
     }
 }

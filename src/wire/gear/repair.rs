@@ -5,7 +5,6 @@ use meshwright_engine::gear::SpurGear;
 use super::GearDocument;
 use super::faults::Fault;
 use crate::wire::problem::FieldError;
-use crate::wire::quantity::Quantity;
 use crate::wire::units::{plain, rounded_inward};
 
 impl GearDocument {
@@ -71,8 +70,8 @@ impl GearDocument {
                 let advice = fault.cure.map_or_else(String::new, |cure| {
                     format!(
                         " {} would do.",
-                        self.quantity(fault.field)
-                            .map_or_else(|| plain(cure), |q| spoken(cure, q))
+                        self.declared(fault.field)
+                            .map_or_else(|| plain(cure), |field| spoken(cure, field.spec.unit))
                     )
                 });
                 let place = format!("{pointer}/{}", self.pointer_within(fault.field));
@@ -84,8 +83,8 @@ impl GearDocument {
 }
 
 /// A value with its unit, as a sentence begins with it.
-fn spoken(value: f64, quantity: &Quantity) -> String {
-    match quantity.unit {
+fn spoken(value: f64, unit: &str) -> String {
+    match unit {
         "1" => plain(value),
         unit => format!("{} {unit}", plain(value)),
     }

@@ -59,7 +59,7 @@ impl EvidenceDocument {
             contact_iterations: evidence.contact_iterations,
             projection_error_um: evidence.projection_error.map(to_um),
             stiffness_rule: submission.resolution().stiffness_in_words(),
-            resolution: without_nulls(submission),
+            resolution: resolution_of(submission),
             definitions: DEFINITIONS.to_vec(),
             does_not_see: does_not_see(submission.case()),
             error_estimate: evidence
@@ -71,12 +71,17 @@ impl EvidenceDocument {
 }
 
 /// The resolution as the submission echoes it; what is left to each gear's own default is left out.
-fn without_nulls(submission: &Submission) -> Map<String, Value> {
-    match serde_json::to_value(submission.resolution()) {
-        Ok(Value::Object(fields)) => fields
-            .into_iter()
-            .filter(|(_, value)| !value.is_null())
-            .collect(),
+fn resolution_of(submission: &Submission) -> Map<String, Value> {
+    fn leave_out_nulls(value: &mut Value) {
+        if let Value::Object(fields) = value {
+            fields.values_mut().for_each(leave_out_nulls);
+            fields.retain(|_, value| !value.is_null());
+        }
+    }
+    let mut resolution = serde_json::to_value(submission.resolution()).unwrap_or_default();
+    leave_out_nulls(&mut resolution);
+    match resolution {
+        Value::Object(fields) => fields,
         _ => Map::new(),
     }
 }
@@ -141,5 +146,26 @@ impl ErrorEstimateDocument {
             transmission_error_peak_to_peak_um: to_um(estimate.peak_to_peak),
             mesh_stiffness_tangent_mean_n_per_m: estimate.mean_stiffness,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::examples;
+
+    #[test]
+    fn what_is_left_to_a_gear_s_own_default_is_left_out_of_the_evidence() {
+        let mut examples = examples().iter();
+        let example = examples.find(|example| example.name == "interface-radii");
+        let mut document: Value = serde_json::from_str(example.expect("ships").json).expect("JSON");
+        document["resolution"]["interface_radius_mm"]["driving"] = Value::Null;
+        let submission = Submission::parse(document.to_string().as_bytes()).expect("valid");
+        let resolution = resolution_of(&submission);
+        let radii = resolution["interface_radius_mm"]
+            .as_object()
+            .expect("an object");
+        assert_eq!(radii.keys().collect::<Vec<_>>(), ["driven"]);
+        assert_eq!(submission.case().resolution.interface_radii[0], None);
     }
 }

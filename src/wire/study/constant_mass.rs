@@ -5,51 +5,38 @@ use std::f64::consts::PI;
 use meshwright_engine::gear::Member;
 use serde_json::{Map, Value, json};
 
-use crate::wire::quantity::{self, Preset, Quantity};
-use crate::wire::tree::{Choice, Node, ObjectReader};
+use crate::wire::declare::{Choice, Declared, Node, Number, document, number, word, words};
+use crate::wire::gear::{BlankDocument, GearDocument, PatternDocument};
 use crate::wire::units::significant;
 
-pub(super) const MASS_REMOVED: Quantity = Quantity {
-    name: "mass_removed_percent",
-    title: "Mass removed",
-    unit: "%",
-    description: "The share of the blank that the holes remove. The blank is the ring between the bore and the mean of tip and root circle.",
-    bounds: (0.01, 99.0),
-    preset: Preset::Needed,
-    whole: false,
-    or_zero: false,
-};
-
-impl Choice for Member {
-    const OPTIONS: &'static [(&'static str, Self, &'static str)] = &[
-        ("driving", Self::Driving, "gear 1, which drives"),
-        ("driven", Self::Driven, "gear 2, which is driven"),
-    ];
+words! {
+    Member {
+        Driving = "driving": "gear 1, which drives",
+        Driven = "driven": "gear 2, which is driven",
+    }
 }
 
-/// The rule that sets the hole radius of each design.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct ConstantMass {
-    pub(super) gear: Member,
-    percent: f64,
+document! {
+    /// Sets the hole radius of each design so that its holes remove the same share of the blank. A design without holes is left alone.
+    /// The radius stands among the changes of the design's row.
+    pub(super) struct ConstantMass as "ConstantMass", "Constant mass" {
+        /// The gear with the holes.
+        pub(super) gear: Member = word("Gear"),
+        /// The share of the blank that the holes remove. The blank is the ring between the bore and the mean of tip and root circle.
+        mass_removed_percent: f64 = number("Mass removed", "%", 0.01, 99.0),
+    }
+}
+
+/// The radius of the holes of a pattern.
+fn hole_radius() -> Declared<Number> {
+    PatternDocument::radius_mm.map(|optional| optional.spec)
 }
 
 impl ConstantMass {
-    pub(super) fn read(mut rule: ObjectReader<'_>) -> Option<Self> {
-        let gear = rule.choice::<Member>("gear", None);
-        let percent = rule.number(&MASS_REMOVED, None);
-        rule.finish();
-        Some(Self {
-            gear: gear?,
-            percent: percent?,
-        })
-    }
-
     /// Whether `pointer` names a radius that it sets: that of the pattern, or of each pattern of a list.
-    pub(super) fn sets(self, pointer: &str) -> bool {
+    pub(super) fn sets(&self, pointer: &str) -> bool {
         let within = pointer.strip_prefix(&*self.holes_pointer());
-        let Some(rest) = within.and_then(|rest| rest.strip_suffix(quantity::HOLE_RADIUS.name))
-        else {
+        let Some(rest) = within.and_then(|rest| rest.strip_suffix(hole_radius().name)) else {
             return false;
         };
         let item = rest
@@ -58,7 +45,7 @@ impl ConstantMass {
         rest == "/" || item.is_some_and(|item| item.bytes().all(|byte| byte.is_ascii_digit()))
     }
 
-    fn holes_pointer(self) -> String {
+    fn holes_pointer(&self) -> String {
         format!("/pair/{}/blank/holes", self.gear.word())
     }
 
@@ -66,7 +53,7 @@ impl ConstantMass {
     /// be read is left to the check of the submission.
     ///
     /// N π r² = percent · π (((r_a + r_f)/2)² − r_bore²), DESIGN section 4.
-    pub(super) fn apply(self, submission: &mut Node, changes: &mut Map<String, Value>) {
+    pub(super) fn apply(&self, submission: &mut Node, changes: &mut Map<String, Value>) {
         let gear = ["pair", self.gear.word()];
         let holes = ["pair", self.gear.word(), "blank", "holes"];
         let Some(blank_area) = submission.at(&gear).and_then(blank_area) else {
@@ -91,13 +78,13 @@ impl ConstantMass {
         // If the bore leaves no blank, any radius will do for the check to come to that.
         let radius = if blank_area > 0.0 {
             significant(
-                (self.percent / 100.0 * blank_area / (PI * count)).sqrt(),
+                (self.mass_removed_percent / 100.0 * blank_area / (PI * count)).sqrt(),
                 12,
             )
         } else {
-            quantity::HOLE_RADIUS.bounds.0
+            hole_radius().spec.bounds.0
         };
-        let name = quantity::HOLE_RADIUS.name;
+        let name = hole_radius().name;
         for (item, _) in &counts {
             let mut place = holes.to_vec();
             place.extend((!item.is_empty()).then_some(&**item));
@@ -112,31 +99,31 @@ impl ConstantMass {
 
 /// The number of holes of a pattern, if it can be read.
 fn count_of(pattern: &Node) -> Option<f64> {
-    let count = match pattern.at(&[quantity::HOLE_ANGLES.name]) {
+    let count = match pattern.at(&[PatternDocument::at_deg.name]) {
         Some(Node::List(angles)) => Some(angles.len() as f64),
-        _ => pattern.number_at(&[quantity::HOLE_COUNT.name]),
+        _ => pattern.number_at(&[PatternDocument::count.name]),
     };
     count.filter(|&count| count >= 1.0)
 }
 
 /// The area between the bore and the mean of tip and root circle, in mm².
 fn blank_area(gear: &Node) -> Option<f64> {
-    let given = |quantity: &Quantity| {
-        let node = gear
-            .at(&[quantity.name])
-            .filter(|node| **node != Node::Null);
-        node.map(|_| gear.number_at(&[quantity.name]))
+    let given = |name: &str| {
+        let node = gear.at(&[name]).filter(|node| **node != Node::Null);
+        node.map(|_| gear.number_at(&[name]))
     };
-    let m = given(&quantity::MODULE)??;
-    let z = given(&quantity::TOOTH_COUNT)??;
+    let m = given(GearDocument::module_mm.name)??;
+    let z = given(GearDocument::tooth_count.name)??;
     let or_preset =
-        |quantity: &Quantity| given(quantity).unwrap_or_else(|| quantity.preset_for(Some(m)));
-    let shifted = m * z / 2.0 + or_preset(&quantity::PROFILE_SHIFT)? * m;
-    let r_a = match given(&quantity::TIP_DIAMETER) {
+        |name: &str, number: Number| given(name).unwrap_or_else(|| number.preset(Some(m)));
+    let (shift, dedendum) = (GearDocument::profile_shift, GearDocument::dedendum_mm);
+    let addendum = GearDocument::addendum_mm;
+    let shifted = m * z / 2.0 + or_preset(shift.name, shift.spec)? * m;
+    let r_a = match given(GearDocument::tip_diameter_mm.name) {
         Some(diameter) => diameter? / 2.0,
-        None => shifted + or_preset(&quantity::ADDENDUM)?,
+        None => shifted + or_preset(addendum.name, addendum.spec.spec)?,
     };
-    let r_f = shifted - or_preset(&quantity::DEDENDUM)?;
-    let bore = gear.number_at(&["blank", quantity::BORE_RADIUS.name])?;
+    let r_f = shifted - or_preset(dedendum.name, dedendum.spec)?;
+    let bore = gear.number_at(&["blank", BlankDocument::bore_radius_mm.name])?;
     Some(PI * (((r_a + r_f) / 2.0).powi(2) - bore.powi(2)))
 }

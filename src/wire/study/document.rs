@@ -8,11 +8,14 @@ use super::constant_mass::ConstantMass;
 use super::labels::name_values;
 use super::size::{MOST_DESIGNS, too_many};
 use super::{Axis, Listed, Plan, Study};
+use crate::wire::declare::{
+    Declared, Errors, Node, ObjectReader, OneWord, Optional, Place, Text, absent, escaped, nested,
+    text, word,
+};
 use crate::wire::kept::Kept;
 use crate::wire::pointer::Pointer;
 use crate::wire::problem::{Code, FieldError};
-use crate::wire::tags::{self, is_short_text};
-use crate::wire::tree::{Errors, Node, ObjectReader, OptionalObject, escaped};
+use crate::wire::submission::TAGS;
 
 /// The most axes, and the most changes of one design: the submission has fewer fields.
 pub(super) const MOST_CHANGES: usize = 100;
@@ -20,19 +23,33 @@ pub(super) const MOST_CHANGES: usize = 100;
 /// The most characters of a label, and of a name.
 pub(super) const LONGEST_LABEL: usize = 200;
 
+/// What the client calls the study.
+pub(super) const NAME: Declared<Optional<Text>> = Declared::new(
+    "name",
+    "What the client calls the study.",
+    absent(text("Name", LONGEST_LABEL), "none"),
+);
+
+/// How much of what is computed is kept.
+pub(super) const KEEP: Declared<OneWord<Kept>> = Declared::new(
+    "keep",
+    "How much is kept of each design that has been computed.",
+    word("Keep").or(Kept::Results),
+);
+
 /// Reads the study that `node` is; `value` is the same document. `None` if something is wrong, which `errors` has.
 pub(super) fn read(node: Node, value: Value, errors: &Errors) -> Option<Study> {
-    let mut reader = ObjectReader::new(&node, String::new(), errors)?;
-    let name = read_name(&mut reader);
-    let tags = tags::read(&mut reader);
-    let keep = reader.choice("keep", Some(Kept::Results));
-    let base = reader.needed_object("base").is_some();
-    let plan = read_plan(&mut reader, &value, errors);
-    let constant_mass = match reader.optional_object("constant_mass") {
-        OptionalObject::Absent => Some(None),
-        OptionalObject::Wrong => None,
-        OptionalObject::Present(rule) => ConstantMass::read(rule).map(Some),
+    let mut reader = ObjectReader::new(&node, Place::root(errors))?;
+    let name = NAME.read::<Option<String>>(&mut reader);
+    let tags = Declared::new("tags", "", TAGS).read::<Vec<String>>(&mut reader);
+    let keep = KEEP.read::<Kept>(&mut reader);
+    let base = match reader.get("base") {
+        Some(base) => ObjectReader::new(base, reader.place_of("base")).is_some(),
+        None => reader.missing::<()>("base").is_some(),
     };
+    let plan = read_plan(&mut reader, &value, errors);
+    let rule = Declared::new("constant_mass", "", absent(nested(""), "none"));
+    let constant_mass = rule.read::<Option<ConstantMass>>(&mut reader);
     reader.finish();
     base.then_some(())?;
     let (name, tags, keep, plan, constant_mass) = (name?, tags?, keep?, plan?, constant_mass?);
@@ -47,20 +64,6 @@ pub(super) fn read(node: Node, value: Value, errors: &Errors) -> Option<Study> {
     })
 }
 
-fn read_name(reader: &mut ObjectReader<'_>) -> Option<Option<String>> {
-    match reader.present("name") {
-        None => Some(None),
-        Some(Node::Text(name)) if is_short_text(name, LONGEST_LABEL) => Some(Some(name.clone())),
-        Some(other) => {
-            let expected = format!(
-                "a text of 1 to {LONGEST_LABEL} characters, none of them a control character"
-            );
-            reader.wrong_kind("name", other, &expected);
-            None
-        }
-    }
-}
-
 fn read_plan(reader: &mut ObjectReader<'_>, value: &Value, errors: &Errors) -> Option<Plan> {
     match (reader.present("axes"), reader.present("designs")) {
         (Some(axes), None) => read_axes(reader, axes, &value["axes"], errors).map(Plan::Axes),
@@ -69,35 +72,29 @@ fn read_plan(reader: &mut ObjectReader<'_>, value: &Value, errors: &Errors) -> O
         }
         (None, None) => {
             let detail = "A study needs /axes or /designs; it has neither.";
-            reader.report(FieldError::new("/designs", Code::MissingField, detail));
-            None
+            reader
+                .place_of("designs")
+                .wrong(Code::MissingField, detail, None)
         }
         (Some(_), Some(_)) => {
             let detail = "A study has either /axes or /designs; it has both.";
-            reader.report(FieldError::new("/designs", Code::OutOfRange, detail));
-            None
+            reader
+                .place_of("designs")
+                .wrong(Code::OutOfRange, detail, None)
         }
     }
 }
 
 /// The items of a list, which has to have some.
-fn items<'a>(
-    reader: &ObjectReader<'_>,
-    name: &str,
-    node: &'a Node,
-    errors: &Errors,
-) -> Option<&'a [Node]> {
-    let Node::List(items) = node else {
-        reader.wrong_kind(name, node, "a list");
-        return None;
-    };
-    if items.is_empty() {
-        let pointer = reader.pointer_to(name);
-        let detail = format!("{pointer} is empty; give at least one.");
-        errors.push(FieldError::new(pointer, Code::OutOfRange, detail));
-        return None;
+fn items<'a>(place: &Place<'_>, node: &'a Node) -> Option<&'a [Node]> {
+    match node {
+        Node::List(items) if items.is_empty() => {
+            let detail = format!("{place} is empty; give at least one.");
+            place.wrong(Code::OutOfRange, detail, None)
+        }
+        Node::List(items) => Some(items),
+        _ => place.wrong_kind(node, "a list"),
     }
-    Some(items)
 }
 
 fn read_axes(
@@ -106,7 +103,7 @@ fn read_axes(
     values: &Value,
     errors: &Errors,
 ) -> Option<Vec<Axis>> {
-    let items = items(reader, "axes", node, errors)?;
+    let items = items(&reader.place_of("axes"), node)?;
     if items.len() > MOST_CHANGES {
         let detail = format!(
             "/axes has {} axes; at most {MOST_CHANGES} are read.",
@@ -125,7 +122,7 @@ fn read_axes(
     let axes: Vec<_> = items
         .iter()
         .enumerate()
-        .map(|(i, item)| read_axis(i, item, &values[i], errors))
+        .map(|(i, item)| read_axis(i, item, &values[i], reader, errors))
         .collect();
     let mut axes = axes.into_iter().collect::<Option<Vec<_>>>()?;
     for i in 0..axes.len() {
@@ -150,19 +147,24 @@ fn length_of_values(axis: &Node) -> usize {
     }
 }
 
-fn read_axis(i: usize, item: &Node, value: &Value, errors: &Errors) -> Option<Axis> {
-    let mut reader = ObjectReader::new(item, format!("/axes/{i}"), errors)?;
-    let path = match reader.needed("path") {
-        Some(Node::Text(text)) => read_pointer(text, &reader.pointer_to("path"), errors),
-        Some(other) => {
-            reader.wrong_kind("path", other, "a JSON pointer");
-            None
-        }
-        None => None,
+fn read_axis(
+    i: usize,
+    item: &Node,
+    value: &Value,
+    study: &ObjectReader<'_>,
+    errors: &Errors,
+) -> Option<Axis> {
+    let place = study.place_of("axes").of(&i.to_string());
+    let mut reader = ObjectReader::new(item, place)?;
+    let path = match reader.get("path") {
+        Some(Node::Text(text)) => read_pointer(text, &reader.place_of("path").pointer, errors),
+        Some(other) => reader.place_of("path").wrong_kind(other, "a JSON pointer"),
+        None => reader.missing("path"),
     };
-    let values = reader
-        .needed("values")
-        .and_then(|node| items(&reader, "values", node, errors));
+    let values = match reader.get("values") {
+        Some(node) => items(&reader.place_of("values"), node),
+        None => reader.missing("values"),
+    };
     if let Some(values) = values {
         let mut seen = HashSet::new();
         if let Some(j) = values.iter().position(|value| !seen.insert(value.key())) {
@@ -193,7 +195,7 @@ fn read_designs(
     values: &Value,
     errors: &Errors,
 ) -> Option<Vec<Listed>> {
-    let items = items(reader, "designs", node, errors)?;
+    let items = items(&reader.place_of("designs"), node)?;
     if items.len() > MOST_DESIGNS {
         errors.push(too_many(items.len() as u128, "/designs"));
         return None;
@@ -201,7 +203,7 @@ fn read_designs(
     let designs: Vec<_> = items
         .iter()
         .enumerate()
-        .map(|(i, item)| read_design(i, item, &values[i], errors))
+        .map(|(i, item)| read_design(i, item, &values[i], reader, errors))
         .collect();
     let designs = designs.into_iter().collect::<Option<Vec<_>>>()?;
     let mut labels = HashSet::new();
@@ -218,39 +220,30 @@ fn read_designs(
     Some(designs)
 }
 
-fn read_design(i: usize, item: &Node, value: &Value, errors: &Errors) -> Option<Listed> {
-    let mut reader = ObjectReader::new(item, format!("/designs/{i}"), errors)?;
-    let label = match reader.needed("label") {
-        Some(Node::Text(text)) if is_short_text(text, LONGEST_LABEL) => Some(text.clone()),
-        Some(Node::Text(_)) => {
-            let place = reader.pointer_to("label");
-            let detail = format!(
-                "{place} has to have 1 to {LONGEST_LABEL} characters, none of them a control character."
-            );
-            reader.report(FieldError::new(place, Code::OutOfRange, detail));
-            None
-        }
-        Some(other) => {
-            reader.wrong_kind("label", other, "a text");
-            None
-        }
-        None => None,
-    };
+fn read_design(
+    i: usize,
+    item: &Node,
+    value: &Value,
+    study: &ObjectReader<'_>,
+    errors: &Errors,
+) -> Option<Listed> {
+    let place = study.place_of("designs").of(&i.to_string());
+    let mut reader = ObjectReader::new(item, place)?;
+    let label = Declared::new("label", "", text("Label", LONGEST_LABEL));
+    let label = label.read::<String>(&mut reader);
     let changes = match reader.present("changes") {
         None => Some(Vec::new()),
         Some(node @ Node::Object(fields)) => {
             if fields.len() > MOST_CHANGES {
-                let detail = format!("an object of at most {MOST_CHANGES} changes");
-                reader.wrong_kind("changes", node, &detail);
-                None
+                let expected = format!("an object of at most {MOST_CHANGES} changes");
+                reader.place_of("changes").wrong_kind(node, &expected)
             } else {
                 read_changes(i, fields, &value["changes"], errors)
             }
         }
-        Some(other) => {
-            reader.wrong_kind("changes", other, "an object of JSON pointers and values");
-            None
-        }
+        Some(other) => reader
+            .place_of("changes")
+            .wrong_kind(other, "an object of JSON pointers and values"),
     };
     reader.finish();
     Some(Listed {

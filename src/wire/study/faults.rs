@@ -7,10 +7,10 @@ use meshwright_engine::run::Run;
 use serde_json::Value;
 
 use super::{Plan, Study};
+use crate::wire::declare::{Errors, Node, escaped};
 use crate::wire::pointer::Pointer;
 use crate::wire::problem::{Code, FieldError, Problem};
 use crate::wire::submission::Submission;
-use crate::wire::tree::{Errors, Node, escaped};
 
 /// Between so many designs it is asked whether anybody still waits.
 const BETWEEN_LOOKS: usize = 64;
@@ -42,7 +42,9 @@ impl Study {
             let pointer = &error.pointer;
             // A list that is too long stays so whatever stands in it.
             let may_be_completed = error.code != Code::TooLarge;
-            self.constant_mass.is_some_and(|rule| rule.sets(pointer))
+            self.constant_mass
+                .as_ref()
+                .is_some_and(|rule| rule.sets(pointer))
                 || places.values().any(|path| {
                     path.covers(pointer) || (may_be_completed && path.is_below(pointer))
                 })
@@ -97,7 +99,7 @@ impl Study {
 
     /// A radius that is set twice would be one of them only.
     fn check_constant_mass(&self, errors: &Errors) {
-        let Some(rule) = self.constant_mass else {
+        let Some(rule) = &self.constant_mass else {
             return;
         };
         let refuse = |place: String, radius: &str| {

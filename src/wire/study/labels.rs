@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use serde_json::Value;
 
 use super::Axis;
-use crate::wire::tags::is_short_text;
+use crate::wire::declare::is_short_text;
 
 /// The most characters of an object or list that stands in a label; a longer one is told by its number.
 const LONGEST_VALUE: usize = 32;

@@ -20,11 +20,11 @@ mod tests;
 use meshwright_engine::run::Run;
 use serde_json::{Map, Value};
 
+use super::declare::{Errors, Node};
 use super::kept::Kept;
 use super::pointer::Pointer;
 use super::problem::{Code, FieldError, Problem};
 use super::submission::Submission;
-use super::tree::{Errors, Node};
 use super::warning::GearName;
 use constant_mass::ConstantMass;
 
@@ -133,7 +133,7 @@ impl Study {
     /// The gear that the table tells mass and holes of: the one of constant mass, else the only one that changes, else
     /// the driven one.
     pub fn gear(&self) -> GearName {
-        if let Some(rule) = self.constant_mass {
+        if let Some(rule) = &self.constant_mass {
             return rule.gear.into();
         }
         let touches = |member: &str| self.paths().any(|path| path.starts_with(&["pair", member]));
@@ -175,7 +175,7 @@ impl Study {
                 });
             }
         }
-        if let Some(rule) = self.constant_mass {
+        if let Some(rule) = &self.constant_mass {
             rule.apply(&mut submission, &mut told);
         }
         Some(Design {

@@ -4,10 +4,13 @@ use meshwright_engine::gear::{GearPair, SpurGear};
 
 use super::Purpose;
 use super::document::Document;
+use crate::wire::declare::Errors;
 use crate::wire::problem::{Code, FieldError};
-use crate::wire::quantity::{self, MOST_POSITIONS};
-use crate::wire::tree::Errors;
+use crate::wire::resolution::ResolutionDocument;
 use crate::wire::units::{Side, plain, rounded_inward};
+
+/// The most positions times torques of one submission.
+pub(in crate::wire) const MOST_POSITIONS: u64 = 20_000;
 
 impl Document {
     /// Refuses torques that would deflect the teeth by more than about a quarter of a module: small displacements and a
@@ -25,7 +28,7 @@ impl Document {
         for (i, &torque) in self.output_torques_n_m.iter().enumerate() {
             if torque > largest {
                 let nearest = rounded_inward(largest, Side::AtMost, 0);
-                let pointer = format!("/{}/{i}", quantity::OUTPUT_TORQUE.name);
+                let pointer = format!("/{}/{i}", Self::output_torques_n_m.name);
                 let detail = format!(
                     "{pointer} is {} N m, which would deflect these teeth by more than about a quarter of a module; at most {} N m.",
                     plain(torque),
@@ -37,7 +40,10 @@ impl Document {
     }
 
     pub(super) fn check_interface(&self, pair: &GearPair, errors: &Errors) {
-        let pointer = format!("/resolution/{}", quantity::INTERFACE_RADIUS.name);
+        let pointer = format!(
+            "/resolution/{}",
+            ResolutionDocument::interface_radius_mm.name
+        );
         let faults = self.resolution.interface_radius_mm.faults(pair, &pointer);
         faults.into_iter().for_each(|fault| errors.push(fault));
     }
@@ -49,7 +55,7 @@ impl Document {
         if span > period && span % period != 0 {
             let nearest =
                 (f64::from(span) / f64::from(period)).round().max(1.0) * f64::from(period);
-            let pointer = format!("/resolution/{}", quantity::SPAN.name);
+            let pointer = format!("/resolution/{}", ResolutionDocument::span_mesh_periods.name);
             let detail = format!(
                 "{pointer} is {span}; the true period is {period} mesh periods, and a longer span has to be a whole multiple of it."
             );
@@ -81,7 +87,7 @@ impl Document {
         let fitting_torques = limit / (span * positions);
         let fitting_span = limit / (positions * torques);
         let mut ways = Vec::new();
-        let least_positions = quantity::POSITIONS.bounds.0 as u64;
+        let least_positions = ResolutionDocument::positions_per_mesh_period.spec.bounds.0 as u64;
         if fitting_positions >= least_positions {
             ways.push(format!("{fitting_positions} positions in a mesh period"));
         }
@@ -95,10 +101,13 @@ impl Document {
             ways.push("less of more than one of them".to_owned());
         }
         let (name, nearest) = if fitting_positions >= least_positions {
-            (quantity::POSITIONS.name, Some(fitting_positions as f64))
+            (
+                ResolutionDocument::positions_per_mesh_period.name,
+                Some(fitting_positions as f64),
+            )
         } else {
             let nearest = (fitting_span >= 1).then_some(fitting_span as f64);
-            (quantity::SPAN.name, nearest)
+            (ResolutionDocument::span_mesh_periods.name, nearest)
         };
         let detail = format!(
             "{span} mesh periods of {positions} positions at {torques} torques are {total} positions; {said}. What would fit: {}.",

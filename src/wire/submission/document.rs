@@ -1,90 +1,56 @@
-//! The document of a submission, read field by field.
+//! The document of a submission.
 
 use meshwright_engine::analysis::Method;
-use serde::Serialize;
 
+use crate::wire::declare::{
+    List, Number, Text, absent, document, flag, list, nested, number, text, word,
+};
 use crate::wire::pair::PairDocument;
-use crate::wire::problem::{Code, FieldError};
-use crate::wire::quantity::{self, MOST_TORQUES};
+use crate::wire::problem::Code;
 use crate::wire::resolution::ResolutionDocument;
-use crate::wire::tags;
-use crate::wire::tree::{Node, ObjectReader, as_word};
 
-/// The document of a submission, in the reader's units, with every default filled in.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub(super) struct Document {
-    #[serde(serialize_with = "as_word")]
-    pub(super) method: Method,
-    pub(super) pair: PairDocument,
-    pub(super) output_torques_n_m: Vec<f64>,
-    pub(super) driving_speed_rpm: Option<f64>,
-    pub(super) stress: bool,
-    pub(super) resolution: ResolutionDocument,
-    pub(super) tags: Vec<String>,
-}
+/// The most output torques of one submission.
+pub(in crate::wire) const MOST_TORQUES: usize = 60;
 
-impl Document {
-    /// Reads every field by itself; whether they go together is not looked at.
-    pub(super) fn read(mut reader: ObjectReader<'_>) -> Option<Self> {
-        let method = reader.choice::<Method>("method", None);
-        let pair = reader.needed_object("pair").and_then(PairDocument::read);
-        let output_torques_n_m = Self::read_torques(&mut reader);
-        let driving_speed_rpm = reader.optional_number(&quantity::DRIVING_SPEED);
-        let stress = reader.flag("stress", false);
-        let resolution = ResolutionDocument::read(reader.optional_object("resolution"));
-        let tags = tags::read(&mut reader);
-        reader.finish();
-        Some(Self {
-            method: method?,
-            pair: pair?,
-            output_torques_n_m: output_torques_n_m?,
-            driving_speed_rpm: driving_speed_rpm?,
-            stress: stress?,
-            resolution: resolution?,
-            tags: tags?,
-        })
-    }
+/// The most tags of a job or a study, and the most characters of one.
+pub(in crate::wire) const MOST_TAGS: (usize, usize) = (16, 64);
 
-    fn read_torques(reader: &mut ObjectReader<'_>) -> Option<Vec<f64>> {
-        let name = quantity::OUTPUT_TORQUE.name;
-        let node = reader.needed(name)?;
-        let pointer = reader.pointer_to(name);
-        let Node::List(items) = node else {
-            reader.wrong_kind(name, node, "a list of torques in N m");
-            return None;
-        };
-        if items.is_empty() {
-            reader.report(FieldError::new(
-                &*pointer,
-                Code::OutOfRange,
-                format!("{pointer} is empty; give a torque."),
-            ));
-            return None;
-        }
-        if items.len() > MOST_TORQUES {
-            let detail = format!(
-                "{pointer} has {} torques; at most {MOST_TORQUES} fit in one submission.",
-                items.len()
-            );
-            reader.report(
-                FieldError::new(&*pointer, Code::TooLarge, detail).nearest(MOST_TORQUES as f64),
-            );
-            return None;
-        }
-        let torques: Vec<_> = items
-            .iter()
-            .enumerate()
-            .map(|(i, item)| {
-                reader.checked_number(item, &format!("{pointer}/{i}"), &quantity::OUTPUT_TORQUE)
-            })
-            .collect();
-        for (i, torque) in torques.iter().enumerate() {
-            if torque.is_some() && torques[..i].contains(torque) {
-                let pointer = format!("{pointer}/{i}");
-                let detail = format!("{pointer} repeats a torque; each gives one curve.");
-                reader.report(FieldError::new(pointer, Code::OutOfRange, detail));
-            }
-        }
-        torques.into_iter().collect()
+document! {
+    /// What is asked: a gear pair, torques, and how to compute. Unknown fields are refused.
+    pub(in crate::wire) struct Document as "Submission", "Submission" {
+        /// How the curves are computed.
+        pub(super) method: Method = word("Method"),
+        /// The gears.
+        pub(super) pair: PairDocument = nested(""),
+        /// The torques T on the driven gear, each of which gives a curve; 0 is the limit of light load, the kinematic error of the flanks.
+        /// The load on the line of action is T over the driven base radius; one that would deflect the teeth by more than about a quarter
+        /// of a module is refused.
+        pub(super) output_torques_n_m: Vec<f64> = list("Output torques", OUTPUT_TORQUE, MOST_TORQUES)
+            .of("torques in N m", "torques", "fit in one submission")
+            .not_empty(Code::OutOfRange, "give a torque")
+            .unique("repeats a torque; each gives one curve"),
+        /// The speed that turns orders into frequencies. It changes nothing else: the analysis is quasi-static.
+        pub(super) driving_speed_rpm: Option<f64> = absent(
+            number("Speed of the driving gear", "1/min", 1e-3, 1e6),
+            "no frequencies beside the orders",
+        ),
+        /// Whether the flexible method also tells the largest von Mises stress at the tensile root fillets and at the edges of the holes,
+        /// position by position, and where it is.
+        pub(super) stress: bool = flag("Stress", false),
+        /// How finely and by which rules.
+        pub(super) resolution: ResolutionDocument = nested("Resolution").or_defaults(),
+        /// Short strings to find the job by. They do not change the result.
+        pub(super) tags: Vec<String> = TAGS,
     }
 }
+
+/// A torque on the driven gear.
+pub(in crate::wire) const OUTPUT_TORQUE: Number = number("Output torque", "N m", 1e-6, 1e8)
+    .or_zero()
+    .negative_is(Code::TorqueNotPositive);
+
+/// Short strings to find jobs and studies by.
+pub(in crate::wire) const TAGS: List<Text> = list("Tags", text("Tag", MOST_TAGS.1), MOST_TAGS.0)
+    .of("short strings", "tags", "are kept")
+    .too_many_is(Code::OutOfRange)
+    .or_empty();

@@ -2,21 +2,23 @@
 
 use meshwright_engine::analysis::spectrum::RotationSpeed;
 use meshwright_engine::analysis::{Case, Method};
-use serde::Serialize;
 
 mod checks;
 mod document;
 
-use document::Document;
+pub(super) use checks::MOST_POSITIONS;
+#[cfg(test)]
+pub(super) use document::OUTPUT_TORQUE;
+pub(super) use document::{MOST_TAGS, MOST_TORQUES, TAGS};
 
-use super::pair::PairDocument;
+pub(super) use document::Document;
+
+use super::declare::{
+    Choice, Document as _, Errors, Kind, Node, ObjectReader, Place, utoipa_schema, word,
+};
 use super::problem::{FieldError, Problem};
-use super::quantity::{self, MOST_TORQUES};
 use super::resolution::ResolutionDocument;
-use super::schema::{self, Property, documented};
 use super::size::{MOST_VALUES, refuse_many_values};
-use super::tags;
-use super::tree::{Choice, Errors, Node, ObjectReader};
 use crate::hash::sha256_hex;
 
 /// The version of the solver, which a result belongs to.
@@ -35,22 +37,35 @@ pub struct Submission {
     case: Case,
 }
 
-impl Serialize for Submission {
+impl serde::Serialize for Submission {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.document.serialize(serializer)
+        self.document.write(serializer)
     }
 }
 
-documented!(
-    Submission,
-    "Submission",
-    [PairDocument, ResolutionDocument],
-    schema::object(
-        "Submission",
-        "What is asked: a gear pair, torques, and how to compute. Unknown fields are refused.",
-        Submission::properties()
-    )
-);
+impl utoipa::PartialSchema for Submission {
+    fn schema() -> utoipa::openapi::RefOr<utoipa::openapi::Schema> {
+        <Document as utoipa::PartialSchema>::schema()
+    }
+}
+
+impl utoipa::ToSchema for Submission {
+    fn name() -> std::borrow::Cow<'static, str> {
+        Document::name()
+    }
+
+    fn schemas(schemas: &mut Vec<(String, utoipa::openapi::RefOr<utoipa::openapi::Schema>)>) {
+        Document::schemas(schemas);
+    }
+}
+
+/// The schema of the word of a method.
+pub fn method_schema() -> utoipa::openapi::RefOr<utoipa::openapi::Schema> {
+    utoipa_schema(Method::describe(
+        "How the curves are computed.",
+        &word("Method"),
+    ))
+}
 
 /// What a submission is for, which decides how large it may be.
 #[derive(Debug, Clone, Copy)]
@@ -65,35 +80,6 @@ pub(super) enum Purpose {
 }
 
 impl Submission {
-    /// What the schema says of its fields.
-    pub(super) fn properties() -> Vec<Property> {
-        vec![
-            schema::choice::<Method>("method", "Method", "How the curves are computed.", None),
-            schema::document::<PairDocument>("pair", true),
-            (
-                quantity::OUTPUT_TORQUE.name,
-                schema::list(
-                    "Output torques",
-                    "The torques on the driven gear, each of which gives a curve. Unit: N m.",
-                    schema::number_schema(&quantity::OUTPUT_TORQUE),
-                    (1, MOST_TORQUES),
-                )
-                .unique_items(true)
-                .into(),
-                true,
-            ),
-            schema::number(&quantity::DRIVING_SPEED),
-            schema::flag(
-                "stress",
-                "Stress",
-                "Whether the flexible method also tells the largest von Mises stress at the tensile root fillets and at the edges of the holes, position by position, and where it is.",
-                false,
-            ),
-            schema::document::<ResolutionDocument>("resolution", false),
-            tags::property("job"),
-        ]
-    }
-
     /// Reads and checks a submission.
     ///
     /// # Errors
@@ -108,7 +94,7 @@ impl Submission {
     /// Reads and checks a submission that is taken apart already.
     pub(super) fn of_node(node: &Node) -> Result<Self, Problem> {
         let errors = Errors::default();
-        let read = ObjectReader::new(node, String::new(), &errors)
+        let read = ObjectReader::new(node, Place::root(&errors))
             .and_then(|reader| Self::read(reader, Purpose::Job, &errors));
         match read {
             Some(submission) if errors.count() == 0 => Ok(submission),
@@ -128,8 +114,8 @@ impl Submission {
     /// What is wrong with the fields of a submission, each by itself. Whether they go together is not looked at.
     pub(super) fn wrong_fields(node: &Node) -> Vec<FieldError> {
         let errors = Errors::default();
-        if let Some(reader) = ObjectReader::new(node, String::new(), &errors) {
-            Document::read(reader);
+        if let Some(reader) = ObjectReader::new(node, Place::root(&errors)) {
+            Document::read_whole(reader);
         }
         errors.into_errors()
     }
@@ -140,7 +126,7 @@ impl Submission {
         purpose: Purpose,
         errors: &Errors,
     ) -> Option<Self> {
-        let mut document = Document::read(reader)?;
+        let mut document = Document::read_whole(reader)?;
         if errors.count() > 0 {
             return None;
         }

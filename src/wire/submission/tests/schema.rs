@@ -1,21 +1,19 @@
 //! The schema of a submission against what is read and filled in.
 
+use std::collections::HashMap;
+
 use serde_json::Value;
 
-use super::{Submission, filled_in, least, parse};
+use super::{Document, filled_in, least, parse};
+use crate::wire::declare::Document as _;
 use crate::wire::examples;
 use crate::wire::pointer::Pointer;
 
 #[test]
 fn every_field_of_the_schema_has_a_title_and_the_defaults_are_those_that_are_filled_in() {
-    use utoipa::{PartialSchema, ToSchema};
-    let mut named = Vec::new();
-    Submission::schemas(&mut named);
-    named.push(("Submission".to_owned(), Submission::schema()));
-    let schemas: std::collections::HashMap<String, Value> = named
-        .into_iter()
-        .map(|(name, schema)| (name, serde_json::to_value(schema).expect("JSON")))
-        .collect();
+    let mut named = vec![("Submission", Document::json_schema())];
+    Document::name_fields(&mut named);
+    let schemas: HashMap<_, Value> = named.into_iter().collect();
     let echo: Value =
         serde_json::from_str(&parse(&least()).expect("valid").canonical_json()).expect("JSON");
     for (name, place) in [

@@ -1,0 +1,134 @@
+//! One declaration for every object of the wire; from it come its reader, its writer and its schema.
+//!
+//! A [`document!`] says of each field its name, its type, a sentence, and a specification such as `number("Module", "mm", 0.1, 50.0)`:
+//! title, unit, bounds, and what stands for the field where it is absent. What a specification can say depends on the type
+//! of the field, which is a [`Kind`]. The declaration of a field is a constant of its object, named as the field, for
+//! those who look up its unit or its bounds.
+
+mod errors;
+mod list;
+mod nested;
+mod node;
+mod number;
+mod optional;
+mod reader;
+mod words;
+
+use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde_json::Value;
+
+pub(super) use errors::Errors;
+pub(super) use list::{List, list};
+pub(super) use nested::{
+    Document, Nested, Property, document, nested, object, tagged, utoipa_schema,
+};
+pub(super) use node::{Node, escaped};
+pub(super) use number::{Number, number};
+pub(super) use optional::{Optional, absent, or_else, unless};
+pub(super) use reader::{ObjectReader, Place};
+pub(super) use words::{Choice, OneWord, Text, flag, is_short_text, text, word, words};
+
+/// The named schemas that others refer to.
+pub(super) type Named = Vec<(&'static str, Value)>;
+
+/// A kind of value: how it is read, written and described, from what a declaration says of it.
+pub(super) trait Kind: Sized {
+    /// What a declaration says of such a value.
+    type Spec;
+
+    /// What several of them are called: what a list of them is expected to hold, and what it has too many of.
+    const MANY: [&'static str; 2] = ["objects", "items"];
+
+    /// Reads the value that stands at `place`. What is wrong is reported there.
+    fn read(node: &Node, place: &Place<'_>, spec: &Self::Spec) -> Option<Self>;
+
+    /// Reads the field `name`.
+    fn read_field(
+        reader: &mut ObjectReader<'_>,
+        name: &'static str,
+        spec: &Self::Spec,
+    ) -> Option<Self> {
+        match reader.get(name) {
+            Some(node) => Self::read(node, &reader.place_of(name), spec),
+            None => Self::absent(reader, name, spec),
+        }
+    }
+
+    /// What stands for the field `name` where it is absent.
+    fn absent(reader: &mut ObjectReader<'_>, name: &'static str, _: &Self::Spec) -> Option<Self> {
+        reader.missing(name)
+    }
+
+    /// Whether it has to be given.
+    fn is_needed(_: &Self::Spec) -> bool {
+        true
+    }
+
+    /// Whether its field is not written.
+    fn is_left_out(&self, _: &Self::Spec) -> bool {
+        false
+    }
+
+    /// Writes it.
+    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error>;
+
+    /// What the schema says of it, `about` being the sentence of its field.
+    fn describe(about: &str, spec: &Self::Spec) -> Value;
+
+    /// Adds the schemas that its own refers to.
+    fn name_parts(_: &mut Named) {}
+}
+
+/// The declaration of a field.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Declared<S> {
+    /// Its name.
+    pub(super) name: &'static str,
+    /// What it is.
+    pub(super) about: &'static str,
+    /// What its kind of value needs to know.
+    pub(super) spec: S,
+}
+
+impl<S> Declared<S> {
+    pub(super) const fn new(name: &'static str, about: &'static str, spec: S) -> Self {
+        Self { name, about, spec }
+    }
+
+    /// The same with another specification.
+    pub(super) fn map<T>(self, change: impl FnOnce(S) -> T) -> Declared<T> {
+        Declared::new(self.name, self.about, change(self.spec))
+    }
+
+    /// Reads the field.
+    pub(super) fn read<K: Kind<Spec = S>>(&self, reader: &mut ObjectReader<'_>) -> Option<K> {
+        K::read_field(reader, self.name, &self.spec)
+    }
+
+    /// Writes the field.
+    pub(super) fn write<K: Kind<Spec = S>, M: SerializeMap>(
+        &self,
+        value: &K,
+        map: &mut M,
+    ) -> Result<(), M::Error> {
+        if value.is_left_out(&self.spec) {
+            return Ok(());
+        }
+        map.serialize_entry(self.name, &Written(value))
+    }
+
+    /// What the schema says of the field: its name, its schema, and whether it is needed.
+    pub(super) fn property<K: Kind<Spec = S>>(&self) -> (&'static str, Value, bool) {
+        let schema = K::describe(self.about.trim_start(), &self.spec);
+        (self.name, schema, K::is_needed(&self.spec))
+    }
+}
+
+/// A value as serde writes it.
+pub(super) struct Written<'a, K>(pub(super) &'a K);
+
+impl<K: Kind> Serialize for Written<'_, K> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.write(serializer)
+    }
+}

@@ -1,0 +1,313 @@
+//! Objects, and those within others.
+
+use serde::ser::{SerializeMap, Serializer};
+use serde_json::{Map, Value, json};
+use utoipa::openapi::RefOr;
+use utoipa::openapi::extensions::ExtensionsBuilder;
+use utoipa::openapi::schema::{ObjectBuilder, Schema};
+
+use super::{Kind, Named, Node, ObjectReader, Place};
+
+/// A property of an object: its name, its schema, and whether it is needed.
+pub(in crate::wire) type Property = (&'static str, Value, bool);
+
+/// An object of the wire; [`document!`] and [`tagged!`] implement it.
+pub(in crate::wire) trait Document: Sized {
+    /// Its name in the contract.
+    const NAME: &'static str;
+
+    /// Reads its fields, beside which there may be others.
+    fn read_fields(reader: &mut ObjectReader<'_>) -> Option<Self>;
+
+    /// Writes its fields.
+    fn write_fields<M: SerializeMap>(&self, map: &mut M) -> Result<(), M::Error>;
+
+    /// What the schema says of its fields.
+    fn properties() -> Vec<Property>;
+
+    /// What the schema says of it.
+    fn json_schema() -> Value;
+
+    /// Adds the schemas that its own refers to.
+    fn name_fields(named: &mut Named);
+
+    /// Reads an object of these fields and no others.
+    fn read_whole(mut reader: ObjectReader<'_>) -> Option<Self> {
+        let read = Self::read_fields(&mut reader);
+        reader.finish();
+        read
+    }
+}
+
+/// What a declaration says of an object within another one.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::wire) struct Nested {
+    title: &'static str,
+    /// Whether it is made of its fields' defaults where it is absent or null.
+    or_defaults: bool,
+}
+
+/// An object that has to be given.
+pub(in crate::wire) const fn nested(title: &'static str) -> Nested {
+    let or_defaults = false;
+    Nested { title, or_defaults }
+}
+
+impl Nested {
+    /// Absent or null, it has the default of every field.
+    pub(in crate::wire) const fn or_defaults(self) -> Self {
+        let or_defaults = true;
+        Self {
+            or_defaults,
+            ..self
+        }
+    }
+}
+
+impl<D: Document> Kind for D {
+    type Spec = Nested;
+
+    fn read(node: &Node, place: &Place<'_>, _: &Nested) -> Option<Self> {
+        Self::read_whole(ObjectReader::new(node, place.clone())?)
+    }
+
+    fn read_field(
+        reader: &mut ObjectReader<'_>,
+        name: &'static str,
+        spec: &Nested,
+    ) -> Option<Self> {
+        let place = reader.place_of(name);
+        match reader.get(name) {
+            Some(Node::Null) | None if spec.or_defaults => {
+                Self::read(&Node::Object(Vec::new()), &place, spec)
+            }
+            Some(node) => Self::read(node, &place, spec),
+            None => reader.missing(name),
+        }
+    }
+
+    fn is_needed(spec: &Nested) -> bool {
+        !spec.or_defaults
+    }
+
+    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        self.write_fields(&mut map)?;
+        map.end()
+    }
+
+    fn describe(about: &str, spec: &Nested) -> Value {
+        let reference = json!({ "$ref": format!("#/components/schemas/{}", D::NAME) });
+        if spec.or_defaults {
+            return json!({ "title": spec.title, "description": about, "oneOf": [reference, { "type": "null" }] });
+        }
+        if spec.title.is_empty() {
+            return reference;
+        }
+        json!({ "title": spec.title, "description": about, "oneOf": [reference] })
+    }
+
+    fn name_parts(named: &mut Named) {
+        named.push((D::NAME, D::json_schema()));
+        D::name_fields(named);
+    }
+}
+
+/// The schema of an object that has these properties and no others.
+pub(in crate::wire) fn object(title: &str, about: &str, properties: Vec<Property>) -> Value {
+    let needed: Vec<_> = properties
+        .iter()
+        .filter(|(.., needed)| *needed)
+        .map(|(name, ..)| *name)
+        .collect();
+    let mut schema = json!({ "type": "object", "title": title, "description": about.trim_start() });
+    if !needed.is_empty() {
+        schema["required"] = json!(needed);
+    }
+    let properties = properties
+        .into_iter()
+        .map(|(name, schema, _)| (name.to_owned(), schema));
+    schema["properties"] = Value::Object(Map::from_iter(properties));
+    schema["additionalProperties"] = json!(false);
+    schema
+}
+
+/// `schema` in a form that utoipa carries to the finished document, which has it instead. What utoipa knows of schemas is less than
+/// what ours say, and it drops the rest.
+pub(in crate::wire) fn utoipa_schema(schema: Value) -> RefOr<Schema> {
+    let declared = ExtensionsBuilder::new().add("x-declared", schema).build();
+    ObjectBuilder::new().extensions(Some(declared)).into()
+}
+
+/// Declares an object of the wire.
+macro_rules! document {
+    (
+        $(#[doc = $about:literal])*
+        $visibility:vis struct $Document:ident as $name:literal, $title:literal {
+            $($(#[doc = $sentence:literal])* $within:vis $field:ident: $kind:ty = $spec:expr,)*
+        }
+    ) => {
+        $(#[doc = $about])*
+        #[derive(Debug, Clone, PartialEq)]
+        $visibility struct $Document {
+            $($(#[doc = $sentence])* $within $field: $kind,)*
+        }
+
+        #[expect(non_upper_case_globals, reason = "a declaration is named as its field")]
+        impl $Document {
+            $(
+                pub(in crate::wire) const $field:
+                    $crate::wire::declare::Declared<<$kind as $crate::wire::declare::Kind>::Spec> =
+                    $crate::wire::declare::Declared::new(
+                        stringify!($field),
+                        concat!($($sentence),*),
+                        $spec,
+                    );
+            )*
+        }
+
+        impl $crate::wire::declare::Document for $Document {
+            const NAME: &'static str = $name;
+
+            fn read_fields(reader: &mut $crate::wire::declare::ObjectReader<'_>) -> Option<Self> {
+                // All of them are read, so that all that is wrong is told.
+                $(let $field = Self::$field.read(reader);)*
+                Some(Self { $($field: $field?),* })
+            }
+
+            fn write_fields<M: serde::ser::SerializeMap>(&self, map: &mut M) -> Result<(), M::Error> {
+                $(Self::$field.write(&self.$field, map)?;)*
+                Ok(())
+            }
+
+            fn properties() -> Vec<(&'static str, serde_json::Value, bool)> {
+                vec![$(Self::$field.property::<$kind>()),*]
+            }
+
+            fn json_schema() -> serde_json::Value {
+                $crate::wire::declare::object($title, concat!($($about),*), Self::properties())
+            }
+
+            fn name_fields(named: &mut $crate::wire::declare::Named) {
+                $(<$kind as $crate::wire::declare::Kind>::name_parts(named);)*
+            }
+        }
+
+        $crate::wire::declare::document!(@known $Document);
+    };
+
+    // What others than this module ask of an object.
+    (@known $Document:ty) => {
+        impl serde::Serialize for $Document {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                $crate::wire::declare::Kind::write(self, serializer)
+            }
+        }
+
+        impl utoipa::PartialSchema for $Document {
+            fn schema() -> utoipa::openapi::RefOr<utoipa::openapi::schema::Schema> {
+                use $crate::wire::declare::Document;
+                $crate::wire::declare::utoipa_schema(Self::json_schema())
+            }
+        }
+
+        impl utoipa::ToSchema for $Document {
+            fn name() -> std::borrow::Cow<'static, str> {
+                <Self as $crate::wire::declare::Document>::NAME.into()
+            }
+
+            fn schemas(
+                schemas: &mut Vec<(String, utoipa::openapi::RefOr<utoipa::openapi::schema::Schema>)>,
+            ) {
+                let mut named = Vec::new();
+                <Self as $crate::wire::declare::Document>::name_fields(&mut named);
+                schemas.extend(named.into_iter().map(|(name, schema)| {
+                    (name.to_owned(), $crate::wire::declare::utoipa_schema(schema))
+                }));
+            }
+        }
+    };
+}
+
+pub(in crate::wire) use document;
+
+/// Declares an object that is of one of several kinds, told by the word of its field `kind`.
+macro_rules! tagged {
+    (
+        $(#[doc = $about:literal])*
+        $visibility:vis enum $Document:ident as $name:literal, $title:literal {
+            $(
+                $(#[doc = $meaning:literal])*
+                $Variant:ident($part:ty) = $word:literal as $part_name:literal, $part_title:literal,
+            )*
+        }
+    ) => {
+        $(#[doc = $about])*
+        #[derive(Debug, Clone, PartialEq)]
+        $visibility enum $Document {
+            $($(#[doc = $meaning])* $Variant($part),)*
+        }
+
+        impl $crate::wire::declare::Document for $Document {
+            const NAME: &'static str = $name;
+
+            fn read_fields(reader: &mut $crate::wire::declare::ObjectReader<'_>) -> Option<Self> {
+                use $crate::wire::declare::{Document, Node};
+                const WORDS: &[&str] = &[$($word),*];
+                match reader.get("kind") {
+                    $(
+                        Some(Node::Text(word)) if word == $word => {
+                            <$part as Document>::read_fields(reader).map(Self::$Variant)
+                        }
+                    )*
+                    other => reader.refuse_kind(other, WORDS),
+                }
+            }
+
+            fn write_fields<M: serde::ser::SerializeMap>(&self, map: &mut M) -> Result<(), M::Error> {
+                match self {
+                    $(
+                        Self::$Variant(part) => {
+                            map.serialize_entry("kind", $word)?;
+                            $crate::wire::declare::Document::write_fields(part, map)
+                        }
+                    )*
+                }
+            }
+
+            fn properties() -> Vec<(&'static str, serde_json::Value, bool)> {
+                Vec::new()
+            }
+
+            fn json_schema() -> serde_json::Value {
+                serde_json::json!({
+                    "title": $title,
+                    "description": concat!($($about),*).trim_start(),
+                    "oneOf": [$({ "$ref": concat!("#/components/schemas/", $part_name) }),*],
+                })
+            }
+
+            fn name_fields(named: &mut $crate::wire::declare::Named) {
+                use $crate::wire::declare::Document;
+                $(
+                    let kind = serde_json::json!({
+                        "type": "string",
+                        "title": "Kind",
+                        "description": "What it is.",
+                        "enum": [$word],
+                    });
+                    let mut properties = vec![("kind", kind, true)];
+                    properties.extend(<$part as Document>::properties());
+                    let schema =
+                        $crate::wire::declare::object($part_title, concat!($($meaning),*), properties);
+                    named.push(($part_name, schema));
+                    <$part as Document>::name_fields(named);
+                )*
+            }
+        }
+
+        $crate::wire::declare::document!(@known $Document);
+    };
+}
+
+pub(in crate::wire) use tagged;

@@ -1,0 +1,141 @@
+//! Values that may be absent: because that means something, or because another field stands in their place.
+
+use serde::Serializer;
+use serde_json::{Value, json};
+
+use super::{Kind, Named, Node, ObjectReader, Place};
+
+/// What it means that a value is absent.
+#[derive(Debug, Clone, Copy)]
+enum Absent {
+    /// This. Null is as good.
+    Means(&'static str),
+    /// That another field stands in its place; where that is absent too, what would stand for the value by itself.
+    Unless,
+    /// That another field stands in its place; one of the two has to be given.
+    OneOf,
+}
+
+/// What a declaration says of a value that may be absent.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::wire) struct Optional<S> {
+    pub(in crate::wire) spec: S,
+    absent: Absent,
+    /// The field that cannot be given together with it.
+    other: Option<&'static str>,
+    /// Whether it is left out where it is absent, instead of being written as null.
+    left_out: bool,
+}
+
+const fn optional<S>(spec: S, absent: Absent, other: Option<&'static str>) -> Optional<S> {
+    Optional {
+        spec,
+        absent,
+        other,
+        left_out: false,
+    }
+}
+
+/// Absent, it means `meaning`.
+pub(in crate::wire) const fn absent<S>(spec: S, meaning: &'static str) -> Optional<S> {
+    optional(spec, Absent::Means(meaning), None)
+}
+
+/// Read and filled in by itself, unless the field `other` is given.
+pub(in crate::wire) const fn unless<S>(other: &'static str, spec: S) -> Optional<S> {
+    optional(spec, Absent::Unless, Some(other))
+}
+
+/// Either this or the field `other`.
+pub(in crate::wire) const fn or_else<S>(other: &'static str, spec: S) -> Optional<S> {
+    optional(spec, Absent::OneOf, Some(other))
+}
+
+impl<S: Copy> Optional<S> {
+    /// Refused together with the field `other`.
+    pub(in crate::wire) const fn not_beside(self, other: &'static str) -> Self {
+        let other = Some(other);
+        Self { other, ..self }
+    }
+
+    /// Not written where it is absent.
+    pub(in crate::wire) const fn left_out(self) -> Self {
+        let left_out = true;
+        Self { left_out, ..self }
+    }
+}
+
+impl<T: Kind> Kind for Option<T> {
+    type Spec = Optional<T::Spec>;
+
+    fn read(node: &Node, place: &Place<'_>, spec: &Self::Spec) -> Option<Self> {
+        T::read(node, place, &spec.spec).map(Some)
+    }
+
+    fn read_field(
+        reader: &mut ObjectReader<'_>,
+        name: &'static str,
+        spec: &Self::Spec,
+    ) -> Option<Self> {
+        let node = reader.present(name);
+        if reader.is_refused(name) {
+            return Some(None);
+        }
+        if let Some(other) = spec.other {
+            reader.refuse_both(name, other);
+            if reader.present(other).is_some() {
+                return Some(None);
+            }
+        }
+        match (node, spec.absent) {
+            (Some(node), _) => Self::read(node, &reader.place_of(name), spec),
+            (None, Absent::Means(_)) => Some(None),
+            (None, Absent::Unless) => T::absent(reader, name, &spec.spec).map(Some),
+            (None, Absent::OneOf) => reader.missing_one_of(&[name, spec.other.unwrap_or_default()]),
+        }
+    }
+
+    fn is_needed(_: &Self::Spec) -> bool {
+        false
+    }
+
+    fn is_left_out(&self, spec: &Self::Spec) -> bool {
+        self.is_none() && spec.left_out
+    }
+
+    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Some(value) => value.write(serializer),
+            None => serializer.serialize_none(),
+        }
+    }
+
+    fn describe(about: &str, spec: &Self::Spec) -> Value {
+        let about = match spec.other {
+            None => about.to_owned(),
+            Some(other) => format!("{about} Not together with {other}."),
+        };
+        let mut schema = T::describe(&about, &spec.spec);
+        let null = json!({ "type": "null" });
+        // Null is as good as absent.
+        if schema.get("type").is_some() {
+            schema["type"] = json!([schema["type"], "null"]);
+        } else if let Some(alternatives) = schema["oneOf"].as_array_mut() {
+            alternatives.insert(0, null);
+        } else {
+            schema = json!({ "oneOf": [null, schema] });
+        }
+        if let Absent::Means(meaning) = spec.absent {
+            schema["default"] = Value::Null;
+            schema["x-absent"] = json!(meaning);
+            if let Some(said) = schema["description"].as_str() {
+                schema["description"] = json!(format!("{said} Default: {meaning}."));
+            }
+        }
+        schema
+    }
+
+    fn name_parts(named: &mut Named) {
+        T::name_parts(named);
+    }
+}
