@@ -74,7 +74,7 @@ pub(super) fn add_common_answers(openapi: &mut OpenApi) {
     ];
     const ALWAYS: [(&str, &str); 4] = [
         ("400", "The request is not understood."),
-        ("408", "The request was not over in time."),
+        ("408", "The body came too slowly."),
         ("421", "The service is not called so."),
         ("default", "Any other problem."),
     ];
@@ -122,6 +122,30 @@ pub fn openapi() -> Value {
     finished(&openapi)
 }
 
+/// Gives pages of a list a name that a person would: utoipa names a generic type and its parameter, `Page_Job`.
+fn name_lists(value: &mut Value) {
+    const LISTS: [(&str, &str); 2] = [("Page_Job", "JobList"), ("Page_StudyState", "StudyList")];
+    match value {
+        Value::String(text) => {
+            for (name, list) in LISTS {
+                if text == &format!("#/components/schemas/{name}") {
+                    *text = format!("#/components/schemas/{list}");
+                }
+            }
+        }
+        Value::Array(items) => items.iter_mut().for_each(name_lists),
+        Value::Object(fields) => {
+            for (name, list) in LISTS {
+                if let Some(schema) = fields.shift_remove(name) {
+                    fields.insert(list.to_owned(), schema);
+                }
+            }
+            fields.values_mut().for_each(name_lists);
+        }
+        _ => {}
+    }
+}
+
 /// The document with the schemas of what is declared, of which utoipa knows the names alone.
 fn finished(openapi: &OpenApi) -> Value {
     fn put_declared(value: &mut Value) {
@@ -136,6 +160,7 @@ fn finished(openapi: &OpenApi) -> Value {
     }
     let mut document = serde_json::to_value(openapi).expect("the document is plain data");
     put_declared(&mut document);
+    name_lists(&mut document);
     document
 }
 

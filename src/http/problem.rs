@@ -95,7 +95,7 @@ fn retry_after(code: Code) -> Option<&'static str> {
         Code::ResultNotReady => Some("1"),
         // Previews take a fraction of a second each.
         Code::PreviewsFull => Some("1"),
-        Code::Overloaded | Code::RateLimited => Some("1"),
+        Code::Overloaded | Code::RateLimited | Code::ServerTimeout => Some("1"),
         Code::QueueFull | Code::ClientQueueFull | Code::Unavailable | Code::StorageUnavailable => {
             Some("5")
         }
@@ -315,9 +315,11 @@ fn of_status(status: StatusCode) -> Problem {
         StatusCode::PAYLOAD_TOO_LARGE => {
             Problem::new(Code::PayloadTooLarge, "The body is too large.")
         }
-        StatusCode::REQUEST_TIMEOUT => {
-            Problem::new(Code::RequestTimeout, "The request was not over in time.")
-        }
+        // Whatever else is not available says so in a problem of its own.
+        StatusCode::SERVICE_UNAVAILABLE => Problem::new(
+            Code::ServerTimeout,
+            "The service did not answer in time. Try again in a moment.",
+        ),
         StatusCode::UNSUPPORTED_MEDIA_TYPE => {
             Problem::new(Code::UnsupportedMediaType, "The body is not JSON.")
         }

@@ -64,7 +64,7 @@ pub fn router(app: App) -> Router {
         .layer(from_fn_with_state(Arc::clone(&edge), problem::shape))
         .layer(from_fn_with_state(door, door::check_host))
         .layer(TimeoutLayer::with_status_code(
-            StatusCode::REQUEST_TIMEOUT,
+            StatusCode::SERVICE_UNAVAILABLE,
             REQUEST_TIMEOUT,
         ))
         .layer(RequestBodyDeadlineLayer::new(document::PATIENCE))
@@ -89,7 +89,7 @@ pub fn router_of_metrics(app: App) -> Router {
         .layer(
             ServiceBuilder::new()
                 .layer(TimeoutLayer::with_status_code(
-                    StatusCode::REQUEST_TIMEOUT,
+                    StatusCode::SERVICE_UNAVAILABLE,
                     REQUEST_TIMEOUT,
                 ))
                 .layer(CatchPanicLayer::custom(problem::of_panic)),

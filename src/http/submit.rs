@@ -1,32 +1,20 @@
 //! Submitting a job.
 
 use axum::extract::State;
-use axum::http::header::{ACCEPT_ENCODING, CONTENT_TYPE, HeaderValue, LOCATION, RETRY_AFTER};
-use axum::http::{HeaderMap, StatusCode};
+use axum::http::StatusCode;
+use axum::http::header::{CONTENT_TYPE, HeaderValue, LOCATION, RETRY_AFTER};
 use axum::response::{IntoResponse, Response};
-use utoipa::ToSchema;
+use serde_json::value::RawValue;
 
 use super::app::App;
+use super::aside::aside;
 use super::client::Client;
 use super::document::Document;
 use super::parameters::IdempotencyKey;
 use super::prefer::Wait;
-use super::results;
 use super::view::JobView;
 use crate::jobs::{Job, Submitted};
-use crate::wire::{Problem, Results, Submission};
-
-/// What a submission is answered with when the job has ended: its results, or the job.
-#[derive(ToSchema)]
-#[schema(title = "SubmitAnswer")]
-#[serde(untagged)]
-#[expect(dead_code, reason = "it stands for the two in the OpenAPI document")]
-pub(super) enum SubmitAnswer<'a> {
-    /// The results of the job.
-    Results(Box<Results>),
-    /// The job.
-    Job(Box<JobView<'a>>),
-}
+use crate::wire::{Problem, Submission};
 
 /// Submit a job
 ///
@@ -37,17 +25,16 @@ pub(super) enum SubmitAnswer<'a> {
     request_body(content = Submission, content_type = "application/json", description = "The submission."),
     params(
         ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[!-~]([ -~]*[!-~])?$", description = "A word of the client's choice, 1 to 255 characters, kept for a day: the same key and submission get the same job, however often they are sent."),
-        ("Prefer" = Option<String>, Header, description = "`wait=N`: answer with the results if the job ends within N seconds (60 at most)."),
+        ("Prefer" = Option<String>, Header, description = "`wait=N`: answer when the job has ended, with its `results` inside, or after N seconds (60 at most)."),
     ),
     responses(
         (status = 202, description = "The job is queued, or is known and successful already.", body = JobView, headers(
             ("Location" = String, description = "The address of the job."),
             ("Retry-After" = u32, description = "Seconds after which it is worth looking."),
         )),
-        (status = 200, description = "With `Prefer: wait`, the results of a job that ended in time. With a repeated `Idempotency-Key`, the job that has ended meanwhile.", body = SubmitAnswer),
+        (status = 200, description = "The job has ended: with `Prefer: wait` in time, and its `results` or its `problem` is inside; with a repeated `Idempotency-Key` meanwhile.", body = JobView),
         (status = 400, description = "The body is no JSON, or a header is not understood.", body = Problem, content_type = "application/problem+json"),
         (status = 408, description = "The body came too slowly.", body = Problem, content_type = "application/problem+json"),
-        (status = 409, description = "With `Prefer: wait`: the job failed or was cancelled in time.", body = Problem, content_type = "application/problem+json"),
         (status = 413, description = "The body has more than 1 MiB.", body = Problem, content_type = "application/problem+json"),
         (status = 415, description = "The body is not declared as JSON.", body = Problem, content_type = "application/problem+json"),
         (status = 422, description = "The submission cannot be computed; `errors` says which field is why. Or the key was used for another submission.", body = Problem, content_type = "application/problem+json"),
@@ -60,42 +47,27 @@ pub(super) async fn submit(
     client: Client,
     IdempotencyKey(key): IdempotencyKey,
     wait: Wait,
-    headers: HeaderMap,
     Document(document): Document,
 ) -> Result<Response, Problem> {
-    // A condition would be about an answer that the client had before it submitted.
-    let headers: HeaderMap = headers
-        .get(ACCEPT_ENCODING)
-        .map(|accepted| (ACCEPT_ENCODING, accepted.clone()))
-        .into_iter()
-        .collect();
     let submission = Submission::parse(&document)?;
     let Submitted { mut job, repeated } = app.jobs.submit(&client.0, &submission, key).await?;
 
+    // The job was made: whatever goes wrong from here on, it is told of it.
     let wait = wait.grant(&app.door, client.name());
-    let mut response = if let Some(patience) = wait.patience() {
-        job = app.jobs.wait(client.name(), job.id, patience).await?;
-        if job.status.has_ended() {
-            results::answer(&app, &job, &headers)
-                .await
-                .unwrap_or_else(Problem::into_response)
-        } else {
-            small_view(&app, &job, StatusCode::ACCEPTED)
+    let mut results = None;
+    if let Some(patience) = wait.patience() {
+        if let Ok(now) = app.jobs.wait(client.name(), job.id, patience).await {
+            job = now;
         }
-    } else if repeated && job.status.has_ended() {
-        small_view(&app, &job, StatusCode::OK)
+        results = results_of(&app, &job).await;
+    }
+    let has_waited = wait.patience().is_some();
+    let status = if job.status.has_ended() && (repeated || has_waited) {
+        StatusCode::OK
     } else {
-        small_view(&app, &job, StatusCode::ACCEPTED)
+        StatusCode::ACCEPTED
     };
-    response
-        .headers_mut()
-        .insert(LOCATION, address(&app.edge.job(job.id)));
-    wait.acknowledge(response.headers_mut());
-    Ok(response)
-}
-
-pub(super) fn small_view(app: &App, job: &Job, status: StatusCode) -> Response {
-    let body = JobView::new(job, &app.edge).to_json();
+    let body = JobView::with_results(&job, results, &app.edge).to_json();
     let mut response = (status, [(CONTENT_TYPE, "application/json")], body).into_response();
     if !job.status.has_ended() {
         response
@@ -103,6 +75,18 @@ pub(super) fn small_view(app: &App, job: &Job, status: StatusCode) -> Response {
             .insert(RETRY_AFTER, HeaderValue::from_static("1"));
     }
     response
+        .headers_mut()
+        .insert(LOCATION, address(&app.edge.job(job.id)));
+    wait.acknowledge(response.headers_mut());
+    Ok(response)
+}
+
+/// The results of a job, where it has some that can be read now. Those that cannot still stand at their address.
+async fn results_of(app: &App, job: &Job) -> Option<Box<RawValue>> {
+    job.document.as_ref()?;
+    let document = app.jobs.document(job).await.ok()?;
+    let read = move |_: &_| RawValue::from_string(document.text().ok()?).ok();
+    aside(read).await.ok()?
 }
 
 pub(super) fn address(url: &str) -> HeaderValue {

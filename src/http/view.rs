@@ -49,7 +49,7 @@ pub(super) struct JobView<'a> {
     /// `statistics` where the study of the job keeps no more of its results; absent where they are kept whole. They can be
     /// had by submitting the design alone.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(value_type = Option<String>, example = "statistics")]
+    #[schema(example = "statistics")]
     keep: Option<Kept>,
     /// Of a failed job: why.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -60,6 +60,11 @@ pub(super) struct JobView<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<crate::wire::Submission>)]
     submission: Option<&'a RawValue>,
+    /// The results, in the answer to a submission with `Prefer: wait` whose job has ended in time. Absent elsewhere: they stand at
+    /// `links.results`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<crate::wire::Results>)]
+    results: Option<Box<RawValue>>,
 }
 
 /// Where to find what belongs to a job.
@@ -106,6 +111,7 @@ impl<'a> JobView<'a> {
                 .map(|problem| with_public_type(problem, &edge.public_url)),
             links: Links::new(job, edge),
             submission: None,
+            results: None,
         }
     }
 
@@ -114,6 +120,14 @@ impl<'a> JobView<'a> {
         Self {
             // It is JSON as it stands: a look at a job need not take it apart and put it together again.
             submission: serde_json::from_str(submission).ok(),
+            ..Self::new(job, edge)
+        }
+    }
+
+    /// The small view with the results, for those who waited for them.
+    pub(super) fn with_results(job: &'a Job, results: Option<Box<RawValue>>, edge: &Edge) -> Self {
+        Self {
+            results,
             ..Self::new(job, edge)
         }
     }

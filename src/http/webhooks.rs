@@ -20,7 +20,7 @@ use crate::wire::{Code, Problem};
 /// A webhook to be made.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-#[schema(title = "NewWebhook")]
+#[schema(as = NewWebhook, title = "NewWebhook")]
 pub(super) struct NewWebhookDocument {
     /// Where messages are sent: an address that the operator of the service allows.
     #[schema(format = "uri", example = "https://hooks.example.com/meshwright")]

@@ -42,15 +42,15 @@ pub struct PathOfContact {
     /// Its length, in mm.
     pub length_mm: f64,
     /// A: a pair comes into contact, at the tip of the driven tooth.
-    pub a: PathPoint,
+    pub point_a: PathPoint,
     /// B: the pair before it leaves contact, one base pitch before E.
-    pub b: PathPoint,
+    pub point_b: PathPoint,
     /// C: the pitch point.
-    pub c: PathPoint,
+    pub point_c: PathPoint,
     /// D: the next pair comes into contact, one base pitch after A.
-    pub d: PathPoint,
+    pub point_d: PathPoint,
     /// E: the pair leaves contact, at the tip of the driving tooth.
-    pub e: PathPoint,
+    pub point_e: PathPoint,
 }
 
 /// A point of the path of contact.
@@ -153,11 +153,11 @@ impl PathOfContact {
         };
         Self {
             length_mm: to_mm(s_e - s_a),
-            a: point(s_a),
-            b: point(s_e - p_b),
-            c: point(s_c),
-            d: point(s_a + p_b),
-            e: point(s_e),
+            point_a: point(s_a),
+            point_b: point(s_e - p_b),
+            point_c: point(s_c),
+            point_d: point(s_a + p_b),
+            point_e: point(s_e),
         }
     }
 }
@@ -230,9 +230,21 @@ mod tests {
             (pair.working_pressure_angle_deg, 20.769_02, 6e-6),
             (pair.contact_ratio, 1.511_55, 6e-6),
             (pair.backlash_mm, 0.348_36, 6e-6),
-            (pair.path_of_contact.a.driving_roll_length_mm, 13.3564, 6e-5),
-            (pair.path_of_contact.c.driving_roll_length_mm, 17.8187, 6e-5),
-            (pair.path_of_contact.e.driving_roll_length_mm, 22.2810, 6e-5),
+            (
+                pair.path_of_contact.point_a.driving_roll_length_mm,
+                13.3564,
+                6e-5,
+            ),
+            (
+                pair.path_of_contact.point_c.driving_roll_length_mm,
+                17.8187,
+                6e-5,
+            ),
+            (
+                pair.path_of_contact.point_e.driving_roll_length_mm,
+                22.2810,
+                6e-5,
+            ),
             (pair.driving.tip_radius_mm, 52.0, 1e-12),
             (pair.driving.root_radius_mm, 47.5, 1e-12),
             (pair.driving.working_pitch_radius_mm, 50.25, 1e-12),

@@ -215,11 +215,11 @@ impl LineOfAction {
         let at = |s: f64| point(foot + s * tangential(angle));
         let path = PathOfContact::of(pair);
         let named = [
-            ("A", &path.a),
-            ("B", &path.b),
-            ("C", &path.c),
-            ("D", &path.d),
-            ("E", &path.e),
+            ("A", &path.point_a),
+            ("B", &path.point_b),
+            ("C", &path.point_c),
+            ("D", &path.point_d),
+            ("E", &path.point_e),
         ];
         Self {
             from_mm: at(0.0),

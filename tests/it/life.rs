@@ -228,7 +228,7 @@ async fn a_job_is_deleted_unless_it_runs() {
 }
 
 #[tokio::test]
-async fn who_prefers_to_wait_gets_the_results_in_the_answer() {
+async fn who_prefers_to_wait_gets_the_job_with_its_results_inside() {
     let (bench, mut engine) = Bench::steered().await;
     let document = submission(115.0);
     let waiting = bench
@@ -240,11 +240,55 @@ async fn who_prefers_to_wait_gets_the_results_in_the_answer() {
     assert_eq!(response.status(), StatusCode::OK);
     assert_eq!(response.headers()["preference-applied"], "wait=15");
     let path = response.headers()["location"].to_str().unwrap().to_owned();
+    let job: Value = response.json().await.unwrap();
+    assert_eq!(job["status"], "successful");
+    assert!(path.ends_with(job["id"].as_str().unwrap()));
     assert_eq!(
-        response.headers()["content-location"],
-        format!("{path}/results")
+        job["results"],
+        serde_json::from_str::<Value>(RESULTS).unwrap()
     );
-    assert_eq!(response.text().await.unwrap(), RESULTS);
+    // Elsewhere they stand at their own address.
+    assert_eq!(bench.document(&path).await.get("results"), None);
+}
+
+#[tokio::test]
+async fn a_job_that_was_created_is_answered_with_even_if_it_fails_or_is_cancelled() {
+    let (bench, mut engine) = Bench::steered().await;
+    let submit = |torque: f64| {
+        let request = bench.post("/v1/jobs", &submission(torque));
+        request.header("prefer", "wait=15").send()
+    };
+    let (response, ()) = tokio::join!(submit(1.0), async {
+        let problem = Problem::new(Code::NotConverged, "As was told.");
+        engine.next().await.fail(problem);
+    });
+    let response = response.unwrap();
+    assert_eq!(response.status(), StatusCode::OK);
+    let job: Value = response.json().await.unwrap();
+    assert_eq!(
+        (&job["status"], &job["problem"]["code"]),
+        (&json!("failed"), &json!("not_converged"))
+    );
+    assert_eq!(job.get("results"), None);
+
+    let (response, ()) = tokio::join!(submit(2.0), async {
+        let work = engine.next().await;
+        let jobs = bench.document("/v1/jobs").await;
+        let path = format!(
+            "/v1/jobs/{}/cancel",
+            jobs["items"][0]["id"].as_str().unwrap()
+        );
+        let cancelled = bench.client.post(bench.url(&path)).send().await.unwrap();
+        assert_eq!(cancelled.status(), StatusCode::ACCEPTED);
+        work.stopped().await;
+    });
+    let response = response.unwrap();
+    assert_eq!(response.status(), StatusCode::OK);
+    let job: Value = response.json().await.unwrap();
+    assert_eq!(
+        (&job["status"], job.get("results")),
+        (&json!("dismissed"), None)
+    );
 }
 
 #[tokio::test]

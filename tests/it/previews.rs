@@ -87,7 +87,9 @@ async fn a_preview_is_the_document_of_a_job_to_the_last_digit_and_is_not_kept() 
         assert_eq!(rows, 0, "{count}");
     }
     let job = bench.post("/v1/jobs", &case).header("prefer", "wait=20");
-    let job = results(job.send().await.unwrap()).await;
+    let answer: Value = serde_json::from_str(&results(job.send().await.unwrap()).await).unwrap();
+    let path = answer["links"]["results"].as_str().unwrap();
+    let job = results(bench.get(path).send().await.unwrap()).await;
     assert!(cold == job && warm == job);
 
     let numbers = bench.get("/metrics").send().await.unwrap();

@@ -33,6 +33,7 @@ use super::warning::WarningDocument;
 #[schema(title = "Results")]
 pub struct Results {
     /// How the curves were computed.
+    #[schema(schema_with = crate::wire::method_schema)]
     pub method: &'static str,
     /// The derived geometry.
     pub pair: PairGeometry,
