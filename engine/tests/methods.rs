@@ -5,14 +5,14 @@ mod cases;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Barrier};
 
-use cases::{case, gear, holed, study_design, test_case};
+use cases::{case, gear, holed, pair, relieved, study_design, test_case};
 use meshwright_engine::analysis::{
     Analysis, Case, ContactSolver, Curve, Method, Statistics, Warning, analyze, pair_model,
 };
 use meshwright_engine::assembly::{Blanks, MakeAll, Modeling, PairSpec};
 use meshwright_engine::contact::positions::{contacts, contacts_keeping};
 use meshwright_engine::contact::{ContactError, FlankLoad, MeshContact, PositionError, WarmStart};
-use meshwright_engine::gear::{GearData, GearPair, Material, Member, Rack, SpurGear};
+use meshwright_engine::gear::{GearData, GearPair, Material, Member, Rack, SpurGear, TipEdge};
 use meshwright_engine::library::Library;
 use meshwright_engine::ring::annulus::Imposed;
 use meshwright_engine::run::{Run, Stopped};
@@ -83,6 +83,29 @@ fn decomposition_and_projection_follow_the_flexible_method_on_the_three_test_cas
             .zip(&flexible.transmission_error);
         let farthest = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(farthest < 0.1e-6, "projected, case {number}: {farthest} m");
+    }
+}
+
+#[test]
+fn an_edge_that_is_hardly_broken_changes_hardly_anything() {
+    // With relief no edge carries. Below a fiftieth of a module, here 40 µm, an edge is sharp to the grid.
+    let delta = |edge: TipEdge| {
+        let mut data = relieved(gear(50, 15e-3));
+        data.tip_edge = edge;
+        let mut case = case(pair(data.clone(), data, 100.5e-3), &[115.0]);
+        case.resolution.positions_per_mesh_period = 8;
+        curve(&case, Method::Flexible).transmission_error
+    };
+    let sharp = delta(TipEdge::Sharp);
+    assert_eq!(delta(TipEdge::Rounded(0.0)), sharp);
+    for edge in [1e-6, 39e-6, 41e-6]
+        .into_iter()
+        .flat_map(|amount| [TipEdge::Rounded(amount), TipEdge::Chamfered(amount)])
+    {
+        for (broken, sharp) in delta(edge).into_iter().zip(&sharp) {
+            let off = broken / sharp - 1.0;
+            assert!(off.abs() < 5e-4, "{edge:?}: {off}");
+        }
     }
 }
 

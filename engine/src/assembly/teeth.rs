@@ -5,12 +5,15 @@ use std::sync::Arc;
 use super::PartError;
 use super::interface::harmonics;
 use crate::contact::flank_table::FlankTable;
-use crate::gear::SpurGear;
+use crate::gear::{SpurGear, TipEdge};
 use crate::grid::{GridError, GridLevel, ToothGrid};
 use crate::ring::body::Coupling;
 use crate::ring::teeth::{FARTHEST_COUPLED, TeethRing};
 use crate::ring::tooth::ToothSubstructure;
 use crate::run::Run;
+
+/// A broken edge smaller than this, in modules, is a sharp one to the grid, whose elements there are half as large.
+const LEAST_EDGE: f64 = 0.02;
 
 /// What the teeth of a gear depend on.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,10 +38,19 @@ pub struct Teeth {
 
 impl TeethSpec {
     /// The teeth of `gear` down to `interface_radius`. Nothing inside that circle counts, and no modification or
-    /// deviation: they are gaps and hardly change how a tooth bends.
+    /// deviation: they are gaps and hardly change how a tooth bends. Nor does a broken edge smaller than elements are.
     pub fn new(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Self {
+        let teeth = gear.without_blank();
+        let broken = match gear.data().tip_edge {
+            TipEdge::Sharp => 0.0,
+            TipEdge::Rounded(amount) | TipEdge::Chamfered(amount) => amount,
+        };
         Self {
-            gear: gear.without_blank().with_unmodified_flanks(),
+            gear: if broken < LEAST_EDGE * gear.data().rack.module {
+                teeth.with_plain_flanks()
+            } else {
+                teeth.with_unmodified_flanks()
+            },
             interface_radius,
             level,
         }

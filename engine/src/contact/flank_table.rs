@@ -10,7 +10,7 @@ use faer::Mat;
 use super::corner::{Corner, block};
 use super::half_plane::logarithm_factor;
 use crate::fem::dense::entries;
-use crate::gear::{Involute, SpurGear, TipEdge};
+use crate::gear::{Involute, SpurGear};
 use crate::ring::tooth::{ToothSubstructure, modal_loads};
 
 /// Nodes this near to each other (two elements) see the grid rather than the body in their compliance.
@@ -82,7 +82,7 @@ impl FlankTable {
             }
             sum
         };
-        let sharp = gear.data().tip_edge == TipEdge::Sharp;
+        let sharp = gear.edge_point(0.0).is_none();
         let corner = sharp.then(|| Corner::new(gear, &arcs, factor, between));
         Self {
             arcs,

@@ -164,7 +164,7 @@ mod tests {
         let mut count = 0;
         for (gear, depth) in sweep().into_iter().step_by(19) {
             let m = gear.data().rack.module;
-            for edge in [0.05, 0.1, 0.2, 0.35]
+            for edge in [0.02, 0.05, 0.1, 0.2, 0.35]
                 .into_iter()
                 .flat_map(|part| [TipEdge::Rounded(part * m), TipEdge::Chamfered(part * m)])
             {
@@ -210,6 +210,20 @@ mod tests {
             }
         }
         assert!(count > 20, "{count}");
+    }
+
+    #[test]
+    fn an_edge_broken_by_nothing_is_sharp() {
+        let sharp = gear(50, 0.0).expect("the standard gear");
+        for edge in [TipEdge::Rounded(0.0), TipEdge::Chamfered(0.0)] {
+            let mut data = sharp.data().clone();
+            data.tip_edge = edge;
+            let broken = SpurGear::new(data).expect("the standard gear");
+            assert_eq!(
+                divided(&broken, 1.0, GridLevel::Coarse),
+                divided(&sharp, 1.0, GridLevel::Coarse)
+            );
+        }
     }
 
     #[test]

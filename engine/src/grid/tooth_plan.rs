@@ -378,6 +378,9 @@ impl<'a> Plan<'a> {
 /// A rounding ends in the tip circle without a corner, which no block of quadrilaterals can have: it is left [`TURN_LEFT_OUT`] before
 /// that, where the mate cannot press, and the tooth ends in a circle there. So does a chamfer where hardly any land is left.
 fn edge(gear: &SpurGear, level: GridLevel) -> Vec<(Vector, f64)> {
+    if gear.edge_point(0.0).is_none() {
+        return Vec::new();
+    }
     let at = |t: f64| gear.edge_point(t).unwrap_or_default();
     let half_angle = |t: f64| at(t).y.atan2(at(t).x);
     let (whole, top) = match gear.data().tip_edge {
