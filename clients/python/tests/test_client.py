@@ -35,6 +35,18 @@ def test_a_frame_has_a_row_for_each_torque_and_position(service):
     assert frame.transmission_error_um.gt(0).all()
 
 
+def test_what_is_solved_has_its_job_and_a_frame_its_stresses_and_orders(service):
+    submission = service.example("test-case-2")
+    results = service.solve(submission | {"stress": True})
+    assert service.results(results.job["id"]).document == results.document
+    frame = results.frame()
+    assert frame.stress_driven_hole_mpa.max() == pytest.approx(results.curves[0].statistics["stress"]["driven"]["hole_mpa"])
+    assert "stress_driving_hole_mpa" not in frame
+    orders = results.spectrum_frame().set_index("order")
+    assert orders.transmission_error_um[10] == pytest.approx(results.curves[0].order("H_N"))
+    assert service.preview(submission).job is None
+
+
 def test_shares_add_up_and_orders_have_names(service):
     curve = service.preview(service.example("test-case-2")).curves[0]
     offsets = [share["pair_offset"] for share in curve.document["load_shares"]]

@@ -75,7 +75,9 @@ def solve(submission: Submission, report: Report) -> Flow[Results]:
     report(job["positions_done"], job["positions_total"])
     if job["status"] != "successful":
         raise ProblemError(job.get("problem") or {"code": job["status"], "detail": f"the job was {job['status']}"})
-    return (yield from results(job["id"]))
+    found = yield from results(job["id"])
+    found.job = job
+    return found
 
 
 def study(document: Mapping[str, Any], report: Report) -> Flow[StudyTable]:

@@ -93,6 +93,8 @@ class Results:
     def __init__(self, document: dict[str, Any]) -> None:
         self.document = document
         self.curves = [Curve(curve) for curve in document["curves"]]
+        self.job: dict[str, Any] | None = None
+        """The job that computed it, with its id; none of a preview."""
 
     @property
     def pair(self) -> dict[str, Any]:
@@ -101,12 +103,14 @@ class Results:
         return pair
 
     def frame(self) -> pandas.DataFrame:
-        """A row for each torque and position."""
+        """A row for each torque and position, with the stresses where they were asked for; `spectrum_frame` has the orders."""
         import pandas
 
         frames = []
         for curve in self.curves:
             columns = {name: curve[name] for name in _COLUMNS if name in curve.document}
+            for gear in ("driving", "driven"):
+                columns |= {f"stress_{gear}_{name}": values for name, values in curve.stress(gear).items()}
             frames.append(pandas.DataFrame({"output_torque_n_m": curve.output_torque_n_m, **columns}))
         return pandas.concat(frames, ignore_index=True)
 
