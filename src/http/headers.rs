@@ -52,6 +52,7 @@ pub(super) async fn secure(
 fn policy_of(path: &str) -> &'static str {
     match path {
         "/" => POLICY_OF_PAGE,
+        _ if path.starts_with("/guides") => POLICY_OF_PAGE,
         _ if path.starts_with("/docs") => POLICY_OF_DOCS,
         _ => POLICY,
     }

@@ -28,8 +28,9 @@ use utoipa_axum::routes;
 use super::app::App;
 use super::headers::Trace;
 use super::{
-    batch, docs, document, door, events, fields, headers, health, jobs, metrics, outline, previews,
-    problem, problem_pages, reference, results, studies, submit, tables, web, webhooks,
+    batch, docs, document, door, draw, events, fields, guides, headers, health, jobs, metrics,
+    outline, previews, problem, problem_pages, reference, results, studies, submit, tables, web,
+    webhooks,
 };
 use crate::wire::{Code, Problem};
 
@@ -72,6 +73,7 @@ pub fn router(app: App) -> Router {
     router
         .merge(docs::routes_of_docs(&openapi))
         .merge(web::routes_of_page())
+        .merge(guides::routes_of_guides())
         .route("/v1/studies/{id}/results.csv", get(studies::old_csv))
         .fallback(nothing_here)
         .method_not_allowed_fallback(not_that_method)
@@ -126,6 +128,7 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(metrics::metrics))
         .routes(routes!(reference::validate))
         .routes(routes!(outline::outline))
+        .routes(routes!(draw::draw))
         .routes(routes!(fields::vtu))
         .routes(routes!(fields::edges))
         .routes(routes!(tables::table))

@@ -38,6 +38,7 @@ const FILES: &[File] = files! {
     "dom.js"
     "download.js"
     "form.js"
+    "guide.css"
     "holes.js"
     "inputs.js"
     "jobs.js"

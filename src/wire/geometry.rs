@@ -86,8 +86,21 @@ pub struct GearGeometry {
     pub tip_form_radius_mm: f64,
     /// The working pitch radius, in mm.
     pub working_pitch_radius_mm: f64,
+    /// The form diameter, in mm: where the involute ends and the fillet begins.
+    pub form_diameter_mm: f64,
+    /// The diameter at which the active profile begins, in mm: the lowest that the tip of the mate reaches.
+    pub active_root_diameter_mm: f64,
+    /// The working pitch diameter, in mm.
+    pub working_pitch_diameter_mm: f64,
     /// The thickness of a tooth along its tip circle, in mm.
     pub tip_thickness_mm: f64,
+    /// The specific sliding of this flank at A, where a pair of teeth comes into contact: the sliding velocity over the velocity at which the
+    /// contact runs along the flank. Absent where it has no bound, on the base circle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub specific_sliding_a: Option<f64>,
+    /// The specific sliding of this flank at E, where a pair leaves contact; absent where it has no bound.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub specific_sliding_e: Option<f64>,
     /// The radius at which the tip relief starts, in mm; absent without relief.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub relief_start_radius_mm: Option<f64>,
@@ -167,6 +180,7 @@ impl GearGeometry {
         let gear = pair.gear(member);
         // What rounding leaves of holes that balance each other has no direction.
         let noise = 1e-12 * gear.mass() * gear.tip_radius();
+        let [specific_sliding_a, specific_sliding_e] = pair.specific_sliding(member);
         let imbalance = Some(gear.imbalance()).filter(|imbalance| imbalance.norm() > noise);
         Self {
             period_mesh_periods: pair.period_of(member),
@@ -177,7 +191,12 @@ impl GearGeometry {
             form_radius_mm: to_mm(gear.form_radius()),
             tip_form_radius_mm: to_mm(gear.flank().radius(gear.tip_form_roll_length())),
             working_pitch_radius_mm: to_mm(pair.working_radius(member)),
+            form_diameter_mm: to_mm(2.0 * gear.form_radius()),
+            active_root_diameter_mm: to_mm(2.0 * pair.active_root_radius(member)),
+            working_pitch_diameter_mm: to_mm(2.0 * pair.working_radius(member)),
             tip_thickness_mm: to_mm(gear.tip_thickness()),
+            specific_sliding_a,
+            specific_sliding_e,
             relief_start_radius_mm: gear.tip_relief().map(|relief| to_mm(relief.start_radius())),
             least_ligament_mm: gear.least_ligament().map(to_mm),
             mass_kg: gear.mass(),

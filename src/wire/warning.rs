@@ -1,6 +1,6 @@
 //! What a reader should know beside the numbers.
 
-use meshwright_engine::analysis::{FormulaQuantity, FormulaRange, Warning};
+use meshwright_engine::analysis::{FormulaQuantity, FormulaRange, PLANE_RIM, PLANE_WEB, Warning};
 use meshwright_engine::gear::Member;
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -24,6 +24,9 @@ pub struct WarningDocument {
     /// The unit of that number.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unit: Option<&'static str>,
+    /// Where the service has a guide that says more.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub guide: Option<&'static str>,
 }
 
 /// The stable code of a warning.
@@ -35,6 +38,8 @@ pub enum WarningCode {
     ZeroBacklash,
     /// The material around the holes is thinner than one module.
     ThinLigament,
+    /// A web or its rim is thinner than a plane model can stand for.
+    WebOutsidePlaneModel,
     /// A tip corner carries load off the line of action.
     TipCornerContact,
     /// The contact reaches the fillet of a gear, where it is not followed.
@@ -99,6 +104,7 @@ impl WarningDocument {
             gear: None,
             value: None,
             unit: None,
+            guide: None,
         };
         match *warning {
             Warning::ZeroBacklash => new(
@@ -115,6 +121,16 @@ impl WarningDocument {
                         "The holes of the {member} gear leave {} mm, less than one module; stresses there are high.",
                         plain(to_mm(ligament))
                     ),
+                )
+            },
+            Warning::WebOutsidePlaneModel { member, web, rim } => Self {
+                gear: Some(member.into()),
+                value: Some(web),
+                unit: Some("1"),
+                guide: Some("/guides/is-my-thin-web-all-right"),
+                ..new(
+                    WarningCode::WebOutsidePlaneModel,
+                    outside_plane(member, web, rim),
                 )
             },
             Warning::TipCornerContact {
@@ -217,6 +233,7 @@ impl WarningDocument {
             gear: found.member.map(GearName::from),
             value: Some(value),
             unit: Some(unit),
+            guide: None,
         }
     }
 }
@@ -253,6 +270,21 @@ fn out_of_range(found: &FormulaRange, [value, least, greatest]: [String; 3]) -> 
     format!("{}{rest} was published for {range}.", first.to_uppercase())
 }
 
+/// What to make of a web so many times as thick as the face is wide, under a rim of so many modules.
+fn outside_plane(member: Member, web: f64, rim: f64) -> String {
+    let [[web_plane, web_none], [rim_plane, rim_none]] = [PLANE_WEB, PLANE_RIM];
+    let advice = if web < web_none || rim < rim_none {
+        "no plane model will do, take a three-dimensional one"
+    } else {
+        "compare two such gears by these numbers, and do not trust one"
+    };
+    format!(
+        "The web of the {member} gear is {} times as thick as its face is wide, its rim {} modules: {advice}. A plane stands for webs from {web_plane} times the face width and rims from {rim_plane} modules on.",
+        plain(significant(web, 3)),
+        plain(significant(rim, 3)),
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -282,6 +314,47 @@ mod tests {
             (warning.gear, warning.value, warning.unit),
             (Some(GearName::Driven), Some(7.448), Some("deg"))
         );
+    }
+
+    #[test]
+    fn a_web_that_a_plane_does_not_stand_for_is_told_with_the_figures_of_the_guide() {
+        let warned = |thickness_mm: f64, outer_radius_mm: f64| {
+            let example = crate::wire::examples()
+                .iter()
+                .find(|example| example.name == "web");
+            let mut document: serde_json::Value =
+                serde_json::from_str(example.expect("ships").json).expect("JSON");
+            let blank = &mut document["pair"]["driven"]["blank"];
+            blank["holes"] = serde_json::Value::Null;
+            blank["web"]["thickness_mm"] = thickness_mm.into();
+            blank["web"]["outer_radius_mm"] = outer_radius_mm.into();
+            let submission = crate::wire::Submission::parse(document.to_string().as_bytes());
+            let warnings = crate::wire::validate(&submission.expect("valid")).warnings;
+            let found = warnings
+                .into_iter()
+                .find(|warning| warning.code == WarningCode::WebOutsidePlaneModel);
+            found.map(|warning| warning.detail)
+        };
+        // A face of 20 mm, a root radius of 47.5 mm, module 2 mm: the limits are 8 mm and 4 mm, 40.5 mm and 43.5 mm.
+        assert_eq!(warned(8.0, 40.5), None);
+        assert_eq!(warned(20.0, 43.0), None, "no web");
+        let thin = warned(7.2, 40.5).expect("below 0.4");
+        assert!(
+            thin.contains("0.36 times") && thin.contains("compare two"),
+            "{thin}"
+        );
+        let rim = warned(8.0, 42.2).expect("2.65 modules");
+        assert!(
+            rim.contains("2.65 modules") && rim.contains("compare two"),
+            "{rim}"
+        );
+        for (thickness, radius) in [(3.9, 40.5), (8.0, 43.6)] {
+            assert!(
+                warned(thickness, radius)
+                    .expect("far outside")
+                    .contains("three-dimensional")
+            );
+        }
     }
 
     #[test]

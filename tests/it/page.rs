@@ -12,6 +12,70 @@ fn example(name: &str) -> Value {
 }
 
 #[tokio::test]
+async fn the_guides_are_read_in_a_browser_where_a_warning_leads_to_them() {
+    let bench = Bench::quick().await;
+    let list = bench.get("/guides").send().await.unwrap();
+    let text = list.text().await.unwrap();
+    assert!(
+        text.contains("href=\"guides/is-my-thin-web-all-right\""),
+        "{text}"
+    );
+    let mut thin = example("web");
+    thin["pair"]["driven"]["blank"]["web"]["thickness_mm"] = json!(7.2);
+    let answer = bench.post("/v1/validate", &thin).send().await.unwrap();
+    let checked: Value = answer.json().await.unwrap();
+    let warnings = checked["warnings"].as_array().unwrap();
+    let warning = warnings
+        .iter()
+        .find(|warning| warning["code"] == "web_outside_plane_model")
+        .unwrap();
+    let guide = bench
+        .get(warning["guide"].as_str().unwrap())
+        .send()
+        .await
+        .unwrap();
+    assert_eq!(guide.headers()["content-type"], "text/html; charset=utf-8");
+    let policy = guide.headers()["content-security-policy"].to_str().unwrap();
+    assert!(policy.contains("style-src 'self'"), "{policy}");
+    assert!(guide.text().await.unwrap().contains("plane stress"));
+    let figure = bench.get("/guides/figures/spacing-even.svg").send().await;
+    assert_eq!(figure.unwrap().headers()["content-type"], "image/svg+xml");
+    for absent in ["/guides/none", "/guides/figures/none.svg"] {
+        let answer = bench.get(absent).send().await.unwrap();
+        assert_eq!(answer.status(), StatusCode::NOT_FOUND, "{absent}");
+    }
+}
+
+#[tokio::test]
+async fn teeth_are_drawn_by_the_law_of_their_class_and_taken_by_a_job() {
+    let bench = Bench::quick().await;
+    let mut pair = example("standard-pair");
+    let draw = async |class: u32| {
+        let asked = json!({ "gear": pair["pair"]["driven"], "iso_1328_class": class, "seed": 7 });
+        let answer = bench.post("/v1/draw-deviations", &asked);
+        answer.send().await.unwrap()
+    };
+    let drawn: Value = draw(6).await.json().await.unwrap();
+    let teeth = &drawn["tooth_deviations"];
+    assert_eq!(teeth["pitch_single_um"].as_array().unwrap().len(), 50);
+    assert_eq!(teeth["profile_slope_um"].as_array().unwrap().len(), 50);
+    // Two classes coarser, twice as far: the same numbers, scaled.
+    let coarse: Value = draw(8).await.json().await.unwrap();
+    let ratio = coarse["tooth_deviations"]["profile_slope_um"][3]
+        .as_f64()
+        .unwrap()
+        / teeth["profile_slope_um"][3].as_f64().unwrap();
+    assert!((ratio - 2.0).abs() < 1e-3, "{ratio}");
+    let refused = problem(draw(12).await, 422, "out_of_range").await;
+    assert_eq!(refused["errors"][0]["pointer"], "/iso_1328_class");
+    let teeth = teeth.clone();
+    pair["pair"]["driven"]["tooth_deviations"] = teeth;
+    let checked = bench.post("/v1/validate", &pair).send().await;
+    let checked: Value = checked.unwrap().json().await.unwrap();
+    assert_eq!(checked["pair"]["period_mesh_periods"], 50);
+}
+
+#[tokio::test]
 async fn the_page_and_its_files_come_with_their_types_and_a_strict_policy() {
     let bench = Bench::quick().await;
     let page = bench.get("/").send().await.unwrap();

@@ -29,7 +29,7 @@ pub use error::AnalysisError;
 pub use estimate::{Estimate, estimate};
 pub use evidence::{ErrorEstimate, Evidence};
 pub use orders::{OrderCause, OrderKind};
-pub use warning::{Warning, warnings};
+pub use warning::{PLANE_RIM, PLANE_WEB, Warning, warnings};
 
 pub use crate::contact::ContactSolver;
 pub use crate::gear::PlaneState;

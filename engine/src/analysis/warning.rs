@@ -3,7 +3,7 @@
 use super::load_distribution::out_of_range;
 use super::{Case, Curve, Method, Statistics};
 use crate::contact::MeshContact;
-use crate::gear::Member;
+use crate::gear::{Member, SpurGear};
 use crate::load_distribution::FormulaRange;
 
 /// Backlash below this, in modules, counts as none.
@@ -23,6 +23,12 @@ const DOUBTFUL_PROJECTION: [f64; 2] = [0.01, 0.05];
 
 /// A curve that fluctuates by a smaller part of its mean counts as one that fluctuates by so much: less is no concern of anyone.
 const LEAST_FLUCTUATION: f64 = 1e-3;
+
+/// From this part of the face width on a web, and from so many modules on the rim around it, is as a plane takes them, by what the variation of
+/// the transmission error makes of both; webs below the second part, and rims below the second number, are no matter for a plane.
+pub const PLANE_WEB: [f64; 2] = [0.4, 0.2];
+/// See [`PLANE_WEB`].
+pub const PLANE_RIM: [f64; 2] = [3.5, 2.0];
 
 /// What a reader of the result should know beside the numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +53,15 @@ pub enum Warning {
     ContactReachesFillet {
         /// The gear whose fillet is reached.
         member: Member,
+    },
+    /// A web or the rim around it is thinner than a plane model can stand for.
+    WebOutsidePlaneModel {
+        /// The gear.
+        member: Member,
+        /// The thickness of the web over the face width.
+        web: f64,
+        /// The rim between web and root circle, in modules.
+        rim: f64,
     },
     /// The face widths differ by more than a plane model can stand for.
     FaceWidthsDiffer {
@@ -97,6 +112,10 @@ pub fn warnings(case: &Case) -> Vec<Warning> {
         {
             warnings.push(Warning::ThinLigament { member, ligament });
         }
+        // The method of closed forms takes no web into its numbers.
+        if case.method != Method::LoadDistribution {
+            warnings.extend(web_outside_plane(gear, member));
+        }
     }
     let widths = [pair.driving().face_width(), pair.driven().face_width()];
     let ratio = widths[0].max(widths[1]) / pair.common_face_width();
@@ -117,6 +136,24 @@ pub fn warnings(case: &Case) -> Vec<Warning> {
         warnings.extend(outside.into_iter().map(Warning::FormulaRange));
     }
     warnings
+}
+
+/// Warns of a web and a rim that a plane takes for stiffer than they are.
+fn web_outside_plane(gear: &SpurGear, member: Member) -> Option<Warning> {
+    let drawn = gear
+        .data()
+        .blank
+        .web
+        .filter(|web| web.thickness < gear.face_width())?;
+    let web = drawn.thickness / gear.face_width();
+    let rim = (gear.root_radius() - drawn.outer_radius) / gear.data().rack.module;
+    // Rounding of what was typed at the limit is not below it.
+    let below = |value: f64, [limit, _]: [f64; 2]| value < limit * (1.0 - 1e-9);
+    (below(web, PLANE_WEB) || below(rim, PLANE_RIM)).then_some(Warning::WebOutsidePlaneModel {
+        member,
+        web,
+        rim,
+    })
 }
 
 /// Warns of tips that touch off the path of contact, and of contact that reaches a fillet.

@@ -1,12 +1,13 @@
 //! What the drawing says: racks, flanks, teeth, their modifications and deviations, blanks and the pair they make.
 //!
 //! Read in this order: [`involute`] (one flank), [`rack`] (the tool and the fillet it leaves), [`modification`]
-//! and [`tip`] (what is taken off it), [`deviation`] (what teeth differ by), [`blank`], [`material`], [`data`] (what a drawing says),
+//! and [`tip`] (what is taken off it), [`deviation`] (what teeth differ by) and [`accuracy`] (how far they may), [`blank`], [`material`], [`data`] (what a drawing says),
 //! [`spur`], `mass` and `outline` (a whole gear), [`pair`] (two of them at a center distance).
 //!
 //! Every gear is described in its own frame: the center of the gear is the origin, the centerline of tooth 0 is the
 //! x axis, and the loaded flank of each tooth lies on its counter-clockwise side.
 
+pub mod accuracy;
 pub mod blank;
 pub mod data;
 pub mod deviation;
@@ -20,6 +21,7 @@ pub mod rack;
 pub mod spur;
 pub mod tip;
 
+pub use accuracy::{Normals, Tolerances, total_pitch_deviation};
 pub use blank::{BlankRegion, Hole, HolePattern, HoleShape, Ligament, Moments, Symmetry, Web};
 pub use data::{DeviationList, GearData, GearError};
 pub use deviation::{Eccentricity, ToothDeviations};

@@ -284,6 +284,27 @@ impl GearPair {
         (s_e - s_a) / self.base_pitch()
     }
 
+    /// The specific sliding ζ of the flank of `member` at the ends A and E of the path of contact: the sliding velocity over the velocity at
+    /// which the contact runs along this flank, ζ = 1 − (z ρ')/(z' ρ), where ρ is the roll length here and ρ' that of the other gear. It
+    /// has no bound where a flank touches on its base circle: `None` there.
+    pub fn specific_sliding(&self, member: Member) -> [Option<f64>; 2] {
+        let (gear, other) = (self.gear(member), self.gear(member.other()));
+        let ratio = f64::from(gear.tooth_count()) / f64::from(other.tooth_count());
+        let (s_a, s_e) = self.path_of_contact();
+        [s_a, s_e].map(|s_1| {
+            let s = [s_1, self.line_of_action() - s_1];
+            let (rho, other_rho) = (s[member.index()], s[member.other().index()]);
+            let zeta = 1.0 - ratio * other_rho / rho;
+            zeta.is_finite().then_some(zeta)
+        })
+    }
+
+    /// The lowest radius of `member` that the mate's tip reaches: where its active profile begins.
+    pub fn active_root_radius(&self, member: Member) -> f64 {
+        let lowest = self.line_of_action() - self.gear(member.other()).tip_form_roll_length();
+        self.gear(member).flank().radius(lowest)
+    }
+
     /// The normal backlash j_bn, along the line of action.
     pub fn backlash(&self) -> f64 {
         let alpha_w = self.working_pressure_angle();
@@ -446,6 +467,47 @@ mod tests {
             near(pair.path_of_contact().1 * 1e3, s_e, 6e-5);
             near(pair.backlash() * 1e3, backlash, 6e-6);
         }
+    }
+
+    #[test]
+    fn flanks_slide_at_both_ends_of_the_path_as_velocities_say() {
+        // Independent of roll lengths: the velocities of both gears at the point of contact, along the flanks.
+        for (z1, z2, a) in [(50, 50, 100.5e-3), (29, 85, 114e-3), (29, 85, 114.5e-3)] {
+            let pair = GearPair::new(gear(z1), gear(z2), a).expect("meshes");
+            let (speed_1, speed_2) = (1.0, -f64::from(z1) / f64::from(z2));
+            let alpha_w = pair.working_pressure_angle();
+            let along_line = crate::gear::tangential(-alpha_w);
+            let (s_a, s_e) = pair.path_of_contact();
+            for (end, s) in [s_a, s_e].into_iter().enumerate() {
+                let at =
+                    pair.driving().base_radius() * crate::gear::radial(-alpha_w) + s * along_line;
+                let velocity = |speed: f64, center: f64| {
+                    let arm = at - crate::gear::Vector::new(center, 0.0);
+                    // Along the flank: across the line of action.
+                    speed * (arm.y * along_line.y + arm.x * along_line.x)
+                };
+                let [v_1, v_2] = [velocity(speed_1, 0.0), velocity(speed_2, a)];
+                for (member, expected) in [
+                    (Member::Driving, (v_1 - v_2) / v_1),
+                    (Member::Driven, (v_2 - v_1) / v_2),
+                ] {
+                    let found = pair.specific_sliding(member)[end].expect("bounded");
+                    assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+                }
+            }
+            // At A the root of the driving flank slides, at E that of the driven one.
+            let [at_a, at_e] = pair.specific_sliding(Member::Driving);
+            assert!(at_a < Some(0.0) && at_e > Some(0.0));
+        }
+    }
+
+    #[test]
+    fn an_active_profile_begins_where_the_tip_of_the_mate_ends() {
+        let pair = GearPair::new(gear(50), gear(50), 100.5e-3).expect("meshes");
+        // s_A = 13.3564 mm on a base radius of 46.984631 mm: sqrt(r_b2 + s2) = 48.846254 mm.
+        let found = pair.active_root_radius(Member::Driving);
+        assert!((found - 48.846_25e-3).abs() < 1e-7, "{found}");
+        assert!(found > pair.driving().form_radius());
     }
 
     #[test]

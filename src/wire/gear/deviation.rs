@@ -5,7 +5,7 @@ use meshwright_engine::gear::{Eccentricity, ToothDeviations};
 use super::GearDocument;
 use crate::wire::declare::{List, Number, absent, document, list, nested, number};
 use crate::wire::problem::{Code, FieldError};
-use crate::wire::units::{from_um, plain};
+use crate::wire::units::{from_um, plain, to_um};
 
 /// How far the sum of all single pitch deviations may be from zero, in um.
 const CLOSURE: f64 = 0.01;
@@ -47,6 +47,28 @@ const fn each_tooth(title: &'static str) -> List<Number> {
 }
 
 impl DeviationsDocument {
+    /// How a reader is told `deviations`: to a tenth of a nanometer, single pitches that close.
+    pub(in crate::wire) fn of(deviations: &ToothDeviations) -> Self {
+        let told = |value: f64| (to_um(value) * 1e4).round() / 1e4 + 0.0;
+        let sums = deviations.cumulative_pitch.iter().copied().map(told);
+        let single = sums.scan(0.0, |before, sum| {
+            let step = ((sum - *before) * 1e4).round() / 1e4 + 0.0;
+            *before = sum;
+            Some(step)
+        });
+        Self {
+            pitch_cumulative_um: None,
+            pitch_single_um: Some(single.collect()),
+            profile_slope_um: Some(deviations.profile_slope.iter().copied().map(told).collect()),
+            eccentricity: deviations
+                .eccentricity
+                .map(|eccentricity| EccentricityDocument {
+                    amount_um: told(eccentricity.amount),
+                    phase_deg: (eccentricity.direction.to_degrees() * 1e4).round() / 1e4 + 0.0,
+                }),
+        }
+    }
+
     /// Its lists, each with its field.
     fn lists(&self) -> impl Iterator<Item = (&'static str, &[f64])> {
         let lists = [

@@ -121,6 +121,14 @@ fn usual_tip_radius(usual: f64, gear: &ObjectReader<'_>) -> f64 {
 }
 
 impl GearDocument {
+    /// The same gear with teeth that do not deviate.
+    pub(super) fn without_deviations(self) -> Self {
+        Self {
+            tooth_deviations: None,
+            ..self
+        }
+    }
+
     /// The radius from which the addendum counts, in mm: the reference radius plus the profile shift.
     fn shifted_radius_mm(&self) -> f64 {
         self.module_mm * (f64::from(self.tooth_count) / 2.0 + self.profile_shift)

@@ -5,6 +5,23 @@ use serde_json::json;
 use super::*;
 use crate::wire::examples::STUDY_SECTION_5;
 
+#[test]
+fn the_studies_in_the_guides_are_studies() {
+    let guides = [
+        include_str!("../../../docs/choose-a-relief.md"),
+        include_str!("../../../docs/is-my-thin-web-all-right.md"),
+    ];
+    for guide in guides {
+        let blocks = guide.split("```json\n").skip(1);
+        let document = blocks
+            .filter_map(|block| block.split("```").next())
+            .find(|block| block.contains("\"axes\""))
+            .expect("a study");
+        let study = Study::parse(document.as_bytes(), &Run::unattended()).expect(document);
+        assert!(designs(&study).len() >= 4);
+    }
+}
+
 fn base() -> Value {
     let gear = json!({
         "tooth_count": 50, "module_mm": 2.0, "face_width_mm": 20.0, "blank": { "bore_radius_mm": 15.0 }

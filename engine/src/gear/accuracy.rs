@@ -1,0 +1,261 @@
+//! How far teeth may deviate: the tolerances of ISO 1328-1:2013, and teeth drawn at random within them.
+
+use std::f64::consts::TAU;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{RngCore, SeedableRng};
+
+use super::{Eccentricity, SpurGear, ToothDeviations};
+
+/// The accuracy classes A of ISO 1328-1:2013, from the finest.
+pub const CLASSES: [u32; 2] = [1, 11];
+
+/// What ISO 1328-1:2013 allows a gear of an accuracy class, unrounded, in meters.
+///
+/// The formulas of the standard are for class 5, in µm of the reference diameter d, the module m_n and the face width b in mm; each
+/// class is √2 times as wide as the one before.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerances {
+    /// f_pT: of a single pitch, 0.001 d + 0.4 m_n + 5.
+    pub single_pitch: f64,
+    /// F_pT: of the cumulative pitch around the gear, 0.002 d + 0.55 √d + 0.7 m_n + 12.
+    pub total_pitch: f64,
+    /// f_HαT: of the slope of a profile, 0.4 m_n + 0.001 d + 4.
+    pub profile_slope: f64,
+    /// f_fαT: of the form of a profile, 0.55 m_n + 5.
+    pub profile_form: f64,
+    /// F_rT: of the runout, 0.9 F_pT.
+    pub runout: f64,
+    /// f_HβT: of the slope of a helix, 0.05 √d + 0.35 √b + 4.
+    pub helix_slope: f64,
+}
+
+impl Tolerances {
+    /// Those of `gear` in a class of [`CLASSES`].
+    pub fn of(gear: &SpurGear, class: u32) -> Self {
+        let mm = |length: f64| 1e3 * length;
+        let (d, m_n, b) = (
+            mm(2.0 * gear.reference_radius()),
+            mm(gear.data().rack.module),
+            mm(gear.face_width()),
+        );
+        let steps = f64::from(class) - 5.0;
+        let allowed = |um_in_class_5: f64| 1e-6 * um_in_class_5 * 2_f64.powf(steps / 2.0);
+        let total_pitch = 0.002 * d + 0.55 * d.sqrt() + 0.7 * m_n + 12.0;
+        Self {
+            single_pitch: allowed(0.001 * d + 0.4 * m_n + 5.0),
+            total_pitch: allowed(total_pitch),
+            profile_slope: allowed(0.4 * m_n + 0.001 * d + 4.0),
+            profile_form: allowed(0.55 * m_n + 5.0),
+            runout: allowed(0.9 * total_pitch),
+            helix_slope: allowed(0.05 * d.sqrt() + 0.35 * b.sqrt() + 4.0),
+        }
+    }
+
+    /// Teeth of one gear as a production of this accuracy makes them.
+    ///
+    /// A tolerance is 3 c standard deviations wide to each side, c the `capability`. Single pitch deviations are independent and close by
+    /// taking their mean away; so are the slopes of the profiles, which keep theirs; the eccentricity has two components,
+    /// each of σ = F_rT/(6 c), because a runout is twice an eccentricity. F_pT is not enforced.
+    pub fn draw(
+        &self,
+        tooth_count: u32,
+        capability: f64,
+        normals: &mut Normals,
+    ) -> ToothDeviations {
+        let sigma = |tolerance: f64| tolerance / (3.0 * capability);
+        let mut each =
+            |sigma: f64| -> Vec<f64> { (0..tooth_count).map(|_| sigma * normals.draw()).collect() };
+        let single = each(sigma(self.single_pitch));
+        let profile_slope = each(sigma(self.profile_slope));
+        let [x, y] = [(); 2].map(|()| sigma(self.runout) / 2.0 * normals.draw());
+
+        let mean = single.iter().sum::<f64>() / f64::from(tooth_count);
+        let cumulative_pitch = single.iter().scan(0.0, |sum, pitch| {
+            *sum += pitch - mean;
+            Some(*sum)
+        });
+        ToothDeviations {
+            cumulative_pitch: cumulative_pitch.collect(),
+            profile_slope,
+            eccentricity: Some(Eccentricity {
+                amount: x.hypot(y),
+                direction: libm::atan2(y, x),
+            }),
+        }
+    }
+}
+
+/// The total cumulative pitch deviation F_p: between the tooth that stands out most and the one that stands back most.
+pub fn total_pitch_deviation(deviations: &ToothDeviations) -> f64 {
+    let cumulative = &deviations.cumulative_pitch;
+    let most = cumulative.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let least = cumulative.iter().copied().fold(f64::INFINITY, f64::min);
+    (most - least).max(0.0)
+}
+
+/// Standard normal deviates, the same for a seed and a stream on every machine: the generator is specified bit by bit, and the
+/// functions are those of a library instead of the machine's own.
+#[derive(Debug, Clone)]
+pub struct Normals {
+    generator: ChaCha8Rng,
+    /// Box and Muller's way makes two at a time.
+    kept: Option<f64>,
+}
+
+impl Normals {
+    /// Those of a `seed`; each `stream` of it is independent of the others.
+    pub fn new(seed: u64, stream: u64) -> Self {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        generator.set_stream(stream);
+        Self {
+            generator,
+            kept: None,
+        }
+    }
+
+    /// The next one.
+    pub fn draw(&mut self) -> f64 {
+        if let Some(kept) = self.kept.take() {
+            return kept;
+        }
+        // Never zero, whose logarithm is none.
+        let radius = (-2.0 * libm::log(1.0 - self.uniform())).sqrt();
+        let angle = TAU * self.uniform();
+        self.kept = Some(radius * libm::sin(angle));
+        radius * libm::cos(angle)
+    }
+
+    /// One of the 2⁵³ numbers from 0 to 1, 1 excluded, each as likely.
+    fn uniform(&mut self) -> f64 {
+        const STEP: f64 = 1.0 / (1_u64 << 53) as f64;
+        (self.generator.next_u64() >> 11) as f64 * STEP
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gear::spur::tests::paper_gear;
+
+    fn gear(tooth_count: u32) -> SpurGear {
+        SpurGear::new(paper_gear(tooth_count)).expect("a gear of the paper")
+    }
+
+    #[test]
+    fn tolerances_are_those_computed_by_hand() {
+        // z 50, m 2 mm: d 100 mm, b 20 mm. In class 5: f_pT = 0.1 + 0.8 + 5 = 5.9 um, F_pT = 0.2 + 5.5 + 1.4 + 12 = 19.1,
+        // f_HaT = 0.8 + 0.1 + 4 = 4.9, f_faT = 1.1 + 5 = 6.1, F_rT = 17.19, f_HbT = 0.5 + 0.35 x 4.472136 + 4 = 6.0652476.
+        let expected = [5.9, 19.1, 4.9, 6.1, 17.19, 6.065_247_6];
+        let gear = gear(50);
+        for (class, factor) in [
+            (5, 1.0),
+            (7, 2.0),
+            (1, 0.25),
+            (6, std::f64::consts::SQRT_2),
+            (11, 8.0),
+        ] {
+            let found = Tolerances::of(&gear, class);
+            let found = [
+                found.single_pitch,
+                found.total_pitch,
+                found.profile_slope,
+                found.profile_form,
+                found.runout,
+                found.helix_slope,
+            ];
+            for (found, expected) in found.into_iter().zip(expected) {
+                let expected = 1e-6 * factor * expected;
+                assert!(
+                    (found / expected - 1.0).abs() < 1e-8,
+                    "{class}: {found} {expected}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_same_seed_draws_the_same_numbers_on_every_machine() {
+        // ChaCha with 8 rounds by a second implementation (Python, with its own logarithm and cosine), seed 1 in streams 0 and 1.
+        let mut first = Normals::new(1, 0);
+        let mut other = Normals::new(1, 1);
+        let drawn: Vec<f64> = (0..3).map(|_| first.draw()).collect();
+        assert_ne!(drawn[0], other.draw());
+        assert_eq!(
+            Normals::new(1, 0).draw().to_bits(),
+            drawn[0].to_bits(),
+            "{drawn:?}"
+        );
+        for (found, expected) in drawn.iter().zip(EXPECTED_OF_SEED_1) {
+            assert!((found - expected).abs() < 1e-12, "{drawn:?}");
+        }
+    }
+
+    const EXPECTED_OF_SEED_1: [f64; 3] = [
+        0.888_152_971_890_830_1,
+        0.491_058_348_587_415_2,
+        0.258_089_893_650_407,
+    ];
+
+    #[test]
+    fn deviates_are_normal() {
+        // Of n deviates the mean has a standard error of 1/sqrt(n), the variance of sqrt(2/n); five of them are allowed.
+        const N: usize = 200_000;
+        let mut normals = Normals::new(7, 3);
+        let drawn: Vec<f64> = (0..N).map(|_| normals.draw()).collect();
+        let part = |holds: &dyn Fn(f64) -> bool| {
+            drawn.iter().filter(|each| holds(**each)).count() as f64 / N as f64
+        };
+        let mean = drawn.iter().sum::<f64>() / N as f64;
+        let variance = drawn.iter().map(|each| each * each).sum::<f64>() / N as f64;
+        assert!(mean.abs() < 5.0 / (N as f64).sqrt(), "{mean}");
+        assert!(
+            (variance - 1.0).abs() < 5.0 * (2.0 / N as f64).sqrt(),
+            "{variance}"
+        );
+        for (within, expected) in [(1.0, 0.682_689_5), (2.0, 0.954_499_7), (3.0, 0.997_300_2)] {
+            let found = part(&|each| each.abs() < within);
+            assert!((found - expected).abs() < 5.0 * (0.25 / N as f64).sqrt());
+        }
+        let neighbors = drawn.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>() / N as f64;
+        assert!(
+            neighbors.abs() < 5.0 / (N as f64).sqrt(),
+            "independent: {neighbors}"
+        );
+    }
+
+    #[test]
+    fn drawn_teeth_spread_as_the_class_and_the_capability_say() {
+        let (gear, capability) = (gear(50), 1.33);
+        let tolerances = Tolerances::of(&gear, 6);
+        let members: Vec<ToothDeviations> = (0..400)
+            .map(|member| tolerances.draw(50, capability, &mut Normals::new(1, member)))
+            .collect();
+        let spread = |values: &[f64]| {
+            (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
+        };
+        let of_all = |list: &dyn Fn(&ToothDeviations) -> Vec<f64>| {
+            spread(&members.iter().flat_map(list).collect::<Vec<_>>())
+        };
+        let single = |each: &ToothDeviations| {
+            let sums = &each.cumulative_pitch;
+            (0..50)
+                .map(|i| sums[i] - if i == 0 { 0.0 } else { sums[i - 1] })
+                .collect()
+        };
+        // Taking the mean of 50 away takes a fiftieth of the variance.
+        let expected = tolerances.single_pitch / (3.0 * capability) * (1.0_f64 - 1.0 / 50.0).sqrt();
+        assert!((of_all(&single) / expected - 1.0).abs() < 0.03);
+        let slopes = of_all(&|each| each.profile_slope.clone());
+        assert!((slopes * 3.0 * capability / tolerances.profile_slope - 1.0).abs() < 0.03);
+        let eccentricity = of_all(&|each| vec![each.eccentricity.map_or(0.0, |e| e.amount)]);
+        let expected = 2_f64.sqrt() * tolerances.runout / (6.0 * capability);
+        assert!((eccentricity / expected - 1.0).abs() < 0.1);
+        for each in &members {
+            let last = each.cumulative_pitch[49];
+            assert!(last.abs() < 1e-15, "it closes once around: {last}");
+            assert!(total_pitch_deviation(each) > 0.0);
+        }
+        assert_ne!(members[0], members[1]);
+    }
+}

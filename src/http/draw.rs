@@ -1,0 +1,34 @@
+//! Teeth drawn at random, for those who have no measured ones.
+
+use axum::Json;
+
+use super::aside::aside;
+use super::client::Onlooker;
+use super::document::Document;
+use crate::wire::draw::DrawDocument;
+use crate::wire::{Draw, DrawnDeviations, Problem};
+
+/// Draw deviations
+///
+/// Takes a gear and an accuracy class of ISO 1328-1:2013, and answers with teeth as a production of that class makes them: single
+/// pitches and profile slopes of each tooth and an eccentricity, normally distributed, so that a tolerance is three standard deviations wide at a
+/// capability of 1. The same seed gives the same teeth on every machine.
+#[utoipa::path(
+    post, path = "/v1/draw-deviations", tag = "Reference", operation_id = "draw_deviations",
+    request_body(content = DrawDocument, content_type = "application/json", description = "The gear, the class, and the seed."),
+    responses(
+        (status = 200, description = "The teeth.", body = DrawnDeviations),
+        (status = 400, description = "The body is no JSON.", body = Problem, content_type = "application/problem+json"),
+        (status = 408, description = "The body came too slowly.", body = Problem, content_type = "application/problem+json"),
+        (status = 413, description = "The body has more than 1 MiB.", body = Problem, content_type = "application/problem+json"),
+        (status = 415, description = "The body is not declared as JSON.", body = Problem, content_type = "application/problem+json"),
+        (status = 422, description = "The gear cannot be made, or there is no such class; `errors` says which field is why.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(super) async fn draw(
+    _: Onlooker,
+    Document(document): Document,
+) -> Result<Json<DrawnDeviations>, Problem> {
+    let made = aside(move |_| Draw::parse(&document).map(|draw| draw.drawn()));
+    Ok(Json(made.await??))
+}

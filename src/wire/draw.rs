@@ -1,0 +1,183 @@
+//! Teeth drawn at random within the tolerances of an accuracy class.
+
+use meshwright_engine::gear::{Normals, SpurGear, Tolerances, total_pitch_deviation};
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use super::declare::{Document as _, Errors, Node, ObjectReader, Place, document, nested, number};
+use super::gear::{DeviationsDocument, GearDocument};
+use super::problem::Problem;
+use super::size::{MOST_VALUES, refuse_many_values};
+use super::units::{significant, to_um};
+
+document! {
+    /// Teeth to draw at random for a gear. Deviations that the gear has are not looked at.
+    pub struct DrawDocument as "DrawDeviations", "Draw deviations" {
+        /// The gear.
+        gear: GearDocument = nested(""),
+        /// The accuracy class A of ISO 1328-1:2013, from the finest; each is wider by the square root of 2.
+        iso_1328_class: u32 = number("Accuracy class", "1", 1.0, 11.0),
+        /// How many times three standard deviations of a deviation fit into its tolerance.
+        capability: f64 = number("Process capability", "1", 0.1, 10.0).or(1.0),
+        /// What the numbers are drawn from: the same seed gives the same teeth on every machine.
+        seed: u32 = number("Seed", "1", 0.0, 4_294_967_295.0).or(1.0),
+    }
+}
+
+/// What is asked: teeth for a gear, of an accuracy, from a seed.
+pub struct Draw {
+    gear: SpurGear,
+    class: u32,
+    capability: f64,
+    seed: u64,
+}
+
+impl DrawDocument {
+    /// What is asked, if its gear can be made; what prevents it is reported to `errors`.
+    fn made(self, errors: &Errors) -> Option<Draw> {
+        let made = self.gear.without_deviations().to_gear("/gear");
+        let faults = made.as_ref().err().into_iter().flatten();
+        faults.for_each(|fault| errors.push(fault.clone()));
+        Some(Draw {
+            gear: made.ok()?,
+            class: self.iso_1328_class,
+            capability: self.capability,
+            seed: u64::from(self.seed),
+        })
+    }
+}
+
+/// The tolerances of ISO 1328-1:2013 for a gear and a class, unrounded, in um.
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = Tolerances, title = "Tolerances")]
+pub struct TolerancesDocument {
+    /// f_pT: of a single pitch.
+    single_pitch: f64,
+    /// F_pT: of the cumulative pitch around the gear.
+    total_pitch: f64,
+    /// f_HaT: of the slope of a profile.
+    profile_slope: f64,
+    /// f_faT: of the form of a profile.
+    profile_form: f64,
+    /// F_rT: of the runout.
+    runout: f64,
+    /// f_HbT: of the slope of a helix.
+    helix_slope: f64,
+}
+
+/// Teeth drawn at random.
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(title = "Drawn deviations")]
+pub struct DrawnDeviations {
+    /// What the teeth deviate by, ready for a gear of a submission.
+    tooth_deviations: DeviationsDocument,
+    /// F_p: the total cumulative pitch deviation of these teeth, in um. It may be more than `total_pitch`, which is not enforced.
+    total_pitch_deviation_um: f64,
+    /// What the class allows, in um.
+    tolerances_um: TolerancesDocument,
+}
+
+impl Draw {
+    /// Reads and checks what is asked.
+    ///
+    /// # Errors
+    ///
+    /// As for a submission.
+    pub fn parse(document: &[u8]) -> Result<Self, Problem> {
+        refuse_many_values(document, MOST_VALUES)?;
+        let node = Node::parse(document)?;
+        let errors = Errors::default();
+        let asked =
+            ObjectReader::new(&node, Place::root(&errors)).and_then(DrawDocument::read_whole);
+        match asked.and_then(|asked| asked.made(&errors)) {
+            Some(draw) if errors.count() == 0 => Ok(draw),
+            _ => Err(errors.into_problem()),
+        }
+    }
+
+    /// The teeth.
+    pub fn drawn(&self) -> DrawnDeviations {
+        let tolerances = Tolerances::of(&self.gear, self.class);
+        let mut normals = Normals::new(self.seed, 0);
+        let teeth = tolerances.draw(self.gear.tooth_count(), self.capability, &mut normals);
+        let told = |value: f64| significant(to_um(value), 10);
+        DrawnDeviations {
+            total_pitch_deviation_um: told(total_pitch_deviation(&teeth)),
+            tooth_deviations: DeviationsDocument::of(&teeth),
+            tolerances_um: TolerancesDocument {
+                single_pitch: told(tolerances.single_pitch),
+                total_pitch: told(tolerances.total_pitch),
+                profile_slope: told(tolerances.profile_slope),
+                profile_form: told(tolerances.profile_form),
+                runout: told(tolerances.runout),
+                helix_slope: told(tolerances.helix_slope),
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::{Value, json};
+
+    use super::*;
+    use crate::wire::{Code, Submission, examples};
+
+    fn standard_pair() -> Value {
+        let example = examples()
+            .iter()
+            .find(|example| example.name == "standard-pair")
+            .expect("ships");
+        serde_json::from_str(example.json).expect("JSON")
+    }
+
+    fn drawn(document: &Value) -> Result<Value, Problem> {
+        let draw = Draw::parse(document.to_string().as_bytes())?;
+        Ok(serde_json::to_value(draw.drawn()).expect("JSON"))
+    }
+
+    #[test]
+    fn what_is_drawn_is_taken_by_a_submission_as_it_stands() {
+        let mut submission = standard_pair();
+        let gear = submission["pair"]["driven"].clone();
+        let asked = |seed: u64| json!({ "gear": gear, "iso_1328_class": 6, "seed": seed });
+        let answer = drawn(&asked(3)).expect("drawn");
+        assert_eq!(answer, drawn(&asked(3)).expect("drawn"));
+        assert_ne!(answer, drawn(&asked(4)).expect("drawn"));
+        assert!(
+            (answer["tolerances_um"]["single_pitch"]
+                .as_f64()
+                .expect("a number")
+                - 5.9 * 2_f64.sqrt())
+            .abs()
+                < 1e-8
+        );
+        submission["pair"]["driven"]["tooth_deviations"] = answer["tooth_deviations"].clone();
+        let parsed = Submission::parse(submission.to_string().as_bytes()).expect("it closes");
+        assert_eq!(parsed.case().pair.period(), 50);
+        let teeth = parsed.case().pair.driven().deviations();
+        let total = answer["total_pitch_deviation_um"]
+            .as_f64()
+            .expect("a number");
+        assert!((1e6 * total_pitch_deviation(teeth) - total).abs() < 2e-4);
+        // What the gear has already is not looked at.
+        let again = json!({ "gear": submission["pair"]["driven"], "iso_1328_class": 6, "seed": 3 });
+        assert_eq!(answer, drawn(&again).expect("drawn"));
+    }
+
+    #[test]
+    fn a_class_that_the_standard_does_not_have_is_refused_with_the_nearest() {
+        let gear = &standard_pair()["pair"]["driven"];
+        let problem = drawn(&json!({ "gear": gear, "iso_1328_class": 12 })).expect_err("no class");
+        let error = &problem.errors[0];
+        assert_eq!((error.code, error.nearest), (Code::OutOfRange, Some(11.0)));
+        assert_eq!(error.pointer, "/iso_1328_class");
+        let problem = drawn(&json!({ "gear": { "module_mm": 2 } })).expect_err("half a gear");
+        assert!(
+            problem
+                .errors
+                .iter()
+                .any(|error| error.pointer == "/gear/tooth_count")
+        );
+    }
+}
