@@ -53,3 +53,65 @@ export async function json(path, options) {
 }
 
 export const post = (path, body, options = {}) => json(path, { ...options, method: "POST", body });
+
+/** The events of a stream that the service sends, each `{ event, data }`, until it ends; `EventSource` cannot send a key. */
+export async function* events(path, signal) {
+  const response = await request(path, { headers: { accept: "text/event-stream" }, signal });
+  const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
+  let text = "";
+  try {
+    for (;;) {
+      const { value, done } = await reader.read();
+      if (done) return;
+      text += value.replace(/\r/g, "");
+      for (let end = text.indexOf("\n\n"); end >= 0; end = text.indexOf("\n\n")) {
+        const lines = text.slice(0, end).split("\n");
+        text = text.slice(end + 2);
+        const of = (name) => lines.filter((line) => line.startsWith(`${name}:`)).map((line) => line.slice(name.length + 1).trimStart()).join("\n");
+        if (of("data")) yield { event: of("event") || "message", data: JSON.parse(of("data")) };
+      }
+    }
+  } finally {
+    reader.cancel().catch(() => {});
+  }
+}
+
+const ENDED = ["successful", "failed", "dismissed"];
+
+/** Whether a job or a study with this status changes no more. */
+export const hasEnded = (status) => ENDED.includes(status);
+
+/**
+ * Follows a job or a study at `path` by its events until it has ended, and gives how it stands then. `told` is called with each event; a stream that
+ * breaks off is taken up again.
+ */
+export async function follow(path, told = () => {}, signal = undefined) {
+  for (;;) {
+    try {
+      for await (const { event, data } of events(`${path}/events`, signal)) told(event, data);
+    } catch (error) {
+      if (error.name === "AbortError" || (error instanceof ProblemError && error.problem.code !== "unreachable" && error.problem.status !== 429)) throw error;
+    }
+    const state = await json(path, { signal });
+    if (hasEnded(state.status)) return state;
+    await new Promise((resolve) => setTimeout(resolve, 1000));
+  }
+}
+
+const jobs = new Map();
+
+/**
+ * A job of `submission` that has succeeded: one that is known, or a new one that is followed until it ends. `told` hears of its events, and of the job first.
+ */
+export async function solved(submission, { told = () => {}, signal } = {}) {
+  const name = JSON.stringify(submission);
+  if (jobs.has(name)) return jobs.get(name);
+  // A job that was asked for is known, so that it can be cancelled: the request itself is not given up.
+  const made = await post("v1/jobs", submission);
+  told("status", made);
+  signal?.throwIfAborted();
+  const job = hasEnded(made.status) ? made : await follow(`v1/jobs/${made.id}`, told, signal);
+  if (job.status !== "successful") throw new ProblemError(job.problem ?? { code: job.status, title: "Cancelled", detail: "The job was cancelled." });
+  jobs.set(name, job);
+  return job;
+}

@@ -1,6 +1,9 @@
-// What a part of the form begins with when it is asked for: values that suit the pair, else defaults.
+// What a part of the form begins with when it is asked for: values that fit the gear it is for, else defaults.
 
 import { kindOf } from "./schema.js";
+
+const TURN = Math.PI / 180;
+const rounded = (value, digits = 3) => Number(value.toPrecision(digits));
 
 export class Beginnings {
   constructor(api, design) {
@@ -10,26 +13,88 @@ export class Beginnings {
   /** An object that is not there yet. */
   object(pointer, kind) {
     if (pointer.endsWith("/slot")) return slotOf(this.design.get(pointer.slice(0, -"/slot".length)));
-    const member = /\/pair\/(driving|driven)/.exec(pointer)?.[0];
-    const gear = member ? this.design.get(member) : null;
-    const usual = gear ? usualValues(gear) : {};
-    const name = pointer.split("/").pop();
-    if (usual[name]) return usual[name];
-    return this.#begin(kind);
+    const fitting = this.#fitting(pointer, pointer.split("/").pop());
+    return fitting ?? this.#begin(kind);
   }
 
   /** One of several forms to begin with: what is there in the other form, as far as it goes. */
   variant(pointer, kind) {
     const there = this.design.get(pointer);
-    if (!pointer.endsWith("/holes")) return this.#begin(kind);
+    const name = pointer.split("/").pop();
+    if (name === "start") return this.#start(pointer, Object.keys(kind.schema.properties)[0], there);
+    if (/\/profile_modifications\/\d+$/.test(pointer)) return this.#modification(pointer, kind);
+    if (name === "interface_radius_mm") return this.#interface(kind);
+    if (name !== "holes") return this.#begin(kind);
     const patterns = there ? [there].flat() : [this.object(pointer, kind)];
     return kind.kind === "list" ? patterns : patterns[0];
   }
 
   /** A further entry of a list. */
   further(pointer, kind, values) {
+    if (pointer.endsWith("/profile_modifications")) return this.#modification(pointer, kindOf(this.api, kind.items.kind === "variants" ? kind.items.variants[0] : kind.items.schema));
     if (!pointer.endsWith("/holes")) return this.#begin(kind.items);
     return values.length ? between(values.at(-1)) : this.object(pointer, kind);
+  }
+
+  #gear(pointer) {
+    const member = /\/pair\/(driving|driven)/.exec(pointer)?.[0];
+    return member ? this.design.get(member) : null;
+  }
+
+  /** What suits the gear at `pointer` where `name` is asked for; undefined where nothing depends on the gear. */
+  #fitting(pointer, name) {
+    const gear = this.#gear(pointer);
+    if (!gear) return undefined;
+    const { root, bore, module } = circlesOf(gear);
+    if (name === "holes") {
+      const circle = rounded((root + bore) / 2);
+      return { count: 6, circle_radius_mm: circle, radius_mm: rounded(Math.min(0.27 * (root - bore), 0.3 * circle), 2), phase_deg: 0 };
+    }
+    if (name === "tip_relief") return { amount_um: 10, shape: "linear", start: { radial_length_mm: rounded(0.5 * module, 2) } };
+    if (name !== "web") return undefined;
+    // Half the face, under a rim that a plane model stands for where there is room for it.
+    const inner = bore + 0.2 * (root - bore);
+    const outer = Math.max(root - 3.6 * module, bore + 0.6 * (root - bore));
+    return { inner_radius_mm: rounded(inner), outer_radius_mm: rounded(outer), thickness_mm: rounded(gear.face_width_mm / 2) };
+  }
+
+  /** The start of a relief as the field `name` says it: at the same place of the flank as before, else half a module below the tip, or above the root. */
+  #start(pointer, name, there) {
+    const gear = this.#gear(pointer);
+    const holder = this.design.get(pointer.slice(0, -"/start".length));
+    const atRoot = holder?.kind === "root_relief";
+    const flank = flankOf(gear);
+    const known = there && flank.radiusOf(there, atRoot);
+    const inside = known > flank.formRadius && known < flank.tipRadius;
+    const radius = inside ? known : atRoot ? flank.radiusAt(flank.form + 0.25 * (flank.tip - flank.form)) : flank.tipRadius - 0.5 * gear.module_mm;
+    return { [name]: rounded(flank.said(radius, name, atRoot), 5) };
+  }
+
+  #modification(pointer, kind) {
+    const { kind: word } = kind.schema.properties ?? {};
+    const name = word?.enum?.[0] ?? "tip_relief";
+    const gear = this.#gear(pointer);
+    const flank = flankOf(gear);
+    if (name === "table") return { kind: name, roll_length_mm: [rounded(flank.form, 5), rounded((flank.form + flank.tip) / 2, 5), rounded(flank.tip, 5)], removed_um: [0, 0, 5] };
+    if (name === "tip_relief") return { kind: name, amount_um: 5, start: { radial_length_mm: rounded(0.5 * gear.module_mm, 2) } };
+    if (name === "root_relief") return { kind: name, amount_um: 5, start: { diameter_mm: rounded(2 * flank.radiusAt(flank.form + 0.25 * (flank.tip - flank.form)), 6) } };
+    return { kind: name, amount_um: 5 };
+  }
+
+  /** Between the holes and the roots of the gears that have holes: one radius where one fits all, else one for each. */
+  #interface(kind) {
+    const bounds = (member) => {
+      const gear = this.design.get(`/pair/${member}`);
+      const { root, module } = circlesOf(gear);
+      const patterns = [gear.blank?.holes ?? []].flat();
+      const reach = Math.max(0, ...patterns.map((pattern) => pattern.circle_radius_mm + (pattern.radius_mm ?? pattern.slot?.width_mm / 2)));
+      return { holed: patterns.length > 0, low: reach, high: root, usual: Math.max(root - module, (root + reach) / 2) };
+    };
+    const each = { driving: bounds("driving"), driven: bounds("driven") };
+    const holed = Object.values(each).filter((gear) => gear.holed);
+    const [low, high] = [Math.max(...holed.map((gear) => gear.low)), Math.min(...holed.map((gear) => gear.high))];
+    if (kind.kind === "number" && low < high) return rounded(holed.length === 1 ? holed[0].usual : (low + high) / 2, 5);
+    return { driving: rounded(each.driving.usual, 5), driven: rounded(each.driven.usual, 5) };
   }
 
   /** The default that the schema says, or the least that it takes. */
@@ -48,6 +113,40 @@ export class Beginnings {
   }
 }
 
+/** The circles of a gear between which its parts have to fit, in mm. */
+function circlesOf(gear) {
+  const { module_mm: module, tooth_count: teeth, profile_shift: shift = 0 } = gear;
+  const root = module * (teeth / 2 + (shift ?? 0)) - (gear.dedendum_mm ?? 1.25 * module);
+  return { module, root, bore: gear.blank?.bore_radius_mm ?? root / 3 };
+}
+
+/** The involute of a gear: roll lengths of its form circle and its tip, and one measure of a place on it as another. */
+function flankOf(gear) {
+  const { module_mm: m, tooth_count: z } = gear;
+  const [alpha, x] = [(gear.pressure_angle_deg ?? 20) * TURN, gear.profile_shift ?? 0];
+  const r = (m * z) / 2;
+  const base = r * Math.cos(alpha);
+  const tipRadius = gear.tip_diameter_mm ? gear.tip_diameter_mm / 2 : r + (gear.addendum_mm ?? m) + x * m;
+  const straight = (gear.dedendum_mm ?? 1.25 * m) - (gear.rack_tip_radius_mm ?? 0.38 * m) * (1 - Math.sin(alpha));
+  const form = Math.max(0, r * Math.sin(alpha) - (straight - x * m) / Math.sin(alpha));
+  const roll = (radius) => Math.sqrt(Math.max(0, radius ** 2 - base ** 2));
+  const radiusAt = (length) => Math.hypot(base, length);
+  const tip = roll(tipRadius);
+  const formRadius = radiusAt(form);
+  const radiusOf = (start, atRoot) => {
+    if (start.diameter_mm) return start.diameter_mm / 2;
+    if (start.roll_angle_deg) return radiusAt(start.roll_angle_deg * TURN * base);
+    if (start.roll_length_from_tip_mm) return radiusAt(tip - start.roll_length_from_tip_mm);
+    if (start.roll_length_from_form_mm) return radiusAt(form + start.roll_length_from_form_mm);
+    return atRoot ? formRadius + start.radial_length_mm : tipRadius - start.radial_length_mm;
+  };
+  const said = (radius, name, atRoot) => ({
+    diameter_mm: 2 * radius, roll_angle_deg: roll(radius) / base / TURN, roll_length_from_tip_mm: tip - roll(radius), roll_length_from_form_mm: roll(radius) - form,
+    radial_length_mm: atRoot ? radius - formRadius : tipRadius - radius,
+  })[name];
+  return { form, tip, formRadius, tipRadius, radiusAt, radiusOf, said };
+}
+
 const numberOf = (pattern) => pattern.count ?? pattern.at_deg?.length ?? 1;
 const twoDigits = (value) => Number(value.toPrecision(2));
 
@@ -61,16 +160,4 @@ function between(pattern) {
   const half = 180 / numberOf(pattern);
   const places = pattern.at_deg ? { at_deg: pattern.at_deg.map((angle) => angle + half) } : { count: pattern.count, phase_deg: (pattern.phase_deg ?? 0) + half };
   return { ...places, circle_radius_mm: pattern.circle_radius_mm, radius_mm: twoDigits(0.4 * (pattern.radius_mm ?? pattern.slot?.width_mm / 2)) };
-}
-
-/** What a gear gets where holes or a relief are added: six holes in the middle of the blank, a usual relief. */
-function usualValues(gear) {
-  const root = (gear.module_mm * gear.tooth_count) / 2 - (gear.dedendum_mm ?? 1.25 * gear.module_mm);
-  const bore = gear.blank?.bore_radius_mm ?? root / 3;
-  const circle = Number(((root + bore) / 2).toPrecision(3));
-  const radius = Number(Math.min(0.27 * (root - bore), 0.3 * circle).toPrecision(2));
-  return {
-    holes: { count: 6, circle_radius_mm: circle, radius_mm: radius, phase_deg: 0 },
-    tip_relief: { amount_um: 10, shape: "linear", start: { radial_length_mm: Number((0.5 * gear.module_mm).toPrecision(2)) } },
-  };
 }

@@ -1,45 +1,15 @@
-// Curves over the true period and the spectrum, one design beside the other.
+// Curves over the true period and the spectrum, one design beside the other, zoomed together.
 
 import uPlot from "./vendor/uplot.js";
 import { h, number } from "./dom.js";
+import { figure } from "./figure.js";
+import { LEAST_AMPLITUDE, linesOf, ordersOf, PANELS, partialSpectrum, wordsOf, wordsOfSpectrum } from "./series.js";
 
-/** The height of a chart, in rem. */
-const HEIGHT = 14.4;
-const DASHES = [[], [6, 4], [2, 3], [10, 3, 2, 3]];
-/** What lies below is noise of the solution, in um. */
-const LEAST_AMPLITUDE = 1e-4;
-
-const PANELS = [
-  { id: "ste", title: "Transmission error", unit: "µm", of: (curve) => curve.transmission_error_um },
-  { id: "stiffness", title: "Mesh stiffness, tangent", unit: "N/µm", of: (curve) => curve.mesh_stiffness_tangent_n_per_m.map((value) => value * 1e-6) },
-  { id: "share", title: "Load share", unit: "%", ofLive: shares, note: "a color for each pair of teeth" },
-  { id: "pressure", title: "Peak contact pressure", unit: "MPa", of: (curve) => curve.peak_contact_pressure_mpa },
-  { id: "stress", title: "Largest stress", unit: "MPa", ofLive: stresses },
-  { id: "spectrum", title: "Spectrum of the transmission error", unit: "µm" },
-];
-
-/** Pairs so far apart are never in contact together, and share a color. */
-const COLORS_OF_PAIRS = 4;
-
-/** The load shares of the live curve. A pair of teeth keeps its color from its first touch to its last. */
-function shares(curve) {
-  const offsets = curve.load_shares.map(({ pair_offset: offset }) => offset);
-  return Array.from({ length: COLORS_OF_PAIRS }, (_, color) => {
-    const carried = curve.mesh_position.map((position, i) => {
-      const index = offsets.findIndex((offset) => (((Math.floor(position + 1e-9) + offset - color) % COLORS_OF_PAIRS) + COLORS_OF_PAIRS) % COLORS_OF_PAIRS === 0);
-      return index < 0 ? 0 : 100 * curve.load_shares[index].share[i];
-    });
-    // Where nothing is carried there is no line, but a curve begins and ends at zero.
-    return { name: "", open: true, values: carried.map((value, i) => (value > 0 || carried[i - 1] > 0 || carried[i + 1] > 0 ? Math.max(value, 0) : null)) };
-  });
-}
-
-/** The stresses of the live curve, where they were asked for: at the roots of both gears, and at their holes. */
-export function stresses({ stress }) {
-  if (!stress) return [];
-  return [["root_mpa", "root"], ["hole_mpa", "hole"]].flatMap(([field, place]) =>
-    ["driving", "driven"].flatMap((gear) => (stress[gear][field] ? [{ name: `${place}, ${gear} gear`, values: stress[gear][field] }] : [])));
-}
+/** Where a mesh period has fewer pixels the curve is shown by its envelope. */
+const LEAST_PIXELS = 14;
+const SPECTRUM = { id: "spectrum", title: "Spectrum of the transmission error", unit: "µm" };
+const X_TITLE = "mesh position in mesh periods";
+const ORDER_TITLE = "order per revolution of the driven gear";
 
 /** The colors and letters of the page as it looks now. */
 export function looks() {
@@ -47,30 +17,33 @@ export function looks() {
   const rem = parseFloat(style.fontSize);
   const of = (name) => style.getPropertyValue(name).trim();
   return {
-    ink: of("--ink"), grid: of("--grid"), faint: of("--faint"), accent: of("--accent"),
+    ink: of("--ink"), grid: of("--grid"), faint: of("--faint"), accent: of("--accent"), panel: of("--panel"),
     series: [1, 2, 3, 4, 5, 6, 7].map((i) => of(`--series-${i}`)),
-    rem, font: `${0.75 * rem}px system-ui, sans-serif`,
+    rem, height: parseFloat(of("--chart-height")), font: `${0.75 * rem}px system-ui, sans-serif`,
   };
 }
 
 export class Charts {
   #panels = new Map();
   #position = 0;
+  #range = null;
 
-  constructor(place, { onPosition }) {
-    this.place = place;
-    this.onPosition = onPosition;
-    for (const panel of PANELS) {
-      const canvas = h("div", { className: "canvas" });
+  /** Charts in `place`. `onPosition` is told where a pointer is, `onRange` which mesh periods are shown: two numbers, or null for all. */
+  constructor(place, { onPosition, onRange }) {
+    Object.assign(this, { place, onPosition, onRange });
+    for (const panel of [...PANELS, SPECTRUM]) {
+      const canvas = h("div", { className: "canvas", aria: { hidden: "true" } });
       const legend = h("p", { className: "legend" });
-      const figure = h("figure", { className: "chart", id: `chart-${panel.id}`, aria: { label: panel.title } },
-        h("figcaption", {}, h("strong", {}, panel.title), ` in ${panel.unit}`, legend), canvas);
-      place.append(figure);
-      this.#panels.set(panel.id, { ...panel, canvas, legend, figure, plot: null, shape: "", width: null, seen: true, late: false });
+      const words = h("p", { className: "visually-hidden", id: `words-${panel.id}` });
+      const below = h("p", { className: "note", hidden: true });
+      const element = h("figure", { className: "chart", id: `chart-${panel.id}`, aria: { label: panel.title, describedby: words.id } },
+        h("figcaption", {}, h("strong", {}, panel.title), ` in ${panel.unit}`, legend), canvas, below, words);
+      place.append(element);
+      this.#panels.set(panel.id, { ...panel, canvas, legend, words, below, figure: element, plot: null, shape: "", width: null, seen: true, late: false });
     }
     new ResizeObserver(() => this.#resize()).observe(place);
     const sight = new IntersectionObserver((entries) => entries.forEach(({ target, isIntersecting }) => this.#sees(target, isIntersecting)), { rootMargin: "100px" });
-    for (const { figure } of this.#panels.values()) sight.observe(figure);
+    for (const panel of this.#panels.values()) sight.observe(panel.figure);
   }
 
   /** Draws everything anew, because the page looks different. */
@@ -79,7 +52,7 @@ export class Charts {
     if (this.shown) this.show(this.shown);
   }
 
-  /** Shows designs: `{ name, results, color }`, the live one first. While a hand moves, curves out of sight wait until they are looked at. */
+  /** Shows designs: `{ name, results, look, teeth }`, the live one first. While a hand moves, curves out of sight wait until they are looked at. */
   show(designs, moving = false) {
     this.shown = designs;
     const colors = looks();
@@ -88,15 +61,57 @@ export class Charts {
       if (!panel.late) this.#draw(panel, colors);
     }
     this.setPosition(this.#position);
+    if (moving) return;
+    for (const panel of this.#panels.values()) panel.words.textContent = panel.figure.hidden ? "" : panel.id === "spectrum" ? wordsOfSpectrum(designs) : wordsOf(panel, designs);
+  }
+
+  /** Shows the mesh periods from one position to another alone, or all of them. */
+  zoom(range) {
+    const whole = this.shown ? this.#whole() : 0;
+    const [from, to] = range ?? [0, whole];
+    this.#range = to - from >= whole * 0.999 || to - from < 1e-3 ? null : [Math.max(0, from), Math.min(whole, to)];
+    if (this.shown) this.show(this.shown);
+    this.onRange(this.#range, whole);
+  }
+
+  /** Marks a mesh position in every curve. */
+  setPosition(position) {
+    this.#position = position;
+    for (const { plot, now, id, span } of this.#panels.values()) {
+      if (!plot || !now || id === "spectrum") continue;
+      const x = ((position % span) + span) % span;
+      const { min, max } = plot.scales.x;
+      now.hidden = x < min || x > max;
+      now.style.transform = `translateX(${plot.valToPos(x, "x")}px)`;
+    }
+  }
+
+  /** The curves that are shown as drawings with titles, units and legends. */
+  figures({ width = 760, height = 300, ids = null } = {}) {
+    const colors = looks();
+    const shown = [...this.#panels.values()].filter((panel) => !panel.figure.hidden && (!ids || ids.includes(panel.id)));
+    return shown.map((panel) => {
+      const common = { title: panel.title, y: `${panel.title} in ${panel.unit}`, colors, width, height, heading: true };
+      if (panel.id === "spectrum") {
+        const stems = this.#spectra().map(({ name, look, orders }) => ({ name, color: colors.series[look % 7], x: orders.map(([order]) => order), y: orders.map(([, value]) => value) }));
+        return figure({ ...common, x: ORDER_TITLE, stems });
+      }
+      const lines = linesOf(panel, this.shown).map((line) => ({ ...line, color: colors.series[line.look % 7], x: closed(line), y: [...line.values, line.open ? null : line.values[0]] }));
+      return figure({ ...common, x: X_TITLE, lines, xRange: this.#range });
+    });
+  }
+
+  #whole() {
+    return Math.max(...linesOf(PANELS[0], this.shown).map(({ span }) => span));
   }
 
   #draw(panel, colors) {
-    if (panel.id === "spectrum") this.#spectrum(panel, this.shown, colors);
-    else this.#curves(panel, this.shown, colors);
+    if (panel.id === "spectrum") this.#spectrum(panel, colors);
+    else this.#curves(panel, colors);
   }
 
-  #sees(figure, seen) {
-    const panel = [...this.#panels.values()].find((each) => each.figure === figure);
+  #sees(element, seen) {
+    const panel = [...this.#panels.values()].find((each) => each.figure === element);
     panel.seen = seen;
     if (!seen || !panel.late) return;
     panel.late = false;
@@ -104,129 +119,153 @@ export class Charts {
     this.setPosition(this.#position);
   }
 
-  /** Marks a mesh position in every curve. */
-  setPosition(position) {
-    this.#position = position;
-    for (const { plot, now, id } of this.#panels.values()) {
-      if (!plot || !now || id === "spectrum") continue;
-      const { max } = plot.scales.x;
-      const period = plot.data[0]?.length ? (plot.period ?? max) : 1;
-      const x = ((position % period) + period) % period;
-      now.style.transform = `translateX(${plot.valToPos(x, "x")}px)`;
-    }
-  }
-
-  canvasOf(id) {
-    return this.#panels.get(id)?.plot?.root.querySelector("canvas") ?? null;
-  }
-
-  #curves(panel, designs, colors) {
-    const wanted = designs.flatMap((design, i) => seriesOf(panel, design, i, colors));
+  #curves(panel, colors) {
+    const wanted = linesOf(panel, this.shown);
     panel.figure.hidden = wanted.length === 0;
     if (!wanted.length) return;
-    const tables = wanted.map((each) => [closed(each.x, each.period), [...each.values, each.open ? null : each.values[0]]]);
+    panel.span = Math.max(...wanted.map(({ span }) => span));
+    const [from, end] = this.#range ?? [0, panel.span];
+    const room = Math.floor(this.#width(panel) / LEAST_PIXELS);
+    const crowded = end - from > room;
+    // Pairs of teeth have no envelope: as many mesh periods are shown as can be told apart.
+    const many = crowded && !panel.note;
+    const to = crowded && panel.note ? from + room : end;
+    const lines = many ? wanted.flatMap((line) => envelopeOf(line, from, to)) : wanted.map((line) => ({ ...line, at: closed(line), values: [...line.values, line.open ? null : line.values[0]] }));
+    const tables = lines.map((line) => [line.at, line.values]);
     const data = uPlot.join(tables, tables.map(() => [2]));
-    const shape = JSON.stringify(wanted.map(({ name, color, dash }) => [name, color, dash]));
-    const period = Math.max(...wanted.map((each) => each.period));
+    const shape = JSON.stringify([many, lines.map(({ name, look, dash }) => [name, look, dash])]);
     if (panel.shape !== shape || !panel.plot) {
-      this.#make(panel, data, wanted, colors);
+      this.#make(panel, data, lines, colors, many);
       panel.shape = shape;
     } else {
-      panel.plot.setData(data);
+      panel.plot.setData(data, false);
     }
-    panel.plot.period = period;
-    panel.legend.replaceChildren(...(panel.note ? [panel.note] : wanted.length > 1 ? wanted.map(sample) : []));
+    panel.plot.setScale("x", { min: from, max: to });
+    const note = many ? "envelope; zoom in for the curve" : to < end ? `${room} mesh periods, ${panel.note}` : panel.note;
+    panel.legend.replaceChildren(...(note ? [h("span", {}, note)] : []), ...(wanted.length > 1 && !panel.note ? wanted.map((line) => sample(line, colors)) : []));
+    const gaps = panel.gaps && wanted.some(({ values }) => values.includes(null));
+    panel.below.hidden = !gaps;
+    if (gaps) panel.below.textContent = panel.gaps;
   }
 
-  #make(panel, data, wanted, colors) {
+  #make(panel, data, lines, colors, many) {
     panel.plot?.destroy();
-    const axis = { stroke: colors.ink, font: colors.font, grid: { stroke: colors.grid, width: 1 }, ticks: { stroke: colors.grid, size: 4 } };
     const options = {
-      width: this.#width(panel), height: HEIGHT * colors.rem, legend: { show: false }, cursor: { y: false, points: { size: 7 }, drag: { x: false, y: false } },
-      padding: [10, 14, 0, 0], scales: { x: { time: false }, y: { range: yRange } },
-      axes: [{ ...axis, label: "mesh position in mesh periods", labelFont: colors.font, labelSize: 1.25 * colors.rem, size: 1.9 * colors.rem, space: 2.8 * colors.rem }, { ...axis, size: 3.6 * colors.rem, space: 2.1 * colors.rem, values: (_, splits) => splits.map((value) => number(value, 6)) }],
-      series: [{}, ...wanted.map(({ name, color, dash }) => ({ label: name, stroke: color, width: 1.6, dash, points: { show: false }, spanGaps: false }))],
-      hooks: { setCursor: [(plot) => this.#follow(plot)] },
+      ...this.#common(panel, colors, X_TITLE), scales: { x: { time: false, auto: false }, y: { range: yRange } },
+      series: [{}, ...lines.map(({ name, look, dash }) => ({ label: name, stroke: colors.series[look % 7], width: (many ? 0.05 : 0.1) * colors.rem, dash: many ? [] : dash, points: { show: false }, spanGaps: false }))],
+      bands: many ? lines.flatMap(({ look }, i) => (i % 2 ? [] : [{ series: [i + 1, i + 2], fill: `color-mix(in srgb, ${colors.series[look % 7]} 35%, transparent)` }])) : [],
+      hooks: { setCursor: [(plot) => this.#follow(plot)], setSelect: [(plot) => this.#select(plot)] },
     };
     panel.plot = new uPlot(options, data, panel.canvas);
     panel.now = h("div", { className: "now" });
     panel.plot.over.append(panel.now);
+    panel.plot.over.addEventListener("dblclick", () => this.zoom(null));
+  }
+
+  /** What all plots have. */
+  #common(panel, colors, title) {
+    const axis = { stroke: colors.ink, font: colors.font, grid: { stroke: colors.grid, width: 1 }, ticks: { stroke: colors.grid, size: 4 } };
+    return {
+      width: this.#width(panel), height: colors.height, legend: { show: false }, padding: [10, 14, 0, 0],
+      cursor: { y: false, points: { size: 7 }, drag: { x: true, y: false, setScale: false, dist: 6 } },
+      axes: [{ ...axis, label: title, labelFont: colors.font, labelSize: 1.25 * colors.rem, size: 1.9 * colors.rem, space: 2.8 * colors.rem }, { ...axis, size: 3.6 * colors.rem, space: 2.1 * colors.rem, values: (_, splits) => splits.map((value) => number(value, 6)) }],
+    };
   }
 
   /** The pointer over a curve turns the gears. */
   #follow(plot) {
-    const { left } = plot.cursor;
-    if (left === undefined || left < 0 || !plot.cursor.event) return;
+    const { left, event } = plot.cursor;
+    if (left === undefined || left < 0 || !event || event.buttons) return;
     this.onPosition(plot.posToVal(left, "x"));
   }
 
-  #spectrum(panel, designs, colors) {
-    const wanted = designs.flatMap(({ name, results, color }, i) => results.curves.flatMap((curve, j) => (curve.spectrum && j === 0 ? [{ name, color: color ?? colors.series[i % 7], spectrum: curve.spectrum }] : [])));
+  /** A stretch of a curve that is drawn over with the pointer fills the plot. */
+  #select(plot) {
+    const { left, width } = plot.select;
+    if (width < 6) return;
+    const range = [plot.posToVal(left, "x"), plot.posToVal(left + width, "x")];
+    plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+    this.zoom(range);
+  }
+
+  /** The spectra of the designs, each with its orders out of the noise; of the live one an estimate where its span is part of the true period. */
+  #spectra() {
+    const mesh = this.shown[0].teeth;
+    const last = 4.4 * mesh;
+    return this.shown.flatMap(({ name, results, look, teeth }, i) => {
+      const [curve] = results.curves;
+      const partial = !curve.spectrum;
+      if (partial && (i > 0 || curve.mesh_position.length < 16)) return [];
+      const spectrum = curve.spectrum ?? partialSpectrum(curve, teeth, last);
+      return [{ name, look: look ?? i, partial, named: spectrum.named, orders: ordersOf({ spectrum }, last) }];
+    });
+  }
+
+  #spectrum(panel, colors) {
+    const wanted = this.#spectra();
     panel.figure.hidden = wanted.length === 0;
     if (!wanted.length) return;
-    const mesh = designs[0].teeth ?? Math.max(...wanted[0].spectrum.order);
-    const last = 4.4 * mesh;
-    const tables = wanted.map(({ spectrum }) => {
-      const kept = spectrum.order.map((order, i) => [order, spectrum.transmission_error_um[i]]).filter(([order, value]) => order <= last && value > LEAST_AMPLITUDE);
-      return [kept.map(([order]) => order), kept.map(([, value]) => value)];
-    });
-    panel.names = wanted[0].spectrum.named.filter(({ order, transmission_error_um: value }) => order <= last && value > LEAST_AMPLITUDE);
-    const data = uPlot.join(tables.map((table) => (table[0].length ? table : [[mesh], [null]])));
-    const shape = JSON.stringify([wanted.map(({ name, color }) => [name, color]), last]);
+    const last = 4.4 * this.shown[0].teeth;
+    panel.names = wanted[0].named.filter(({ order, transmission_error_um: value }) => order <= last && value > LEAST_AMPLITUDE);
+    const data = uPlot.join(wanted.map(({ orders }) => (orders.length ? [orders.map(([order]) => order), orders.map(([, value]) => value)] : [[this.shown[0].teeth], [null]])));
+    const shape = JSON.stringify([wanted.map(({ name, look }) => [name, look]), last]);
     if (panel.shape !== shape || !panel.plot) {
       this.#makeSpectrum(panel, data, wanted, colors, last);
       panel.shape = shape;
     } else {
       panel.plot.setData(data);
     }
-    panel.legend.replaceChildren(...(wanted.length > 1 ? wanted.map(sample) : []));
+    const part = wanted.some(({ partial }) => partial);
+    panel.legend.replaceChildren(...(wanted.length > 1 ? wanted.map((line) => sample({ ...line, dash: [] }, colors)) : []));
+    panel.below.hidden = !part;
+    if (part) panel.below.textContent = "Over the periods that were computed (Hann window): lines are wider than they are. For the whole spectrum clear Mesh periods under Load and method; a job computes it.";
   }
 
   #makeSpectrum(panel, data, wanted, colors, last) {
     panel.plot?.destroy();
-    const axis = { stroke: colors.ink, font: colors.font, grid: { stroke: colors.grid, width: 1 }, ticks: { stroke: colors.grid, size: 4 } };
     const options = {
-      width: this.#width(panel), height: HEIGHT * colors.rem, legend: { show: false }, cursor: { y: false, drag: { x: false, y: false } }, padding: [16, 14, 0, 0],
-      scales: { x: { time: false, range: [0, last] }, y: { distr: 3, range: (_, __, most) => [LEAST_AMPLITUDE, Math.max(1e-2, (most ?? 1) * 4)] } },
-      axes: [{ ...axis, label: "order, per revolution of the driven gear", labelFont: colors.font, labelSize: 1.25 * colors.rem, size: 1.9 * colors.rem }, { ...axis, size: 3.6 * colors.rem, values: (_, splits) => splits.map((value) => (value === null || Math.abs(Math.log10(value) % 1) > 1e-6 ? "" : number(value, 1))) }],
-      series: [{}, ...wanted.map(({ name, color }) => ({ label: name, stroke: color, paths: () => null, points: { show: false } }))],
+      ...this.#common(panel, colors, ORDER_TITLE), padding: [16, 14, 0, 0],
+      cursor: { y: false, drag: { x: true, y: false, dist: 6 } },
+      scales: { x: { time: false, range: ({ data: [orders] }, least, most) => (least === orders[0] && most === orders.at(-1) ? [0, last] : [Math.max(0, least), Math.min(last, most)]) }, y: { range: (_, __, most) => [0, (most ?? 1) * 1.15] } },
+      series: [{}, ...wanted.map(({ name, look }) => ({ label: name, stroke: colors.series[look % 7], paths: () => null, points: { show: false } }))],
       hooks: { draw: [(plot) => drawStems(plot, panel.names, colors)] },
     };
     panel.plot = new uPlot(options, data, panel.canvas);
   }
 
-  /** Kept until the page changes its size, because asking lays the page out. */
+  /** Measured once for each layout: to measure again while a hand drags would lay the page out anew for each curve. */
   #width(panel) {
-    panel.width ??= Math.max(200, Math.floor(panel.canvas.clientWidth || 400));
+    panel.width ??= Math.max(200, Math.floor(panel.canvas.clientWidth || this.place.clientWidth / 2));
     return panel.width;
   }
 
   #resize() {
     for (const panel of this.#panels.values()) {
       panel.width = null;
-      if (panel.plot && !panel.figure.hidden && panel.plot.width !== this.#width(panel)) panel.plot.setSize({ width: this.#width(panel), height: HEIGHT * looks().rem });
+      if (panel.plot && !panel.figure.hidden && (panel.plot.width !== this.#width(panel) || panel.plot.height !== looks().height)) panel.plot.setSize({ width: this.#width(panel), height: looks().height });
     }
     this.setPosition(this.#position);
   }
 }
 
-function seriesOf(panel, { name, results, color }, i, colors) {
-  const period = (curve) => curve.mesh_position.length * (curve.mesh_position[1] - curve.mesh_position[0]);
-  if (panel.ofLive) {
-    if (i > 0) return [];
-    const curve = results.curves[0];
-    return panel.ofLive(curve).map((each, j) => ({ ...each, x: curve.mesh_position, period: period(curve), color: colors.series[j % 7], dash: [] }));
-  }
-  const several = results.curves.length > 1;
-  return results.curves.map((curve, j) => ({
-    name: several ? `${name}, ${number(curve.output_torque_n_m)} N m` : name, values: panel.of(curve), x: curve.mesh_position,
-    period: period(curve), color: color ?? colors.series[i % 7], dash: DASHES[j % DASHES.length],
-  }));
+/** The positions of a line with the end of its span, where the first comes again. */
+function closed({ x, span }) {
+  return [...x, x[0] + span];
 }
 
-/** The positions with the end of the period, where the first comes again. */
-function closed(positions, period) {
-  return [...positions, positions[0] + period];
+/** The most and the least of each mesh period of a line: two lines. */
+function envelopeOf(line, from, to) {
+  const periods = [];
+  line.x.forEach((x, i) => {
+    const value = line.values[i];
+    const period = Math.floor(x + 1e-9);
+    if (value === null || period < from - 1 || period > to) return;
+    const known = periods[period] ?? [Infinity, -Infinity];
+    periods[period] = [Math.min(known[0], value), Math.max(known[1], value)];
+  });
+  const at = Object.keys(periods).map((period) => Number(period) + 0.5);
+  const bounds = Object.values(periods);
+  return [1, 0].map((side) => ({ ...line, at, values: bounds.map((each) => each[side]) }));
 }
 
 function yRange(_, least, most) {
@@ -235,9 +274,10 @@ function yRange(_, least, most) {
   return [least === 0 ? 0 : least - room, most + room];
 }
 
-function sample({ name, color, dash }) {
+/** A piece of a line beside its name. */
+export function sample({ name, look, dash }, colors) {
   const line = h("span", { className: dash?.length ? "swatch dashed" : "swatch" });
-  line.style.borderColor = color;
+  line.style.borderColor = colors.series[look % 7];
   return h("span", { className: "entry" }, line, name);
 }
 
@@ -261,13 +301,25 @@ function drawStems(plot, names, colors) {
       ctx.moveTo(x, foot);
       ctx.lineTo(x, y);
       ctx.stroke();
-      ctx.beginPath();
-      ctx.arc(x, y, 2.4 * ratio, 0, 2 * Math.PI);
-      ctx.fill();
+      mark(ctx, i - 1, x, y, 2.6 * ratio);
     });
   }
   drawNames(plot, names, colors, ratio);
   ctx.restore();
+}
+
+/** A mark that tells designs apart without color: disk, square, triangle, ring. */
+function mark(ctx, kind, x, y, r) {
+  ctx.beginPath();
+  if (kind % 4 === 1) ctx.rect(x - r, y - r, 2 * r, 2 * r);
+  else if (kind % 4 === 2) {
+    ctx.moveTo(x - 1.2 * r, y + r);
+    ctx.lineTo(x + 1.2 * r, y + r);
+    ctx.lineTo(x, y - 1.2 * r);
+    ctx.closePath();
+  } else ctx.arc(x, y, r, 0, 2 * Math.PI);
+  if (kind % 4 === 3) ctx.stroke();
+  else ctx.fill();
 }
 
 /** Names over their lines, the tallest first, none over another. */

@@ -1,6 +1,6 @@
 // The pair under load: how it deforms at the position shown, many times enlarged, its edges colored by stress.
 
-import { json, post, ProblemError } from "./api.js";
+import { json, ProblemError, solved } from "./api.js";
 import { debounced, h, number, s } from "./dom.js";
 
 /** Stresses are told apart in so many steps. */
@@ -9,8 +9,7 @@ const STEPS = 6;
 const REACH = 0.4;
 /** Fillets lie below this part of a tooth's height; above, contacts press on the flanks, which the grid does not resolve. */
 const FILLETS = 0.2;
-/** Milliseconds between two looks at a job, and until a position counts as chosen. */
-const PAUSE = 100;
+/** Milliseconds until a position counts as chosen. */
 const REST = 200;
 
 /** Shows the pair of the live design deformed, as long as `button` is pressed and the design stays. */
@@ -18,7 +17,6 @@ export class Deformation {
   #on = false;
   /** Counts what was asked, so that an answer that nobody waits for any more is left. */
   #asked = 0;
-  #jobs = new Map();
 
   /** `live` waits for the results that are shown and gives them with their submission, `position` is the mesh position. */
   constructor({ drawing, button, note, live, position }) {
@@ -62,9 +60,9 @@ export class Deformation {
     const wanted = () => this.#on && asked === this.#asked;
     try {
       const { submission } = await this.live();
-      const job = await this.#jobOf(submission, wanted);
+      const job = await solved(submission);
       if (!wanted()) return;
-      const edges = await json(`v1/jobs/${job}/results/edges.json?mesh_position=${this.position().toFixed(4)}`);
+      const edges = await json(`v1/jobs/${job.id}/results/edges.json?mesh_position=${this.position().toFixed(4)}`);
       if (!wanted()) return;
       const { scale, top } = this.drawing.setDeformed(edges);
       this.note.replaceChildren(...words(edges, scale, top));
@@ -72,21 +70,6 @@ export class Deformation {
       if (!(error instanceof ProblemError)) throw error;
       if (wanted()) this.note.replaceChildren(error.problem.errors?.[0]?.detail ?? error.message);
     }
-  }
-
-  /** The id of a job of this submission that has ended; an equal one that is known gives its results at once. */
-  async #jobOf(submission, wanted) {
-    const name = JSON.stringify(submission);
-    if (!this.#jobs.has(name)) {
-      let job = await post("v1/jobs", submission);
-      while (["accepted", "running"].includes(job.status) && wanted()) {
-        await new Promise((resolve) => setTimeout(resolve, PAUSE));
-        job = await json(`v1/jobs/${job.id}`);
-      }
-      if (job.problem) throw new ProblemError(job.problem);
-      this.#jobs.set(name, job.id);
-    }
-    return this.#jobs.get(name);
   }
 }
 

@@ -1,4 +1,9 @@
-// The design that is worked on: a submission, its changes, and the address that carries it.
+// What is worked on: a submission, the designs that were kept beside it, the way back from every change, and the address that carries it.
+
+/** So many changes can be taken back. */
+const MOST_CHANGES = 200;
+/** What follows in one field within so many milliseconds is one change. */
+const ONE_CHANGE = 1500;
 
 /** The parts of a JSON pointer. */
 export function parts(pointer) {
@@ -25,22 +30,52 @@ export function withValue(document, pointer, value) {
   return copy;
 }
 
-/** The submission that is worked on. Its listeners are told what changed it. */
+/** Whether two submissions are the same. */
+export function same(one, other) {
+  return JSON.stringify(one) === JSON.stringify(other);
+}
+
+/**
+ * The submission that is worked on and the designs kept beside it. Its listeners are told what changed it: `start`, `open`, `form`, `mend`, `drag` under
+ * a hand, `snap` when a hand lets go of what cannot be, `undo`, or `kept` where only the kept designs changed.
+ */
 export class Design {
   #listeners = [];
+  #resting = [];
+  #past = [];
+  #future = [];
+  #last = { key: null, time: 0 };
+  #hand = null;
 
   constructor() {
     this.submission = null;
+    this.kept = [];
+    this.by = "start";
   }
 
+  /** Calls `listener` with what changed the design. */
   onChange(listener) {
     this.#listeners.push(listener);
   }
 
-  /** Takes another submission as a whole; `by` says who does. */
+  /** Calls `listener` when a hand lets go. */
+  onRest(listener) {
+    this.#resting.push(listener);
+  }
+
+  /** A hand takes hold: all that it changes until [`release`] is one change. */
+  hold() {
+    this.#hand = Symbol("hand");
+  }
+
+  release() {
+    this.#hand = null;
+    for (const listener of this.#resting) listener();
+  }
+
+  /** Takes another submission as a whole. */
   replace(submission, by) {
-    this.submission = structuredClone(submission);
-    for (const listener of this.#listeners) listener(by);
+    this.#change({ submission: structuredClone(submission) }, by, null);
   }
 
   get(pointer) {
@@ -55,7 +90,66 @@ export class Design {
   setAll(values, by) {
     let next = this.submission;
     for (const [pointer, value] of Object.entries(values)) next = withValue(next, pointer, value);
-    this.submission = next;
+    if (same(next, this.submission)) return;
+    this.#change({ submission: next }, by, this.#hand ?? Object.keys(values).join());
+  }
+
+  /** Goes back to what could be computed, as part of the change that led away from it. */
+  snapBack(submission) {
+    this.#future = [];
+    this.submission = submission;
+    if (this.#past.length && same(this.#past.at(-1).submission, submission)) this.#past.pop();
+    this.#last.key = null;
+    this.#tell("snap");
+  }
+
+  /** Other kept designs. */
+  keep(kept) {
+    this.#change({ kept }, "kept", null);
+  }
+
+  get canUndo() {
+    return this.#past.length > 0;
+  }
+
+  get canRedo() {
+    return this.#future.length > 0;
+  }
+
+  undo() {
+    this.#step(this.#past, this.#future);
+  }
+
+  redo() {
+    this.#step(this.#future, this.#past);
+  }
+
+  #step(from, to) {
+    const state = from.pop();
+    if (!state) return;
+    to.push(this.#state());
+    Object.assign(this, state);
+    this.#last.key = null;
+    this.#tell("undo");
+  }
+
+  #state() {
+    return { submission: this.submission, kept: this.kept };
+  }
+
+  #change(next, by, key) {
+    const now = performance.now();
+    const goesOn = key !== null && key === this.#last.key && (this.#hand !== null || now - this.#last.time < ONE_CHANGE);
+    if (!goesOn && this.submission) this.#past.push(this.#state());
+    if (this.#past.length > MOST_CHANGES) this.#past.shift();
+    this.#future = [];
+    this.#last = { key, time: now };
+    Object.assign(this, next);
+    this.#tell(by);
+  }
+
+  #tell(by) {
+    this.by = by;
     for (const listener of this.#listeners) listener(by);
   }
 }
@@ -68,8 +162,10 @@ async function through(bytes, stream) {
 /** The fragment of an address that carries `submission`. */
 export async function toFragment(submission) {
   const packed = await through(new TextEncoder().encode(JSON.stringify(submission)), new CompressionStream("deflate-raw"));
-  const text = btoa(String.fromCharCode(...packed));
-  return `#design=${text.replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, "")}`;
+  // In pieces: a measured gear of a thousand teeth has more bytes than a function takes arguments.
+  let letters = "";
+  for (let i = 0; i < packed.length; i += 4096) letters += String.fromCharCode(...packed.subarray(i, i + 4096));
+  return `#design=${btoa(letters).replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, "")}`;
 }
 
 /** The submission that an address carries; null if it carries none that can be read. */
@@ -95,4 +191,23 @@ export function nameOf(submission) {
   const [driving, driven] = [hole("driving"), hole("driven")];
   const holes = [driving, driven].filter(Boolean).join(" | ") || "no holes";
   return `${submission.pair?.driving?.tooth_count}/${submission.pair?.driven?.tooth_count}, ${holes}`;
+}
+
+/** The fields in which submissions differ: each pointer with the value of every submission. */
+export function differences(submissions) {
+  const flat = submissions.map((submission) => flattened(submission));
+  const pointers = [...new Set(flat.flatMap((each) => [...each.keys()]))];
+  const rows = pointers.map((pointer) => ({ pointer, values: flat.map((each) => each.get(pointer)) }));
+  return rows.filter(({ values }) => values.some((value) => JSON.stringify(value) !== JSON.stringify(values[0])));
+}
+
+/** Every value of a document by its pointer; a list of numbers is one value. */
+function flattened(document, pointer = "", found = new Map()) {
+  for (const [name, value] of Object.entries(document ?? {})) {
+    const place = `${pointer}/${name}`;
+    const nested = value !== null && typeof value === "object" && !(Array.isArray(value) && typeof value[0] !== "object");
+    if (nested) flattened(value, place, found);
+    else if (value !== null && value !== undefined) found.set(place, value);
+  }
+  return found;
 }

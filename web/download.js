@@ -16,27 +16,50 @@ const COLUMNS = ["mesh_position", "driving_angle_deg", "driven_angle_deg", "tran
 
 const STRESSES = ["driving", "driven"].flatMap((gear) => ["root_mpa", "root_angle_deg", "root_tension_mpa", "root_tension_angle_deg", "root_compression_mpa", "root_compression_angle_deg", "hole_mpa", "hole_angle_deg"].map((name) => `stress.${gear}.${name}`));
 
+/** Lines of values as CSV; texts with commas in quotes, and none that a spreadsheet takes for a formula. */
+export function csvOf(lines) {
+  const cell = (value) => {
+    if (typeof value !== "string") return String(value ?? "");
+    const safe = /^[=+\-@\t\r]/.test(value) ? `'${value}` : value;
+    return /[",\r\n]/.test(safe) ? `"${safe.replace(/"/g, '""')}"` : safe;
+  };
+  return `${lines.map((line) => line.map(cell).join(",")).join("\r\n")}\r\n`;
+}
+
 /** Every curve of the results as one table: a line for each torque and position. */
 export function csv(results) {
   const offsets = [...new Set(results.curves.flatMap((curve) => curve.load_shares.map(({ pair_offset: offset }) => offset)))].sort((a, b) => a - b);
   const stressed = results.curves.some(({ stress }) => stress) ? STRESSES : [];
-  const lines = [["output_torque_n_m", ...COLUMNS, ...stressed, ...offsets.map((offset) => `load_share.${offset}`)].join(",")];
+  const lines = [["output_torque_n_m", ...COLUMNS, ...stressed, ...offsets.map((offset) => `load_share.${offset}`)]];
   for (const curve of results.curves) {
     const share = (offset) => curve.load_shares.find((each) => each.pair_offset === offset)?.share;
     curve.mesh_position.forEach((_, i) => {
-      const values = [curve.output_torque_n_m, ...COLUMNS.map((name) => curve[name]?.[i]), ...stressed.map((name) => name.split(".").reduce((within, part) => within?.[part], curve)?.[i]), ...offsets.map((offset) => share(offset)?.[i] ?? 0)];
-      lines.push(values.map((value) => value ?? "").join(","));
+      lines.push([curve.output_torque_n_m, ...COLUMNS.map((name) => curve[name]?.[i]), ...stressed.map((name) => name.split(".").reduce((within, part) => within?.[part], curve)?.[i]), ...offsets.map((offset) => share(offset)?.[i] ?? 0)]);
     });
   }
-  return `${lines.join("\r\n")}\r\n`;
+  return csvOf(lines);
 }
 
-/** A drawing of the page as a file of its own: looks that come from the style sheet are written into it. */
-export function drawingFile(svg) {
+/** The spectra of the results as one table: a line for each torque and order. */
+export function ordersCsv(results) {
+  const names = ["order", "transmission_error_um", "transmission_error_phase_deg", "mesh_stiffness_tangent_n_per_m", "mesh_stiffness_tangent_phase_deg"];
+  const lines = [["output_torque_n_m", ...names, "label"]];
+  for (const { output_torque_n_m: torque, spectrum } of results.curves) {
+    spectrum?.order.forEach((order, i) => {
+      const label = spectrum.named.filter((each) => each.order === order).map((each) => each.label).join(" ");
+      lines.push([torque, ...names.map((name) => spectrum[name]?.[i]), label]);
+    });
+  }
+  return csvOf(lines);
+}
+
+/** A drawing of the page as an element of its own: looks that come from the style sheet are written into it. */
+export function drawingOf(svg) {
   const copy = svg.cloneNode(true);
   const [from, to] = [svg.querySelectorAll("*"), copy.querySelectorAll("*")];
   from.forEach((element, i) => {
     const style = getComputedStyle(element);
+    if (style.display === "none") to[i].setAttribute("display", "none");
     for (const name of ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "vector-effect", "font-family", "text-anchor", "paint-order"]) {
       const value = style.getPropertyValue(name);
       if (value && value !== "none" || name === "fill") to[i].setAttribute(name, value);
@@ -47,21 +70,5 @@ export function drawingFile(svg) {
   const box = svg.viewBox.baseVal;
   copy.setAttribute("width", 1200);
   copy.setAttribute("height", Math.round((1200 * box.height) / box.width));
-  return new XMLSerializer().serializeToString(copy);
-}
-
-/** The canvases of the charts below each other, as a picture. */
-export async function chartsPicture(canvases, background) {
-  const shown = canvases.filter(Boolean);
-  const [width, height] = [Math.max(...shown.map((each) => each.width)), shown.reduce((sum, each) => sum + each.height, 0)];
-  const sheet = h("canvas", { width, height });
-  const context = sheet.getContext("2d");
-  context.fillStyle = background;
-  context.fillRect(0, 0, width, height);
-  let y = 0;
-  for (const canvas of shown) {
-    context.drawImage(canvas, 0, y);
-    y += canvas.height;
-  }
-  return new Promise((resolve) => sheet.toBlob(resolve, "image/png"));
+  return copy;
 }

@@ -2,12 +2,21 @@
 
 import { Beginnings } from "./beginnings.js";
 import { at } from "./design.js";
+import { deviations } from "./deviations.js";
 import { h, number, unit } from "./dom.js";
 import { parsed, read, stepped, write } from "./inputs.js";
 import { help, kindOf, resolve, saidDefault } from "./schema.js";
 
 /** Fields that a designer looks for first; they stand above the others of their object. */
-const FIRST = ["holes", "tip_relief", "tooth_count", "module_mm"];
+const FIRST = ["holes", "tip_relief", "tooth_count", "profile_shift"];
+
+/** Fields that both gears have to have alike: they stand once, with the pair, until they are unlocked. */
+const ALIKE = ["module_mm", "pressure_angle_deg"];
+
+/** Lengths of the rack, which drawings give in modules: how many by default. */
+const MULTIPLES = { addendum_mm: 1, dedendum_mm: 1.25, rack_tip_radius_mm: 0.38 };
+
+const MEMBERS = ["driving", "driven"];
 
 /** Fields that stand in place of each other: one that gets a value takes those of the others away. */
 const INSTEAD = {
@@ -17,10 +26,16 @@ const INSTEAD = {
 
 export class Form {
   #fields = new Map();
+  /** The last module and number of teeth of each gear that were numbers: what is typed passes through none. */
+  #last = {};
+  #unlocked = new Set();
 
-  constructor(place, api, design) {
-    Object.assign(this, { place, api, design, beginnings: new Beginnings(api, design) });
+  /** `notify` says what else a change has changed. */
+  constructor(place, api, design, notify) {
+    Object.assign(this, { place, api, design, notify, beginnings: new Beginnings(api, design) });
     place.addEventListener("submit", (event) => event.preventDefault());
+    // Made once: what they say stays while fields are made anew around them.
+    this.tools = Object.fromEntries(MEMBERS.map((member) => [member, deviations(member, design)]));
     this.render();
   }
 
@@ -30,35 +45,68 @@ export class Form {
     const known = this.place.childElementCount > 0;
     const focused = document.activeElement?.id;
     this.#fields.clear();
+    for (const name of ALIKE) if (new Set(MEMBERS.map((member) => this.design.get(`/pair/${member}/${name}`))).size > 1) this.#unlocked.add(name);
     const submission = kindOf(this.api, { $ref: "#/components/schemas/Submission" });
     const { pair, method, output_torques_n_m: torques, ...rest } = submission.schema.properties;
     const members = resolve(this.api, pair).properties;
+    const gear = resolve(this.api, members.driving);
     this.place.replaceChildren(
-      this.#field("/output_torques_n_m", torques, true),
-      this.#field("/method", method, true),
-      this.#field("/pair/center_distance_mm", members.center_distance_mm, true),
+      this.#section("Pair", "/pair", [
+        this.#field("/pair/center_distance_mm", members.center_distance_mm, true),
+        ...ALIKE.map((name) => this.#alike(name, gear)),
+      ], true),
       this.#gear("driving", members.driving),
       this.#gear("driven", members.driven),
-      this.#group("More", "/", Object.entries(rest).map(([name, schema]) => this.#field(`/${name}`, schema, false)), false),
+      this.#section("Load and method", "/", [
+        this.#field("/output_torques_n_m", torques, true),
+        this.#field("/method", method, true),
+        ...Object.entries(rest).map(([name, schema]) => this.#field(`/${name}`, schema, false)),
+      ], false),
     );
     for (const each of this.place.querySelectorAll("details")) if (known) each.open = open.has(each.dataset.pointer);
+    for (const member of MEMBERS) this.#remember(member);
     if (focused && document.activeElement?.id !== focused) document.getElementById(focused)?.focus();
   }
 
   /** Shows the values of the design in the fields that are there; makes the form anew where other fields are needed. */
   refresh() {
+    for (const member of MEMBERS) this.#remember(member);
     if (this.#shape() !== this.shape) return this.render();
     for (const { show } of this.#fields.values()) show();
   }
 
-  /** Shows what is wrong at the fields; gives back the errors whose field is not in the form. */
+  /** Shows what is wrong at the fields. A section that is closed says so at its head: to open it would close the one that is worked in. */
   showErrors(errors = []) {
-    for (const { element } of this.#fields.values()) this.#clear(element);
-    return errors.filter((error) => {
+    for (const field of this.#fields.values()) this.#clear(field);
+    for (const each of this.place.querySelectorAll(".section.wrong")) each.classList.remove("wrong");
+    for (const error of errors) {
       const field = this.#nearest(error.pointer);
-      if (!field) return true;
-      this.#mark(field, error);
-      return false;
+      if (field) this.#mark(field, error);
+    }
+  }
+
+  /** Opens every section, or leaves one of them open at a time. */
+  unfold(all) {
+    this.unfolded = all;
+    for (const section of this.place.querySelectorAll(".section")) {
+      section.name = all ? "" : "section";
+      if (all) section.open = true;
+    }
+  }
+
+  /** What the field at a pointer is called. */
+  titleOf(pointer) {
+    const field = this.#fields.get(pointer.replace(/\/\d+$/, ""));
+    return field?.schema.title ?? pointer.split("/").pop().replace(/_/g, " ");
+  }
+
+  /** The numbers, words and flags of the form: `{ pointer, title, value, kind }`, with the gear that they belong to. */
+  fields() {
+    return [...this.#fields.values()].filter(({ kind }) => kind && ["number", "choice", "flag"].includes(kind.kind)).map(({ pointer, schema, kind }) => {
+      const place = /^\/pair\/(driving|driven)/.exec(pointer)?.[1];
+      const inner = pointer.split("/").slice(place ? 3 : 1, -1).filter((part) => !["pair", "blank"].includes(part)).join(" ").replace(/_/g, " ");
+      const printed = unit(schema["x-unit"]);
+      return { pointer, kind, value: this.design.get(pointer) ?? schema.default, title: `${place ? `${place}: ` : ""}${inner ? `${inner}, ` : ""}${schema.title}${printed ? ` (${printed})` : ""}` };
     });
   }
 
@@ -79,35 +127,78 @@ export class Form {
     return null;
   }
 
-  #clear(element) {
+  #clear({ element, described }) {
     element.classList.remove("wrong");
     for (const old of element.querySelectorAll(":scope > .field-error")) old.remove();
-    for (const input of element.querySelectorAll(":scope > .row > [aria-invalid]")) input.removeAttribute("aria-invalid");
+    for (const input of element.querySelectorAll(":scope > .row > [aria-invalid]")) {
+      input.removeAttribute("aria-invalid");
+      if (described) input.setAttribute("aria-describedby", described);
+      else input.removeAttribute("aria-describedby");
+    }
   }
 
-  #mark({ element, pointer, schema }, error) {
+  #mark({ element, pointer, schema, described }, error) {
     const mend = error.nearest === null || error.nearest === undefined ? null
       : h("button", { type: "button", className: "mend", on: { click: () => this.design.set(error.pointer, error.nearest, "mend") } }, `Use ${number(error.nearest, 8)} ${unit(schema["x-unit"] ?? schema.items?.["x-unit"])}`.trim());
     element.classList.add("wrong");
-    element.append(h("p", { className: "field-error", id: `error-${pointer}` }, error.detail, " ", mend));
+    const id = `error-${pointer}-${element.querySelectorAll(":scope > .field-error").length}`;
+    element.append(h("p", { className: "field-error", id }, error.detail, " ", mend));
     const input = element.querySelector(":scope > .row > input, :scope > .row > select, :scope > .row > textarea");
     input?.setAttribute("aria-invalid", "true");
-    for (let parent = element.closest("details"); parent; parent = parent.parentElement?.closest("details")) parent.open = true;
+    input?.setAttribute("aria-describedby", [input.getAttribute("aria-describedby") ?? described, id].filter(Boolean).join(" "));
+    for (let parent = element.closest("details"); parent; parent = parent.parentElement?.closest("details")) {
+      if (parent.classList.contains("section")) parent.classList.add("wrong");
+      else parent.open = true;
+    }
   }
 
   #gear(member, schema) {
     const pointer = `/pair/${member}`;
     const title = member === "driving" ? "Driving gear" : "Driven gear";
     const { properties, required = [] } = resolve(this.api, schema);
-    const { blank, ...own } = properties;
+    const { blank, ...all } = properties;
+    const own = Object.fromEntries(Object.entries(all).filter(([name]) => !ALIKE.includes(name) || this.#unlocked.has(name)));
     const inner = resolve(this.api, blank).properties;
     const names = [...FIRST.filter((name) => name in own && name !== "tip_relief"), ...required.filter((name) => name in own && !FIRST.includes(name))];
-    const shown = names.map((name) => this.#field(`${pointer}/${name}`, own[name], true));
+    const shown = names.map((name) => this.#field(`${pointer}/${name}`, own[name], required.includes(name)));
     const body = Object.entries(inner).sort(([a], [b]) => rank(a) - rank(b)).map(([name, each]) => this.#field(`${pointer}/blank/${name}`, each, name === "bore_radius_mm"));
     const relief = own.tip_relief ? [this.#field(`${pointer}/tip_relief`, own.tip_relief, false)] : [];
     const others = Object.keys(own).filter((name) => !names.includes(name) && name !== "tip_relief");
-    const more = this.#group(`More of the ${title.toLowerCase()}`, `${pointer}/more`, others.map((name) => this.#field(`${pointer}/${name}`, own[name], false)), false);
-    return this.#group(title, pointer, [...shown, ...body, ...relief, more], true);
+    // What the design gives, it shows: nothing that counts is folded away.
+    const isGiven = (name) => ![undefined, null].includes(this.design.get(`${pointer}/${name}`)) && JSON.stringify(this.design.get(`${pointer}/${name}`)) !== "[]";
+    const of = (name) => this.#field(`${pointer}/${name}`, own[name], false);
+    const given = others.filter((name) => isGiven(name) && name !== "tooth_deviations");
+    const isPart = (name) => typeof this.design.get(`${pointer}/${name}`) === "object";
+    const more = this.#group(`More of the ${title.toLowerCase()}`, `${pointer}/more`, others.filter((name) => !given.includes(name) && name !== "tooth_deviations").map(of), false);
+    const teeth = own.tooth_deviations ? [of("tooth_deviations"), this.tools[member]] : [];
+    return this.#section(title, pointer, [...shown, ...given.filter((name) => !isPart(name)).map(of), ...body, ...relief, ...given.filter(isPart).map(of), ...teeth, more], false);
+  }
+
+  /** A field that both gears have alike, or the button that makes it one again. */
+  #alike(name, gear) {
+    const schema = gear.properties[name];
+    const needed = (gear.required ?? []).includes(name);
+    const locked = !this.#unlocked.has(name);
+    const both = MEMBERS.map((member) => `/pair/${member}/${name}`);
+    const lock = h("button", { type: "button", className: "lock", ariaLabel: `${schema.title}: the same for both gears`, aria: { pressed: String(locked) }, title: locked ? "The same for both gears; press to give each its own" : "Each gear has its own; press to give both that of the driving gear", on: { click: () => this.#lock(name, !locked) } }, locked ? "=" : "≠");
+    if (!locked) return h("div", { className: "field alike" }, h("div", { className: "row" }, h("span", {}, schema.title), h("span", { className: "note" }, "with each gear"), lock));
+    const element = this.#field(both[0], schema, needed);
+    element.classList.add("alike");
+    element.querySelector(".row").append(lock);
+    this.#fields.set(both[1], this.#fields.get(both[0]));
+    return element;
+  }
+
+  #lock(name, locked) {
+    if (locked) {
+      this.#unlocked.delete(name);
+      this.design.set(`/pair/driven/${name}`, this.design.get(`/pair/driving/${name}`), "form");
+    } else this.#unlocked.add(name);
+    this.render();
+  }
+
+  #section(title, pointer, children, open) {
+    return h("details", { className: "group section", name: this.unfolded ? "" : "section", open: open || this.unfolded, data: { pointer } }, h("summary", {}, title), h("div", { className: "fields" }, ...children));
   }
 
   #group(title, pointer, children, open) {
@@ -134,8 +225,8 @@ export class Form {
     return JSON.stringify(shape(this.design.submission));
   }
 
-  #register(pointer, element, schema, show) {
-    this.#fields.set(pointer, { element, pointer, schema, show });
+  #register(pointer, element, schema, show, kind = null, described = null) {
+    this.#fields.set(pointer, { element, pointer, schema, show, kind, described });
     show();
     return element;
   }
@@ -151,18 +242,78 @@ export class Form {
     const words = said ? h("p", { className: "help", id: `help-${pointer}`, hidden: true }, said, bounds(kind)) : null;
     if (words) input.setAttribute("aria-describedby", words.id);
     const more = words ? h("button", { type: "button", className: "about", ariaLabel: `About ${label.textContent}`, aria: { expanded: "false", controls: words.id }, on: { click: (event) => toggle(event.currentTarget, words) } }, "?") : null;
-    const element = h("div", { className: `field ${kind.kind}` }, h("div", { className: "row" }, label, input, h("span", { className: "unit" }, printed), more), words);
+    // A value that has a default is marked as given, and goes back to it.
+    const clear = needed ? null : h("button", { type: "button", className: "clear", hidden: true, ariaLabel: `${label.textContent}: back to the default`, title: "Given; press for the default", on: { click: () => { this.design.set(pointer, undefined, "mend"); } } }, "×");
+    const element = h("div", { className: `field ${kind.kind}` }, h("div", { className: "row" }, label, input, h("span", { className: "unit" }, printed), more, clear), words);
     if (!needed && "placeholder" in input) input.placeholder = schema.default !== undefined && schema.default !== null ? String(schema.default) : saidDefault(schema);
     return this.#register(pointer, element, schema, () => {
-      if (document.activeElement !== input || this.design.by === "drag" || this.design.by === "mend") write(input, kind, this.design.get(pointer));
-    });
+      const value = this.design.get(pointer);
+      if (document.activeElement !== input || this.design.by !== "form") write(input, kind, value);
+      const given = clear !== null && value !== undefined && value !== null && value !== schema.default;
+      element.classList.toggle("given", given);
+      if (clear) clear.hidden = !given;
+    }, kind, words?.id ?? null);
   }
 
   /** Sets a field, and takes away what it stands in place of. */
   #put(pointer, value) {
+    const [, member, name] = /^\/pair\/(driving|driven)\/(module_mm|pressure_angle_deg|tooth_count)$/.exec(pointer) ?? [];
+    if (member) return this.#putBasic(ALIKE.includes(name) && !this.#unlocked.has(name) ? MEMBERS : [member], name, value);
     const holder = pointer.slice(0, pointer.lastIndexOf("/") + 1);
     const others = value === undefined ? [] : (INSTEAD[pointer.slice(holder.length)] ?? []).filter((name) => this.design.get(holder + name) !== undefined);
     this.design.setAll({ [pointer]: value, ...Object.fromEntries(others.map((name) => [holder + name, undefined])) }, "form");
+  }
+
+  #remember(member) {
+    const known = (this.#last[member] ??= {});
+    for (const name of ["module_mm", "tooth_count"]) {
+      const value = this.design.get(`/pair/${member}/${name}`);
+      if (value > 0) known[name] = value;
+    }
+  }
+
+  /** Sets what other lengths are given in multiples of, or number teeth by: those lengths go with it, and this is said. */
+  #putBasic(members, name, value, by = "form") {
+    const changes = {};
+    const told = new Set();
+    for (const member of members) {
+      const pointer = `/pair/${member}`;
+      const before = this.#last[member]?.[name];
+      changes[`${pointer}/${name}`] = value;
+      if (!(value > 0) || !(before > 0) || value === before) continue;
+      const followed = name === "module_mm" ? this.#scaled(pointer, value, before) : name === "tooth_count" ? this.#renumbered(pointer, value, before) : {};
+      for (const [field, [words, now]] of Object.entries(followed)) {
+        changes[`${pointer}/${field}`] = now;
+        told.add(words);
+      }
+    }
+    this.design.setAll(changes, by);
+    for (const member of members) this.#remember(member);
+    if (told.size) this.notify(`${[...told].join(", ")}.`);
+  }
+
+  /** The given lengths of a rack that go with the module: as many modules as before, or none where that is the default. */
+  #scaled(pointer, value, before) {
+    const followed = {};
+    for (const [field, usual] of Object.entries({ ...MULTIPLES, tip_diameter_mm: 0 })) {
+      const given = this.design.get(`${pointer}/${field}`);
+      if (typeof given !== "number") continue;
+      const modules = given / before;
+      const isUsual = Math.abs(modules - usual) < 1e-6;
+      const title = this.titleOf(`${pointer}/${field}`);
+      followed[field] = isUsual ? [`${title} back to its default of ${usual} modules`, undefined] : [`${title} stays ${number(modules, 4)} modules`, Number((modules * value).toPrecision(9))];
+    }
+    return followed;
+  }
+
+  /** What is given tooth by tooth, or to the tips of so many teeth. */
+  #renumbered(pointer, value, before) {
+    const followed = {};
+    const tip = this.design.get(`${pointer}/tip_diameter_mm`);
+    if (typeof tip === "number") followed.tip_diameter_mm = ["The tip diameter grows with the teeth", Number((tip + this.design.get(`${pointer}/module_mm`) * (value - before)).toPrecision(9))];
+    const { eccentricity, ...lists } = this.design.get(`${pointer}/tooth_deviations`) ?? {};
+    if (Object.values(lists).some((list) => Array.isArray(list) && list.length > 0 && list.length !== value)) followed.tooth_deviations = [`The deviations of ${before} teeth were taken away`, eccentricity ? { eccentricity } : undefined];
+    return followed;
   }
 
   #control(kind, id, pointer) {
@@ -190,7 +341,14 @@ export class Form {
     const value = this.design.get(pointer) ?? kind.schema.default;
     if (!sign || typeof value !== "number") return;
     event.preventDefault();
-    this.design.set(pointer, stepped(value, sign * (event.shiftKey ? 10 : 1), kind), "drag");
+    this.#turn(pointer, stepped(value, sign * (event.shiftKey ? 10 : 1), kind));
+  }
+
+  /** Sets a number as a hand does. */
+  #turn(pointer, value) {
+    const [, member, name] = /^\/pair\/(driving|driven)\/(module_mm|pressure_angle_deg|tooth_count)$/.exec(pointer) ?? [];
+    if (member) this.#putBasic(ALIKE.includes(name) && !this.#unlocked.has(name) ? MEMBERS : [member], name, value, "drag");
+    else this.design.set(pointer, value, "drag");
   }
 
   /** The name of a number is dragged sideways to change it. */
@@ -203,12 +361,16 @@ export class Form {
       const move = (moved) => {
         const by = Math.round((moved.clientX - event.clientX) / 4);
         if (!begun && Math.abs(by) < 1) return;
+        if (!begun) this.design.hold();
         begun = true;
-        this.design.set(pointer, stepped(value, by, kind), "drag");
+        this.#turn(pointer, stepped(value, by, kind));
       };
       label.setPointerCapture(event.pointerId);
       label.addEventListener("pointermove", move);
-      const end = () => label.removeEventListener("pointermove", move);
+      const end = () => {
+        label.removeEventListener("pointermove", move);
+        if (begun) this.design.release();
+      };
       for (const name of ["pointerup", "pointercancel"]) label.addEventListener(name, end, { once: true });
     });
   }
@@ -244,7 +406,8 @@ export class Form {
     const none = kind.optional || kind.schema.default !== undefined ? [h("option", { value: "" }, "default")] : [];
     const options = kind.variants.map((variant, i) => h("option", { value: i }, variant.title ?? `variant ${i + 1}`));
     const id = `field-${pointer}`;
-    const select = h("select", { id, on: { change: (event) => this.design.set(pointer, event.target.value === "" ? undefined : this.beginnings.variant(pointer, kindOf(this.api, kind.variants[event.target.value])), "form") } }, ...none, ...options);
+    const choose = (place) => (place === "" ? undefined : this.beginnings.variant(pointer, kindOf(this.api, kind.variants[place])));
+    const select = h("select", { id, on: { change: (event) => this.design.set(pointer, choose(event.target.value), "mend") } }, ...none, ...options);
     const chosen = kind.variants[index];
     const inner = chosen ? kindOf(this.api, chosen) : null;
     const fields = inner?.kind === "object" ? Object.entries(inner.schema.properties).map(([name, schema]) => this.#field(`${pointer}/${name}`, schema, (inner.schema.required ?? []).includes(name))) : inner?.kind === "list" ? [this.#list(pointer, inner)] : [];
@@ -258,8 +421,13 @@ export class Form {
     const values = this.design.get(pointer) ?? [];
     const entries = values.map((_, i) => h("div", { className: "entry-of-list" },
       this.#field(`${pointer}/${i}`, kind.items.schema, true),
-      h("button", { type: "button", on: { click: () => this.design.set(`${pointer}/${i}`, undefined, "form") } }, "Remove")));
-    const add = h("button", { type: "button", on: { click: () => this.design.set(pointer, [...values, this.beginnings.further(pointer, kind, values)], "form") } }, `Add to ${(kind.schema.title ?? "the list").toLowerCase()}`);
+      h("button", { type: "button", on: { click: () => this.design.set(`${pointer}/${i}`, undefined, "mend") } }, "Remove")));
+    // The list as it is then: its entries may have changed since they were drawn.
+    const further = () => {
+      const now = this.design.get(pointer) ?? [];
+      this.design.set(pointer, [...now, this.beginnings.further(pointer, kind, now)], "mend");
+    };
+    const add = h("button", { type: "button", on: { click: further } }, `Add to ${(kind.schema.title ?? "the list").toLowerCase()}`);
     const element = h("fieldset", { className: "field list" }, h("legend", { title: help(kind.schema) }, kind.schema.title ?? ""), ...entries, add);
     return this.#fields.has(pointer) ? element : this.#register(pointer, element, kind.schema, () => {});
   }
@@ -276,7 +444,9 @@ function variantOf(value) {
 function fits(variant, value) {
   if (variant.enum) return variant.enum.includes(value);
   if (variant.type === "array") return Array.isArray(value);
-  return typeof value === "object" && !Array.isArray(value) && (variant.required ?? []).every((name) => name in value);
+  if (variant.type === "number") return typeof value === "number";
+  const word = ([name, schema]) => schema.enum?.length !== 1 || value[name] === schema.enum[0];
+  return typeof value === "object" && !Array.isArray(value) && (variant.required ?? []).every((name) => name in value) && Object.entries(variant.properties ?? {}).every(word);
 }
 
 function bounds({ kind, schema }) {

@@ -28,6 +28,7 @@ export class HoleHandles {
 
   refresh(wrong) {
     const patterns = this.patterns();
+    this.#bounds();
     const isWrong = wrong.some((pointer) => pointer.startsWith(this.pointer));
     const shape = JSON.stringify(patterns.map(([, pattern]) => anglesOf(pattern).length + (pattern.slot ? "s" : "r")));
     if (shape !== this.drawn) {
@@ -36,7 +37,14 @@ export class HoleHandles {
     }
     this.element.classList.toggle("wrong", isWrong);
     const handles = [...this.element.children];
-    for (const [, pattern] of patterns) for (const angle of anglesOf(pattern)) place(handles.shift(), pattern, angle);
+    for (const [, pattern] of patterns) for (const angle of anglesOf(pattern)) place(handles.shift(), pattern, angle, this.bounds);
+  }
+
+  /** Where circles of holes can lie: between the bore and the root circle. */
+  #bounds() {
+    const gear = this.design.get(`/pair/${this.member}`) ?? {};
+    const root = gear.module_mm * (gear.tooth_count / 2 + (gear.profile_shift ?? 0)) - (gear.dedendum_mm ?? 1.25 * gear.module_mm);
+    this.bounds = [gear.blank?.bore_radius_mm ?? 0, Number.isFinite(root) ? Number(root.toPrecision(6)) : 0];
   }
 
   #handle(pointer, index) {
@@ -62,6 +70,7 @@ export class HoleHandles {
     const center = [pattern.circle_radius_mm * Math.cos(angle), pattern.circle_radius_mm * Math.sin(angle)];
     const grip = this.inGear(event).map((value, i) => value - center[i]);
     const atRim = pattern.radius_mm && Math.hypot(...grip) > 0.78 * pattern.radius_mm;
+    this.design.hold();
     const move = (moved) => {
       const place = this.inGear(moved);
       if (atRim) return this.design.set(`${pointer}/radius_mm`, Math.max(0.05, round(Math.hypot(place[0] - center[0], place[1] - center[1]), 0.05)), "drag");
@@ -79,6 +88,7 @@ export class HoleHandles {
     const end = () => {
       handle.classList.remove("held");
       handle.removeEventListener("pointermove", move);
+      this.design.release();
     };
     for (const name of ["pointerup", "pointercancel"]) handle.addEventListener(name, end, { once: true });
   }
@@ -96,9 +106,10 @@ export class HoleHandles {
       "]": () => pattern.count && add("count", 1, 1),
       "[": () => pattern.count && add("count", -1, 1),
     };
-    if (!actions[event.key]) return;
+    if (!actions[event.key] || event.ctrlKey || event.metaKey) return;
     event.preventDefault();
     actions[event.key]();
+    this.design.release();
     this.element.querySelector("[tabindex]")?.focus();
   }
 }
@@ -112,12 +123,12 @@ function anglesOf(pattern) {
 
 const wrap = (degrees) => ((((degrees + 180) % 360) + 360) % 360) - 180;
 
-function place(handle, pattern, angle) {
+function place(handle, pattern, angle, [least, most]) {
   const words = pattern.slot ? `slot ${number(pattern.slot.width_mm)} mm` : `r ${number(pattern.radius_mm)} mm`;
   handle.setAttribute("d", pattern.slot ? slotPath(pattern, angle) : diskPath(pattern, angle));
   handle.querySelector("title").textContent = `${words}, R ${number(pattern.circle_radius_mm)} mm`;
   if (handle.getAttribute("role")) {
-    handle.setAttribute("aria-valuenow", pattern.circle_radius_mm);
+    for (const [name, value] of [["min", least], ["max", most], ["now", pattern.circle_radius_mm]]) handle.setAttribute(`aria-value${name}`, value);
     handle.setAttribute("aria-valuetext", `${pattern.count ?? pattern.at_deg?.length} holes, circle radius ${pattern.circle_radius_mm} mm, ${words}`);
   }
 }

@@ -6,7 +6,8 @@ export function read(input, kind) {
   if (text === "") return undefined;
   if (kind.kind === "numbers") return text.split(/[\s,;]+/).filter(Boolean).map((word) => (Number.isNaN(Number(word)) ? word : Number(word)));
   if (kind.kind === "texts") return text.split(",").map((word) => word.trim()).filter(Boolean);
-  return kind.kind === "number" ? Number(text) : text;
+  // A comma for a decimal point, as half of Europe writes it.
+  return kind.kind === "number" ? Number(text.replace(",", ".")) : text;
 }
 
 /** The value of a text that may be JSON. */

@@ -1,34 +1,63 @@
-// The page: one design, drawn and computed while it changes.
+// The page: one design, drawn and computed while it changes, and the views that show it.
 
 import { hasKey, json, onKeyNeeded, ProblemError, setKey } from "./api.js";
-import { byId, debounced, fixed, h } from "./dom.js";
-import { Charts, looks, stresses } from "./charts.js";
-import { Design, fromFragment, nameOf, toFragment } from "./design.js";
+import { Brush } from "./brush.js";
+import { byId, debounced, fixed, h, number } from "./dom.js";
+import { Charts } from "./charts.js";
+import { Compare } from "./compare.js";
+import { Design, fromFragment, nameOf, same, toFragment } from "./design.js";
 import { Deformation } from "./deformed.js";
-import { chartsPicture, csv, drawingFile, save } from "./download.js";
+import { save } from "./download.js";
 import { Drawing, indexAt } from "./drawing.js";
+import { exporting } from "./export.js";
+import { fileOf, pictureOf } from "./figure.js";
 import { Form } from "./form.js";
+import { Geometry } from "./geometry.js";
+import { Headline } from "./headline.js";
 import { jobs } from "./jobs.js";
-import { Follower, preview } from "./preview.js";
+import { Follower, resultsOf } from "./preview.js";
 import { openapi } from "./schema.js";
+import { stresses } from "./series.js";
+import { sheetOf } from "./sheet.js";
+import { copied } from "./snippets.js";
 import { study } from "./study.js";
 import { sweep } from "./sweep.js";
-import { table } from "./table.js";
 
 const FIRST_EXAMPLE = "test-case-2";
+const NEW_PAIR = "new pair";
 const METHODS = ["flexible", "decomposition", "projected_decomposition", "load_distribution"];
 const THEME = "meshwright-theme";
+/** So long a notice is shown, in milliseconds. */
+const NOTICE = 12_000;
+/** A mesh period takes so long when the gears turn by themselves, in milliseconds. */
+const PERIOD = 2000;
+
+/** What no drawing leaves out, and nothing else. */
+function newPair() {
+  const gear = (tooth_count, bore_radius_mm) => ({ tooth_count, module_mm: 2, face_width_mm: 20, blank: { bore_radius_mm } });
+  return { method: "flexible", pair: { center_distance_mm: 75.2, driving: gear(25, 10), driven: gear(50, 16) }, output_torques_n_m: [100] };
+}
 
 const design = new Design();
-const kept = [];
+/** What is shown: the results of the design as it is, or those that the hand has passed through. `live` are never a draft. */
+let shown = null;
 let live = null;
-let position = 0;
-let form = null;
+/** What is wrong with the design as it stands, and the last one that could be computed. */
 let problem = null;
+let computed = null;
+let position = 0;
+let against = null;
+let form = null;
+let panels = {};
+let tab = "curves";
 
 const drawing = new Drawing(byId("drawing"), design, { onTurn: (to) => turn(to) });
-const charts = new Charts(byId("charts"), { onPosition: (to) => turn(to) });
-const follower = new Follower({ onResults, onOutline: (outline) => drawing.setOutline(outline), onProblem, onBusy });
+const brush = new Brush(byId("brush"), (range) => charts.zoom(range));
+const charts = new Charts(byId("charts"), { onPosition: (to) => turn(to), onRange: (range) => brush.setRange(range) });
+const headline = new Headline(byId("headline"));
+const geometry = new Geometry(byId("geometry"), { onPrint: print, onPicture: picture });
+const compare = new Compare(byId("compare"), { onKept: changeKept, onOpen: ({ submission, results }) => open(submission, results), onMethods: compareMethods, titleOf: (pointer) => form?.titleOf(pointer) ?? pointer });
+const follower = new Follower({ onResults, onOutline: (outline) => drawing.setOutline(outline), onProblem, onBusy, onProgress });
 
 const deformation = new Deformation({
   drawing, button: byId("deformed"), note: byId("deformed-note"), position: () => position,
@@ -38,9 +67,15 @@ const deformation = new Deformation({
   },
 });
 
+/** The results of the design as it is, when nothing is a draft any more; null where it cannot be computed. */
+async function current() {
+  await follower.settled();
+  return live && !problem && same(live.submission, design.submission) ? live : null;
+}
+
 /** Where the curves and the gears stand. */
 function turn(to) {
-  const period = live?.results.pair.period_mesh_periods ?? 1;
+  const period = shown?.results.pair.period_mesh_periods ?? 1;
   const before = position;
   position = ((to % period) + period) % period;
   if (position !== before) deformation.moved();
@@ -52,8 +87,8 @@ function turn(to) {
 
 function showReadout() {
   byId("position-value").textContent = `${fixed(position, 3)} periods`;
-  if (!live) return;
-  const curve = live.results.curves[0];
+  if (!shown) return;
+  const curve = shown.results.curves[0];
   const i = indexAt(curve, position);
   const pressure = curve.peak_contact_pressure_mpa[i];
   const pairs = curve.pairs_in_contact[i];
@@ -63,56 +98,88 @@ function showReadout() {
 
 function onResults(results, submission, { took, since, draft }) {
   problem = null;
-  const name = nameOf(submission);
-  live = { name, results, submission, teeth: submission.pair.driven.tooth_count, color: looks().series[0] };
+  computed = submission;
+  shown = { name: nameOf(submission), results, submission, teeth: submission.pair.driven.tooth_count, look: 0 };
+  if (!draft) live = shown;
   byId("position").max = results.pair.period_mesh_periods;
   drawing.setCurve(results.curves[0]);
   showDesigns(draft);
   showProblem();
-  byId("state").textContent = `${results.curves[0].mesh_position.length} positions in ${fixed(took, 0)} ms${draft ? ", under the hand" : ""}`;
-  byId("warnings").replaceChildren(...results.warnings.map(({ detail }) => h("li", {}, detail)));
+  byId("state").textContent = `${results.curves[0].mesh_position.length} positions in ${took < 2000 ? `${fixed(took, 0)} ms` : `${fixed(took / 1000, 1)} s`}${results.curves.length > 1 ? `; answers at ${number(results.curves[0].output_torque_n_m)} N m` : ""}${draft ? ", a draft under the hand" : ""}`;
+  showWarnings(results.warnings);
   turn(position);
   // For those who measure: the curve of a change is on the screen.
   requestAnimationFrame(() => document.dispatchEvent(new CustomEvent("drawn", { detail: { submission, draft, milliseconds: performance.now() - since } })));
 }
 
-function onProblem(found) {
-  problem = found;
+function showWarnings(warnings) {
+  const button = byId("warned");
+  button.hidden = warnings.length === 0;
+  button.textContent = `${warnings.length} ${warnings.length === 1 ? "warning" : "warnings"}`;
+  const guide = (path) => (path ? [" ", h("a", { href: path.replace(/^\//, "") }, "The guide says why")] : []);
+  byId("warnings").replaceChildren(...warnings.map(({ detail, guide: path }) => h("li", {}, detail, ...guide(path))));
+  if (!warnings.length) showWarned(false);
+}
+
+function showWarned(open) {
+  byId("warned").setAttribute("aria-expanded", String(open));
+  byId("warnings").hidden = !open;
+}
+
+function onProblem(found, submission) {
+  problem = { ...found, submission };
   showProblem();
 }
 
 function onBusy(busy) {
   document.body.classList.toggle("busy", busy);
-  if (busy && !live) byId("state").textContent = "Computing";
+  if (busy && !shown) byId("state").textContent = "Computing";
+}
+
+/** How far the job is that computes a design too large for a preview. */
+function onProgress(job) {
+  byId("progress").hidden = !job;
+  byId("stop").hidden = !job;
+  document.body.classList.toggle("behind", Boolean(job));
+  if (!job) return;
+  byId("progress").value = job.progress_percent ?? 0;
+  byId("stop").onclick = job.cancel;
+  byId("state").textContent = `Too many positions to follow the hand: a job computes them, ${job.progress_percent ?? 0} %${shown ? ". Until then the curves are of the design before" : ""}`;
 }
 
 /** The last good curve stays; what is wrong stands above it and at its field. */
 function showProblem() {
   const errors = problem?.errors ?? [];
   const place = byId("problem");
+  document.body.classList.toggle("stale", Boolean(problem) && Boolean(shown));
   if (!problem && place.hidden) return;
   form?.showErrors(errors);
   drawing.refreshHoles(errors.map(({ pointer }) => pointer));
   place.hidden = !problem;
-  byId("charts").classList.toggle("stale", Boolean(problem) && Boolean(live));
   if (!problem) return place.replaceChildren();
   const entries = errors.slice(0, 4).map((error) => h("li", {}, error.detail, " ", h("button", { type: "button", className: "mend", on: { click: () => form?.focus(error.pointer) } }, "Show the field")));
-  place.replaceChildren(h("p", {}, h("strong", {}, problem.title), live ? ". The curves are those of the last design that could be computed." : ""), entries.length ? h("ul", {}, ...entries) : h("p", {}, problem.detail));
+  const back = computed && !same(computed, design.submission) ? h("button", { type: "button", on: { click: () => design.replace(computed, "open") } }, "Go back to it") : null;
+  place.replaceChildren(
+    h("p", {}, h("strong", {}, problem.title), ...(shown ? [". Curves and numbers are those of the last design that could be computed; nothing is exported. ", back] : [])),
+    entries.length ? h("ul", {}, ...entries) : h("p", {}, problem.detail));
   byId("state").textContent = "";
 }
 
 function showDesigns(moving = false) {
-  const colors = looks().series;
-  live.color = colors[0];
-  kept.forEach((each, i) => { each.color = colors[(i % 6) + 1]; });
-  const designs = [live, ...kept];
-  charts.show(designs.map((each) => ({ ...each, name: legendOf(each, designs) })), moving);
+  const designs = [shown, ...design.kept];
+  if (!design.kept.includes(against)) against = design.kept[0] ?? null;
+  const seen = designs.filter(({ hidden }) => !hidden);
+  charts.show(seen.map((each) => ({ ...each, name: legendOf(each, seen) })), moving);
+  headline.show(shown.results.curves[0], against && { name: against.name, curve: against.results.curves[0] }, moving);
   // Numbers that change with every move cannot be read, and a new table lays the page out.
   if (moving) return;
-  byId("table").replaceChildren(table(designs, {
-    onRemove: (gone) => { kept.splice(kept.indexOf(gone), 1); showDesigns(); },
-    onOpen: ({ submission }) => design.replace(submission, "open"),
-  }));
+  brush.show(shown);
+  compare.show(designs);
+  geometry.show(shown);
+  const choice = byId("against");
+  choice.replaceChildren(...design.kept.map((each, i) => h("option", { value: i, selected: each === against }, each.name)));
+  byId("against-label").hidden = design.kept.length === 0;
+  if (tab === "export") panels.export?.refresh();
 }
 
 /** What a design is called beside others: by its method too, where they differ in it. */
@@ -126,59 +193,115 @@ const carry = debounced(250, async () => {
 });
 
 design.onChange((by) => {
-  design.by = by;
+  byId("undo").disabled = !design.canUndo;
+  byId("redo").disabled = !design.canRedo;
+  if (by === "kept") return showDesigns();
+  if (by === "undo" && shown && same(shown.submission, design.submission) && !problem) showDesigns();
   deformation.off();
   form?.refresh();
   drawing.refreshHoles();
-  follower.follow(design.submission, by === "drag" && live ? live.results.pair.period_mesh_periods : null);
+  follower.follow(design.submission, by === "drag" && shown ? shown.results.pair.period_mesh_periods : null);
   carry();
 });
 
+// A hand that lets go of what cannot be made leaves the last design that could.
+design.onRest(async () => {
+  const released = design.submission;
+  await follower.settled();
+  if (design.submission !== released || !problem || !computed || same(computed, released)) return;
+  const why = problem.errors?.[0]?.detail ?? problem.detail;
+  design.snapBack(computed);
+  notify(`Back to what can be made. ${why}`, false);
+});
+
+/** Says what else has happened, with a way back. */
+function notify(text, undoable = true) {
+  const place = byId("notice");
+  place.replaceChildren(text, " ", ...(undoable ? [h("button", { type: "button", on: { click: () => { design.undo(); place.hidden = true; } } }, "Undo")] : []), h("button", { type: "button", ariaLabel: "Close the notice", on: { click: () => { place.hidden = true; } } }, "×"));
+  place.hidden = false;
+  clearTimeout(notify.timer);
+  notify.timer = setTimeout(() => { place.hidden = true; }, NOTICE);
+}
+
+/** Takes a design whose results are known, so that they are shown and not computed again. */
+function open(submission, results) {
+  if (results) follower.know(submission, results);
+  design.replace(submission, "open");
+}
+
 function keep(entry) {
-  kept.push(entry);
-  showDesigns();
+  const taken = design.kept.map(({ look }) => look);
+  const look = [1, 2, 3, 4, 5, 6].find((each) => !taken.includes(each)) ?? 1 + (design.kept.length % 6);
+  const names = design.kept.map(({ name }) => name);
+  const name = [entry.name, ...Array.from({ length: 99 }, (_, i) => `${entry.name} (${i + 2})`)].find((each) => !names.includes(each));
+  design.keep([...design.kept, { ...entry, name, look }]);
+}
+
+/** Changes a kept design, or takes it away. */
+function changeKept(index, change) {
+  const before = design.kept[index];
+  const next = change && { ...before, ...change };
+  if (before === against) against = next;
+  design.keep(design.kept.flatMap((each, i) => (i !== index ? [each] : next ? [next] : [])));
 }
 
 async function compareMethods() {
-  if (!live) return;
-  const { submission } = live;
-  for (const method of METHODS.filter((each) => each !== submission.method)) {
+  const base = await current();
+  if (!base) return;
+  for (const method of METHODS.filter((each) => each !== base.submission.method)) {
     try {
-      const asked = { ...submission, method };
-      keep({ name: nameOf(asked), results: await preview(asked), submission: asked, teeth: live.teeth });
+      const asked = { ...base.submission, method };
+      keep({ name: nameOf(asked), results: await resultsOf(asked), submission: asked, teeth: base.teeth });
     } catch (error) {
       if (!(error instanceof ProblemError)) throw error;
-      onProblem(error.problem);
+      notify(error.problem.errors?.[0]?.detail ?? error.message, false);
     }
   }
 }
 
-async function download(kind) {
-  await follower.settled();
-  if (!live) return;
-  if (kind === "json") save("meshwright.json", "application/json", JSON.stringify({ submission: live.submission, results: live.results }, null, 1));
-  if (kind === "csv") save("meshwright.csv", "text/csv", csv(live.results));
-  if (kind === "svg") save("meshwright-pair.svg", "image/svg+xml", drawingFile(drawing.element));
-  if (kind === "png") {
-    const canvases = ["ste", "stiffness", "share", "pressure", "spectrum"].map((id) => charts.canvasOf(id));
-    save("meshwright-curves.png", "image/png", await chartsPicture(canvases, getComputedStyle(document.body).backgroundColor));
-  }
+async function report() {
+  const base = await current();
+  if (!base) notify("This design cannot be computed, so there is no report of it.", false);
+  return base && sheetOf({ live: base, drawing: drawing.element, charts });
+}
+
+async function print() {
+  const page = await report();
+  if (!page) return;
+  byId("sheet").replaceChildren(page);
+  window.print();
+}
+
+async function picture(kind) {
+  const page = await report();
+  if (!page) return;
+  if (kind === "svg") save("meshwright-report.svg", "image/svg+xml", fileOf(page));
+  else save("meshwright-report.png", "image/png", await pictureOf(page));
+}
+
+async function share() {
+  const button = byId("share");
+  history.replaceState(null, "", await toFragment(design.submission));
+  const done = await copied(location.href);
+  button.textContent = done ? "Link copied" : "Copy it from the address bar";
+  setTimeout(() => { button.textContent = "Copy link"; }, done ? 2000 : 6000);
 }
 
 function setUpButtons() {
   byId("position").addEventListener("input", (event) => turn(Number(event.target.value)));
   byId("pin").addEventListener("click", async () => {
-    await follower.settled();
-    if (live) keep({ ...live });
+    const kept = await current();
+    if (kept) keep({ ...kept });
+    else notify("This design cannot be computed, so it is not kept.", false);
   });
-  byId("methods").addEventListener("click", compareMethods);
-  byId("share").addEventListener("click", async () => {
-    history.replaceState(null, "", await toFragment(design.submission));
-    await navigator.clipboard?.writeText(location.href).catch(() => {});
-    byId("share").textContent = "Link copied";
-    setTimeout(() => { byId("share").textContent = "Copy link"; }, 2000);
+  byId("share").addEventListener("click", share);
+  byId("undo").addEventListener("click", () => design.undo());
+  byId("redo").addEventListener("click", () => design.redo());
+  byId("warned").addEventListener("click", () => showWarned(byId("warnings").hidden));
+  byId("against").addEventListener("change", (event) => {
+    against = design.kept[Number(event.target.value)];
+    showDesigns();
   });
-  for (const button of document.querySelectorAll("[data-download]")) button.addEventListener("click", () => download(button.dataset.download));
   for (const button of document.querySelectorAll("[data-view]")) {
     button.addEventListener("click", () => {
       for (const other of document.querySelectorAll("[data-view]")) other.setAttribute("aria-pressed", String(other === button));
@@ -186,17 +309,28 @@ function setUpButtons() {
     });
   }
   byId("play").addEventListener("click", (event) => play(event.currentTarget));
+  addEventListener("keydown", (event) => {
+    if (!(event.ctrlKey || event.metaKey) || event.altKey || event.target.closest("textarea, dialog")) return;
+    const key = event.key.toLowerCase();
+    const work = key === "z" ? (event.shiftKey ? "redo" : "undo") : key === "y" ? "redo" : null;
+    if (!work) return;
+    event.preventDefault();
+    design[work]();
+  });
 }
 
-/** Turns the gears until it is told to stop: a mesh period in two seconds. */
+/** Turns the gears until it is told to stop; by steps where motion is unwanted. */
 function play(button) {
   const on = button.getAttribute("aria-pressed") !== "true";
   button.setAttribute("aria-pressed", String(on));
+  const steps = matchMedia("(prefers-reduced-motion: reduce)").matches;
   let last = performance.now();
   const step = (now) => {
     if (button.getAttribute("aria-pressed") !== "true") return;
-    turn(position + (now - last) / 2000);
-    last = now;
+    if (!steps || now - last >= PERIOD / 4) {
+      turn(position + (steps ? 0.1 : (now - last) / PERIOD));
+      last = now;
+    }
     requestAnimationFrame(step);
   };
   if (on) requestAnimationFrame(step);
@@ -206,7 +340,7 @@ function setUpTheme() {
   const apply = (theme) => {
     if (theme) document.documentElement.dataset.theme = theme;
     charts.restyle();
-    if (live) showDesigns();
+    if (shown) showDesigns();
   };
   apply(localStorage.getItem(THEME));
   byId("theme-button").addEventListener("click", () => {
@@ -233,41 +367,63 @@ function setUpKey() {
   });
 }
 
-function setUpTabs(shown) {
+function setUpTabs() {
   const tabs = [...document.querySelectorAll("[role=tab]")];
-  const choose = (tab) => {
-    for (const other of tabs) {
-      other.setAttribute("aria-selected", String(other === tab));
-      other.tabIndex = other === tab ? 0 : -1;
-      byId(other.getAttribute("aria-controls")).hidden = other !== tab;
+  // Where there is room for it the geometry stands under the drawing, and every section of the design is open.
+  const large = matchMedia("(min-width: 150rem) and (min-height: 60rem)");
+  const lay = () => {
+    const [sheet, own] = [byId("geometry"), byId("tab-geometry")];
+    own.hidden = large.matches;
+    if (large.matches) {
+      if (tab === "geometry") choose(tabs[0]);
+      document.querySelector(".drawing-panel").append(sheet);
+      sheet.setAttribute("role", "region");
+      sheet.hidden = false;
+    } else {
+      byId("curves").after(sheet);
+      sheet.setAttribute("role", "tabpanel");
+      sheet.hidden = tab !== "geometry";
     }
-    shown(tab.getAttribute("aria-controls"));
+    form?.unfold(large.matches);
   };
-  for (const tab of tabs) {
-    tab.addEventListener("click", () => choose(tab));
-    tab.addEventListener("keydown", (event) => {
+  large.addEventListener("change", lay);
+  const choose = (chosen) => {
+    for (const other of tabs) {
+      other.setAttribute("aria-selected", String(other === chosen));
+      other.tabIndex = other === chosen ? 0 : -1;
+      if (!other.hidden) byId(other.getAttribute("aria-controls")).hidden = other !== chosen;
+    }
+    panels[tab]?.leave?.();
+    tab = chosen.getAttribute("aria-controls");
+    panels[tab]?.refresh?.();
+  };
+  for (const each of tabs) {
+    each.addEventListener("click", () => choose(each));
+    each.addEventListener("keydown", (event) => {
       const by = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
       if (!by) return;
-      const next = tabs[(tabs.indexOf(tab) + by + tabs.length) % tabs.length];
+      const seen = tabs.filter(({ hidden }) => !hidden);
+      const next = seen[(seen.indexOf(each) + by + seen.length) % seen.length];
       next.focus();
       choose(next);
     });
   }
+  lay();
+  return lay;
 }
 
-async function setUpStart(examples, given) {
+function setUpStart(examples, given) {
   const select = byId("start");
-  const own = h("option", { value: "" }, "Your own");
   const buildable = examples.filter(({ valid }) => valid);
-  select.replaceChildren(...buildable.map(({ name }) => h("option", { value: name }, name.replace(/-/g, " "))), own);
-  const note = () => { byId("start-note").textContent = buildable.find(({ name }) => name === select.value)?.description ?? ""; };
+  select.replaceChildren(h("option", { value: NEW_PAIR }, "a new pair, all by default"), ...buildable.map(({ name }) => h("option", { value: name }, name.replace(/-/g, " "))), h("option", { value: "" }, "Your own"));
+  const note = () => { byId("start-note").textContent = select.value === NEW_PAIR ? "Only what no drawing leaves out is given; everything else has its default." : (buildable.find(({ name }) => name === select.value)?.description ?? ""); };
   select.addEventListener("change", () => {
-    const example = buildable.find(({ name }) => name === select.value);
+    const example = select.value === NEW_PAIR ? { submission: newPair() } : buildable.find(({ name }) => name === select.value);
     note();
     if (example) design.replace(example.submission, "start");
   });
   design.onChange((by) => {
-    if (by === "start") return;
+    if (by === "start" || by === "kept") return;
     select.value = "";
     note();
   });
@@ -279,18 +435,24 @@ async function begin() {
   setUpButtons();
   setUpTheme();
   setUpKey();
+  const lay = setUpTabs();
   const [given, { items: examples }] = await Promise.all([fromFragment(location.hash), json("v1/examples")]);
   setUpStart(examples, given);
   design.replace(given ?? examples.find(({ name }) => name === FIRST_EXAMPLE).submission, "start");
   const [api, limits] = await Promise.all([openapi(), json("v1/limits")]);
-  form = new Form(byId("form"), api, design);
+  form = new Form(byId("form"), api, design, notify);
+  lay();
   showProblem();
   const positions = () => live?.results.curves[0].mesh_position.length ?? 200;
-  const panels = { sweep: sweep(byId("sweep"), design, limits, positions), study: study(byId("study"), design), jobs: jobs(byId("jobs"), design) };
-  setUpTabs((name) => panels[name]?.refresh?.());
+  panels = {
+    sweep: sweep(byId("sweep"), design, limits, positions),
+    study: study(byId("study"), design, form, open),
+    jobs: jobs(byId("jobs"), design, open),
+    export: exporting(byId("export"), { current, designs: () => [live, ...design.kept], drawing, charts, position: () => position }),
+  };
   addEventListener("hashchange", async () => {
     const other = await fromFragment(location.hash);
-    if (other && JSON.stringify(other) !== JSON.stringify(design.submission)) design.replace(other, "open");
+    if (other && !same(other, design.submission)) design.replace(other, "open");
   });
 }
 

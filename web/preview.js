@@ -1,16 +1,19 @@
 // Results while the design changes: one request at a time, always the newest design next.
 
-import { post, ProblemError } from "./api.js";
+import { hasEnded, json, post, ProblemError, request, solved } from "./api.js";
 
 /** In a mesh period, where a design does not say it. */
 const USUAL_POSITIONS = 40;
 /** A draft has about so many positions, and at least so many in a mesh period. */
 const DRAFT_POSITIONS = 60;
 const LEAST_POSITIONS = 10;
-/** A hand that rests for so long, in milliseconds, gets all positions. */
+/** A hand that rests for so long, in milliseconds, gets all positions; one that rests for longer a job, where a preview has too many. */
 const REST = 150;
+const LONG_REST = 700;
 /** A page that is not seen has no frames; it goes on after so many milliseconds. */
 const UNSEEN = 50;
+/** So many designs are not computed again when they come back. */
+const KNOWN = 12;
 
 /** The results of `submission` at once. */
 export async function preview(submission, signal) {
@@ -18,10 +21,24 @@ export async function preview(submission, signal) {
   return post("v1/preview", asked, { signal });
 }
 
+/** The results of `submission`: at once, or of a job where a preview has too many positions. */
+export async function resultsOf(submission, options = {}) {
+  try {
+    return await preview(submission, options.signal);
+  } catch (error) {
+    if (!isTooLarge(error)) throw error;
+    const job = await solved(submission, options);
+    return json(`v1/jobs/${job.id}/results`, { signal: options.signal });
+  }
+}
+
+/** Whether a job may do what a preview does not: it has more positions, and more time. */
+const isTooLarge = (error) => error instanceof ProblemError && ["too_large", "time_limit"].includes(error.problem.code);
+
 /**
  * Follows a design. While one preview is computed newer designs wait, and only the newest of them is asked for, so that results
  * come in order and a drag shows every result that can be had. Under the hand these are drafts; as soon as it rests it gets the curve
- * itself.
+ * itself, by a job where a preview has too many positions.
  */
 export class Follower {
   #running = false;
@@ -30,9 +47,10 @@ export class Follower {
   /** Ends what a newer design need not wait for: a hand's rest, and the curve that follows it. */
   #interrupt = null;
   #settled = Promise.resolve();
+  #known = new Map();
 
-  constructor({ onResults, onOutline, onProblem, onBusy }) {
-    Object.assign(this, { onResults, onOutline, onProblem, onBusy });
+  constructor({ onResults, onOutline, onProblem, onBusy, onProgress }) {
+    Object.assign(this, { onResults, onOutline, onProblem, onBusy, onProgress });
   }
 
   /** Takes the newest design; `period` is that of its last results, in mesh periods, while a hand changes it. */
@@ -40,6 +58,12 @@ export class Follower {
     this.#next = { submission, period, since: performance.now() };
     this.#interrupt?.abort();
     if (!this.#running) this.#settled = this.#run();
+  }
+
+  /** The results of a submission that has been computed elsewhere. */
+  know(submission, results) {
+    this.#known.set(JSON.stringify(submission), results);
+    if (this.#known.size > KNOWN) this.#known.delete(this.#known.keys().next().value);
   }
 
   /** Waits until what is shown is no draft. */
@@ -55,10 +79,12 @@ export class Follower {
         const { submission, period, since } = this.#next;
         this.#next = null;
         const draft = period === null ? null : draftOf(submission, period);
-        await Promise.all([this.#outline(submission), this.#results({ submission, asked: draft ?? submission, since })]);
+        const [, computed] = await Promise.all([this.#outline(submission), this.#results({ submission, asked: draft ?? submission, since })]);
         // With the next frame comes where the hand is now, and the curve that has just come is painted before the engine wants the cores.
         await frame();
-        if (draft && !this.#next) await this.#settle(submission);
+        if (this.#next || computed === "refused") continue;
+        if (draft) await this.#settle(submission);
+        else if (computed === "too large") await this.#long(submission, since);
       }
     } finally {
       this.#running = false;
@@ -70,9 +96,38 @@ export class Follower {
   async #settle(submission) {
     this.#interrupt = new AbortController();
     const { signal } = this.#interrupt;
-    await rest(signal);
-    if (!signal.aborted) await this.#results({ submission, asked: submission, since: performance.now(), signal });
+    await rest(signal, REST);
+    const since = performance.now();
+    const computed = signal.aborted ? "" : await this.#results({ submission, asked: submission, since, signal });
     this.#interrupt = null;
+    if (computed === "too large" && !this.#next) await this.#long(submission, since);
+  }
+
+  /** A job computes what has too many positions for a preview, unless the design changes meanwhile. */
+  async #long(submission, since) {
+    this.#interrupt = new AbortController();
+    const { signal } = this.#interrupt;
+    const begun = performance.now();
+    let job = null;
+    const told = (event, data) => {
+      if (event === "status") job = data;
+      this.onProgress({ ...job, ...data, cancel: () => this.#interrupt?.abort() });
+    };
+    try {
+      await rest(signal, LONG_REST);
+      if (signal.aborted) return;
+      const done = await solved(submission, { told, signal });
+      const results = await json(`v1/jobs/${done.id}/results`, { signal });
+      this.#show(results, submission, { took: performance.now() - begun, since, draft: false });
+    } catch (error) {
+      if (error instanceof ProblemError) this.onProblem(error.problem, submission);
+      else if (error.name !== "AbortError") throw error;
+      if (job && !hasEnded(job.status)) request(`v1/jobs/${job.id}/cancel`, { method: "POST" }).catch(() => {});
+      if (signal.aborted && !this.#next) this.onProblem({ code: "cancelled", title: "The job was cancelled", detail: "Nothing was computed for this design.", errors: [] }, submission);
+    } finally {
+      this.#interrupt = null;
+      this.onProgress(null);
+    }
   }
 
   /** Holes are drawn from the design itself: an outline is asked for where something else has changed. */
@@ -88,16 +143,27 @@ export class Follower {
     }
   }
 
+  /** What became of it: `shown`, `refused`, `too large` for a preview, or `left` for a newer one. */
   async #results({ submission, asked, since, signal }) {
     const begun = performance.now();
+    const draft = asked !== submission;
     try {
-      const results = await preview(asked, signal);
-      this.onResults(results, submission, { took: performance.now() - begun, since, draft: asked !== submission });
+      const results = (!draft && this.#known.get(JSON.stringify(submission))) || (await preview(asked, signal));
+      this.#show(results, submission, { took: performance.now() - begun, since, draft });
+      return "shown";
     } catch (error) {
-      if (error.name === "AbortError") return;
+      if (error.name === "AbortError") return "left";
       if (!(error instanceof ProblemError)) throw error;
-      if (error.problem.code !== "preview_superseded") this.onProblem(error.problem, submission);
+      if (isTooLarge(error)) return "too large";
+      if (error.problem.code === "preview_superseded") return "left";
+      this.onProblem(error.problem, submission);
+      return "refused";
     }
+  }
+
+  #show(results, submission, how) {
+    if (!how.draft) this.know(submission, results);
+    this.onResults(results, submission, how);
   }
 }
 
@@ -122,9 +188,9 @@ function frame() {
   });
 }
 
-function rest(signal) {
+function rest(signal, milliseconds) {
   return new Promise((resolve) => {
-    const timer = setTimeout(resolve, REST);
+    const timer = setTimeout(resolve, milliseconds);
     signal.addEventListener("abort", () => { clearTimeout(timer); resolve(); });
   });
 }

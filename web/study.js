@@ -1,48 +1,60 @@
-// Many designs at once: axes of values, a table, and which of them no other beats.
+// Many designs at once: axes of values over any fields, a table, a picture of two of its columns, and which designs no other beats.
 
-import { json, post, ProblemError, request } from "./api.js";
+import { follow, hasEnded, json, post, ProblemError, request } from "./api.js";
 import { h, fixed, number } from "./dom.js";
 import { at, nameOf, withValue } from "./design.js";
 import { save } from "./download.js";
-import { scatter } from "./scatter.js";
+import { figure } from "./figure.js";
 
+/** A table is fetched so often at most while a study runs, in milliseconds. */
 const PAUSE = 400;
-const FIELDS = [
-  ["/pair/driven/blank/holes/count", "Holes, driven gear", "6, 8, 10"],
-  ["/pair/driven/blank/holes/circle_radius_mm", "Hole circle, driven gear (mm)", "30, 32, 34"],
-  ["/pair/driven/blank/holes/radius_mm", "Hole radius, driven gear (mm)", "5, 6, 7"],
-  ["/pair/driven/blank/holes/phase_deg", "Hole phase, driven gear (deg)", "0, 9, 18"],
-  ["/pair/driving/blank/holes/count", "Holes, driving gear", "6, 8, 10"],
-  ["/pair/driving/blank/holes/circle_radius_mm", "Hole circle, driving gear (mm)", "30, 32, 34"],
-  ["/pair/driving/tip_relief/amount_um", "Tip relief, driving gear (µm)", "0, 5, 10, 15"],
-  ["/pair/driven/tip_relief/amount_um", "Tip relief, driven gear (µm)", "0, 5, 10, 15"],
-  ["/pair/center_distance_mm", "Center distance (mm)", ""],
-  ["/method", "Method", "flexible, decomposition"],
-];
 
-/** The study of `design` in `place`. */
-export function study(place, design) {
-  const axes = [axis(0), axis(1)];
+/** What a column of the picture can be: name, unit, and how it is read from a row; of several torques the worst. */
+const QUANTITIES = {
+  mass: ["mass of both gears", "kg", (row) => row.pair_mass_kg],
+  p_p: ["largest STE peak-to-peak", "µm", (row) => Math.max(...row.curves.map((curve) => curve.statistics.transmission_error_um.peak_to_peak))],
+  mean: ["largest STE mean", "µm", (row) => Math.max(...row.curves.map((curve) => curve.statistics.transmission_error_um.mean))],
+  k: ["least mean stiffness", "N/µm", (row) => Math.min(...row.curves.map((curve) => curve.statistics.mesh_stiffness_tangent_n_per_m.mean)) * 1e-6],
+  h_n: ["largest H_N", "µm", (row) => Math.max(...row.curves.map((curve) => curve.hole_order_um ?? 0))],
+  h_z: ["largest H_Z2", "µm", (row) => Math.max(...row.curves.map((curve) => curve.mesh_order_um ?? 0))],
+  removed: ["removed by holes", "%", (row) => row.mass_removed_percent],
+  ligament: ["least material around holes", "mm", (row) => row.least_ligament_mm],
+};
+
+/** Fields that are looked for first. */
+const FIRST = ["/pair/driven/blank/holes/count", "/pair/driven/blank/holes/circle_radius_mm", "/pair/driven/blank/holes/radius_mm", "/pair/driven/tip_relief/amount_um"];
+
+const COUNT = { "/pair/driven/blank/holes/count": "6, 8, 10" };
+
+/** The study of `design` in `place`; `form` knows the fields, `onOpen` opens the design of a row. */
+export function study(place, design, form, onOpen) {
+  const axes = [axis(0, design, form), axis(1, design, form)];
   const constant = h("input", { type: "checkbox", id: "study-mass" });
+  const gear = h("select", { id: "study-gear", ariaLabel: "Gear of the same mass" }, h("option", { value: "driven" }, "driven"), h("option", { value: "driving" }, "driving"));
   const removed = h("input", { type: "number", id: "study-removed", value: 25, min: 0.01, max: 99, step: "any", ariaLabel: "Mass removed in percent" });
   const run = h("button", { type: "submit", className: "primary" }, "Run the study");
   const cancel = h("button", { type: "button", hidden: true }, "Cancel");
+  const [across, up] = ["mass", "p_p"].map((chosen, i) => h("select", { id: `study-${i ? "up" : "across"}`, on: { change: () => last && draw(last) } }, ...Object.entries(QUANTITIES).map(([name, [words, unit]]) => h("option", { value: name, selected: name === chosen }, `${words} in ${unit}`))));
+  const picture = h("div", {});
+  const picker = h("div", { className: "line", hidden: true }, h("label", { htmlFor: up.id }, "Picture:"), up, h("label", { htmlFor: across.id }, "over"), across);
   const out = h("div", { className: "out" });
   const state = h("p", { className: "note", role: "status" });
-  const form = h("form", { on: { submit: (event) => { event.preventDefault(); start(); } } },
+  const formOf = h("form", { on: { submit: (event) => { event.preventDefault(); start(); } } },
     ...axes.map((each) => each.element),
-    h("div", { className: "line" }, constant, h("label", { htmlFor: "study-mass" }, "Same mass: holes remove"), removed, h("span", { className: "unit" }, "% of the driven blank")),
+    h("div", { className: "line" }, constant, h("label", { htmlFor: "study-mass" }, "Same mass: holes remove"), removed, h("span", { className: "unit" }, "% of the"), gear, h("span", {}, "blank, by their radius")),
     h("div", { className: "line" }, run, cancel));
-  place.replaceChildren(h("p", { className: "note" }, "Every combination of these values is computed from the pair above."), form, state, out);
-  axes[0].choose(FIELDS[0][0]);
+  place.replaceChildren(h("p", { className: "note" }, "Every combination of these values is computed from the design; values are separated by commas. “Best” is a design that no other beats: none is at least as good in mass, peak-to-peak and mean stiffness, and better in one."), formOf, state, picker, picture, out);
+  axes[0].choose(FIRST[0]);
+  let last = null;
 
   async function start() {
     run.disabled = true;
+    picture.replaceChildren();
     out.replaceChildren();
     try {
       const asked = { base: base(), axes: axes.flatMap((each) => each.read()), name: nameOf(design.submission) };
-      if (constant.checked) asked.constant_mass = { gear: "driven", mass_removed_percent: Number(removed.value) };
-      await follow(await post("v1/studies", asked));
+      if (constant.checked) asked.constant_mass = { gear: gear.value, mass_removed_percent: Number(removed.value) };
+      await watch(await post("v1/studies", asked));
     } catch (error) {
       if (!(error instanceof ProblemError)) throw error;
       const details = error.problem.errors?.map(({ detail }) => detail) ?? [error.message];
@@ -57,34 +69,42 @@ export function study(place, design) {
   function base() {
     const touched = axes.flatMap((each) => each.read()).map(({ path }) => /^(\/pair\/\w+\/blank\/holes)\//.exec(path)?.[1]).filter(Boolean);
     let submission = design.submission;
-    for (const pointer of touched) {
-      if (at(submission, pointer)) continue;
-      const bore = at(submission, pointer.replace(/holes$/, "bore_radius_mm"));
-      submission = withValue(submission, pointer, { count: 6, circle_radius_mm: 2 * bore, radius_mm: bore / 3 });
-    }
+    for (const pointer of touched) if (!at(submission, pointer)) submission = withValue(submission, pointer, form.beginnings.object(pointer, null));
     return submission;
   }
 
-  async function follow(made) {
+  /** Shows a study as its events tell of it. */
+  async function watch(made) {
     const address = `v1/studies/${made.id}`;
     cancel.hidden = false;
     cancel.onclick = () => request(`${address}/cancel`, { method: "POST" }).catch(() => {});
-    for (;;) {
-      const results = await json(`${address}/results`);
-      state.textContent = `${results.done} of ${results.total} designs${results.status === "running" || results.status === "accepted" ? "" : `, ${results.status}`}`;
-      out.replaceChildren(...shown(results, address));
-      if (!["accepted", "running"].includes(results.status)) return;
-      await new Promise((resolve) => setTimeout(resolve, PAUSE));
-    }
+    let shown = 0;
+    const told = (_, data) => {
+      if (data.total) state.textContent = `${data.done} of ${data.total} designs`;
+      if (performance.now() - shown < PAUSE) return;
+      shown = performance.now();
+      json(`${address}/results`).then((results) => hasEnded(last?.status) || show(results, address), () => {});
+    };
+    last = null;
+    if (!hasEnded(made.status)) await follow(address, told);
+    const results = await json(`${address}/results`);
+    show(results, address);
+    state.textContent = `${results.done} of ${results.total} designs, ${results.status}`;
   }
 
-  function shown(results, address) {
-    const rows = results.rows.filter((row) => row.curves?.length && row.curves[0].statistics);
-    const worst = (row) => Math.max(...row.curves.map((curve) => curve.statistics.transmission_error_um.peak_to_peak));
-    const points = rows.map((row) => ({ x: row.pair_mass_kg, y: worst(row), label: row.label, strong: row.pareto }));
-    const picture = points.length > 1 ? [scatter({ points, x: "mass of both gears in kg", y: "largest STE peak-to-peak in µm", title: "Designs by mass and peak-to-peak transmission error" })] : [];
+  function show(results, address) {
+    last = results;
+    draw(results);
     const csv = h("button", { type: "button", on: { click: async () => save("study.csv", "text/csv", await (await request(`${address}/results/table.csv`)).blob()) } }, "Table as CSV");
-    return [...picture, h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Designs of the study" }, tableOf(results.rows)), h("div", { className: "buttons" }, csv)];
+    out.replaceChildren(h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Designs of the study" }, tableOf(results.rows)), h("div", { className: "buttons" }, csv));
+  }
+
+  function draw({ rows }) {
+    const [[x, xUnit, readX], [y, yUnit, readY]] = [across, up].map((select) => QUANTITIES[select.value]);
+    const points = rows.filter((row) => row.curves?.length && row.curves[0].statistics).map((row) => ({ x: readX(row), y: readY(row), label: row.label, strong: row.pareto })).filter((point) => Number.isFinite(point.x) && Number.isFinite(point.y));
+    picker.hidden = points.length < 2;
+    const title = `Designs by ${x} and ${y}; large points are the best`;
+    picture.replaceChildren(...(points.length > 1 ? [figure({ points, x: `${x} in ${xUnit}`, y: `${y} in ${yUnit}`, title })] : []));
   }
 
   function tableOf(rows) {
@@ -106,20 +126,51 @@ export function study(place, design) {
 
   async function openRow(row) {
     const job = await json(`v1/jobs/${row.job}`);
-    design.replace(job.submission, "open");
+    onOpen(job.submission, null);
   }
+
+  return { refresh: () => axes.forEach((each) => each.refresh()) };
 }
 
-function axis(index) {
+/** Values over a field that is chosen from all that the form has. */
+function axis(index, design, form) {
   const id = `axis-${index}`;
   const values = h("input", { type: "text", id: `${id}-values`, ariaLabel: `Values of axis ${index + 1}`, spellcheck: false });
-  const field = h("select", { id, on: { change: () => { values.value = FIELDS.find(([path]) => path === field.value)?.[2] ?? ""; } } },
-    h("option", { value: "" }, "none"), ...FIELDS.map(([path, name]) => h("option", { value: path }, name)));
+  const field = h("select", { id, on: { change: () => { values.value = suggested(); } } });
   const element = h("div", { className: "line" }, h("label", { htmlFor: id }, index ? "and" : "Vary"), field, h("label", { htmlFor: values.id }, "over"), values);
-  const read = () => (field.value && values.value.trim() ? [{ path: field.value, values: values.value.split(/[\s,;]+/).filter(Boolean).map((word) => (Number.isNaN(Number(word)) ? word : Number(word))) }] : []);
+
+  /** Values around the one that the design has. */
+  function suggested() {
+    if (COUNT[field.value]) return COUNT[field.value];
+    const known = form.fields().find(({ pointer }) => pointer === field.value);
+    const value = at(design.submission, field.value) ?? known?.value;
+    if (known?.kind.kind === "choice") return known.kind.schema.enum.join(", ");
+    if (typeof value !== "number") return "";
+    if (value === 0) return known?.kind.whole ? "0, 1, 2" : "0, 0.1, 0.2";
+    return [0.9, 1, 1.1].map((part) => (known?.kind.whole ? Math.round(part * value) : Number((part * value).toPrecision(3)))).join(", ");
+  }
+
+  const valueOf = (word) => (word === "true" ? true : word === "false" ? false : word === "null" ? null : Number.isNaN(Number(word)) ? word : Number(word));
+  const read = () => (field.value && values.value.trim() ? [pathOf(field.value, [...new Set(values.value.split(/[\s,;]+/).filter(Boolean))].map(valueOf))] : []);
+
+  /** A field within a list is changed by its place; the torque as the list that it is. */
+  function pathOf(path, list) {
+    return path === "/output_torques_n_m" ? { path, values: list.map((value) => [value]) } : { path, values: list };
+  }
+
+  function refresh() {
+    const chosen = field.value;
+    const fields = form.fields().filter(({ pointer }) => pointer !== "/tags");
+    const listed = [...FIRST.map((pointer) => fields.find((each) => each.pointer === pointer) ?? { pointer, title: form.titleOf(pointer).replace(/^./, (letter) => `driven: ${letter}`) }), ...fields.filter(({ pointer }) => !FIRST.includes(pointer))];
+    field.replaceChildren(h("option", { value: "" }, "none"), ...listed.map(({ pointer, title }) => h("option", { value: pointer }, title)), h("option", { value: "/output_torques_n_m" }, "Output torque (N m)"));
+    field.value = chosen;
+  }
+
   const choose = (path) => {
+    refresh();
     field.value = path;
     field.dispatchEvent(new Event("change"));
   };
-  return { element, read, choose };
+  refresh();
+  return { element, read, choose, refresh };
 }

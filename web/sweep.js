@@ -2,12 +2,12 @@
 
 import { ProblemError } from "./api.js";
 import { h, fixed, number } from "./dom.js";
-import { preview } from "./preview.js";
-import { scatter } from "./scatter.js";
+import { figure } from "./figure.js";
+import { resultsOf } from "./preview.js";
 
 const MOST_TORQUES = 24;
 
-/** The sweep of `design` in `place`; `limits` tells how many positions a preview may have. */
+/** The sweep of `design` in `place`; `limits` tells how many positions a preview may have, `positionsOf` how many a torque has. What has more is computed by jobs. */
 export function sweep(place, design, limits, positionsOf) {
   const from = h("input", { type: "number", id: "sweep-from", step: "any", min: 0 });
   const to = h("input", { type: "number", id: "sweep-to", step: "any", min: 0 });
@@ -46,7 +46,8 @@ export function sweep(place, design, limits, positionsOf) {
     const each = Math.max(1, Math.floor(limits.previews.positions / Math.max(1, positionsOf())));
     const points = [];
     for (let i = 0; i < torques.length; i += each) {
-      const results = await preview({ ...design.submission, output_torques_n_m: torques.slice(i, i + each) });
+      if (points.length) out.replaceChildren(h("p", { className: "note" }, `${points.length} of ${torques.length} torques`));
+      const results = await resultsOf({ ...design.submission, output_torques_n_m: torques.slice(i, i + each) });
       for (const curve of results.curves) points.push({ x: curve.output_torque_n_m, y: curve.statistics.transmission_error_um.peak_to_peak, label: `${number(curve.output_torque_n_m)} N m` });
     }
     return points;
@@ -59,7 +60,7 @@ export function sweep(place, design, limits, positionsOf) {
     const use = h("button", { type: "button", on: { click: () => design.set("/output_torques_n_m", [least.x], "mend") } }, `Show ${number(least.x)} N m`);
     const atEnd = least === points[0] || least === points.at(-1);
     const words = atEnd ? "The least lies at an end of the sweep; a wider one may find less." : "";
-    return [h("p", {}, `Least peak-to-peak of these torques: ${fixed(least.y, 3)} µm at ${number(least.x)} N m. ${words} `, use), scatter({ points, x: "output torque in N m", y: "STE peak-to-peak in µm", title: "Peak-to-peak transmission error over the torque", line: true })];
+    return [h("p", {}, `Least peak-to-peak of these torques: ${fixed(least.y, 3)} µm at ${number(least.x)} N m. ${words} `, use), figure({ points, lines: [{ x: points.map((point) => point.x), y: points.map((point) => point.y) }], x: "output torque in N m", y: "STE peak-to-peak in µm", title: "Peak-to-peak transmission error over the torque"})];
   }
 
   suggest();

@@ -1,0 +1,493 @@
+// What an engineer does with the bench in a day: typing over, dragging too far, long curves, comparing, exporting, going back.
+
+import assert from "node:assert/strict";
+import { answer, axe, changed, designOf, downloaded, drag, field, holeAt, named, open, openDesign, step, tab } from "./harness.mjs";
+
+const DRIVEN = "/pair/driven";
+const HOLES = `${DRIVEN}/blank/holes`;
+
+/** A pair whose true period is 61 mesh periods, at two torques: more than a preview takes. */
+const LONG = {
+  method: "flexible",
+  pair: {
+    center_distance_mm: 106,
+    driving: { tooth_count: 23, module_mm: 2.5, profile_shift: 0.3, face_width_mm: 24, blank: { bore_radius_mm: 10 } },
+    driven: { tooth_count: 61, module_mm: 2.5, profile_shift: -0.1, face_width_mm: 22, blank: { bore_radius_mm: 20, holes: { count: 6, circle_radius_mm: 45, radius_mm: 8 } } },
+  },
+  output_torques_n_m: [150, 250],
+};
+
+/** Colors as an eye without green cones sees them (Machado 2009), in a space where distances are seen. */
+function seenByDeuteranopia(color) {
+  const linear = color.map((value) => (value / 255 <= 0.04045 ? value / 255 / 12.92 : ((value / 255 + 0.055) / 1.055) ** 2.4));
+  const seen = [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.01182, 0.04294, 0.968881]].map((row) => Math.min(1, Math.max(0, row.reduce((sum, part, i) => sum + part * linear[i], 0))));
+  const f = (t) => (t > 0.008856 ? Math.cbrt(t) : 7.787 * t + 16 / 116);
+  const [x, y, z] = [[0.4124, 0.3576, 0.1805, 0.95047], [0.2126, 0.7152, 0.0722, 1], [0.0193, 0.1192, 0.9505, 1.08883]].map(([a, b, c, white]) => f((a * seen[0] + b * seen[1] + c * seen[2]) / white));
+  return [116 * y - 16, 500 * (x - y), 200 * (y - z)];
+}
+
+/** @param service the service whose page is used */
+export async function benchSteps(service) {
+  await step("another module takes the lengths of the rack with it, says so, and can be undone", service, async (page) => {
+    await open(page, service);
+    // Case 2 gives its rack: it shows it, marked.
+    const addendum = page.locator(`[id="field-${DRIVEN}/addendum_mm"]`);
+    await field(page, `${DRIVEN}/addendum_mm`);
+    assert.ok(await addendum.isVisible());
+    assert.ok(await addendum.evaluate((input) => input.closest(".field").classList.contains("given") && !input.closest("details").matches(":not(.section)")), "not folded away");
+    await (await field(page, "/pair/driving/module_mm")).fill("2.5");
+    await page.locator("#notice", { hasText: "Addendum" }).waitFor();
+    await (await field(page, "/pair/center_distance_mm")).fill("125.5");
+    await page.waitForFunction(() => !document.body.classList.contains("busy") && document.querySelector("#problem").hidden);
+    const { pair } = await designOf(page);
+    for (const gear of [pair.driving, pair.driven]) {
+      assert.equal(gear.module_mm, 2.5);
+      for (const name of ["addendum_mm", "dedendum_mm", "rack_tip_radius_mm"]) assert.equal(gear[name], undefined, name);
+    }
+    // A rack that is not the usual one keeps its modules.
+    await page.locator("#start").selectOption("test-case-2");
+    await (await field(page, `${DRIVEN}/addendum_mm`)).fill("1.9");
+    await page.waitForFunction(() => !document.body.classList.contains("busy"));
+    await (await field(page, "/pair/driving/module_mm")).fill("4");
+    await page.locator("#notice", { hasText: "0.95 modules" }).waitFor();
+    assert.equal((await designOf(page)).pair.driven.addendum_mm, 3.8);
+    await page.locator("#notice button", { hasText: "Undo" }).click();
+    const back = (await designOf(page)).pair;
+    assert.deepEqual([back.driven.module_mm, back.driving.module_mm, back.driven.addendum_mm, back.driving.dedendum_mm], [2, 2, 1.9, 2.5]);
+  });
+
+  await step("a pair typed over an example is the pair typed from nothing", service, async (page) => {
+    const type = async (pointer, value) => (await field(page, pointer)).fill(String(value));
+    const typed = async () => {
+      await type("/pair/driving/module_mm", 2.5);
+      for (const [member, teeth, shift, width] of [["driving", 23, 0.3, 24], ["driven", 41, -0.1, 22]]) {
+        await type(`/pair/${member}/tooth_count`, teeth);
+        await type(`/pair/${member}/profile_shift`, shift);
+        await type(`/pair/${member}/face_width_mm`, width);
+        await type(`/pair/${member}/blank/bore_radius_mm`, 10);
+      }
+      await type("/pair/center_distance_mm", 80.7);
+      await type("/output_torques_n_m", 100);
+      await page.waitForFunction(() => !document.body.classList.contains("busy") && document.querySelector("#problem").hidden);
+      return page.locator("#headline").innerText();
+    };
+    await open(page, service);
+    await page.locator("#start").selectOption("new pair");
+    const fresh = await typed();
+    await page.locator("#start").selectOption("test-case-2");
+    for (const member of ["driving", "driven"]) await (await field(page, `/pair/${member}/tip_relief`)).uncheck();
+    await (await field(page, HOLES)).selectOption({ index: 0 });
+    assert.equal(await typed(), fresh);
+  });
+
+  await step("a hole that is let go where it cannot be goes back, and everything shows one design", service, async (page) => {
+    await open(page, service);
+    const before = await answer(page, "p-p");
+    const [middle, center] = await holeAt(page, 5);
+    const place = () => page.locator("#drawing svg").boundingBox();
+    const still = await place();
+    // Outward, through the rim. What is said of it moves nothing under the hand.
+    await page.mouse.move(...middle);
+    await page.mouse.down();
+    await page.mouse.move(...middle.map((value, i) => value - (center[i] - value) * 0.3), { steps: 25 });
+    await page.locator("#problem").waitFor();
+    assert.deepEqual(await place(), still);
+    await page.mouse.up();
+    await page.locator("#notice", { hasText: "Back to what can be made" }).waitFor();
+    await page.waitForFunction(() => !document.body.classList.contains("busy") && document.querySelector("#problem").hidden);
+    const circle = (await designOf(page)).pair.driven.blank.holes.circle_radius_mm;
+    assert.ok(circle > 34 && circle < 40, `the circle is ${circle} mm`);
+    assert.equal(await page.locator(".holes.wrong").count(), 0);
+    assert.match(await page.locator(".rotor.driven .hole title").first().textContent(), new RegExp(`R ${circle} mm`));
+    await tab(page, "export");
+    const { bytes } = await downloaded(page, () => page.locator("[data-download=json]").click());
+    const { submission, results } = JSON.parse(bytes);
+    assert.equal(submission.pair.driven.blank.holes.circle_radius_mm, circle);
+    assert.equal(results.curves[0].mesh_position.length, 200, "no draft");
+    assert.equal(results.curves[0].statistics.transmission_error_um.peak_to_peak.toFixed(3), (await answer(page, "p-p")).toFixed(3));
+    assert.notEqual(await answer(page, "p-p"), before);
+    // The drag is one change: undone, everything is as it was.
+    await page.locator("#undo").click();
+    await changed(page, "p-p", results.curves[0].statistics.transmission_error_um.peak_to_peak);
+    assert.equal(await answer(page, "p-p"), before);
+    assert.equal((await designOf(page)).pair.driven.blank.holes.circle_radius_mm, 34);
+  });
+
+  await step("what cannot be computed is not exported and not kept", service, async (page) => {
+    await open(page, service);
+    await (await field(page, `${HOLES}/radius_mm`)).fill("12");
+    await page.locator("#problem").waitFor();
+    await tab(page, "export");
+    let files = 0;
+    page.on("download", () => { files += 1; });
+    await page.locator("[data-download=csv]").click();
+    await page.locator("#export [role=status]", { hasText: "nothing is exported" }).waitFor();
+    assert.equal(files, 0);
+    await page.locator("#pin").click();
+    assert.ok(await page.locator("#against-label").isHidden());
+    await page.locator("#problem button", { hasText: "Go back" }).click();
+    await page.locator("#problem").waitFor({ state: "hidden" });
+    assert.equal((await designOf(page)).pair.driven.blank.holes.radius_mm, 7.5);
+  });
+
+  await step("a further pattern leaves what was typed in the others", service, async (page) => {
+    await open(page, service);
+    await (await field(page, HOLES)).selectOption({ index: 2 });
+    await (await field(page, `${HOLES}/0/count`)).fill("4");
+    await (await field(page, `${HOLES}/0/circle_radius_mm`)).fill("30");
+    await named(page, "4×r7.5@30");
+    await page.locator("#form button:visible", { hasText: "Add to several patterns" }).click();
+    await named(page, "4×r7.5@30+");
+    const [first, second] = (await designOf(page)).pair.driven.blank.holes;
+    assert.deepEqual([first.count, first.circle_radius_mm], [4, 30]);
+    assert.equal(second.count, 4);
+  });
+
+  await step("a design too long for a preview is computed by a job, and opened with its results", service, async (page) => {
+    const previews = [];
+    page.on("request", (request) => { if (/v1\/preview$/.test(request.url())) previews.push(request.postData()); });
+    await openDesign(page, service, LONG);
+    await page.locator("#progress").waitFor();
+    await page.waitForFunction(() => !document.body.classList.contains("busy") && document.querySelector("#answer-p-p .value").textContent !== "–", null, { timeout: 120_000 });
+    const long = await answer(page, "p-p");
+    assert.ok(long > 0);
+    assert.ok(await page.locator("#problem").isHidden());
+    // 61 periods are shown as an envelope under a strip of the whole period; zoomed in as curves.
+    assert.ok(await page.locator("#brush").isVisible());
+    assert.match(await page.locator("#chart-ste .legend").innerText(), /zoom in/);
+    await page.locator("#brush button", { hasText: "+" }).click();
+    await page.locator("#brush button", { hasText: "+" }).click();
+    await page.locator("#brush button", { hasText: "+" }).click();
+    assert.doesNotMatch(await page.locator("#chart-ste .legend").innerText(), /zoom in/);
+    assert.match(await page.locator("#brush output").innerText(), /of 61/);
+    // Another design, and back by the list of jobs: its results are shown, and not computed again.
+    await page.locator("#start").selectOption("standard-pair");
+    await changed(page, "p-p", long);
+    await tab(page, "jobs");
+    const row = page.locator("#jobs tbody tr", { hasText: "successful" }).first();
+    await row.waitFor();
+    previews.length = 0;
+    await row.locator("button", { hasText: "Open" }).click();
+    await page.waitForFunction((value) => Number(document.querySelector("#answer-p-p .value").textContent) === value, long);
+    assert.deepEqual(previews, []);
+  });
+
+  await step("several torques of a long period are computed too", service, async (page) => {
+    const short = structuredClone(LONG);
+    short.pair.driven.tooth_count = 23;
+    short.pair.driven.profile_shift = 0.3;
+    short.pair.center_distance_mm = 59.5;
+    short.pair.driven.blank = { bore_radius_mm: 10, holes: { count: 5, circle_radius_mm: 17, radius_mm: 2 } };
+    short.output_torques_n_m = [20, 50, 80];
+    await openDesign(page, service, short);
+    await page.waitForFunction(() => document.querySelectorAll("#table tbody tr").length === 3, null, { timeout: 120_000 });
+    assert.equal(await page.locator("#chart-ste .entry").count(), 3);
+  });
+
+  await step("a web that a plane does not stand for is warned of, with the guide", service, async (page) => {
+    await open(page, service);
+    await page.locator("#start").selectOption("web");
+    await page.locator("#warned").click();
+    const link = page.locator("#warnings li", { hasText: "The web of the driven gear" }).locator("a");
+    await link.waitFor();
+    await link.click();
+    assert.match(await page.locator("h1").innerText(), /thin web/i);
+    await axe(page);
+  });
+
+  await step("every part of the form begins with what fits the gear", service, async (page) => {
+    await openDesign(page, service, { ...LONG, pair: { ...LONG.pair, driving: { ...LONG.pair.driving, tooth_count: 24 }, driven: { ...LONG.pair.driven, tooth_count: 48, profile_shift: 0, blank: { bore_radius_mm: 20 } }, center_distance_mm: 91 }, output_torques_n_m: [150] });
+    await page.waitForFunction(() => !document.body.classList.contains("busy"));
+    const pointers = await page.locator("#form fieldset > legend input[type=checkbox], #form .variants > .row > select").evaluateAll((all) => all.map(({ id }) => id));
+    assert.ok(pointers.length > 8, pointers.join());
+    const seen = new Set();
+    const settle = async (what) => {
+      await page.waitForTimeout(60);
+      await page.waitForFunction(() => !document.body.classList.contains("busy"), null, { timeout: 60_000 });
+      const wrong = await page.locator("#problem").evaluate((place) => (place.hidden ? "" : place.innerText));
+      assert.equal(wrong, "", what);
+    };
+    /** Tries everything that can be asked for at a control, and what is asked for there in turn. */
+    const tryAll = async (id, depth = 0) => {
+      if (seen.has(id) || depth > 3) return;
+      seen.add(id);
+      const control = page.locator(`[id="${id}"]`);
+      const inner = () => page.locator("#form fieldset > legend input[type=checkbox], #form .variants > .row > select").evaluateAll((all, outer) => all.map((each) => each.id).filter((each) => each.startsWith(`${outer}/`)), id);
+      await field(page, id.slice("field-".length));
+      if ((await control.getAttribute("type")) === "checkbox") {
+        if (!(await control.isChecked())) {
+          await control.check();
+          await settle(`${id} checked`);
+        }
+        for (const each of await inner()) await tryAll(each, depth + 1);
+        return;
+      }
+      const values = await control.locator("option").evaluateAll((options) => options.map(({ value }) => value));
+      for (const value of values.filter(Boolean)) {
+        await control.selectOption(value);
+        await settle(`${id} as ${value}`);
+        for (const each of await inner()) await tryAll(each, depth + 1);
+      }
+    };
+    const fragment = await page.evaluate(() => location.hash);
+    const again = async () => {
+      await page.evaluate((hash) => { location.hash = hash; }, fragment);
+      await settle("as it began");
+    };
+    for (const id of pointers) {
+      await tryAll(id);
+      await again();
+    }
+    for (const member of ["driving", "driven"]) {
+      const pointer = `/pair/${member}/profile_modifications`;
+      const list = page.locator(`#form fieldset.list`, { has: page.locator("legend", { hasText: /modifications/i }) }).nth(member === "driving" ? 0 : 1);
+      await list.evaluate((element) => { for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true; });
+      await list.locator(":scope > button").click();
+      await settle(`${pointer} added`);
+      const kinds = await (await field(page, `${pointer}/0`)).locator("option").evaluateAll((options) => options.map(({ value }) => value));
+      for (const kind of kinds.filter(Boolean)) {
+        await (await field(page, `${pointer}/0`)).selectOption(kind);
+        await settle(`${pointer} as ${kind}`);
+      }
+      await again();
+    }
+  });
+
+  await step("undo and redo take back everything, by keys too", service, async (page) => {
+    await open(page, service);
+    const first = await answer(page, "p-p");
+    await page.locator("#pin").click();
+    await page.locator("#against-label").waitFor();
+    await (await field(page, `${HOLES}/count`)).fill("8");
+    const second = await changed(page, "p-p", first);
+    const [middle, center] = await holeAt(page, 4);
+    await drag(page, middle, middle.map((value, i) => value + (center[i] - value) * 0.1));
+    const third = await changed(page, "p-p", second);
+    await page.locator("#position").focus();
+    await page.keyboard.press("Control+z");
+    assert.equal(await changed(page, "p-p", third), second);
+    await page.keyboard.press("Control+z");
+    assert.equal(await changed(page, "p-p", second), first);
+    await page.keyboard.press("Control+z");
+    await page.locator("#against-label").waitFor({ state: "hidden" });
+    assert.ok(await page.locator("#undo").isDisabled());
+    for (let i = 0; i < 2; i += 1) await page.keyboard.press("Control+Shift+z");
+    assert.equal(await changed(page, "p-p", first), second);
+    await page.locator("#redo").click();
+    assert.equal(await changed(page, "p-p", second), third);
+    assert.ok(await page.locator("#redo").isDisabled());
+  });
+
+  await step("designs are compared under names, field by field, and in the headline", service, async (page) => {
+    await open(page, service);
+    await page.locator("#pin").click();
+    await tab(page, "compare");
+    const name = page.locator("#name-1");
+    await name.fill("as built");
+    await name.press("Enter");
+    await (await field(page, `${HOLES}/count`)).fill("8");
+    await named(page, "8×");
+    assert.equal(await name.inputValue(), "as built");
+    assert.match(await page.locator("#compare caption", { hasText: "Differences" }).locator("..").innerText(), /Number of holes[\s\S]*8\s+10/i);
+    assert.match(await page.locator("#answer-p-p .change").innerText(), /^[+−]\d/);
+    await tab(page, "curves");
+    assert.match(await page.locator("#chart-ste .legend").innerText(), /as built/);
+    await tab(page, "compare");
+    await page.locator("#table input[type=checkbox]").uncheck();
+    await tab(page, "curves");
+    assert.equal(await page.locator("#chart-ste .entry").count(), 0);
+    await tab(page, "compare");
+    const { bytes } = await downloaded(page, () => page.locator("#table-csv").click());
+    assert.match(bytes.toString(), /as built,flexible,115/);
+  });
+
+  await step("drawing and answers stay in view while the rest is scrolled", service, async (page) => {
+    await open(page, service);
+    await field(page, `${HOLES}/count`);
+    assert.equal(await page.locator("#form details.section[open]").count(), 1, "one section at a time");
+    await page.locator(".work-panel").evaluate((panel) => panel.scrollTo(0, panel.scrollHeight));
+    await page.locator(".form-panel").evaluate((panel) => panel.scrollTo(0, panel.scrollHeight));
+    for (const place of ["#answer-p-p", "#answer-pressure", "#drawing svg", "#undo"]) {
+      const box = await page.locator(place).boundingBox();
+      assert.ok(box.y >= 0 && box.y + box.height <= 800 && box.x + box.width <= 1280, `${place} ${JSON.stringify(box)}`);
+    }
+    assert.equal(await page.evaluate(() => document.documentElement.scrollHeight - innerHeight), 0);
+  }, { viewport: { width: 1280, height: 800 } });
+
+  await step("a phone shows answers and drawing first, a large screen curves beside the drawing", service, async (page) => {
+    await open(page, service);
+    const top = async (place) => (await page.locator(place).boundingBox()).y;
+    const order = await Promise.all([".answers-panel", ".drawing-panel", ".work-panel", ".form-panel"].map(top));
+    assert.deepEqual(order, [...order].sort((a, b) => a - b));
+    assert.ok((await top("#drawing svg")) < 844);
+    await page.setViewportSize({ width: 3840, height: 2160 });
+    await page.locator("#geometry table").first().waitFor();
+    const [drawing, curves] = await Promise.all(["#drawing", "#chart-ste"].map((place) => page.locator(place).boundingBox()));
+    assert.ok(curves.x > drawing.x + drawing.width - 1 && curves.y < drawing.y + drawing.height, "beside it");
+    assert.equal(await page.locator("#form details.section[open]").count(), 4);
+  }, { viewport: { width: 390, height: 844 } });
+
+  await step("the geometry report has what is checked first, on one page", service, async (page) => {
+    await open(page, service);
+    await tab(page, "geometry");
+    const rows = await page.locator("#geometry").innerText();
+    // By hand for z 50/50, m 2, a 100.5: ε 1.5116, j 0.3484, d_b 93.969; at A the driving root slides by 1 - 22.2810/13.3564 = -0.668.
+    for (const expected of [/Contact ratio ε_α\s+1\.5116/, /backlash j_bn\s+0\.3484/i, /Base diameter d_b\s+93\.969\s+93\.969/, /sliding at A ζ_A\s+-0\.668\s+0\.401/i, /Tip thickness/, /Polar inertia/]) assert.match(rows, expected);
+    const svg = (await downloaded(page, () => page.locator("#geometry button", { hasText: "SVG" }).click())).bytes.toString();
+    for (const words of ["Contact ratio, ε_α", "Transmission error in µm", "Warnings", "Evidence", "STE p-p", "input "]) assert.ok(svg.includes(words), words);
+    assert.doesNotMatch(svg, /NaN|undefined/);
+    const png = (await downloaded(page, () => page.locator("#geometry button", { hasText: "PNG" }).click())).bytes;
+    assert.deepEqual([...png.subarray(1, 4)].map((byte) => String.fromCharCode(byte)).join(""), "PNG");
+    await page.evaluate(() => { window.print = () => {}; });
+    await page.locator("#geometry button", { hasText: "Print" }).click();
+    const pdf = (await page.pdf({ preferCSSPageSize: true })).toString("latin1");
+    assert.equal([...pdf.matchAll(/\/Type\s*\/Page\b/g)].length, 1, "one page");
+    await axe(page);
+  });
+
+  await step("teeth are drawn by a class, and pasted from a spreadsheet", service, async (page) => {
+    await open(page, service);
+    await page.locator("#start").selectOption("standard-pair");
+    await named(page, "50/50");
+    const before = await answer(page, "p-p");
+    const tool = async (name) => {
+      const found = page.locator(`#deviations-driven-${name}`);
+      await found.evaluate((element) => { for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true; });
+      return found;
+    };
+    await (await tool("class")).fill("6");
+    await (await tool("seed")).fill("3");
+    const draw = page.locator("details.tool[open] button", { hasText: "Draw teeth" });
+    await draw.click();
+    const drawn = await changed(page, "p-p", before);
+    // f_pT = 5.9 um in class 5, times the square root of 2.
+    assert.match(await page.locator("details.tool[open] [role=status]").innerText(), /f_pT 8\.3/);
+    const teeth = (await designOf(page)).pair.driven.tooth_deviations;
+    assert.deepEqual([teeth.pitch_single_um.length, teeth.profile_slope_um.length], [50, 50]);
+    await (await tool("seed")).fill("4");
+    await draw.click();
+    await changed(page, "p-p", drawn);
+    await page.locator("#undo").click();
+    assert.deepEqual((await designOf(page)).pair.driven.tooth_deviations, teeth);
+    // A column with decimal commas, as a spreadsheet in half of Europe copies it; its sum of 50 um is shared by the teeth.
+    const column = Array.from({ length: 50 }, (_, i) => `${i % 2 ? "3" : "-1"},0`).join("\n");
+    await (await tool("text")).fill(column);
+    await page.locator("details.tool[open] button", { hasText: "Take them" }).click();
+    await page.locator("details.tool[open] [role=status]", { hasText: "Taken" }).waitFor();
+    const pasted = (await designOf(page)).pair.driven.tooth_deviations;
+    assert.deepEqual(pasted.pitch_single_um.slice(0, 3), [-2, 2, -2]);
+    assert.deepEqual(pasted.profile_slope_um, teeth.profile_slope_um, "slopes stay");
+    await (await tool("text")).fill("1\n2\n3");
+    await page.locator("details.tool[open] button", { hasText: "Take them" }).click();
+    await page.locator("details.tool[open] [role=status]", { hasText: "50 are needed" }).waitFor();
+    // A file of a measurement with named columns.
+    const csv = `tooth,fp,fHa\n${Array.from({ length: 50 }, (_, i) => `${i + 1},0,${i / 10}`).join("\n")}`;
+    await page.locator("details.tool[open]").evaluate((element, text) => {
+      const data = new DataTransfer();
+      data.items.add(new File([text], "teeth.csv"));
+      element.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+    }, csv);
+    await page.waitForFunction(() => /profile_slope_um from 0 to 4\.9/.test(document.querySelector("details.tool[open] [role=status]").innerText));
+  });
+
+  await step("a part of a long period has a spectrum, which says what it is", service, async (page) => {
+    await openDesign(page, service, { ...LONG, resolution: { span_mesh_periods: 12 } });
+    await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+    await page.locator("#chart-spectrum").scrollIntoViewIfNeeded();
+    assert.match(await page.locator("#chart-spectrum .note").innerText(), /periods that were computed/);
+  });
+
+  await step("what is shown is exported, with titles, and as a program", service, async (page) => {
+    await open(page, service);
+    await tab(page, "export");
+    const get = async (kind) => (await downloaded(page, () => page.locator(`[data-download="${kind}"]`).click())).bytes;
+    for (const [kind, least] of [["json", 20_000], ["csv", 10_000], ["orders", 1000], ["designs", 100], ["svg", 20_000], ["png", 20_000], ["pair", 20_000], ["page", 20_000], ["look-up-table.csv", 1000], ["fields.vtu", 100_000]]) {
+      const { length } = await get(kind);
+      assert.ok(length > least, `${kind} has ${length} bytes`);
+    }
+    const curves = (await get("svg")).toString();
+    for (const words of ["Transmission error in µm", "mesh position in mesh periods", "Spectrum of the transmission error in µm", "pair 1"]) assert.ok(curves.includes(words), words);
+    const orders = (await get("orders")).toString().split("\r\n");
+    assert.match(orders[0], /^output_torque_n_m,order,transmission_error_um/);
+    assert.ok(orders.some((line) => /^115,10,0\.34.*H_N/.test(line)), "order 10 is H_N");
+    const code = page.locator("#code");
+    await page.waitForFunction(() => document.querySelector("#code").textContent.includes("curl"));
+    const submitted = JSON.parse(/<<'JSON'\n([\s\S]*)\nJSON/.exec(await code.textContent())[1]);
+    assert.deepEqual(submitted, await designOf(page));
+    await page.locator("#language").selectOption("python");
+    await page.waitForFunction(() => document.querySelector("#code").textContent.includes("from meshwright import Client"));
+    await page.locator("#language").selectOption("typescript");
+    await page.waitForFunction(() => document.querySelector("#code").textContent.includes("service.solve(submission)"));
+    await axe(page);
+  });
+
+  await step("a study varies any field, and shows two columns", service, async (page) => {
+    await open(page, service);
+    await tab(page, "study");
+    await page.locator("#axis-0").selectOption("/pair/driving/tip_relief/start/radial_length_mm");
+    await page.locator("#axis-0-values").fill("1, 1.5");
+    await page.locator("#axis-1").selectOption("/output_torques_n_m");
+    await page.locator("#axis-1-values").fill("50, 100");
+    await page.locator("#study button[type=submit]").click();
+    await page.waitForFunction(() => /4 of 4 designs, successful/.test(document.querySelector("#study [role=status]").innerText));
+    await page.locator("#study-across").selectOption("k");
+    assert.match(await page.locator("#study .scatter").getAttribute("aria-label"), /least mean stiffness/);
+    assert.match(await page.locator("#study .scatter").innerHTML(), /least mean stiffness in N\/µm/);
+  });
+
+  await step("a link is copied where pages may not use the clipboard, or it says that it is not", service, async (page) => {
+    await page.addInitScript(() => {
+      Object.defineProperty(navigator, "clipboard", { value: undefined });
+      window.copies = 0;
+      document.addEventListener("copy", () => { window.copies += 1; });
+    });
+    await open(page, service);
+    await page.locator("#share").click();
+    await page.waitForFunction(() => /copied/i.test(document.querySelector("#share").textContent));
+    assert.equal(await page.evaluate(() => window.copies), 1, "it says so because it did");
+    await page.evaluate(() => { document.execCommand = () => false; });
+    await page.waitForFunction(() => document.querySelector("#share").textContent === "Copy link");
+    await page.locator("#share").click();
+    await page.waitForFunction(() => /address bar/.test(document.querySelector("#share").textContent));
+  });
+
+  await step("every plot has words, and colors that deuteranopia keeps apart", service, async (page) => {
+    for (const colorScheme of ["light", "dark"]) {
+      await page.emulateMedia({ colorScheme });
+      await open(page, service);
+      const words = await page.locator("#charts figure:not([hidden])").evaluateAll((figures) => figures.map((figure) => [figure.id, document.getElementById(figure.getAttribute("aria-describedby")).textContent]));
+      assert.equal(words.length, 5);
+      for (const [id, text] of words) assert.ok(text.length > 60, `${id}: ${text}`);
+      const of = (id) => words.find(([each]) => each === `chart-${id}`)[1];
+      assert.match(of("ste"), /from 13\.\d+ at position \d\.\d+ to 14\.\d+ .*peak-to-peak 1\.75 µm/);
+      assert.match(of("spectrum"), /0\.341 µm at order 10/);
+      const colors = await page.evaluate(() => [1, 2, 3, 4, 5, 6, 7].map((i) => getComputedStyle(document.documentElement).getPropertyValue(`--series-${i}`).trim()));
+      const seen = colors.map((color) => seenByDeuteranopia([1, 3, 5].map((i) => parseInt(color.slice(i, i + 2), 16))));
+      for (let i = 0; i < 7; i += 1) for (let j = 0; j < i; j += 1) assert.ok(Math.hypot(...seen[i].map((value, k) => value - seen[j][k])) > 20, `${colorScheme}: ${colors[i]} ${colors[j]}`);
+    }
+  });
+
+  await step("one tab leads to the holes, and what asks for less motion gets less", service, async (page) => {
+    await open(page, service);
+    assert.equal(await page.locator(".rotor.driven [tabindex='0']").count(), 1);
+    await page.locator("#play").click();
+    await page.waitForFunction(() => Number(document.querySelector("#position").value) > 0.05);
+    await page.locator("#play").click();
+    assert.equal(Number(await page.locator("#position").inputValue()) % 0.1 < 0.001 || Number(await page.locator("#position").inputValue()) % 0.1 > 0.099, true, "by steps");
+  }, { reducedMotion: "reduce" });
+
+  await step("what a visitor asks is answered where it stands", service, async (page) => {
+    await open(page, service);
+    await page.locator("#answer-h-n .name").click();
+    assert.match(await page.locator("#about-h-n").innerText(), /holes/);
+    await page.locator("#answer-p-p .name").click();
+    assert.match(await page.locator("#about-p-p").innerText(), /1 µm/);
+    assert.ok(await page.locator("#about-h-n").isHidden());
+    await page.locator("#chart-pressure").scrollIntoViewIfNeeded();
+    assert.match(await page.locator("#chart-pressure .note").innerText(), /tip corner/);
+    await page.locator("nav a", { hasText: "Guides" }).click();
+    await page.locator("a", { hasText: /My first pair/ }).click();
+    assert.match(await page.locator("h1").innerText(), /My first pair/);
+    await axe(page);
+  });
+}

@@ -1,0 +1,136 @@
+// A browser, and steps in pages of their own; what every step needs to look at the page.
+
+import assert from "node:assert/strict";
+import { AxeBuilder } from "@axe-core/playwright";
+import { chromium } from "playwright-core";
+
+const PATIENCE = 20_000;
+const only = process.env.ONLY ? new RegExp(process.env.ONLY) : null;
+
+const browser = await chromium.launch({ executablePath: process.env.BROWSER, args: ["--no-sandbox"] });
+let passed = 0;
+let failed = 0;
+
+/** Runs a step in a page of its own, which must neither log an error nor ask another host. */
+export async function step(name, service, work, options = {}, others = []) {
+  if (only && !only.test(name)) return;
+  const context = await browser.newContext({ viewport: { width: 1280, height: 1000 }, acceptDownloads: true, ...options });
+  const page = await context.newPage();
+  page.setDefaultTimeout(PATIENCE);
+  const faults = [];
+  page.on("console", (message) => {
+    // The browser itself logs a refusal; the page shows it at its field.
+    if (message.type() === "error" && !/status of 4(01|22)/.test(message.text())) faults.push(message.text());
+  });
+  page.on("pageerror", (error) => faults.push(error.stack));
+  page.on("request", (request) => {
+    if (![service.url, ...others].some((known) => request.url().startsWith(known)) && !/^(blob|data):/.test(request.url())) faults.push(`asks ${request.url()}`);
+  });
+  try {
+    await work(page, context);
+    assert.deepEqual(faults, []);
+    passed += 1;
+    console.log(`page: ok: ${name}`);
+  } catch (error) {
+    failed += 1;
+    console.log(`page: FAILED: ${name}\n${error.stack}\n${faults.join("\n")}`);
+  }
+  await context.close();
+}
+
+/** Ends the browser and tells how it went. */
+export async function end() {
+  await browser.close();
+  console.log(`${passed} passed, ${failed} failed`);
+  process.exitCode = failed ? 1 : 0;
+}
+
+/** An answer of the headline, as a number. */
+export const answer = async (page, id) => Number(await page.locator(`#answer-${id} .value`).innerText());
+
+/** Waits until an answer is another one than before, and no draft; gives it. */
+export async function changed(page, id, before) {
+  await page.waitForFunction(([place, old]) => {
+    const value = document.querySelector(`#answer-${place} .value`);
+    return !value.classList.contains("draft") && !document.body.classList.contains("busy") && Number(value.innerText) !== old;
+  }, [id, before]);
+  return answer(page, id);
+}
+
+export async function open(page, service, fragment = "") {
+  await page.goto(service.url + fragment);
+  await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+  await page.locator("#form .field").first().waitFor();
+  await page.waitForFunction(() => !document.body.classList.contains("busy"));
+}
+
+/** The field at a pointer, in view whatever was folded. */
+export async function field(page, pointer) {
+  const found = page.locator(`[id="field-${pointer}"]`);
+  await found.waitFor({ state: "attached" });
+  await found.evaluate((element) => { for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true; });
+  return found;
+}
+
+/** Chooses a tab of the results. */
+export const tab = (page, name) => page.locator(`#tab-${name}`).click();
+
+/** What the live design is called in the table, once it is called so. */
+export const named = (page, words) => page.waitForFunction((name) => document.querySelector("#table tr.live th")?.textContent.includes(name) && !document.body.classList.contains("busy"), words);
+
+/** The design that the address carries. */
+export async function designOf(page) {
+  await page.waitForTimeout(400);
+  return page.evaluate(async () => {
+    const text = location.hash.slice("#design=".length).replace(/-/g, "+").replace(/_/g, "/");
+    const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+    return JSON.parse(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"))).text());
+  });
+}
+
+/** Opens a design by its address. */
+export async function openDesign(page, service, design) {
+  await page.goto(service.url);
+  const fragment = await page.evaluate(async (submission) => {
+    const packed = new Uint8Array(await new Response(new Blob([JSON.stringify(submission)]).stream().pipeThrough(new CompressionStream("deflate-raw"))).arrayBuffer());
+    let letters = "";
+    for (const byte of packed) letters += String.fromCharCode(byte);
+    return `#design=${btoa(letters).replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, "")}`;
+  }, design);
+  await page.goto("about:blank");
+  await page.goto(service.url + fragment);
+  await page.locator("#form .field").first().waitFor();
+}
+
+export async function axe(page) {
+  const { violations } = await new AxeBuilder({ page }).analyze();
+  const serious = violations.filter(({ impact }) => ["serious", "critical"].includes(impact));
+  assert.deepEqual(serious.map(({ id, nodes }) => `${id}: ${nodes.map(({ target, failureSummary }) => `${target} ${failureSummary}`).join(" ")}`), []);
+}
+
+/** Drags with the mouse from one place to another in steps. */
+export async function drag(page, from, to, steps = 12) {
+  await page.mouse.move(...from);
+  await page.mouse.down();
+  await page.mouse.move(...to, { steps });
+  await page.mouse.up();
+}
+
+/** Where a hole of the driven gear is on the screen, and the center of its gear. */
+export async function holeAt(page, index) {
+  const middle = async (locator) => {
+    const box = await locator.boundingBox();
+    return [box.x + box.width / 2, box.y + box.height / 2];
+  };
+  return [await middle(page.locator(".rotor.driven .hole").nth(index)), await middle(page.locator(".rotor.driven .opening"))];
+}
+
+/** A file that `work` makes the page give, as text or bytes. */
+export async function downloaded(page, work) {
+  const waiting = page.waitForEvent("download");
+  await work();
+  const download = await waiting;
+  const chunks = [];
+  for await (const chunk of await download.createReadStream()) chunks.push(chunk);
+  return { name: download.suggestedFilename(), bytes: Buffer.concat(chunks) };
+}

@@ -1,0 +1,73 @@
+// What is on the screen for other programs: curves, orders, tables, pictures, files of a job, and the request as a program.
+
+import { ProblemError, request, solved } from "./api.js";
+import { looks } from "./charts.js";
+import { designsCsv } from "./compare.js";
+import { csv, drawingOf, ordersCsv, save } from "./download.js";
+import { h } from "./dom.js";
+import { fileOf, pictureOf, stacked } from "./figure.js";
+import { inLight, sheetOf } from "./sheet.js";
+import { copied, snippets } from "./snippets.js";
+
+/** Files that the service makes of a job: the name of each below the results, and what it is called on the page. */
+const FILES_OF_JOBS = [
+  ["look-up-table.csv", "Look-up table, CSV"], ["look-up-table.txt", "Look-up table, Modelica text"], ["fields.vtu", "Stress and displacement, VTU"],
+];
+
+const LANGUAGES = { curl: "curl", python: "Python", typescript: "TypeScript" };
+
+/** The exports in `place`. `current` waits for the live design and gives it, or null where it cannot be computed; `designs` gives all that are shown. */
+export function exporting(place, { current, designs, drawing, charts, position }) {
+  const state = h("p", { className: "note", role: "status" });
+  const kinds = {
+    json: ["Submission and results, JSON", (live) => save("meshwright.json", "application/json", JSON.stringify({ submission: live.submission, results: live.results }, null, 1))],
+    csv: ["Curves, CSV", (live) => save("meshwright.csv", "text/csv", csv(live.results))],
+    orders: ["Orders, CSV", (live) => save("meshwright-orders.csv", "text/csv", ordersCsv(live.results))],
+    designs: ["Designs, CSV", () => save("meshwright-designs.csv", "text/csv", designsCsv(designs()))],
+    svg: ["Curves, SVG", () => save("meshwright-curves.svg", "image/svg+xml", fileOf(curves()))],
+    png: ["Curves, PNG", async () => save("meshwright-curves.png", "image/png", await pictureOf(curves()))],
+    pair: ["Drawing, SVG", () => save("meshwright-pair.svg", "image/svg+xml", fileOf(inLight(() => drawingOf(drawing.element))))],
+    page: ["Report page, SVG", (live) => save("meshwright-report.svg", "image/svg+xml", fileOf(sheetOf({ live, drawing: drawing.element, charts })))],
+  };
+  const buttons = Object.entries(kinds).map(([kind, [name, work]]) => h("button", { type: "button", data: { download: kind }, on: { click: () => run(work) } }, name));
+  const ofJobs = FILES_OF_JOBS.map(([file, name]) => h("button", { type: "button", data: { download: file }, on: { click: () => run((live) => fileOfJob(live, file)) } }, name));
+  const code = h("pre", { id: "code", tabIndex: 0, ariaLabel: "Program" });
+  const language = h("select", { id: "language", on: { change: () => show() } }, ...Object.entries(LANGUAGES).map(([value, name]) => h("option", { value }, name)));
+  const copy = h("button", { type: "button", on: { click: async () => { state.textContent = (await copied(code.textContent)) ? "The program is copied." : "Copying is not allowed here: select the text."; } } }, "Copy it");
+  place.replaceChildren(
+    h("p", { className: "note" }, "Everything is of one design: the one that is drawn, with the curves and numbers that are shown."),
+    h("div", { className: "buttons wrap" }, ...buttons), h("h3", {}, "Files that a job makes"), h("div", { className: "buttons wrap" }, ...ofJobs), state,
+    h("h3", {}, "This as a program"), h("div", { className: "line" }, h("label", { htmlFor: language.id }, "Language"), language, copy), code);
+
+  const curves = () => inLight(() => stacked(charts.figures(), looks().panel));
+
+  async function run(work) {
+    state.textContent = "";
+    try {
+      const live = await current();
+      if (!live) {
+        state.textContent = "This design cannot be computed, so nothing is exported: mend what is wrong, or go back.";
+        return;
+      }
+      await work(live);
+    } catch (error) {
+      if (!(error instanceof ProblemError)) throw error;
+      state.textContent = error.problem.errors?.[0]?.detail ?? error.message;
+    }
+  }
+
+  async function fileOfJob(live, file) {
+    state.textContent = "A job computes it.";
+    const job = await solved(live.submission);
+    const query = file === "fields.vtu" ? `?mesh_position=${position().toFixed(4)}` : "";
+    save(`meshwright-${file}`, "", await (await request(`v1/jobs/${job.id}/results/${file}${query}`)).blob());
+    state.textContent = "";
+  }
+
+  async function show() {
+    const live = await current();
+    if (live) code.textContent = snippets(live.submission, new URL(".", document.baseURI).href)[language.value];
+  }
+
+  return { refresh: show };
+}

@@ -1,0 +1,136 @@
+// A figure as a drawing of its own, with title, axes, units and legend: for small charts on the page, for files and for print.
+
+import { number, s } from "./dom.js";
+
+const FRAME = { left: 62, right: 14, top: 14, bottom: 44 };
+const LETTER = 11;
+const FONT = "system-ui, sans-serif";
+
+const words = (text, attributes) => Object.assign(s("text", attributes), { textContent: text });
+
+/** Five or so round numbers between two. */
+export function ticks(low, high, count = 5) {
+  const raw = (high - low) / count || 1;
+  const power = 10 ** Math.floor(Math.log10(raw));
+  const step = [1, 2, 5, 10].find((each) => each * power >= raw * (1 - 1e-9)) * power;
+  const found = [];
+  for (let value = Math.ceil(low / step - 1e-9) * step; value <= high + step * 1e-9; value += step) found.push(Math.abs(value) < step * 1e-9 ? 0 : value);
+  return found;
+}
+
+function range(values, room) {
+  const known = values.filter((value) => Number.isFinite(value));
+  const [least, most] = known.length ? [Math.min(...known), Math.max(...known)] : [0, 1];
+  const more = (most - least || Math.abs(most) || 1) * room;
+  return [least - more, most + more];
+}
+
+/**
+ * A figure of `lines` `{ name, color, dash, x, y }`, where null breaks a line, of `points` `{ x, y, label, strong }`, and of `stems` `{ name, color, x, y }`, over named
+ * axes. Looks come from `colors`, or from the style sheet where there are none.
+ */
+export function figure({ title, x, y, lines = [], points = [], stems = [], colors = null, width = 520, height = 300, heading = false, xRange = null, label = title }) {
+  const named = [...lines, ...stems].filter(({ name }) => name);
+  const legend = named.length > 1 ? legendRows(named, width) : [];
+  const frame = { ...FRAME, top: FRAME.top + (heading ? 18 : 0) + 15 * legend.length };
+  let [left, right] = xRange ?? range([...points.map((each) => each.x), ...lines.flatMap((line) => line.x), ...stems.flatMap((each) => each.x)], points.length ? 0.08 : 0);
+  const ys = [...points.map((each) => each.y), ...lines.flatMap((line) => line.y.filter((value, i) => value !== null && line.x[i] >= left && line.x[i] <= right)), ...stems.flatMap((each) => [0, ...each.y])];
+  let [low, high] = range(ys, 0.08);
+  if (stems.length) [left, low] = [0, 0];
+  const px = (value) => frame.left + ((value - left) / (right - left || 1)) * (width - frame.left - frame.right);
+  const py = (value) => height - frame.bottom - ((value - low) / (high - low)) * (height - frame.top - frame.bottom);
+  const ink = colors ? { fill: colors.ink, "font-family": FONT, "font-size": LETTER } : {};
+  const line = (attributes, name) => s("line", { ...attributes, class: name, ...(colors ? { stroke: colors.grid } : {}) });
+  const svg = s("svg", { viewBox: `0 0 ${width} ${height}`, width: colors ? width : undefined, height: colors ? height : undefined, class: "scatter", role: "img", "aria-label": label, xmlns: "http://www.w3.org/2000/svg" });
+  if (heading) svg.append(words(title, { ...ink, x: frame.left, y: 16, "font-weight": 600, "font-size": LETTER + 2 }));
+  for (const value of ticks(left, right)) {
+    svg.append(line({ x1: px(value), x2: px(value), y1: frame.top, y2: height - frame.bottom }, "grid"), words(number(value), { ...ink, x: px(value), y: height - frame.bottom + 16, "text-anchor": "middle" }));
+  }
+  for (const value of ticks(low, high)) {
+    svg.append(line({ x1: frame.left, x2: width - frame.right, y1: py(value), y2: py(value) }, "grid"), words(number(value, 6), { ...ink, x: frame.left - 6, y: py(value) + 4, "text-anchor": "end" }));
+  }
+  svg.append(
+    words(x, { ...ink, x: (frame.left + width - frame.right) / 2, y: height - 8, "text-anchor": "middle" }),
+    words(y, { ...ink, transform: `translate(14 ${(frame.top + height - frame.bottom) / 2}) rotate(-90)`, "text-anchor": "middle" }));
+  legend.forEach((row, i) => row.forEach(({ name, color, dash, at }) => {
+    const level = frame.top - 15 * (legend.length - i) + 2;
+    svg.append(s("line", { x1: frame.left + at, x2: frame.left + at + 22, y1: level, y2: level, stroke: color, "stroke-width": 2, "stroke-dasharray": dash?.length ? dash.join(" ") : null }), words(name, { ...ink, x: frame.left + at + 27, y: level + 4 }));
+  }));
+  for (const each of lines) svg.append(s("path", { d: pathOf(each, px, py, [left, right]), fill: "none", class: each.color ? undefined : "line", stroke: each.color, "stroke-width": 1.5, "stroke-dasharray": each.dash?.length ? each.dash.join(" ") : null }));
+  stems.forEach((each, k) => each.x.forEach((place, i) => {
+    if (place < left || place > right) return;
+    svg.append(s("line", { x1: px(place) + 2 * k, x2: px(place) + 2 * k, y1: py(0), y2: py(each.y[i]), stroke: each.color, "stroke-width": 1.5 }));
+  }));
+  for (const point of points) {
+    const dot = s("circle", { cx: px(point.x), cy: py(point.y), r: point.strong ? 5 : 3.2, class: point.strong ? "dot strong" : "dot" });
+    dot.append(Object.assign(s("title"), { textContent: `${point.label}: ${number(point.x)}, ${number(point.y)}` }));
+    svg.append(dot);
+    if (point.strong) {
+      const atEnd = px(point.x) > width * 0.75;
+      svg.append(words(point.label, { x: px(point.x) + (atEnd ? -8 : 8), y: py(point.y) - 7, "text-anchor": atEnd ? "end" : "start", class: "name" }));
+    }
+  }
+  return svg;
+}
+
+/** The names of lines in rows that fit. */
+function legendRows(named, width) {
+  const rows = [[]];
+  let at = 0;
+  for (const each of named) {
+    const length = 42 + 6.2 * each.name.length;
+    if (at > 0 && at + length > width - FRAME.left - FRAME.right) {
+      rows.push([]);
+      at = 0;
+    }
+    rows.at(-1).push({ ...each, at });
+    at += length;
+  }
+  return rows;
+}
+
+function pathOf({ x, y }, px, py, [left, right]) {
+  let pen = "M";
+  let path = "";
+  x.forEach((place, i) => {
+    if (y[i] === null || y[i] === undefined || place < left || place > right) {
+      pen = "M";
+      return;
+    }
+    path += `${pen}${px(place).toFixed(2)} ${py(y[i]).toFixed(2)}`;
+    pen = "L";
+  });
+  return path;
+}
+
+/** A drawing as the text of a file. */
+export function fileOf(svg) {
+  return `<?xml version="1.0" encoding="UTF-8"?>\n${new XMLSerializer().serializeToString(svg)}`;
+}
+
+/** Drawings below each other, as one. */
+export function stacked(figures, background) {
+  const sizes = figures.map((each) => each.viewBox.baseVal);
+  const [width, height] = [Math.max(...sizes.map((box) => box.width)), sizes.reduce((sum, box) => sum + box.height, 0)];
+  const sheet = s("svg", { viewBox: `0 0 ${width} ${height}`, width, height, xmlns: "http://www.w3.org/2000/svg" }, s("rect", { width, height, fill: background }));
+  let y = 0;
+  for (const [i, each] of figures.entries()) {
+    each.setAttribute("y", y);
+    each.setAttribute("width", sizes[i].width);
+    each.setAttribute("height", sizes[i].height);
+    y += sizes[i].height;
+    sheet.append(each);
+  }
+  return sheet;
+}
+
+/** A drawing as a picture of so many pixels for each of its units. */
+export async function pictureOf(svg, scale = 2) {
+  const { width, height } = svg.viewBox.baseVal;
+  const image = new Image();
+  image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(fileOf(svg))}`;
+  await image.decode();
+  const canvas = Object.assign(document.createElement("canvas"), { width: Math.round(scale * width), height: Math.round(scale * height) });
+  canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
+  return new Promise((resolve) => canvas.toBlob(resolve, "image/png"));
+}

@@ -1,0 +1,138 @@
+// What the curves of designs are made of: their points, names, units and what a listener should know of them.
+
+import { fixed, number } from "./dom.js";
+
+/** What lies below is noise of the solution, in um. */
+export const LEAST_AMPLITUDE = 1e-4;
+/** Told apart without color: full, dashed, dotted, and both. */
+export const DASHES = [[], [7, 4], [2, 3], [10, 3, 2, 3], [12, 4], [4, 2, 1, 2], [1, 2]];
+
+const micro = (values) => values.map((value) => value * 1e-6);
+
+export const PANELS = [
+  { id: "ste", title: "Transmission error", unit: "µm", of: (curve) => curve.transmission_error_um },
+  { id: "stiffness", title: "Mesh stiffness, tangent", unit: "N/µm", of: (curve) => micro(curve.mesh_stiffness_tangent_n_per_m) },
+  { id: "share", title: "Load share", unit: "%", ofLive: shares, note: "a line for each pair of teeth" },
+  { id: "pressure", title: "Peak contact pressure", unit: "MPa", of: (curve) => curve.peak_contact_pressure_mpa, gaps: "No line where a sharp tip corner carries: the pressure has no limit there. More tip relief avoids it." },
+  { id: "stress", title: "Largest stress", unit: "MPa", ofLive: stresses },
+];
+
+/** Pairs so far apart are never in contact together, and share a look. */
+const LOOKS_OF_PAIRS = 4;
+
+/** The load shares of the live curve. A pair of teeth keeps its look from its first touch to its last. */
+function shares(curve) {
+  const offsets = curve.load_shares.map(({ pair_offset: offset }) => offset);
+  return Array.from({ length: LOOKS_OF_PAIRS }, (_, look) => {
+    const carried = curve.mesh_position.map((position, i) => {
+      const index = offsets.findIndex((offset) => (((Math.floor(position + 1e-9) + offset - look) % LOOKS_OF_PAIRS) + LOOKS_OF_PAIRS) % LOOKS_OF_PAIRS === 0);
+      return index < 0 ? 0 : 100 * curve.load_shares[index].share[i];
+    });
+    // Where nothing is carried there is no line, but a curve begins and ends at zero.
+    return { name: `pair ${look + 1}`, open: true, values: carried.map((value, i) => (value > 0 || carried[i - 1] > 0 || carried[i + 1] > 0 ? Math.max(value, 0) : null)) };
+  });
+}
+
+/** The stresses of the live curve, where they were asked for: at the roots of both gears, and at their holes. */
+export function stresses({ stress }) {
+  if (!stress) return [];
+  return [["root_mpa", "root"], ["hole_mpa", "hole"]].flatMap(([field, place]) =>
+    ["driving", "driven"].flatMap((gear) => (stress[gear][field] ? [{ name: `${place}, ${gear} gear`, values: stress[gear][field] }] : [])));
+}
+
+/** How many mesh periods a curve spans. */
+export function spanOf({ mesh_position: positions }) {
+  return positions.length > 1 ? positions.length * (positions[1] - positions[0]) : 1;
+}
+
+/** A line over `longest` mesh periods: what has a shorter true period goes on repeating it. */
+function repeated(line, longest, partial) {
+  if (partial || !(longest > line.span * (1 + 1e-9))) return line;
+  const turns = Math.ceil(longest / line.span - 1e-9);
+  const last = longest - 1e-9;
+  const x = Array.from({ length: turns }, (_, turn) => line.x.map((place) => place + turn * line.span)).flat();
+  const values = Array.from({ length: turns }, () => line.values).flat();
+  const count = x.filter((place) => place < last).length;
+  const whole = Math.abs(turns * line.span - longest) < 1e-6;
+  return { ...line, x: x.slice(0, count), values: values.slice(0, count), span: longest, open: line.open || !whole };
+}
+
+/** The lines of a panel: `{ name, look, dash, x, values, span, open }`. Designs have looks, torques have dashes; where there is one torque designs have both. */
+export function linesOf(panel, designs) {
+  if (panel.ofLive) {
+    const curve = designs[0].results.curves[0];
+    return panel.ofLive(curve).map((each, i) => ({ ...each, look: i, dash: DASHES[i % DASHES.length], x: curve.mesh_position, span: spanOf(curve) }));
+  }
+  const several = designs.some(({ results }) => results.curves.length > 1);
+  const longest = Math.max(...designs.flatMap(({ results }) => results.curves.map(spanOf)));
+  return designs.flatMap(({ name, results, look }, i) => results.curves.map((curve, j) => repeated({
+    name: several ? `${name}, ${number(curve.output_torque_n_m)} N m` : name, values: panel.of(curve), x: curve.mesh_position, span: spanOf(curve),
+    look: look ?? i, dash: DASHES[(several ? j : (look ?? i)) % DASHES.length],
+  }, longest, curve.statistics.partial)));
+}
+
+/** The orders of the transmission error of `curve` that stand out of the noise, up to `last`. */
+export function ordersOf({ spectrum }, last = Infinity) {
+  const kept = spectrum.order.map((order, i) => [order, spectrum.transmission_error_um[i]]);
+  return kept.filter(([order, value]) => order > 0 && order <= last && value > LEAST_AMPLITUDE);
+}
+
+/**
+ * The spectrum of a curve over the periods that were computed, where they are no whole true period: amplitudes of a Hann window, whose lines are wider than
+ * those of the true spectrum, at orders per revolution of a driven gear of so many teeth.
+ */
+export function partialSpectrum(curve, teeth, last) {
+  const values = curve.transmission_error_um;
+  const count = values.length;
+  const span = spanOf(curve);
+  const window = values.map((_, i) => 0.5 - 0.5 * Math.cos((2 * Math.PI * i) / count));
+  const weight = window.reduce((sum, w) => sum + w, 0);
+  const mean = values.reduce((sum, value, i) => sum + window[i] * value, 0) / weight;
+  const order = [];
+  const amplitude = [];
+  const most = Math.min(Math.floor(count / 2), Math.floor((last * span) / teeth), 4000);
+  for (let k = 1; k <= most; k += 1) {
+    // Each angle from the last one by a turn: as many cosines as there are points would take seconds.
+    const [c, s] = [Math.cos((2 * Math.PI * k) / count), Math.sin((2 * Math.PI * k) / count)];
+    let [x, y, re, im] = [1, 0, 0, 0];
+    for (let i = 0; i < count; i += 1) {
+      const value = window[i] * (values[i] - mean);
+      re += value * x;
+      im += value * y;
+      [x, y] = [x * c - y * s, x * s + y * c];
+    }
+    order.push((k * teeth) / span);
+    amplitude.push((2 * Math.hypot(re, im)) / weight);
+  }
+  return { order, transmission_error_um: amplitude, named: [{ order: teeth, label: "H_Z2", transmission_error_um: amplitude[Math.round(span) - 1] ?? 0 }] };
+}
+
+const extremes = (values) => {
+  const known = values.map((value, i) => [value, i]).filter(([value]) => value !== null && value !== undefined);
+  if (!known.length) return null;
+  return [known.reduce((a, b) => (b[0] < a[0] ? b : a)), known.reduce((a, b) => (b[0] > a[0] ? b : a))];
+};
+
+/** What a listener should know of a panel: how much, where, and how designs differ. */
+export function wordsOf(panel, designs) {
+  const told = linesOf(panel, designs).flatMap((line) => {
+    const found = extremes(line.values);
+    if (!found) return [];
+    const [[least, i], [most, j]] = found;
+    const range = `from ${number(least)} at position ${fixed(line.x[i], 2)} to ${number(most)} at ${fixed(line.x[j], 2)}, peak-to-peak ${number(most - least, 3)} ${panel.unit}`;
+    return [`${line.name}: ${range}.`];
+  });
+  const gaps = panel.gaps && linesOf(panel, designs).some(({ values }) => values.includes(null)) ? ` ${panel.gaps}` : "";
+  return `${panel.title} over ${number(Math.max(...designs.map(({ results }) => spanOf(results.curves[0]))))} mesh periods, in ${panel.unit}. ${told.join(" ")}${gaps}`;
+}
+
+/** The strongest orders of each design, in words. */
+export function wordsOfSpectrum(designs) {
+  const of = ({ name, results }) => {
+    const [curve] = results.curves;
+    if (!curve.spectrum) return `${name}: a part of the true period has no spectrum.`;
+    const strongest = ordersOf(curve).sort((a, b) => b[1] - a[1]).slice(0, 3);
+    return `${name}: ${strongest.map(([order, value]) => `${number(value, 3)} µm at order ${number(order)}`).join(", ")}.`;
+  };
+  return `Strongest orders of the transmission error, per revolution of the driven gear. ${designs.map(of).join(" ")}`;
+}

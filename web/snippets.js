@@ -1,0 +1,50 @@
+// What is on the screen as a program: the request that gives the same results elsewhere.
+
+/** A submission as a literal of Python. */
+function python(value, indent = "") {
+  if (value === null || value === undefined) return "None";
+  if (typeof value === "boolean") return value ? "True" : "False";
+  if (typeof value !== "object") return JSON.stringify(value);
+  if (Array.isArray(value) && value.every((each) => typeof each !== "object")) return `[${value.map((each) => python(each)).join(", ")}]`;
+  const inner = `${indent}    `;
+  if (Array.isArray(value)) return `[\n${value.map((each) => inner + python(each, inner)).join(",\n")},\n${indent}]`;
+  return `{\n${Object.entries(value).map(([name, each]) => `${inner}${JSON.stringify(name)}: ${python(each, inner)}`).join(",\n")},\n${indent}}`;
+}
+
+/** `submission` to the service at `address`: with curl, from Python, from TypeScript. A key stays out of it, in the environment. */
+export function snippets(submission, address) {
+  const url = address.replace(/\/$/, "");
+  const json = JSON.stringify(submission, null, 2);
+  return {
+    curl: `curl -s ${url}/v1/jobs \\\n  -H 'content-type: application/json' -H 'prefer: wait=10' \\\n  -H "authorization: Bearer $MESHWRIGHT_KEY" -d @- <<'JSON'\n${json}\nJSON\n`,
+    python: `from meshwright import Client\n\nsubmission = ${python(submission)}\n\nwith Client(${JSON.stringify(url)}) as service:\n    results = service.solve(submission)\nprint(results.frame())\n`,
+    typescript: `import { Client, type Submission } from "meshwright-client";\n\nconst submission: Submission = ${json};\n\nconst service = new Client({ url: ${JSON.stringify(url)}, key: process.env["MESHWRIGHT_KEY"] ?? "" });\nconst results = await service.solve(submission);\nconsole.log(results.curves[0]?.statistics.transmission_error_um);\n`,
+  };
+}
+
+/** Copies `text`, where pages may not use the clipboard too; says whether it did. */
+export async function copied(text) {
+  if (navigator.clipboard) {
+    try {
+      await navigator.clipboard.writeText(text);
+      return true;
+    } catch {
+      // Not allowed: the old way may be.
+    }
+  }
+  const area = Object.assign(document.createElement("textarea"), { value: text, readOnly: true });
+  area.style.cssText = "position: fixed; opacity: 0";
+  // Inside an open dialog nothing else can have the focus.
+  (document.querySelector("dialog[open]") ?? document.body).append(area);
+  const focused = document.activeElement;
+  area.select();
+  let done = false;
+  try {
+    done = document.execCommand("copy");
+  } catch {
+    done = false;
+  }
+  area.remove();
+  focused?.focus();
+  return done;
+}
