@@ -13,8 +13,8 @@ COPY engine/Cargo.toml engine/
 COPY paper/Cargo.toml paper/build.rs paper/
 COPY plot/Cargo.toml plot/
 COPY migrations migrations
-RUN mkdir -p src benches/load engine/src engine/benches paper/src plot/src \
-    && touch src/lib.rs engine/src/lib.rs plot/src/lib.rs \
+RUN mkdir -p web src/http benches/load engine/src engine/benches paper/src plot/src \
+    && touch src/http/docs.js src/lib.rs engine/src/lib.rs plot/src/lib.rs \
     && for file in src/main benches/load/main engine/benches/jobs engine/benches/parts paper/src/main; do \
          echo 'fn main() {}' > "$file.rs"; done \
     && cargo build --release --locked --bin meshwright

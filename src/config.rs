@@ -7,8 +7,9 @@ use std::time::Duration;
 use axum::http::{HeaderValue, Uri};
 use jiff::SignedDuration;
 
-use crate::http::{Bounds, DoorRules};
+use crate::http::{Bounds, DoorRules, KeysRule};
 use crate::jobs::{Cores, Keep, Migrate, Pace, Place, PreviewRules, Rules};
+use crate::machine;
 use crate::webhooks::HookTarget;
 use crate::wire;
 
@@ -81,6 +82,12 @@ pub struct Config {
     #[arg(long, env = "MESHWRIGHT_CACHE_MB", default_value_t = 256, value_name = "MB",
           value_parser = clap::value_parser!(u32).range(0..=1 << 20))]
     pub cache_mb: u32,
+
+    /// Memory for everything that is computed or read at the same time, in MB; what does not fit waits [default: half of the
+    /// machine's].
+    #[arg(long, env = "MESHWRIGHT_MEMORY_MB", value_name = "MB",
+          value_parser = clap::value_parser!(u64).range(64..=1 << 24))]
+    pub memory_mb: Option<u64>,
 
     /// Memory that one job or preview may take, by the estimate that /v1/validate tells; larger ones are refused.
     #[arg(long, env = "MESHWRIGHT_JOB_MEMORY_MB", default_value_t = 2048, value_name = "MB",
@@ -171,6 +178,21 @@ pub struct DoorOptions {
     #[arg(long, env = "MESHWRIGHT_METRICS_LISTEN", value_name = "ADDRESS")]
     pub metrics_listen: Option<SocketAddr>,
 
+    /// Whether requests need keys [default: as soon as there is one, and wherever others than this machine may be at the other
+    /// end: beyond the loopback, with a public or allowed name, behind a proxy].
+    #[arg(long, env = "MESHWRIGHT_KEYS", value_enum, hide_default_value = true)]
+    pub keys: Option<KeysRule>,
+
+    /// Requests a second without a key that one address may send where keys are needed, and all together twenty times as many; 0
+    /// for any number.
+    #[arg(
+        long,
+        env = "MESHWRIGHT_REQUESTS_WITHOUT_KEY",
+        default_value_t = 50,
+        value_name = "NUMBER"
+    )]
+    pub requests_without_key: u32,
+
     /// Requests a second that one client may send; 0 for any number.
     #[arg(
         long,
@@ -244,6 +266,18 @@ impl Config {
         (self.cache_mb as usize).saturating_mul(1 << 20)
     }
 
+    /// How memory is divided.
+    pub fn memory(&self) -> Memory {
+        /// Documents are read one after the other, so that more would not make it faster.
+        const MOST_FOR_READING: u64 = 256;
+        let all = self.memory_mb.unwrap_or_else(|| machine::memory_mb() / 2);
+        let reading = (all / 4).clamp(1, MOST_FOR_READING);
+        Memory {
+            reading,
+            computing: all.saturating_sub(reading).max(1),
+        }
+    }
+
     /// What previews are allowed.
     pub fn preview_rules(&self) -> PreviewRules {
         PreviewRules {
@@ -264,7 +298,9 @@ impl Config {
                 .client_queue_limit
                 .unwrap_or(self.queue_limit.div_ceil(2)),
             client_design_limit: self.door.client_design_limit,
-            job_memory_mb: self.job_memory_mb,
+            // What is larger than all that there is could only be computed by taking more.
+            job_memory_mb: self.job_memory_mb.min(self.memory().computing),
+            memory_mb: self.memory().computing,
         }
     }
 
@@ -293,11 +329,13 @@ impl Config {
             .collect();
         let loopback = self.listen.ip().is_loopback();
         DoorRules {
-            loopback,
+            keys: self.door.keys.unwrap_or_default(),
+            local: loopback && hosts.is_empty(),
             // Elsewhere the names of the service are known only if they are told; there, keys are needed anyway.
             strict_hosts: loopback || !hosts.is_empty(),
             hosts,
             requests_per_second: self.door.requests_per_second,
+            strangers_per_second: self.door.requests_without_key,
             waiting_per_client: self.door.client_streams,
             waiting: self.door.client_streams.saturating_mul(8),
         }
@@ -311,6 +349,15 @@ impl Config {
             stall: self.door.idle_time.max(LEAST_STALL),
         }
     }
+}
+
+/// How the memory of `--memory-mb` is divided, in MB.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Memory {
+    /// For what is sent to the service, while it is read.
+    pub reading: u64,
+    /// For what is computed.
+    pub computing: u64,
 }
 
 /// The first look at what is old comes no sooner after the start: a clock that was wrong then is right by then.

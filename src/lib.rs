@@ -4,6 +4,7 @@
 
 mod client;
 mod hash;
+mod machine;
 mod private;
 
 pub mod wire;

@@ -5,7 +5,6 @@ use std::fs::{File, TryLockError};
 use std::io::{Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail};
 use tracing::warn;
 
 use crate::private::open_or_make;
@@ -23,19 +22,33 @@ pub(crate) struct DatabaseLock {
     ended_in_order: bool,
 }
 
+/// Why a database cannot be locked.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum LockError {
+    /// Another process has the lock.
+    #[error("another process serves the database {}", .0.display())]
+    Taken(PathBuf),
+    /// It, or the note beside it, cannot be opened.
+    #[error("cannot open {}", path.display())]
+    Open {
+        path: PathBuf,
+        #[source]
+        error: std::io::Error,
+    },
+}
+
 impl DatabaseLock {
     /// Locks the database, whatever name it is called by: the lock is on the file, so that links of both kinds lead to the
     /// same one.
-    pub(crate) fn take(database: &Path) -> anyhow::Result<Self> {
-        let open = |path: &Path| {
-            let file = open_or_make(path);
-            file.with_context(|| format!("cannot write {}", path.display()))
+    pub(crate) fn take(database: &Path) -> Result<Self, LockError> {
+        let failed = |path: &Path| {
+            let path = path.to_owned();
+            |error| LockError::Open { path, error }
         };
+        let open = |path: &Path| open_or_make(path).map_err(failed(path));
         let file = open(database)?;
         // Its journal has the name of the database behind all symbolic links, as SQLite finds it.
-        let path = database
-            .canonicalize()
-            .with_context(|| format!("cannot find {}", database.display()))?;
+        let path = database.canonicalize().map_err(failed(database))?;
         let mut note = open(&beside(&path, ".lock"))?;
         // SQLite has locks of another kind on the database. On Linux the two know nothing of each other; elsewhere they
         // may, and the lock is on the file beside it.
@@ -46,9 +59,7 @@ impl DatabaseLock {
         };
         match locked.try_lock() {
             Ok(()) => {}
-            Err(TryLockError::WouldBlock) => {
-                bail!("another process serves the database {}", database.display())
-            }
+            Err(TryLockError::WouldBlock) => return Err(LockError::Taken(database.to_owned())),
             // Some file systems have no locks; there the operator vouches for it.
             Err(TryLockError::Error(error)) => {
                 warn!(%error, "the database cannot be locked: make sure that no other process serves it");

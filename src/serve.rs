@@ -12,14 +12,17 @@ use tokio_util::sync::CancellationToken;
 use tracing::{info, warn};
 
 use crate::config::{Config, Part};
-use crate::http::{App, Door, Edge, Readings, Server, router, router_of_metrics};
-use crate::jobs::{Clock, Jobs, Keeper, OpenError, Place, Previews, Solve, Store, Workers};
-use crate::lock::DatabaseLock;
+use crate::http::{App, Door, Edge, KeysRule, Readings, Server, router, router_of_metrics};
+use crate::jobs::{Budget, Clock, Jobs, Keeper, OpenError, Place, Previews, Solve, Store, Workers};
+use crate::lock::{DatabaseLock, LockError};
 use crate::webhooks::{Deliveries, HookRules, Webhooks};
 use crate::wire::{Problem, Submission};
 
-/// At a shutdown, running work and open answers get so long to end. A container gives ten seconds for all of it.
+/// At a shutdown, running work and open answers get so long to end.
 const GRACE: Duration = Duration::from_secs(8);
+
+/// A shutdown takes no longer than this. A container gives ten seconds for all of it.
+pub const END: Duration = Duration::from_secs(9);
 
 /// How a submission is computed with the substructures that all computations share, as by
 /// [`wire::solve`](fn@crate::wire::solve).
@@ -71,7 +74,9 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
             "only a database of PostgreSQL can be shared by processes of different roles; {} is a file, and its one process has the role all",
             config.database
         ),
-        Some(path) => Some(DatabaseLock::take(path)?),
+        Some(path) => {
+            Some(DatabaseLock::take(path).map_err(|error| unusable(&config.database, error))?)
+        }
         None => None,
     };
     let opened = Store::open_as(&config.database, config.migrate).await;
@@ -99,8 +104,13 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         let (library, compute) = (library.clone(), world.compute);
         Arc::new(move |submission, run| compute(submission, &library, run))
     };
-    let previews = Previews::new(Arc::clone(&solve), config.preview_rules(), stop.clone())?;
     let jobs = Jobs::new(store.clone(), config.rules(), world.clock, stop.clone());
+    let previews = Previews::new(
+        Arc::clone(&solve),
+        config.preview_rules(),
+        jobs.memory().clone(),
+        stop.clone(),
+    )?;
     let pace = config.pace();
     let in_order = lock.as_ref().is_some_and(DatabaseLock::ended_in_order);
     let workers =
@@ -114,10 +124,21 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
     }
 
     let door = Door::new(config.door_rules());
-    let asks_for_keys = !config.listen.ip().is_loopback() || store.has_keys().await?;
-    if config.role.answers() && asks_for_keys && !store.has_keys().await? {
+    let has_keys = store.has_keys().await?;
+    if has_keys {
+        door.found_keys();
+    }
+    let keys_are_off = config.door.keys == Some(KeysRule::None);
+    let asks_for_keys = door.always_asks_for_keys() || (has_keys && !keys_are_off);
+    if config.role.answers() && asks_for_keys && !has_keys {
         warn!(
             "nobody gets in without a key, and there is none yet: make one with `meshwright keys create`"
+        );
+    }
+    if config.role.answers() && keys_are_off {
+        warn!(
+            "everybody who reaches {} may do everything: --keys none",
+            config.listen
         );
     }
     let edge = Edge {
@@ -136,6 +157,7 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         door: Arc::new(door),
         edge: Arc::new(edge),
         readings: Arc::new(Readings::default()),
+        reading: Budget::of(config.memory().reading << 20),
     };
     let bounds = config.bounds();
     let metrics_server = metrics_listener.map(|listener| {
@@ -169,7 +191,10 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
 ///
 /// [`UnusableDatabase`], or that the database belongs to another process.
 pub async fn migrate(place: &Place) -> anyhow::Result<()> {
-    let _alone = place.file().map(DatabaseLock::take).transpose()?;
+    let _alone = match place.file() {
+        Some(path) => Some(DatabaseLock::take(path).map_err(|error| unusable(place, error))?),
+        None => None,
+    };
     let opened = Store::open(place).await;
     let store = opened.map_err(|cause| UnusableDatabase {
         place: place.clone(),
@@ -177,6 +202,19 @@ pub async fn migrate(place: &Place) -> anyhow::Result<()> {
     })?;
     store.close().await;
     Ok(())
+}
+
+/// A database that cannot even be opened is as unusable as one that SQLite does not read: to start again does not help. One that
+/// another process serves is free when that ends.
+fn unusable(place: &Place, error: LockError) -> anyhow::Error {
+    match error {
+        LockError::Taken(_) => error.into(),
+        LockError::Open { error, .. } => UnusableDatabase {
+            place: place.clone(),
+            cause: OpenError::of_system(error),
+        }
+        .into(),
+    }
 }
 
 async fn listen(address: SocketAddr) -> anyhow::Result<TcpListener> {
@@ -196,7 +234,7 @@ impl Service {
     }
 
     /// Ends in order: takes no more work, returns running jobs to the queue, stops previews, ends open streams, closes the
-    /// database.
+    /// database. It takes no longer than [`END`], whatever clients, the engine or the database do.
     pub async fn shut_down(mut self) {
         info!("shutting down");
         self.stop.cancel();
@@ -209,28 +247,32 @@ impl Service {
                 deliveries.ended().await;
             }
         };
-        let answers = async {
-            match self.server {
-                Some(server) => server.ended(GRACE).await,
-                None => true,
-            }
+        let ended = async |server: Option<Server>| match server {
+            Some(server) => server.ended(GRACE).await,
+            None => true,
         };
-        let (workers, answers) = tokio::join!(tokio::time::timeout(GRACE, work), answers);
+        let (workers, answers, numbers) = tokio::join!(
+            tokio::time::timeout(GRACE, work),
+            ended(self.server),
+            ended(self.metrics_server)
+        );
         if workers.is_err() {
             // Its job stands in the queue already, or is recovered at the next start.
             warn!("the engine did not stop in time");
         }
-        if !answers {
+        if !(answers && numbers) {
             warn!("some answers did not end in time");
-        }
-        if let Some(server) = self.metrics_server {
-            server.ended(Duration::from_secs(1)).await;
         }
         // What is still said to run was not lost by a crash.
         if let Some(lock) = &self.lock {
             lock.end_in_order();
         }
-        self.store.close().await;
+        if tokio::time::timeout(END - GRACE, self.store.close())
+            .await
+            .is_err()
+        {
+            warn!("the database did not close in time");
+        }
     }
 
     /// Ends as a crash would: nothing is returned to the queue, nobody is told.

@@ -3,11 +3,12 @@
 use std::io::IsTerminal;
 use std::process::ExitCode;
 use std::sync::Arc;
+use std::time::Duration;
 
 use anyhow::Context;
 use meshwright::config::Config;
 use meshwright::jobs::Clock;
-use meshwright::serve::{UnusableDatabase, World, serve};
+use meshwright::serve::{END, UnusableDatabase, World, serve};
 use meshwright::webhooks::HookRules;
 use meshwright::wire;
 use tracing_subscriber::EnvFilter;
@@ -82,12 +83,26 @@ impl Serve {
             None => println!("Meshwright computes jobs of {}.", self.config.database),
         }
         signal().await?;
+        end_in_any_case();
         // A second signal does not wait for the end of the first.
         tokio::select! {
             () = service.shut_down() => Ok(()),
             second = signal() => second,
         }
     }
+}
+
+/// Ends the process when its shutdown has taken too long, even where no thread of the runtime is left to notice that. What was
+/// answered is on the disk; jobs that ran are found at the next start.
+fn end_in_any_case() {
+    std::thread::spawn(|| {
+        std::thread::sleep(END + Duration::from_millis(500));
+        eprintln!(
+            "The service did not end in order in {} s, and is cut off.",
+            END.as_secs()
+        );
+        std::process::exit(1);
+    });
 }
 
 /// Comes with ctrl-c, or when the system asks the process to end.

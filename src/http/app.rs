@@ -8,7 +8,7 @@ use meshwright_engine::library::Library;
 
 use super::door::Door;
 use super::health::Readings;
-use crate::jobs::{Jobs, Previews};
+use crate::jobs::{Budget, Jobs, Previews};
 use crate::webhooks::Webhooks;
 
 /// What handlers work with.
@@ -30,6 +30,8 @@ pub struct App {
     pub edge: Arc<Edge>,
     /// Whether this process computes jobs.
     pub computes: bool,
+    /// The memory for what is sent, while it is read, in bytes.
+    pub reading: Budget,
     /// What the last look at the database said.
     pub readings: Arc<Readings>,
 }

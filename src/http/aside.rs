@@ -5,20 +5,33 @@ use std::sync::{Arc, LazyLock};
 use std::thread;
 
 use meshwright_engine::run::Run;
-use tokio::sync::Semaphore;
 
 use super::problem::internal;
+use crate::jobs::{Budget, Part};
 use crate::wire::Problem;
 
-/// So many pieces of such work are done at the same time; others wait for their turn. It is the cores that are short.
-static ROOM: LazyLock<Semaphore> =
-    LazyLock::new(|| Semaphore::new(2 * thread::available_parallelism().map_or(1, usize::from)));
+/// So many pieces of such work are done at the same time; others wait for their turn, which clients take one after the other.
+/// It is the cores that are short.
+static ROOM: LazyLock<Budget> = LazyLock::new(|| {
+    let cores = thread::available_parallelism().map_or(1, usize::from);
+    Budget::of(2 * cores as u64)
+});
 
-/// Does work where it holds nobody up. The work is told to stop when nobody waits for it any more.
+/// So many tables are read at the same time: each takes a connection to the database, of which there are twice as many, so that
+/// short questions never wait for long ones.
+static READERS: LazyLock<Budget> = LazyLock::new(|| Budget::of(2));
+
+/// The turn of `client` to read some of a table.
+pub(super) async fn turn_to_read(client: &str) -> Part {
+    READERS.take(client, 1).await
+}
+
+/// Does work for `client` where it holds nobody up. The work is told to stop when nobody waits for it any more.
 pub(super) async fn aside<T: Send + 'static>(
+    client: &str,
     work: impl FnOnce(&Run) -> T + Send + 'static,
 ) -> Result<T, Problem> {
-    let _permit = ROOM.acquire().await.expect("the semaphore is never closed");
+    let _part = ROOM.take(client, 1).await;
     let stop = StopOnDrop::default();
     let run = Run::new(Arc::clone(&stop.0), |_, _| {});
     let done = tokio::task::spawn_blocking(move || work(&run)).await;
@@ -49,7 +62,7 @@ mod tests {
     async fn work_stops_when_nobody_waits_for_it() {
         let (begun, begins) = mpsc::channel();
         let (ended, ends) = mpsc::channel();
-        let work = aside(move |run: &Run| {
+        let work = aside("anybody", move |run: &Run| {
             begun.send(()).unwrap();
             while run.check().is_ok() {
                 std::thread::yield_now();

@@ -83,7 +83,7 @@ pub(super) async fn submit(
     IdempotencyKey(key): IdempotencyKey,
     document: Document<4>,
 ) -> Result<Response, Problem> {
-    let read = aside(move |_| read(&document)).await??;
+    let read = aside(client.name(), move |_| read(&document)).await??;
     let jobs = read.into_iter().enumerate().map(|(i, submission)| {
         let key = key.as_ref().map(|key| key_within(key, i));
         let (app, client) = (&app, &client);

@@ -1,11 +1,14 @@
 //! Who asks: the client behind a request, known by its key.
 
+use std::sync::Arc;
+
 use axum::extract::FromRequestParts;
-use axum::http::Method;
 use axum::http::header::AUTHORIZATION;
 use axum::http::request::Parts;
+use axum::http::{HeaderMap, Method};
 
 use super::app::App;
+use super::guests::Guest;
 use super::problem::Refusal;
 use crate::jobs::{JobError, KeyRecord, Member, Role};
 use crate::keys::Key;
@@ -16,7 +19,24 @@ const ANONYMOUS: &str = "anonymous";
 
 /// The client that a request comes from. Jobs belong to their client, and nobody sees those of another. A handler that
 /// takes it is served to those who may get in, as often as they may, and changes nothing for those who may only look.
-pub(super) struct Client(pub(super) Member);
+pub(super) struct Client(pub(super) Member, pub(super) Pass);
+
+/// The name of the client of a request, for what is done before its handler.
+#[derive(Debug, Clone)]
+pub(super) struct ClientName(pub(super) Arc<str>);
+
+/// What a request got in by: its key, or that none is needed.
+pub(super) struct Pass(Option<Key>);
+
+impl Pass {
+    /// Whether it would get in now. What cannot be looked up is not held against it.
+    pub(super) async fn holds(&self, app: &App) -> bool {
+        match &self.0 {
+            Some(key) => !matches!(key.find(app.jobs.store()).await, Ok(None)),
+            None => true,
+        }
+    }
+}
 
 impl Client {
     /// The name that its jobs bear.
@@ -26,7 +46,14 @@ impl Client {
 }
 
 /// The same for a handler that changes nothing whatever its method is.
-pub(super) struct Onlooker;
+pub(super) struct Onlooker(String);
+
+impl Onlooker {
+    /// The name of the client.
+    pub(super) fn name(&self) -> &str {
+        &self.0
+    }
+}
 
 /// The same for the numbers of the whole service.
 pub(super) struct Operator;
@@ -40,7 +67,7 @@ impl FromRequestParts<App> for Client {
         if changes && caller.role == Role::Reader {
             return Err(forbidden("The key may look, and change nothing.").into());
         }
-        Ok(Self(caller.member))
+        Ok(Self(caller.member, caller.pass))
     }
 }
 
@@ -48,7 +75,8 @@ impl FromRequestParts<App> for Onlooker {
     type Rejection = Refusal;
 
     async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Refusal> {
-        Caller::of(parts, app).await.map(|_| Self)
+        let caller = Caller::of(parts, app).await?;
+        Ok(Self(caller.member.client))
     }
 }
 
@@ -69,20 +97,33 @@ impl FromRequestParts<App> for Operator {
 struct Caller {
     member: Member,
     role: Role,
+    pass: Pass,
 }
 
 impl Caller {
-    async fn of(parts: &Parts, app: &App) -> Result<Self, Refusal> {
-        let record = match bearer(parts)? {
-            Some(key) => Some(recognize(app, &key).await?),
-            None if asks_for_keys(app).await? => {
+    async fn of(parts: &mut Parts, app: &App) -> Result<Self, Refusal> {
+        let key = bearer(&parts.headers)?;
+        let record = match &key {
+            Some(key) => Some(recognize(app, key).await?),
+            None if asks_for_keys(app, &parts.headers).await? => {
                 return Err(unauthorized("Send a key: Authorization: Bearer KEY.").into());
             }
             None => None,
         };
-        let caller = record
+        if record.is_some()
+            && let Some(guest) = parts.extensions.get::<Arc<Guest>>()
+        {
+            guest.recognize();
+        }
+        let (member, role) = record
             .as_ref()
             .map_or_else(|| Self::anonymous(app), Self::bearer_of);
+        // Who reads the body shares the memory for that by it.
+        parts
+            .extensions
+            .insert(ClientName(Arc::from(member.client.as_str())));
+        let pass = Pass(key);
+        let caller = Self { member, role, pass };
         let rate = record.and_then(|record| record.requests_per_second);
         app.door
             .count_request(&caller.member.client, rate)
@@ -91,31 +132,27 @@ impl Caller {
     }
 
     /// Where no key is needed everybody is alike, and may do everything and have the whole queue.
-    fn anonymous(app: &App) -> Self {
-        Self {
-            member: Member {
-                client: ANONYMOUS.to_owned(),
-                queue_limit: Some(app.jobs.rules().queue_limit),
-            },
-            role: Role::Operator,
-        }
+    fn anonymous(app: &App) -> (Member, Role) {
+        let member = Member {
+            client: ANONYMOUS.to_owned(),
+            queue_limit: Some(app.jobs.rules().queue_limit),
+        };
+        (member, Role::Operator)
     }
 
-    fn bearer_of(record: &KeyRecord) -> Self {
-        Self {
-            member: Member {
-                client: record.client.clone(),
-                queue_limit: record.queue_limit,
-            },
-            role: record.role,
-        }
+    fn bearer_of(record: &KeyRecord) -> (Member, Role) {
+        let member = Member {
+            client: record.client.clone(),
+            queue_limit: record.queue_limit,
+        };
+        (member, record.role)
     }
 }
 
 /// The key that a request has with it. What a proxy may have left there for itself is none.
-fn bearer(parts: &Parts) -> Result<Option<Key>, Problem> {
+pub(super) fn bearer(headers: &HeaderMap) -> Result<Option<Key>, Problem> {
     let mut found = None;
-    for header in parts.headers.get_all(AUTHORIZATION) {
+    for header in headers.get_all(AUTHORIZATION) {
         let text = header.to_str().unwrap_or_default();
         let (scheme, key) = text.split_once(' ').unwrap_or((text, ""));
         if !scheme.eq_ignore_ascii_case("bearer") {
@@ -136,16 +173,22 @@ fn bearer(parts: &Parts) -> Result<Option<Key>, Problem> {
 async fn recognize(app: &App, key: &Key) -> Result<KeyRecord, Problem> {
     let found = key.find(app.jobs.store()).await;
     let found = found.map_err(|error| Problem::from(JobError::from(error)))?;
-    found.ok_or_else(|| unauthorized("The key is not known here, or was revoked."))
+    let found = found.ok_or_else(|| unauthorized("The key is not known here, or was revoked."))?;
+    app.door.prove(key);
+    Ok(found)
 }
 
-/// Whether a key is needed: where others than this machine can call, and as soon as there is one.
-async fn asks_for_keys(app: &App) -> Result<bool, Problem> {
-    if app.door.always_asks_for_keys() {
-        return Ok(true);
+/// Whether a request needs a key.
+async fn asks_for_keys(app: &App, headers: &HeaderMap) -> Result<bool, Problem> {
+    if let Some(asks) = app.door.asks_for_keys(headers) {
+        return Ok(asks);
     }
     let has_keys = app.jobs.store().has_keys().await;
-    has_keys.map_err(|error| JobError::from(error).into())
+    let has_keys = has_keys.map_err(JobError::from)?;
+    if has_keys {
+        app.door.found_keys();
+    }
+    Ok(has_keys)
 }
 
 fn unauthorized(detail: &str) -> Problem {

@@ -1,8 +1,11 @@
 //! The OpenAPI document and the page that shows it.
 
+use std::sync::{Arc, LazyLock};
+
 use axum::Router;
-use axum::body::Bytes;
-use axum::http::header::CONTENT_TYPE;
+use axum::extract::Path;
+use axum::http::HeaderMap;
+use axum::response::{Redirect, Response};
 use axum::routing::get;
 use serde_json::Value;
 use utoipa::OpenApi as _;
@@ -10,12 +13,13 @@ use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityRequirement
 use utoipa::openapi::{
     ContentBuilder, OpenApi, Ref, RefOr, ResponseBuilder, Server, ServerBuilder,
 };
-use utoipa_swagger_ui::{Config, SwaggerUi};
 
 use super::app::App;
 use super::events::ProgressView;
 use super::router::routes;
+use super::standing::{Folder, Standing, files};
 use super::studies::StudyProgressView;
+use crate::wire::{Code, Problem};
 
 /// What stands before the paths.
 #[derive(utoipa::OpenApi)]
@@ -57,25 +61,25 @@ pub(super) fn introduction() -> OpenApi {
 
 /// Adds to every operation what may be answered whatever it is: by who asks, by its bounds, by the state of the service.
 pub(super) fn add_common_answers(openapi: &mut OpenApi) {
-    const WITH_KEY: [(&str, &str); 4] = [
+    const WITH_KEY: [(&str, &str); 3] = [
         (
             "401",
             "A key is needed, and there is none, or it is not known.",
         ),
         ("403", "The key may not do this."),
         (
-            "429",
-            "More is asked by this client than one may ask. Try again after `Retry-After` seconds.",
-        ),
-        (
             "503",
             "Nothing can be stored or read now, or too much comes at once. Try again after `Retry-After` seconds.",
         ),
     ];
-    const ALWAYS: [(&str, &str); 4] = [
+    const ALWAYS: [(&str, &str); 5] = [
         ("400", "The request is not understood."),
         ("408", "The body came too slowly."),
         ("421", "The service is not called so."),
+        (
+            "429",
+            "More is asked by this client than one may ask, or by those without a key. Try again after `Retry-After` seconds.",
+        ),
         ("default", "Any other problem."),
     ];
     for item in openapi.paths.paths.values_mut() {
@@ -177,13 +181,28 @@ pub(super) fn server(public_url: &str) -> Server {
 
 /// The document at /openapi.json and the page at /docs, which needs nothing from elsewhere.
 pub(super) fn routes_of_docs(openapi: &OpenApi) -> Router<App> {
-    let json = Bytes::from(finished(openapi).to_string());
-    // Relative to /docs/, so that the page also works behind a prefix; the usual validator is on another host.
-    let config = Config::new(["../openapi.json"]).validator_url("none");
+    let json = Standing::document("application/json", finished(openapi).to_string());
+    let json = Arc::new(json);
+    let description = get(move |request: HeaderMap| async move { json.answer(&request).await });
     Router::new()
+        .route("/openapi.json", description)
+        .route("/docs", get(async || Redirect::to("docs/")))
         .route(
-            "/openapi.json",
-            get(move || async move { ([(CONTENT_TYPE, "application/json")], json) }),
+            "/docs/",
+            get(async |request| file("index.html", request).await),
         )
-        .merge(SwaggerUi::new("/docs").config(config))
+        .route(
+            "/docs/{name}",
+            get(async |Path(name): Path<String>, request| file(&name, request).await),
+        )
+}
+
+static FILES: LazyLock<Folder> = LazyLock::new(|| Folder::of(files::DOCS));
+
+async fn file(name: &str, request: HeaderMap) -> Result<Response, Problem> {
+    let file = FILES.find(name).ok_or_else(|| {
+        let detail = format!("The documentation has no file {name:?}; it begins at /docs/.");
+        Problem::new(Code::NotFound, detail)
+    })?;
+    Ok(file.answer(&request).await)
 }

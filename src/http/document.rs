@@ -1,6 +1,6 @@
 //! The body of a request: a JSON document of bounded size.
 
-use std::error::Error;
+use std::sync::Arc;
 use std::time::Duration;
 
 use axum::body::{Body, Bytes};
@@ -8,28 +8,52 @@ use axum::extract::{FromRequest, Request};
 use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_ENCODING, CONTENT_TYPE};
 use futures_util::StreamExt;
+use http_body::Body as _;
 use serde::Deserialize;
-use tower_http::timeout::TimeoutError;
+use tokio::time::timeout;
 
+use super::app::App;
+use super::client::ClientName;
+use crate::jobs::Part;
 use crate::wire::{Code, Problem};
 
 /// So many times the limit is read and thrown away, because a client that is still sending does not see the answer.
 const DRAINED: usize = 64;
 
-/// The body is here within this time; a layer of the router sees to it.
-pub(super) const PATIENCE: Duration = Duration::from_secs(30);
+/// The body is here within this time, from when there is memory for it.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// So long a request waits for the memory to be read, at most.
+const LONGEST_WAIT: Duration = Duration::from_secs(45);
+
+/// A document that is taken apart takes so many times its size, with all that is made of it.
+const TIMES_ITS_SIZE: usize = 6;
 
 /// The bytes of a request's JSON document, so many MiB at most. The largest submission, with every table full, has a few hundred thousand bytes.
-pub(super) struct Document<const MIB: usize = 1>(pub(super) Bytes);
+/// And the memory that it and what is made of it take: a document is not read before there is some, and who has many read shares
+/// it with the others.
+pub(super) struct Document<const MIB: usize = 1>(pub(super) Bytes, pub(super) Part);
 
-impl<const MIB: usize, S: Send + Sync> FromRequest<S> for Document<MIB> {
+impl<const MIB: usize> FromRequest<App> for Document<MIB> {
     type Rejection = Problem;
 
-    async fn from_request(request: Request, _: &S) -> Result<Self, Problem> {
+    async fn from_request(request: Request, app: &App) -> Result<Self, Problem> {
         let media_type = check_media_type(request.headers());
-        let body = read(request.into_body(), MIB * 1024 * 1024).await?;
+        let limit = MIB * 1024 * 1024;
+        let length = request.body().size_hint().upper();
+        let length = length.map_or(limit, |length| length.min(limit as u64) as usize);
+        let client = request.extensions().get::<ClientName>().cloned();
+        let client = client.map_or_else(|| Arc::from(""), |client| client.0);
+        let needed = (TIMES_ITS_SIZE * length) as u64;
+        let memory = timeout(LONGEST_WAIT, app.reading.take(&client, needed)).await;
+        let memory = memory.map_err(|_| {
+            let detail = "More is sent at once than is read. Try again in a moment.";
+            Problem::new(Code::Overloaded, detail)
+        })?;
+        let body = timeout(PATIENCE, read(request.into_body(), limit, length)).await;
+        let body = body.map_err(|_| late())??;
         media_type?;
-        Ok(Self(body))
+        Ok(Self(body, memory))
     }
 }
 
@@ -76,10 +100,11 @@ fn check_media_type(headers: &HeaderMap) -> Result<(), Problem> {
     ))
 }
 
-async fn read(body: Body, limit: usize) -> Result<Bytes, Problem> {
-    let (mut stream, mut bytes, mut length) = (body.into_data_stream(), Vec::new(), 0_usize);
+async fn read(body: Body, limit: usize, expected: usize) -> Result<Bytes, Problem> {
+    let (mut stream, mut length) = (body.into_data_stream(), 0_usize);
+    let mut bytes = Vec::with_capacity(expected);
     while let Some(chunk) = stream.next().await {
-        let chunk = chunk.map_err(|error| broken(&error))?;
+        let chunk = chunk.map_err(|_| broken())?;
         length = length.saturating_add(chunk.len());
         if length > DRAINED * limit {
             break;
@@ -97,18 +122,14 @@ async fn read(body: Body, limit: usize) -> Result<Bytes, Problem> {
     Ok(bytes.into())
 }
 
-/// Why a body is not complete.
-fn broken(error: &axum::Error) -> Problem {
-    let mut cause: Option<&(dyn Error + 'static)> = Some(error);
-    while let Some(error) = cause {
-        if error.is::<TimeoutError>() {
-            return Problem::new(
-                Code::RequestTimeout,
-                format!("The body was not here within {} s.", PATIENCE.as_secs()),
-            );
-        }
-        cause = error.source();
-    }
+fn late() -> Problem {
+    Problem::new(
+        Code::RequestTimeout,
+        format!("The body was not here within {} s.", PATIENCE.as_secs()),
+    )
+}
+
+fn broken() -> Problem {
     Problem::new(
         Code::MalformedJson,
         "The body ended before it was complete.",

@@ -3,11 +3,12 @@
 use std::collections::{HashMap, HashSet};
 use std::net::IpAddr;
 use std::num::NonZeroU32;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use axum::extract::{Request, State};
-use axum::http::header::HOST;
+use axum::http::header::{CONNECTION, FORWARDED, HOST, HeaderName, HeaderValue, VIA};
 use axum::http::uri::Authority;
 use axum::http::{HeaderMap, Uri};
 use axum::middleware::Next;
@@ -15,22 +16,44 @@ use axum::response::{IntoResponse, Response};
 use governor::clock::{Clock as _, DefaultClock};
 use governor::{DefaultDirectRateLimiter, Quota};
 
+use super::guests::{Guest, Origin};
+use super::problem::Refusal;
+use super::strangers::Strangers;
+use crate::keys::Key;
 use crate::wire::{Code, Problem};
 
 /// A client may send so many times its requests of a second at once.
 const BURST_SECONDS: u32 = 2;
 
+/// Whether requests need keys.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+pub enum KeysRule {
+    /// As soon as there is one, and wherever others than this machine may be at the other end: beyond the loopback, under a
+    /// public name, behind a proxy.
+    #[default]
+    #[value(skip)]
+    Careful,
+    /// Always.
+    Required,
+    /// Never: everybody who reaches the service may do everything.
+    None,
+}
+
 /// What is allowed to whom.
 #[derive(Debug, Clone)]
 pub struct DoorRules {
-    /// Whether the service listens to this machine only. Elsewhere nobody gets in without a key.
-    pub loopback: bool,
+    /// Whether requests need keys.
+    pub keys: KeysRule,
+    /// Whether only this machine reaches the service, as far as its configuration tells.
+    pub local: bool,
     /// Names under which the service may be called, beside this machine's own and all addresses.
     pub hosts: Vec<String>,
     /// Whether a name that is not among them is refused. Where keys are needed a foreign name does no harm.
     pub strict_hosts: bool,
     /// Requests a second of one client; 0: any number.
     pub requests_per_second: u32,
+    /// Requests a second without a key that is known, of one address; 0: any number.
+    pub strangers_per_second: u32,
     /// So many requests of one client may wait for something to happen: streams of events, and `Prefer: wait`.
     pub waiting_per_client: usize,
     /// So many of all clients together.
@@ -45,6 +68,9 @@ pub struct Door {
     /// By client and rate: the keys of a client may have different ones.
     rates: Mutex<HashMap<(String, NonZeroU32), Arc<DefaultDirectRateLimiter>>>,
     waiting: Arc<Mutex<HashMap<String, usize>>>,
+    /// Whether a key was seen to be there: one that was ever made never vanishes.
+    has_keys: AtomicBool,
+    strangers: Option<Strangers>,
 }
 
 impl Door {
@@ -54,15 +80,58 @@ impl Door {
         let hosts = rules.hosts.iter().map(|host| host.to_ascii_lowercase());
         Self {
             hosts: hosts.chain(own).collect(),
+            strangers: NonZeroU32::new(rules.strangers_per_second).map(Strangers::new),
             rules,
             rates: Mutex::default(),
             waiting: Arc::default(),
+            has_keys: AtomicBool::new(false),
         }
     }
 
-    /// Whether nobody gets in without a key, even while there is none.
-    pub(super) fn always_asks_for_keys(&self) -> bool {
-        !self.rules.loopback
+    /// Whether a request with these headers needs a key; `None` if that depends on whether there is one.
+    pub(super) fn asks_for_keys(&self, headers: &HeaderMap) -> Option<bool> {
+        match self.rules.keys {
+            KeysRule::Required => Some(true),
+            KeysRule::None => Some(false),
+            KeysRule::Careful => {
+                let asks = !self.rules.local
+                    || self.has_keys.load(Ordering::Relaxed)
+                    || came_through_a_proxy(headers);
+                asks.then_some(true)
+            }
+        }
+    }
+
+    /// Whether every request needs a key, even while there is none.
+    pub fn always_asks_for_keys(&self) -> bool {
+        self.asks_for_keys(&HeaderMap::new()) == Some(true)
+    }
+
+    /// A key was seen to be there.
+    pub fn found_keys(&self) {
+        self.has_keys.store(true, Ordering::Relaxed);
+    }
+
+    /// The key was found to be one that is known.
+    pub(super) fn prove(&self, key: &Key) {
+        self.found_keys();
+        if let Some(strangers) = &self.strangers {
+            strangers.prove(key);
+        }
+    }
+
+    /// Counts a request from `origin`, unless its key has been found to be known before. Where nobody needs a key, nobody is a
+    /// stranger.
+    ///
+    /// # Errors
+    ///
+    /// The time after which it may come again.
+    fn admit(&self, origin: Origin, headers: &HeaderMap) -> Result<(), Duration> {
+        let asks = self.asks_for_keys(headers) == Some(true);
+        match self.strangers.as_ref().filter(|_| asks) {
+            Some(strangers) => strangers.admit(origin, headers),
+            None => Ok(()),
+        }
     }
 
     /// Refuses a request that was not meant for this service. A page of a foreign name that suddenly points to this
@@ -72,7 +141,7 @@ impl Door {
     /// # Errors
     ///
     /// `invalid_parameter` without a host, `host_not_allowed` for a foreign one.
-    pub(super) fn check_host(&self, uri: &Uri, headers: &HeaderMap) -> Result<(), Problem> {
+    fn check_host(&self, uri: &Uri, headers: &HeaderMap, strict: bool) -> Result<(), Problem> {
         let mut given = headers.get_all(HOST).iter();
         let header = given.next().and_then(|host| host.to_str().ok());
         let authority = uri.authority().map(Authority::as_str).or(header);
@@ -87,7 +156,7 @@ impl Door {
         let literal = host.trim_start_matches('[').trim_end_matches(']');
         let known =
             literal.parse::<IpAddr>().is_ok() || self.hosts.contains(host.trim_end_matches('.'));
-        if known || !self.rules.strict_hosts {
+        if known || !strict {
             Ok(())
         } else {
             Err(Problem::new(
@@ -143,13 +212,58 @@ impl Door {
     }
 }
 
+/// Whether somebody has passed the request on: then who sent it is not on this machine, whatever the address says.
+fn came_through_a_proxy(headers: &HeaderMap) -> bool {
+    let passed_on =
+        |name: &HeaderName| name.as_str().starts_with("x-forwarded-") || name == "x-real-ip";
+    headers.contains_key(FORWARDED) || headers.contains_key(VIA) || headers.keys().any(passed_on)
+}
+
+/// Refuses requests without a key that is known when too many of them come, and ends their connection: the next ones
+/// on it would be more of the same. Health is asked for by those who keep the service alive.
+pub(super) async fn limit_strangers(
+    State(door): State<Arc<Door>>,
+    request: Request,
+    next: Next,
+) -> Response {
+    let guest = request.extensions().get::<Arc<Guest>>();
+    let origin = guest.map(|guest| guest.origin);
+    let admitted = match origin.filter(|_| !request.uri().path().starts_with("/health/")) {
+        Some(origin) => door.admit(origin, request.headers()),
+        None => Ok(()),
+    };
+    match admitted {
+        Ok(()) => next.run(request).await,
+        Err(wait) => {
+            metrics::counter!("meshwright_strangers_refused_total").increment(1);
+            let mut response = Refusal::too_many_strangers(wait).into_response();
+            let close = HeaderValue::from_static("close");
+            response.headers_mut().insert(CONNECTION, close);
+            response
+        }
+    }
+}
+
 /// Refuses requests that were not meant for this service.
 pub(super) async fn check_host(
     State(door): State<Arc<Door>>,
     request: Request,
     next: Next,
 ) -> Response {
-    match door.check_host(request.uri(), request.headers()) {
+    let strict = door.rules.strict_hosts;
+    match door.check_host(request.uri(), request.headers(), strict) {
+        Ok(()) => next.run(request).await,
+        Err(problem) => problem.into_response(),
+    }
+}
+
+/// The same where nobody needs a key, so that the names have to be known in any case.
+pub(super) async fn check_known_host(
+    State(door): State<Arc<Door>>,
+    request: Request,
+    next: Next,
+) -> Response {
+    match door.check_host(request.uri(), request.headers(), true) {
         Ok(()) => next.run(request).await,
         Err(problem) => problem.into_response(),
     }
@@ -180,10 +294,12 @@ mod tests {
 
     fn door(adjust: impl FnOnce(&mut DoorRules)) -> Door {
         let mut rules = DoorRules {
-            loopback: true,
+            keys: KeysRule::Careful,
+            local: true,
             hosts: vec!["Gears.example".to_owned()],
             strict_hosts: true,
             requests_per_second: 3,
+            strangers_per_second: 2,
             waiting_per_client: 2,
             waiting: 3,
         };
@@ -197,7 +313,7 @@ mod tests {
             headers.append(HOST, host.parse().unwrap());
         }
         let path = Uri::from_static("/v1/jobs");
-        door.check_host(&path, &headers)
+        door.check_host(&path, &headers, door.rules.strict_hosts)
             .err()
             .map(|problem| problem.code)
     }
@@ -238,6 +354,41 @@ mod tests {
         let open = door(|rules| rules.strict_hosts = false);
         assert_eq!(check(&open, &["evil.example"]), None);
         assert_eq!(check(&open, &[]), Some(Code::InvalidParameter));
+    }
+
+    #[test]
+    fn keys_are_needed_wherever_somebody_else_may_be_at_the_other_end() {
+        let asks = |door: &Door, header: Option<&'static str>| {
+            let headers =
+                header.map(|name| (HeaderName::from_static(name), HeaderValue::from_static("x")));
+            door.asks_for_keys(&headers.into_iter().collect())
+        };
+        let passed_on = [
+            "forwarded",
+            "via",
+            "x-forwarded-for",
+            "x-forwarded-proto",
+            "x-real-ip",
+        ];
+        let local = door(|_| {});
+        assert_eq!(asks(&local, None), None);
+        assert_eq!(asks(&local, Some("x-request-id")), None);
+        assert!(
+            passed_on
+                .iter()
+                .all(|name| asks(&local, Some(name)) == Some(true))
+        );
+        local.found_keys();
+        assert_eq!(asks(&local, None), Some(true));
+        assert_eq!(asks(&door(|rules| rules.local = false), None), Some(true));
+        let required = door(|rules| rules.keys = KeysRule::Required);
+        assert_eq!(asks(&required, None), Some(true));
+        let none = door(|rules| (rules.keys, rules.local) = (KeysRule::None, false));
+        assert!(
+            passed_on
+                .iter()
+                .all(|name| asks(&none, Some(name)) == Some(false))
+        );
     }
 
     #[test]

@@ -26,9 +26,11 @@ use crate::wire::{Draw, DrawnDeviations, Problem};
     ),
 )]
 pub(super) async fn draw(
-    _: Onlooker,
-    Document(document): Document,
+    onlooker: Onlooker,
+    Document(document, _memory): Document,
 ) -> Result<Json<DrawnDeviations>, Problem> {
-    let made = aside(move |_| Draw::parse(&document).map(|draw| draw.drawn()));
+    let made = aside(onlooker.name(), move |_| {
+        Draw::parse(&document).map(|draw| draw.drawn())
+    });
     Ok(Json(made.await??))
 }

@@ -1,6 +1,7 @@
 //! The events of a job as they happen, for a browser's `EventSource`.
 
 use std::convert::Infallible;
+use std::pin::pin;
 use std::time::Duration;
 
 use axum::extract::{Path, State};
@@ -12,12 +13,15 @@ use utoipa::ToSchema;
 use uuid::Uuid;
 
 use super::app::App;
-use super::client::Client;
+use super::client::{Client, Pass};
 use super::door::PlaceToWait;
 use super::parameters::job_id;
 use super::view::JobView;
 use crate::jobs::{News, Progress};
 use crate::wire::{Code, Problem, Status};
+
+/// While nothing happens, it is looked so often whether who watches may still do so.
+const LOOK_AT_KEYS: Duration = Duration::from_secs(1);
 
 /// Progress is told so often at most.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
@@ -86,14 +90,14 @@ pub(super) async fn events(
     let place = place(&app, client.name())?;
     let watch = Watch {
         news: app.jobs.news(id),
-        app,
+        app: app.clone(),
         client: client.0.client,
         id,
         count: 0,
         status: None,
         progress: None,
     };
-    Ok(answer(watch, place))
+    Ok(answer(app, watch, client.1, place))
 }
 
 /// One who watches until there is nothing more to see.
@@ -112,18 +116,40 @@ pub(super) fn place(app: &App, client: &str) -> Result<PlaceToWait, Problem> {
     })
 }
 
-/// The answer that streams what `watch` sees, and keeps its place as long as that lasts.
-pub(super) fn answer(watch: impl Watching, place: PlaceToWait) -> Response {
-    let events = stream::unfold((watch, place), async |(mut watch, place)| {
-        let event = watch.next().await?;
-        Some((Ok::<_, Infallible>(event), (watch, place)))
-    });
+/// The answer that streams what `watch` sees, and keeps its place as long as that lasts: until there is no more to see, or who
+/// watches would not get in any more.
+pub(super) fn answer(app: App, watch: impl Watching, pass: Pass, place: PlaceToWait) -> Response {
+    let events = stream::unfold(
+        (app, watch, pass, place),
+        async |(app, mut watch, pass, place)| {
+            let event = next(&app, &mut watch, &pass).await?;
+            Some((Ok::<_, Infallible>(event), (app, watch, pass, place)))
+        },
+    );
     // A proxy that collects the answer before it passes it on would spoil the stream.
     (
         [("x-accel-buffering", "no")],
         Sse::new(events).keep_alive(KeepAlive::default()),
     )
         .into_response()
+}
+
+/// The next event for one who may see it; none when his key is revoked meanwhile.
+async fn next(app: &App, watch: &mut impl Watching, pass: &Pass) -> Option<Event> {
+    let mut event = pin!(watch.next());
+    loop {
+        tokio::select! {
+            event = &mut event => {
+                let event = event?;
+                return pass.holds(app).await.then_some(event);
+            }
+            () = tokio::time::sleep(LOOK_AT_KEYS) => {
+                if !pass.holds(app).await {
+                    return None;
+                }
+            }
+        }
+    }
 }
 
 /// Event number `count` of a stream.

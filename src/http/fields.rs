@@ -15,7 +15,7 @@ use super::parameters::{Parameters, invalid, job_id};
 use super::problem::{internal, of_missing_results};
 use crate::exchange::vtu;
 use crate::wire::solve::fields;
-use crate::wire::{Code, LoadedEdges, Problem, SOLVER_VERSION, Submission};
+use crate::wire::{Code, LoadedEdges, Problem, SOLVER_VERSION, Submission, memory_of};
 
 /// Where to look.
 #[derive(Deserialize, IntoParams)]
@@ -150,6 +150,7 @@ async fn answer(
     let submission = Submission::parse(submission.as_bytes())?;
     let (torque, position) = place.within(&submission)?;
     app.jobs.check_memory(&submission)?;
+    let memory = memory_of(&submission);
     let File {
         name,
         media_type,
@@ -161,7 +162,8 @@ async fn answer(
             let found = fields(&submission, torque, position, &library, run)?;
             write(&found, torque, position)
         };
-        let document = app.previews.work(None, work).await?.answer;
+        let made = app.previews.work(client.name(), None, memory, work);
+        let document = made.await?.answer;
         let mut response = ([(CONTENT_TYPE, media_type)], document).into_response();
         if saved {
             let saved_as = HeaderValue::try_from(format!("attachment; filename=\"{id}-{name}\""));

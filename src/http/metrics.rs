@@ -85,7 +85,11 @@ fn recorder() -> &'static PrometheusHandle {
         metrics::describe_gauge!("meshwright_connections", "Connections of clients.");
         metrics::describe_counter!(
             "meshwright_connections_evicted_total",
-            "Idle connections that gave way to new ones."
+            "Connections that gave way to new ones: idle, or taking nothing of their answer."
+        );
+        metrics::describe_counter!(
+            "meshwright_strangers_refused_total",
+            "Requests without a known key that were refused because too many came."
         );
         metrics::describe_counter!(
             "meshwright_removed_jobs_total",

@@ -1,8 +1,8 @@
 //! The jobs over HTTP. A handler takes a document, hands it on, and answers; all work is done below.
 //!
-//! In reading order: what handlers work with; how connections are served; the router and its layers; who gets in; how errors
-//! become problem documents; what requests are made of (body, client, parameters, preferences); what answers are made of
-//! (entity tags, pages, the view of a job); the handlers.
+//! In reading order: what handlers work with; how connections are served (who is there, and what they take of their answers);
+//! the router and its layers; who gets in; how errors become problem documents; what requests are made of (body, client,
+//! parameters, preferences); what answers are made of (entity tags, packing, pages, the view of a job); the handlers.
 
 mod app;
 mod aside;
@@ -15,12 +15,14 @@ mod door;
 mod draw;
 mod events;
 mod fields;
+mod guests;
 mod guides;
 mod headers;
 mod health;
 mod jobs;
 mod metrics;
 mod outline;
+mod packing;
 mod page;
 mod parameters;
 mod pictures;
@@ -32,16 +34,19 @@ mod reference;
 mod results;
 mod router;
 mod server;
+mod standing;
+mod strangers;
 mod studies;
 mod submit;
 mod tables;
+mod taking;
 mod view;
 mod web;
 mod webhooks;
 
 pub use app::{App, Edge};
 pub use docs::openapi;
-pub use door::{Door, DoorRules};
+pub use door::{Door, DoorRules, KeysRule};
 pub use health::Readings;
 pub use router::{router, router_of_metrics};
 pub use server::{Bounds, Server};

@@ -29,12 +29,12 @@ use crate::wire::{PairOutline, Problem, Submission};
     ),
 )]
 pub(super) async fn outline(
-    _: Onlooker,
+    onlooker: Onlooker,
     request: HeaderMap,
-    Document(document): Document,
+    Document(document, _memory): Document,
 ) -> Result<Response, Problem> {
     let as_picture = wants_picture(&request);
-    let made = aside(move |_| {
+    let made = aside(onlooker.name(), move |_| {
         let submission = Submission::parse(&document)?;
         let pair = &submission.case().pair;
         if as_picture {

@@ -14,6 +14,14 @@ impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Problem> {
+        // No text that is kept has it, and PostgreSQL does not even take it for a text.
+        let query = form_urlencoded::parse(parts.uri.query().unwrap_or_default().as_bytes());
+        for (name, value) in query {
+            if name.contains('\0') || value.contains('\0') {
+                let detail = format!("{name:?} has a character NUL, which stands in no text here.");
+                return Err(invalid(detail));
+            }
+        }
         let Query(parameters) =
             Query::try_from_uri(&parts.uri).map_err(|error| invalid(error.body_text()))?;
         Ok(Self(parameters))

@@ -41,9 +41,10 @@ use crate::wire::{Preview, Problem};
 pub(super) async fn preview(
     State(app): State<App>,
     client: Client,
-    Document(document): Document,
+    Document(document, memory): Document,
 ) -> Result<Response, Problem> {
     let preview = Preview::parse(&document, app.previews.rules().most_positions)?;
+    drop((document, memory));
     app.jobs.check_memory(&preview.submission)?;
     let previewed = app.previews.compute(client.name(), preview).await?;
     let headers = [

@@ -51,6 +51,20 @@ impl Refusal {
     }
 }
 
+impl Refusal {
+    /// Too many requests come without a key that is known.
+    pub(super) fn too_many_strangers(wait: Duration) -> Self {
+        let detail = format!(
+            "More requests came without a key that is known here than are answered; the next is taken in {:.1} s. A key that is known has bounds of its own.",
+            wait.as_secs_f64()
+        );
+        Self {
+            problem: Problem::new(Code::RateLimited, detail),
+            retry_after: Some(wait),
+        }
+    }
+}
+
 impl From<Problem> for Refusal {
     fn from(problem: Problem) -> Self {
         Self {

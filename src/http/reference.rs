@@ -1,7 +1,11 @@
 //! What a client can know without a job: whether a submission would do, examples, and limits.
 
+use std::sync::LazyLock;
+
 use axum::Json;
 use axum::extract::State;
+use axum::http::HeaderMap;
+use axum::response::Response;
 use serde::Serialize;
 use serde_json::Value;
 use utoipa::ToSchema;
@@ -11,6 +15,7 @@ use super::aside::aside;
 use super::batch::MOST_IN_BATCH;
 use super::client::Onlooker;
 use super::document::Document;
+use super::standing::Standing;
 use crate::webhooks::most_webhooks;
 use crate::wire::{self, Limits, Problem, Submission, Validation};
 
@@ -32,11 +37,13 @@ use crate::wire::{self, Limits, Problem, Submission, Validation};
     ),
 )]
 pub(super) async fn validate(
-    _: Onlooker,
-    Document(document): Document,
+    onlooker: Onlooker,
+    Document(document, _memory): Document,
 ) -> Result<Json<Validation>, Problem> {
     // The estimate divides both gears into elements.
-    let validation = aside(move |_| Submission::parse(&document).map(|it| wire::validate(&it)));
+    let validation = aside(onlooker.name(), move |_| {
+        Submission::parse(&document).map(|it| wire::validate(&it))
+    });
     Ok(Json(validation.await??))
 }
 
@@ -69,16 +76,24 @@ pub(super) struct Examples {
     security(()),
     responses((status = 200, description = "The examples.", body = Examples)),
 )]
-pub(super) async fn examples() -> Json<Examples> {
+pub(super) async fn examples(request: HeaderMap) -> Response {
+    static EXAMPLES: LazyLock<Standing> = LazyLock::new(|| {
+        let json = serde_json::to_vec(&all_examples()).expect("examples are plain data");
+        Standing::document("application/json", json)
+    });
+    EXAMPLES.answer(&request).await
+}
+
+fn all_examples() -> Examples {
     let view = |example: &wire::Example| Example {
         name: example.name,
         description: example.description,
         valid: example.valid,
         submission: serde_json::from_str(example.json).expect("a test reads every example"),
     };
-    Json(Examples {
+    Examples {
         items: wire::examples().iter().map(view).collect(),
-    })
+    }
 }
 
 /// The limits of every submission, and those of this service.

@@ -2,15 +2,14 @@
 
 use axum::extract::{Path, State};
 use axum::http::HeaderMap;
-use axum::http::header::{
-    ACCEPT_ENCODING, CONTENT_ENCODING, CONTENT_LOCATION, CONTENT_TYPE, HeaderValue, VARY,
-};
+use axum::http::header::{CONTENT_ENCODING, CONTENT_LOCATION, CONTENT_TYPE, HeaderValue, VARY};
 use axum::response::{IntoResponse, Response};
 
 use super::app::App;
 use super::aside::aside;
 use super::client::Client;
 use super::conditional::{Keep, Tag};
+use super::packing::takes_gzip;
 use super::parameters::job_id;
 use super::problem::of_missing_results;
 use crate::jobs::{Document, Job, JobError};
@@ -52,7 +51,7 @@ pub(super) async fn answer(app: &App, job: &Job, request: &HeaderMap) -> Result<
     };
     let stored = async {
         let document = app.jobs.document(job).await?;
-        packed_or_plain(document, request).await
+        packed_or_plain(&job.client, document, request).await
     };
     let mut response = Tag::of_hash(hash, "")
         .answer(Keep::ForGood, request, stored)
@@ -64,50 +63,18 @@ pub(super) async fn answer(app: &App, job: &Job, request: &HeaderMap) -> Result<
 }
 
 /// A document is kept packed, and sent so to those who can unpack it: nobody packs it again.
-async fn packed_or_plain(document: Document, request: &HeaderMap) -> Result<Response, Problem> {
+async fn packed_or_plain(
+    client: &str,
+    document: Document,
+    request: &HeaderMap,
+) -> Result<Response, Problem> {
     let json = [(CONTENT_TYPE, "application/json")];
     if let Some(packed) = document.gzip().filter(|_| takes_gzip(request)) {
         let packing = [(CONTENT_ENCODING, "gzip"), (VARY, "accept-encoding")];
         return Ok((json, packing, packed).into_response());
     }
-    let text = aside(move |_| document.text())
+    let text = aside(client, move |_| document.text())
         .await?
         .map_err(JobError::from)?;
     Ok((json, text).into_response())
-}
-
-/// Whether the client says that it unpacks gzip.
-fn takes_gzip(request: &HeaderMap) -> bool {
-    let values = request.get_all(ACCEPT_ENCODING).iter();
-    let mut codings = values
-        .filter_map(|value| value.to_str().ok())
-        .flat_map(|value| value.split(','));
-    codings.any(|coding| {
-        let (name, parameters) = coding.split_once(';').unwrap_or((coding, ""));
-        let refused = parameters.trim().strip_prefix("q=").is_some_and(|weight| {
-            weight
-                .trim()
-                .parse::<f32>()
-                .is_ok_and(|weight| weight <= 0.0)
-        });
-        name.trim().eq_ignore_ascii_case("gzip") && !refused
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn gzip_is_sent_to_those_who_name_it_and_do_not_refuse_it() {
-        let takes = |accepted: &str| {
-            takes_gzip(&HeaderMap::from_iter([(
-                ACCEPT_ENCODING,
-                HeaderValue::from_str(accepted).unwrap(),
-            )]))
-        };
-        assert!(takes("gzip") && takes("br, GZIP;q=0.5") && takes("gzip ; q=1"));
-        assert!(!takes("gzip;q=0") && !takes("br") && !takes("") && !takes("gzip;q=0.0, br"));
-        assert!(!takes_gzip(&HeaderMap::new()));
-    }
 }

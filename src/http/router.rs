@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use axum::error_handling::HandleErrorLayer;
+use axum::Router;
 use axum::extract::Request;
 use axum::http::header::{
     ACCEPT, AUTHORIZATION, CONTENT_TYPE, ETAG, HeaderName, HeaderValue, IF_NONE_MATCH, LINK,
@@ -12,14 +12,10 @@ use axum::http::header::{
 use axum::http::{Method, StatusCode, Uri};
 use axum::middleware::{from_fn, from_fn_with_state};
 use axum::routing::get;
-use axum::{BoxError, Router};
 use tower::ServiceBuilder;
-use tower::limit::GlobalConcurrencyLimitLayer;
-use tower::load_shed::LoadShedLayer;
 use tower_http::catch_panic::CatchPanicLayer;
-use tower_http::compression::CompressionLayer;
 use tower_http::cors::{AllowOrigin, CorsLayer};
-use tower_http::timeout::{RequestBodyDeadlineLayer, TimeoutLayer};
+use tower_http::timeout::TimeoutLayer;
 use tower_http::trace::{DefaultOnResponse, TraceLayer};
 use tracing::Level;
 use utoipa_axum::router::OpenApiRouter;
@@ -28,17 +24,14 @@ use utoipa_axum::routes;
 use super::app::App;
 use super::headers::Trace;
 use super::{
-    batch, docs, document, door, draw, events, fields, guides, headers, health, jobs, metrics,
-    outline, previews, problem, problem_pages, reference, results, studies, submit, tables, web,
+    batch, docs, door, draw, events, fields, guides, headers, health, jobs, metrics, outline,
+    packing, previews, problem, problem_pages, reference, results, studies, submit, tables, web,
     webhooks,
 };
 use crate::wire::{Code, Problem};
 
 /// A request has its answer's head within this time. Longer than the longest wait that a client may ask for.
 const REQUEST_TIMEOUT: Duration = Duration::from_secs(90);
-
-/// So many studies and batches are taken in at the same time: each holds megabytes meanwhile.
-const LARGE_AT_ONCE: usize = 32;
 
 /// The service.
 pub fn router(app: App) -> Router {
@@ -53,22 +46,24 @@ pub fn router(app: App) -> Router {
     // The outermost layer stands first.
     let layers = ServiceBuilder::new()
         .layer(from_fn(headers::name))
+        .layer(from_fn_with_state(app.jobs.clock().clone(), headers::date))
+        .layer(from_fn_with_state(is_https, headers::secure))
+        // Before the log, which would be flooded as well.
+        .layer(from_fn_with_state(Arc::clone(&door), door::limit_strangers))
         .layer(
             TraceLayer::new_for_http()
                 .make_span_with(span)
                 .on_response(DefaultOnResponse::new().level(Level::INFO)),
         )
         .layer(from_fn(metrics::count))
-        .layer(from_fn_with_state(is_https, headers::secure))
         .option_layer((!edge.cors_origins.is_empty()).then(|| cors(&edge.cors_origins)))
-        .layer(CompressionLayer::new().gzip(true))
+        .layer(from_fn(packing::pack))
         .layer(from_fn_with_state(Arc::clone(&edge), problem::shape))
         .layer(from_fn_with_state(door, door::check_host))
         .layer(TimeoutLayer::with_status_code(
             StatusCode::SERVICE_UNAVAILABLE,
             REQUEST_TIMEOUT,
         ))
-        .layer(RequestBodyDeadlineLayer::new(document::PATIENCE))
         .layer(CatchPanicLayer::custom(problem::of_panic));
     router
         .merge(docs::routes_of_docs(&openapi))
@@ -81,21 +76,27 @@ pub fn router(app: App) -> Router {
         .with_state(app)
 }
 
-/// Health and numbers alone, for a listener that the operator keeps to himself.
+/// Health and numbers alone, for a listener that the operator keeps to himself. It has no keys, so that a page of a foreign
+/// name must not reach it wherever it listens.
 pub fn router_of_metrics(app: App) -> Router {
+    let layers = ServiceBuilder::new()
+        .layer(from_fn_with_state(app.jobs.clock().clone(), headers::date))
+        .layer(from_fn_with_state(false, headers::secure))
+        .layer(from_fn_with_state(
+            Arc::clone(&app.door),
+            door::check_known_host,
+        ))
+        .layer(TimeoutLayer::with_status_code(
+            StatusCode::SERVICE_UNAVAILABLE,
+            REQUEST_TIMEOUT,
+        ))
+        .layer(CatchPanicLayer::custom(problem::of_panic));
     Router::new()
         .route("/metrics", get(metrics::metrics_apart))
         .route("/health/live", get(health::live))
         .route("/health/ready", get(health::ready))
         .fallback(nothing_here)
-        .layer(
-            ServiceBuilder::new()
-                .layer(TimeoutLayer::with_status_code(
-                    StatusCode::SERVICE_UNAVAILABLE,
-                    REQUEST_TIMEOUT,
-                ))
-                .layer(CatchPanicLayer::custom(problem::of_panic)),
-        )
+        .layer(layers)
         .with_state(app)
 }
 
@@ -134,28 +135,8 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(tables::table))
         .routes(routes!(studies::results))
         .routes(routes!(studies::file))
-        .merge(shedding(
-            OpenApiRouter::new()
-                .routes(routes!(studies::submit))
-                .routes(routes!(batch::submit)),
-            LARGE_AT_ONCE,
-        ))
-}
-
-/// Routes of which so many requests are worked on at the same time; others are told to come again.
-fn shedding(routes: OpenApiRouter<App>, at_once: usize) -> OpenApiRouter<App> {
-    let layers = ServiceBuilder::new()
-        .layer(HandleErrorLayer::new(overloaded))
-        .layer(LoadShedLayer::new())
-        .layer(GlobalConcurrencyLimitLayer::new(at_once));
-    routes.layer(layers)
-}
-
-async fn overloaded(_: BoxError) -> Problem {
-    Problem::new(
-        Code::Overloaded,
-        "More requests of this kind came at once than are worked on. Try again in a moment.",
-    )
+        .routes(routes!(studies::submit))
+        .routes(routes!(batch::submit))
 }
 
 async fn nothing_here(uri: Uri) -> Problem {

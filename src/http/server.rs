@@ -1,15 +1,15 @@
 //! Connections: how many there may be, how long one may say nothing, and how they end.
 //!
-//! A connection is busy from the head of a request to the last byte of its answer, and idle otherwise. Idle ones cost little,
-//! but each holds a descriptor, of which a process has so many: an idle one gives way where a new one finds no room, and ends
-//! by itself when its client sends no request for a while.
+//! A connection is busy from the head of a request to the last byte of its answer, and idle otherwise; one whose client takes
+//! nothing of its answer is as idle. Idle ones cost little, but each holds a descriptor, of which a process has so many: an
+//! idle one gives way where a new one finds no room, and ends by itself when its client sends no request, or takes nothing, for
+//! a while.
 
-use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::future::poll_fn;
+use std::net::SocketAddr;
 use std::pin::{Pin, pin};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use std::task::{Context, Poll};
 use std::time::Duration;
 
@@ -21,15 +21,17 @@ use hyper::body::Incoming;
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper_util::rt::{TokioIo, TokioTimer};
+use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::task::JoinHandle;
 use tokio::time::{Instant, sleep, timeout};
-use tokio_io_timeout::TimeoutStream;
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 use tower::ServiceExt;
 use tracing::{debug, warn};
+
+use super::guests::{Busy, Guest, Guests, Place};
+use super::taking::Watched;
 
 /// A head is no larger than this, in bytes.
 const LARGEST_HEAD: usize = 32 << 10;
@@ -37,7 +39,7 @@ const LARGEST_HEAD: usize = 32 << 10;
 /// A head has no more fields than this.
 const MOST_FIELDS: usize = 64;
 
-/// An idle connection that is asked to end gets so long.
+/// At a shutdown, an idle connection gets so long for what may be on its way.
 const LAST_BREATH: Duration = Duration::from_millis(300);
 
 /// How connections are bounded.
@@ -47,7 +49,7 @@ pub struct Bounds {
     pub connections: usize,
     /// The head of a request is here so long after the connection began or the last answer ended.
     pub head: Duration,
-    /// A client that takes nothing of its answer for so long is given up.
+    /// A client that takes nothing of its answer for so long, or a trickle of it for long, is given up.
     pub stall: Duration,
 }
 
@@ -123,15 +125,12 @@ impl Hall {
                 () = self.kill.cancelled() => return,
             };
             let (stream, place) = accepted;
-            let serve = serve_connection(
-                stream,
-                self.router.clone(),
-                self.bounds,
-                place,
-                self.stop.clone(),
-            );
+            // An answer is written whole; to wait for more of it would only make the client wait.
+            let _ = stream.set_nodelay(true);
+            let (router, bounds, stop) = (self.router.clone(), self.bounds, self.stop.clone());
             let kill = self.kill.clone();
             self.connections.spawn(async move {
+                let serve = serve_connection(stream, router, bounds, &place.guest, &stop);
                 tokio::select! {
                     () = serve => {}
                     () = kill.cancelled() => {}
@@ -140,18 +139,24 @@ impl Hall {
         }
     }
 
-    /// The next connection, once there is room for it.
+    /// The next connection, once there is room for it. It is taken before there is: by where it comes from others are chosen to
+    /// give way.
     async fn next(&self, listener: &TcpListener) -> (TcpStream, Place) {
+        let (stream, address) = self.accept(listener).await;
+        let place = self.guests.place(Guest::from(address.ip().into())).await;
+        (stream, place)
+    }
+
+    async fn accept(&self, listener: &TcpListener) -> (TcpStream, SocketAddr) {
         /// While the system gives no connections it is asked so often.
         const PAUSE: Duration = Duration::from_millis(50);
         loop {
-            let place = self.guests.place().await;
             match listener.accept().await {
-                Ok((stream, _)) => return (stream, place),
+                Ok(accepted) => return accepted,
                 Err(error) => {
                     // Out of descriptors, most likely: those who idle have some.
                     warn!(%error, "no connection can be taken");
-                    self.guests.send_idle_away();
+                    self.guests.send_one_away();
                     sleep(PAUSE).await;
                 }
             }
@@ -159,111 +164,7 @@ impl Hall {
     }
 }
 
-/// The connections that there are.
-struct Guests {
-    room: Arc<Semaphore>,
-    present: Mutex<Present>,
-}
-
-#[derive(Default)]
-struct Present {
-    last: u64,
-    /// By their order of arrival.
-    guests: BTreeMap<u64, Guest>,
-}
-
-#[derive(Clone)]
-struct Guest {
-    /// Requests that are being answered.
-    busy: Arc<AtomicUsize>,
-    leave: CancellationToken,
-}
-
-impl Guests {
-    fn new(most: usize) -> Arc<Self> {
-        Arc::new(Self {
-            room: Arc::new(Semaphore::new(most.max(1))),
-            present: Mutex::default(),
-        })
-    }
-
-    /// A place, once there is one. Where there is none, the guest that has idled longest is asked to leave.
-    async fn place(self: &Arc<Self>) -> Place {
-        let mut permit = Arc::clone(&self.room).try_acquire_owned().ok();
-        while permit.is_none() {
-            self.send_idle_away();
-            let next = Arc::clone(&self.room).acquire_owned();
-            // Everybody may have been busy; then it is worth looking again.
-            permit = timeout(LAST_BREATH, next).await.ok().and_then(Result::ok);
-        }
-        let guest = Guest {
-            busy: Arc::default(),
-            leave: CancellationToken::new(),
-        };
-        let mut present = self.present();
-        present.last += 1;
-        let number = present.last;
-        present.guests.insert(number, guest.clone());
-        drop(present);
-        metrics::gauge!("meshwright_connections").increment(1.0);
-        Place {
-            guests: Arc::clone(self),
-            number,
-            guest,
-            _permit: permit,
-        }
-    }
-
-    /// Asks the oldest of the idle guests to leave.
-    fn send_idle_away(&self) {
-        let present = self.present();
-        let idle = present
-            .guests
-            .values()
-            .find(|guest| guest.busy.load(Ordering::Relaxed) == 0 && !guest.leave.is_cancelled());
-        if let Some(guest) = idle {
-            guest.leave.cancel();
-            metrics::counter!("meshwright_connections_evicted_total").increment(1);
-        }
-    }
-
-    fn present(&self) -> std::sync::MutexGuard<'_, Present> {
-        self.present.lock().expect("nothing panics with this lock")
-    }
-}
-
-/// The place of a connection, free when it is dropped.
-struct Place {
-    guests: Arc<Guests>,
-    number: u64,
-    guest: Guest,
-    _permit: Option<OwnedSemaphorePermit>,
-}
-
-impl Drop for Place {
-    fn drop(&mut self) {
-        self.guests.present().guests.remove(&self.number);
-        metrics::gauge!("meshwright_connections").decrement(1.0);
-    }
-}
-
-/// Counts a request as long as it is being answered.
-struct Busy(Arc<AtomicUsize>);
-
-impl Busy {
-    fn begin(count: &Arc<AtomicUsize>) -> Self {
-        count.fetch_add(1, Ordering::Relaxed);
-        Self(Arc::clone(count))
-    }
-}
-
-impl Drop for Busy {
-    fn drop(&mut self) {
-        self.0.fetch_sub(1, Ordering::Relaxed);
-    }
-}
-
-/// A body that keeps its connection busy until it has been sent.
+/// A body that keeps its connection busy until all of it was handed over to be sent.
 struct BusyBody {
     inner: Body,
     _busy: Busy,
@@ -289,22 +190,22 @@ impl HttpBody for BusyBody {
     }
 }
 
-async fn serve_connection(
-    stream: TcpStream,
+async fn serve_connection<S>(
+    stream: S,
     router: Router,
     bounds: Bounds,
-    place: Place,
-    stop: CancellationToken,
-) {
-    // An answer is written whole; to wait for more of it would only make the client wait.
-    let _ = stream.set_nodelay(true);
-    let mut stream = TimeoutStream::new(stream);
-    stream.set_write_timeout(Some(bounds.stall));
-    let busy = Arc::clone(&place.guest.busy);
-    let count = Arc::clone(&busy);
-    let service = service_fn(move |request: Request<Incoming>| {
-        let (router, busy) = (router.clone(), Busy::begin(&count));
+    guest: &Arc<Guest>,
+    stop: &CancellationToken,
+) where
+    S: AsyncRead + AsyncWrite + Unpin,
+{
+    let stream = Watched::new(stream, Arc::clone(&guest.taking), bounds.stall);
+    let service = service_fn(|mut request: Request<Incoming>| {
+        let (router, guest) = (router.clone(), Arc::clone(guest));
+        let busy = Busy::begin(&guest);
         async move {
+            guest.taking.emptied().await;
+            request.extensions_mut().insert(guest);
             let Ok(response) = router.oneshot(request.map(Body::new)).await;
             Ok::<_, Infallible>(kept_busy(response, busy))
         }
@@ -314,12 +215,14 @@ async fn serve_connection(
         .header_read_timeout(bounds.head)
         .max_buf_size(LARGEST_HEAD)
         .max_headers(MOST_FIELDS)
-        .serve_connection(TokioIo::new(Box::pin(stream)), service);
+        // Every answer of ours has its own, by the clock of the service.
+        .auto_date_header(false)
+        .serve_connection(TokioIo::new(stream), service);
     let mut connection = pin!(connection);
     let ended = tokio::select! {
         ended = &mut connection => ended,
-        () = stop.cancelled() => end(connection, &busy).await,
-        () = place.guest.leave.cancelled() => end(connection, &busy).await,
+        () = stop.cancelled() => end(connection, guest, LAST_BREATH).await,
+        () = guest.leave.cancelled() => end(connection, guest, Duration::ZERO).await,
     };
     if let Err(error) = ended {
         debug!(%error, "a connection broke");
@@ -330,11 +233,12 @@ fn kept_busy(response: Response<Body>, busy: Busy) -> Response<BusyBody> {
     response.map(|inner| BusyBody { inner, _busy: busy })
 }
 
-/// Ends a connection: with the answer that is under way, or at once if there is none. One that has sent half a head is
-/// as idle as one that has sent nothing.
+/// Ends a connection: with the answer that is under way, or when it has been idle for `patience`. One that has sent half a
+/// head is as idle as one that has sent nothing, and so is one that takes nothing of its answer.
 async fn end<I, S>(
     mut connection: Pin<&mut http1::Connection<I, S>>,
-    busy: &AtomicUsize,
+    guest: &Guest,
+    patience: Duration,
 ) -> hyper::Result<()>
 where
     I: hyper::rt::Read + hyper::rt::Write + Unpin,
@@ -346,13 +250,101 @@ where
     loop {
         let wait = sleep(LAST_BREATH / 4);
         tokio::select! {
+            // What has arrived by now is answered.
+            biased;
             ended = poll_fn(|context| connection.as_mut().poll(context)) => return ended,
+            () = std::future::ready(()), if patience.is_zero() && guest.is_idle() => return Ok(()),
             () = wait => {}
         }
-        if busy.load(Ordering::Relaxed) > 0 {
+        if !guest.is_idle() {
             idle_since = Instant::now();
-        } else if idle_since.elapsed() >= LAST_BREATH {
+        } else if idle_since.elapsed() >= patience {
             return Ok(());
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::IpAddr;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use axum::routing::get;
+    use tokio::io::{AsyncReadExt, AsyncWriteExt, DuplexStream, duplex};
+    use tokio::task::yield_now;
+
+    use super::*;
+
+    const PATIENCE: Duration = Duration::from_secs(20);
+
+    /// A connection that is served, its client's end, and how many answers were made. What is on its way holds `room` bytes.
+    fn connect(
+        room: usize,
+        answer: usize,
+        stall: Duration,
+    ) -> (JoinHandle<()>, DuplexStream, Arc<AtomicUsize>) {
+        let made = Arc::new(AtomicUsize::new(0));
+        let count = Arc::clone(&made);
+        let handler = async move || {
+            count.fetch_add(1, Ordering::Relaxed);
+            "a".repeat(answer)
+        };
+        let router = Router::new().route("/", get(handler));
+        let bounds = Bounds {
+            connections: 1,
+            head: PATIENCE,
+            stall,
+        };
+        let (ours, theirs) = duplex(room);
+        let guest = Arc::new(Guest::from(IpAddr::from([127, 0, 0, 1]).into()));
+        let serve = async move {
+            serve_connection(ours, router, bounds, &guest, &CancellationToken::new()).await;
+        };
+        (tokio::spawn(serve), theirs, made)
+    }
+
+    const REQUEST: &str = "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n";
+
+    #[tokio::test]
+    async fn of_many_requests_at_once_one_answer_lies_here_at_a_time() {
+        // The answers are larger than what may be on its way, and much smaller than what is buffered for one.
+        let (_, mut client, made) = connect(1 << 10, 2 << 10, PATIENCE);
+        let requests = REQUEST.repeat(20);
+        client.write_all(requests.as_bytes()).await.unwrap();
+        // There is one thread, and nothing waits for anything but the client.
+        for _ in 0..1000 {
+            yield_now().await;
+        }
+        assert_eq!(made.load(Ordering::Relaxed), 1);
+        // Who takes them gets them all.
+        let mut taken = Vec::new();
+        while taken.windows(5).filter(|at| at == b"HTTP/").count() < 20 {
+            assert!(client.read_buf(&mut taken).await.unwrap() > 0);
+        }
+        assert_eq!(made.load(Ordering::Relaxed), 20);
+    }
+
+    #[tokio::test]
+    async fn who_takes_nothing_is_given_up_whatever_is_buffered() {
+        for answer in [1 << 10, 30 << 10, 1 << 20] {
+            let (served, mut client, _) = connect(512, answer, Duration::from_millis(20));
+            client.write_all(REQUEST.as_bytes()).await.unwrap();
+            timeout(PATIENCE, served).await.unwrap().unwrap();
+        }
+    }
+
+    #[tokio::test]
+    async fn who_takes_a_trickle_to_last_for_ever_is_given_up() {
+        let (served, mut client, _) = connect(16, 1 << 20, Duration::from_millis(20));
+        client.write_all(REQUEST.as_bytes()).await.unwrap();
+        let trickle = async {
+            let mut byte = [0];
+            while client.read(&mut byte).await.is_ok_and(|read| read > 0) {
+                sleep(Duration::from_millis(5)).await;
+            }
+        };
+        // A byte every 5 ms would last for hours.
+        timeout(PATIENCE, trickle).await.unwrap();
+        timeout(PATIENCE, served).await.unwrap().unwrap();
     }
 }

@@ -47,9 +47,11 @@ pub(super) async fn submit(
     client: Client,
     IdempotencyKey(key): IdempotencyKey,
     wait: Wait,
-    Document(document): Document,
+    Document(document, memory): Document,
 ) -> Result<Response, Problem> {
     let submission = Submission::parse(&document)?;
+    // What was read is small now, and its client may wait for long.
+    drop((document, memory));
     let Submitted { mut job, repeated } = app.jobs.submit(&client.0, &submission, key).await?;
 
     // The job was made: whatever goes wrong from here on, it is told of it.
@@ -86,7 +88,7 @@ async fn results_of(app: &App, job: &Job) -> Option<Box<RawValue>> {
     job.document.as_ref()?;
     let document = app.jobs.document(job).await.ok()?;
     let read = move |_: &_| RawValue::from_string(document.text().ok()?).ok();
-    aside(read).await.ok()?
+    aside(&job.client, read).await.ok()?
 }
 
 pub(super) fn address(url: &str) -> HeaderValue {

@@ -166,7 +166,10 @@ pub(super) async fn table(
     let made = async {
         let document = app.jobs.document(&job).await?;
         let name = format!("{id}-{file}");
-        aside(move |_| make(&document, wanted, torque, &name)).await?
+        aside(client.name(), move |_| {
+            make(&document, wanted, torque, &name)
+        })
+        .await?
     };
     Tag::of_hash(hash, &part)
         .answer(Keep::ForGood, &request, made)

@@ -1,66 +1,19 @@
 //! The page at `/` and the files that it is made of, which are part of the program.
 
+use std::sync::LazyLock;
+
 use axum::Router;
 use axum::extract::Path;
 use axum::http::HeaderMap;
-use axum::http::header::{CONTENT_TYPE, LINK};
-use axum::response::{IntoResponse, Response};
+use axum::http::header::LINK;
+use axum::response::Response;
 use axum::routing::get;
 
 use super::app::App;
-use super::conditional::{Keep, Tag};
+use super::standing::{Folder, files};
 use crate::wire::{Code, Problem};
 
-/// A file of the page.
-struct File {
-    name: &'static str,
-    bytes: &'static [u8],
-}
-
-macro_rules! files {
-    ($($name:literal)*) => {
-        &[$(File { name: $name, bytes: include_bytes!(concat!("../../web/", $name)) },)*]
-    };
-}
-
-const PAGE: &str = "index.html";
-
-const FILES: &[File] = files! {
-    "index.html"
-    "style.css"
-    "guide.css"
-    "main.js"
-    "api.js"
-    "beginnings.js"
-    "brush.js"
-    "charts.js"
-    "compare.js"
-    "deformed.js"
-    "design.js"
-    "deviations.js"
-    "dom.js"
-    "download.js"
-    "drawing.js"
-    "export.js"
-    "figure.js"
-    "form.js"
-    "geometry.js"
-    "headline.js"
-    "holes.js"
-    "inputs.js"
-    "jobs.js"
-    "preview.js"
-    "schema.js"
-    "series.js"
-    "sheet.js"
-    "snippets.js"
-    "study.js"
-    "sweep.js"
-    "icon.svg"
-    "vendor/uplot.js"
-    "vendor/uplot.css"
-    "vendor/uplot-LICENSE"
-};
+static FILES: LazyLock<Folder> = LazyLock::new(|| Folder::of(files::PAGE));
 
 /// The page at `/`, and its files under `/web/`.
 pub(super) fn routes_of_page() -> Router<App> {
@@ -70,7 +23,7 @@ pub(super) fn routes_of_page() -> Router<App> {
 }
 
 async fn page(request: HeaderMap) -> Result<Response, Problem> {
-    let mut response = answer(PAGE, &request).await?;
+    let mut response = answer("index.html", &request).await?;
     // Machines that come to the root find the description of the service.
     let links = "<openapi.json>; rel=\"service-desc\", <docs/>; rel=\"service-doc\"";
     response
@@ -84,73 +37,31 @@ async fn file(Path(name): Path<String>, request: HeaderMap) -> Result<Response, 
 }
 
 async fn answer(name: &str, request: &HeaderMap) -> Result<Response, Problem> {
-    let found = FILES.iter().find(|file| file.name == name);
-    let file = found.ok_or_else(|| {
+    let file = FILES.find(name).ok_or_else(|| {
         Problem::new(
             Code::NotFound,
             format!("The page has no file {name:?}; it begins at /."),
         )
     })?;
-    let text = String::from_utf8_lossy(file.bytes);
-    let made = async { Ok(([(CONTENT_TYPE, media_type(name))], file.bytes).into_response()) };
-    Tag::of(&[&text])
-        .answer(Keep::AskAgain, request, made)
-        .await
-}
-
-fn media_type(name: &str) -> &'static str {
-    match name.rsplit_once('.').map(|(_, extension)| extension) {
-        Some("html") => "text/html; charset=utf-8",
-        Some("css") => "text/css; charset=utf-8",
-        Some("js") => "text/javascript; charset=utf-8",
-        Some("svg") => "image/svg+xml",
-        _ => "text/plain; charset=utf-8",
-    }
+    Ok(file.answer(request).await)
 }
 
 #[cfg(test)]
 mod tests {
-    use std::fs;
-    use std::path::{Path, PathBuf};
-
     use super::*;
-
-    fn files_under(folder: &Path) -> Vec<PathBuf> {
-        let entries = fs::read_dir(folder)
-            .unwrap()
-            .map(|entry| entry.unwrap().path());
-        entries
-            .flat_map(|path| {
-                if path.is_dir() {
-                    files_under(&path)
-                } else {
-                    vec![path]
-                }
-            })
-            .collect()
-    }
-
-    #[test]
-    fn every_file_of_the_page_is_in_the_program() {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("web");
-        for path in files_under(&root) {
-            let name = path.strip_prefix(&root).unwrap().to_str().unwrap();
-            assert!(FILES.iter().any(|file| file.name == name), "{name}");
-        }
-    }
 
     #[test]
     fn the_page_asks_for_nothing_from_elsewhere() {
-        for file in FILES
+        let own = files::PAGE
             .iter()
-            .filter(|file| !file.name.starts_with("vendor/"))
-        {
-            let text = std::str::from_utf8(file.bytes).unwrap();
+            .filter(|(name, ..)| !name.starts_with("vendor/"));
+        for (name, plain, _) in own {
+            let text = std::str::from_utf8(plain).unwrap();
             let outside = text
                 .split(['"', '\'', '`', ' ', '('])
                 .filter(|word| word.starts_with("http") && word.contains("://"))
                 .find(|word| !word.starts_with("http://www.w3.org/"));
-            assert_eq!(outside, None, "{}", file.name);
+            assert_eq!(outside, None, "{name}");
         }
     }
 }

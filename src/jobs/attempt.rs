@@ -16,11 +16,12 @@ use tokio::time::{Instant, MissedTickBehavior, interval_at, sleep};
 use tracing::{error, info, warn};
 use uuid::Uuid;
 
+use super::budget::Budget;
 use super::job::Job;
 use super::live::{Entered, Running};
 use super::store::{Claim, End, Lease, Packed, Results, Started, StoreError};
 use super::worker::{Shop, Solve};
-use crate::wire::{Code, Kept, Problem, SOLVER_VERSION, Submission, Summary};
+use crate::wire::{Code, Kept, Problem, SOLVER_VERSION, Submission, Summary, memory_of};
 
 /// What a computation leaves: the results document or its name, and what the tables of studies show of it.
 struct Solved {
@@ -80,6 +81,7 @@ impl Shop {
             let attempt = Attempt::of(self, job);
             work.push((
                 attempt.job.id,
+                attempt.job.client.clone(),
                 attempt.job.keep,
                 submission,
                 attempt.entered.running.run(),
@@ -190,16 +192,17 @@ impl Shop {
     /// answers requests. A panic in one is the engine's fault and ends this job only.
     fn launch(
         &self,
-        work: Vec<(Uuid, Kept, String, Run)>,
+        work: Vec<(Uuid, String, Kept, String, Run)>,
         threads: &ThreadPool,
     ) -> mpsc::UnboundedReceiver<Told> {
         let (sender, receiver) = mpsc::unbounded_channel();
+        let memory = self.jobs.memory().clone();
         let (solve, clock) = (Arc::clone(&self.solve), self.jobs.clock.clone());
         threads.spawn(move || {
-            for (place, (id, keep, submission, run)) in work.into_iter().enumerate() {
+            for (place, (id, client, keep, submission, run)) in work.into_iter().enumerate() {
                 let begin = clock.steady();
-                let result =
-                    catch_unwind(AssertUnwindSafe(|| solved(&solve, &submission, keep, &run)));
+                let work = || solved(&solve, (&memory, client.as_str()), &submission, keep, &run);
+                let result = catch_unwind(AssertUnwindSafe(work));
                 let result = result.unwrap_or_else(|panic| {
                     error!(job = %id, panic = message_of(&*panic), "the engine panicked");
                     Err(internal_problem())
@@ -360,9 +363,20 @@ impl Shop {
     }
 }
 
-/// Computes a job: reads it, solves it, and packs what it leaves.
-fn solved(solve: &Solve, submission: &str, keep: Kept, run: &Run) -> Outcome {
+/// Computes a job: reads it, solves it when there is memory for its client, and packs what it leaves.
+fn solved(
+    solve: &Solve,
+    (memory, client): (&Budget, &str),
+    submission: &str,
+    keep: Kept,
+    run: &Run,
+) -> Outcome {
     let submission = Submission::parse(submission.as_bytes())?;
+    let (needed, is_wanted) = (memory_of(&submission), || run.check().is_ok());
+    let Some(_memory) = memory.take_on_thread(client, needed, is_wanted) else {
+        let detail = "The work was stopped before it began.";
+        return Err(Problem::new(Code::Stopped, detail));
+    };
     let document = solve(&submission, run)?;
     let summary = Summary::of_document(&document)
         .map(|summary| serde_json::to_string(&summary).expect("a summary is plain data"));

@@ -2,9 +2,11 @@
 //!
 //! In reading order: the two [`Clock`]s; what a [`Job`] and a [`StudyRecord`] are; the [`Store`] that keeps them and the
 //! transitions between their states; what of a running job lives in memory only (`live`); the [`Jobs`] that handlers speak
-//! to (`queue`, `studies`); the [`Workers`] that compute; and the keeper that removes what is old. [`Previews`] are computed in the same way, but are no jobs: a request waits for each, and nothing is kept.
+//! to (`queue`, `studies`); the [`Workers`] that compute; and the keeper that removes what is old. What clients share is a [`Budget`].
+//! [`Previews`] are computed in the same way, but are no jobs: a request waits for each, and nothing is kept.
 
 mod attempt;
+mod budget;
 mod clock;
 mod error;
 mod job;
@@ -19,6 +21,7 @@ mod study;
 mod threads;
 mod worker;
 
+pub use budget::{Budget, Part};
 pub use clock::Clock;
 pub use error::JobError;
 pub use job::{Job, Progress};

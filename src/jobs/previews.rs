@@ -13,15 +13,16 @@ use std::time::Duration;
 
 use meshwright_engine::run::Run;
 use rayon::ThreadPool;
-use tokio::sync::{OwnedSemaphorePermit, Semaphore, oneshot};
+use tokio::sync::oneshot;
 use tokio::time::{Instant, sleep_until};
 use tokio_util::sync::CancellationToken;
 use tracing::error;
 
 use super::attempt::message_of;
+use super::budget::{Budget, Part};
 use super::threads::{Cores, Work, engine_threads};
 use super::worker::{Solve, StartError};
-use crate::wire::{Code, Preview, Problem};
+use crate::wire::{Code, Preview, Problem, memory_of};
 
 /// Rooms that there are at least, so that a newer preview begins while the one that it replaces winds down.
 const FEWEST_ROOMS: usize = 2;
@@ -87,27 +88,60 @@ struct Desk {
     solve: Solve,
     rules: PreviewRules,
     stop: CancellationToken,
+    memory: Budget,
     // Mutexes of the standard library: they are never held across an await.
     wanted: Mutex<Wanted>,
-    rooms: Arc<Semaphore>,
+    rooms: Budget,
     free: Mutex<Vec<Arc<ThreadPool>>>,
 }
 
-/// The previews that requests wait for.
+/// The previews that requests wait for, of each client in their order of arrival.
 #[derive(Default)]
-struct Wanted {
-    count: usize,
-    /// Those that a newer one may replace, by client and id.
-    named: HashMap<Name, Arc<Ticket>>,
+struct Wanted(HashMap<String, Vec<Arc<Ticket>>>);
+
+impl Wanted {
+    fn count(&self) -> usize {
+        self.0.values().map(Vec::len).sum()
+    }
+
+    fn of(&self, client: &str) -> usize {
+        self.0.get(client).map_or(0, Vec::len)
+    }
+
+    fn remove(&mut self, ticket: &Arc<Ticket>) {
+        if let Some(tickets) = self.0.get_mut(&ticket.client) {
+            tickets.retain(|other| !Arc::ptr_eq(other, ticket));
+            if tickets.is_empty() {
+                self.0.remove(&ticket.client);
+            }
+        }
+    }
+
+    /// The older one of the same name, if there is one.
+    fn older(&self, client: &str, id: Option<&str>) -> Option<Arc<Ticket>> {
+        let tickets = self.0.get(client)?;
+        let same = |ticket: &&Arc<Ticket>| id.is_some() && ticket.id.as_deref() == id;
+        tickets.iter().find(same).cloned()
+    }
+
+    /// What gives its place to a client that has so many: the newest one of the client that has most, if they then still have as
+    /// many as each other.
+    fn too_many(&self, than: usize) -> Option<Arc<Ticket>> {
+        let most = self.0.values().max_by_key(|tickets| tickets.len())?;
+        most.last().filter(|_| most.len() > than + 1).cloned()
+    }
 }
 
-/// A client, and what it calls a series of previews.
-type Name = (String, String);
-
 /// One preview that a request waits for.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Ticket {
-    superseded: CancellationToken,
+    client: String,
+    /// What the client calls the series that it belongs to.
+    id: Option<String>,
+    /// Comes when another one has taken its place.
+    replaced: CancellationToken,
+    /// Whether that was one of another client.
+    crowded_out: AtomicBool,
     /// Tells the engine to stop.
     stop: Arc<AtomicBool>,
 }
@@ -115,7 +149,6 @@ struct Ticket {
 /// The guard of a preview that is wanted. Dropped, wherever its request ends, it stops the engine.
 struct Admitted {
     desk: Arc<Desk>,
-    name: Option<Name>,
     ticket: Arc<Ticket>,
 }
 
@@ -123,7 +156,8 @@ struct Admitted {
 struct Room {
     desk: Arc<Desk>,
     threads: Arc<ThreadPool>,
-    _permit: OwnedSemaphorePermit,
+    client: String,
+    _part: Part,
 }
 
 impl Previews {
@@ -135,6 +169,7 @@ impl Previews {
     pub fn new(
         solve: Solve,
         rules: PreviewRules,
+        memory: Budget,
         stop: CancellationToken,
     ) -> Result<Self, StartError> {
         let cores = Cores::here();
@@ -149,8 +184,9 @@ impl Previews {
             solve,
             rules,
             stop,
+            memory,
             wanted: Mutex::default(),
-            rooms: Arc::new(Semaphore::new(rooms)),
+            rooms: Budget::of(rooms as u64),
             free: Mutex::new(free.map_err(StartError::Threads)?),
         })))
     }
@@ -162,7 +198,7 @@ impl Previews {
 
     /// The number that requests wait for.
     pub fn count(&self) -> usize {
-        self.0.wanted().count
+        self.0.wanted().count()
     }
 
     /// Computes `preview` for `client`, and stops the older one of the same client and id. Dropping the future stops the
@@ -174,13 +210,13 @@ impl Previews {
     pub async fn compute(&self, client: &str, preview: Preview) -> Result<Previewed, PreviewError> {
         let Preview { submission, id } = preview;
         let solve = Arc::clone(&self.0.solve);
+        let memory = memory_of(&submission);
         let work = move |run: &Run| solve(&submission, run);
-        let name = id.map(|id| (client.to_owned(), id));
         let Computed {
             answer,
             waited,
             computed,
-        } = self.work(name, work).await?;
+        } = self.work(client, id, memory, work).await?;
         metrics::histogram!("meshwright_preview_engine_seconds").record(computed.as_secs_f64());
         Ok(Previewed {
             document: answer,
@@ -189,22 +225,25 @@ impl Previews {
         })
     }
 
-    /// Does `work` for which a request waits, and stops the older one of the same name. Dropping the future stops the engine.
+    /// Does `work` for which a request of `client` waits, and which takes so many MB of memory; and stops the older one of the
+    /// same `id`. Dropping the future stops the engine.
     ///
     /// # Errors
     ///
     /// A [`PreviewError`].
     pub async fn work<T: Send + 'static>(
         &self,
-        name: Option<Name>,
+        client: &str,
+        id: Option<String>,
+        memory: u64,
         work: impl FnOnce(&Run) -> Result<T, Problem> + Send + 'static,
     ) -> Result<Computed<T>, PreviewError> {
         let rules = self.rules();
-        let admitted = self.admit(name)?;
+        let admitted = self.admit(client, id)?;
         let start = Instant::now();
         let deadline = start + rules.time_limit;
 
-        let room = self.room();
+        let room = self.room(client);
         let room = admitted
             .unless_over(deadline, PreviewError::Full(rules.at_once), room)
             .await?;
@@ -213,7 +252,7 @@ impl Previews {
             .unless_over(
                 deadline,
                 PreviewError::TimeLimit(rules.time_limit),
-                room.launch(work, admitted.run()),
+                room.launch(memory, work, admitted.run()),
             )
             .await?;
         // The sender is only ever dropped with a result in it.
@@ -226,42 +265,49 @@ impl Previews {
     }
 
     /// Takes a place among those that are wanted, from the older one of the same name if there is one.
-    fn admit(&self, name: Option<Name>) -> Result<Admitted, PreviewError> {
+    fn admit(&self, client: &str, id: Option<String>) -> Result<Admitted, PreviewError> {
         let desk = &self.0;
         if desk.stop.is_cancelled() {
             return Err(PreviewError::ShuttingDown);
         }
-        let ticket = Arc::new(Ticket::default());
         let mut wanted = desk.wanted();
-        let older = name.as_ref().and_then(|name| wanted.named.remove(name));
-        match older {
+        if let Some(older) = wanted.older(client, id.as_deref()) {
             // Its place goes over to the newer one.
-            Some(older) => older.supersede(),
-            None if wanted.count >= desk.rules.at_once => {
-                return Err(PreviewError::Full(wanted.count));
-            }
-            None => wanted.count += 1,
+            wanted.remove(&older);
+            older.replace();
+        } else if wanted.count() >= desk.rules.at_once {
+            let count = wanted.count();
+            let newest = wanted.too_many(wanted.of(client));
+            let newest = newest.ok_or(PreviewError::Full(count))?;
+            wanted.remove(&newest);
+            newest.crowded_out.store(true, Ordering::Relaxed);
+            newest.replace();
         }
-        if let Some(name) = &name {
-            wanted.named.insert(name.clone(), Arc::clone(&ticket));
-        }
+        let ticket = Arc::new(Ticket {
+            client: client.to_owned(),
+            id,
+            replaced: CancellationToken::new(),
+            crowded_out: AtomicBool::new(false),
+            stop: Arc::default(),
+        });
+        let own = wanted.0.entry(client.to_owned()).or_default();
+        own.push(Arc::clone(&ticket));
         drop(wanted);
         Ok(Admitted {
             desk: Arc::clone(desk),
-            name,
             ticket,
         })
     }
 
-    /// Waits for threads. Who came first gets them first.
-    async fn room(&self) -> Room {
-        let permit = Arc::clone(&self.0.rooms).acquire_owned().await;
-        let permit = permit.expect("the semaphore is never closed");
+    /// Waits for threads. Of the clients that wait, the one that has fewest gets them first.
+    async fn room(&self, client: &str) -> Room {
+        let part = self.0.rooms.take(client, 1).await;
         let threads = self.0.free().pop();
         Room {
             desk: Arc::clone(&self.0),
-            threads: threads.expect("there are as many rooms as permits"),
-            _permit: permit,
+            threads: threads.expect("there are as many rooms as parts"),
+            client: client.to_owned(),
+            _part: part,
         }
     }
 }
@@ -281,9 +327,9 @@ impl Desk {
 }
 
 impl Ticket {
-    fn supersede(&self) {
+    fn replace(&self) {
         self.stop.store(true, Ordering::Relaxed);
-        self.superseded.cancel();
+        self.replaced.cancel();
     }
 }
 
@@ -291,6 +337,15 @@ impl Admitted {
     /// The handle for the engine's work.
     fn run(&self) -> Run {
         Run::new(Arc::clone(&self.ticket.stop), |_, _| {})
+    }
+
+    /// Why another one has its place.
+    fn replaced(&self) -> PreviewError {
+        if self.ticket.crowded_out.load(Ordering::Relaxed) {
+            PreviewError::Full(self.desk.rules.at_once)
+        } else {
+            PreviewError::Superseded
+        }
     }
 
     /// What `work` gives, unless the preview is over before.
@@ -302,7 +357,7 @@ impl Admitted {
     ) -> Result<T, PreviewError> {
         tokio::select! {
             result = work => Ok(result),
-            () = self.ticket.superseded.cancelled() => Err(PreviewError::Superseded),
+            () = self.ticket.replaced.cancelled() => Err(self.replaced()),
             () = self.desk.stop.cancelled() => Err(PreviewError::ShuttingDown),
             () = sleep_until(deadline) => Err(late),
         }
@@ -311,14 +366,7 @@ impl Admitted {
 
 impl Drop for Admitted {
     fn drop(&mut self) {
-        let mut wanted = self.desk.wanted();
-        // Under the lock, so that a newer one either took the place before or finds it gone.
-        if !self.ticket.superseded.is_cancelled() {
-            wanted.count -= 1;
-            if let Some(name) = &self.name {
-                wanted.named.remove(name);
-            }
-        }
+        self.desk.wanted().remove(&self.ticket);
         self.ticket.stop.store(true, Ordering::Relaxed);
     }
 }
@@ -327,12 +375,18 @@ impl Room {
     /// Starts the computation on the room's threads. A panic in it is the engine's fault and ends this preview only.
     fn launch<T: Send + 'static>(
         self,
+        memory: u64,
         work: impl FnOnce(&Run) -> Result<T, Problem> + Send + 'static,
         run: Run,
     ) -> oneshot::Receiver<(Result<T, Problem>, Duration)> {
         let (sender, receiver) = oneshot::channel();
         let threads = Arc::clone(&self.threads);
         threads.spawn(move || {
+            let is_wanted = || run.check().is_ok();
+            let memory = self
+                .desk
+                .memory
+                .take_on_thread(&self.client, memory, is_wanted);
             let start = std::time::Instant::now();
             let work = || work(&run);
             let result = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
@@ -344,6 +398,7 @@ impl Room {
             });
             let computed = start.elapsed();
             // Before the answer, so that who asks again at once finds the room free.
+            drop(memory);
             drop(self);
             // Nobody waits for a preview that was stopped.
             let _ = sender.send((result, computed));

@@ -9,6 +9,7 @@ use tokio::sync::{Notify, broadcast, mpsc, oneshot};
 use tokio_util::sync::CancellationToken;
 use uuid::Uuid;
 
+use super::budget::Budget;
 use super::clock::Clock;
 use super::error::JobError;
 use super::job::Job;
@@ -36,6 +37,8 @@ pub struct Rules {
     pub client_design_limit: i64,
     /// A job whose computation is estimated to take more memory is refused, in MB.
     pub job_memory_mb: u64,
+    /// Everything that is computed at the same time takes no more memory than this, by its estimates, in MB.
+    pub memory_mb: u64,
 }
 
 /// Who submits, and what it may.
@@ -82,6 +85,7 @@ pub struct Jobs {
     pub(super) live: Arc<Live>,
     pub(super) clock: Clock,
     pub(super) rules: Rules,
+    memory: Budget,
     submissions: mpsc::Sender<Pending>,
     stop: CancellationToken,
 }
@@ -111,9 +115,15 @@ impl Jobs {
             live,
             clock,
             rules,
+            memory: Budget::of(rules.memory_mb),
             submissions,
             stop,
         }
+    }
+
+    /// The memory for what is computed, in MB.
+    pub fn memory(&self) -> &Budget {
+        &self.memory
     }
 
     /// Queues a submission. The answer is given when it is on the disk.
@@ -344,7 +354,7 @@ impl Jobs {
     /// [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn check(&self) -> Result<(), JobError> {
         self.refuse_if_failing()?;
-        Ok(self.store.probe().await?)
+        Ok(self.store.look().await?)
     }
 
     /// Forgets idempotency keys that are a day old, also when nobody submits.

@@ -61,16 +61,26 @@ impl CsvWriter {
 }
 
 /// A text that spreadsheets take for text. They take one that begins with these characters for a formula, which may call
-/// programs and addresses; an apostrophe before it prevents that. A number may keep its sign.
+/// programs and addresses, some of them also behind what cannot be seen; an apostrophe before it prevents that. A number may keep
+/// its sign.
 fn neutral(text: &str) -> Cow<'_, str> {
-    const BEGIN_A_FORMULA: [char; 11] =
-        ['=', '+', '-', '@', '\t', '\r', '\n', '＝', '＋', '－', '＠'];
+    const BEGIN_A_FORMULA: [char; 8] = ['=', '+', '-', '@', '＝', '＋', '－', '＠'];
     let is_number = text.parse::<f64>().is_ok_and(f64::is_finite);
-    if text.starts_with(BEGIN_A_FORMULA) && !is_number {
+    let seen = text.trim_start_matches(cannot_be_seen);
+    let is_formula = seen.starts_with(BEGIN_A_FORMULA) || text.starts_with(['\t', '\r', '\n']);
+    if is_formula && !is_number {
         format!("'{text}").into()
     } else {
         text.into()
     }
+}
+
+/// Blanks of every width, controls, and marks of direction and joining.
+fn cannot_be_seen(letter: char) -> bool {
+    letter.is_whitespace()
+        || letter.is_control()
+        || matches!(letter, '\u{ad}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}'
+            | '\u{2060}'..='\u{206f}' | '\u{feff}')
 }
 
 #[cfg(test)]
@@ -87,6 +97,12 @@ mod tests {
             ("\tx", "'\tx"),
             ("\rx", "'\rx"),
             ("＝1", "'＝1"),
+            (" =1", "' =1"),
+            ("\u{a0}=1", "'\u{a0}=1"),
+            ("\u{200b}=1", "'\u{200b}=1"),
+            ("\u{feff} \u{200b}@x", "'\u{feff} \u{200b}@x"),
+            ("\0=1", "'\0=1"),
+            (" a=1", " a=1"),
             ("-1.5", "-1.5"),
             ("+1e3", "+1e3"),
             ("8R34", "8R34"),

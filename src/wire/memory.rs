@@ -31,6 +31,11 @@ pub fn memory_above(submission: &Submission, limit_mb: u64) -> Option<u64> {
     (needed_mb > limit_mb).then_some(needed_mb)
 }
 
+/// The memory that `submission` is estimated to take, in MB: of a usual pair what all of them stay below.
+pub fn memory_of(submission: &Submission) -> u64 {
+    memory_above(submission, USUAL_MB).unwrap_or(USUAL_MB)
+}
+
 /// That a computation would take too much memory.
 pub fn too_much_memory(needed_mb: u64, limit_mb: u64) -> Problem {
     Problem::new(

@@ -9,7 +9,7 @@ use utoipa::ToSchema;
 
 use super::gear::{GearDocument, MOST_ENTRIES, MOST_HOLES, MOST_MODIFICATIONS};
 use super::geometry::PairGeometry;
-use super::problem::{Code, Problem};
+use super::problem::{Code, FieldError, Problem};
 use super::resolution::ResolutionDocument;
 use super::results::Results;
 use super::submission::{MOST_POSITIONS, MOST_TAGS, MOST_TORQUES, SOLVER_VERSION, Submission};
@@ -59,13 +59,19 @@ pub fn fields(
     .map_err(|error| problem_of(&error))
 }
 
+/// What the engine has met, with the field that leads out of it.
 fn problem_of(error: &AnalysisError) -> Problem {
+    const TORQUES: &str = "/output_torques_n_m";
+    let of_field = |pointer: &str, code, detail| {
+        Problem::of_fields(vec![FieldError::new(pointer, code, detail)])
+    };
     match error {
         AnalysisError::NotConverged {
             mesh_position,
             residual,
             iterations,
-        } => Problem::new(
+        } => of_field(
+            TORQUES,
             Code::NotConverged,
             format!(
                 "The contact did not converge at mesh position {}: a gap of {} um was left after {iterations} iterations.",
@@ -76,14 +82,16 @@ fn problem_of(error: &AnalysisError) -> Problem {
         AnalysisError::ContactFailed {
             mesh_position,
             error,
-        } => Problem::new(
+        } => of_field(
+            TORQUES,
             Code::NotConverged,
             format!(
                 "The contact at mesh position {} could not be solved: {error}.",
                 plain(*mesh_position)
             ),
         ),
-        AnalysisError::NoContact { mesh_position } => Problem::new(
+        AnalysisError::NoContact { mesh_position } => of_field(
+            "/pair/center_distance_mm",
             Code::NotConverged,
             format!(
                 "No flanks come near each other at mesh position {}.",
@@ -94,7 +102,8 @@ fn problem_of(error: &AnalysisError) -> Problem {
             mesh_position,
             apart,
             coupled,
-        } => Problem::new(
+        } => of_field(
+            TORQUES,
             Code::NotConverged,
             format!(
                 "At mesh position {} the load presses teeth together that stand {apart} apart; the model couples at most {coupled}. A smaller torque would do.",
@@ -107,7 +116,8 @@ fn problem_of(error: &AnalysisError) -> Problem {
             compliance,
         } => {
             let part = member.map_or(String::new(), |member| format!(" of the {member} gear"));
-            Problem::new(
+            of_field(
+                "/resolution/load_distribution",
                 Code::NoFormula,
                 format!(
                     "Far outside the range for which it was published, {formula}{part} gives a pair of teeth a compliance of {} um/N. It has to be a positive number.",
@@ -115,7 +125,8 @@ fn problem_of(error: &AnalysisError) -> Problem {
                 ),
             )
         }
-        AnalysisError::Discretization { member, reason } => Problem::new(
+        AnalysisError::Discretization { member, reason } => of_field(
+            &format!("/pair/{member}"),
             Code::DiscretizationFailed,
             format!("The {member} gear could not be divided into elements: {reason}."),
         ),

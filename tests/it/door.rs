@@ -1,5 +1,6 @@
 //! Who gets in: keys and what they open, names of the service, rates, and what no client sees of another.
 
+use meshwright::http::KeysRule;
 use meshwright::jobs::{KeyRecord, Role, Store};
 use meshwright::keys::Key;
 use reqwest::{Response, StatusCode};
@@ -382,6 +383,10 @@ async fn numbers_and_health_may_have_a_listener_of_their_own() {
             .await
             .unwrap();
         assert_eq!(answer.status(), StatusCode::OK, "{path}");
+        // Nobody needs a key there: a page of a foreign name that leads there must not read it.
+        let foreign = bench.client.get(format!("{base}{path}"));
+        let foreign = foreign.header("host", "evil.example").send().await.unwrap();
+        problem(foreign, 421, "host_not_allowed").await;
     }
     let answer = bench
         .client
@@ -390,4 +395,98 @@ async fn numbers_and_health_may_have_a_listener_of_their_own() {
         .await
         .unwrap();
     assert_eq!(answer.status(), StatusCode::NOT_FOUND);
+}
+
+#[tokio::test]
+async fn behind_a_proxy_or_under_a_public_name_a_key_is_needed_though_it_listens_to_this_machine() {
+    let bench = Bench::quick().await;
+    let ask = async |header: &str| {
+        let request = bench.get("/v1/jobs").header(header, "for=192.0.2.7");
+        request.send().await.unwrap()
+    };
+    assert_eq!(ask("accept").await.status(), StatusCode::OK);
+    for header in [
+        "forwarded",
+        "via",
+        "x-forwarded-for",
+        "x-forwarded-host",
+        "x-real-ip",
+    ] {
+        problem(ask(header).await, 401, "unauthorized").await;
+    }
+    let key = key_of(&bench, "portal").await;
+    let known = bench.get("/v1/jobs").bearer_auth(&key);
+    let known = known
+        .header("x-forwarded-for", "192.0.2.7")
+        .send()
+        .await
+        .unwrap();
+    assert_eq!(known.status(), StatusCode::OK);
+
+    for (keys, status) in [
+        (None, 401),
+        (Some(KeysRule::Required), 401),
+        (Some(KeysRule::None), 200),
+    ] {
+        let (named, _engine) = Bench::steered_with(|config| {
+            config.door.allowed_hosts = vec!["gears.example".to_owned()];
+            config.door.keys = keys;
+        })
+        .await;
+        let answer = named
+            .get("/v1/jobs")
+            .header("host", "gears.example")
+            .send()
+            .await
+            .unwrap();
+        assert_eq!(answer.status(), status, "{keys:?}");
+    }
+}
+
+#[tokio::test]
+async fn a_stream_ends_with_its_key() {
+    let (bench, mut engine) = Bench::steered().await;
+    let key = key_of(&bench, "portal").await;
+    let taken = submit(&bench, &key, 1.0).await;
+    let path = taken.headers()["location"].to_str().unwrap().to_owned();
+    let _work = engine.next().await;
+    let stream = bench.get(&format!("{path}/events")).bearer_auth(&key);
+    let mut stream = stream.send().await.unwrap();
+    assert!(stream.chunk().await.unwrap().is_some());
+    let store = Store::open(&bench.config.database).await.unwrap();
+    let id = key.split('_').nth(1).unwrap();
+    assert!(store.revoke_key(id, jiff::Timestamp::now()).await.unwrap());
+    store.close().await;
+    // Nothing happens to the job meanwhile.
+    while stream.chunk().await.unwrap().is_some() {}
+}
+
+#[tokio::test]
+async fn those_without_a_key_are_refused_when_they_ask_too_often_and_those_with_one_are_not() {
+    let (bench, _engine) = Bench::steered_with(|config| {
+        config.door.keys = Some(KeysRule::Required);
+        config.door.requests_without_key = 1;
+    })
+    .await;
+    let key = key_of(&bench, "portal").await;
+    assert_eq!(get(&bench, "/v1/jobs", &key).await.status(), StatusCode::OK);
+    let mut refused = None;
+    for _ in 0..100 {
+        let answer = bench.get("/web/main.js").send().await.unwrap();
+        if answer.status() != StatusCode::OK {
+            refused = Some(answer);
+            break;
+        }
+    }
+    let refused = refused.expect("a hundred at once are too many");
+    assert_eq!(refused.headers()["connection"], "close");
+    assert!(refused.headers().contains_key("retry-after"));
+    problem(refused, 429, "rate_limited").await;
+    for _ in 0..100 {
+        assert_eq!(get(&bench, "/v1/jobs", &key).await.status(), StatusCode::OK);
+        assert_eq!(
+            bench.get("/health/ready").send().await.unwrap().status(),
+            StatusCode::OK
+        );
+    }
 }

@@ -1,5 +1,11 @@
 //! How the service looks from outside: links, headers, documentation, health.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicI64, Ordering};
+
+use jiff::Timestamp;
+use meshwright::http::KeysRule;
+use meshwright::jobs::Clock;
 use meshwright::wire::Code;
 use reqwest::{Method, StatusCode};
 use serde_json::Value;
@@ -9,8 +15,12 @@ use crate::bench::{Bench, RESULTS, submission};
 #[tokio::test]
 async fn every_link_bears_the_public_address() {
     let public = "https://gears.example/mesh";
-    let (bench, mut engine) =
-        Bench::steered_with(|config| config.public_url = Some(public.to_owned())).await;
+    let (bench, mut engine) = Bench::steered_with(|config| {
+        config.public_url = Some(public.to_owned());
+        // Under a public name keys are needed, unless that is told.
+        config.door.keys = Some(KeysRule::None);
+    })
+    .await;
     let response = bench
         .post("/v1/jobs", &submission(1.0))
         .send()
@@ -265,4 +275,65 @@ async fn what_can_be_known_without_a_job_is_told() {
     assert_eq!(valid["valid"], true);
     let list: Value = bench.document("/v1/jobs").await;
     assert_eq!(list["items"].as_array().unwrap().len(), 0);
+}
+
+#[tokio::test]
+async fn the_date_of_an_answer_follows_a_clock_that_is_set_back() {
+    let mut bench = Bench::quick().await;
+    bench.shut_down().await;
+    let hand = Arc::new(AtomicI64::new(1_000_000_000));
+    let read = Arc::clone(&hand);
+    let wall = move || Timestamp::from_second(read.load(Ordering::Relaxed)).unwrap();
+    bench.clock = Clock::given(wall, Timestamp::now);
+    bench.start_again().await;
+    for (second, date) in [
+        (1_000_000_000, "Sun, 09 Sep 2001 01:46:40 GMT"),
+        (0, "Thu, 01 Jan 1970 00:00:00 GMT"),
+    ] {
+        hand.store(second, Ordering::Relaxed);
+        for path in ["/health/live", "/v1/jobs", "/nowhere"] {
+            let answer = bench.get(path).send().await.unwrap();
+            assert_eq!(answer.headers()["date"], date, "{path}");
+        }
+    }
+}
+
+#[tokio::test]
+async fn files_of_the_page_and_of_the_documentation_come_packed_as_they_were_built() {
+    let bench = Bench::quick().await;
+    for path in [
+        "/",
+        "/web/main.js",
+        "/docs/",
+        "/docs/swagger-ui-bundle.js",
+        "/openapi.json",
+        "/v1/examples",
+    ] {
+        let plain = bench.get(path).send().await.unwrap();
+        assert_eq!(plain.headers().get("content-encoding"), None);
+        let tag = plain.headers()["etag"].clone();
+        let known = bench
+            .get(path)
+            .header("if-none-match", &tag)
+            .send()
+            .await
+            .unwrap();
+        assert_eq!(known.status(), StatusCode::NOT_MODIFIED, "{path}");
+        let plain = plain.bytes().await.unwrap();
+        let packed = bench
+            .get(path)
+            .header("accept-encoding", "gzip")
+            .send()
+            .await
+            .unwrap();
+        assert_eq!(packed.headers()["content-encoding"], "gzip", "{path}");
+        assert_eq!(packed.headers()["vary"], "accept-encoding", "{path}");
+        // Another form is another thing, as long as the tag is a strong one.
+        assert_ne!(packed.headers()["etag"], tag);
+        let packed = packed.bytes().await.unwrap();
+        let mut unpacked = Vec::new();
+        let mut decoder = flate2::read::GzDecoder::new(packed.as_ref());
+        std::io::Read::read_to_end(&mut decoder, &mut unpacked).unwrap();
+        assert_eq!(unpacked, plain, "{path}");
+    }
 }

@@ -111,3 +111,17 @@ async fn parameters_that_are_not_understood_are_refused() {
         problem(list(&bench, query).await, 400, "invalid_parameter").await;
     }
 }
+
+#[tokio::test]
+async fn a_text_with_a_character_nul_is_refused_by_either_store() {
+    let bench = Bench::quick().await;
+    for query in [
+        "/v1/jobs?tag=%00",
+        "/v1/jobs?tag=a%00b",
+        "/v1/studies?name=%00",
+        "/v1/studies?tag=%00",
+    ] {
+        let answer = bench.get(query).send().await.unwrap();
+        problem(answer, 400, "invalid_parameter").await;
+    }
+}

@@ -3,7 +3,7 @@
 use std::sync::{Arc, mpsc as blocking};
 use std::time::Duration;
 
-use meshwright::jobs::{PreviewError, PreviewRules, Previews, Solve};
+use meshwright::jobs::{Budget, PreviewError, PreviewRules, Previews, Solve};
 use meshwright::wire::{Code, Preview, Problem};
 use meshwright_engine::run::Run;
 use reqwest::{Response, StatusCode};
@@ -281,7 +281,7 @@ fn previews(solve: Solve, time_limit: Duration) -> Previews {
         most_positions: 4000,
         time_limit,
     };
-    Previews::new(solve, rules, CancellationToken::new()).unwrap()
+    Previews::new(solve, rules, Budget::of(4096), CancellationToken::new()).unwrap()
 }
 
 fn parsed(preview: &Value) -> Preview {
@@ -315,4 +315,44 @@ async fn a_preview_that_takes_longer_than_the_limit_is_stopped() {
     assert_eq!(late, Err(PreviewError::TimeLimit(limit)));
     let (run, _hold) = engine.next().await;
     assert!(run.check().is_err());
+}
+
+#[tokio::test]
+async fn as_many_previews_of_one_client_as_there_are_places_do_not_shut_another_one_out() {
+    let (mut engine, solve) = Stubborn::new();
+    let previews = previews(solve, PATIENCE);
+    let ask = |client: &'static str, number: usize| {
+        let (previews, preview) = (previews.clone(), parsed(&named(&number.to_string(), 1.0)));
+        tokio::spawn(async move { previews.compute(client, preview).await })
+    };
+    let most = previews.rules().at_once;
+    let mut hogs = Vec::new();
+    for number in 0..most {
+        hogs.push(ask("hog", number));
+        while previews.count() <= number {
+            tokio::task::yield_now().await;
+        }
+    }
+    // One more of the same is too many.
+    assert_eq!(
+        ask("hog", most).await.unwrap(),
+        Err(PreviewError::Full(most))
+    );
+    let other = ask("other", 0);
+    // The newest one of the crowd gives its place up; the others are computed, and the other client's is next.
+    let newest = hogs.pop().unwrap();
+    assert_eq!(newest.await.unwrap(), Err(PreviewError::Full(most)));
+    let release = async {
+        loop {
+            drop(engine.next().await);
+        }
+    };
+    tokio::select! {
+        () = release => {}
+        answer = other => assert_eq!(answer.unwrap().unwrap().document, RESULTS),
+    }
+    for hog in hogs {
+        drop(engine.0.try_recv());
+        hog.abort();
+    }
 }

@@ -22,17 +22,32 @@ const CLIENT: &str = "anonymous";
 struct Hands {
     wall: Arc<AtomicI64>,
     steady: Arc<AtomicI64>,
+    /// How often somebody has looked at the steady one.
+    looks: Arc<AtomicI64>,
 }
 
 const ORIGIN: i64 = 1_000_000;
 
 impl Hands {
     fn clock(&self) -> Clock {
-        let read = |hand: &Arc<AtomicI64>| {
-            let hand = Arc::clone(hand);
-            move || Timestamp::from_second(ORIGIN + hand.load(Ordering::Relaxed)).unwrap()
+        let read = |hand: &AtomicI64| {
+            Timestamp::from_second(ORIGIN + hand.load(Ordering::Relaxed)).unwrap()
         };
-        Clock::given(read(&self.wall), read(&self.steady))
+        let (wall, steady) = (Arc::clone(&self.wall), Arc::clone(&self.steady));
+        let looks = Arc::clone(&self.looks);
+        let look = move || {
+            looks.fetch_add(1, Ordering::Relaxed);
+            read(&steady)
+        };
+        Clock::given(move || read(&wall), look)
+    }
+
+    /// Comes back when somebody has looked at the steady clock so many times.
+    async fn looked_at(&self, times: i64) {
+        let before = self.looks.load(Ordering::Relaxed);
+        while self.looks.load(Ordering::Relaxed) < before + times {
+            tokio::task::yield_now().await;
+        }
     }
 
     /// Time passes.
@@ -53,6 +68,7 @@ fn rules() -> Rules {
         client_queue_limit: 100,
         client_design_limit: 1000,
         job_memory_mb: 1000,
+        memory_mb: 1000,
     }
 }
 
@@ -187,8 +203,9 @@ async fn a_clock_that_is_set_forward_takes_no_job_from_its_worker_nor_a_key_from
     let job = jobs.submit(&member(), &case(1.0), key()).await.unwrap().job;
     let order = begin().await;
     hands.jump(10 * 365 * 24 * 3600);
-    // The watch over leases looks every 20 ms; a job that it takes away is begun again by the worker that is free.
-    tokio::time::sleep(Duration::from_millis(100)).await;
+    // While the only worker computes, nobody looks at the clock but the watch over leases. A look follows the end of the one
+    // before: of three the second was at all leases.
+    hands.looked_at(3).await;
     let running = jobs.find(CLIENT, job.id).await.unwrap();
     assert_eq!((running.status, running.attempt), (Status::Running, 1));
     let again = jobs.submit(&member(), &case(1.0), key()).await.unwrap();

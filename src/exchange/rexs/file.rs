@@ -7,6 +7,7 @@ use std::fmt::Write as _;
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::fault::{Fault, Refused};
+use super::markup;
 use super::unit::Unit;
 
 pub(super) const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
@@ -19,6 +20,9 @@ const MOST_NODES: u32 = 2_000_000;
 
 /// The most load cases of a file, which is far more than a submission has torques.
 const MOST_LOAD_CASES: usize = 1000;
+
+/// Faults beyond this number are not looked for: each says its line, which is counted from the top.
+const MOST_FAULTS: usize = 100;
 
 /// The first version whose names are read, and the last main version.
 const VERSIONS: ((u32, u32), u32) = ((1, 4), 2);
@@ -84,6 +88,7 @@ impl Model {
                 error.valid_up_to()
             ))
         })?;
+        markup::check(text).map_err(whole)?;
         let options = ParsingOptions {
             allow_dtd: false,
             nodes_limit: MOST_NODES,
@@ -220,6 +225,9 @@ fn at_line(node: Node<'_, '_>) -> String {
 impl Component {
     /// Reads a component; what is wrong with it is added to `faults`.
     fn of(node: Node<'_, '_>, faults: &mut Vec<Fault>) -> Option<Self> {
+        if faults.len() >= MOST_FAULTS {
+            return None;
+        }
         let id = whole_number(node, "id");
         let Some((id, kind)) = id.zip(node.attribute("type")) else {
             let detail = "A component needs a type, and a whole number as its id.";

@@ -11,6 +11,7 @@ mod file;
 mod gear;
 mod import;
 mod load;
+mod markup;
 #[cfg(test)]
 mod tests;
 mod unit;

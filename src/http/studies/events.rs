@@ -67,13 +67,13 @@ pub(in crate::http) async fn events(
     let place = events::place(&app, client.name())?;
     let watch = Watch {
         news: app.jobs.news(id),
-        app,
+        app: app.clone(),
         client: client.0.client,
         id,
         count: 0,
         known: None,
     };
-    Ok(events::answer(watch, place))
+    Ok(events::answer(app, watch, client.1, place))
 }
 
 /// One client that watches one study.

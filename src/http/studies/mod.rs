@@ -70,9 +70,9 @@ pub(in crate::http) async fn submit(
     State(app): State<App>,
     client: Client,
     IdempotencyKey(key): IdempotencyKey,
-    Document(document): Document<MIB>,
+    Document(document, _memory): Document<MIB>,
 ) -> Result<Response, Problem> {
-    let study = aside(move |run| Study::parse(&document, run)).await??;
+    let study = aside(client.name(), move |run| Study::parse(&document, run)).await??;
     let StudySubmitted { study, repeated } = app.jobs.submit_study(&client.0, study, key).await?;
 
     let ended = study.status().has_ended();

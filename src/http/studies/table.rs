@@ -17,7 +17,7 @@ use utoipa::ToSchema;
 use super::view::why_failed;
 use super::{study_id, tag_of, tell_when_to_return};
 use crate::http::app::App;
-use crate::http::aside::aside;
+use crate::http::aside::{aside, turn_to_read};
 use crate::http::client::Client;
 use crate::http::conditional::Keep;
 use crate::http::view::with_public_type;
@@ -204,10 +204,11 @@ async fn send(
 ) -> Result<Response, Problem> {
     let study = app.jobs.find_study(client.name(), study_id(id)?).await?;
     let tag = tag_of(&study, form.word(), &app.edge);
+    let name = Arc::from(client.name());
     let made = async {
         let body = match form {
-            Form::Json | Form::Ndjson | Form::Csv => table(app, &study, form).await?,
-            Form::Documents => documents(app, &study).await?,
+            Form::Json | Form::Ndjson | Form::Csv => table(app, name, &study, form).await?,
+            Form::Documents => documents(app, name, &study).await?,
         };
         let mut response = ([(CONTENT_TYPE, form.content_type())], body).into_response();
         if !matches!(form, Form::Json) {
@@ -228,30 +229,41 @@ async fn send(
 }
 
 /// The table, read twice: first for what has to be known before the first row, then row by row.
-async fn table(app: App, study: &StudyRecord, form: Form) -> Result<Body, Problem> {
+async fn table(
+    app: App,
+    client: Arc<str>,
+    study: &StudyRecord,
+    form: Form,
+) -> Result<Body, Problem> {
     let mut outline = Outline::default();
     let mut read = 0;
     loop {
+        let _turn = turn_to_read(&client).await;
         let rows = app.jobs.study_rows(study.id, read).await?;
         if rows.is_empty() {
             break;
         }
         read += rows.len() as u64;
-        for row in &rows {
-            outline.add(row);
-        }
+        let added = aside(&client, move |_| {
+            rows.iter().for_each(|row| outline.add(row));
+            outline
+        });
+        outline = added.await?;
     }
+    let (pointers, has_stress) = (outline.pointers().to_vec(), outline.has_stress());
+    let front = aside(&client, move |_| outline.front()).await?;
     let (head, foot, layout) = match form {
         Form::Csv => {
-            let csv = CsvTable::new(outline.pointers().to_vec(), outline.has_stress());
+            let csv = CsvTable::new(pointers, has_stress);
             (csv.header(), "", Layout::Csv(csv))
         }
         Form::Ndjson => (String::new(), "", Layout::Lines),
         Form::Json | Form::Documents => (head_of_json(study, &app), "]}", Layout::List),
     };
     let writer = RowWriter {
+        client,
         study: study.clone(),
-        front: outline.front(),
+        front,
         layout,
         public_url: Arc::from(app.edge.public_url.as_str()),
     };
@@ -300,6 +312,7 @@ enum Layout {
 
 /// How rows are written.
 struct RowWriter {
+    client: Arc<str>,
     study: StudyRecord,
     front: Vec<bool>,
     layout: Layout,
@@ -343,22 +356,26 @@ async fn page(
     writer: &Arc<RowWriter>,
     read: u64,
 ) -> Result<Option<(Bytes, u64)>, Problem> {
+    let client = &writer.client;
+    let _turn = turn_to_read(client).await;
     let rows = app.jobs.study_rows(writer.study.id, read).await?;
     if rows.is_empty() {
         return Ok(None);
     }
-    let (count, writer) = (rows.len() as u64, Arc::clone(writer));
-    let text = aside(move |_| writer.write(read, rows)).await?;
+    let (count, words) = (rows.len() as u64, Arc::clone(writer));
+    let text = aside(client, move |_| words.write(read, rows)).await?;
     Ok(Some((text.into(), count)))
 }
 
 /// The results of every design that has some.
-async fn documents(app: App, study: &StudyRecord) -> Result<Body, Problem> {
+async fn documents(app: App, client: Arc<str>, study: &StudyRecord) -> Result<Body, Problem> {
     let id = study.id;
     // The first lines are read before anything is sent, so that what fails at once is told as a problem.
     let first = app.jobs.study_documents(id, None).await?;
-    let lines = stream::unfold(Some((app, Some(first), None)), move |at| async move {
-        let (app, ready, after) = at?;
+    let begin = Some((app, Some(first), None, client));
+    let lines = stream::unfold(begin, move |at| async move {
+        let (app, ready, after, client) = at?;
+        let _turn = turn_to_read(&client).await;
         let lines = match ready {
             Some(lines) => Ok(lines),
             None => app.jobs.study_documents(id, after).await,
@@ -367,13 +384,15 @@ async fn documents(app: App, study: &StudyRecord) -> Result<Body, Problem> {
             Ok(lines) if lines.is_empty() => return None,
             Ok(lines) => {
                 let last = lines.last().map(|line| line.position);
-                let text = aside(move |_| lines.iter().map(line).collect::<Result<String, _>>());
+                let text = aside(&client, move |_| {
+                    lines.iter().map(line).collect::<Result<String, _>>()
+                });
                 (text.await, last)
             }
             Err(error) => (Err(error.into()), None),
         };
         match text {
-            (Ok(Ok(text)), last) => Some((Ok(Bytes::from(text)), Some((app, None, last)))),
+            (Ok(Ok(text)), last) => Some((Ok(Bytes::from(text)), Some((app, None, last, client)))),
             (Ok(Err(problem)) | Err(problem), _) => Some((Err(problem), None)),
         }
     });

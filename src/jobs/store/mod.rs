@@ -27,6 +27,7 @@ mod documents;
 mod end;
 mod endings;
 mod error;
+mod ground;
 mod keys;
 mod lists;
 mod news;
@@ -49,6 +50,7 @@ use std::sync::Arc;
 use jiff::SignedDuration;
 use uuid::Uuid;
 
+use ground::Ground;
 use statement::Pool;
 use write::Health;
 
@@ -81,6 +83,8 @@ pub struct Store {
     writer: Pool,
     pub(crate) readers: Pool,
     health: Arc<Health>,
+    /// What its file stands on, if it is one.
+    ground: Option<Ground>,
     /// This process, among those that work on the same database. Another one at each start.
     process: Uuid,
 }

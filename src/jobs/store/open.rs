@@ -1,6 +1,6 @@
 //! Opening the database: what it has to be, and what it is brought to.
 
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::net::IpAddr;
 use std::path::Path;
 use std::str::FromStr;
@@ -16,7 +16,8 @@ use tracing::{info, warn};
 use uuid::Uuid;
 
 use super::error::primary_code;
-use super::statement::{Dialect, Pool, Renewal};
+use super::ground::Ground;
+use super::statement::{Dialect, LONGEST_STATEMENT, Pool, Renewal};
 use super::write::Health;
 use super::{Place, Store, StoreError};
 use crate::private::open_or_make;
@@ -49,6 +50,12 @@ const IDLE: Duration = Duration::from_secs(1);
 /// A connection to a server that cannot be had in this time is not had now.
 const CONNECTING: Duration = Duration::from_secs(5);
 
+/// A lock of a server that cannot be had in this time is not had now.
+const LONGEST_LOCK: Duration = Duration::from_secs(5);
+
+/// By this number a file says that it is ours ("mesh"); SQLite keeps it in the head of the file.
+const APPLICATION: i64 = 0x6d65_7368;
+
 /// What every SQLite database begins with.
 const MAGIC: &[u8; 16] = b"SQLite format 3\0";
 
@@ -67,6 +74,9 @@ pub enum OpenError {
     /// The file is something else.
     #[error("it is no SQLite database; nothing was changed in it")]
     NotADatabase,
+    /// Another program made it.
+    #[error("it is a database of another program; nothing was changed in it")]
+    AnotherProgram,
     /// The file is damaged.
     #[error(
         "it is damaged ({0}); nothing was changed in it. Restore a backup, or copy what can be read with the sqlite3 program's .recover"
@@ -98,6 +108,17 @@ pub enum OpenError {
     /// Its tables cannot be brought up to date.
     #[error("its tables cannot be brought up to date")]
     Migrate(#[source] MigrateError),
+}
+
+impl OpenError {
+    /// Why the system does not open the file.
+    pub(crate) fn of_system(error: std::io::Error) -> Self {
+        match error.kind() {
+            ErrorKind::ReadOnlyFilesystem | ErrorKind::PermissionDenied => Self::ReadOnly,
+            ErrorKind::StorageFull | ErrorKind::QuotaExceeded => Self::Full,
+            _ => Self::Connect(sqlx::Error::Io(error)),
+        }
+    }
 }
 
 impl From<sqlx::Error> for OpenError {
@@ -156,11 +177,16 @@ impl Store {
             Place::File(path) => open_file(path, migrate).await?,
             Place::Postgres(address) => open_server(address, migrate).await?,
         };
+        let ground = match place.file() {
+            Some(path) => Some(Ground::of(path).map_err(sqlx::Error::Io)?),
+            None => None,
+        };
         let store = Self {
             place: place.clone(),
             writer,
             readers,
             health: Health::new(),
+            ground,
             process: Uuid::now_v7(),
         };
         store.look_for_damage().await?;
@@ -190,6 +216,7 @@ impl Store {
 
 async fn open_file(path: &Path, migrate: Migrate) -> Result<(Pool, Pool), OpenError> {
     refuse_other_files(path)?;
+    refuse_other_programs(path).await?;
     let options = options(path);
     bring_up_to_date(&options, migrate).await?;
     // From here on the file is there. Made anew behind our back, it would be an empty one.
@@ -234,6 +261,14 @@ async fn open_server(address: &str, migrate: Migrate) -> Result<(Pool, Pool), Op
     let migrated = migrate_server(&mut connection, migrate).await;
     connection.close().await?;
     migrated?;
+    // Migrations take the time that they need; nothing else does. Whoever holds a lock for longer keeps us from our work.
+    let options = options.options([
+        (
+            "statement_timeout",
+            LONGEST_STATEMENT.as_millis().to_string(),
+        ),
+        ("lock_timeout", LONGEST_LOCK.as_millis().to_string()),
+    ]);
     let renewal = Renewal::default();
     let renewed = renewal.clone();
     let pool = PgPoolOptions::new()
@@ -353,6 +388,30 @@ fn refuse_other_files(path: &Path) -> Result<(), OpenError> {
     }
 }
 
+/// A database that is there says that it is ours, or has our tables, or none yet. It is only read for that, not so much as
+/// its journal: what cannot be read so is told by SQLite when it is opened.
+async fn refuse_other_programs(path: &Path) -> Result<(), OpenError> {
+    let options = SqliteConnectOptions::new()
+        .filename(path)
+        .read_only(true)
+        .immutable(true);
+    let Ok(mut connection) = options.connect().await else {
+        return Ok(());
+    };
+    let said: Result<(i64, i64, i64), _> = sqlx::query_as(
+        "select (select application_id from pragma_application_id),
+                count(*), coalesce(sum(name in ('_sqlx_migrations', 'jobs')), 0) from sqlite_master where type = 'table'",
+    )
+    .fetch_one(&mut connection)
+    .await;
+    // Of a connection that has only read there is nothing to lose.
+    let _ = connection.close().await;
+    match said {
+        Ok((APPLICATION, ..) | (0, 0, _) | (0, _, 2)) | Err(_) => Ok(()),
+        Ok(_) => Err(OpenError::AnotherProgram),
+    }
+}
+
 fn options(path: &Path) -> SqliteConnectOptions {
     SqliteConnectOptions::new()
         .filename(path)
@@ -385,9 +444,24 @@ async fn bring_up_to_date(
             }
         }
         make_shrinkable(&mut connection).await;
+        mark(&mut connection).await?;
     }
     connection.close().await?;
     migrated.map(|_| ())
+}
+
+/// Writes into the file that it is ours.
+async fn mark(connection: &mut SqliteConnection) -> Result<(), sqlx::Error> {
+    let marked: i64 = sqlx::query_scalar("pragma application_id")
+        .fetch_one(&mut *connection)
+        .await?;
+    if marked != APPLICATION {
+        let mark = format!("pragma application_id = {APPLICATION}");
+        sqlx::raw_sql(sqlx::AssertSqlSafe(mark))
+            .execute(connection)
+            .await?;
+    }
+    Ok(())
 }
 
 /// Whether there was something to do.

@@ -4,6 +4,7 @@
 //! The drivers are typed by their database. Here the choice is a value, made once when the store is opened; a statement
 //! keeps its parameters until it knows which driver takes them.
 
+use std::io::ErrorKind;
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
@@ -66,7 +67,7 @@ impl Pool {
         Ok(match self {
             Self::Sqlite(pool) => Connection::Sqlite(pool.acquire().await?),
             Self::Postgres(pool, renewal) => {
-                Connection::Postgres(pool.acquire().await?, renewal.clone())
+                Connection::Postgres(in_time(pool.acquire()).await?, renewal.clone())
             }
         })
     }
@@ -126,12 +127,28 @@ impl Connection {
             }
             Self::Postgres(connection, _) => {
                 if let Some(words) = words.of(Dialect::Postgres) {
-                    sqlx::raw_sql(words).execute(&mut **connection).await?;
+                    in_time(sqlx::raw_sql(words).execute(&mut **connection)).await?;
                 }
             }
         }
         Ok(())
     }
+}
+
+/// A server takes so long for a statement at most, and gives it up then.
+pub(super) const LONGEST_STATEMENT: Duration = Duration::from_secs(10);
+
+/// A server that has not even said so by then is frozen, or behind a network that is.
+const LONGEST_SILENCE: Duration = Duration::from_secs(12);
+
+/// What `work` gives, if the server answers in time. A connection that is left in the middle of a sentence is no good any more;
+/// the driver finds that out, and a transaction takes its own with it.
+async fn in_time<T>(work: impl Future<Output = Result<T, sqlx::Error>>) -> Result<T, sqlx::Error> {
+    let done = tokio::time::timeout(LONGEST_SILENCE, work).await;
+    done.unwrap_or_else(|_| {
+        let silence = std::io::Error::new(ErrorKind::TimedOut, "the server does not answer");
+        Err(sqlx::Error::Io(silence))
+    })
 }
 
 /// What a statement is run on.
@@ -290,7 +307,7 @@ macro_rules! run {
             On::Postgres($executor, renewal) => match text.of(Dialect::Postgres) {
                 Some(text) => {
                     let $query = bind_postgres::<T>(text, &values);
-                    let result = $run;
+                    let result = in_time(async { $run }).await;
                     // The transaction is lost with its connection; whoever tries it again gets a new one.
                     renewal.finds(&result);
                     result
@@ -300,10 +317,10 @@ macro_rules! run {
             On::PostgresPool($executor, renewal) => match text.of(Dialect::Postgres) {
                 Some(text) => {
                     let $query = bind_postgres::<T>(text.clone(), &values);
-                    let result = $run;
+                    let result = in_time(async { $run }).await;
                     if renewal.finds(&result) {
                         let $query = bind_postgres::<T>(text, &values);
-                        $run
+                        in_time(async { $run }).await
                     } else {
                         result
                     }

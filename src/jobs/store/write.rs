@@ -7,11 +7,15 @@ use std::time::Duration;
 use tokio::sync::{Notify, watch};
 use tracing::{error, info, warn};
 
+use super::ground::Ground;
 use super::statement::{Connection, Pool, Text, query};
 use super::{Store, StoreError, dialect};
 
 /// While nothing can be stored, it is tried so often.
 const BETWEEN_TRIES: Duration = Duration::from_millis(500);
+
+/// A look that takes longer says that nothing can be stored now.
+const LOOKING: Duration = Duration::from_secs(2);
 
 /// Whether what is written arrives.
 #[derive(Debug)]
@@ -67,6 +71,7 @@ impl Store {
         let begun = begin_with(
             &self.writer,
             &self.health,
+            self.ground.as_ref(),
             dialect::begin_relaxed(),
             Some(dialect::after_relaxed()),
         );
@@ -79,7 +84,7 @@ impl Store {
 
     /// Begins a transaction that writes.
     pub(crate) async fn begin(&self) -> Result<Write, StoreError> {
-        let begun = begin(&self.writer, &self.health).await;
+        let begun = begin(&self.writer, &self.health, self.ground.as_ref()).await;
         if let Err(error) = &begun {
             self.health.found(Err(error));
         }
@@ -109,9 +114,23 @@ impl Store {
         write.commit().await
     }
 
+    /// Finds out whether what comes next can be stored: something is, and there is room for more.
+    ///
+    /// # Errors
+    ///
+    /// [`StoreError`] if not.
+    pub async fn look(&self) -> Result<(), StoreError> {
+        if let Some(ground) = &self.ground {
+            ground.check_room().map_err(sqlx::Error::Io)?;
+        }
+        let probe = tokio::time::timeout(LOOKING, self.probe()).await;
+        probe.unwrap_or_else(|_| Err(sqlx::Error::PoolTimedOut.into()))
+    }
+
     /// Watches over the writing: where it failed it is tried again, until the store is dropped or closed.
     pub(super) fn watch_writing(&self) {
         let (health, writer) = (Arc::downgrade(&self.health), self.writer.clone());
+        let ground = self.ground.clone();
         let mut fault = self.health.fault.subscribe();
         tokio::spawn(async move {
             loop {
@@ -133,15 +152,18 @@ impl Store {
                 if writer.is_closed() {
                     return;
                 }
-                try_out(&writer, &held).await;
+                try_out(&writer, &held, ground.as_ref()).await;
             }
         });
     }
 }
 
-async fn try_out(writer: &Pool, health: &Arc<Health>) {
+async fn try_out(writer: &Pool, health: &Arc<Health>, ground: Option<&Ground>) {
     let tried = async {
-        let mut write = begin(writer, health).await?;
+        if let Some(ground) = ground {
+            ground.check_room().map_err(sqlx::Error::Io)?;
+        }
+        let mut write = begin(writer, health, ground).await?;
         query(dialect::probe()).execute(&mut *write).await?;
         write.commit().await
     };
@@ -152,16 +174,24 @@ async fn try_out(writer: &Pool, health: &Arc<Health>) {
     }
 }
 
-async fn begin(writer: &Pool, health: &Arc<Health>) -> Result<Write, StoreError> {
-    begin_with(writer, health, dialect::begin(), None).await
+async fn begin(
+    writer: &Pool,
+    health: &Arc<Health>,
+    ground: Option<&Ground>,
+) -> Result<Write, StoreError> {
+    begin_with(writer, health, ground, dialect::begin(), None).await
 }
 
 async fn begin_with(
     writer: &Pool,
     health: &Arc<Health>,
+    ground: Option<&Ground>,
     words: Text,
     after: Option<Text>,
 ) -> Result<Write, StoreError> {
+    if let Some(ground) = ground {
+        ground.check_name().map_err(sqlx::Error::Io)?;
+    }
     let mut connection = writer.acquire().await?;
     // In plain SQL, because the driver's count of open transactions survives an error that SQLite's does not.
     if let Err(error) = connection.say(words).await {

@@ -231,3 +231,25 @@ fn the_same_numbers_give_the_same_bytes_and_a_number_that_is_not_finite_gives_no
         Code::InternalError
     );
 }
+
+#[test]
+fn an_interface_radius_that_is_left_to_one_gear_s_default_has_results() {
+    let example = examples()
+        .iter()
+        .find(|example| example.name == "test-case-2")
+        .expect("ships");
+    let mut document: Value = serde_json::from_str(example.json).expect("JSON");
+    for radii in [
+        serde_json::json!({ "driving": null }),
+        serde_json::json!({ "driving": null, "driven": 44.5 }),
+        serde_json::json!({ "driving": null, "driven": null }),
+        serde_json::json!({}),
+    ] {
+        document["resolution"]["interface_radius_mm"] = radii;
+        let submission = Submission::parse(document.to_string().as_bytes()).expect("valid");
+        let written = Results::new(&submission, &analysis(submission.case())).to_json();
+        let written: Value = serde_json::from_str(&written.expect("finite")).expect("JSON");
+        let radii = &written["evidence"]["resolution"]["interface_radius_mm"];
+        assert!(radii.get("driving").is_none(), "{radii}");
+    }
+}

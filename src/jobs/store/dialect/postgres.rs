@@ -15,7 +15,11 @@ pub(in crate::jobs::store) const BEGIN_RELAXED: Words =
 
 pub(in crate::jobs::store) const AFTER_RELAXED: Words = None;
 
-pub(in crate::jobs::store) const PROBE: Words = Some("update probed set number = number + 1");
+pub(in crate::jobs::store) const PROBE: Words = Some(
+    // Who has locked the jobs keeps everybody from submitting.
+    "with nothing as (update jobs set attempt = attempt where false)
+     update probed set number = number + 1",
+);
 
 // The bound of the queue is a count, and equal keys are looked for before they are written.
 pub(in crate::jobs::store) const LOCK_QUEUE: Words =

@@ -1,0 +1,256 @@
+//! Something of which there is so much, and which clients share: memory, threads, connections to the database.
+//!
+//! Who holds least gets the next part, so that a client who asks for everything at once keeps nobody waiting for longer than one
+//! of its parts lasts. A part that does not fit yet is waited for: smaller ones behind it would keep it waiting for ever.
+
+use std::collections::{BTreeMap, HashMap};
+use std::sync::{Arc, Mutex, MutexGuard};
+use std::time::Duration;
+
+use tokio::sync::oneshot;
+
+/// The budget; cloning shares it.
+#[derive(Debug, Clone)]
+pub struct Budget(Arc<Shared>);
+
+#[derive(Debug)]
+struct Shared {
+    most: u64,
+    state: Mutex<State>,
+}
+
+#[derive(Debug)]
+struct State {
+    free: u64,
+    held: HashMap<Arc<str>, u64>,
+    /// Those who wait, by their order of arrival.
+    waiting: BTreeMap<u64, Waiting>,
+    arrived: u64,
+}
+
+#[derive(Debug)]
+struct Waiting {
+    client: Arc<str>,
+    amount: u64,
+    answer: oneshot::Sender<Part>,
+}
+
+/// A part of a budget, which is free again when this is dropped.
+#[derive(Debug)]
+pub struct Part {
+    shared: Arc<Shared>,
+    client: Arc<str>,
+    amount: u64,
+}
+
+impl Budget {
+    /// A budget of so much.
+    pub fn of(most: u64) -> Self {
+        Self(Arc::new(Shared {
+            most,
+            state: Mutex::new(State {
+                free: most,
+                held: HashMap::new(),
+                waiting: BTreeMap::new(),
+                arrived: 0,
+            }),
+        }))
+    }
+
+    /// A part for `client`, once there is one. What asks for more than there is gets all of it, when nobody else has any.
+    pub async fn take(&self, client: &str, amount: u64) -> Part {
+        let (_place, part) = self.queue(client, amount);
+        part.await.expect("who waits is answered")
+    }
+
+    /// The same for a thread that has nothing else to do; `None` when it is not wanted any more.
+    pub fn take_on_thread(
+        &self,
+        client: &str,
+        amount: u64,
+        is_wanted: impl Fn() -> bool,
+    ) -> Option<Part> {
+        /// Who is told to stop does so in this time.
+        const BETWEEN_LOOKS: Duration = Duration::from_millis(10);
+        let (_place, mut part) = self.queue(client, amount);
+        loop {
+            if let Ok(part) = part.try_recv() {
+                return Some(part);
+            }
+            if !is_wanted() {
+                return None;
+            }
+            std::thread::sleep(BETWEEN_LOOKS);
+        }
+    }
+
+    /// Waits for a part: a place among those who do, and what is answered.
+    fn queue(&self, client: &str, amount: u64) -> (Place, oneshot::Receiver<Part>) {
+        let (answer, part) = oneshot::channel();
+        let mut state = self.0.state();
+        state.arrived += 1;
+        let number = state.arrived;
+        let waiting = Waiting {
+            client: client.into(),
+            amount: amount.min(self.0.most),
+            answer,
+        };
+        state.waiting.insert(number, waiting);
+        drop(state);
+        Shared::grant(&self.0);
+        let shared = Arc::clone(&self.0);
+        (Place { shared, number }, part)
+    }
+
+    /// How much nobody holds.
+    pub fn free(&self) -> u64 {
+        self.0.state().free
+    }
+
+    /// How many wait.
+    pub fn waiting(&self) -> usize {
+        self.0.state().waiting.len()
+    }
+}
+
+/// A place among those who wait: who gives up waiting keeps nobody else from his part.
+struct Place {
+    shared: Arc<Shared>,
+    number: u64,
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        if self.shared.state().waiting.remove(&self.number).is_some() {
+            Shared::grant(&self.shared);
+        }
+    }
+}
+
+impl Shared {
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().expect("nothing panics with this lock")
+    }
+
+    /// Gives parts to those whose turn it is, as long as there are any.
+    fn grant(this: &Arc<Self>) {
+        let mut granted = Vec::new();
+        {
+            let mut state = this.state();
+            while let Some((waiting, part)) = state.next(this) {
+                granted.push((waiting, part));
+            }
+        }
+        // Not under the lock: who has given up waiting gives the part back at once.
+        for (answer, part) in granted {
+            let _ = answer.send(part);
+        }
+    }
+}
+
+impl State {
+    /// Whose turn it is, and his part, if it is free.
+    fn next(&mut self, shared: &Arc<Shared>) -> Option<(oneshot::Sender<Part>, Part)> {
+        let held = |waiting: &Waiting| self.held.get(&waiting.client).copied().unwrap_or_default();
+        let first = self
+            .waiting
+            .iter()
+            .min_by_key(|(number, waiting)| (held(waiting), **number));
+        let (&number, waiting) = first.filter(|(_, waiting)| waiting.amount <= self.free)?;
+        let (client, amount) = (Arc::clone(&waiting.client), waiting.amount);
+        let waiting = self.waiting.remove(&number)?;
+        self.free -= amount;
+        *self.held.entry(Arc::clone(&client)).or_default() += amount;
+        let part = Part {
+            shared: Arc::clone(shared),
+            client,
+            amount,
+        };
+        Some((waiting.answer, part))
+    }
+}
+
+impl Drop for Part {
+    fn drop(&mut self) {
+        {
+            let mut state = self.shared.state();
+            state.free += self.amount;
+            if let Some(held) = state.held.get_mut(&self.client) {
+                *held -= self.amount;
+                if *held == 0 {
+                    state.held.remove(&self.client);
+                }
+            }
+        }
+        Shared::grant(&self.shared);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::pin::pin;
+    use std::task::Poll;
+
+    use futures_util::poll;
+
+    use super::*;
+
+    #[tokio::test]
+    async fn who_holds_least_is_next_however_many_others_wait() {
+        let budget = Budget::of(2);
+        let first = budget.take("hog", 1).await;
+        let _second = budget.take("hog", 1).await;
+        let mut hogs: Vec<_> = (0..40).map(|_| Box::pin(budget.take("hog", 1))).collect();
+        for hog in &mut hogs {
+            assert!(poll!(hog).is_pending());
+        }
+        let mut other = pin!(budget.take("other", 1));
+        assert!(poll!(&mut other).is_pending());
+        drop(first);
+        assert!(poll!(&mut hogs[0]).is_pending());
+        assert!(poll!(&mut other).is_ready());
+    }
+
+    #[tokio::test]
+    async fn a_large_part_is_not_passed_by_smaller_ones_for_ever() {
+        let budget = Budget::of(10);
+        let (one, two) = (budget.take("a", 5).await, budget.take("b", 5).await);
+        let mut large = pin!(budget.take("c", 8));
+        let mut small = pin!(budget.take("d", 1));
+        assert!(poll!(&mut large).is_pending() && poll!(&mut small).is_pending());
+        drop(one);
+        assert!(poll!(&mut small).is_pending());
+        drop(two);
+        assert!(poll!(&mut large).is_ready());
+    }
+
+    #[tokio::test]
+    async fn who_gives_up_waiting_keeps_nobody_waiting_and_nothing_is_lost() {
+        let budget = Budget::of(10);
+        let held = budget.take("a", 6).await;
+        let mut large = Box::pin(budget.take("b", 8));
+        assert!(poll!(&mut large).is_pending());
+        let mut small = pin!(budget.take("c", 4));
+        assert!(poll!(&mut small).is_pending());
+        drop(large);
+        let Poll::Ready(small) = poll!(&mut small) else {
+            panic!("its part is free");
+        };
+        // A part that was granted and never fetched is free as well.
+        let mut unfetched = Box::pin(budget.take("d", 6));
+        assert!(poll!(&mut unfetched).is_pending());
+        drop(held);
+        drop(unfetched);
+        drop(small);
+        assert_eq!((budget.free(), budget.waiting()), (10, 0));
+    }
+
+    #[tokio::test]
+    async fn more_than_there_is_means_all_of_it() {
+        let budget = Budget::of(10);
+        let all = budget.take("a", 1000).await;
+        assert_eq!(budget.free(), 0);
+        drop(all);
+        assert_eq!(budget.free(), 10);
+    }
+}

@@ -1,0 +1,48 @@
+//! What the machine has, or what a container leaves of it.
+
+use std::fs;
+
+/// Where the system does not tell its memory, it has this much, in MB.
+const USUAL_MB: u64 = 4096;
+
+/// The memory that the process may have, in MB.
+pub(crate) fn memory_mb() -> u64 {
+    let read = |path: &str| fs::read_to_string(path).unwrap_or_default();
+    of(
+        &read("/proc/meminfo"),
+        &[
+            read("/sys/fs/cgroup/memory.max"),
+            read("/sys/fs/cgroup/memory/memory.limit_in_bytes"),
+        ],
+    )
+}
+
+/// What the system says, unless a limit is lower.
+fn of(system: &str, limits: &[String]) -> u64 {
+    let total = system
+        .lines()
+        .find_map(|line| line.strip_prefix("MemTotal:"))
+        .and_then(|rest| rest.split_whitespace().next()?.parse::<u64>().ok())
+        .map_or(USUAL_MB, |kilobytes| kilobytes >> 10);
+    let limits = limits
+        .iter()
+        .filter_map(|limit| limit.trim().parse::<u64>().ok())
+        .map(|bytes| bytes >> 20);
+    limits.fold(total, u64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_lower_of_what_the_machine_has_and_the_container_leaves_counts() {
+        let system = "MemTotal:       24585184 kB\nMemFree:        20000000 kB\n";
+        let limits = |text: &str| vec![text.to_owned(), String::new()];
+        assert_eq!(of(system, &limits("max\n")), 24_008);
+        assert_eq!(of(system, &limits("536870912\n")), 512);
+        // The largest number stands for none.
+        assert_eq!(of(system, &limits("9223372036854771712\n")), 24_008);
+        assert_eq!(of("", &[]), USUAL_MB);
+    }
+}
