@@ -12,7 +12,7 @@ export function save(name, type, content) {
   setTimeout(() => URL.revokeObjectURL(address), 10_000);
 }
 
-const COLUMNS = ["mesh_position", "driving_angle_deg", "driven_angle_deg", "transmission_error_um", "mesh_stiffness_tangent_n_per_m", "mesh_stiffness_secant_n_per_m", "pairs_in_contact", "peak_contact_pressure_mpa"];
+const COLUMNS = ["mesh_position", "driving_angle_deg", "driven_angle_deg", "transmission_error_um", "mesh_stiffness_tangent_n_per_m", "mesh_stiffness_secant_n_per_m", "driving_torque_n_m", "pairs_in_contact", "peak_contact_pressure_mpa"];
 
 const STRESSES = ["driving", "driven"].flatMap((gear) => ["root_mpa", "root_angle_deg", "root_tension_mpa", "root_tension_angle_deg", "root_compression_mpa", "root_compression_angle_deg", "hole_mpa", "hole_angle_deg"].map((name) => `stress.${gear}.${name}`));
 

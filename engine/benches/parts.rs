@@ -130,9 +130,9 @@ fn whole_blank(criterion: &mut Criterion) {
 }
 
 /// The pairs to either side of position `eta` that may touch.
-fn facings(case: &Case, eta: f64) -> Vec<Facing<'_>> {
+fn facings(case: &Case, eta: f64) -> Vec<Facing> {
     (-3..=4)
-        .filter_map(|n| Facing::of(&case.pair, eta, n, 0))
+        .filter_map(|n| Facing::drawn(&case.pair, eta - f64::from(n)))
         .collect()
 }
 

@@ -113,6 +113,8 @@ pub struct Curve {
     pub mesh_stiffness_tangent: Vec<f64>,
     /// F/δ in N/m.
     pub mesh_stiffness_secant: Vec<f64>,
+    /// The torque in N m that the driver has to give: it is F r_b1 where unmodified flanks touch on the line of action alone.
+    pub driving_torque: Vec<f64>,
     /// The number of tooth pairs that carry load.
     pub pairs_in_contact: Vec<u32>,
     /// The largest contact pressure in Pa; `None` where a sharp tip corner carries, at which it has no limit.

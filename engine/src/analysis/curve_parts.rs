@@ -10,6 +10,8 @@ use crate::contact::MeshContact;
 pub(super) struct CurveParts {
     pub(super) transmission_error: Vec<f64>,
     pub(super) stiffness: Vec<f64>,
+    /// What the driver gives, over r_b1.
+    pub(super) driving_load: Vec<f64>,
     pub(super) pairs_in_contact: Vec<u32>,
     pub(super) peak_contact_pressure: Vec<Option<f64>>,
     pub(super) load_shares: Vec<LoadShare>,
@@ -39,6 +41,11 @@ impl CurveParts {
                 .iter()
                 .map(|delta| if load == 0.0 { 0.0 } else { load / delta })
                 .collect(),
+            driving_torque: self
+                .driving_load
+                .iter()
+                .map(|load| load * case.pair.driving().base_radius())
+                .collect(),
             transmission_error_statistics: Statistics::of(&self.transmission_error),
             mesh_stiffness_tangent_statistics: Statistics::of(&self.stiffness),
             transmission_error: self.transmission_error,
@@ -63,6 +70,7 @@ impl CurveParts {
                 .map(|contact| contact.transmission_error)
                 .collect(),
             stiffness,
+            driving_load: each.clone().map(|contact| contact.driving_load).collect(),
             pairs_in_contact: each.clone().map(MeshContact::loaded_pairs).collect(),
             peak_contact_pressure: each.map(|contact| contact.peak_pressure).collect(),
             load_shares: load_shares(&case.mesh_positions(), contacts),
@@ -78,6 +86,7 @@ impl CurveParts {
         Self {
             transmission_error: Vec::new(),
             stiffness: Vec::new(),
+            driving_load: case.repeated(each.clone().map(|contact| contact.driving_load)),
             pairs_in_contact: case.repeated(each.clone().map(MeshContact::loaded_pairs)),
             peak_contact_pressure: case.repeated(each.map(|contact| contact.peak_pressure)),
             load_shares: shares

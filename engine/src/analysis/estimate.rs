@@ -121,7 +121,9 @@ fn pairs_together(case: &Case, output_torque: f64) -> (usize, bool) {
     let moduli = Member::BOTH.map(|member| pair.gear(member).material().youngs_modulus);
     let stiffness = STIFFNESS * moduli[0].min(moduli[1]) * pair.common_face_width();
     let delta = pair.load(output_torque) / stiffness;
-    let within = |n: &i64| Facing::of(pair, 0.5, *n, 0).is_some_and(|facing| facing.gap <= delta);
+    let within = |n: &i64| {
+        Facing::drawn(pair, 0.5 - *n as f64).is_some_and(|facing| facing.touch() <= delta)
+    };
     let near = (-FARTHEST_PAIR..=FARTHEST_PAIR).filter(within).count();
     let rolling = pair.contact_ratio().ceil() as usize;
     (near.max(rolling), near > rolling)

@@ -77,7 +77,7 @@ pub fn fields(
             Member::BOTH.map(|member| cells.flank_loads(member, &solution.forces))
         })
         .map_err(at)?;
-    let placement = Placement::new(&case.pair, eta, 0, 0);
+    let placement = Placement::real(&case.pair, eta, 0, 0.0);
     let of = |member: Member| {
         let (origin, angle) = placement.frame(member);
         of_gear(

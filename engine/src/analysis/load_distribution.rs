@@ -70,6 +70,8 @@ fn curve_parts(case: &Case, contacts: &[Shared], load: f64) -> CurveParts {
     CurveParts {
         transmission_error: all(|contact| contact.transmission_error),
         stiffness: all(|contact| contact.stiffness),
+        // All forces act along the theoretical line of contact.
+        driving_load: case.repeated(contacts.iter().map(|_| load)),
         peak_contact_pressure: case.repeated(pressures),
         pairs_in_contact: case.repeated(pairs_in_contact),
         load_shares: load_shares(case, contacts, load),

@@ -6,10 +6,13 @@ use std::sync::Arc;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 
+use super::drawn::DrawnPair;
 use super::facing::RangeEnd;
+use super::facings::Near;
+use super::meeting::Standing;
 use super::model::{ContactSolver, PairModel, PositionError, WarmStart};
 use super::pair_cells::PairCells;
-use super::patch::Patch;
+use super::patch::{Extent, Patch};
 use super::penetration::Found;
 use super::{
     AugmentedLagrangian, ContactProblem, ContactSolution, default_penalty, solve_active_set,
@@ -25,13 +28,61 @@ const MULTIPLIER_UPDATES: u32 = 2000;
 /// Cells are numbered pair after pair, pairs from the reference pair of the period.
 pub struct ContactCells<'a> {
     model: &'a PairModel,
-    period: i64,
-    pub(super) pairs: Vec<Arc<PairCells>>,
+    pub(super) period: i64,
+    pub(super) laid: Vec<Laid>,
     /// Where the cells of each pair begin.
     starts: Vec<usize>,
-    /// With the deviations of these very teeth.
-    gaps: Vec<f64>,
-    arms: Vec<f64>,
+}
+
+/// The cells of one pair with the deviations of the teeth that stand there.
+#[derive(Debug, Clone)]
+pub(super) struct Laid {
+    /// From the reference pair of the mesh period.
+    pub(super) pair: i64,
+    pub(super) drawn: DrawnPair,
+    pub(super) extent: Extent,
+    cells: Arc<Option<PairCells>>,
+    /// The gaps g_0, as they would be were the driven gear to lag by nothing.
+    pub(super) gaps: Vec<f64>,
+    /// The arms of each cell about both axes.
+    pub(super) arms: Vec<[f64; 2]>,
+    /// The δ at which gaps were taken.
+    pub(super) lag: f64,
+}
+
+impl Laid {
+    /// `cells` on the pair `near` as it is `standing` with a driven gear that lags by `lag`; `None` where there are none.
+    pub(super) fn new(
+        near: &Near,
+        extent: Extent,
+        cells: Arc<Option<PairCells>>,
+        standing: &Standing<'_>,
+        lag: f64,
+    ) -> Option<Self> {
+        let probes = &Option::as_ref(&cells)?.patch.probes;
+        let (gaps, arms) = probes
+            .iter()
+            .map(|(probe, more)| {
+                let meeting = standing.meeting(probe);
+                (meeting.gap + more + lag * meeting.arms[1], meeting.arms)
+            })
+            .unzip();
+        Some(Self {
+            pair: near.pair,
+            drawn: near.drawn.clone(),
+            extent,
+            cells,
+            gaps,
+            arms,
+            lag,
+        })
+    }
+
+    /// Its cells.
+    pub(super) fn cells(&self) -> &PairCells {
+        // There is none without.
+        Option::as_ref(&self.cells).expect("cells that were laid")
+    }
 }
 
 /// The contact of one tooth pair.
@@ -54,6 +105,9 @@ pub struct MeshContact {
     pub transmission_error: f64,
     /// dF/dδ in N/m with the active set held.
     pub stiffness: f64,
+    /// What the driver has to give: the torque on the driving gear over r_b1. It is F where all contact is on unmodified flanks on the line of
+    /// action; elsewhere arms differ.
+    pub driving_load: f64,
     /// The pairs that came near, by n.
     pub pairs: Vec<PairContact>,
     /// The largest pressure in Pa; `None` where a sharp tip corner carries, at which it has no limit.
@@ -73,8 +127,8 @@ pub struct MeshContact {
 /// Cells are numbered patch after patch.
 #[derive(Debug, Clone)]
 pub struct MeshCells {
-    /// The patches of the pairs that come near, by n.
-    pub patches: Vec<Patch>,
+    /// The pairs n that come near, and their patches.
+    pub patches: Vec<(i64, Patch)>,
     /// Compliance, gaps and arms of the cells.
     pub problem: ContactProblem,
     /// Forces, gaps and transmission error.
@@ -120,45 +174,33 @@ impl<'a> ContactCells<'a> {
     pub(super) fn new(
         model: &'a PairModel,
         period: i64,
-        mut pairs: Vec<Arc<PairCells>>,
+        mut laid: Vec<Laid>,
     ) -> Result<Self, PositionError> {
-        pairs.sort_by_key(|pair| pair.patch.pair);
-        let (Some(first), Some(last)) = (pairs.first(), pairs.last()) else {
+        laid.sort_by_key(|laid| laid.pair);
+        let (Some(first), Some(last)) = (laid.first(), laid.last()) else {
             return Err(PositionError::NoContact);
         };
-        let apart = last.patch.pair.abs_diff(first.patch.pair) as usize;
+        let apart = last.pair.abs_diff(first.pair) as usize;
         let coupled = model.coupled_teeth();
         if apart > coupled {
             return Err(PositionError::TooFarApart { apart, coupled });
         }
         let mut starts = vec![0];
-        let (mut gaps, mut arms) = (Vec::new(), Vec::new());
-        for pair in &pairs {
-            let patch = &pair.patch;
-            starts.push(starts[starts.len() - 1] + patch.cells.len());
-            let teeth = model.pair.teeth(period + patch.pair);
-            gaps.extend(
-                patch
-                    .cells
-                    .iter()
-                    .map(|cell| cell.gap_between(&model.pair, teeth)),
-            );
-            arms.extend(patch.cells.iter().map(|cell| cell.arm));
+        for laid in &laid {
+            starts.push(starts[starts.len() - 1] + laid.gaps.len());
         }
         Ok(Self {
             model,
             period,
-            pairs,
+            laid,
             starts,
-            gaps,
-            arms,
         })
     }
 
     /// The pairs, and the cells of each.
-    pub(super) fn ranges(&self) -> impl Iterator<Item = (&PairCells, Range<usize>)> {
+    pub(super) fn ranges(&self) -> impl Iterator<Item = (&Laid, Range<usize>)> {
         let ranges = self.starts.windows(2).map(|range| range[0]..range[1]);
-        self.pairs.iter().map(Arc::as_ref).zip(ranges)
+        self.laid.iter().zip(ranges)
     }
 
     /// How the interface of `member` in `pair` moves under what loads the interfaces of all pairs.
@@ -194,10 +236,17 @@ impl<'a> ContactCells<'a> {
         &self,
         before: Option<&ContactProblem>,
     ) -> Result<ContactProblem, PositionError> {
-        let gaps = self.gaps.clone();
+        let each = self.laid.iter();
+        let gaps = each
+            .clone()
+            .flat_map(|laid| laid.gaps.iter().copied())
+            .collect();
+        let arms = each
+            .flat_map(|laid| laid.arms.iter().map(|arms| arms[1]))
+            .collect();
         Ok(match before {
-            Some(problem) => problem.with_gaps(gaps)?,
-            None => ContactProblem::of_lower_triangle(self.compliance(), gaps, self.arms.clone())?,
+            Some(problem) => problem.with_gaps(gaps, arms)?,
+            None => ContactProblem::of_lower_triangle(self.compliance(), gaps, arms)?,
         })
     }
 
@@ -229,34 +278,34 @@ impl<'a> ContactCells<'a> {
     /// H of both gears with these teeth; its lower triangle.
     fn compliance(&self) -> Mat<f64> {
         let model = self.model;
-        let count = self.gaps.len();
+        let count = self.starts[self.laid.len()];
         let mut h = Mat::zeros(count, count);
-        for (pair, range) in self.ranges() {
+        for (laid, range) in self.ranges() {
             let here = range.len();
             h.as_mut()
                 .submatrix_mut(range.start, range.start, here, here)
-                .copy_from(&pair.held);
+                .copy_from(&laid.cells().held);
         }
         for member in Member::BOTH {
             let gear = member.index();
-            for (b, other) in self.pairs.iter().enumerate() {
-                let of_other = other.shapes[gear].transpose();
-                for (a, pair) in self.pairs.iter().enumerate().skip(b) {
+            for (b, other) in self.laid.iter().enumerate() {
+                let of_other = other.cells().shapes[gear].transpose();
+                for (a, laid) in self.laid.iter().enumerate().skip(b) {
                     let (x, transposed) = model.gears[gear].coupling.block(
-                        model.pair.tooth(member, self.period + pair.patch.pair),
-                        teeth_on(member, other.patch.pair - pair.patch.pair),
+                        model.pair.tooth(member, self.period + laid.pair),
+                        teeth_on(member, other.pair - laid.pair),
                     );
                     let half = if transposed {
                         x.transpose() * of_other
                     } else {
                         x * of_other
                     };
-                    let (rows, columns) = (pair.patch.cells.len(), other.patch.cells.len());
+                    let (rows, columns) = (laid.gaps.len(), other.gaps.len());
                     matmul(
                         h.as_mut()
                             .submatrix_mut(self.starts[a], self.starts[b], rows, columns),
                         Accum::Add,
-                        &pair.shapes[gear],
+                        &laid.cells().shapes[gear],
                         half,
                         1.0,
                         Par::Seq,
@@ -277,20 +326,22 @@ impl<'a> ContactCells<'a> {
         let mut peak_pressure = Some(0.0_f64);
         let pairs = self
             .ranges()
-            .map(|(PairCells { patch, .. }, range)| {
+            .map(|(laid, range)| {
+                let patch = &laid.cells().patch;
                 let (forces, active) = (&solution.forces[range.clone()], &solution.active[range]);
-                let cells = patch.cells.iter().zip(forces);
-                let share = cells.map(|(cell, p)| cell.arm * p).sum::<f64>() / load;
+                let carried = laid.arms.iter().zip(forces);
+                let share = carried.map(|(arms, p)| arms[1] * p).sum::<f64>() / load;
                 let ended = patch.ended_by(active);
                 let at_corner = ended
                     .iter()
                     .any(|end| matches!(end, RangeEnd::Tip | RangeEnd::MateTip));
-                let pressures = forces.iter().map(|p| p / (patch.cell_width * width));
+                let cells = patch.cells.iter().zip(forces);
+                let pressures = cells.map(|(cell, p)| p / (cell.width * width));
                 peak_pressure = peak_pressure
                     .filter(|_| !at_corner)
                     .map(|peak| pressures.fold(peak, f64::max));
                 PairContact {
-                    pair: self.period + patch.pair,
+                    pair: self.period + laid.pair,
                     share,
                     tip_corner: (patch.off_path && share > 0.0).then_some(patch.seat),
                     fillet: ended
@@ -303,12 +354,18 @@ impl<'a> ContactCells<'a> {
                         .or_else(|| {
                             let mut fillets = found.fillets.iter();
                             fillets
-                                .find(|(pair, _)| *pair == patch.pair)
+                                .find(|(pair, _)| *pair == laid.pair)
                                 .map(|(_, gear)| *gear)
                         }),
                 }
             })
             .collect();
+        let driving_arms = self
+            .laid
+            .iter()
+            .flat_map(|laid| &laid.arms)
+            .map(|arms| arms[0]);
+        let driving_load = driving_arms.zip(&solution.forces).map(|(w, p)| w * p).sum();
         let complementarity = solution
             .forces
             .iter()
@@ -318,6 +375,7 @@ impl<'a> ContactCells<'a> {
         MeshContact {
             transmission_error: solution.transmission_error,
             stiffness: solution.stiffness,
+            driving_load,
             pairs,
             peak_pressure,
             equilibrium: solution.load_residual,
@@ -333,12 +391,11 @@ impl<'a> ContactCells<'a> {
         problem: ContactProblem,
         solution: ContactSolution,
     ) -> MeshCells {
-        let patches = self.pairs.iter().map(|pair| Patch {
-            pair: pair.patch.pair + self.period,
-            ..pair.patch.clone()
-        });
+        let patches = self.laid.iter();
         MeshCells {
-            patches: patches.collect(),
+            patches: patches
+                .map(|laid| (self.period + laid.pair, laid.cells().patch.clone()))
+                .collect(),
             problem,
             solution,
         }
@@ -347,12 +404,13 @@ impl<'a> ContactCells<'a> {
     /// What the `forces` on all cells load the interfaces of each pair with, one column each.
     pub fn loads(&self, forces: &[&[f64]]) -> Vec<PairLoads> {
         self.ranges()
-            .map(|(pair, range)| {
+            .map(|(laid, range)| {
                 let forces =
                     Mat::from_fn(range.len(), forces.len(), |i, j| forces[j][range.start + i]);
+                let shapes = &laid.cells().shapes;
                 PairLoads {
-                    pair: pair.patch.pair,
-                    loads: std::array::from_fn(|gear| pair.shapes[gear].transpose() * &forces),
+                    pair: laid.pair,
+                    loads: std::array::from_fn(|gear| shapes[gear].transpose() * &forces),
                 }
             })
             .collect()
@@ -363,11 +421,11 @@ impl<'a> ContactCells<'a> {
         let (gear, pair) = (member.index(), &self.model.pair);
         let flank = &self.model.gears[gear].flank;
         self.ranges()
-            .map(|(cells, range)| (cells, &forces[range]))
+            .map(|(laid, range)| (laid, &forces[range]))
             .filter(|(_, forces)| forces.iter().any(|force| *force > 0.0))
-            .map(|(cells, forces)| FlankLoad {
-                tooth: pair.tooth(member, self.period + cells.patch.pair),
-                forces: cells.nodal_forces(flank, gear, forces),
+            .map(|(laid, forces)| FlankLoad {
+                tooth: pair.tooth(member, self.period + laid.pair),
+                forces: laid.cells().nodal_forces(flank, gear, forces),
             })
             .collect()
     }
@@ -376,24 +434,38 @@ impl<'a> ContactCells<'a> {
     /// open.
     fn touching(&self, warm: &WarmStart) -> Option<Vec<bool>> {
         warm.transmission_error?;
-        let touching = self.pairs.iter().flat_map(|pair| {
-            let patch = &pair.patch;
+        let touching = self.laid.iter().flat_map(|laid| {
+            let count = laid.gaps.len();
             let before = warm
                 .active
                 .iter()
-                .find(|(pair, active)| *pair == patch.pair && active.len() == patch.cells.len());
-            before.map_or_else(
-                || vec![false; patch.cells.len()],
-                |(_, active)| active.clone(),
-            )
+                .find(|(pair, active)| *pair == laid.pair && active.len() == count);
+            before.map_or_else(|| vec![false; count], |(_, active)| active.clone())
         });
         Some(touching.collect())
+    }
+
+    /// The pairs whose contact reaches beyond their cells, or that penetrate beside them, and that have room for more; and how far cells are to be
+    /// moved ([`Extent::moved`]) so that a contact narrower than they reach lies among them.
+    pub(super) fn wanting_room(
+        &self,
+        solution: &ContactSolution,
+        found: &Found,
+    ) -> Vec<(i64, i32)> {
+        let wanting = self.ranges().filter_map(|(laid, range)| {
+            let patch = &laid.cells().patch;
+            let active = &solution.active[range];
+            let beside = found.beside.contains(&laid.pair);
+            let wants = patch.can_widen() && (beside || patch.overflows(active));
+            wants.then(|| (laid.pair, patch.off_middle(active)))
+        });
+        wanting.collect()
     }
 
     pub(super) fn warm_start(&self, solution: &ContactSolution) -> WarmStart {
         let active = self
             .ranges()
-            .map(|(pair, range)| (pair.patch.pair, solution.active[range].to_vec()));
+            .map(|(laid, range)| (laid.pair, solution.active[range].to_vec()));
         WarmStart {
             transmission_error: Some(solution.transmission_error),
             active: active.collect(),

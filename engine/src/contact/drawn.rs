@@ -1,22 +1,23 @@
 //! What two flanks as drawn have of contact, whatever carries the teeth and however each of them deviates.
 //!
-//! Cells, the compliance of the teeth alone and the places where penetration is looked for hang on the flanks, the load and the fraction
-//! of the mesh period. Models of one pair on other blanks, or with other deviations, share them.
+//! Cells, the compliance of the teeth alone and the places where penetration is looked for hang on the flanks, the load and how long ago the
+//! pair passed the pitch point. Models of one pair on other blanks, or with other deviations, share them.
 
-use std::collections::VecDeque;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 
-use super::facing::Facing;
+use super::facing::{Facing, View};
+use super::memo::Memo;
 use super::model::PairModel;
 use super::pair_cells::PairCells;
-use super::penetration::Stretches;
+use super::patch::Extent;
+use super::penetration::Looks;
+use super::placement::Placement;
 
-/// What the stages of one pair may take, in bytes: two loads at forty positions a mesh period.
-const MOST_BYTES: usize = 16 << 20;
+/// What the cells of one pair, and the looks at them, may take, in bytes: two loads at forty positions a mesh period.
+const MOST_BYTES: usize = 12 << 20;
 
-/// By how much patches are widened at a time where the contact does not fit inside them.
-const WIDENING: f64 = 1.5;
+/// What facings may take, in bytes.
+const MOST_FACING_BYTES: usize = 2 << 20;
 
 /// The steps in which the reach of a look grows: looks are the same whoever asks for them first.
 const REACH_STEP: f64 = 1.5;
@@ -24,156 +25,117 @@ const REACH_STEP: f64 = 1.5;
 /// No look reaches less far beyond the least gap, in meters.
 const LEAST_REACH: f64 = 1e-9;
 
-/// The flanks of one pair as drawn, with what was found of them; shared between threads.
-///
-/// It changes no digit: what is found hangs on nothing but what it is asked for by.
-#[derive(Debug, Default)]
-pub struct DrawnFlanks(Mutex<VecDeque<Kept>>);
-
-#[derive(Debug)]
-struct Kept {
-    /// The fraction of the mesh period and the load, bit by bit, and the cells in a patch.
-    key: (u64, u64, usize),
-    stage: Arc<DrawnStage>,
-}
-
-/// What flanks as drawn have of contact at one fraction of the mesh period, under one load.
-#[derive(Debug, Default)]
-pub(super) struct DrawnStage {
-    cells: Mutex<Vec<(Laid, Arc<PairCells>)>>,
-    stretches: Mutex<Vec<(Laid, i32, Arc<Stretches>)>>,
-    bytes: AtomicUsize,
-}
-
-/// How the cells of a pair are laid.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// What cells depend on: the bits of the phase and of the load, the cells on a core, how far they are laid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct Laid {
-    /// The pair, from the reference pair of the mesh period.
-    pair: i64,
-    /// How often its patch was widened.
-    widened: i32,
+    phase: u64,
+    load: u64,
+    cells_per_patch: usize,
+    extent: Extent,
+}
+
+/// The flanks of one pair as drawn, with what was found of them; shared between threads.
+#[derive(Debug)]
+pub struct DrawnFlanks {
+    facings: Memo<u64, Option<Facing>>,
+    cells: Memo<Laid, Option<PairCells>>,
+    looks: Memo<(Laid, i32), Looks>,
+}
+
+impl Default for DrawnFlanks {
+    fn default() -> Self {
+        Self {
+            facings: Memo::new(MOST_FACING_BYTES, |facing| {
+                size_of::<Facing>() + facing.as_ref().map_or(0, Facing::bytes)
+            }),
+            cells: Memo::new(MOST_BYTES, |cells| {
+                size_of::<PairCells>() + cells.as_ref().map_or(0, PairCells::bytes)
+            }),
+            looks: Memo::new(MOST_BYTES, Looks::bytes),
+        }
+    }
+}
+
+/// A pair as drawn at one phase.
+#[derive(Debug, Clone)]
+pub(super) struct DrawnPair {
+    /// How many mesh periods ago it passed the pitch point.
+    pub(super) phase: f64,
+    facing: Arc<Option<Facing>>,
+}
+
+impl DrawnPair {
+    /// How its flanks face each other; `None` where they do not.
+    pub(super) fn facing(&self) -> Option<&Facing> {
+        Option::as_ref(&self.facing)
+    }
 }
 
 impl DrawnFlanks {
-    /// About how much memory they take, in bytes.
+    /// About how much memory is used, in bytes.
     pub fn bytes(&self) -> usize {
-        size_of::<Self>() + bytes(&locked(&self.0))
+        size_of::<Self>() + self.facings.bytes() + self.cells.bytes() + self.looks.bytes()
     }
 
-    /// Those at `fraction` of the mesh period under `load`, with so many cells in a patch.
-    pub(super) fn stage(
-        &self,
-        fraction: f64,
-        load: f64,
-        cells_per_patch: usize,
-    ) -> Arc<DrawnStage> {
-        let key = (fraction.to_bits(), load.to_bits(), cells_per_patch);
-        let mut stages = locked(&self.0);
-        if let Some(kept) = stages.iter().find(|kept| kept.key == key) {
-            return Arc::clone(&kept.stage);
-        }
-        while bytes(&stages) > MOST_BYTES {
-            stages.pop_front();
-        }
-        let stage = Arc::<DrawnStage>::default();
-        stages.push_back(Kept {
-            key,
-            stage: Arc::clone(&stage),
-        });
-        stage
+    /// The pair of `model` at `phase`.
+    pub(super) fn pair(&self, model: &PairModel, phase: f64) -> DrawnPair {
+        let facing = self
+            .facings
+            .get(phase.to_bits(), || Facing::drawn(&model.pair, phase));
+        DrawnPair { phase, facing }
     }
-}
 
-fn bytes(stages: &VecDeque<Kept>) -> usize {
-    let each = stages.iter().map(|kept| &kept.stage.bytes);
-    each.map(|bytes| bytes.load(Ordering::Relaxed)).sum()
-}
-
-impl DrawnStage {
-    /// The cells of `facing`, its patch widened so often; `None` where there is no room for any.
+    /// The cells of `pair`, laid so far; `None` where there is no room for any.
     pub(super) fn cells(
         &self,
         model: &PairModel,
-        facing: &Facing<'_>,
+        pair: &DrawnPair,
         load: f64,
-        widened: i32,
-    ) -> Option<Arc<PairCells>> {
-        let laid = Laid {
-            pair: facing.pair,
-            widened,
-        };
-        let known = locked(&self.cells)
-            .iter()
-            .find(|known| known.0 == laid)
-            .cloned();
-        if let Some((_, cells)) = known {
-            return Some(cells);
-        }
-        // Two threads that want it at the same moment both make it, and get the same bits.
-        let cells = Arc::new(PairCells::new(model, facing, load, WIDENING.powi(widened))?);
-        self.bytes.fetch_add(cells.bytes(), Ordering::Relaxed);
-        locked(&self.cells).push((laid, Arc::clone(&cells)));
-        Some(cells)
+        extent: Extent,
+    ) -> Arc<Option<PairCells>> {
+        self.cells.get(laid(model, pair, load, extent), || {
+            let facing = pair.facing()?;
+            PairCells::new(
+                model,
+                &view(model, pair.phase, facing),
+                facing,
+                load,
+                extent,
+            )
+        })
     }
 
-    /// The stretches on the flanks of `facing` whose gap is within `reach`, and some beyond, with `cells` laid there by a patch
-    /// `widened` so often; `least` is the least gap of all pairs.
-    pub(super) fn stretches(
+    /// The looks at the flanks of `pair` whose gap is within `reach`, and some beyond, beside its `cells` laid so far; `least` is the least
+    /// gap of all pairs.
+    pub(super) fn looks(
         &self,
         model: &PairModel,
-        facing: &Facing<'_>,
-        (cells, widened): (&PairCells, i32),
+        (pair, facing): (&DrawnPair, &Facing),
+        (cells, load, extent): (&PairCells, f64, Extent),
         (least, reach): (f64, f64),
-    ) -> Arc<Stretches> {
-        let laid = Laid {
-            pair: facing.pair,
-            widened,
-        };
+    ) -> Arc<Looks> {
         let steps = ((reach - least).max(LEAST_REACH).ln() / REACH_STEP.ln()).ceil() as i32;
-        let known = locked(&self.stretches)
-            .iter()
-            .find(|known| (known.0, known.1) == (laid, steps))
-            .map(|known| Arc::clone(&known.2));
-        known.unwrap_or_else(|| {
+        let spec = (laid(model, pair, load, extent), steps);
+        self.looks.get(spec, || {
             let reach = least + REACH_STEP.powi(steps);
-            let stretches = Arc::new(Stretches::new(model, cells, facing, reach));
-            self.bytes.fetch_add(stretches.bytes(), Ordering::Relaxed);
-            locked(&self.stretches).push((laid, steps, Arc::clone(&stretches)));
-            stretches
+            let view = view(model, pair.phase, facing);
+            Looks::new(model, &view, facing, cells, reach)
         })
     }
 }
 
-fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    // Only finished parts are in it, so that a panic elsewhere leaves nothing half done.
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+fn laid(model: &PairModel, pair: &DrawnPair, load: f64, extent: Extent) -> Laid {
+    Laid {
+        phase: pair.phase.to_bits(),
+        load: load.to_bits(),
+        cells_per_patch: model.cells_per_patch,
+        extent,
+    }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn stages_beyond_the_bound_go_the_oldest_first() {
-        let flanks = DrawnFlanks::default();
-        let stage = |fraction: f64| flanks.stage(fraction, 100.0, 40);
-        let first = stage(0.0);
-        first.bytes.store(MOST_BYTES / 2, Ordering::Relaxed);
-        stage(0.25).bytes.store(MOST_BYTES / 2, Ordering::Relaxed);
-        assert!(Arc::ptr_eq(&first, &stage(0.0)), "there is room for both");
-        stage(0.5).bytes.store(1, Ordering::Relaxed);
-        let _ = stage(0.75);
-        assert!(flanks.bytes() <= size_of::<DrawnFlanks>() + MOST_BYTES);
-        assert!(!Arc::ptr_eq(&first, &stage(0.0)), "the oldest had to go");
-        assert_eq!(stage(0.5).bytes.load(Ordering::Relaxed), 1);
-    }
-
-    #[test]
-    fn other_loads_and_finer_cells_are_other_stages() {
-        let flanks = DrawnFlanks::default();
-        let one = flanks.stage(0.5, 100.0, 40);
-        for other in [flanks.stage(0.5, 100.5, 40), flanks.stage(0.5, 100.0, 80)] {
-            assert!(!Arc::ptr_eq(&one, &other));
-        }
+fn view<'a>(model: &'a PairModel, phase: f64, facing: &Facing) -> View<'a> {
+    View {
+        placement: Placement::drawn(&model.pair, phase),
+        seat: facing.seat,
     }
 }

@@ -1,8 +1,12 @@
 //! Two flanks that face each other: where they are nearest, and how far either sees the other.
 
+use super::meeting::{Meeting, Probe};
 use super::placement::{FlankPlace, Placement, Sight};
 use crate::gear::{GearPair, Member};
 use crate::root_finding::bisect;
+
+/// Places besides kinks between which the gap of flanks that are not convex is looked at.
+const PLACES: u32 = 64;
 
 /// What ends the part of a flank from which the other flank is seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,31 +32,44 @@ pub struct FlankRange {
     pub ends: [RangeEnd; 2],
 }
 
-/// Two flanks that face each other at a mesh position.
+/// A place at which the gap is less than on either side of it.
+#[derive(Debug, Clone, Copy)]
+pub struct Hollow {
+    /// By arc length on the seat's flank.
+    pub arc: f64,
+    /// The δ at which the flanks touch there.
+    pub touch: f64,
+    /// Roll length on the driving and on the driven gear.
+    pub roll_lengths: [f64; 2],
+    /// How fast the gap opens towards the root and towards the tip: nothing where flanks touch with a common tangent, the angle between
+    /// them where a corner is nearest.
+    pub openings: [f64; 2],
+    pub(super) probe: Probe,
+}
+
+/// Two flanks that face each other.
 ///
 /// One of them is looked at from the other: points are told by their arc length on the flank of `seat`, the gear whose
-/// tip is nearer to the contact, so that the stretch may end at its tip corner. The gap of a point is measured along the normal of
-/// the other flank; reliefs add to it.
-#[derive(Debug, Clone, Copy)]
-pub struct Facing<'a> {
-    /// The pair n.
-    pub pair: i64,
+/// tip is nearer to the contact, so that the stretch may end at its tip corner.
+#[derive(Debug, Clone)]
+pub struct Facing {
     /// The gear on whose flank points are told.
     pub seat: Member,
     /// The part of its flank that faces the other.
     pub range: FlankRange,
-    /// The arc length of the least gap.
-    pub nearest: f64,
-    /// The least gap.
-    pub gap: f64,
-    /// The arm of a force there about the driven axis, over r_b2.
-    arm: f64,
+    /// Where the gap is least, the first to touch first; never empty.
+    pub hollows: Vec<Hollow>,
+    /// Rising places within the range at which either flank has a kink.
+    pub kinks: Vec<f64>,
     /// Whether the nominal contact lies past the seat's tip, off the path of contact.
     pub off_path: bool,
-    gears: &'a GearPair,
-    eta: f64,
-    home: i64,
-    placement: Placement<'a>,
+}
+
+/// Two flanks as they are placed, looked at from the seat's.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct View<'a> {
+    pub(super) placement: Placement<'a>,
+    pub(super) seat: Member,
 }
 
 /// A point of the seat's flank and what it sees.
@@ -60,120 +77,142 @@ pub(super) struct FacingPoint {
     pub(super) roll_length: f64,
     pub(super) place: FlankPlace,
     pub(super) sight: Sight,
-    /// The gap along the other flank's normal, reliefs included.
-    pub(super) gap: f64,
 }
 
-impl<'a> Facing<'a> {
-    /// How the flanks of pair `n` of `gears` face each other at the mesh position `eta`, told on the gear whose tip is nearer;
-    /// `None` where they do not. `home` whole mesh periods later they do so again, but for eccentric gears.
-    pub fn of(gears: &'a GearPair, eta: f64, n: i64, home: i64) -> Option<Self> {
-        let (s_a, s_e) = gears.path_of_contact();
-        let s_1 = gears.roll_length_of(eta - n as f64);
-        // Past the middle of the path of contact the contact is nearer to the driving tip, which leaves it at E. A pair that stands
-        // just there is told alike however its numbers are rounded.
-        let middle = f64::midpoint(s_a, s_e) + 1e-9 * (s_e - s_a);
-        let seat = if s_1 > middle {
-            Member::Driving
-        } else {
-            Member::Driven
-        };
-        Self::from_seat(gears, eta, n, home, seat)
+impl Facing {
+    /// How the flanks of a pair of `gears` as drawn face each other, `phase` mesh periods after it passed the pitch point, told on the gear
+    /// whose tip is nearer; `None` where they do not.
+    pub fn drawn(gears: &GearPair, phase: f64) -> Option<Self> {
+        Self::drawn_on(gears, phase, nearer_tip(gears, phase))
     }
 
-    /// As [`Facing::of`], told on the flank of `seat`.
-    pub fn from_seat(
-        gears: &'a GearPair,
-        eta: f64,
-        n: i64,
-        home: i64,
-        seat: Member,
-    ) -> Option<Self> {
-        let s_1 = gears.roll_length_of(eta - n as f64);
-        let nominal = match seat {
-            Member::Driving => s_1,
-            Member::Driven => gears.line_of_action() - s_1,
-        };
-        let mut facing = Self {
-            pair: n,
-            seat,
-            range: FlankRange {
-                from: 0.0,
-                to: 0.0,
-                ends: [RangeEnd::Fillet, RangeEnd::Tip],
-            },
-            nearest: 0.0,
-            gap: f64::INFINITY,
-            arm: 1.0,
-            off_path: nominal > gears.gear(seat).tip_form_roll_length(),
-            gears,
-            eta,
-            home,
-            placement: Placement::new(gears, eta, n, home),
-        };
-        facing.range = facing.facing_range()?;
-        facing.nearest = facing.nearest_point([0.0; 2]);
-        facing.gap = facing.point(facing.nearest)?.gap;
-        facing.arm = facing.cell(facing.nearest, 0.0)?.arm;
-        Some(facing)
+    /// As [`Facing::drawn`], told on the flank of `seat`.
+    pub fn drawn_on(gears: &GearPair, phase: f64, seat: Member) -> Option<Self> {
+        let placement = Placement::drawn(gears, phase);
+        View { placement, seat }.facing(phase)
     }
 
-    /// The same flanks, told on the other gear.
-    pub(super) fn told_on_mate(&self) -> Option<Self> {
-        Self::from_seat(
-            self.gears,
-            self.eta,
-            self.pair,
-            self.home,
-            self.seat.other(),
-        )
+    /// How the flanks of pair `n` face each other as they are at the mesh position `eta`, the driven gear lagging by `lag`.
+    pub fn real(gears: &GearPair, eta: f64, n: i64, lag: f64) -> Option<Self> {
+        let (placement, phase) = (Placement::real(gears, eta, n, lag), eta - n as f64);
+        let seat = nearer_tip(gears, phase);
+        View { placement, seat }.facing(phase)
+    }
+
+    /// About how much memory it takes beside itself, in bytes.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(self.hollows.as_slice()) + size_of_val(self.kinks.as_slice())
+    }
+
+    /// The δ at which the flanks touch first.
+    pub fn touch(&self) -> f64 {
+        self.hollows[0].touch
+    }
+}
+
+/// The gear whose tip is nearer to the contact.
+fn nearer_tip(gears: &GearPair, phase: f64) -> Member {
+    let (s_a, s_e) = gears.path_of_contact();
+    // Past the middle of the path of contact the contact is nearer to the driving tip, which leaves it at E. A pair that stands
+    // just there is told alike however its numbers are rounded.
+    let middle = f64::midpoint(s_a, s_e) + 1e-9 * (s_e - s_a);
+    if gears.roll_length_of(phase) > middle {
+        Member::Driving
+    } else {
+        Member::Driven
+    }
+}
+
+impl<'a> View<'a> {
+    /// The same flanks, looked at from the other gear.
+    pub(super) fn told_on_mate(&self) -> Self {
+        Self {
+            seat: self.seat.other(),
+            ..*self
+        }
     }
 
     /// The gears.
     pub(super) fn gears(&self) -> &'a GearPair {
-        self.gears
+        self.placement.gears()
     }
 
-    /// Both gears where they stand.
-    pub(super) fn placement(&self) -> &Placement<'a> {
-        &self.placement
+    /// What belongs to the seat and to the other gear, as driving and driven.
+    pub(super) fn on_both<T: Copy>(&self, seat: T, other: T) -> [T; 2] {
+        match self.seat {
+            Member::Driving => [seat, other],
+            Member::Driven => [other, seat],
+        }
+    }
+
+    fn facing(&self, phase: f64) -> Option<Facing> {
+        let gears = self.gears();
+        let s_1 = gears.roll_length_of(phase);
+        let [nominal, _] = self.on_both(s_1, gears.line_of_action() - s_1);
+        let range = self.range()?;
+        let kinks = self.kinks(&range);
+        let places = self.hollow_places(&range, &kinks).into_iter();
+        let mut hollows: Vec<Hollow> = places.filter_map(|arc| self.hollow(arc, &range)).collect();
+        hollows.sort_by(|a, b| a.touch.total_cmp(&b.touch));
+        (!hollows.is_empty()).then_some(Facing {
+            seat: self.seat,
+            range,
+            hollows,
+            kinks,
+            off_path: nominal > gears.gear(self.seat).tip_form_roll_length(),
+        })
     }
 
     /// The point at `arc` of the seat's flank; `None` inside the other base circle.
     pub(super) fn point(&self, arc: f64) -> Option<FacingPoint> {
-        let (gear, mate) = (
-            self.gears.gear(self.seat),
-            self.gears.gear(self.seat.other()),
-        );
-        let s = gear.flank().roll_length_at_arc(arc);
-        let place = self.placement.place(self.seat, s);
-        let sight = self.placement.sight(self.seat.other(), place.point)?;
-        let removed = gear.removed(s) + mate.removed(sight.roll_length);
+        let flank = self.gears().gear(self.seat).flank();
+        let roll_length = flank.roll_length_at_arc(arc);
+        let place = self.placement.place(self.seat, roll_length);
         Some(FacingPoint {
-            roll_length: s,
+            roll_length,
+            sight: self.placement.sight(self.seat.other(), place.point)?,
             place,
-            gap: sight.gap + removed,
-            sight,
         })
+    }
+
+    /// How the flanks meet at `point`.
+    pub(super) fn meeting(&self, point: &FacingPoint) -> Meeting {
+        self.placement
+            .meeting(self.seat, &point.place, &point.sight)
+    }
+
+    /// `point`, to be followed as the gears turn on.
+    pub(super) fn probe(&self, point: &FacingPoint) -> Probe {
+        let removed = self.gears().gear(self.seat.other());
+        let (center, _) = self.placement.frame(self.seat);
+        Probe::new(
+            point.roll_length,
+            &point.place,
+            &point.sight,
+            removed.removed(point.sight.roll_length),
+            center,
+        )
     }
 
     /// The roll length that `arc` sees on the other flank; it falls towards the seat's tip.
     fn seen_from(&self, arc: f64) -> f64 {
-        let s = self.gears.gear(self.seat).flank().roll_length_at_arc(arc);
-        let point = self.placement.place(self.seat, s).point;
-        self.placement
-            .sight(self.seat.other(), point)
-            .map_or(f64::NEG_INFINITY, |sight| sight.roll_length)
+        self.point(arc)
+            .map_or(f64::NEG_INFINITY, |point| point.sight.roll_length)
     }
 
     /// The part of the seat's flank that sees the other flank between its form circle and its tip.
-    fn facing_range(&self) -> Option<FlankRange> {
+    pub(super) fn range(&self) -> Option<FlankRange> {
         let (gear, mate) = (
-            self.gears.gear(self.seat),
-            self.gears.gear(self.seat.other()),
+            self.gears().gear(self.seat),
+            self.gears().gear(self.seat.other()),
         );
+        // The face of a chamfer is far from the other flank; its edge is the corner that touches.
         let (low, high) = gear.flank_arcs();
-        let (form, tip) = (mate.form_roll_length(), mate.tip_roll_length());
+        let high = gear
+            .chamfer_edge()
+            .map_or(high, |s| gear.flank().arc_length(s));
+        let form = mate.form_roll_length();
+        let tip = mate.chamfer_edge().unwrap_or(mate.tip_roll_length());
         let (mut from, mut to) = ((low, RangeEnd::Fillet), (high, RangeEnd::Tip));
         if self.seen_from(high) > tip || self.seen_from(low) < form {
             return None;
@@ -197,112 +236,132 @@ impl<'a> Facing<'a> {
         })
     }
 
-    /// The arc length at which the gap is least between flanks inclined by `slopes`, those of the driving and of the driven tooth: what
-    /// stands out beyond the drawing for each roll length.
-    ///
-    /// The gap is a parabola about the nominal contact plus reliefs that grow towards either tip: it is convex, and least where its
-    /// slope changes sign, or at an end. A profile table may give it several hollows: of many places the least tells where to look.
-    fn nearest_point(&self, slopes: [f64; 2]) -> f64 {
-        const PLACES: u32 = 128;
-        let FlankRange { from, to, .. } = self.range;
-        let (mut low, mut high) = (from, to);
-        if !(self.gears.driving().is_convex() && self.gears.driven().is_convex()) {
-            let at = |i: u32| from + (to - from) * f64::from(i) / f64::from(PLACES);
-            let gap = |i: u32| {
-                self.point(at(i)).map_or(f64::INFINITY, |point| {
-                    let rolls = self.on_both(point.roll_length, point.sight.roll_length);
-                    point.gap - slopes[0] * rolls[0] - slopes[1] * rolls[1]
-                })
-            };
-            let least = (0..=PLACES).min_by(|&i, &j| gap(i).total_cmp(&gap(j)));
-            let least = least.unwrap_or(0);
-            (low, high) = (at(least.saturating_sub(1)), at((least + 1).min(PLACES)));
-        }
-        let closes = |arc: f64| self.slope(arc, slopes) < 0.0;
-        if closes(high) {
-            high
-        } else if closes(low) {
-            bisect(low, high, closes)
-        } else {
-            low
-        }
+    /// The rising places within `range` at which either flank has a kink.
+    fn kinks(&self, range: &FlankRange) -> Vec<f64> {
+        let [gear, mate] = [self.seat, self.seat.other()].map(|member| self.gears().gear(member));
+        let own = gear.kinks().into_iter();
+        let own = own.map(|s| gear.flank().arc_length(s));
+        let seen = mate.kinks().into_iter();
+        let mut kinks: Vec<f64> = own
+            .chain(seen.filter_map(|s| self.arc_that_sees(s)))
+            .filter(|arc| range.from < *arc && *arc < range.to)
+            .collect();
+        kinks.sort_by(f64::total_cmp);
+        kinks.dedup();
+        kinks
     }
 
-    /// The δ at which `teeth`, the driving and the driven one, touch with their deviations from the drawing: their least gap over its
-    /// arm.
-    pub(super) fn touch_of(&self, teeth: [usize; 2]) -> f64 {
-        let alike = |member: Member| self.gears.gear(member).deviations().are_teeth_alike();
-        if Member::BOTH.into_iter().all(alike) {
-            return self.gap / self.arm;
+    /// The arc that sees the roll length `wanted` of the other flank.
+    fn arc_that_sees(&self, wanted: f64) -> Option<f64> {
+        const STEPS: u32 = 12;
+        let (gear, mate) = (
+            self.gears().gear(self.seat),
+            self.gears().gear(self.seat.other()),
+        );
+        // Flanks that touch share the line of action.
+        let opposite = self.gears().line_of_action() - wanted;
+        let mut arc = gear.flank().arc_length(opposite.max(0.0));
+        for _ in 0..STEPS {
+            let point = self.point(arc)?;
+            let missed = wanted - point.sight.roll_length;
+            if missed.abs() <= 1e-15 * mate.base_radius() {
+                break;
+            }
+            let (_, growth) = point.sight.change(mate.base_radius(), point.place.way);
+            arc = (arc + missed / growth).max(0.0);
         }
-        let of = |member: Member| (self.gears.gear(member), teeth[member.index()]);
-        let slopes = Member::BOTH.map(|member| {
-            let (gear, tooth) = of(member);
-            gear.deviation_slope(tooth)
-        });
-        let nearest = if slopes == [0.0; 2] {
-            self.nearest
-        } else {
-            self.nearest_point(slopes)
+        Some(arc)
+    }
+
+    /// Where the gap has a least place.
+    ///
+    /// It is a parabola about the nominal contact plus reliefs that grow towards either tip: convex, and least where its slope
+    /// changes sign, or at an end. Modifications of other kinds may give it several hollows; between kinks each is found in the same way.
+    fn hollow_places(&self, range: &FlankRange, kinks: &[f64]) -> Vec<f64> {
+        let FlankRange { from, to, .. } = *range;
+        let falls = |arc: f64| self.slope(arc) < 0.0;
+        let least = |low: f64, high: f64| match (falls(low), falls(high)) {
+            (_, true) => high,
+            (true, false) => bisect(low, high, falls),
+            (false, false) => low,
         };
-        self.point(nearest).map_or(f64::INFINITY, |point| {
-            let rolls = self.on_both(point.roll_length, point.sight.roll_length);
-            let deviations = Member::BOTH.map(|member| {
-                let (gear, tooth) = of(member);
-                gear.deviation(tooth, rolls[member.index()])
-            });
-            (point.gap - deviations[0] - deviations[1]) / self.arm
+        if self.gears().driving().is_convex() && self.gears().driven().is_convex() {
+            return vec![least(from, to)];
+        }
+        let evenly = (0..=PLACES).map(|i| from + (to - from) * f64::from(i) / f64::from(PLACES));
+        let mut places: Vec<f64> = evenly.chain(kinks.iter().copied()).collect();
+        places.sort_by(f64::total_cmp);
+        // Just beside a kink the slope is that of its own side.
+        let beside = 1e-9 * (to - from);
+        places.dedup_by(|a, b| (*a - *b).abs() < 4.0 * beside);
+        let mut found = Vec::new();
+        // Whether the gap falls just before the place.
+        let mut falling = true;
+        for pair in places.windows(2) {
+            let (low, high) = (pair[0] + beside, pair[1] - beside);
+            let (begins, ends) = (falls(low), falls(high));
+            if falling && !begins {
+                found.push(pair[0]);
+            }
+            if begins && !ends {
+                found.push(bisect(low, high, falls));
+            }
+            falling = ends;
+        }
+        if falling {
+            found.push(to);
+        }
+        found
+    }
+
+    fn hollow(&self, arc: f64, range: &FlankRange) -> Option<Hollow> {
+        let point = self.point(arc)?;
+        let meeting = self.meeting(&point);
+        let beside = 1e-6 * (range.to - range.from);
+        let opening = |place: f64, sign: f64| {
+            let inside = range.from <= place && place <= range.to;
+            inside.then(|| (sign * self.slope(place)).max(0.0))
+        };
+        Some(Hollow {
+            arc,
+            touch: meeting.gap / meeting.arms[1],
+            roll_lengths: self.on_both(point.roll_length, point.sight.roll_length),
+            openings: [
+                opening(arc - beside, -1.0).unwrap_or_default(),
+                opening(arc + beside, 1.0).unwrap_or_default(),
+            ],
+            probe: self.probe(&point),
         })
     }
 
-    /// The least distance between the tip of the seat, as far as it stands below the flank of the other gear, and the fillet there;
-    /// `None` where the tip does not reach below that flank.
-    pub(super) fn tip_to_fillet(&self) -> Option<f64> {
+    /// The least distance between the tip of the seat, as far as it stands below the flank of the other gear within `range`, and the
+    /// fillet there; `None` where the tip does not reach below that flank.
+    pub(super) fn tip_to_fillet(&self, range: &FlankRange) -> Option<f64> {
         const TIP_POINTS: u32 = 8;
-        if self.range.ends[1] != RangeEnd::MateFillet {
+        if range.ends[1] != RangeEnd::MateFillet {
             return None;
         }
-        let (_, tip) = self.gears.gear(self.seat).flank_arcs();
+        let gear = self.gears().gear(self.seat);
+        let (_, tip) = gear.flank_arcs();
+        let tip = gear
+            .chamfer_edge()
+            .map_or(tip, |s| gear.flank().arc_length(s));
         let gaps = (1..=TIP_POINTS).map(|i| {
-            let arc = self.range.to + (tip - self.range.to) * f64::from(i) / f64::from(TIP_POINTS);
-            let s = self.gears.gear(self.seat).flank().roll_length_at_arc(arc);
+            let arc = range.to + (tip - range.to) * f64::from(i) / f64::from(TIP_POINTS);
+            let s = gear.flank().roll_length_at_arc(arc);
             let point = self.placement.place(self.seat, s).point;
             self.placement.fillet_distance(self.seat.other(), point)
         });
         gaps.reduce(f64::min)
     }
 
-    /// How fast the gap opens beside the nearest point: nothing where flanks touch with a common tangent, the angle between them
-    /// where a corner is nearest.
-    pub(super) fn opening_angle(&self) -> f64 {
-        let FlankRange { from, to, .. } = self.range;
-        if self.nearest == to {
-            (-self.slope(to, [0.0; 2])).max(0.0)
-        } else if self.nearest == from {
-            self.slope(from, [0.0; 2]).max(0.0)
-        } else {
-            0.0
-        }
-    }
-
-    /// The slope of the gap along the seat's flank, towards its tip, between flanks inclined by `slopes`.
-    fn slope(&self, arc: f64, slopes: [f64; 2]) -> f64 {
-        let other = self.seat.other();
-        let (gear, mate) = (self.gears.gear(self.seat), self.gears.gear(other));
-        let Some(FacingPoint {
-            roll_length: s,
-            place,
-            sight,
-            ..
-        }) = self.point(arc)
-        else {
-            return 0.0;
-        };
-        let (gap, seen) = sight.change(mate.base_radius(), place.to_tip);
-        let away = gear.removed_slope(s) - slopes[self.seat.index()];
-        let away_on_mate = mate.removed_slope(sight.roll_length) - slopes[other.index()];
-        // An arc grows by s/r_b along a roll length.
-        gap + away * gear.base_radius() / s.max(1e-9 * gear.base_radius()) + away_on_mate * seen
+    /// The slope of the gap along the seat's flank, towards its tip.
+    fn slope(&self, arc: f64) -> f64 {
+        let mate = self.gears().gear(self.seat.other());
+        self.point(arc).map_or(0.0, |point| {
+            let change = point.sight.change(mate.base_radius(), point.place.way);
+            change.0
+        })
     }
 }
 
@@ -344,8 +403,9 @@ mod tests {
                 let s = s_a + (s_e - s_a) * f64::from(i) / 40.0;
                 let eta = (s - pair.pitch_roll_length()) / pair.base_pitch();
                 for seat in Member::BOTH {
-                    let facing = Facing::from_seat(&pair, eta, 0, 0, seat).expect("they touch");
-                    assert!(facing.gap.abs() < 1e-15, "{seat} at {s}: {}", facing.gap);
+                    let facing = Facing::drawn_on(&pair, eta, seat).expect("they touch");
+                    let touch = facing.touch();
+                    assert!(touch.abs() < 1e-15, "{seat} at {s}: {touch}");
                 }
             }
         }
@@ -363,10 +423,10 @@ mod tests {
             (s_e - 0.2e-3, Member::Driving, false),
             (s_e + 0.2e-3, Member::Driving, true),
         ] {
-            let facing = Facing::of(&pair, periods(s), 0, 0).expect("they face each other");
+            let facing = Facing::drawn(&pair, periods(s)).expect("they face each other");
             assert_eq!((facing.seat, facing.off_path), (seat, off_path));
             assert_eq!(
-                facing.nearest == facing.range.to,
+                facing.hollows[0].arc == facing.range.to,
                 off_path,
                 "a corner is nearest"
             );
@@ -381,9 +441,9 @@ mod tests {
                 let (_, s_e) = pair.path_of_contact();
                 let s = s_e + 0.2e-3 * f64::from(*i);
                 let eta = (s - pair.pitch_roll_length()) / pair.base_pitch();
-                Facing::of(&pair, eta, 0, 0).is_some_and(|facing| {
-                    assert!(facing.gap >= last);
-                    last = facing.gap;
+                Facing::drawn(&pair, eta).is_some_and(|facing| {
+                    assert!(facing.touch() >= last);
+                    last = facing.touch();
                     true
                 })
             });
@@ -395,15 +455,17 @@ mod tests {
     #[test]
     fn reliefs_add_to_the_gap() {
         let (plain, relieved) = (pair(None), pair(Some(ReliefShape::Linear)));
-        let gap = |pair: &GearPair| Facing::of(pair, 0.5, 0, 0).expect("near").gap;
+        let gap = |pair: &GearPair| Facing::drawn(pair, 0.5).expect("near").touch();
         let s = plain.roll_length_of(0.5);
         let radius = relieved.driving().flank().radius(s);
         let depth = relieved.driving().removed(s);
-        // A slope σ beside a parabola of radius ρ lowers its minimum by σ² ρ/2.
+        // A slope σ beside a parabola of radius ρ lowers its minimum by σ² ρ/2. A flank that is turned back touches earlier on itself, by what is
+        // missing, so that the relief is read as much farther down.
         let slope = 5e-6 / 1.75e-3 * plain.driving().base_radius() / radius;
+        let by_roll_length = 5e-6 / 1.75e-3 * s / radius;
         let rho = s * (plain.line_of_action() - s) / plain.line_of_action();
         let added = gap(&relieved) - gap(&plain);
-        let expected = depth - slope * slope * rho / 2.0;
+        let expected = depth * (1.0 - by_roll_length) - slope * slope * rho / 2.0;
         // Terms of the third order in the shift σ ρ over ρ: σ of it.
         assert!(depth > 2e-6 && (added - expected).abs() < 2.0 * slope * slope * slope * rho);
     }
@@ -414,16 +476,24 @@ mod tests {
             let pair = pair(Some(shape));
             for i in 0..60 {
                 let eta = -0.9 + 0.03 * f64::from(i);
-                let Some(facing) = Facing::of(&pair, eta, 0, 0) else {
+                let Some(facing) = Facing::drawn(&pair, eta) else {
                     continue;
+                };
+                let view = View {
+                    placement: Placement::drawn(&pair, eta),
+                    seat: facing.seat,
                 };
                 let FlankRange { from, to, .. } = facing.range;
                 let least = (0..=2000)
-                    .filter_map(|k| facing.point(from + (to - from) * f64::from(k) / 2000.0))
-                    .map(|point| point.gap)
+                    .filter_map(|k| view.point(from + (to - from) * f64::from(k) / 2000.0))
+                    .map(|point| point.sight.gap)
                     .fold(f64::INFINITY, f64::min);
+                let nearest = view.point(facing.hollows[0].arc).expect("it is seen");
                 // Samples stand 2.2 µm apart: half of that times the slope of the relief, where a kink is nearest.
-                assert!((-1e-15..4e-9).contains(&(least - facing.gap)), "{eta}");
+                assert!(
+                    (-1e-15..4e-9).contains(&(least - nearest.sight.gap)),
+                    "{eta}"
+                );
             }
         }
     }

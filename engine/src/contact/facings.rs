@@ -1,126 +1,164 @@
-//! All pairs whose flanks face each other at one fraction of the mesh period, and which of them come near.
+//! All pairs whose flanks face each other at one mesh position, and which of them come near.
 
-use super::facing::Facing;
+use super::drawn::DrawnPair;
+use super::facing::{Facing, Hollow};
+use super::meeting::Standing;
+use super::model::PairModel;
+use super::patch::Extent;
+use super::placement;
 use crate::gear::{GearPair, Member};
 
-/// The pairs whose flanks face each other at one fraction of the mesh period, by rising gap; numbered from the reference pair of the
+/// What coordinates may be rounded by, in meters.
+const ROUNDING: f64 = 1e-12;
+
+/// Pairs whose teeth deviate are laid as drawn at the nearest of so many phases a mesh period.
+const PHASES: f64 = 64.0;
+
+/// The pairs whose flanks face each other at one fraction of the mesh period; numbered from the reference pair of the
 /// period. They are looked for outward from the path of contact, as far as is asked.
 pub(super) struct Facings<'a> {
-    gears: &'a GearPair,
+    model: &'a PairModel,
     fraction: f64,
-    home: i64,
-    /// How far deviations may bring flanks nearer, and farther apart: both not negative.
+    /// Whether nothing deviates.
+    as_drawn: bool,
+    /// How far deviations may bring flanks nearer.
     nearer: f64,
-    farther: f64,
-    found: Vec<Facing<'a>>,
-    /// The least gap as drawn.
-    least: f64,
-    /// The mesh period asked about last, and the δ at which pairs touch there, as far as they were asked for.
-    touches: (i64, Vec<(i64, f64)>),
-    /// The next pairs to look at, before and after those found, and the gap of the last one there.
+    /// Every pair looked at, and the δ at which it touches as drawn.
+    found: Vec<(i64, f64)>,
     frontier: [Frontier; 2],
+    /// The mesh period asked about last, and the pairs known there.
+    known: (i64, Vec<Near>),
 }
 
+/// The next pair to look at on one side, and the touch of the last one there.
 struct Frontier {
     next: i64,
     step: i64,
-    last_gap: f64,
+    last: f64,
+}
+
+/// A pair that comes near.
+#[derive(Debug, Clone)]
+pub(super) struct Near {
+    /// From the reference pair of the mesh period.
+    pub(super) pair: i64,
+    /// As it is laid.
+    pub(super) drawn: DrawnPair,
+    /// By how many mesh periods farther it has gone on than it is laid.
+    ahead: f64,
+    /// The δ at which each of its hollows touches.
+    touches: Vec<f64>,
+}
+
+impl Near {
+    /// The δ at which it touches first.
+    pub(super) fn touch(&self) -> f64 {
+        self.touches.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Its hollows up to the last that touches before δ is `reach`.
+    pub(super) fn hollows_within(&self, reach: f64) -> usize {
+        let last = self.touches.iter().rposition(|touch| *touch <= reach);
+        1 + last.unwrap_or(0)
+    }
+
+    /// How far the deviations of its teeth move the contact under `load` in mesh period `period` of `pair` ([`Extent`]).
+    pub(super) fn moved(&self, pair: &GearPair, (period, load): (i64, f64)) -> i32 {
+        let teeth = pair.teeth(period + self.pair);
+        let slopes = Member::BOTH.map(|member| {
+            let g = member.index();
+            pair.gear(member).deviation_slope(teeth[g])
+        });
+        let Some(facing) = self.drawn.facing() else {
+            return 0;
+        };
+        let hollow = &facing.hollows[0];
+        // Arc over roll length.
+        let growth = |member: Member| {
+            let r_b = pair.gear(member).base_radius();
+            (hollow.roll_lengths[member.index()] / r_b).max(1e-9)
+        };
+        // Towards the tip of one is towards the root of the other.
+        let inclination = |member: Member| slopes[member.index()] / growth(member);
+        let (seat, mate) = (facing.seat, facing.seat.other());
+        let ahead = match seat {
+            Member::Driving => self.ahead,
+            Member::Driven => -self.ahead,
+        };
+        let along = ahead * pair.base_pitch() * growth(seat);
+        let inclined = inclination(seat) - inclination(mate);
+        Extent::moved(pair, hollow, load, (along, inclined))
+    }
+
+    /// How it stands in mesh period `period` of `pair`, with a driven gear that lags by `lag`.
+    pub(super) fn standing<'a>(
+        &self,
+        pair: &'a GearPair,
+        (fraction, period): (f64, i64),
+        lag: f64,
+    ) -> Option<Standing<'a>> {
+        let n = period + self.pair;
+        let seat = self.drawn.facing()?.seat;
+        let eta = fraction + period as f64;
+        Some(Standing::new(pair, eta, n, lag, (seat, self.drawn.phase)))
+    }
 }
 
 impl<'a> Facings<'a> {
-    /// The pairs on the path of contact and those beside it, `home` mesh periods on; `None` if no flanks face each other at all.
-    pub(super) fn new(gears: &'a GearPair, fraction: f64, home: i64) -> Option<Self> {
+    /// The pairs on the path of contact and those beside it; `None` if no flanks face each other at all.
+    pub(super) fn new(model: &'a PairModel, fraction: f64) -> Option<Self> {
+        let gears = &model.pair;
         let (s_a, s_e) = gears.path_of_contact();
         // Pair n touches at the roll length of η − n periods.
         let periods = |s: f64| (s - gears.roll_length_of(0.0)) / gears.base_pitch();
         let first = (fraction - periods(s_e)).floor() as i64;
         let last = (fraction - periods(s_a)).ceil() as i64;
-        let mut found: Vec<Facing<'a>> = (first..=last)
-            .filter_map(|n| Facing::of(gears, fraction, n, home))
-            .collect();
-        let frontier = |last: i64, step| Frontier {
-            next: last + step,
+        let frontier = |next, step| Frontier {
+            next,
             step,
-            last_gap: found
-                .iter()
-                .find(|facing| facing.pair == last)
-                .map_or(f64::INFINITY, |facing| facing.gap),
+            last: f64::NEG_INFINITY,
         };
-        let frontier = [frontier(first, -1), frontier(last, 1)];
-        found.sort_by(|a, b| a.gap.total_cmp(&b.gap));
-        let ranges = Member::BOTH.map(|member| gears.gear(member).deviation_range());
-        (!found.is_empty()).then_some(Self {
-            gears,
+        let mut facings = Self {
+            model,
             fraction,
-            home,
-            nearer: ranges[0][0] + ranges[1][0],
-            farther: -ranges[0][1] - ranges[1][1],
-            touches: (0, Vec::new()),
-            frontier,
-            least: found.first().map_or(f64::INFINITY, |facing| facing.gap),
-            found,
-        })
+            as_drawn: gears.is_as_drawn(),
+            nearer: gears.nearest_deviation(),
+            found: Vec::new(),
+            frontier: [frontier(first - 1, -1), frontier(last + 1, 1)],
+            known: (0, Vec::new()),
+        };
+        for n in first..=last {
+            facings.look_at(n);
+        }
+        let touch = |n: i64| {
+            let found = facings.found.iter().find(|(pair, _)| *pair == n);
+            found.map_or(f64::INFINITY, |found| found.1)
+        };
+        let ends = [touch(first), touch(last)];
+        for (frontier, end) in facings.frontier.iter_mut().zip(ends) {
+            frontier.last = end;
+        }
+        (!facings.found.is_empty()).then_some(facings)
     }
 
-    /// The δ at which the first pair touches in mesh period `period`: the transmission error under no load.
-    pub(super) fn touch(&mut self, period: i64) -> f64 {
-        // The pair that is nearest as drawn comes no nearer than its own teeth stand; others must be nearer than that.
-        let first = self.found[0].gap + self.farther;
-        self.within(period, first)
-            .into_iter()
-            .map(|(_, gap)| gap)
-            .fold(f64::INFINITY, f64::min)
-    }
-
-    /// The pairs that touch in mesh period `period` before δ is `reach`, by their place in [`Facings::all`], with the δ of each; at least
-    /// the one that touches first.
-    pub(super) fn within(&mut self, period: i64, reach: f64) -> Vec<(usize, f64)> {
-        let as_drawn = reach + self.nearer;
-        self.look_as_far_as(as_drawn);
-        let count = self.found.partition_point(|facing| facing.gap <= as_drawn);
-        let mut pairs: Vec<(usize, f64)> = (0..count.max(1))
-            .map(|i| (i, self.touch_of(i, period)))
-            .collect();
-        if pairs.iter().any(|(_, gap)| *gap <= reach) {
-            pairs.retain(|(_, gap)| *gap <= reach);
-        } else {
-            pairs.sort_by(|a, b| a.1.total_cmp(&b.1));
-            pairs.truncate(1);
+    /// Looks at pair `n` as drawn; the δ at which it touches, without end where flanks do not face each other.
+    fn look_at(&mut self, n: i64) -> f64 {
+        let drawn = self.model.drawn.pair(self.model, self.fraction - n as f64);
+        let touch = drawn.facing().map_or(f64::INFINITY, Facing::touch);
+        if touch < f64::INFINITY {
+            self.found.push((n, touch));
         }
-        pairs
-    }
-
-    /// The δ at which the pair at place `i` touches in mesh period `period`.
-    fn touch_of(&mut self, i: usize, period: i64) -> f64 {
-        let facing = &self.found[i];
-        let (of_period, known) = &mut self.touches;
-        if *of_period != period {
-            *of_period = period;
-            known.clear();
-        }
-        // Each step of a solution asks again.
-        if let Some((_, touch)) = known.iter().find(|(pair, _)| *pair == facing.pair) {
-            return *touch;
-        }
-        let touch = facing.touch_of(self.gears.teeth(period + facing.pair));
-        known.push((facing.pair, touch));
         touch
     }
 
-    /// Finds the pairs whose gap as drawn is within `reach`.
-    fn look_as_far_as(&mut self, reach: f64) {
-        // Beyond the path of contact gaps grow from pair to pair.
-        for frontier in &mut self.frontier {
-            while frontier.last_gap <= reach {
-                let facing = Facing::of(self.gears, self.fraction, frontier.next, self.home);
-                frontier.last_gap = facing.map_or(f64::INFINITY, |facing| facing.gap);
-                frontier.next += frontier.step;
-                if let Some(facing) = facing {
-                    let place = self.found.partition_point(|known| known.gap <= facing.gap);
-                    self.found.insert(place, facing);
-                }
-            }
-        }
+    /// The fraction of the mesh period.
+    pub(super) fn fraction(&self) -> f64 {
+        self.fraction
+    }
+
+    /// Whether nothing deviates.
+    pub(super) fn are_as_drawn(&self) -> bool {
+        self.as_drawn
     }
 
     /// How far deviations may bring flanks nearer.
@@ -128,18 +166,106 @@ impl<'a> Facings<'a> {
         self.nearer
     }
 
-    /// The least gap as drawn.
+    /// The δ at which the first pair touches as drawn.
     pub(super) fn least(&self) -> f64 {
-        self.least
+        let touches = self.found.iter().map(|found| found.1);
+        touches.fold(f64::INFINITY, f64::min)
     }
 
-    /// The facing of `pair`, which was found.
-    pub(super) fn of_pair(&self, pair: i64) -> Option<&Facing<'a>> {
-        self.found.iter().find(|facing| facing.pair == pair)
+    /// The δ at which the first pair touches in mesh period `period`: the transmission error under no load.
+    pub(super) fn touch(&mut self, period: i64) -> f64 {
+        let nearest = self.found.iter().min_by(|a, b| a.1.total_cmp(&b.1));
+        let near = nearest.and_then(|(n, _)| self.near(*n, period));
+        let bound = near.map_or(f64::INFINITY, |near| near.touch());
+        // Others touch first only before that.
+        let near = self.within(period, bound).into_iter();
+        near.map(|near| near.touch()).fold(bound, f64::min)
     }
 
-    /// All that were found.
-    pub(super) fn all(&self) -> &[Facing<'a>] {
-        &self.found
+    /// The pairs that touch in mesh period `period` before δ is `reach`; at least the one that touches first.
+    pub(super) fn within(&mut self, period: i64, reach: f64) -> Vec<Near> {
+        let as_drawn = reach + self.nearer + ROUNDING;
+        self.look_as_far_as(as_drawn);
+        if self.known.0 != period {
+            self.known = (period, Vec::new());
+        }
+        for &(n, touch) in &self.found {
+            if touch <= as_drawn && self.known.1.iter().all(|near| near.pair != n) {
+                self.known.1.extend(self.near(n, period));
+            }
+        }
+        let mut near: Vec<Near> = self.known.1.clone();
+        near.sort_by(|a, b| a.touch().total_cmp(&b.touch()));
+        let count = near.partition_point(|near| near.touch() <= reach);
+        near.truncate(count.max(1));
+        near
     }
+
+    /// Pair `n` of mesh period `period`.
+    fn near(&self, n: i64, period: i64) -> Option<Near> {
+        let gears = &self.model.pair;
+        let phase = self.fraction - n as f64;
+        if self.as_drawn {
+            let drawn = self.model.drawn.pair(self.model, phase);
+            let hollows = &drawn.facing()?.hollows;
+            let touches = hollows.iter().map(|hollow| hollow.touch).collect();
+            return Some(Near {
+                pair: n,
+                ahead: 0.0,
+                touches,
+                drawn,
+            });
+        }
+        let shift = shift(gears, phase, period + n);
+        // Along a curve a tooth keeps its pitch deviation, and so what was laid for it; an eccentric gear stands elsewhere at every position.
+        let laid = if gears.is_concentric() {
+            (shift * PHASES).round() / PHASES
+        } else {
+            shift
+        };
+        let mut near = Near {
+            pair: n,
+            ahead: shift - laid,
+            touches: Vec::new(),
+            drawn: self.model.drawn.pair(self.model, phase + laid),
+        };
+        let standing = near.standing(gears, (self.fraction, period), 0.0)?;
+        let touch = |hollow: &Hollow| {
+            let meeting = standing.meeting(&hollow.probe);
+            meeting.gap / meeting.arms[1]
+        };
+        near.touches = near.drawn.facing()?.hollows.iter().map(touch).collect();
+        Some(near)
+    }
+
+    /// Finds the pairs that touch as drawn before δ is `reach`.
+    fn look_as_far_as(&mut self, reach: f64) {
+        // Beyond the path of contact gaps grow from pair to pair.
+        for side in 0..2 {
+            while self.frontier[side].last <= reach {
+                let Frontier { next, step, .. } = self.frontier[side];
+                let last = self.look_at(next);
+                self.frontier[side] = Frontier {
+                    next: next + step,
+                    step,
+                    last,
+                };
+            }
+        }
+    }
+}
+
+/// By how many mesh periods pair `n`, with its deviations, touches as if it had gone on from `phase`: the driving flank touches where the
+/// common tangent of both base circles meets it.
+fn shift(gears: &GearPair, phase: f64, n: i64) -> f64 {
+    let angles = placement::angles(gears, phase);
+    let centers = placement::centers(gears, n, angles);
+    let driving = gears.driving();
+    let between = centers[1] - centers[0];
+    let base = driving.base_radius() + gears.driven().base_radius();
+    let tangent = between.y.atan2(between.x) - (base / between.norm()).min(1.0).acos();
+    let s_1 = driving.base_radius() * (angles[0] + driving.flank().base_half_angle() - tangent);
+    let tooth = gears.tooth(Member::Driving, n);
+    let out = driving.deviation(tooth, s_1);
+    (s_1 + out - gears.roll_length_of(phase)) / gears.base_pitch()
 }

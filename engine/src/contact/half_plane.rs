@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use faer::Mat;
+
 use crate::gear::SpurGear;
 
 /// The factor c = 2/(π E' b) of the logarithm in the compliance of a half plane: u = −c F ln|x| + constant.
@@ -58,89 +60,105 @@ impl NearField {
         }
     }
 
-    /// The mean of max(0, ln(ℓ/|x|)) over two cells of width `w` for each distance of their middles, `first` and every w from there: the
-    /// second differences of its second antiderivative.
-    fn mean_added(&self, first: f64, w: f64, count: usize) -> impl Iterator<Item = f64> {
-        let reach = self.reach;
-        let twice = move |x: f64| {
-            let x = x.abs();
-            if x == 0.0 {
-                0.0
-            } else if x < reach {
-                x * x * (0.5 * (reach / x).ln() + 0.75)
-            } else {
-                reach * (x - 0.25 * reach)
-            }
-        };
-        let differences = second_differences(twice, first, w, count);
-        // Far away nothing is left but the rounding of the differences.
-        differences.map(move |(x, difference)| {
-            if x.abs() - w >= reach {
-                0.0
-            } else {
-                difference / (w * w)
-            }
-        })
+    /// The second antiderivative of max(0, ln(ℓ/|x|)).
+    fn twice_added(&self, x: f64) -> f64 {
+        let (x, reach) = (x.abs(), self.reach);
+        if x == 0.0 {
+            0.0
+        } else if x < reach {
+            x * x * (0.5 * (reach / x).ln() + 0.75)
+        } else {
+            reach * (x - 0.25 * reach)
+        }
     }
 }
 
-/// What a unit force spread over a stretch of `width` adds by `fields` to the mean displacement of each of `count` such stretches
-/// in a row: those whose middles are `first`, `first + width` and so on away.
-pub fn in_row(fields: &[NearField], first: f64, width: f64, count: usize) -> Vec<f64> {
+/// What a unit force spread over each of the stretches `loaded` adds by `fields` to the mean displacement of each of `stretches`: ends
+/// along the flank, the first of them nearer to the root.
+pub fn near_compliance(
+    fields: &[NearField],
+    stretches: &[[f64; 2]],
+    loaded: &[[f64; 2]],
+) -> Mat<f64> {
     // The logarithm is that of all bodies.
     let own: f64 = fields.iter().map(|field| field.own).sum();
-    let of_width = fields
+    let of_scale: f64 = fields
         .iter()
-        .map(|field| field.own * (width / field.scale).ln())
-        .sum::<f64>();
-    let mut row: Vec<f64> = mean_logarithms(first / width, count)
-        .map(|logarithm| -own * logarithm - of_width)
-        .collect();
-    for field in fields.iter().filter(|field| field.added != 0.0) {
-        for (compliance, mean) in row.iter_mut().zip(field.mean_added(first, width, count)) {
-            *compliance += field.added * mean;
+        .map(|field| field.own * field.scale.ln())
+        .sum();
+    let mut compliance = means(stretches, loaded, twice_logarithm);
+    for (j, other) in loaded.iter().enumerate() {
+        for (i, one) in stretches.iter().enumerate() {
+            let mean = far_logarithm(*one, *other).unwrap_or(compliance[(i, j)]);
+            compliance[(i, j)] = of_scale - own * mean;
         }
     }
-    row
+    for field in fields.iter().filter(|field| field.added != 0.0) {
+        let means = means(stretches, loaded, |x| field.twice_added(x));
+        for (j, other) in loaded.iter().enumerate() {
+            for (i, one) in stretches.iter().enumerate() {
+                // Far away nothing is left but the rounding of the differences.
+                if apart(*one, *other) < field.reach {
+                    compliance[(i, j)] += field.added * means[(i, j)];
+                }
+            }
+        }
+    }
+    compliance
 }
 
-/// The mean of ln|x − t| over x and t in two stretches of unit width, for each distance z of their middles: `first`, `first + 1` and so
-/// on.
-///
-/// The second differences of Φ(z) = z²/2 ln|z| − 3z²/4, whose second derivative is the logarithm.
-pub fn mean_logarithms(first: f64, count: usize) -> impl Iterator<Item = f64> {
-    let phi = |z: f64| {
-        if z == 0.0 {
-            0.0
-        } else {
-            z * z / 2.0 * z.abs().ln() - 0.75 * z * z
-        }
-    };
-    second_differences(phi, first, 1.0, count).map(|(z, difference)| {
-        // Far away the second difference loses its digits; its series ln z − 1/(12 z²) does not.
-        if z.abs() > 100.0 {
-            z.abs().ln() - 1.0 / (12.0 * z * z)
-        } else {
-            difference
-        }
+/// Φ(z) = z²/2 ln|z| − 3z²/4, whose second derivative is the logarithm.
+fn twice_logarithm(z: f64) -> f64 {
+    if z == 0.0 {
+        0.0
+    } else {
+        z * z / 2.0 * z.abs().ln() - 0.75 * z * z
+    }
+}
+
+/// The mean of ln|x − t| over x and t in two stretches far from each other, where the differences of Φ lose their digits and the series
+/// ln z − (w² + w'²)/(24 z²) does not.
+fn far_logarithm(one: [f64; 2], other: [f64; 2]) -> Option<f64> {
+    let [width, other_width] = [one, other].map(|[from, to]| to - from);
+    let distance = 0.5 * ((one[0] - other[0]) + (one[1] - other[1]));
+    let squares = width * width + other_width * other_width;
+    (distance.abs() > 50.0 * (width + other_width))
+        .then(|| distance.abs().ln() - squares / (24.0 * distance * distance))
+}
+
+/// The means over each two stretches of the function of the distance whose second antiderivative is `twice`.
+fn means(stretches: &[[f64; 2]], loaded: &[[f64; 2]], twice: impl Fn(f64) -> f64) -> Mat<f64> {
+    // Neighbors share their ends.
+    let (rows, row) = ends(stretches);
+    let (columns, column) = ends(loaded);
+    let twice = Mat::from_fn(rows.len(), columns.len(), |i, j| {
+        twice(rows[i] - columns[j])
+    });
+    Mat::from_fn(stretches.len(), loaded.len(), |i, j| {
+        let ([a, b], [c, d]) = (row[i], column[j]);
+        let sum = twice[(b, c)] - twice[(b, d)] - twice[(a, c)] + twice[(a, d)];
+        let width = |[from, to]: [f64; 2]| to - from;
+        sum / (width(stretches[i]) * width(loaded[j]))
     })
 }
 
-/// f(x + h) − 2 f(x) + f(x − h) at `count` places x, `first` and every `step` h from there, each with its place.
-fn second_differences(
-    f: impl Fn(f64) -> f64,
-    first: f64,
-    step: f64,
-    count: usize,
-) -> impl Iterator<Item = (f64, f64)> {
-    let at = move |i: usize| first + i as f64 * step;
-    let (mut before, mut here) = (f(first - step), f(first));
-    (0..count).map(move |i| {
-        let after = f(at(i + 1));
-        let difference = after - 2.0 * here + before;
-        (before, here) = (here, after);
-        (at(i), difference)
-    })
+/// The ends of `stretches`, each once where they follow each other, and where those of each stand.
+fn ends(stretches: &[[f64; 2]]) -> (Vec<f64>, Vec<[usize; 2]>) {
+    let mut ends = Vec::with_capacity(stretches.len() + 1);
+    let places = stretches.iter().map(|&[from, to]| {
+        if ends.last() != Some(&from) {
+            ends.push(from);
+        }
+        ends.push(to);
+        [ends.len() - 2, ends.len() - 1]
+    });
+    let places = places.collect();
+    (ends, places)
+}
+
+/// How far two stretches lie apart, nothing where they overlap.
+fn apart(one: [f64; 2], other: [f64; 2]) -> f64 {
+    (one[0] - other[1]).max(other[0] - one[1]).max(0.0)
 }
 
 #[cfg(test)]
@@ -159,11 +177,18 @@ mod tests {
             .sum()
     }
 
+    fn row(first: f64, width: f64, count: usize) -> Vec<[f64; 2]> {
+        let end = |i: usize| first + (i as f64 - 0.5) * width;
+        (0..count).map(|i| [end(i), end(i + 1)]).collect()
+    }
+
     #[test]
     fn the_mean_logarithm_is_that_of_a_fine_sum() {
+        let here = [[-0.5, 0.5]];
         for first in [0.0, 0.25, -2.2, 5.0, 99.0] {
-            for (i, mean) in mean_logarithms(first, 4).enumerate() {
-                let sum = double_mean(first + i as f64, f64::ln);
+            let means = means(&row(first, 1.0, 4), &here, twice_logarithm);
+            for i in 0..4 {
+                let (sum, mean) = (double_mean(first + i as f64, f64::ln), means[(i, 0)]);
                 // The midpoint rule leaves a third of a step beside the logarithm's pole.
                 assert!((sum - mean).abs() < 4e-6, "{first} + {i}: {sum}");
             }
@@ -171,12 +196,32 @@ mod tests {
     }
 
     #[test]
-    fn the_series_for_far_cells_continues_the_second_difference() {
+    fn stretches_of_other_widths_are_the_means_of_their_parts() {
+        let parts = row(0.5, 1.0, 6);
+        let whole = [[0.0, 2.0], [2.0, 3.0], [3.0, 6.0]];
+        let fine = means(&parts, &parts, twice_logarithm);
+        let coarse = means(&whole, &whole, twice_logarithm);
+        let within = |[from, to]: [f64; 2]| from as usize..to as usize;
+        for (i, one) in whole.iter().enumerate() {
+            for (j, other) in whole.iter().enumerate() {
+                let entries = within(*one).flat_map(|a| within(*other).map(move |b| (a, b)));
+                let entries: Vec<f64> = entries.map(|place| fine[place]).collect();
+                let mean = entries.iter().sum::<f64>() / entries.len() as f64;
+                assert!((mean - coarse[(i, j)]).abs() < 1e-13);
+            }
+        }
+    }
+
+    #[test]
+    fn the_series_for_far_cells_continues_the_differences() {
+        let here = [-0.5, 0.5];
         let exact = |z: f64| z.ln() - 1.0 / (12.0 * z * z) - 1.0 / (60.0 * z.powi(4));
         for distance in [60.0, 100.0, 101.0, 300.0] {
-            let mean = mean_logarithms(distance, 1).next().expect("one");
+            let there = [distance - 0.5, distance + 0.5];
+            let near = means(&[there], &[here], twice_logarithm)[(0, 0)];
+            let mean = far_logarithm(there, here).unwrap_or(near);
             // The term of the fourth order is left out: 1.7e-10 at 100.
-            assert!((mean - exact(distance)).abs() < 2e-10);
+            assert!((mean - exact(distance)).abs() < 1e-9, "{distance}: {mean}");
         }
     }
 
@@ -200,7 +245,11 @@ mod tests {
         assert!((field.reach / (depth * (-0.65_f64).exp()) - 1.0).abs() < 1e-12);
         assert!((field.added / field.own - 1.0).abs() < 1e-14);
         let width = 0.25e-3;
-        for (distance, mean) in (0..8).zip(field.mean_added(0.0, width, 8)) {
+        let means = means(&row(0.0, width, 8), &row(0.0, width, 1), |x| {
+            field.twice_added(x)
+        });
+        for distance in 0..8 {
+            let mean = means[(distance as usize, 0)];
             let sum = double_mean(f64::from(distance), |x| {
                 (field.reach / (x * width)).ln().max(0.0)
             });

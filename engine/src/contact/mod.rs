@@ -1,12 +1,13 @@
 //! Frictionless contact between the flanks of two gears.
 //!
 //! In reading order:
-//! - [`placement`], [`facing`] and `facings`: where flanks stand, how two of them face each other, and which pairs come near,
+//! - [`placement`], [`facing`] and `meeting`: where flanks stand, how two of them face each other, and how they push where they meet,
 //! - [`patch`]: cells about the places where they are nearest,
 //! - [`flank_table`], [`half_plane`] and `corner`: the compliance of the cells, smooth part, logarithm, and near a sharp tip,
-//! - [`pair_cells`] and [`cells`]: the cells of one pair, and of all pairs of one mesh position with the deviations of the teeth that
-//!   stand there; H on them, and what their solution says of the mesh,
-//! - [`drawn`]: what of that the flanks as drawn have alike whatever carries their teeth,
+//! - [`pair_cells`]: the cells of one pair, as drawn,
+//! - [`drawn`] and `memo`: what flanks as drawn have alike whatever carries their teeth, kept,
+//! - `facings` and [`cells`]: which pairs come near with the deviations of the teeth that stand there, and the cells of all of them; H on
+//!   them, and what their solution says of the mesh,
 //! - [`stage`]: one fraction of the mesh period, from laying the cells to a solution that nothing penetrates,
 //! - `light`: what is left of it as the load vanishes,
 //! - `penetration`: the look over the whole flanks that proves it,
@@ -39,6 +40,8 @@ mod facings;
 pub mod flank_table;
 pub mod half_plane;
 mod light;
+mod meeting;
+mod memo;
 pub mod model;
 pub mod pair_cells;
 pub mod patch;

@@ -1,116 +1,308 @@
 //! Patches of contact cells about the places where flanks are nearest.
 //!
-//! The cells lie on the flank of the seat, the gear whose tip is nearer. On the line of action a cell presses along the
-//! theoretical normal; off it, where a tip corner digs into the other flank, the normal is tilted and its arm about the other
-//! center is not its base radius.
+//! The cells lie on the flank of the seat, the gear whose tip is nearer. On the line of action of unmodified flanks a cell presses along the
+//! theoretical normal; elsewhere, where a relief inclines a flank or a tip corner digs into the other one, the normal is tilted and its
+//! arms about the centers are not the base radii.
 
-use super::facing::{Facing, RangeEnd};
+use super::facing::{Facing, Hollow, RangeEnd, View};
 use super::half_plane::{NearField, logarithm_factor};
-use crate::gear::{GearPair, Member};
+use super::meeting::{Probe, Push};
+use crate::gear::{GearPair, Member, Vector};
+use crate::root_finding::bisect;
 
-/// Half the width of a patch, in half-widths of the contact under the whole load: the contact and a quarter beside it, so that one that
-/// a relief shifts still fits.
-const PATCH_HALF_WIDTH: f64 = 1.25;
+/// How far cells are laid to either side of a hollow, in half-widths of the contact under the whole load: the contact and a quarter beside
+/// it, so that one that a relief shifts still fits.
+const CORE: f64 = 1.25;
+
+/// No core reaches where the gap has risen by more than so many times c F: a parabola has risen by half of that at the end of its contact, a
+/// tilted corner by twice.
+const MOST_RISE: f64 = 2.5;
+
+/// Cells between two kinks where there are as many of them on a core, and how many times as many cells there are at the most.
+const CELLS_A_KINK: usize = 6;
+const MANY_KINKS: usize = 4;
+const MOST_REFINED: usize = 4;
+
+/// By how much each cell beside the core is wider than the one before.
+const GROWTH: f64 = 1.3;
+
+/// Cells that are added on each open side at a time.
+const FRINGE: usize = 8;
 
 /// One contact cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cell {
+    /// Its place in the chain of ends along the flank ([`Patch::ends_along`]): it reaches from this one to the next.
+    pub(super) stretch: usize,
+    /// Its width along the flank as it is.
+    pub width: f64,
     /// Roll length on the driving and on the driven gear.
     pub roll_lengths: [f64; 2],
     /// How each gear is pressed: components against its outward normal and against its way to the tip.
     pub directions: [[f64; 2]; 2],
-    /// The gap g_0 under no load, positive when open.
+    /// The gap of the flanks as drawn under no load, in the mean, positive when open.
     pub gap: f64,
-    /// The arm of the force about the driven axis over r_b2; 1 on the line of action.
-    pub arm: f64,
+    /// The arms of the force about the driving and the driven axis over the base radii, as drawn; 1 on the line of action.
+    pub arms: [f64; 2],
 }
 
 /// The cells of one tooth pair.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Patch {
-    /// The pair: the number n of the mesh position at which it passes the pitch point.
-    pub pair: i64,
     /// The gear on whose flank the cells lie.
     pub seat: Member,
-    /// Where the first cell begins, by arc length on the seat's flank.
-    pub from: f64,
-    /// The width of each cell along the flank.
-    pub cell_width: f64,
     /// The cells, towards the seat's tip.
     pub cells: Vec<Cell>,
-    /// What ends the patch on either side, where it reaches as far as the flanks face each other.
+    /// Where cells begin and end, by arc length on the seat's involute, and along the flank as it is.
+    pub(super) ends_along: Vec<[f64; 2]>,
+    /// What ends the flanks where the first and the last cell reach so far.
     pub ends: [Option<RangeEnd>; 2],
     /// How each gear gives way near the contact.
     pub near_fields: [NearField; 2],
     /// Whether the nominal contact lies past the seat's tip, off the path of contact.
     pub off_path: bool,
+    /// The middle of each cell, to be followed, and what the mean gap of the cell is more than the gap there.
+    pub(super) probes: Vec<(Probe, f64)>,
+}
+
+/// A stretch of flank on which forces may be even.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stretch {
+    pub(super) cell: Cell,
+    /// Where it begins and ends along the flank as it is.
+    pub(super) along: [f64; 2],
+    /// Its middle, to be followed.
+    pub(super) probe: Probe,
+    /// What its mean gap is more than that at its middle.
+    pub(super) more: f64,
+}
+
+/// How far about its hollows a pair is covered with cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct Extent {
+    /// The hollows that are covered, of those that touch first.
+    pub(super) hollows: usize,
+    /// How often cells were added on all open sides.
+    pub(super) widened: usize,
+    /// How far deviations that incline the flanks move the contact towards the seat's tip, in halves of [`half_width`].
+    pub(super) moved: i32,
+}
+
+impl Extent {
+    /// How far the contact at `hollow` under `load` moves where the flanks touch `along` farther towards the tip and are inclined by
+    /// `inclination` for each length along them: an angle moves the least place of a parabola by its radius.
+    pub(super) fn moved(
+        gears: &GearPair,
+        hollow: &Hollow,
+        load: f64,
+        (along, inclination): (f64, f64),
+    ) -> i32 {
+        let [down, up] = hollow.openings;
+        let (indentation, radius) = indentation(gears, hollow, load);
+        let half = 0.5 * contact_width(indentation, radius, 0.0);
+        // A corner stays where it is.
+        if down.max(up) * radius > half {
+            return 0;
+        }
+        ((along + inclination * radius) / half).round() as i32
+    }
 }
 
 impl Patch {
-    /// Lays `count` cells about the nearest point of `facing`, wide enough for `load` and then by the factor `widening`.
+    /// Lays cells about the hollows of `facing`, which is seen by `view`: `count` on that which touches first, in a core wide enough for
+    /// `load`, and as dense ones about the others.
     ///
-    /// Where the flanks cease to face each other the patch ends, so that its cells move with the contact and close up smoothly
-    /// towards a corner.
-    pub fn new(facing: &Facing<'_>, load: f64, count: usize, widening: f64) -> Self {
-        let gears = facing.gears();
+    /// Cells end where the flanks cease to face each other, so that they move with the contact and close up smoothly towards a corner,
+    /// and at kinks. The cells of a patch are among those of the same patch widened: where contact does not reach beyond the core nothing changes.
+    pub(super) fn new(
+        view: &View<'_>,
+        facing: &Facing,
+        load: f64,
+        count: usize,
+        extent: Extent,
+    ) -> Self {
+        let gears = view.gears();
         let width = gears.common_face_width();
-        let nearest = facing.point(facing.nearest);
-        let radii = nearest.map_or([0.0; 2], |point| {
-            facing.on_both(point.roll_length, point.sight.roll_length)
-        });
-        let factors: f64 = Member::BOTH
-            .map(|member| logarithm_factor(gears.gear(member).material().youngs_modulus, width))
-            .into_iter()
-            .sum();
-        // Near a base circle the involute is as sharp as one likes; a tenth of the other radius is as small as the patch goes.
-        let least = 0.1 * radii[0].max(radii[1]);
-        let [rho_1, rho_2] = radii.map(|radius| radius.max(least));
-        let rho = rho_1 * rho_2 / (rho_1 + rho_2);
-        let half_width = contact_width(load * factors, rho, facing.opening_angle());
-        let reach = PATCH_HALF_WIDTH * widening * half_width;
-        let range = facing.range;
-        let (from, to) = (
-            (facing.nearest - reach).max(range.from),
-            (facing.nearest + reach).min(range.to),
-        );
-        let cell_width = (to - from) / count as f64;
-        Self {
-            pair: facing.pair,
+        let covered = &facing.hollows[..extent.hollows.min(facing.hollows.len())];
+        let chains = chains(view, facing, covered, load, count, extent);
+        let mut patch = Self {
             seat: facing.seat,
-            from,
-            cell_width,
-            cells: (0..count)
-                .filter_map(|i| facing.cell(from + (i as f64 + 0.5) * cell_width, cell_width))
-                .collect(),
+            cells: Vec::new(),
+            ends_along: Vec::new(),
             ends: [
-                (from <= range.from).then_some(range.ends[0]),
-                (to >= range.to).then_some(range.ends[1]),
+                (chains[0][0] <= facing.range.from).then_some(facing.range.ends[0]),
+                (chains[chains.len() - 1].last() >= Some(&facing.range.to))
+                    .then_some(facing.range.ends[1]),
             ],
-            near_fields: Member::BOTH
-                .map(|member| NearField::new(gears.gear(member), radii[member.index()], width)),
+            near_fields: Member::BOTH.map(|member| {
+                let s = facing.hollows[0].roll_lengths[member.index()];
+                NearField::new(gears.gear(member), s, width)
+            }),
             off_path: facing.off_path,
+            probes: Vec::new(),
+        };
+        let (mut last, mut along) = (None::<Vector>, 0.0);
+        for chain in &chains {
+            for (i, &arc) in chain.iter().enumerate() {
+                let Some(point) = view.point(arc) else {
+                    continue;
+                };
+                let here = point.place.point;
+                along += last.map_or(0.0, |last| (here - last).norm());
+                last = Some(here);
+                patch.ends_along.push([arc, along]);
+                if i > 0 {
+                    patch.lay(view, facing);
+                }
+            }
+        }
+        patch
+    }
+
+    /// Lays the cell between the last two ends.
+    fn lay(&mut self, view: &View<'_>, facing: &Facing) {
+        let place = self.ends_along.len() - 2;
+        let ([from, _], [to, _]) = (self.ends_along[place], self.ends_along[place + 1]);
+        if let Some(stretch) = self.stretch_between(view, &facing.kinks, from, to) {
+            self.cells.push(Cell {
+                stretch: place,
+                ..stretch.cell
+            });
+            self.probes.push((stretch.probe, stretch.more));
         }
     }
-}
 
-impl Cell {
-    /// The gap between `teeth` of `pair`, the driving and the driven one, with their deviations from the drawing.
-    pub(super) fn gap_between(&self, pair: &GearPair, teeth: [usize; 2]) -> f64 {
-        let deviations = Member::BOTH.map(|member| {
-            let g = member.index();
-            pair.gear(member).deviation(teeth[g], self.roll_lengths[g])
-        });
-        self.gap - deviations[0] - deviations[1]
+    /// The flank of the seat of `view`, this one's or the other gear, between its arcs `from` and `to`; `None` inside the other base circle.
+    pub(super) fn stretch_between(
+        &self,
+        view: &View<'_>,
+        kinks: &[f64],
+        from: f64,
+        to: f64,
+    ) -> Option<Stretch> {
+        let middle = view.point(f64::midpoint(from, to))?;
+        let meeting = view.meeting(&middle);
+        let gap = mean_gap(view, kinks, from, to).unwrap_or(meeting.gap);
+        let (place, sight) = (&middle.place, &middle.sight);
+        let normal = Push::new(view.seat, place.normal, sight.normal).normal;
+        let on = |radial: Vector| {
+            let across = Vector::new(-radial.y, radial.x);
+            [normal.dot(&across), normal.dot(&radial)]
+        };
+        let (on_seat, on_mate) = (on(place.radial).map(|each| -each), on(sight.radial));
+        let roll_lengths = view.on_both(middle.roll_length, sight.roll_length);
+        let along = if view.seat == self.seat {
+            [from, to].map(|arc| self.along(arc))
+        } else {
+            let flank = view.gears().gear(self.seat).flank();
+            let at = self.along(flank.arc_length(roll_lengths[self.seat.index()]));
+            [at - 0.5 * (to - from), at + 0.5 * (to - from)]
+        };
+        Some(Stretch {
+            cell: Cell {
+                stretch: 0,
+                width: along[1] - along[0],
+                roll_lengths,
+                directions: view.on_both(on_seat, on_mate),
+                gap,
+                arms: meeting.arms,
+            },
+            along,
+            probe: view.probe(&middle),
+            more: gap - meeting.gap,
+        })
     }
-}
 
-impl Patch {
-    /// Where the cells begin and end, by arc length on the seat's flank.
-    pub fn reach(&self) -> (f64, f64) {
-        (
-            self.from,
-            self.from + self.cell_width * self.cells.len() as f64,
-        )
+    /// Where `arc` lies along the flank as it is.
+    fn along(&self, arc: f64) -> f64 {
+        let ends = &self.ends_along;
+        let after = ends.partition_point(|end| end[0] < arc);
+        match (after.checked_sub(1).map(|i| ends[i]), ends.get(after)) {
+            (_, Some(end)) if end[0] == arc => end[1],
+            (Some(low), Some(high)) => {
+                low[1] + (arc - low[0]) * (high[1] - low[1]) / (high[0] - low[0])
+            }
+            // Beside all cells the flank is about as long as its involute.
+            (Some(end), None) => end[1] + arc - end[0],
+            (None, Some(end)) => end[1] + arc - end[0],
+            (None, None) => arc,
+        }
+    }
+
+    /// The width that most cells have, by arc length on the involute.
+    pub(super) fn usual_width(&self) -> f64 {
+        let widths = self.cells.iter().map(|cell| {
+            let [from, to] = [0, 1].map(|end| self.ends_along[cell.stretch + end][0]);
+            to - from
+        });
+        let mut widths: Vec<f64> = widths.collect();
+        widths.sort_by(f64::total_cmp);
+        widths[widths.len() / 2]
+    }
+
+    /// Where each cell begins and ends along the flank as it is.
+    pub(super) fn stretches(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.cells
+            .iter()
+            .map(|cell| [0, 1].map(|end| self.ends_along[cell.stretch + end][1]))
+    }
+
+    /// About how much memory it takes beside itself, in bytes.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(self.cells.as_slice())
+            + size_of_val(self.ends_along.as_slice())
+            + size_of_val(self.probes.as_slice())
+    }
+
+    /// Whether `arc` lies in a cell.
+    pub(super) fn covers(&self, arc: f64) -> bool {
+        self.cells.iter().any(|cell| {
+            let [from, to] = [0, 1].map(|end| self.ends_along[cell.stretch + end][0]);
+            (from..=to).contains(&arc)
+        })
+    }
+
+    /// Cells beside which there is none on the side of the root or of the tip, though the flanks face each other there.
+    fn open_ends(&self) -> impl Iterator<Item = usize> {
+        let last = self.cells.len().saturating_sub(1);
+        let first = (self.ends[0].is_none() && !self.cells.is_empty()).then_some(0);
+        let apart = (0..last)
+            .filter(|i| self.cells[*i].stretch + 1 != self.cells[i + 1].stretch)
+            .flat_map(|i| [i, i + 1]);
+        first
+            .into_iter()
+            .chain(apart)
+            .chain(self.ends[1].is_none().then_some(last))
+    }
+
+    /// Whether there is room for more cells.
+    pub(super) fn can_widen(&self) -> bool {
+        self.open_ends().next().is_some()
+    }
+
+    /// Whether contact of the `active` cells reaches one beside which there could be another.
+    pub(super) fn overflows(&self, active: &[bool]) -> bool {
+        self.open_ends().any(|i| active[i])
+    }
+
+    /// How far the middle of the `active` cells lies from the middle of all, in halves of a contact's half-width, where they are one stretch that would
+    /// fit; cells reach 1.25 half-widths of the contact under the whole load to either side, so that this is about what [`Extent::moved`] counts in.
+    pub(super) fn off_middle(&self, active: &[bool]) -> i32 {
+        let ends = self.ends == [None, None] && self.cells.len() == self.ends_along.len() - 1;
+        let (first, last) = (
+            active.iter().position(|active| *active),
+            active.iter().rposition(|active| *active),
+        );
+        let (Some(first), Some(last), true) = (first, last, ends) else {
+            return 0;
+        };
+        let at = |i: usize| self.ends_along[i][1];
+        let all = at(self.cells.len()) - at(0);
+        if at(last + 1) - at(first) > 0.8 * all {
+            return 0;
+        }
+        let off = 0.5 * (at(first) + at(last + 1)) - 0.5 * (at(0) + at(self.cells.len()));
+        (off / (0.5 * all / CORE) / 0.5).round() as i32
     }
 
     /// What ends the contact of the `active` cells where it reaches an end of the flanks.
@@ -119,6 +311,258 @@ impl Patch {
         let last = self.ends[1].filter(|_| active.last() == Some(&true));
         first.into_iter().chain(last).collect()
     }
+}
+
+/// The mean gap from `from` to `to`, by two Gauss points between each two `kinks`.
+fn mean_gap(view: &View<'_>, kinks: &[f64], from: f64, to: f64) -> Option<f64> {
+    let first = kinks.partition_point(|kink| *kink <= from);
+    let inside = kinks[first..].iter().copied().take_while(|kink| *kink < to);
+    let (mut sum, mut begin) = (0.0, from);
+    for end in inside.chain([to]) {
+        let (middle, offset) = (f64::midpoint(begin, end), (end - begin) / 12.0_f64.sqrt());
+        for arc in [middle - offset, middle + offset] {
+            sum += 0.5 * (end - begin) * view.meeting(&view.point(arc)?).gap;
+        }
+        begin = end;
+    }
+    Some(sum / (to - from))
+}
+
+/// Rising ends of cells: chains of them, apart from each other.
+fn chains(
+    view: &View<'_>,
+    facing: &Facing,
+    covered: &[Hollow],
+    load: f64,
+    count: usize,
+    extent: Extent,
+) -> Vec<Vec<f64>> {
+    let range = &facing.range;
+    let cores = covered
+        .iter()
+        .map(|hollow| core(view, hollow, load, facing));
+    let cores: Vec<[f64; 2]> = cores.collect();
+    let [from, to] = cores[0];
+    // A profile as it was measured has many hollows, and a contact in each.
+    let inside = |kink: &&f64| from < **kink && **kink < to;
+    let kinks = facing.kinks.iter().filter(inside).count();
+    let count = if kinks < MANY_KINKS {
+        count
+    } else {
+        count.max(CELLS_A_KINK * kinks).min(MOST_REFINED * count)
+    };
+    let width = (to - from) / count as f64;
+    // Moved by whole cells too.
+    let half = (0.5 * count as f64 / (2.0 * CORE)).round() * width;
+    let by = f64::from(extent.moved) * half;
+    let moved = [from + by, to + by].map(|end| end.clamp(range.from, range.to));
+    let [from, to] = if moved[0] + half < moved[1] {
+        moved
+    } else {
+        [from, to]
+    };
+    // The others in whole cells from the first, so that they add to it and change nothing.
+    let on_lattice = |[low, high]: [f64; 2]| {
+        [
+            from + ((low - from) / width).floor() * width,
+            to + ((high - to) / width).ceil() * width,
+        ]
+    };
+    let mut cores: Vec<[f64; 2]> = std::iter::once([from, to])
+        .chain(cores[1..].iter().map(|core| on_lattice(*core)))
+        .map(|[low, high]| [low.max(range.from), high.min(range.to)])
+        .collect();
+    cores.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut joined: Vec<[f64; 2]> = Vec::new();
+    for [low, high] in cores {
+        match joined.last_mut() {
+            Some(last) if low <= last[1] + 0.5 * width => last[1] = last[1].max(high),
+            _ => joined.push([low, high]),
+        }
+    }
+    let mut chains: Vec<Vec<f64>> = joined
+        .into_iter()
+        .map(|core| ending_at_kinks(core, width, facing))
+        .collect();
+    widen(&mut chains, facing, width, extent.widened);
+    chains
+}
+
+/// The stretch about `hollow` that the contact may take under the whole load, and a quarter beside it.
+fn core(view: &View<'_>, hollow: &Hollow, load: f64, facing: &Facing) -> [f64; 2] {
+    let Facing { range, kinks, .. } = facing;
+    let (indentation, radius) = indentation(view.gears(), hollow, load);
+    let ways = hollow
+        .openings
+        .map(|angle| CORE * contact_width(indentation, radius, angle));
+    let [down, up] = ways;
+    let (low, high) = (hollow.arc - down, hollow.arc + up);
+    let gap = |arc: f64| {
+        view.point(arc)
+            .map_or(f64::INFINITY, |point| point.sight.gap)
+    };
+    let least = gap(hollow.arc);
+    let outside = |arc: f64| gap(arc) - least < MOST_RISE * indentation;
+    // Beyond a kink the gap may open faster than the parabola does.
+    let bent = |from: f64, to: f64| kinks.iter().any(|kink| from < *kink && *kink < to);
+    let convex = facing.hollows.len() == 1;
+    let to = |end: f64| {
+        let (from, to) = (end.min(hollow.arc), end.max(hollow.arc));
+        let end = end.clamp(range.from, range.to);
+        if convex && bent(from, to) && !outside(end) {
+            bisect(hollow.arc, end, outside)
+        } else {
+            end
+        }
+    };
+    [to(low), to(high)]
+}
+
+/// c F, the depth that goes with the logarithm of both bodies under `load`, and the radius of the gap's parabola at `hollow`.
+fn indentation(gears: &GearPair, hollow: &Hollow, load: f64) -> (f64, f64) {
+    let width = gears.common_face_width();
+    let factors: f64 = Member::BOTH
+        .map(|member| logarithm_factor(gears.gear(member).material().youngs_modulus, width))
+        .into_iter()
+        .sum();
+    let [s_1, s_2] = hollow.roll_lengths;
+    // Near a base circle the involute is as sharp as one likes; a tenth of the other radius is as small as the patch goes.
+    let least = 0.1 * s_1.max(s_2);
+    let [rho_1, rho_2] = [s_1, s_2].map(|radius| radius.max(least));
+    (load * factors, rho_1 * rho_2 / (rho_1 + rho_2))
+}
+
+/// No cell is narrower than this part of the others.
+const SLIVER: f64 = 1e-3;
+
+/// How often cells are halved towards a kink, where pressure grows with the logarithm of the distance from it.
+const AT_KINK: u32 = 2;
+
+/// How often towards a tip corner, where it grows with a power.
+const AT_TIP: u32 = 4;
+
+/// The ends of cells of about `width` over a stretch of the flank of `facing`. A kink ends one among narrower cells; it cuts the cell in which it
+/// lies, so that nothing steps as cells move over it.
+fn ending_at_kinks([from, to]: [f64; 2], width: f64, facing: &Facing) -> Vec<f64> {
+    let Facing { range, kinks, .. } = facing;
+    let count = ((to - from) / width).round().max(1.0) as usize;
+    let width = (to - from) / count as f64;
+    let at_tip = |end: f64, limit: f64, what: RangeEnd| {
+        let tip = matches!(what, RangeEnd::Tip | RangeEnd::MateTip);
+        if tip && end == limit { AT_TIP } else { 0 }
+    };
+    // Each with how often the cells beside it are halved.
+    let mut ends: Vec<(f64, u32)> = (0..=count).map(|i| (from + i as f64 * width, 0)).collect();
+    ends[0].1 = at_tip(from, range.from, range.ends[0]);
+    ends[count] = (to, at_tip(to, range.to, range.ends[1]));
+    let mut last = None;
+    let first = kinks.partition_point(|kink| *kink <= from);
+    for kink in kinks[first..].iter().take_while(|kink| **kink < to) {
+        let before = ((kink - from) / width) as usize;
+        // Kinks denser than cells lie inside of them.
+        if last != Some(before) && before < count {
+            last = Some(before);
+            ends.push((*kink, AT_KINK));
+        }
+    }
+    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // Ends that a kink meets are one.
+    ends.dedup_by(|after, before| {
+        let one = after.0 - before.0 < SLIVER * width;
+        if one {
+            before.1 = before.1.max(after.1);
+        }
+        one
+    });
+    if let Some(end) = ends.last_mut() {
+        end.0 = to;
+    }
+    let mut graded = Vec::with_capacity(ends.len());
+    for pair in ends.windows(2) {
+        let [(low, before), (high, after)] = [pair[0], pair[1]];
+        let parts = |times: u32| (1..=times).map(|i| (high - low) * 0.5_f64.powi(i as i32));
+        graded.push(low);
+        // Where kinks are as dense as cells none stands out.
+        if before > after {
+            let mut beyond: Vec<f64> = parts(before).map(|part| low + part).collect();
+            beyond.reverse();
+            graded.extend(beyond);
+        } else if after > before {
+            graded.extend(parts(after).map(|part| high - part));
+        }
+    }
+    graded.push(to);
+    graded
+}
+
+/// Adds cells that grow away from the `chains` on all their open sides, until they meet.
+fn widen(chains: &mut Vec<Vec<f64>>, facing: &Facing, width: f64, times: usize) {
+    if times == 0 {
+        return;
+    }
+    let Facing { range, kinks, .. } = facing;
+    let firsts: Vec<f64> = chains.iter().map(|chain| chain[0]).collect();
+    let lasts: Vec<f64> = chains.iter().map(|chain| chain[chain.len() - 1]).collect();
+    let mut joined: Vec<Vec<f64>> = Vec::new();
+    for (i, chain) in chains.drain(..).enumerate() {
+        // Half the way to the next chain is room for each.
+        let low = if i == 0 {
+            range.from
+        } else {
+            f64::midpoint(lasts[i - 1], firsts[i])
+        };
+        let high = firsts
+            .get(i + 1)
+            .map_or(range.to, |next| f64::midpoint(lasts[i], *next));
+        let mut before = fringe((chain[0], low), kinks, width, times);
+        before.reverse();
+        let beyond = fringe((chain[chain.len() - 1], high), kinks, width, times);
+        let ends = before.into_iter().chain(chain).chain(beyond);
+        match joined.last_mut() {
+            Some(last) if i > 0 && last.last() == Some(&low) => {
+                // Both came to the same middle.
+                last.extend(ends.filter(|end| *end > low));
+            }
+            _ => joined.push(ends.collect()),
+        }
+    }
+    *chains = joined;
+}
+
+/// The ends of the cells beyond `end` towards `limit`; at `kinks` they begin anew as narrow as at first.
+fn fringe((end, limit): (f64, f64), kinks: &[f64], width: f64, times: usize) -> Vec<f64> {
+    let way = (limit - end).signum();
+    let (mut ends, mut at, mut step) = (Vec::new(), end, width);
+    for _ in 0..FRINGE * times {
+        let left = (limit - at).abs();
+        if left <= 1e-9 * width {
+            break;
+        }
+        step *= GROWTH;
+        // No sliver is left at the limit.
+        let next = if left < 1.5 * step {
+            limit
+        } else {
+            at + way * step
+        };
+        let beyond = |kink: &f64| (kink - at) * way > SLIVER * width;
+        let before = |kink: &f64| (next - kink) * way > SLIVER * width;
+        let mut between = kinks
+            .iter()
+            .copied()
+            .filter(|kink| beyond(kink) && before(kink));
+        let kink = if way > 0.0 {
+            between.next()
+        } else {
+            between.next_back()
+        };
+        at = kink.unwrap_or(next);
+        if kink.is_some() {
+            step = width;
+        }
+        ends.push(at);
+    }
+    ends
 }
 
 /// How far a contact reaches from its middle or from its corner, where the gap opens as σ x + x²/(2 ρ).
@@ -131,43 +575,10 @@ fn contact_width(indentation: f64, radius: f64, angle: f64) -> f64 {
     4.0 * indentation / (angle + root)
 }
 
-impl Facing<'_> {
-    /// What belongs to the seat and to the other gear, as driving and driven.
-    pub(super) fn on_both<T: Copy>(&self, seat: T, other: T) -> [T; 2] {
-        match self.seat {
-            Member::Driving => [seat, other],
-            Member::Driven => [other, seat],
-        }
-    }
-
-    /// A cell of width `width` about `arc`; `None` inside the other base circle.
-    pub(super) fn cell(&self, arc: f64, width: f64) -> Option<Cell> {
-        // The mean gap of the cell, by two Gauss points.
-        let offset = width / 12.0_f64.sqrt();
-        let (before, after) = (self.point(arc - offset)?.gap, self.point(arc + offset)?.gap);
-        let here = self.point(arc)?;
-        let (place, sight) = (here.place, here.sight);
-        // Pressed together both flanks turn to a common normal between their own.
-        let normal = (sight.normal - place.normal).normalize();
-        let on_seat = [-normal.dot(&place.normal), -normal.dot(&place.to_tip)];
-        let on_mate = [normal.dot(&sight.normal), normal.dot(&sight.tipward())];
-        // The driven gear is pressed away from the driving flank, where its own flank stands.
-        let (at, push) = match self.seat {
-            Member::Driving => (place.point - sight.gap * sight.normal, -normal),
-            Member::Driven => (place.point, normal),
-        };
-        Some(Cell {
-            roll_lengths: self.on_both(here.roll_length, sight.roll_length),
-            directions: self.on_both(on_seat, on_mate),
-            gap: f64::midpoint(before, after),
-            arm: self.placement().arm(at, push),
-        })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::placement::Placement;
     use crate::gear::SpurGear;
     use crate::gear::spur::tests::paper_gear;
 
@@ -176,31 +587,41 @@ mod tests {
         GearPair::new(gear.clone(), gear, 100.5e-3).expect("meshes")
     }
 
-    fn patch(pair: &GearPair, eta: f64, n: i64, count: usize) -> Patch {
-        let facing = Facing::of(pair, eta, n, 0).expect("flanks that face each other");
-        Patch::new(&facing, 2447.61, count, 1.0)
+    fn patch(pair: &GearPair, phase: f64, count: usize) -> Patch {
+        let facing = Facing::drawn(pair, phase).expect("flanks that face each other");
+        let view = View {
+            placement: Placement::drawn(pair, phase),
+            seat: facing.seat,
+        };
+        let extent = Extent {
+            hollows: 1,
+            widened: 0,
+            moved: 0,
+        };
+        Patch::new(&view, &facing, 2447.61, count, extent)
     }
 
     #[test]
     fn conjugate_flanks_touch_on_the_line_of_action_with_arm_one() {
         let pair = pair();
-        for (eta, n) in [(0.0, 0), (0.3, 0), (0.3, 1), (0.7, 1), (-0.25, 0)] {
-            let patch = patch(&pair, eta, n, 40);
-            let s = pair.roll_length_of(eta - n as f64);
+        for phase in [0.0, 0.3, -0.7, -0.3, -0.25] {
+            let patch = patch(&pair, phase, 40);
+            let s = pair.roll_length_of(phase);
             // At x beside the line of action both normals are turned against each other by x (1/s_1 + 1/s_2): half of that
             // tilts the force, whose arm then differs by s_2 times it.
             let other = pair.line_of_action() - s;
-            let tilt = 20.0 * patch.cell_width * (1.0 / s + 1.0 / other) / 2.0;
+            let width = patch.cells[0].width;
+            let tilt = 20.0 * width * (1.0 / s + 1.0 / other) / 2.0;
             let most = 1.1 * tilt * other / pair.driven().base_radius();
-            assert!(patch.cells.iter().all(|cell| (cell.arm - 1.0).abs() < most));
+            let arms = patch.cells.iter().map(|cell| cell.arms[1]);
+            assert!(arms.into_iter().all(|arm| (arm - 1.0).abs() < most));
             let nearest = patch
                 .cells
                 .iter()
                 .min_by(|a, b| a.gap.total_cmp(&b.gap))
                 .expect("cells");
             // Half a cell beside it: along a roll length a cell is r_b/s of its width.
-            let cell =
-                patch.cell_width * pair.driving().base_radius() / s.min(pair.line_of_action() - s);
+            let cell = width * pair.driving().base_radius() / s.min(pair.line_of_action() - s);
             assert!((nearest.roll_lengths[0] - s).abs() < 0.51 * cell);
             let sum = nearest.roll_lengths[0] + nearest.roll_lengths[1];
             assert!((sum - pair.line_of_action()).abs() < cell);
@@ -209,9 +630,9 @@ mod tests {
 
     #[test]
     fn the_gap_beside_the_contact_is_the_parabola_of_the_relative_curvature() {
-        let patch = patch(&pair(), 0.2, 0, 41);
+        let patch = patch(&pair(), 0.2, 41);
         let (center, end) = (patch.cells[20], patch.cells[36]);
-        let x = 16.0 * patch.cell_width;
+        let x = 16.0 * center.width;
         let curvature = 1.0 / center.roll_lengths[0] + 1.0 / center.roll_lengths[1];
         assert!(
             ((end.gap - center.gap) / (x * x / 2.0 * curvature) - 1.0).abs() < 0.03,
@@ -228,7 +649,7 @@ mod tests {
             (periods(s_a) - 0.1, Member::Driven),
             (periods(s_e) + 0.1, Member::Driving),
         ] {
-            let patch = patch(&pair, eta, 0, 40);
+            let patch = patch(&pair, eta, 40);
             assert!(patch.off_path && patch.seat == seat);
             assert_eq!(patch.ends, [None, Some(RangeEnd::Tip)]);
             let last = patch.cells.last().expect("cells");

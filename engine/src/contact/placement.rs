@@ -1,7 +1,11 @@
 //! Both gears turned to a mesh position, and what one flank sees of the other.
+//!
+//! Flanks are taken as they are: modifications and the deviation of a tooth turn each point of its flank about the gear's axis, by
+//! e/r_b at the radius at which it stands, and incline its normal by e'.
 
 use std::f64::consts::PI;
 
+use super::meeting::{Meeting, Push};
 use crate::gear::{GearPair, Member, SpurGear, Vector, radial, tangential, teeth_on};
 
 /// Both gears at one mesh position, as one tooth pair sees them.
@@ -12,10 +16,10 @@ pub struct Placement<'a> {
     pair: &'a GearPair,
     /// Where the gears' own axes stand: beside the axes of rotation where they are eccentric.
     centers: [Vector; 2],
-    /// The driven axis of rotation.
-    driven_axis: Vector,
     /// The angle of each tooth's centerline.
     angles: [f64; 2],
+    /// The teeth whose deviations count.
+    teeth: Option<[usize; 2]>,
 }
 
 /// A place on the boundary of a gear.
@@ -24,56 +28,83 @@ pub(super) struct FlankPlace {
     pub(super) point: Vector,
     /// The outward unit normal.
     pub(super) normal: Vector,
-    /// The unit tangent towards the tip.
-    pub(super) to_tip: Vector,
+    /// How the point moves for each unit of arc of the involute.
+    pub(super) way: Vector,
+    /// The radial direction e_r of the tangent point on the base circle; the involute's normal is at right angles to it.
+    pub(super) radial: Vector,
 }
 
-/// What a point sees of an involute: where the involute's normal through the point meets it.
-///
-/// The normal of an involute is a tangent of its base circle, so that this is a closed form.
+/// What a point sees of a flank: how far the flank is to be turned to pass through it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sight {
-    /// The roll length at the foot of the normal; less than that of the form circle, or negative, where the involute's
-    /// continuation is met below the flank.
+    /// The roll length of the flank at the radius of the point: the length of the tangent from the point to the base circle.
     pub(super) roll_length: f64,
-    /// The distance along the normal, positive outside.
+    /// The angle by which the flank is to be turned, as a length on its base circle; positive where the point is outside.
     pub(super) gap: f64,
-    /// The outward unit normal at the foot.
+    /// The outward unit normal of the flank where it passes through the point.
     pub(super) normal: Vector,
-    /// The length of the tangent from the point to the base circle.
-    tangent: f64,
+    /// The radial direction of the tangent point on the base circle.
+    pub(super) radial: Vector,
+    /// The slope of what is missing from the involute there.
+    slope: f64,
+}
+
+/// The outward unit normal of a flank from which e is missing with the slope e' by the roll length `s`; `radial` and `across` are those
+/// of its tangent point on the base circle of radius `r_b`.
+pub(super) fn inclined(radial: Vector, across: Vector, s: f64, r_b: f64, slope: f64) -> Vector {
+    // dP/ds = −e' e_t + (1 + e') s/r_b e_r.
+    ((1.0 + slope) * s / r_b * across + slope * radial).normalize()
+}
+
+/// The mesh position at which the teeth of a pair that has `phase` are turned as they are: the angle of each tooth's centerline.
+pub(super) fn angles(pair: &GearPair, phase: f64) -> [f64; 2] {
+    let alpha_w = pair.working_pressure_angle();
+    let s_1 = pair.roll_length_of(phase);
+    let angle = |gear: &SpurGear, tangent: f64, s: f64| {
+        tangent - gear.flank().base_half_angle() + s / gear.base_radius()
+    };
+    [
+        angle(pair.driving(), -alpha_w, s_1),
+        angle(pair.driven(), PI - alpha_w, pair.line_of_action() - s_1),
+    ]
+}
+
+/// The axes of rotation.
+pub(super) fn axes(pair: &GearPair) -> [Vector; 2] {
+    [Vector::zeros(), Vector::new(pair.center_distance(), 0.0)]
+}
+
+/// Where the own axes of the gears stand while the centerlines of the teeth of pair `n` point along `angles`.
+pub(super) fn centers(pair: &GearPair, n: i64, angles: [f64; 2]) -> [Vector; 2] {
+    let axes = axes(pair);
+    Member::BOTH.map(|member| {
+        let (gear, g) = (pair.gear(member), member.index());
+        // From the tooth in mesh back to tooth 0.
+        let tooth_0 = angles[g] - teeth_on(member, n) as f64 * gear.pitch_angle();
+        axes[g] + gear.deviations().displacement(tooth_0)
+    })
 }
 
 impl<'a> Placement<'a> {
-    /// The teeth of pair `n` at the mesh position `eta`, `home` whole mesh periods later.
-    ///
-    /// Those periods turn both gears by whole teeth, which shows only where a gear is eccentric.
-    pub fn new(pair: &'a GearPair, eta: f64, n: i64, home: i64) -> Self {
-        let alpha_w = pair.working_pressure_angle();
-        let s_1 = pair.roll_length_of(eta - n as f64);
-        let angle = |gear: &SpurGear, tangent: f64, s: f64| {
-            tangent - gear.flank().base_half_angle() + s / gear.base_radius()
-        };
-        let angles = [
-            angle(pair.driving(), -alpha_w, s_1),
-            angle(pair.driven(), PI - alpha_w, pair.line_of_action() - s_1),
-        ];
-        let driven_axis = Vector::new(pair.center_distance(), 0.0);
-        let center = |member: Member, axis: Vector| {
-            let gear = pair.gear(member);
-            // From the tooth in mesh back to tooth 0.
-            let teeth = teeth_on(member, n + home) as f64;
-            let tooth_0 = angles[member.index()] - teeth * gear.pitch_angle();
-            axis + gear.deviations().displacement(tooth_0)
-        };
+    /// The teeth of a pair as drawn, `phase` mesh periods after it passed the pitch point.
+    pub fn drawn(pair: &'a GearPair, phase: f64) -> Self {
         Self {
             pair,
-            centers: [
-                center(Member::Driving, Vector::zeros()),
-                center(Member::Driven, driven_axis),
-            ],
-            driven_axis,
+            centers: axes(pair),
+            angles: angles(pair, phase),
+            teeth: None,
+        }
+    }
+
+    /// The teeth of pair `n` with their deviations at the mesh position `eta`, the driven gear lagging by `lag` on its base circle.
+    pub fn real(pair: &'a GearPair, eta: f64, n: i64, lag: f64) -> Self {
+        let mut angles = angles(pair, eta - n as f64);
+        angles[1] += lag / pair.driven().base_radius();
+        Self {
+            pair,
+            centers: centers(pair, n, angles),
             angles,
+            teeth: Some(pair.teeth(n)),
         }
     }
 
@@ -82,15 +113,37 @@ impl<'a> Placement<'a> {
         (self.centers[member.index()], self.angles[member.index()])
     }
 
+    /// The gears.
+    pub(super) fn gears(&self) -> &'a GearPair {
+        self.pair
+    }
+
+    /// What is missing from the involute of `member` at the roll length `s`, and its slope.
+    fn missing(&self, member: Member, s: f64) -> (f64, f64) {
+        let gear = self.pair.gear(member);
+        let (depth, slope) = (gear.removed(s), gear.removed_slope(s));
+        self.teeth.map_or((depth, slope), |teeth| {
+            let tooth = teeth[member.index()];
+            (
+                depth - gear.deviation(tooth, s),
+                slope - gear.deviation_slope(tooth),
+            )
+        })
+    }
+
     /// The place on the flank of `member` at roll length `s`.
     pub(super) fn place(&self, member: Member, s: f64) -> FlankPlace {
         let gear = self.pair.gear(member);
-        let t = self.angles[member.index()] + gear.flank().tangent_angle(s);
+        let r_b = gear.base_radius();
+        let (depth, slope) = self.missing(member, s);
+        let t = self.angles[member.index()] + gear.flank().tangent_angle(s) - depth / r_b;
         let (e_r, e_t) = (radial(t), tangential(t));
         FlankPlace {
-            point: self.centers[member.index()] + gear.base_radius() * e_r + s * e_t,
-            normal: e_t,
-            to_tip: e_r,
+            point: self.centers[member.index()] + r_b * e_r + s * e_t,
+            normal: inclined(e_r, e_t, s, r_b, slope),
+            // An arc grows by s/r_b along a roll length.
+            way: (1.0 + slope) * e_r - slope * r_b / s.max(1e-9 * r_b) * e_t,
+            radial: e_r,
         }
     }
 
@@ -99,16 +152,28 @@ impl<'a> Placement<'a> {
         let d = point - self.centers[member.index()];
         let flank = self.pair.gear(member).flank();
         let r_b = flank.base_radius();
-        let tangent = (d.norm_squared() - r_b * r_b).max(0.0).sqrt();
-        let t = d.y.atan2(d.x) - (tangent / r_b).atan();
+        let s = (d.norm_squared() - r_b * r_b).max(0.0).sqrt();
+        if s == 0.0 {
+            return None;
+        }
+        let t = d.y.atan2(d.x) - (s / r_b).atan();
         let turn = self.angles[member.index()] + flank.base_half_angle() - t;
-        let roll_length = r_b * (turn - (turn / (2.0 * PI)).round() * 2.0 * PI);
-        (tangent > 0.0).then(|| Sight {
-            roll_length,
-            gap: tangent - roll_length,
-            normal: tangential(t),
-            tangent,
+        let foot = r_b * (turn - (turn / (2.0 * PI)).round() * 2.0 * PI);
+        let (depth, slope) = self.missing(member, s);
+        let (e_r, e_t) = (radial(t), tangential(t));
+        Some(Sight {
+            roll_length: s,
+            gap: s - foot + depth,
+            normal: inclined(e_r, e_t, s, r_b, slope),
+            radial: e_r,
+            slope,
         })
+    }
+
+    /// How the flanks meet at `place` on the flank of `seat`, which sees `sight`.
+    pub(super) fn meeting(&self, seat: Member, place: &FlankPlace, sight: &Sight) -> Meeting {
+        let push = Push::new(seat, place.normal, sight.normal);
+        push.meeting(self.pair, place.point, sight.gap, self.centers)
     }
 
     /// The distance of `point` from the fillet on the loaded side of the tooth of `member`, positive outside.
@@ -138,26 +203,15 @@ impl<'a> Placement<'a> {
         }
         nearest
     }
-
-    /// The arm about the driven axis, over r_b2, of a force that presses the driven gear along `direction` at `point`.
-    pub(super) fn arm(&self, point: Vector, direction: Vector) -> f64 {
-        let d = point - self.driven_axis;
-        -(d.x * direction.y - d.y * direction.x) / self.pair.driven().base_radius()
-    }
 }
 
 impl Sight {
-    /// The way to the tip at the foot.
-    pub(super) fn tipward(&self) -> Vector {
-        // An involute's normal is e_t and its tangent e_r of the same angle.
-        Vector::new(self.normal.y, -self.normal.x)
-    }
-
-    /// How the gap and the roll length at the foot change as the point moves along the unit vector `way`.
+    /// How gap and roll length change as the point moves along `way`, on a gear of `base_radius`.
     pub(super) fn change(&self, base_radius: f64, way: Vector) -> (f64, f64) {
-        // The point stands at r_b e_r(t) + L e_t(t) of the center, L the tangent: dt = −way·e_r / L, and the gap is the
-        // distance along e_t.
-        let turn = -way.dot(&self.tipward()) / self.tangent;
-        (way.dot(&self.normal), -base_radius * turn)
+        let across = Vector::new(-self.radial.y, self.radial.x);
+        // The point stands at r_b e_r(t) + s e_t(t) of the center: dt = −way·e_r/s, and s less the foot changes as way·e_t.
+        let out = way.dot(&across);
+        let growth = out + base_radius / self.roll_length * way.dot(&self.radial);
+        (out + self.slope * growth, growth)
     }
 }

@@ -57,8 +57,7 @@ pub fn contacts_keeping<T: Send>(
     run: &Run,
     keep: impl Fn(&ContactCells<'_>, &ContactSolution) -> T + Sync,
 ) -> Result<Vec<(MeshContact, T)>, PositionsError> {
-    let concentric = model.pair.is_concentric();
-    let stages = stages(positions, concentric);
+    let stages = stages(positions);
     let solved: Result<Vec<Vec<_>>, PositionsError> = stages
         .par_chunks(CHUNK)
         .map(|chunk| {
@@ -70,13 +69,7 @@ pub fn contacts_keeping<T: Send>(
                     mesh_position,
                     error,
                 };
-                // Flanks of concentric gears stand alike in every mesh period.
-                let home = if concentric {
-                    0.0
-                } else {
-                    positions[places[0]].floor()
-                };
-                let mut stage = Stage::new(model, fraction + home, load)
+                let mut stage = Stage::new(model, *fraction, load)
                     .map_err(|error| at(error, positions[places[0]]))?;
                 let mut warm = first.clone();
                 for &place in places {
@@ -99,16 +92,15 @@ pub fn contacts_keeping<T: Send>(
     Ok(contacts.into_iter().map(|(_, contact)| contact).collect())
 }
 
-/// Positions by their fraction of the mesh period, rising, with the places of those that have it; each by itself if they are not
-/// `together`.
-fn stages(positions: &[f64], together: bool) -> Vec<(f64, Vec<usize>)> {
+/// Positions by their fraction of the mesh period, rising, with the places of those that have it.
+fn stages(positions: &[f64]) -> Vec<(f64, Vec<usize>)> {
     let fraction = |place: usize| positions[place] - positions[place].floor();
     let mut places: Vec<usize> = (0..positions.len()).collect();
     places.sort_by(|&a, &b| fraction(a).total_cmp(&fraction(b)));
     let mut stages: Vec<(f64, Vec<usize>)> = Vec::new();
     for place in places {
         match stages.last_mut() {
-            Some((known, places)) if together && fraction(place) - *known < SAME_FRACTION => {
+            Some((known, places)) if fraction(place) - *known < SAME_FRACTION => {
                 places.push(place);
             }
             _ => stages.push((fraction(place), vec![place])),

@@ -69,24 +69,9 @@ impl ContactProblem {
         if rows == 0 && columns == 0 && gaps.is_empty() && arms.is_empty() {
             return Err(ContactError::NoPoints);
         }
-        if columns != rows || gaps.len() != rows || arms.len() != rows {
-            return Err(ContactError::SizesDiffer {
-                rows,
-                columns,
-                gaps: gaps.len(),
-                arms: arms.len(),
-            });
-        }
+        check_points(rows, columns, &gaps, &arms)?;
         for column in 0..columns {
             all_finite(ContactQuantity::Compliance, compliance.col_as_slice(column))?;
-        }
-        all_finite(ContactQuantity::Gap, &gaps)?;
-        all_finite(ContactQuantity::Arm, &arms)?;
-        if let Some(point) = arms.iter().position(|&arm| arm <= 0.0) {
-            return Err(ContactError::ArmNotPositive {
-                point,
-                arm: arms[point],
-            });
         }
         if (0..rows).any(|point| compliance[(point, point)] <= 0.0) {
             return Err(ContactError::NotPositiveDefinite { points: 1 });
@@ -98,26 +83,18 @@ impl ContactProblem {
         })
     }
 
-    /// The same points with other `gaps`.
+    /// The same compliance with other `gaps` and `arms`.
     ///
     /// # Errors
     ///
-    /// [`ContactError::SizesDiffer`] or [`ContactError::NotFinite`].
-    pub fn with_gaps(&self, gaps: Vec<f64>) -> Result<Self, ContactError> {
+    /// As for [`ContactProblem::new`].
+    pub fn with_gaps(&self, gaps: Vec<f64>, arms: Vec<f64>) -> Result<Self, ContactError> {
         let points = self.point_count();
-        if gaps.len() != points {
-            return Err(ContactError::SizesDiffer {
-                rows: points,
-                columns: points,
-                gaps: gaps.len(),
-                arms: points,
-            });
-        }
-        all_finite(ContactQuantity::Gap, &gaps)?;
+        check_points(points, points, &gaps, &arms)?;
         Ok(Self {
             compliance: Arc::clone(&self.compliance),
             gaps,
-            arms: self.arms.clone(),
+            arms,
         })
     }
 
@@ -152,6 +129,32 @@ impl ContactProblem {
         touches.enumerate().fold((0, f64::INFINITY), |first, next| {
             if next.1 < first.1 { next } else { first }
         })
+    }
+}
+
+/// Whether `gaps` and `arms` are those of so many points.
+fn check_points(
+    rows: usize,
+    columns: usize,
+    gaps: &[f64],
+    arms: &[f64],
+) -> Result<(), ContactError> {
+    if columns != rows || gaps.len() != rows || arms.len() != rows {
+        return Err(ContactError::SizesDiffer {
+            rows,
+            columns,
+            gaps: gaps.len(),
+            arms: arms.len(),
+        });
+    }
+    all_finite(ContactQuantity::Gap, gaps)?;
+    all_finite(ContactQuantity::Arm, arms)?;
+    match arms.iter().position(|&arm| arm <= 0.0) {
+        Some(point) => Err(ContactError::ArmNotPositive {
+            point,
+            arm: arms[point],
+        }),
+        None => Ok(()),
     }
 }
 

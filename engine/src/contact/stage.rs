@@ -1,17 +1,17 @@
 //! The mesh at one fraction of its period: all that positions whole mesh periods apart have in common.
 //!
 //! Gears without their blanks repeat with every mesh period: the same flanks face each other across the same gaps. What
-//! differs is which teeth they belong to, and so how the blanks under them yield. Gaps, cells and the compliance of the
+//! differs is which teeth they belong to, and so how the blanks under them yield and how the teeth deviate. Cells and the compliance of the
 //! teeth themselves are therefore found once for a fraction of the mesh period, and each period adds W V X Vᵀ Wᵀ.
 
 use std::collections::VecDeque;
-use std::sync::Arc;
 
-use super::cells::{ContactCells, MeshCells, MeshContact};
-use super::drawn::DrawnStage;
-use super::facings::Facings;
+use super::cells::{ContactCells, Laid, MeshCells, MeshContact};
+use super::facings::{Facings, Near};
+use super::meeting::Standing;
 use super::model::{PairModel, PositionError, WarmStart};
-use super::penetration::{Found, Stretches, found};
+use super::patch::Extent;
+use super::penetration::{Found, Look, found};
 use super::{ContactProblem, ContactSolution};
 
 /// Pairs are solved together whose gap is within this much of what load brings together: a little more than touch.
@@ -28,18 +28,24 @@ pub struct Stage<'a> {
     model: &'a PairModel,
     load: f64,
     facings: Facings<'a>,
-    drawn: Arc<DrawnStage>,
-    /// The pairs whose patches were widened, and how often.
-    widened: Vec<(i64, i32)>,
     /// The problems stated last.
     stated: VecDeque<Stated>,
+    /// The pairs laid last, where every mesh period has the same.
+    laid: Vec<Laid>,
 }
 
 /// A problem, and what its compliance depends on.
 struct Stated {
-    pairs: Vec<i64>,
+    pairs: Vec<(i64, u64, Extent)>,
     teeth_like: [usize; 2],
     problem: ContactProblem,
+}
+
+/// What a pair wants beside the cells that it is given at first.
+struct Room {
+    pair: i64,
+    moved: i32,
+    widened: usize,
 }
 
 impl<'a> Stage<'a> {
@@ -49,26 +55,17 @@ impl<'a> Stage<'a> {
     ///
     /// [`PositionError::NoContact`] if no flanks face each other.
     pub fn new(model: &'a PairModel, eta: f64, load: f64) -> Result<Self, PositionError> {
-        let home = eta.floor();
-        let fraction = eta - home;
-        let facings = Facings::new(&model.pair, fraction, home as i64);
+        let facings = Facings::new(model, eta - eta.floor());
         Ok(Self {
             model,
             load,
             facings: facings.ok_or(PositionError::NoContact)?,
-            // Eccentric gears stand elsewhere in every mesh period.
-            drawn: if model.pair.is_concentric() {
-                model.drawn.stage(fraction, load, model.cells_per_patch)
-            } else {
-                Arc::default()
-            },
-            widened: Vec::new(),
             stated: VecDeque::new(),
+            laid: Vec::new(),
         })
     }
 
-    /// The contact in mesh period `period`, summed up pair by pair, and what `keep` takes of it beside. Eccentric gears stand elsewhere in
-    /// any other period than that of the stage's own position.
+    /// The contact in mesh period `period`, summed up pair by pair, and what `keep` takes of it beside.
     ///
     /// # Errors
     ///
@@ -99,89 +96,146 @@ impl<'a> Stage<'a> {
 
     /// Solves mesh period `period` and lets `answer` see the cells, the problem stated on them, its solution, and what penetrates.
     ///
-    /// Cells are laid on more pairs, and patches widened, until nothing that faces penetrates beside them.
+    /// Gaps are those of flanks that just touch. Cells are laid on more pairs and about more hollows as far as the load brings them together,
+    /// and on more of each flank, until nothing that faces penetrates beside them.
     fn solved<T>(
         &mut self,
         period: i64,
         warm: &mut WarmStart,
         answer: impl FnOnce(&ContactCells<'_>, ContactProblem, ContactSolution, Found) -> T,
     ) -> Result<T, PositionError> {
-        let (model, load, facings) = (self.model, self.load, &mut self.facings);
-        let drawn = &self.drawn;
-        let touch = facings.touch(period);
+        let touch = self.facings.touch(period);
         let beyond = |delta: f64, factor: f64| touch + factor * (delta - touch).max(0.0);
         let mut reach = beyond(warm.transmission_error.unwrap_or(touch), GUESS);
+        let mut room: Vec<Room> = Vec::new();
         loop {
-            let near = facings.within(period, reach);
-            let widened = |pair: i64| {
-                let known = self.widened.iter().find(|known| known.0 == pair);
-                known.map_or(0, |known| known.1)
-            };
-            let pairs = near.iter().filter_map(|(i, _)| {
-                let facing = &facings.all()[*i];
-                drawn.cells(model, facing, load, widened(facing.pair))
-            });
-            let cells = ContactCells::new(model, period, pairs.collect())?;
-            let problem = state(&mut self.stated, &cells)?;
-            let solution = cells.solve(&problem, load, warm)?;
+            let near = self.facings.within(period, reach);
+            let cells = self.lay(&near, &room, (period, touch, reach))?;
+            let problem = self.state(&cells)?;
+            let solution = cells.solve(&problem, self.load, warm)?;
             let delta = solution.transmission_error;
-            if facings.within(period, beyond(delta, REACH)).len() > near.len() {
+
+            let needed = beyond(delta, REACH);
+            if self.reaches_more(&near, period, (reach, needed)) {
                 reach = beyond(delta, GUESS);
                 continue;
             }
-            let as_drawn = (facings.least(), delta + facings.nearer());
-            let looks = cells.pairs.iter().filter_map(|pair| {
-                let facing = facings.of_pair(pair.patch.pair)?;
-                let laid = (&**pair, widened(facing.pair));
-                Some(drawn.stretches(model, facing, laid, as_drawn))
-            });
-            let looks: Vec<Arc<Stretches>> = looks.collect();
-            let found = found(model, period, &cells, &looks, &solution);
-            let wider: Vec<i64> = cells
-                .ranges()
-                .filter(|(pair, range)| {
-                    let beside = found.beside.contains(&pair.patch.pair);
-                    pair.can_widen() && (beside || pair.overflows(&solution.active[range.clone()]))
-                })
-                .map(|(pair, _)| pair.patch.pair)
-                .collect();
+            let found = self.look(&cells, &solution);
+            let wider = cells.wanting_room(&solution, &found);
             if wider.is_empty() {
                 *warm = cells.warm_start(&solution);
                 return Ok(answer(&cells, problem, solution, found));
             }
-            for pair in wider {
-                match self.widened.iter_mut().find(|known| known.0 == pair) {
-                    Some((_, times)) => *times += 1,
-                    None => self.widened.push((pair, 1)),
+            for (pair, beside) in wider {
+                match room.iter_mut().find(|room| room.pair == pair) {
+                    Some(room) => room.widened += 1,
+                    // A contact that fits is first laid about.
+                    None => room.push(Room {
+                        pair,
+                        moved: beside,
+                        widened: usize::from(beside == 0),
+                    }),
                 }
-                self.stated.retain(|stated| !stated.pairs.contains(&pair));
             }
         }
     }
-}
 
-/// The problem on `cells`; of those `stated` before, one whose compliance is the same is told with other gaps.
-fn state(
-    stated: &mut VecDeque<Stated>,
-    cells: &ContactCells<'_>,
-) -> Result<ContactProblem, PositionError> {
-    let pairs: Vec<i64> = cells.pairs.iter().map(|pair| pair.patch.pair).collect();
-    let teeth_like = cells.teeth_like();
-    let before = stated
-        .iter()
-        .find(|stated| stated.teeth_like == teeth_like && stated.pairs == pairs)
-        .map(|stated| &stated.problem);
-    let known = before.is_some();
-    let problem = cells.problem(before)?;
-    if !known {
-        if stated.len() == MOST_STATED {
-            stated.pop_front();
+    /// Cells on the pairs `near`, with the gaps of flanks of which the driven one lags by `touch`.
+    fn lay(
+        &mut self,
+        near: &[Near],
+        room: &[Room],
+        (period, touch, reach): (i64, f64, f64),
+    ) -> Result<ContactCells<'a>, PositionError> {
+        let mut pairs = Vec::with_capacity(near.len());
+        for near in near {
+            let room = room.iter().find(|room| room.pair == near.pair);
+            let extent = Extent {
+                hollows: near.hollows_within(reach),
+                widened: room.map_or(0, |room| room.widened),
+                moved: near.moved(&self.model.pair, (period, self.load))
+                    + room.map_or(0, |room| room.moved),
+            };
+            let known = |laid: &&Laid| (laid.pair, laid.extent) == (near.pair, extent);
+            let laid = match self.laid.iter().find(known) {
+                Some(laid) => Some(laid.clone()),
+                None => self.laid_at(near, extent, (period, touch)),
+            };
+            pairs.extend(laid);
         }
-        stated.push_back(Stated {
-            pairs,
-            teeth_like,
-            problem: problem.clone(),
-        });
+        ContactCells::new(self.model, period, pairs)
     }
-    Ok(problem)
+
+    fn laid_at(
+        &mut self,
+        near: &Near,
+        extent: Extent,
+        (period, touch): (i64, f64),
+    ) -> Option<Laid> {
+        let model = self.model;
+        let place = (self.facings.fraction(), period);
+        let standing: Standing<'_> = near.standing(&model.pair, place, touch)?;
+        let cells = model.drawn.cells(model, &near.drawn, self.load, extent);
+        let laid = Laid::new(near, extent, cells, &standing, touch)?;
+        if self.facings.are_as_drawn() {
+            self.laid.push(laid.clone());
+        }
+        Some(laid)
+    }
+
+    /// Whether `needed` reaches pairs or hollows beyond those `near` within `reach`.
+    fn reaches_more(&mut self, near: &[Near], period: i64, (reach, needed): (f64, f64)) -> bool {
+        let more = self.facings.within(period, needed);
+        more.len() > near.len()
+            || more.iter().any(|more| {
+                let known = near.iter().find(|near| near.pair == more.pair);
+                known.is_none_or(|near| more.hollows_within(needed) > near.hollows_within(reach))
+            })
+    }
+
+    /// The problem on `cells`; of those stated before, one whose compliance is the same is told with other gaps.
+    fn state(&mut self, cells: &ContactCells<'_>) -> Result<ContactProblem, PositionError> {
+        let pairs = cells.laid.iter();
+        let pairs: Vec<_> = pairs
+            .map(|laid| (laid.pair, laid.drawn.phase.to_bits(), laid.extent))
+            .collect();
+        let teeth_like = cells.teeth_like();
+        let stated = &mut self.stated;
+        let before = stated
+            .iter()
+            .find(|stated| stated.teeth_like == teeth_like && stated.pairs == pairs)
+            .map(|stated| &stated.problem);
+        let known = before.is_some();
+        let problem = cells.problem(before)?;
+        if !known {
+            if stated.len() == MOST_STATED {
+                stated.pop_front();
+            }
+            stated.push_back(Stated {
+                pairs,
+                teeth_like,
+                problem: problem.clone(),
+            });
+        }
+        Ok(problem)
+    }
+
+    /// What penetrates under `solution` on `cells`.
+    fn look(&self, cells: &ContactCells<'_>, solution: &ContactSolution) -> Found {
+        let model = self.model;
+        let delta = solution.transmission_error;
+        let as_drawn = (self.facings.least(), delta + self.facings.nearer());
+        let looks: Vec<Look> = cells
+            .laid
+            .iter()
+            .filter_map(|laid| {
+                let drawn = (laid.cells(), self.load, laid.extent);
+                let pair = (&laid.drawn, laid.drawn.facing()?);
+                let looks = model.drawn.looks(model, pair, drawn, as_drawn);
+                let place = (self.facings.fraction(), cells.period);
+                Some(Look::new(looks, laid, &model.pair, place))
+            })
+            .collect();
+        found(cells, &looks, solution)
+    }
 }

@@ -86,13 +86,44 @@ pub enum ModificationData {
         /// C_Hα.
         amount: f64,
     },
-    /// A table, linear between its entries, its ends held.
+    /// A table, linear between its entries in the variable that it is given over, its ends held.
     Table {
         /// Where the entries stand.
         places: TablePlaces,
         /// What is removed at each.
         removed: Vec<f64>,
     },
+}
+
+impl TablePlaces {
+    /// The rising places, whatever they are.
+    pub fn values(&self) -> &[f64] {
+        match self {
+            Self::RollLengths(values) | Self::Diameters(values) => values,
+        }
+    }
+
+    /// The place of the roll length `s` of `flank`, and how fast it grows with it.
+    fn place(&self, flank: &Involute, s: f64) -> (f64, f64) {
+        match self {
+            Self::RollLengths(_) => (s, 1.0),
+            Self::Diameters(_) => {
+                let r = flank.radius(s);
+                (2.0 * r, 2.0 * s / r)
+            }
+        }
+    }
+
+    /// The roll lengths of `flank` at its places.
+    pub(super) fn roll_lengths(&self, flank: &Involute) -> Vec<f64> {
+        match self {
+            Self::RollLengths(lengths) => lengths.clone(),
+            Self::Diameters(diameters) => diameters
+                .iter()
+                .map(|diameter| flank.roll_length(diameter / 2.0))
+                .collect(),
+        }
+    }
 }
 
 impl ReliefStart {
@@ -195,8 +226,11 @@ pub(super) enum Modification {
     Crowning { amount: f64, middle: f64, half: f64 },
     /// C_Hα (s − s_f)/(s_a − s_f).
     Slope { amount: f64, from: f64, length: f64 },
-    /// Linear between rising roll lengths.
-    Table { places: Vec<f64>, removed: Vec<f64> },
+    /// Linear between rising places.
+    Table {
+        places: TablePlaces,
+        removed: Vec<f64>,
+    },
 }
 
 impl Modification {
@@ -215,7 +249,7 @@ impl Modification {
                 length,
             } => amount * (s - from) / length,
             Self::Table { places, removed } => {
-                let (i, part) = in_table(places, s);
+                let (i, part) = in_table(places.values(), places.place(flank, s).0);
                 removed[i] + part * (removed[i + 1] - removed[i])
             }
         }
@@ -235,12 +269,22 @@ impl Modification {
             } => 2.0 * amount * (s - middle) / (half * half),
             Self::Slope { amount, length, .. } => amount / length,
             Self::Table { places, removed } => {
-                if s < places[0] || s > places[places.len() - 1] {
+                let ((place, growth), values) = (places.place(flank, s), places.values());
+                if place < values[0] || place > values[values.len() - 1] {
                     return 0.0;
                 }
-                let (i, _) = in_table(places, s);
-                (removed[i + 1] - removed[i]) / (places[i + 1] - places[i])
+                let (i, _) = in_table(values, place);
+                growth * (removed[i + 1] - removed[i]) / (values[i + 1] - values[i])
             }
+        }
+    }
+
+    /// The roll lengths at which [`Modification::slope`] jumps, or begins to grow.
+    pub(super) fn kinks(&self, flank: &Involute) -> Vec<f64> {
+        match self {
+            Self::Tip(relief) | Self::Root(relief) => vec![flank.roll_length(relief.start_radius)],
+            Self::Crowning { .. } | Self::Slope { .. } => Vec::new(),
+            Self::Table { places, .. } => places.roll_lengths(flank),
         }
     }
 
@@ -303,7 +347,11 @@ mod tests {
                 length: s_a - s_f,
             },
             Modification::Table {
-                places: vec![s_f, 15e-3, 18e-3, s_a],
+                places: TablePlaces::RollLengths(vec![s_f, 15e-3, 18e-3, s_a]),
+                removed: vec![2e-6, 0.0, 1e-6, 8e-6],
+            },
+            Modification::Table {
+                places: TablePlaces::Diameters(vec![96.6e-3, 98e-3, 101.7e-3, 104e-3]),
                 removed: vec![2e-6, 0.0, 1e-6, 8e-6],
             },
         ];
@@ -340,13 +388,32 @@ mod tests {
         near(root.depth(&flank, flank.roll_length(48.9e-3)), 3e-6);
         near(root.depth(&flank, flank.roll_length(49.6e-3)), 0.0);
         let table = Modification::Table {
-            places: vec![14e-3, 16e-3, 20e-3],
+            places: TablePlaces::RollLengths(vec![14e-3, 16e-3, 20e-3]),
             removed: vec![3e-6, 1e-6, 5e-6],
         };
         // The ends are held.
         for (s, removed) in [(13e-3, 3e-6), (15e-3, 2e-6), (18e-3, 3e-6), (21e-3, 5e-6)] {
             near(table.depth(&flank, s), removed);
         }
+    }
+
+    #[test]
+    fn a_table_is_linear_in_the_variable_that_it_is_given_over() {
+        // Of two entries over diameters it is the linear relief between them; over roll lengths it is not.
+        let flank = flank();
+        let (start, end) = (50.25e-3, 52e-3);
+        let relief = Relief::new(30e-6, ReliefShape::Linear, start, end);
+        let table = |places| Modification::Table {
+            places,
+            removed: vec![0.0, 30e-6],
+        };
+        let over_diameters = table(TablePlaces::Diameters(vec![2.0 * start, 2.0 * end]));
+        let roll_lengths = [start, end].map(|radius| flank.roll_length(radius));
+        let over_lengths = table(TablePlaces::RollLengths(roll_lengths.to_vec()));
+        let s = flank.roll_length(51.1e-3);
+        assert!((over_diameters.depth(&flank, s) - relief.depth(51.1e-3)).abs() < 1e-18);
+        assert!((over_lengths.depth(&flank, s) - relief.depth(51.1e-3)).abs() > 0.2e-6);
+        assert_eq!(over_diameters.kinks(&flank), roll_lengths);
     }
 
     #[test]

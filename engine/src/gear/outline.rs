@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{SpurGear, Vector, radial};
+use super::{Involute, SpurGear, Vector, radial};
 
 /// So many chords of one piece at most: a bound on the work, met only by tolerances far below a drawing's.
 const MOST_CHORDS: u32 = 1024;
@@ -41,7 +41,7 @@ impl SpurGear {
         let (from, to) = (self.form_roll_length(), self.tip_form_roll_length());
         add(&|t| {
             let s = from + t * (to - from);
-            flank.point(s) - removed(s) * flank.normal(s)
+            turned_back(flank, s, removed(s))
         });
         if let Some(edge) = self.broken_edge() {
             add(&|t| edge.point(flank, 1.0 - t).0);
@@ -50,6 +50,13 @@ impl SpurGear {
         add(&|t| r_a * radial(corner * (1.0 - t)));
         points
     }
+}
+
+/// The point at the roll length `s` of `flank`, turned back by the length `depth` on the base circle.
+fn turned_back(flank: &Involute, s: f64, depth: f64) -> Vector {
+    let point = flank.point(s);
+    let angle = point.y.atan2(point.x) - depth / flank.base_radius();
+    point.norm() * radial(angle)
 }
 
 /// The points of the curve over [0, 1] whose chords stay within `tolerance` of it.
@@ -115,7 +122,7 @@ mod tests {
             for i in 0..=1000 {
                 let t = f64::from(i) / 1000.0;
                 let s = from + t * (to - from);
-                let loaded = flank.point(s) - gear.removed(s) * flank.normal(s);
+                let loaded = turned_back(flank, s, gear.removed(s));
                 let unloaded = Vector::new(flank.point(s).x, -flank.point(s).y);
                 let (first, last) = fillet.ends();
                 let root = fillet.point(first + t * (last - first));

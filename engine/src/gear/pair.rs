@@ -381,6 +381,17 @@ impl GearPair {
             .all(|member| self.gear(member).deviations().is_none())
     }
 
+    /// How far deviations may bring any two flanks nearer to each other than they are drawn, along the line of action.
+    pub fn nearest_deviation(&self) -> f64 {
+        let of = Member::BOTH.map(|member| {
+            let gear = self.gear(member);
+            let eccentricity = gear.deviations().eccentricity;
+            // Off the path of contact the arm differs from one; a tenth more is more than it ever makes.
+            1.1 * (gear.deviation_range()[0] + eccentricity.map_or(0.0, |each| each.amount))
+        });
+        of[0] + of[1]
+    }
+
     /// The face width on which the gears touch: the smaller of the two.
     pub fn common_face_width(&self) -> f64 {
         self.driving.face_width().min(self.driven.face_width())

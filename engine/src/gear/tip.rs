@@ -84,33 +84,41 @@ impl BrokenEdge {
         point.y.atan2(point.x)
     }
 
-    /// What is missing at the roll length `s` along the normal of the involute, and its slope by `s`; nothing below the edge.
+    /// How far the involute is turned back at the radius of its roll length `s` to lie on the edge, as a length on the base circle,
+    /// and the slope of that by `s`; nothing below the edge. `s` lies below the tip circle, at which a rounding ends at right angles to
+    /// the radius.
     pub(super) fn depth_and_slope(&self, flank: &Involute, s: f64) -> (f64, f64) {
+        /// As near to a common tangent of rounding and tip circle as the slope is followed.
+        const LEAST: f64 = 1e-6;
         if s <= self.from {
             return (0.0, 0.0);
         }
-        let (point, normal) = (flank.point(s), flank.normal(s));
-        let to_tip = radial(flank.tangent_angle(s));
-        // At the depth d the edge has the normal m: (P − d n)' is along it, and P' = (s/r_b) e_r, n' = e_r/r_b.
-        let (depth, m) = match self.line {
+        let (r_b, r) = (flank.base_radius(), flank.radius(s));
+        // The angle of the edge at the radius r, and how it changes with r.
+        let (angle, change) = match self.line {
             EdgeLine::Arc { center, radius } => {
-                let away = point - center;
-                let b = away.dot(&normal);
-                // Rays that pass beside the arc, near the tip circle, end where they are nearest to its center.
-                let root = (b * b - away.norm_squared() + radius * radius)
-                    .max(0.0)
-                    .sqrt();
-                let depth = b - root;
-                (depth, away - depth * normal)
+                let away = center.norm();
+                let cosine = (r * r + away * away - radius * radius) / (2.0 * r * away);
+                let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+                let by_radius = (r * r - away * away + radius * radius) / (2.0 * r * r * away);
+                (
+                    center.y.atan2(center.x) + cosine.min(1.0).acos(),
+                    -by_radius / sine.max(LEAST),
+                )
             }
             EdgeLine::Straight { start, outward, .. } => {
-                let depth = (point - start).dot(&outward) / normal.dot(&outward);
-                (depth, outward)
+                let along = Vector::new(outward.y, -outward.x);
+                let half = start.dot(&along);
+                let root = (half * half + r * r - start.norm_squared()).sqrt();
+                let point = start + (root - half) * along;
+                let across = point.x * along.y - point.y * along.x;
+                (point.y.atan2(point.x), across / (r * root))
             }
         };
-        let across = m.dot(&normal).max(1e-3 * m.norm());
-        let slope = (s - depth) / flank.base_radius() * m.dot(&to_tip) / across;
-        (depth, slope)
+        let depth = r_b * (flank.half_angle(r) - angle);
+        // The half angle of the involute falls by s/(r_b r) for each radius.
+        let slope = -s / r * (s / r + r_b * change);
+        (depth.max(0.0), slope)
     }
 
     /// Points of the edge from the tip circle down to the flank, at the parts `t` of the way, with their derivatives by t.
@@ -160,17 +168,20 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_reaches_from_the_involute_to_the_edge() {
+    fn the_involute_turned_back_by_what_is_missing_lies_on_the_edge() {
         for (edge, ends) in [
-            (TipEdge::Rounded(0.3e-3), 0.2e-3),
-            (TipEdge::Chamfered(0.2e-3), 0.15e-3),
+            (TipEdge::Rounded(0.3e-3), 0.99),
+            (TipEdge::Chamfered(0.2e-3), 1.0),
         ] {
             let edge = BrokenEdge::new(edge, &flank(), 52e-3).expect("an edge");
             assert_eq!(edge.depth_and_slope(&flank(), edge.from), (0.0, 0.0));
+            let all = flank().roll_length(52e-3) - edge.from;
             for i in 1..20 {
-                let s = edge.from + ends * f64::from(i) / 20.0;
+                let s = edge.from + ends * all * f64::from(i) / 20.0;
                 let (depth, slope) = edge.depth_and_slope(&flank(), s);
-                let reached = flank().point(s) - depth * flank().normal(s);
+                let point = flank().point(s);
+                let angle = point.y.atan2(point.x) - depth / flank().base_radius();
+                let reached = point.norm() * radial(angle);
                 // The nearest of many points of the edge.
                 let away = (0..=20_000)
                     .map(|j| (edge.point(&flank(), f64::from(j) / 2e4).0 - reached).norm());

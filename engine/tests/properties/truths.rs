@@ -205,9 +205,10 @@ fn polygon_gap(pair: &GearPair, eta: f64, n: i64) -> Option<f64> {
         (0..=POINTS)
             .map(|i| {
                 let s = from + (to - from) * i as f64 / POINTS as f64;
-                // Relief moves the point inward along the normal.
-                let out = gear.deviation(tooth, s) - gear.removed(s);
-                let point = gear.flank().point(s) + out * gear.flank().normal(s);
+                // What is missing turns the flank back, at the radius where it is missing.
+                let back = gear.removed(s) - gear.deviation(tooth, s);
+                let point = gear.flank().point(s);
+                let angle = angle - back / gear.base_radius();
                 let (sin, cos) = angle.sin_cos();
                 Vector::new(
                     cos * point.x - sin * point.y + center + beside.x,

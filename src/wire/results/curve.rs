@@ -30,6 +30,9 @@ pub struct CurveDocument {
     pub mesh_stiffness_tangent_n_per_m: Vec<f64>,
     /// The secant stiffness F/delta, in N/m.
     pub mesh_stiffness_secant_n_per_m: Vec<f64>,
+    /// The torque that the driver has to give, in N m; the load times the driving base radius where unmodified flanks touch on the line of action
+    /// alone.
+    pub driving_torque_n_m: Vec<f64>,
     /// The number of tooth pairs that carry load.
     pub pairs_in_contact: Vec<u32>,
     /// The largest contact pressure, in MPa; null where a sharp tip corner carries, at which it has no limit.
@@ -67,6 +70,7 @@ impl CurveDocument {
             transmission_error_um: each(&curve.transmission_error, to_um),
             mesh_stiffness_tangent_n_per_m: curve.mesh_stiffness_tangent.clone(),
             mesh_stiffness_secant_n_per_m: curve.mesh_stiffness_secant.clone(),
+            driving_torque_n_m: curve.driving_torque.clone(),
             pairs_in_contact: curve.pairs_in_contact.clone(),
             peak_contact_pressure_mpa: curve
                 .peak_contact_pressure

@@ -39,6 +39,7 @@ fn analysis(case: &Case) -> Analysis {
             output_torque: torque,
             load,
             mesh_stiffness_secant: delta.iter().map(|delta| load / delta).collect(),
+            driving_torque: wave(torque, 0.01 * torque),
             pairs_in_contact: vec![2; positions],
             peak_contact_pressure: wave(600e6, 50e6).into_iter().map(Some).collect(),
             load_shares: (-1..=2)

@@ -20,6 +20,7 @@ _COLUMNS = (
     "transmission_error_um",
     "mesh_stiffness_tangent_n_per_m",
     "mesh_stiffness_secant_n_per_m",
+    "driving_torque_n_m",
     "pairs_in_contact",
     "peak_contact_pressure_mpa",
 )

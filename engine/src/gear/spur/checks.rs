@@ -212,26 +212,21 @@ impl SpurGear {
         places: &TablePlaces,
         removed: &[f64],
     ) -> Result<Modification, GearError> {
-        let places: Vec<f64> = match places {
-            TablePlaces::RollLengths(lengths) => lengths.clone(),
-            TablePlaces::Diameters(diameters) => diameters
-                .iter()
-                .map(|diameter| self.flank.roll_length(diameter / 2.0))
-                .collect(),
-        };
+        // Diameters below the base circle are no places of their own.
+        let rising = places.roll_lengths(&self.flank);
         let fault = |entry| {
             Err(GearError::TableDoesNotRise {
                 modification,
                 entry,
             })
         };
-        if places.len() < 2 || places.len() != removed.len() {
-            return fault(places.len().min(removed.len()));
+        if rising.len() < 2 || rising.len() != removed.len() {
+            return fault(rising.len().min(removed.len()));
         }
-        match places.windows(2).position(|pair| pair[0] >= pair[1]) {
+        match rising.windows(2).position(|pair| pair[0] >= pair[1]) {
             Some(before) => fault(before + 1),
             None => Ok(Modification::Table {
-                places,
+                places: places.clone(),
                 removed: removed.to_vec(),
             }),
         }
