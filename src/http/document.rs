@@ -38,23 +38,33 @@ impl<const MIB: usize> FromRequest<App> for Document<MIB> {
     type Rejection = Problem;
 
     async fn from_request(request: Request, app: &App) -> Result<Self, Problem> {
-        let media_type = check_media_type(request.headers());
-        let limit = MIB * 1024 * 1024;
-        let length = request.body().size_hint().upper();
-        let length = length.map_or(limit, |length| length.min(limit as u64) as usize);
-        let client = request.extensions().get::<ClientName>().cloned();
-        let client = client.map_or_else(|| Arc::from(""), |client| client.0);
-        let needed = (TIMES_ITS_SIZE * length) as u64;
-        let memory = timeout(LONGEST_WAIT, app.reading.take(&client, needed)).await;
-        let memory = memory.map_err(|_| {
-            let detail = "More is sent at once than is read. Try again in a moment.";
-            Problem::new(Code::Overloaded, detail)
-        })?;
-        let body = timeout(PATIENCE, read(request.into_body(), limit, length)).await;
-        let body = body.map_err(|_| late())??;
-        media_type?;
+        let (body, memory) = taken(request, app, MIB * 1024 * 1024, "json").await?;
         Ok(Self(body, memory))
     }
+}
+
+/// The body of `request`, of the media type `kind` and `limit` bytes at most, and the memory for it.
+async fn taken(
+    request: Request,
+    app: &App,
+    limit: usize,
+    kind: &str,
+) -> Result<(Bytes, Part), Problem> {
+    let media_type = check_media_type(request.headers(), kind);
+    let length = request.body().size_hint().upper();
+    let length = length.map_or(limit, |length| length.min(limit as u64) as usize);
+    let client = request.extensions().get::<ClientName>().cloned();
+    let client = client.map_or_else(|| Arc::from(""), |client| client.0);
+    let needed = (TIMES_ITS_SIZE * length) as u64;
+    let memory = timeout(LONGEST_WAIT, app.reading.take(&client, needed)).await;
+    let memory = memory.map_err(|_| {
+        let detail = "More is sent at once than is read. Try again in a moment.";
+        Problem::new(Code::Overloaded, detail)
+    })?;
+    let body = timeout(PATIENCE, read(request.into_body(), limit, length)).await;
+    let body = body.map_err(|_| late())??;
+    media_type?;
+    Ok((body, memory))
 }
 
 impl<const MIB: usize> Document<MIB> {
@@ -71,7 +81,20 @@ impl<const MIB: usize> Document<MIB> {
     }
 }
 
-fn check_media_type(headers: &HeaderMap) -> Result<(), Problem> {
+/// The bytes of a request's XML document, 4 MiB at most, and the memory that it takes.
+pub(super) struct XmlDocument(pub(super) Bytes, pub(super) Part);
+
+impl FromRequest<App> for XmlDocument {
+    type Rejection = Problem;
+
+    async fn from_request(request: Request, app: &App) -> Result<Self, Problem> {
+        let (body, memory) = taken(request, app, 4 * 1024 * 1024, "xml").await?;
+        Ok(Self(body, memory))
+    }
+}
+
+/// Whether the body is declared as `json` or `xml`, by whichever of its names.
+fn check_media_type(headers: &HeaderMap, kind: &str) -> Result<(), Problem> {
     let refuse = |detail: String| Err(Problem::new(Code::UnsupportedMediaType, detail));
     if headers
         .get(CONTENT_ENCODING)
@@ -80,7 +103,9 @@ fn check_media_type(headers: &HeaderMap) -> Result<(), Problem> {
         return refuse("Send the body without a Content-Encoding.".to_owned());
     }
     let Some(given) = headers.get(CONTENT_TYPE) else {
-        return refuse("Send the body with Content-Type: application/json.".to_owned());
+        return refuse(format!(
+            "Send the body with Content-Type: application/{kind}."
+        ));
     };
     let essence = given
         .to_str()
@@ -90,13 +115,15 @@ fn check_media_type(headers: &HeaderMap) -> Result<(), Problem> {
         .unwrap_or_default()
         .trim()
         .to_ascii_lowercase();
-    if essence == "application/json"
-        || (essence.starts_with("application/") && essence.ends_with("+json"))
-    {
+    let known = match essence.strip_prefix("application/") {
+        Some(name) => name == kind || name.ends_with(&format!("+{kind}")),
+        None => kind == "xml" && essence == "text/xml",
+    };
+    if known {
         return Ok(());
     }
     refuse(format!(
-        "Send the body with Content-Type: application/json, not {essence:?}."
+        "Send the body with Content-Type: application/{kind}, not {essence:?}."
     ))
 }
 

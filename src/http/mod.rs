@@ -32,6 +32,7 @@ mod problem;
 mod problem_pages;
 mod reference;
 mod results;
+mod rexs;
 mod router;
 mod server;
 mod standing;

@@ -25,8 +25,8 @@ use super::app::App;
 use super::headers::Trace;
 use super::{
     batch, docs, door, draw, events, fields, guides, headers, health, jobs, metrics, outline,
-    packing, previews, problem, problem_pages, reference, results, studies, submit, tables, web,
-    webhooks,
+    packing, previews, problem, problem_pages, reference, results, rexs, studies, submit, tables,
+    web, webhooks,
 };
 use crate::wire::{Code, Problem};
 
@@ -130,6 +130,8 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(reference::validate))
         .routes(routes!(outline::outline))
         .routes(routes!(draw::draw))
+        .routes(routes!(rexs::read))
+        .routes(routes!(rexs::write))
         .routes(routes!(fields::vtu))
         .routes(routes!(fields::edges))
         .routes(routes!(tables::table))

@@ -31,7 +31,18 @@ pub struct Import {
     pub submission: Value,
     /// What the model does not say and was assumed, and what it says and was not read: one sentence each.
     pub remarks: Vec<String>,
+    /// What the model says and was not read.
+    pub not_read: Vec<NotRead>,
     origins: Vec<(String, String)>,
+}
+
+/// What a model says and was not read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NotRead {
+    /// The component.
+    pub component: String,
+    /// Its attribute; none where nothing of the component was read.
+    pub attribute: Option<String>,
 }
 
 impl Import {
@@ -65,6 +76,7 @@ pub fn import(bytes: &[u8], choices: &Choices) -> Result<Import, Refused> {
             Ok(Import {
                 submission,
                 remarks,
+                not_read: not_read(&model),
                 origins: reading.origins.take(),
             })
         }
@@ -335,7 +347,39 @@ impl<'a> Reading<'a> {
     }
 }
 
-/// What was not read: attributes of what was met, and kinds of what was not.
+/// The ids of the cylindrical stages of a model, each of which may have a pair.
+///
+/// # Errors
+///
+/// If the bytes are no model.
+pub fn stages(bytes: &[u8]) -> Result<Vec<i64>, Refused> {
+    let model = Model::read(bytes)?;
+    let stages = model.components.iter();
+    let stages = stages.filter(|component| component.kind == "cylindrical_stage");
+    Ok(stages.map(|stage| stage.id).collect())
+}
+
+/// What was not read: attributes of what was met, and what was not met.
+fn not_read(model: &Model) -> Vec<NotRead> {
+    let of = |component: &Component| {
+        let place = component.place();
+        let named = |attribute: Option<String>| NotRead {
+            component: place.clone(),
+            attribute,
+        };
+        if component.met.get() {
+            let unread = component.attributes.iter().filter(|a| !a.read.get());
+            unread
+                .map(|attribute| named(Some(attribute.id.clone())))
+                .collect()
+        } else {
+            vec![named(None)]
+        }
+    };
+    model.components.iter().flat_map(of).collect()
+}
+
+/// The same in sentences, those that go together in one.
 fn left_out(model: &Model) -> Vec<String> {
     let unread = |component: &Component| -> Vec<String> {
         let unread = component.attributes.iter().filter(|a| !a.read.get());

@@ -18,7 +18,7 @@ mod unit;
 
 pub use export::export;
 pub use fault::{Fault, Refused};
-pub use import::{Choices, Import, import};
+pub use import::{Choices, Import, NotRead, import, stages};
 
 /// Whether a document is XML rather than JSON, by its first character.
 pub fn is_xml(document: &[u8]) -> bool {

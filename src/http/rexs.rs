@@ -1,0 +1,234 @@
+//! Models of gearboxes in REXS: submissions out of them, and a job as one.
+
+use axum::Json;
+use axum::extract::{Path, State};
+use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
+use axum::response::{IntoResponse, Response};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use utoipa::{IntoParams, ToSchema};
+
+use super::app::App;
+use super::aside::aside;
+use super::client::{Client, Onlooker};
+use super::document::XmlDocument;
+use super::parameters::{Parameters, job_id};
+use super::problem::internal;
+use crate::exchange::rexs::{Choices, Fault, Import, NotRead, export, import, stages};
+use crate::jobs::JobError;
+use crate::wire::{Code, Problem, Submission};
+
+/// Stages beyond this number are not looked at.
+const MOST_STAGES: usize = 20;
+
+/// What a model leaves open.
+#[derive(Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub(super) struct ModelParameters {
+    /// The id of one cylindrical stage; without it, all of them.
+    stage: Option<i64>,
+    /// The torque on the driven gear, in N m, instead of those of the model.
+    #[param(example = 115.0)]
+    torque: Option<f64>,
+    /// The method, instead of the flexible one or that of the model.
+    method: Option<String>,
+    /// The bore radius of both gears, in mm, instead of those of the model.
+    bore_radius_mm: Option<f64>,
+}
+
+/// What a model comes to.
+#[derive(Serialize, ToSchema)]
+#[schema(title = "Model")]
+pub(super) struct ModelView {
+    /// A submission for each cylindrical stage that is a pair of spur gears, every default filled in.
+    #[schema(value_type = Vec<Submission>)]
+    submissions: Vec<Submission>,
+    /// What the model says and was read for none of them.
+    not_read: Vec<NotReadView>,
+    /// What the model does not say and was assumed, a sentence each.
+    assumed: Vec<String>,
+    /// Why the other stages cannot be taken.
+    refused: Vec<RefusedView>,
+}
+
+/// An attribute of a model that was not read.
+#[derive(Serialize, ToSchema)]
+#[schema(title = "NotRead")]
+pub(super) struct NotReadView {
+    /// The component.
+    component: String,
+    /// Its attribute; null where nothing of the component was read.
+    attribute: Option<String>,
+}
+
+/// Why a stage of a model cannot be taken.
+#[derive(Serialize, ToSchema)]
+#[schema(title = "RefusedPlace")]
+pub(super) struct RefusedView {
+    /// The component and its attribute, or the line, or the file.
+    place: String,
+    /// What is wrong there, and what would do.
+    detail: String,
+}
+
+/// Read a model of a gearbox
+///
+/// Takes a REXS model, version 1.4 to 2 as XML, and answers with the submission that each of its cylindrical stages comes to, and with
+/// what was not read. Makes no job.
+#[utoipa::path(
+    post, path = "/v1/rexs", tag = "Reference", operation_id = "read_model",
+    request_body(content = String, content_type = "application/xml", description = "The model."),
+    params(ModelParameters),
+    responses(
+        (status = 200, description = "The submissions.", body = ModelView),
+        (status = 400, description = "A parameter is not understood.", body = Problem, content_type = "application/problem+json"),
+        (status = 413, description = "The body has more than 4 MiB.", body = Problem, content_type = "application/problem+json"),
+        (status = 415, description = "The body is not declared as XML.", body = Problem, content_type = "application/problem+json"),
+        (status = 422, description = "It is no model, or none of its stages can be taken; the detail says why.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(super) async fn read(
+    onlooker: Onlooker,
+    Parameters(parameters): Parameters<ModelParameters>,
+    model: XmlDocument,
+) -> Result<Json<ModelView>, Problem> {
+    let view = aside(onlooker.name(), move |_| view(&model.0, &parameters)).await?;
+    view.map(Json)
+}
+
+fn view(model: &[u8], parameters: &ModelParameters) -> Result<ModelView, Problem> {
+    let refuse = |refused: &dyn std::fmt::Display| {
+        Problem::new(Code::ModelRefused, refused.to_string().trim_end())
+    };
+    let found = stages(model).map_err(|refused| refuse(&refused))?;
+    let wanted: Vec<Option<i64>> = match parameters.stage {
+        None if found.len() > 1 => found.into_iter().take(MOST_STAGES).map(Some).collect(),
+        stage => vec![stage],
+    };
+    let mut view = ModelView {
+        submissions: Vec::new(),
+        not_read: Vec::new(),
+        assumed: Vec::new(),
+        refused: Vec::new(),
+    };
+    let mut not_read: Option<Vec<NotRead>> = None;
+    for stage in wanted {
+        let choices = Choices {
+            stage,
+            torques: parameters.torque.into_iter().collect(),
+            method: parameters.method.clone(),
+            bore_radii: parameters.bore_radius_mm.into_iter().collect(),
+        };
+        let taken = import(model, &choices).map_err(|refused| refused.0);
+        match taken.and_then(|import| Ok((checked(&import)?, import))) {
+            Ok((submission, import)) => {
+                view.submissions.push(submission);
+                // What one stage reads has been read.
+                not_read = Some(match not_read {
+                    None => import.not_read,
+                    Some(before) => before
+                        .into_iter()
+                        .filter(|each| import.not_read.contains(each))
+                        .collect(),
+                });
+                let remarks = import.remarks.into_iter();
+                let assumed = remarks.filter(|remark| !remark.starts_with("Not read"));
+                view.assumed.extend(assumed);
+            }
+            Err(faults) => view
+                .refused
+                .extend(faults.into_iter().map(RefusedView::from)),
+        }
+    }
+    if view.submissions.is_empty() {
+        let faults = view.refused.into_iter();
+        let faults = faults.map(|RefusedView { place, detail }| Fault { place, detail });
+        let refused = crate::exchange::rexs::Refused(faults.collect());
+        return Err(refuse(&refused));
+    }
+    let not_read = not_read.unwrap_or_default().into_iter();
+    view.not_read = not_read
+        .map(
+            |NotRead {
+                 component,
+                 attribute,
+             }| NotReadView {
+                component,
+                attribute,
+            },
+        )
+        .collect();
+    Ok(view)
+}
+
+/// The submission, if it can be computed; what is wrong is told where it stands in the model.
+fn checked(import: &Import) -> Result<Submission, Vec<Fault>> {
+    let parsed = Submission::parse(import.submission.to_string().as_bytes());
+    parsed.map_err(|problem| {
+        let errors = problem.errors.into_iter();
+        let faults = errors.map(|error| Fault {
+            place: import
+                .origin(&error.pointer)
+                .map_or(error.pointer, str::to_owned),
+            detail: error.detail,
+        });
+        faults.collect()
+    })
+}
+
+impl From<Fault> for RefusedView {
+    fn from(Fault { place, detail }: Fault) -> Self {
+        Self { place, detail }
+    }
+}
+
+/// Get a job as a model of a gearbox
+///
+/// A REXS model, version 2.0, of the submission; of a job that has results with its curves, one load case for each torque.
+#[utoipa::path(
+    get, path = "/v1/jobs/{id}/submission.rexs", tag = "Jobs", operation_id = "get_model",
+    params(("id" = String, Path, format = "uuid", description = "The id of the job.")),
+    responses(
+        (status = 200, description = "The model.", body = String, content_type = "application/xml"),
+        (status = 404, description = "There is no such job.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(super) async fn write(
+    State(app): State<App>,
+    client: Client,
+    Path(id): Path<String>,
+) -> Result<Response, Problem> {
+    let job = app.jobs.find(client.name(), job_id(&id)?).await?;
+    let submission = app.jobs.submission(job.id).await?;
+    let document = match &job.document {
+        None => None,
+        // Of designs whose statistics alone were kept there are no curves to tell.
+        Some(_) => match app.jobs.document(&job).await {
+            Err(JobError::ResultsNotKept(_)) => None,
+            document => Some(document?),
+        },
+    };
+    let date = job.submitted_at.strftime("%Y-%m-%dT%H:%M:%S+00:00");
+    let date = date.to_string();
+    let written = aside(client.name(), move |_| {
+        let submission = Submission::parse(submission.as_bytes())?;
+        let results: Option<Value> = match document {
+            None => None,
+            Some(document) => {
+                let text = document.text().map_err(JobError::from)?;
+                Some(serde_json::from_str(&text).map_err(|_| internal())?)
+            }
+        };
+        Ok::<_, Problem>(export(&submission, results.as_ref(), &date))
+    });
+    let model = written.await??;
+    let headers = [
+        (CONTENT_TYPE, "application/xml".to_owned()),
+        (
+            CONTENT_DISPOSITION,
+            format!("attachment; filename=\"{id}.rexs\""),
+        ),
+    ];
+    Ok((headers, model).into_response())
+}
