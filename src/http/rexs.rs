@@ -4,6 +4,7 @@ use axum::Json;
 use axum::extract::{Path, State};
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
 use axum::response::{IntoResponse, Response};
+use meshwright_engine::run::Run;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::{IntoParams, ToSchema};
@@ -91,10 +92,14 @@ pub(super) struct RefusedView {
 pub(super) async fn read(
     onlooker: Onlooker,
     Parameters(parameters): Parameters<ModelParameters>,
-    model: XmlDocument,
+    XmlDocument(model, memory): XmlDocument,
 ) -> Result<Json<ModelView>, Problem> {
-    let view = aside(onlooker.name(), move |_| view(&model.0, &parameters)).await?;
-    view.map(Json)
+    let read = move |_: &Run| {
+        let view = view(&model, &parameters);
+        drop(memory);
+        view
+    };
+    aside(onlooker.name(), read).await?.map(Json)
 }
 
 fn view(model: &[u8], parameters: &ModelParameters) -> Result<ModelView, Problem> {
