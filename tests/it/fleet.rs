@@ -514,10 +514,10 @@ async fn carry(mut from: OwnedReadHalf, mut to: OwnedWriteHalf, mut open: watch:
     }
 }
 
-/// Looks at a worker that was cut off from the server at `cut`. Its reports go unanswered for a lease; then the engine is told, and
-/// obeys between two positions.
+/// Looks at a worker that was cut off from the server at `cut`. Its reports go unanswered for a lease, after one that may have been under way;
+/// then the engine is told, and obeys between two positions.
 async fn computes_no_more(worker: &Process, cut: Instant, lease: Duration) {
-    tokio::time::sleep((3 * lease).saturating_sub(cut.elapsed())).await;
+    tokio::time::sleep((4 * lease).saturating_sub(cut.elapsed())).await;
     let before = worker.processor_seconds();
     tokio::time::sleep(lease / 2).await;
     let spent = worker.processor_seconds() - before;

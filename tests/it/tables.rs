@@ -122,7 +122,7 @@ async fn fields_come_as_a_grid_at_any_position_and_torque_of_the_job() {
     let here = meshwright::wire::SOLVER_VERSION;
     assert_eq!(again.headers()["solver-version"], here);
     assert!(!again.headers().contains_key("results-solver-version"));
-    let older = "update jobs set solver_version = 'meshwright 0.1.0' returning 1";
+    let older = "update jobs set solver_version = 'meshwright 0.1.0' returning cast(1 as bigint)";
     stores::number(&bench.config.database, older).await;
     let of_older = get("?torque=115&mesh_position=0.25").await;
     assert_eq!(
