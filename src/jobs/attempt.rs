@@ -315,7 +315,7 @@ impl Shop {
 
     /// Whether the row says that the claim still holds.
     async fn holds(&self, claim: Claim) -> bool {
-        match self.jobs.store.holds(claim).await {
+        match self.answered(self.jobs.store.holds(claim)).await {
             Ok(held) => held,
             Err(error) => {
                 warn!(job = %claim.id, error = %error, "a claim cannot be looked up");
@@ -331,14 +331,7 @@ impl Shop {
     async fn report(&self, claim: Claim, running: &Running, reported: &mut Instant) -> bool {
         let store = &self.jobs.store;
         let report = store.report(claim, running.progress(), self.lease());
-        let held = if store.is_shared() {
-            // A network that is cut answers nothing at all.
-            let answer = tokio::time::timeout(self.pace.lease / 3, report).await;
-            answer.unwrap_or_else(|_| Err(sqlx::Error::PoolTimedOut.into()))
-        } else {
-            report.await
-        };
-        match held {
+        match self.answered(report).await {
             Ok(held) => {
                 *reported = Instant::now();
                 held
@@ -352,6 +345,18 @@ impl Shop {
                 !over
             }
         }
+    }
+
+    /// The answer of the store. A network that is cut gives none at all, and a lease is over meanwhile.
+    async fn answered<T>(
+        &self,
+        answer: impl Future<Output = Result<T, StoreError>>,
+    ) -> Result<T, StoreError> {
+        if !self.jobs.store.is_shared() {
+            return answer.await;
+        }
+        let answer = tokio::time::timeout(self.pace.lease / 3, answer).await;
+        answer.unwrap_or_else(|_| Err(sqlx::Error::PoolTimedOut.into()))
     }
 
     /// A lease that is given now.

@@ -51,7 +51,8 @@ macro_rules! take_messages {
     ($which:literal, $locked:literal) => {
         concat!(
             "update messages set next_at = $3 where id in (
-               select id from messages where webhook = $1 and arrived_at is null and next_at <= $2 ",
+               select id from messages where webhook = $1 and arrived_at is null and next_at <= $2
+                 and exists (select 1 from webhooks w where w.id = $1 and w.disabled_at is null and w.retry_at <= $2) ",
             $which,
             " order by id limit $4 ",
             $locked,
