@@ -6,6 +6,8 @@
 //! mean, but for what the rest of the tooth adds in proportion to m. Both parts are read from the table at the distances m = d and 2 d that
 //! the grid resolves.
 
+use std::f64::consts::LN_2;
+
 use faer::Mat;
 
 use crate::gear::{SpurGear, Vector, radial, tangential};
@@ -59,6 +61,11 @@ impl Corner {
         }
     }
 
+    /// Whether [`Corner::compliance`] knows of the point at an arc length, with any other one.
+    pub(super) fn may_tell(&self, arc: f64) -> bool {
+        self.tip - arc < 2.0 * self.trusted
+    }
+
     /// R between the points at two arc lengths, if they are nearer to the corner than the table can tell.
     pub(super) fn compliance(&self, one: f64, other: f64) -> Option<[[f64; 2]; 2]> {
         let (x, y) = (self.tip - one, self.tip - other);
@@ -69,25 +76,26 @@ impl Corner {
         }
         let t = (y - x) / (x + y);
         let place = 0.5 * (t + 1.0) * (RATIOS - 1) as f64;
-        let [near, far] = [&self.at[0], &self.at[1]].map(|table| interpolated(table, place));
-        let (grown, doubled) = ((self.trusted / mean).ln(), 2.0_f64.ln());
+        let (first, weights) = cubic(place);
+        let [near, far] = [0, 1].map(|i| &self.at[i][first..first + 4]);
         let rest = 1.0 - mean / self.trusted;
-        Some(std::array::from_fn(|a| {
-            std::array::from_fn(|b| {
-                let growth = self.growth[a][b];
-                // From d on inward by the wedge's law, and what departs from that law between 2 d and d goes on in proportion.
-                let departure = near[a][b] - (far[a][b] + growth * doubled);
-                near[a][b] + growth * grown + departure * rest
-            })
-        }))
+        // From d on inward by the wedge's law, and what departs from that law between 2 d and d goes on in proportion.
+        let grown = (self.trusted / mean).ln() - rest * LN_2;
+        let mut told = self.growth.map(|row| row.map(|growth| grown * growth));
+        for ((near, far), weight) in near.iter().zip(far).zip(weights) {
+            for (a, row) in told.iter_mut().enumerate() {
+                for (b, entry) in row.iter_mut().enumerate() {
+                    *entry += weight * (near[a][b] + rest * (near[a][b] - far[a][b]));
+                }
+            }
+        }
+        Some(told)
     }
 }
 
-/// The cubic through the four entries around `place`.
-fn interpolated(table: &[[[f64; 2]; 2]], place: f64) -> [[f64; 2]; 2] {
-    let first = (place.floor() as usize)
-        .saturating_sub(1)
-        .min(table.len() - 4);
+/// The first of the four entries of a table around `place`, and their weights in a cubic.
+fn cubic(place: f64) -> (usize, [f64; 4]) {
+    let first = (place.floor() as usize).saturating_sub(1).min(RATIOS - 4);
     let z = place - first as f64;
     let weights = [
         -(z - 1.0) * (z - 2.0) * (z - 3.0) / 6.0,
@@ -95,12 +103,7 @@ fn interpolated(table: &[[[f64; 2]; 2]], place: f64) -> [[f64; 2]; 2] {
         -z * (z - 1.0) * (z - 3.0) / 2.0,
         z * (z - 1.0) * (z - 2.0) / 6.0,
     ];
-    std::array::from_fn(|a| {
-        std::array::from_fn(|b| {
-            let entries = table[first..first + 4].iter().zip(weights);
-            entries.map(|(entry, weight)| weight * entry[a][b]).sum()
-        })
-    })
+    (first, weights)
 }
 
 /// C: how the apex of the tip corner gives way, u = −C F ln r + constant, on (normal, towards the tip) of the flank.

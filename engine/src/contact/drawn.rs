@@ -20,7 +20,7 @@ const MOST_BYTES: usize = 12 << 20;
 const MOST_FACING_BYTES: usize = 2 << 20;
 
 /// The steps in which the reach of a look grows: looks are the same whoever asks for them first.
-const REACH_STEP: f64 = 1.5;
+const REACH_STEP: f64 = 3.0;
 
 /// No look reaches less far beyond the least gap, in meters.
 const LEAST_REACH: f64 = 1e-9;
@@ -34,12 +34,39 @@ struct Laid {
     extent: Extent,
 }
 
+/// From which cell to which one a contact may carry, in steps: a little more than it does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct Carrying {
+    from: usize,
+    to: usize,
+}
+
+impl Carrying {
+    /// Looks are shared between contacts that end within as many cells of each other.
+    const STEP: usize = 16;
+
+    fn of(active: &[bool]) -> Self {
+        let first = active.iter().position(|carries| *carries);
+        let last = active.iter().rposition(|carries| *carries);
+        let step = Self::STEP;
+        Self {
+            from: first.map_or(0, |first| first / step * step),
+            to: last.map_or(0, |last| (last + 1).next_multiple_of(step)),
+        }
+    }
+
+    /// Whether the cell `i` may carry.
+    pub(super) fn holds(self, i: usize) -> bool {
+        (self.from..self.to).contains(&i)
+    }
+}
+
 /// The flanks of one pair as drawn, with what was found of them; shared between threads.
 #[derive(Debug)]
 pub struct DrawnFlanks {
     facings: Memo<u64, Option<Facing>>,
     cells: Memo<Laid, Option<PairCells>>,
-    looks: Memo<(Laid, i32), Looks>,
+    looks: Memo<(Laid, i32, Carrying), Looks>,
 }
 
 impl Default for DrawnFlanks {
@@ -105,21 +132,22 @@ impl DrawnFlanks {
         })
     }
 
-    /// The looks at the flanks of `pair` whose gap is within `reach`, and some beyond, beside its `cells` laid so far; `least` is the least
-    /// gap of all pairs.
+    /// The looks at the flanks of `pair` whose gap is within `reach`, and some beyond, at its `cells` laid so far, of which some are `carrying`;
+    /// `least` is the least gap of all pairs.
     pub(super) fn looks(
         &self,
         model: &PairModel,
         (pair, facing): (&DrawnPair, &Facing),
-        (cells, load, extent): (&PairCells, f64, Extent),
+        ((cells, load, extent), carrying): ((&PairCells, f64, Extent), &[bool]),
         (least, reach): (f64, f64),
     ) -> Arc<Looks> {
         let steps = ((reach - least).max(LEAST_REACH).ln() / REACH_STEP.ln()).ceil() as i32;
-        let spec = (laid(model, pair, load, extent), steps);
+        let carrying = Carrying::of(carrying);
+        let spec = (laid(model, pair, load, extent), steps, carrying);
         self.looks.get(spec, || {
             let reach = least + REACH_STEP.powi(steps);
             let view = view(model, pair.phase, facing);
-            Looks::new(model, &view, facing, cells, reach)
+            Looks::new(model, &view, facing, (cells, carrying), reach)
         })
     }
 }

@@ -8,7 +8,7 @@
 use faer::Mat;
 
 use super::corner::{Corner, block};
-use super::half_plane::logarithm_factor;
+use super::half_plane::{Entries, logarithm_factor};
 use crate::fem::dense::entries;
 use crate::gear::{Involute, SpurGear};
 use crate::ring::tooth::{ToothSubstructure, modal_loads};
@@ -118,21 +118,30 @@ impl FlankTable {
     }
 
     /// The smooth compliance W R Wᵀ between `points` and `loaded` points of one tooth with its interface held, without the
-    /// logarithm.
-    pub fn smooth_compliance(&self, points: &[FlankPoint], loaded: &[FlankPoint]) -> Mat<f64> {
+    /// logarithm; above the diagonal it may be wrong where these `entries` are not asked for.
+    pub fn smooth_compliance(
+        &self,
+        points: &[FlankPoint],
+        loaded: &[FlankPoint],
+        entries: Entries,
+    ) -> Mat<f64> {
         let ((row, weights), (column, loads)) = (weights(points), weights(loaded));
         let around = self
             .smooth
             .submatrix(row, column, weights.ncols(), loads.ncols());
         let mut compliance = &weights * around * loads.transpose();
-        for (j, load) in loaded.iter().enumerate() {
-            for (i, point) in points.iter().enumerate() {
-                let near_corner = |corner: &Corner| corner.compliance(point.arc, load.arc);
-                if let Some(block) = self.corner.as_ref().and_then(near_corner) {
-                    compliance[(i, j)] = (0..2)
-                        .flat_map(|a| (0..2).map(move |b| (a, b)))
-                        .map(|(a, b)| point.direction[a] * block[a][b] * load.direction[b])
-                        .sum();
+        let Some(corner) = &self.corner else {
+            return compliance;
+        };
+        let near = |(_, point): &(usize, &FlankPoint)| corner.may_tell(point.arc);
+        for (j, load) in loaded.iter().enumerate().filter(near) {
+            let points = points.iter().enumerate().skip(entries.first(j));
+            for (i, point) in points.filter(near) {
+                if let Some(block) = corner.compliance(point.arc, load.arc) {
+                    let moved =
+                        block.map(|row| row[0] * load.direction[0] + row[1] * load.direction[1]);
+                    compliance[(i, j)] =
+                        point.direction[0] * moved[0] + point.direction[1] * moved[1];
                 }
             }
         }

@@ -73,12 +73,29 @@ impl NearField {
     }
 }
 
+/// The entries of a compliance that somebody wants.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Entries {
+    /// All of them.
+    All,
+    /// The diagonal and below it, of a compliance between the same stretches.
+    Lower,
+}
+
+impl Entries {
+    /// The first row wanted of column `j`.
+    pub(super) fn first(self, j: usize) -> usize {
+        if self == Self::Lower { j } else { 0 }
+    }
+}
+
 /// What a unit force spread over each of the stretches `loaded` adds by `fields` to the mean displacement of each of `stretches`: ends
 /// along the flank, the first of them nearer to the root.
 pub fn near_compliance(
     fields: &[NearField],
     stretches: &[[f64; 2]],
     loaded: &[[f64; 2]],
+    entries: Entries,
 ) -> Mat<f64> {
     // The logarithm is that of all bodies.
     let own: f64 = fields.iter().map(|field| field.own).sum();
@@ -86,17 +103,17 @@ pub fn near_compliance(
         .iter()
         .map(|field| field.own * field.scale.ln())
         .sum();
-    let mut compliance = means(stretches, loaded, twice_logarithm);
+    let mut compliance = means(stretches, loaded, entries, twice_logarithm);
     for (j, other) in loaded.iter().enumerate() {
-        for (i, one) in stretches.iter().enumerate() {
+        for (i, one) in stretches.iter().enumerate().skip(entries.first(j)) {
             let mean = far_logarithm(*one, *other).unwrap_or(compliance[(i, j)]);
             compliance[(i, j)] = of_scale - own * mean;
         }
     }
     for field in fields.iter().filter(|field| field.added != 0.0) {
-        let means = means(stretches, loaded, |x| field.twice_added(x));
+        let means = means(stretches, loaded, entries, |x| field.twice_added(x));
         for (j, other) in loaded.iter().enumerate() {
-            for (i, one) in stretches.iter().enumerate() {
+            for (i, one) in stretches.iter().enumerate().skip(entries.first(j)) {
                 // Far away nothing is left but the rounding of the differences.
                 if apart(*one, *other) < field.reach {
                     compliance[(i, j)] += field.added * means[(i, j)];
@@ -127,19 +144,35 @@ fn far_logarithm(one: [f64; 2], other: [f64; 2]) -> Option<f64> {
 }
 
 /// The means over each two stretches of the function of the distance whose second antiderivative is `twice`.
-fn means(stretches: &[[f64; 2]], loaded: &[[f64; 2]], twice: impl Fn(f64) -> f64) -> Mat<f64> {
+fn means(
+    stretches: &[[f64; 2]],
+    loaded: &[[f64; 2]],
+    entries: Entries,
+    twice: impl Fn(f64) -> f64,
+) -> Mat<f64> {
     // Neighbors share their ends.
     let (rows, row) = ends(stretches);
     let (columns, column) = ends(loaded);
-    let twice = Mat::from_fn(rows.len(), columns.len(), |i, j| {
-        twice(rows[i] - columns[j])
-    });
-    Mat::from_fn(stretches.len(), loaded.len(), |i, j| {
-        let ([a, b], [c, d]) = (row[i], column[j]);
-        let sum = twice[(b, c)] - twice[(b, d)] - twice[(a, c)] + twice[(a, d)];
-        let width = |[from, to]: [f64; 2]| to - from;
-        sum / (width(stretches[i]) * width(loaded[j]))
-    })
+    let mut between = Mat::zeros(rows.len(), columns.len());
+    for (j, there) in columns.iter().enumerate() {
+        // The entries on the diagonal need one above it.
+        for (i, here) in rows
+            .iter()
+            .enumerate()
+            .skip(entries.first(j).saturating_sub(1))
+        {
+            between[(i, j)] = twice(here - there);
+        }
+    }
+    let mut means = Mat::zeros(stretches.len(), loaded.len());
+    let width = |[from, to]: [f64; 2]| to - from;
+    for (j, &[c, d]) in column.iter().enumerate() {
+        for (i, &[a, b]) in row.iter().enumerate().skip(entries.first(j)) {
+            let sum = between[(b, c)] - between[(b, d)] - between[(a, c)] + between[(a, d)];
+            means[(i, j)] = sum / (width(stretches[i]) * width(loaded[j]));
+        }
+    }
+    means
 }
 
 /// The ends of `stretches`, each once where they follow each other, and where those of each stand.
@@ -186,7 +219,7 @@ mod tests {
     fn the_mean_logarithm_is_that_of_a_fine_sum() {
         let here = [[-0.5, 0.5]];
         for first in [0.0, 0.25, -2.2, 5.0, 99.0] {
-            let means = means(&row(first, 1.0, 4), &here, twice_logarithm);
+            let means = means(&row(first, 1.0, 4), &here, Entries::All, twice_logarithm);
             for i in 0..4 {
                 let (sum, mean) = (double_mean(first + i as f64, f64::ln), means[(i, 0)]);
                 // The midpoint rule leaves a third of a step beside the logarithm's pole.
@@ -199,8 +232,8 @@ mod tests {
     fn stretches_of_other_widths_are_the_means_of_their_parts() {
         let parts = row(0.5, 1.0, 6);
         let whole = [[0.0, 2.0], [2.0, 3.0], [3.0, 6.0]];
-        let fine = means(&parts, &parts, twice_logarithm);
-        let coarse = means(&whole, &whole, twice_logarithm);
+        let fine = means(&parts, &parts, Entries::All, twice_logarithm);
+        let coarse = means(&whole, &whole, Entries::All, twice_logarithm);
         let within = |[from, to]: [f64; 2]| from as usize..to as usize;
         for (i, one) in whole.iter().enumerate() {
             for (j, other) in whole.iter().enumerate() {
@@ -218,7 +251,7 @@ mod tests {
         let exact = |z: f64| z.ln() - 1.0 / (12.0 * z * z) - 1.0 / (60.0 * z.powi(4));
         for distance in [60.0, 100.0, 101.0, 300.0] {
             let there = [distance - 0.5, distance + 0.5];
-            let near = means(&[there], &[here], twice_logarithm)[(0, 0)];
+            let near = means(&[there], &[here], Entries::All, twice_logarithm)[(0, 0)];
             let mean = far_logarithm(there, here).unwrap_or(near);
             // The term of the fourth order is left out: 1.7e-10 at 100.
             assert!((mean - exact(distance)).abs() < 1e-9, "{distance}: {mean}");
@@ -245,9 +278,12 @@ mod tests {
         assert!((field.reach / (depth * (-0.65_f64).exp()) - 1.0).abs() < 1e-12);
         assert!((field.added / field.own - 1.0).abs() < 1e-14);
         let width = 0.25e-3;
-        let means = means(&row(0.0, width, 8), &row(0.0, width, 1), |x| {
-            field.twice_added(x)
-        });
+        let means = means(
+            &row(0.0, width, 8),
+            &row(0.0, width, 1),
+            Entries::All,
+            |x| field.twice_added(x),
+        );
         for distance in 0..8 {
             let mean = means[(distance as usize, 0)];
             let sum = double_mean(f64::from(distance), |x| {

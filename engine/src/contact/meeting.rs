@@ -1,6 +1,6 @@
 //! How two flanks push each other where they meet, and how that changes as gears turn and teeth deviate.
 
-use super::placement::{self, FlankPlace, Sight, inclined};
+use super::placement::{self, FlankPlace, Sight, inclined, quarter_turned};
 use crate::gear::{GearPair, Member, Vector};
 
 /// What contact needs of a point at which two flanks face each other.
@@ -172,8 +172,8 @@ impl<'a> Standing<'a> {
         let r_b = other.base_radius();
         let far = d.norm_squared();
         let s = (far - r_b * r_b).max(0.0).sqrt();
-        let radial = Vector::new(r_b * d.x + s * d.y, r_b * d.y - s * d.x) / far;
-        let across = Vector::new(-radial.y, radial.x);
+        let radial = (r_b * d - s * quarter_turned(d)) / far;
+        let across = quarter_turned(radial);
         // An arc of a few thousandths, to the last digit.
         let chord = probe.seen.x * radial.y - probe.seen.y * radial.x;
         let square = chord * chord;

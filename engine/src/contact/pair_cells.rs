@@ -4,10 +4,10 @@ use faer::Mat;
 
 use super::facing::{Facing, View};
 use super::flank_table::{FlankPoint, FlankTable};
-use super::half_plane::near_compliance;
+use super::half_plane::{Entries, near_compliance};
 use super::model::PairModel;
 use super::patch::{Cell, Extent, Patch};
-use crate::fem::dense::entries;
+use crate::fem::dense;
 
 /// The cells of one pair as drawn, some part of a mesh period after it passed the pitch point.
 #[derive(Debug)]
@@ -34,13 +34,7 @@ impl PairCells {
             return None;
         }
         let stretches: Vec<[f64; 2]> = patch.stretches().collect();
-        let mut held = near_compliance(&patch.near_fields, &stretches, &stretches);
-        let shapes = [0, 1].map(|gear| {
-            let flank = &model.gears[gear].flank;
-            let points = points(&patch.cells, flank, gear);
-            held += flank.smooth_compliance(&points, &points);
-            flank.shapes_at(&points)
-        });
+        let (held, shapes) = compliance(model, &patch, (&patch.cells, &stretches), Entries::Lower);
         Some(Self {
             patch,
             held,
@@ -55,9 +49,31 @@ impl PairCells {
 
     /// About how much memory they take, in bytes.
     pub(super) fn bytes(&self) -> usize {
-        let numbers = entries(&self.held) + self.shapes.iter().map(entries).sum::<usize>();
+        let numbers =
+            dense::entries(&self.held) + self.shapes.iter().map(dense::entries).sum::<usize>();
         size_of::<Self>() + self.patch.bytes() + size_of::<f64>() * numbers
     }
+}
+
+/// What unit forces on the cells of `patch` do to `cells` on the `stretches`, with the interfaces held, and W V of each gear at these cells.
+pub(super) fn compliance(
+    model: &PairModel,
+    patch: &Patch,
+    (cells, stretches): (&[Cell], &[[f64; 2]]),
+    entries: Entries,
+) -> (Mat<f64>, [Mat<f64>; 2]) {
+    let loaded: Vec<[f64; 2]> = patch.stretches().collect();
+    let mut held = near_compliance(&patch.near_fields, stretches, &loaded, entries);
+    let shapes = [0, 1].map(|gear| {
+        let flank = &model.gears[gear].flank;
+        let (here, there) = (
+            points(cells, flank, gear),
+            points(&patch.cells, flank, gear),
+        );
+        held += flank.smooth_compliance(&here, &there, entries);
+        flank.shapes_at(&here)
+    });
+    (held, shapes)
 }
 
 /// `cells` as points on `flank`, that of the gear of index `gear`.

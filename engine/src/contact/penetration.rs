@@ -1,7 +1,7 @@
 //! Whether anything penetrates after the solution: a look at the whole flanks of all pairs in reach, cells or not.
 //!
-//! The solver knows only the cells that were laid. This looks at stretches across every end of a cell and every kink, at others spread over
-//! the rest of the flanks, and at tips that stand in a fillet, and asks for their gaps under the forces found: g = g_0 − δ w + u. Elastic bodies
+//! The solver knows only the cells that were laid. This looks at stretches across every end of a cell that carries and every kink, at others
+//! spread over the rest of the flanks, and at tips that stand in a fillet, and asks for their gaps under the forces found: g = g_0 − δ w + u. Elastic bodies
 //! give way where they are pressed, so that a stretch with g_0 > δ w stays open; of the others u is taken from the model. Stretches are as
 //! wide as a cell, since pressures that are even over a cell close gaps in the mean over one.
 
@@ -11,11 +11,12 @@ use faer::Mat;
 
 use super::ContactSolution;
 use super::cells::{ContactCells, Laid};
-use super::facing::{Facing, View};
-use super::half_plane::near_compliance;
+use super::drawn::Carrying;
+use super::facing::{Facing, FlankRange, RangeEnd, View};
+use super::half_plane::Entries;
 use super::meeting::{Probe, Standing};
 use super::model::PairModel;
-use super::pair_cells::{PairCells, points};
+use super::pair_cells::{PairCells, compliance};
 use super::patch::{Cell, Patch, Stretch};
 use crate::fem::dense::entries;
 use crate::gear::{GearPair, Member};
@@ -154,7 +155,7 @@ impl Looks {
         model: &PairModel,
         view: &View<'_>,
         facing: &Facing,
-        cells: &PairCells,
+        (cells, carrying): (&PairCells, Carrying),
         reach: f64,
     ) -> Self {
         let mut looked: Vec<(Stretch, Place, f64)> = Vec::new();
@@ -162,7 +163,14 @@ impl Looks {
         let lay = |from: f64, to: f64| patch.stretch_between(view, &facing.kinks, from, to);
         let within = |stretch: &Stretch| stretch.cell.gap <= reach;
         for (i, pair) in patch.cells.windows(2).enumerate() {
-            if pair[0].stretch + 1 != pair[1].stretch {
+            let apart = pair[0].stretch + 1 != pair[1].stretch;
+            if apart || pair.iter().all(|cell| cell.gap > reach) {
+                continue;
+            }
+            // Between two cells that are open the flanks are, but for a kink.
+            let carries = carrying.holds(i) || carrying.holds(i + 1);
+            let end = patch.ends_along[pair[1].stretch][0];
+            if !carries && !facing.kinks.contains(&end) {
                 continue;
             }
             let [from, at, to] = [0, 1, 2].map(|end| patch.ends_along[pair[0].stretch + end][0]);
@@ -190,17 +198,26 @@ impl Looks {
             patch.covers(**kink) && patch.ends_along.iter().all(|end| end[0] != **kink)
         });
         let beside = (0..=BESIDE).map(|i| low + (high - low) * i as f64 / BESIDE as f64);
+        let near = |arc: &f64| {
+            let point = view.point(*arc);
+            point.is_some_and(|point| point.sight.gap <= reach)
+        };
         let places = kinks.map(|kink| (*kink, Place::Kink)).chain(
             beside
-                .filter(|arc| !patch.covers(*arc))
+                .filter(|arc| !patch.covers(*arc) && near(arc))
                 .map(|arc| (arc, Place::Beside)),
         );
         for (arc, place) in places {
             let stretch = about(arc).filter(|(stretch, _)| within(stretch));
             looked.extend(stretch.map(|(stretch, more)| (stretch, place, more)));
         }
-        for view in [*view, view.told_on_mate()] {
-            let tip = tip_in_fillet(&view, patch, half);
+        // A tip stands in a fillet where the other flank ends there.
+        let mate = view.told_on_mate();
+        let mates = (range.ends[0] == RangeEnd::Fillet)
+            .then(|| mate.range())
+            .flatten();
+        for (view, range) in [(*view, Some(*range)), (mate, mates)] {
+            let tip = range.and_then(|range| tip_in_fillet(&view, &range, patch, half));
             looked.extend(tip.filter(|(_, gap)| *gap <= reach).map(|(stretch, gap)| {
                 let told = stretch.cell.gap - stretch.more;
                 (stretch, Place::Fillet(view.seat.other()), gap - told)
@@ -211,20 +228,9 @@ impl Looks {
 
     /// Looks at the stretches `looked` beside `cells`.
     fn at(model: &PairModel, cells: &PairCells, looked: Vec<(Stretch, Place, f64)>) -> Self {
-        let patch = &cells.patch;
-        let loaded: Vec<[f64; 2]> = patch.stretches().collect();
         let stretches: Vec<[f64; 2]> = looked.iter().map(|(stretch, ..)| stretch.along).collect();
-        let mut held = near_compliance(&patch.near_fields, &stretches, &loaded);
         let here: Vec<Cell> = looked.iter().map(|(stretch, ..)| stretch.cell).collect();
-        let shapes = [0, 1].map(|gear| {
-            let flank = &model.gears[gear].flank;
-            let (here, there) = (
-                points(&here, flank, gear),
-                points(&patch.cells, flank, gear),
-            );
-            held += flank.smooth_compliance(&here, &there);
-            flank.shapes_at(&here)
-        });
+        let (held, shapes) = compliance(model, &cells.patch, (&here, &stretches), Entries::All);
         Self {
             looked: looked
                 .into_iter()
@@ -265,9 +271,13 @@ impl Looks {
 
 /// The tip of the seat of `view` where it stands in the fillet of the other gear, and the gap there: it gives way about as the highest
 /// place that faces the flank does.
-fn tip_in_fillet(view: &View<'_>, patch: &Patch, half: f64) -> Option<(Stretch, f64)> {
-    let range = view.range()?;
-    let gap = view.tip_to_fillet(&range)?;
+fn tip_in_fillet(
+    view: &View<'_>,
+    range: &FlankRange,
+    patch: &Patch,
+    half: f64,
+) -> Option<(Stretch, f64)> {
+    let gap = view.tip_to_fillet(range)?;
     let stretch = patch.stretch_between(view, &[], range.to - 2.0 * half, range.to)?;
     Some((stretch, gap))
 }

@@ -52,8 +52,16 @@ pub(super) struct Sight {
 /// The outward unit normal of a flank from which e is missing with the slope e' by the roll length `s`; `radial` and `across` are those
 /// of its tangent point on the base circle of radius `r_b`.
 pub(super) fn inclined(radial: Vector, across: Vector, s: f64, r_b: f64, slope: f64) -> Vector {
+    if slope == 0.0 {
+        return across;
+    }
     // dP/ds = −e' e_t + (1 + e') s/r_b e_r.
     ((1.0 + slope) * s / r_b * across + slope * radial).normalize()
+}
+
+/// `v`, turned by a quarter counter-clockwise.
+pub(super) fn quarter_turned(v: Vector) -> Vector {
+    Vector::new(-v.y, v.x)
 }
 
 /// The mesh position at which the teeth of a pair that has `phase` are turned as they are: the angle of each tooth's centerline.
@@ -137,7 +145,8 @@ impl<'a> Placement<'a> {
         let r_b = gear.base_radius();
         let (depth, slope) = self.missing(member, s);
         let t = self.angles[member.index()] + gear.flank().tangent_angle(s) - depth / r_b;
-        let (e_r, e_t) = (radial(t), tangential(t));
+        let e_r = radial(t);
+        let e_t = quarter_turned(e_r);
         FlankPlace {
             point: self.centers[member.index()] + r_b * e_r + s * e_t,
             normal: inclined(e_r, e_t, s, r_b, slope),
@@ -152,15 +161,18 @@ impl<'a> Placement<'a> {
         let d = point - self.centers[member.index()];
         let flank = self.pair.gear(member).flank();
         let r_b = flank.base_radius();
-        let s = (d.norm_squared() - r_b * r_b).max(0.0).sqrt();
+        let far = d.norm_squared();
+        let s = (far - r_b * r_b).max(0.0).sqrt();
         if s == 0.0 {
             return None;
         }
-        let t = d.y.atan2(d.x) - (s / r_b).atan();
+        // d = r_b e_r + s e_t.
+        let e_r = (r_b * d - s * quarter_turned(d)) / far;
+        let e_t = quarter_turned(e_r);
+        let t = e_r.y.atan2(e_r.x);
         let turn = self.angles[member.index()] + flank.base_half_angle() - t;
         let foot = r_b * (turn - (turn / (2.0 * PI)).round() * 2.0 * PI);
         let (depth, slope) = self.missing(member, s);
-        let (e_r, e_t) = (radial(t), tangential(t));
         Some(Sight {
             roll_length: s,
             gap: s - foot + depth,
@@ -208,7 +220,7 @@ impl<'a> Placement<'a> {
 impl Sight {
     /// How gap and roll length change as the point moves along `way`, on a gear of `base_radius`.
     pub(super) fn change(&self, base_radius: f64, way: Vector) -> (f64, f64) {
-        let across = Vector::new(-self.radial.y, self.radial.x);
+        let across = quarter_turned(self.radial);
         // The point stands at r_b e_r(t) + s e_t(t) of the center: dt = −way·e_r/s, and s less the foot changes as way·e_t.
         let out = way.dot(&across);
         let growth = out + base_radius / self.roll_length * way.dot(&self.radial);

@@ -226,12 +226,12 @@ impl<'a> Stage<'a> {
         let delta = solution.transmission_error;
         let as_drawn = (self.facings.least(), delta + self.facings.nearer());
         let looks: Vec<Look> = cells
-            .laid
-            .iter()
-            .filter_map(|laid| {
+            .ranges()
+            .filter_map(|(laid, range)| {
                 let drawn = (laid.cells(), self.load, laid.extent);
                 let pair = (&laid.drawn, laid.drawn.facing()?);
-                let looks = model.drawn.looks(model, pair, drawn, as_drawn);
+                let carrying = &solution.active[range];
+                let looks = model.drawn.looks(model, pair, (drawn, carrying), as_drawn);
                 let place = (self.facings.fraction(), cells.period);
                 Some(Look::new(looks, laid, &model.pair, place))
             })

@@ -54,7 +54,8 @@ impl Involute {
 
     /// The radius at roll length `s`.
     pub fn radius(&self, s: f64) -> f64 {
-        self.base_radius.hypot(s)
+        // Lengths of a gear neither overflow nor vanish when squared.
+        (self.base_radius * self.base_radius + s * s).sqrt()
     }
 
     /// The roll length at `radius`, zero on and below the base circle.

@@ -23,7 +23,7 @@ pub struct InterfaceMotion<'a> {
 
 /// Orders that do not see the blank and meet in the ring of teeth.
 struct OrdersAbove {
-    orders: Vec<usize>,
+    /// Their places among all unknowns.
     unknowns: Vec<usize>,
     /// The lower orders that they meet with.
     of_low: Vec<usize>,
@@ -70,13 +70,18 @@ impl<'a> InterfaceMotion<'a> {
     /// The amplitudes of the circle on all orders of the ring of teeth, in meters, under the modal loads of the teeth given by
     /// their numbers.
     pub fn under(&self, modal_loads: &[(usize, Vec<f64>)]) -> Vec<f64> {
-        let low: Vec<usize> = (0..=self.seen.harmonics.largest).collect();
-        let mut motion = forces(&self.seen, modal_loads, &low);
+        let mut motion = forces(&self.seen, modal_loads);
         self.gear.solve_in_place(motion.as_mut());
         let mut all = vec![0.0; self.ring.harmonics.unknowns()];
         all[..motion.nrows()].copy_from_slice(motion.col_as_slice(0));
+        if self.above.is_empty() {
+            return all;
+        }
+        let forces = forces(self.ring, modal_loads);
         for group in &self.above {
-            let mut moved = forces(self.ring, modal_loads, &group.orders);
+            let mut moved = Mat::from_fn(group.unknowns.len(), 1, |i, _| {
+                forces[(group.unknowns[i], 0)]
+            });
             let of_low = Mat::from_fn(group.of_low.len(), 1, |i, _| all[group.of_low[i]]);
             moved -= &group.coupling * of_low;
             group.rim.solve_in_place(moved.as_mut());
@@ -88,13 +93,15 @@ impl<'a> InterfaceMotion<'a> {
     }
 }
 
-/// Σ_j F_j m_j on the harmonics of `orders`, order by order.
-fn forces(ring: &TeethRing, modal_loads: &[(usize, Vec<f64>)], orders: &[usize]) -> Mat<f64> {
-    let mut sum = Mat::zeros(ring.harmonics.unknowns_of(orders).len(), 1);
+/// Σ_j F_j m_j on the harmonics of `ring`, order by order.
+fn forces(ring: &TeethRing, modal_loads: &[(usize, Vec<f64>)]) -> Mat<f64> {
+    let orders: Vec<usize> = (0..=ring.harmonics.largest).collect();
+    let mut sum = Mat::zeros(ring.harmonics.unknowns(), 1);
     for (tooth, loads) in modal_loads {
-        let patterns = ring.patterns_of_tooth_at(tooth_angle(*tooth, ring.tooth_count), orders);
         let loads = Mat::from_fn(loads.len(), 1, |i, _| loads[i]);
-        sum += patterns * (&ring.pattern_shares * loads);
+        let shares = &ring.pattern_shares * loads;
+        let angle = tooth_angle(*tooth, ring.tooth_count);
+        sum += ring.forces_of_tooth_at(angle, shares.col_as_slice(0), &orders);
     }
     sum
 }
@@ -123,7 +130,6 @@ fn orders_above(
                 part: "the rim",
                 unknowns: unknowns.len(),
             })?,
-            orders,
             unknowns,
             of_low,
         })

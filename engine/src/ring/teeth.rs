@@ -183,9 +183,26 @@ impl TeethRing {
     /// G on the harmonics of `orders`, order by order, for the tooth at `angle`.
     pub fn patterns_of_tooth_at(&self, angle: f64, orders: &[usize]) -> Mat<f64> {
         let unknowns = self.harmonics.unknowns_of(orders);
-        let mut turned = Mat::from_fn(unknowns.len(), self.force_patterns.ncols(), |i, j| {
+        let patterns = Mat::from_fn(unknowns.len(), self.force_patterns.ncols(), |i, j| {
             self.force_patterns[(unknowns[i], j)]
         });
+        self.turned(patterns, &unknowns, angle)
+    }
+
+    /// G f on the harmonics of `orders`, order by order, for the tooth at `angle` with the modal loads f.
+    pub fn forces_of_tooth_at(&self, angle: f64, loads: &[f64], orders: &[usize]) -> Mat<f64> {
+        let unknowns = self.harmonics.unknowns_of(orders);
+        let forces = Mat::from_fn(unknowns.len(), 1, |i, _| {
+            let patterns = loads.iter().enumerate();
+            patterns
+                .map(|(j, load)| self.force_patterns[(unknowns[i], j)] * load)
+                .sum()
+        });
+        self.turned(forces, &unknowns, angle)
+    }
+
+    /// The columns of `turned` on these `unknowns`, of the tooth at angle 0, at `angle`.
+    fn turned(&self, mut turned: Mat<f64>, unknowns: &[usize], angle: f64) -> Mat<f64> {
         let turns: Vec<(usize, (f64, f64))> = (0..unknowns.len())
             .filter(|&i| self.harmonics.is_cosine(unknowns[i]))
             .map(|i| {
