@@ -192,6 +192,7 @@ fn changes(criterion: &mut Criterion) {
                 i = (i + 1) % positions;
                 black_box(
                     model
+                        .as_drawn()
                         .contact(eta, load, &mut warm)
                         .expect("every position of the paper's cases has a solution"),
                 )

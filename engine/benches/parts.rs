@@ -147,7 +147,10 @@ fn positions(criterion: &mut Criterion) {
                 bencher.iter(|| black_box(facings(&case, eta)));
             });
             let mut warm = WarmStart::default();
-            let cells = model.cells(eta, load, &mut warm).expect("contact");
+            let cells = model
+                .as_drawn()
+                .cells(eta, load, &mut warm)
+                .expect("contact");
             let touching = cells.solution.active.clone();
             group.bench_function(format!("{pairs}: contact solve, cold"), |bencher| {
                 bencher.iter(|| black_box(solve_active_set(&cells.problem, load, None)));
@@ -159,19 +162,24 @@ fn positions(criterion: &mut Criterion) {
                 bencher.iter(|| {
                     let flanks_unknown = PairModel {
                         drawn: Arc::default(),
+                        compliances: Arc::default(),
                         ..model.clone()
                     };
-                    black_box(flanks_unknown.contact(eta, load, &mut WarmStart::default()))
+                    black_box(flanks_unknown.as_drawn().contact(
+                        eta,
+                        load,
+                        &mut WarmStart::default(),
+                    ))
                 });
             });
             group.bench_function(
                 format!("{pairs}: all of it, warm, flanks known"),
                 |bencher| {
-                    bencher.iter(|| black_box(model.contact(eta, load, &mut warm)));
+                    bencher.iter(|| black_box(model.as_drawn().contact(eta, load, &mut warm)));
                 },
             );
             // A curve meets the same fraction of the mesh period once in every mesh period.
-            let mut stage = Stage::new(&model, eta, load).expect("flanks come near");
+            let mut stage = Stage::new(model.as_drawn(), eta, load).expect("flanks come near");
             let (mut period, periods) = (0, i64::from(case.pair.period()));
             group.bench_function(
                 format!("{pairs}: all of it, a further mesh period"),

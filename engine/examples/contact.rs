@@ -74,7 +74,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // 3. One mesh position, a quarter of a period after tooth 0 of both gears met at the pitch point. The load on the line of action is
     //    the torque over the base radius of the driven gear. Cells a few micrometers wide lie where flanks come near.
     let load = pair.load(115.0);
-    let cells = model.cells(0.25, load, &mut WarmStart::default())?;
+    let cells = model
+        .as_drawn()
+        .cells(0.25, load, &mut WarmStart::default())?;
     let problem = &cells.problem;
     println!("{load:.1} N on {} cells", problem.point_count());
 
@@ -122,7 +124,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut warm = WarmStart::default();
     for i in 0..12 {
         let eta = f64::from(i) / 12.0;
-        let contact = model.contact(eta, load, &mut warm)?;
+        let contact = model.as_drawn().contact(eta, load, &mut warm)?;
         let shares = contact.pairs.iter().filter(|pair| pair.share > 0.0);
         let shares: Vec<String> = shares
             .map(|pair| format!("pair {} {:.0} %", pair.pair, 100.0 * pair.share))

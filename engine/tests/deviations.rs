@@ -4,9 +4,9 @@ mod cases;
 
 use std::f64::consts::PI;
 
-use cases::{case, gear};
+use cases::{Made, case, gear};
 use meshwright_engine::analysis::{Method, analyze, pair_model};
-use meshwright_engine::contact::{WarmStart, light_contact};
+use meshwright_engine::contact::{MeshContact, light_contact};
 use meshwright_engine::gear::{
     Eccentricity, GearData, GearPair, Member, ModificationData, SpurGear,
 };
@@ -25,11 +25,19 @@ fn light(pair: &GearPair, member: Member, per_period: u32) -> Vec<f64> {
     (0..teeth * per_period)
         .map(|i| {
             let eta = f64::from(i) / f64::from(per_period);
-            light_contact(pair, eta)
+            light_contact(pair, &pair.deviations(), eta)
                 .expect("flanks that face each other")
                 .transmission_error
         })
         .collect()
+}
+
+/// The contact of `pair` at `eta` under 30 N m.
+fn contact(pair: &GearPair, eta: f64) -> MeshContact {
+    let case = case(pair.clone(), &[30.0]);
+    let model = pair_model(&case, &Library::default(), &Run::unattended()).expect("a model");
+    let made = Made::new(case.pair, model);
+    made.contact(eta, pair.load(30.0)).expect("contact")
 }
 
 /// Amplitude of the order `n` of evenly spaced values.
@@ -84,7 +92,7 @@ fn an_eccentric_gear_pushes_its_mate_ahead_while_it_stands_out_along_the_line_of
     });
     let pair = pair(driving, driven);
     let delta = |eta| {
-        light_contact(&pair, eta)
+        light_contact(&pair, &pair.deviations(), eta)
             .expect("contact")
             .transmission_error
     };
@@ -118,10 +126,10 @@ fn a_lone_pitch_error_moves_nearly_rigid_gears_by_f_cos_alpha_over_its_engagemen
             let (s_a, s_e) = pair.path_of_contact();
             for i in 0..25 * 31 {
                 let eta = f64::from(i) * 0.5 + 0.13;
-                let delta = light_contact(&pair, eta)
+                let delta = light_contact(&pair, &pair.deviations(), eta)
                     .expect("contact")
                     .transmission_error;
-                let unmoved = light_contact(&plain, eta)
+                let unmoved = light_contact(&plain, &plain.deviations(), eta)
                     .expect("contact")
                     .transmission_error;
                 // The pairs on the path of contact, and those with the tooth in question.
@@ -178,17 +186,7 @@ fn teeth_renumbered_by_one_move_the_curve_by_one_mesh_period() {
         data.deviations.cumulative_pitch = (0..25).map(|i| arcs[(i + turn) % 25]).collect();
         data.deviations.profile_slope = (0..25).map(|i| slopes[(i + turn) % 25]).collect();
         let pair = pair(data, gear(31, 8e-3));
-        let load = pair.load(30.0);
-        let model = pair_model(
-            &case(pair, &[30.0]),
-            &Library::default(),
-            &Run::unattended(),
-        )
-        .expect("a model");
-        model
-            .contact(eta, load, &mut WarmStart::default())
-            .expect("contact")
-            .transmission_error
+        contact(&pair, eta).transmission_error
     };
     for eta in [0.2, 3.6, 7.85] {
         // Driving teeth mesh in falling order.
@@ -203,17 +201,7 @@ fn deviations_of_all_teeth_alike_are_a_turn_of_the_gear() {
     let mut data = gear(25, 8e-3);
     data.deviations.cumulative_pitch = vec![5e-6; 25];
     let turned = pair(data.clone(), gear(31, 8e-3));
-    let solve = |pair: &GearPair, eta: f64| {
-        let model = pair_model(
-            &case(pair.clone(), &[30.0]),
-            &Library::default(),
-            &Run::unattended(),
-        )
-        .expect("a model");
-        model
-            .contact(eta, pair.load(30.0), &mut WarmStart::default())
-            .expect("contact")
-    };
+    let solve = |pair: &GearPair, eta: f64| contact(pair, eta);
     for eta in [0.1, 0.5, 0.8] {
         let (one, other) = (solve(&plain, eta), solve(&turned, eta));
         let moved =
@@ -233,17 +221,7 @@ fn a_slope_of_every_tooth_is_the_slope_of_the_drawing() {
     measured.deviations.profile_slope = vec![-6e-6; 25];
     let solve = |data: GearData, eta: f64| {
         let pair = pair(data, gear(31, 8e-3));
-        let load = pair.load(30.0);
-        let model = pair_model(
-            &case(pair, &[30.0]),
-            &Library::default(),
-            &Run::unattended(),
-        )
-        .expect("a model");
-        model
-            .contact(eta, load, &mut WarmStart::default())
-            .expect("contact")
-            .transmission_error
+        contact(&pair, eta).transmission_error
     };
     for eta in [0.1, 0.4, 0.5, 0.8] {
         let (one, other) = (solve(drawn.clone(), eta), solve(measured.clone(), eta));

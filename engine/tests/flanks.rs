@@ -5,9 +5,9 @@ mod cases;
 
 use std::f64::consts::PI;
 
-use cases::{case, gear, pair};
+use cases::{Made, case, gear, pair};
 use meshwright_engine::analysis::{Case, pair_model};
-use meshwright_engine::contact::{MeshContact, PairModel, WarmStart, light_contact};
+use meshwright_engine::contact::{MeshContact, light_contact};
 use meshwright_engine::gear::{
     Eccentricity, GearData, GearPair, Member, ModificationData, ReliefData, ReliefShape,
     ReliefStart, TablePlaces, ToothDeviations, teeth_on,
@@ -15,21 +15,22 @@ use meshwright_engine::gear::{
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
-fn model(pair: &GearPair) -> PairModel {
+fn model(pair: &GearPair) -> Made {
     let case: Case = case(pair.clone(), &[1.0]);
-    pair_model(&case, &Library::default(), &Run::unattended()).expect("a model")
+    let model = pair_model(&case, &Library::default(), &Run::unattended()).expect("a model");
+    Made::new(case.pair, model)
 }
 
-fn contact(model: &PairModel, eta: f64, load: f64) -> MeshContact {
+fn contact(model: &Made, eta: f64, load: f64) -> MeshContact {
     model
-        .contact(eta, load, &mut WarmStart::default())
+        .contact(eta, load)
         .unwrap_or_else(|error| panic!("at {eta}: {error}"))
 }
 
 /// δ in µm under `torque`.
-fn delta(model: &PairModel, eta: f64, torque: f64) -> f64 {
+fn delta(model: &Made, eta: f64, torque: f64) -> f64 {
     let contact = if torque == 0.0 {
-        light_contact(&model.pair, eta).expect("contact")
+        light_contact(&model.pair, &model.deviations, eta).expect("contact")
     } else {
         contact(model, eta, model.pair.load(torque))
     };
@@ -102,6 +103,7 @@ fn rigid(pair: &GearPair, eta: f64) -> f64 {
     const POINTS: usize = 60_000;
     let alpha_w = pair.working_pressure_angle();
     let a = pair.center_distance();
+    let deviations = pair.deviations();
     let mut lag = 0.0;
     // A driven gear that is eccentric moves as it is turned.
     for _ in 0..6 {
@@ -121,7 +123,7 @@ fn rigid(pair: &GearPair, eta: f64) -> f64 {
                 let pressure = (flank.base_radius() / radius).min(1.0).acos();
                 let s = flank.roll_length(radius);
                 let tooth = pair.tooth(member, n);
-                let back = gear.removed(s) - gear.deviation(tooth, s);
+                let back = gear.removed(s) - deviations.of_gear(member).at(tooth, s);
                 turns[member.index()] - (pressure.tan() - pressure) - back / flank.base_radius()
             };
             let center = |member: Member| {
@@ -203,7 +205,9 @@ fn the_same_pair_driven_from_the_other_side_has_the_same_delta() {
                 let lag = here.transmission_error / a.base_pitch();
                 let there = contact(&model_b, lag - eta, load * asked);
                 let deflection = here.transmission_error
-                    - light_contact(&a, eta).expect("contact").transmission_error;
+                    - light_contact(&a, &a.deviations(), eta)
+                        .expect("contact")
+                        .transmission_error;
                 let off = (there.transmission_error - here.transmission_error) / deflection;
                 // Contacts of finite width leave 5e-4.
                 assert!(off.abs() < 2e-3, "{amount}, {torque}, {eta}: {off:.1e}");

@@ -121,7 +121,9 @@ fn the_augmented_lagrangian_obeys_a_stop_within_a_position() {
     let run = Run::new(stop.clone(), |_, _| ());
     let model = pair_model(&case, &MakeAll, &run).expect("a model");
     stop.store(true, Ordering::Relaxed);
-    let refused = model.contact(0.1, 2000.0, &mut WarmStart::default());
+    let refused = model
+        .as_drawn()
+        .contact(0.1, 2000.0, &mut WarmStart::default());
     assert_eq!(
         refused,
         Err(PositionError::Contact(ContactError::Stopped(Stopped)))
@@ -144,15 +146,20 @@ fn blank_rotations(case: &Case, member: Member, imposed: Imposed) -> Vec<[f64; 2
     let positions: Vec<f64> = (0..16).map(|j| f64::from(j) * period / 16.0).collect();
     let spec = |blanks| PairSpec::new(&case.pair, blanks, &modeling);
     let rigid = spec(Blanks::HoledRigid).model(&library, &run);
-    let rigid = contacts(&rigid.expect("a model").0, load, &positions, &run).expect("solutions");
+    let rigid =
+        contacts(rigid.expect("a model").0.as_drawn(), load, &positions, &run).expect("solutions");
     let spec = spec(Blanks::OnlyHoledOf(member));
     let (model, _) = spec.model(&library, &run).expect("a model");
     let cut = spec.cut(member, &library, &run).expect("a gear");
     let motion = cut.motion(&run).expect("definite").expect("flexible");
     let annulus = cut.annulus(imposed).expect("definite").expect("flexible");
-    let whole = contacts_keeping(&model, load, &positions, &run, |cells, solution| {
-        cells.flank_loads(member, &solution.forces)
-    });
+    let whole = contacts_keeping(
+        model.as_drawn(),
+        load,
+        &positions,
+        &run,
+        |cells, solution| cells.flank_loads(member, &solution.forces),
+    );
     let whole = whole.expect("solutions");
     let rotation = |((whole, loads), rigid): (&(MeshContact, Vec<FlankLoad>), &MeshContact)| {
         let beyond = whole.transmission_error - rigid.transmission_error;

@@ -95,7 +95,14 @@ async fn a_preview_is_the_document_of_a_job_to_the_last_digit_and_is_not_kept() 
     let numbers = bench.get("/metrics").send().await.unwrap();
     let numbers = numbers.text().await.unwrap();
     for name in ["bytes", "capacity_bytes", "entries", "evictions_total"] {
-        for shelf in ["teeth", "blanks", "gears", "flanks", "contacts"] {
+        for shelf in [
+            "teeth",
+            "blanks",
+            "gears",
+            "flanks",
+            "compliances",
+            "contacts",
+        ] {
             let line = format!("meshwright_cache_{name}{{shelf=\"{shelf}\"}} ");
             assert!(numbers.contains(&line), "{line} in {numbers}");
         }

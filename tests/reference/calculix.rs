@@ -114,8 +114,10 @@ fn compare(file: &str, pair: &GearPair) -> Vec<Compared> {
     let document = reference(file);
     let model =
         pair_model(&case(pair.clone(), &[1.0]), library(), &Run::unattended()).expect("a model");
+    let deviations = pair.deviations();
     let at = |eta: f64, load: f64| -> MeshContact {
         model
+            .made(&deviations)
             .contact(eta, load, &mut WarmStart::default())
             .expect("every position has a solution")
     };

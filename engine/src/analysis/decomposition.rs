@@ -210,7 +210,8 @@ impl HoledBlank<'_> {
         let positions: Vec<f64> = (0..count)
             .map(|j| f64::from(j) * period / f64::from(count))
             .collect();
-        let whole = contacts_keeping(self.model, load, &positions, run, |cells, solution| {
+        let made = self.model.made(self.rigid.setup.deviations);
+        let whole = contacts_keeping(made, load, &positions, run, |cells, solution| {
             cells.flank_loads(self.member, &solution.forces)
         })?;
         let without = self.rigid.contacts(load, &positions)?;

@@ -67,17 +67,20 @@ pub fn fields(
     run: &Run,
 ) -> Result<Fields, AnalysisError> {
     faer::set_global_parallelism(faer::Par::Seq);
-    let setup = Setup::new(case, case.resolution.grid, FARTHEST_COUPLED, parts, run);
+    let deviations = &case.pair.deviations();
+    let level = case.resolution.grid;
+    let setup = Setup::new((case, deviations), level, FARTHEST_COUPLED, parts, run);
     let (model, _) = setup.model(Blanks::Flexible)?;
     let at = |error| AnalysisError::at_position(error, eta);
-    let mut stage = Stage::new(&model, eta, case.pair.load(output_torque)).map_err(at)?;
+    let mut stage =
+        Stage::new(model.made(deviations), eta, case.pair.load(output_torque)).map_err(at)?;
     let period = eta.floor() as i64;
     let (contact, loads) = stage
         .contact(period, &mut WarmStart::default(), |cells, solution| {
             Member::BOTH.map(|member| cells.flank_loads(member, &solution.forces))
         })
         .map_err(at)?;
-    let placement = Placement::real(&case.pair, eta, 0, 0.0);
+    let placement = Placement::real(&case.pair, deviations, eta, 0, 0.0);
     let of = |member: Member| {
         let (origin, angle) = placement.frame(member);
         of_gear(

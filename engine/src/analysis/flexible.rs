@@ -62,7 +62,8 @@ pub(super) fn solved<T: Send>(
     positions: &[f64],
     keep: impl Fn(&ContactCells<'_>, &ContactSolution) -> T + Sync,
 ) -> Result<Solved<T>, AnalysisError> {
-    let middle = contacts_keeping(model, load, positions, setup.run, keep)?;
+    let made = model.made(setup.deviations);
+    let middle = contacts_keeping(made, load, positions, setup.run, keep)?;
     let (contacts, kept): (Vec<MeshContact>, Vec<T>) = middle.into_iter().unzip();
     let stiffness = match setup.case.resolution.stiffness {
         StiffnessRule::Tangent => contacts.iter().map(|contact| contact.stiffness).collect(),
@@ -83,7 +84,8 @@ fn stepped(
     fraction: f64,
     positions: &[f64],
 ) -> Result<Vec<f64>, AnalysisError> {
-    let at = |factor: f64| contacts(model, load * factor, positions, setup.run);
+    let made = model.made(setup.deviations);
+    let at = |factor: f64| contacts(made, load * factor, positions, setup.run);
     let (low, high) = (at(1.0 - fraction)?, at(1.0 + fraction)?);
     let rise = |(low, high): (&MeshContact, &MeshContact)| {
         high.transmission_error - low.transmission_error

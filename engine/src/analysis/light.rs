@@ -36,11 +36,13 @@ pub(super) fn alone(case: &Case) -> Result<Analysis, AnalysisError> {
 }
 
 fn curve(case: &Case) -> Result<Curve, AnalysisError> {
+    let deviations = case.pair.deviations();
     let contacts = case
         .repeating_positions()
         .into_iter()
         .map(|eta| {
-            light_contact(&case.pair, eta).map_err(|error| AnalysisError::at_position(error, eta))
+            light_contact(&case.pair, &deviations, eta)
+                .map_err(|error| AnalysisError::at_position(error, eta))
         })
         .collect::<Result<Vec<_>, _>>()?;
     let each = contacts.iter();

@@ -32,6 +32,7 @@ pub use orders::{OrderCause, OrderKind};
 pub use warning::{PLANE_RIM, PLANE_WEB, Warning, warnings};
 
 pub use crate::contact::ContactSolver;
+use crate::gear::PairDeviations;
 pub use crate::gear::PlaneState;
 pub use crate::load_distribution::{
     BodyFormula, Formula, FormulaQuantity, FormulaRange, Formulas, ToothFormula,
@@ -86,9 +87,10 @@ fn analyze_at(
     parts: &dyn Parts,
     run: &Run,
 ) -> Result<Analysis, AnalysisError> {
+    let deviations = case.pair.deviations();
     let mut farthest = FIRST_COUPLED;
     loop {
-        let setup = Setup::new(case, level, farthest, parts, run);
+        let setup = Setup::new((case, &deviations), level, farthest, parts, run);
         let answer = match case.method {
             Method::Flexible => flexible::solve(setup),
             Method::Decomposition => decomposition::solve(setup),
@@ -107,14 +109,16 @@ fn analyze_at(
 }
 
 /// The model behind the flexible method for `case`, to be asked position by position, with as many pairs in contact as can be
-/// followed.
+/// followed. It is that of the drawn pair, whatever its teeth deviate by.
 ///
 /// # Errors
 ///
 /// [`AnalysisError::Discretization`], or [`AnalysisError::Stopped`].
 pub fn pair_model(case: &Case, parts: &dyn Parts, run: &Run) -> Result<PairModel, AnalysisError> {
     faer::set_global_parallelism(faer::Par::Seq);
-    let setup = Setup::new(case, case.resolution.grid, FARTHEST_COUPLED, parts, run);
+    let as_drawn = &PairDeviations::NONE;
+    let level = case.resolution.grid;
+    let setup = Setup::new((case, as_drawn), level, FARTHEST_COUPLED, parts, run);
     setup.model(Blanks::Flexible).map(|(model, _)| model)
 }
 

@@ -178,7 +178,8 @@ impl Expansion<'_> {
             .collect();
         let positions = case.mesh_positions();
         let positions: Vec<f64> = places.iter().map(|&place| positions[place]).collect();
-        let exact = contacts(&self.whole, load, &positions, run)?;
+        let made = self.whole.made(self.rigid.setup.deviations);
+        let exact = contacts(made, load, &positions, run)?;
         Ok(places
             .iter()
             .zip(&exact)
@@ -189,12 +190,13 @@ impl Expansion<'_> {
 
 /// The model whose `holed` blanks are alike all around.
 fn round_average(whole: &PairModel, holed: &[Member]) -> PairModel {
-    let mut round = whole.clone();
-    for member in holed {
-        let gear = &mut round.gears[member.index()];
-        gear.coupling = Arc::new(gear.coupling.round_average());
-    }
-    round
+    whole.with_couplings(|member, coupling| {
+        if holed.contains(&member) {
+            Arc::new(coupling.round_average())
+        } else {
+            Arc::clone(coupling)
+        }
+    })
 }
 
 /// qᵀ X p and qᵀ X q of `members` for the loads of `pairs` in the mesh period `period`: what their blanks yield.
@@ -230,7 +232,7 @@ mod tests {
     use crate::assembly::MakeAll;
     use crate::contact::{Stage, WarmStart};
     use crate::gear::spur::tests::paper_gear;
-    use crate::gear::{GearPair, HolePattern, SpurGear};
+    use crate::gear::{GearPair, HolePattern, PairDeviations, SpurGear};
     use crate::grid::GridLevel;
     use crate::run::Run;
 
@@ -274,28 +276,29 @@ mod tests {
         // δ(H_0 + e ΔH) at e = ±1e-4: the central difference leaves its cubic term, and the changes of the active set.
         let case = holed_pair();
         let run = Run::unattended();
-        let setup = Setup::new(&case, GridLevel::Coarse, 4, &MakeAll, &run);
+        let as_drawn = PairDeviations::NONE;
+        let setup = Setup::new((&case, &as_drawn), GridLevel::Coarse, 4, &MakeAll, &run);
         let (whole, _) = setup.model(Blanks::Flexible).expect("a model");
         let members = case.holed();
         let round = round_average(&whole, &members);
         let load = case.pair.load(115.0);
         let mixed = |share: f64| {
-            let mut model = round.clone();
-            for (gear, other) in model.gears.iter_mut().zip(&whole.gears) {
-                gear.coupling = Arc::new(gear.coupling.mixed(&other.coupling, share));
-            }
-            model
+            round.with_couplings(|member, coupling| {
+                Arc::new(coupling.mixed(&whole.gears[member.index()].coupling, share))
+            })
         };
         let step = 1e-4;
         let (below, above) = (mixed(-step), mixed(step));
         for eta in [0.05, 0.3, 0.55, 0.9] {
             let at = |model: &PairModel| {
                 model
+                    .as_drawn()
                     .contact(eta, load, &mut WarmStart::default())
                     .expect("a contact")
                     .transmission_error
             };
-            let mut stage = Stage::new(&round, eta, load).expect("flanks that face each other");
+            let mut stage =
+                Stage::new(round.as_drawn(), eta, load).expect("flanks that face each other");
             let loads = |cells: &ContactCells<'_>, solution: &ContactSolution| {
                 cells.loads(&[&solution.forces, &solution.load_derivative])
             };

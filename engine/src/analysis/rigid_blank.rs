@@ -38,6 +38,7 @@ impl<'a> RigidBlank<'a> {
             load,
             positions: positions.to_vec(),
             pair: self.spec.clone(),
+            deviations: self.setup.deviations.clone(),
         };
         Ok(self
             .setup

@@ -3,6 +3,7 @@
 use super::{AnalysisError, Case};
 use crate::assembly::{Blanks, Modeling, PairSpec, Parts};
 use crate::contact::PairModel;
+use crate::gear::PairDeviations;
 use crate::grid::GridLevel;
 use crate::run::Run;
 
@@ -10,15 +11,17 @@ use crate::run::Run;
 #[derive(Clone, Copy)]
 pub(super) struct Setup<'a> {
     pub(super) case: &'a Case,
+    /// What the teeth of its pair deviate by.
+    pub(super) deviations: &'a PairDeviations,
     pub(super) modeling: Modeling,
     pub(super) parts: &'a dyn Parts,
     pub(super) run: &'a Run,
 }
 
 impl<'a> Setup<'a> {
-    /// `case` at `level`, with teeth coupled up to `farthest` apart.
+    /// `case`, whose teeth have these `deviations`, at `level`, with teeth coupled up to `farthest` apart.
     pub(super) fn new(
-        case: &'a Case,
+        (case, deviations): (&'a Case, &'a PairDeviations),
         level: GridLevel,
         farthest: usize,
         parts: &'a dyn Parts,
@@ -32,6 +35,7 @@ impl<'a> Setup<'a> {
         };
         Self {
             case,
+            deviations,
             modeling,
             parts,
             run,

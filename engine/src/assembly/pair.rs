@@ -62,7 +62,7 @@ impl PairSpec {
         });
         Self {
             gears,
-            flanks: pair.without_blanks(),
+            flanks: pair.without_blanks().as_drawn(),
             level,
             solver,
         }
@@ -110,10 +110,10 @@ impl PairSpec {
         CutGear::new(spec, parts, run).map_err(|error| error.of(member))
     }
 
-    /// What its contact depends on but for the blanks and the deviations of teeth.
+    /// What its contact depends on but for the blanks.
     fn drawn(&self) -> FlanksSpec {
         FlanksSpec {
-            pair: self.flanks.as_drawn(),
+            pair: self.flanks.clone(),
             teeth: self.gears.each_ref().map(|gear| gear.teeth.clone()),
         }
     }
@@ -144,6 +144,7 @@ impl PairSpec {
             solver: self.solver,
             run: run.clone(),
             drawn: parts.flanks(&self.drawn()),
+            compliances: parts.compliances(self),
         };
         let unknowns = gears.iter().map(|gear| gear.degrees_of_freedom).sum();
         Ok((model, unknowns))

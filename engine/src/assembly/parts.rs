@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use super::{BlankSpec, Gear, PairSpec, Teeth, TeethSpec, WantedGear, make_gears};
+use crate::contact::compliances::Compliances;
 use crate::contact::drawn::DrawnFlanks;
 use crate::contact::positions::{PositionsError, contacts};
 use crate::contact::{MeshContact, PairModel};
 use crate::fem::FemError;
-use crate::gear::{GearPair, Member};
+use crate::gear::{GearPair, Member, PairDeviations};
 use crate::grid::GridError;
 use crate::ring::blank::BlankSubstructure;
 use crate::run::{Run, Stopped};
@@ -50,7 +51,12 @@ pub trait Parts: Sync {
         Arc::default()
     }
 
-    /// The contacts of `spec`, of whose pair `model` is the model.
+    /// What is known of compliances on the flanks of `spec`: a place for it, if nothing is.
+    fn compliances(&self, _spec: &PairSpec) -> Arc<Compliances> {
+        Arc::default()
+    }
+
+    /// The contacts of `spec`, of whose drawn pair `model` is the model.
     ///
     /// # Errors
     ///
@@ -61,7 +67,8 @@ pub trait Parts: Sync {
         model: &PairModel,
         run: &Run,
     ) -> Result<Arc<Vec<MeshContact>>, PositionsError> {
-        contacts(model, spec.load, &spec.positions, run).map(Arc::new)
+        let made = model.made(&spec.deviations);
+        contacts(made, spec.load, &spec.positions, run).map(Arc::new)
     }
 }
 
@@ -87,8 +94,10 @@ pub struct ContactsSpec {
     pub load: f64,
     /// The mesh positions η.
     pub positions: Vec<f64>,
-    /// The pair.
+    /// The drawn pair.
     pub pair: PairSpec,
+    /// What its teeth deviate by.
+    pub deviations: PairDeviations,
 }
 
 /// Why a part could not be made.

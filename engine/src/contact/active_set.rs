@@ -9,10 +9,6 @@
 //! steps that only a circle needs, points are exchanged one by one instead, which lowers the energy each time and so
 //! must end.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt;
-use faer::{Mat, Par};
-
 use super::problem::{ContactError, ContactProblem, ContactSolution, Equilibrium, check_load};
 
 /// Newton steps before points are exchanged one by one; from a cold start the 500 random problems of the
@@ -192,22 +188,25 @@ impl<'a> Trial<'a> {
         let w = self.problem.arms();
         // [x y] = H_A^-1 [w_A g_A], delta = (F + w^T y) / (w^T x), p = delta x - y.
         self.iterations += 1;
-        let solved = solve_on(self.problem, &self.gaps_at_touch, &set)?;
-        let (x, y) = (solved.col_as_slice(0), solved.col_as_slice(1));
-        let k: f64 = set.iter().zip(x).map(|(&j, x)| w[j] * x).sum();
-        let carried_by_gaps: f64 = set.iter().zip(y).map(|(&j, y)| w[j] * y).sum();
+        let factor = self.problem.factor(&set);
+        let factor = Option::as_ref(&factor);
+        let factor = factor.ok_or(ContactError::NotPositiveDefinite { points: set.len() })?;
+        let mut x: Vec<f64> = set.iter().map(|&j| w[j]).collect();
+        let mut y: Vec<f64> = set.iter().map(|&j| self.gaps_at_touch[j]).collect();
+        factor.solve([&mut x, &mut y]);
+        let k: f64 = set.iter().zip(&x).map(|(&j, x)| w[j] * x).sum();
+        let carried_by_gaps: f64 = set.iter().zip(&y).map(|(&j, y)| w[j] * y).sum();
         let delta = (self.load + carried_by_gaps) / k;
 
         self.active.fill(false);
         self.forces.fill(0.0);
-        for ((&j, x), y) in set.iter().zip(x).zip(y) {
+        for ((&j, x), y) in set.iter().zip(&x).zip(&y) {
             self.active[j] = true;
             self.forces[j] = delta * x - y;
         }
         self.stiffness = k;
         self.delta_beyond_touch = delta;
-        self.response.clear();
-        self.response.extend_from_slice(x);
+        self.response = x;
         self.set = set;
         self.take_gaps();
         if delta.is_finite()
@@ -310,49 +309,10 @@ impl<'a> Trial<'a> {
     }
 }
 
-/// H_A^-1 [w_A g_A] for the points of `set`, as two columns.
-fn solve_on(
-    problem: &ContactProblem,
-    gaps: &[f64],
-    set: &[usize],
-) -> Result<Mat<f64>, ContactError> {
-    let size = set.len();
-    // A matrix of just this size: with one kept from a larger set, the layout and so the rounding would depend on the
-    // sets tried before.
-    let mut factor = Mat::<f64>::zeros(size, size);
-    for (column, &j) in set.iter().enumerate() {
-        let h = problem.compliance_column(j);
-        for (entry, &i) in factor.col_as_slice_mut(column)[column..]
-            .iter_mut()
-            .zip(&set[column..])
-        {
-            *entry = h[i];
-        }
-    }
-    let mut solved = Mat::<f64>::zeros(size, 2);
-    for (row, &j) in set.iter().enumerate() {
-        solved[(row, 0)] = problem.arms()[j];
-        solved[(row, 1)] = gaps[j];
-    }
-    let par = Par::Seq;
-    let scratch = llt::factor::cholesky_in_place_scratch::<f64>(size, par, Default::default())
-        .or(llt::solve::solve_in_place_scratch::<f64>(size, 2, par));
-    let mut memory = MemBuffer::new(scratch);
-    let stack = MemStack::new(&mut memory);
-    llt::factor::cholesky_in_place(
-        factor.as_mut(),
-        Default::default(),
-        par,
-        stack,
-        Default::default(),
-    )
-    .map_err(|_| ContactError::NotPositiveDefinite { points: size })?;
-    llt::solve::solve_in_place(factor.as_ref(), solved.as_mut(), par, stack);
-    Ok(solved)
-}
-
 #[cfg(test)]
 mod tests {
+    use faer::Mat;
+
     use super::*;
 
     fn springs(compliances: [f64; 2], gaps: [f64; 2]) -> ContactProblem {

@@ -6,11 +6,12 @@ use std::sync::Arc;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 
+use super::compliances::Known;
 use super::drawn::DrawnPair;
 use super::facing::RangeEnd;
 use super::facings::Near;
 use super::meeting::Standing;
-use super::model::{ContactSolver, PairModel, PositionError, WarmStart};
+use super::model::{ContactSolver, MadePair, PositionError, WarmStart};
 use super::pair_cells::PairCells;
 use super::patch::{Extent, Patch};
 use super::penetration::Found;
@@ -27,7 +28,9 @@ const MULTIPLIER_UPDATES: u32 = 2000;
 ///
 /// Cells are numbered pair after pair, pairs from the reference pair of the period.
 pub struct ContactCells<'a> {
-    model: &'a PairModel,
+    made: MadePair<'a>,
+    /// Of the mesh period.
+    fraction: f64,
     pub(super) period: i64,
     pub(super) laid: Vec<Laid>,
     /// Where the cells of each pair begin.
@@ -135,6 +138,19 @@ pub struct MeshCells {
     pub solution: ContactSolution,
 }
 
+/// How δ follows what the teeth of one pair deviate by, in meters for a meter: the derivative while the same cells touch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PairInfluence {
+    /// The pair n.
+    pub pair: i64,
+    /// Its driving and its driven tooth.
+    pub teeth: [usize; 2],
+    /// By the cumulative pitch deviation of either ([`crate::gear::ToothDeviations`]).
+    pub by_pitch: [f64; 2],
+    /// By the profile slope deviation of either.
+    pub by_profile_slope: [f64; 2],
+}
+
 /// What a contact loads the interfaces of one tooth pair with.
 #[derive(Debug, Clone)]
 pub struct PairLoads {
@@ -166,14 +182,14 @@ impl MeshContact {
 }
 
 impl<'a> ContactCells<'a> {
-    /// Those of `pairs`, in mesh period `period`.
+    /// Those of `laid`, at the `fraction` of mesh period `period` of `made`.
     ///
     /// # Errors
     ///
     /// [`PositionError::TooFarApart`] if the model does not couple all of their teeth.
     pub(super) fn new(
-        model: &'a PairModel,
-        period: i64,
+        made: MadePair<'a>,
+        (fraction, period): (f64, i64),
         mut laid: Vec<Laid>,
     ) -> Result<Self, PositionError> {
         laid.sort_by_key(|laid| laid.pair);
@@ -181,7 +197,7 @@ impl<'a> ContactCells<'a> {
             return Err(PositionError::NoContact);
         };
         let apart = last.pair.abs_diff(first.pair) as usize;
-        let coupled = model.coupled_teeth();
+        let coupled = made.model.coupled_teeth();
         if apart > coupled {
             return Err(PositionError::TooFarApart { apart, coupled });
         }
@@ -190,7 +206,8 @@ impl<'a> ContactCells<'a> {
             starts.push(starts[starts.len() - 1] + laid.gaps.len());
         }
         Ok(Self {
-            model,
+            made,
+            fraction,
             period,
             laid,
             starts,
@@ -206,11 +223,11 @@ impl<'a> ContactCells<'a> {
     /// How the interface of `member` in `pair` moves under what loads the interfaces of all pairs.
     pub(super) fn moved(&self, member: Member, pair: i64, loads: &[PairLoads]) -> Mat<f64> {
         let gear = member.index();
-        let coupling = &self.model.gears[gear].coupling;
+        let coupling = &self.made.model.gears[gear].coupling;
         let mut moved = Mat::zeros(coupling.shape_count(), 1);
         for other in loads {
             let (x, transposed) = coupling.block(
-                self.model.pair.tooth(member, self.period + pair),
+                self.made.model.pair.tooth(member, self.period + pair),
                 teeth_on(member, other.pair - pair),
             );
             let force = &other.loads[gear];
@@ -226,16 +243,13 @@ impl<'a> ContactCells<'a> {
     /// What the compliance of these cells depends on beside the cells themselves: how the blanks stand under their teeth.
     pub(super) fn teeth_like(&self) -> [usize; 2] {
         Member::BOTH.map(|member| {
-            let coupling = &self.model.gears[member.index()].coupling;
-            coupling.like(self.model.pair.tooth(member, self.period))
+            let coupling = &self.made.model.gears[member.index()].coupling;
+            coupling.like(self.made.model.pair.tooth(member, self.period))
         })
     }
 
-    /// The problem on these cells, stated `before` for cells of the same compliance or anew.
-    pub(super) fn problem(
-        &self,
-        before: Option<&ContactProblem>,
-    ) -> Result<ContactProblem, PositionError> {
+    /// The problem on these cells, whose compliance is `known`.
+    pub(super) fn problem(&self, known: &Known) -> Result<ContactProblem, PositionError> {
         let each = self.laid.iter();
         let gaps = each
             .clone()
@@ -244,10 +258,7 @@ impl<'a> ContactCells<'a> {
         let arms = each
             .flat_map(|laid| laid.arms.iter().map(|arms| arms[1]))
             .collect();
-        Ok(match before {
-            Some(problem) => problem.with_gaps(gaps, arms)?,
-            None => ContactProblem::of_lower_triangle(self.compliance(), gaps, arms)?,
-        })
+        Ok(ContactProblem::of_known(known, gaps, arms)?)
     }
 
     /// The solution of their `problem` under `load`.
@@ -257,7 +268,7 @@ impl<'a> ContactCells<'a> {
         load: f64,
         warm: &WarmStart,
     ) -> Result<ContactSolution, PositionError> {
-        Ok(match self.model.solver {
+        Ok(match self.made.model.solver {
             ContactSolver::ActiveSet => {
                 solve_active_set(problem, load, self.touching(warm).as_deref())?
             }
@@ -266,18 +277,18 @@ impl<'a> ContactCells<'a> {
                 gap_tolerance,
             } => {
                 let settings = AugmentedLagrangian {
-                    penalty: penalty.unwrap_or_else(|| default_penalty(&self.model.pair)),
+                    penalty: penalty.unwrap_or_else(|| default_penalty(&self.made.model.pair)),
                     gap_tolerance,
                     max_iterations: MULTIPLIER_UPDATES,
                 };
-                solve_augmented_lagrangian(problem, load, &settings, &self.model.run)?
+                solve_augmented_lagrangian(problem, load, &settings, &self.made.model.run)?
             }
         })
     }
 
-    /// H of both gears with these teeth; its lower triangle.
-    fn compliance(&self) -> Mat<f64> {
-        let model = self.model;
+    /// H of both gears with these teeth.
+    pub(super) fn compliance(&self) -> Mat<f64> {
+        let model = self.made.model;
         let count = self.starts[self.laid.len()];
         let mut h = Mat::zeros(count, count);
         for (laid, range) in self.ranges() {
@@ -313,6 +324,11 @@ impl<'a> ContactCells<'a> {
                 }
             }
         }
+        for column in 1..count {
+            for row in 0..column {
+                h[(row, column)] = h[(column, row)];
+            }
+        }
         h
     }
 
@@ -322,7 +338,7 @@ impl<'a> ContactCells<'a> {
         solution: &ContactSolution,
         found: &Found,
     ) -> MeshContact {
-        let width = self.model.pair.common_face_width();
+        let width = self.made.model.pair.common_face_width();
         let mut peak_pressure = Some(0.0_f64);
         let pairs = self
             .ranges()
@@ -401,6 +417,57 @@ impl<'a> ContactCells<'a> {
         }
     }
 
+    /// How δ follows what the teeth in reach deviate by, under the contact of `solution`, pair by pair.
+    ///
+    /// The derivative of δ by a gap is q = dp/dF at its cell ([`ContactSolution::load_derivative`]): gaps that open by dg let the driven gear
+    /// lag by qᵀ dg more, whatever opens them; arms that change by dw add −δ qᵀ dw − pᵀ dw/k. A tooth that is not listed has no influence here.
+    pub fn influences(&self, solution: &ContactSolution) -> Vec<PairInfluence> {
+        /// Far above the rounding of gaps, far below any length over which they curve.
+        const STEP: f64 = 1e-7;
+        let pair = &self.made.model.pair;
+        let delta = solution.transmission_error;
+        let of_pair = |laid: &Laid, range: Range<usize>| {
+            let (eta, n) = (self.fraction + self.period as f64, self.period + laid.pair);
+            let patch = &laid.cells().patch;
+            let place = (patch.seat, laid.drawn.phase);
+            let standing = self.made.standing(eta, n, laid.lag, place);
+            let (q, p) = (
+                &solution.load_derivative[range.clone()],
+                &solution.forces[range],
+            );
+            let by = |member: Member, turn: f64, slope: f64| -> f64 {
+                let [more, less] =
+                    [1.0, -1.0].map(|sign| standing.deviating(member, sign * turn, sign * slope));
+                let probes = patch.probes.iter().zip(q.iter().zip(p));
+                let touching = probes.filter(|(_, (q, _))| **q != 0.0);
+                let each = touching.map(|((probe, _), (q, p))| {
+                    let (more, less) = (more.meeting(probe), less.meeting(probe));
+                    let opens = more.gap - less.gap;
+                    let arm = more.arms[1] - less.arms[1];
+                    q * (opens - (delta - laid.lag) * arm) - p * arm / solution.stiffness
+                });
+                each.sum::<f64>() / (2.0 * STEP)
+            };
+            let on_base_circle = pair.driving().data().rack.pressure_angle.cos();
+            PairInfluence {
+                pair: n,
+                teeth: pair.teeth(n),
+                by_pitch: Member::BOTH.map(|member| by(member, STEP * on_base_circle, 0.0)),
+                by_profile_slope: Member::BOTH.map(|member| {
+                    let gear = pair.gear(member);
+                    by(
+                        member,
+                        0.0,
+                        STEP / (gear.tip_roll_length() - gear.form_roll_length()),
+                    )
+                }),
+            }
+        };
+        self.ranges()
+            .map(|(laid, range)| of_pair(laid, range))
+            .collect()
+    }
+
     /// What the `forces` on all cells load the interfaces of each pair with, one column each.
     pub fn loads(&self, forces: &[&[f64]]) -> Vec<PairLoads> {
         self.ranges()
@@ -418,8 +485,8 @@ impl<'a> ContactCells<'a> {
 
     /// What the `forces` on all cells are on the flanks of `member`, tooth by tooth of those that carry any.
     pub fn flank_loads(&self, member: Member, forces: &[f64]) -> Vec<FlankLoad> {
-        let (gear, pair) = (member.index(), &self.model.pair);
-        let flank = &self.model.gears[gear].flank;
+        let (gear, pair) = (member.index(), &self.made.model.pair);
+        let flank = &self.made.model.gears[gear].flank;
         self.ranges()
             .map(|(laid, range)| (laid, &forces[range]))
             .filter(|(_, forces)| forces.iter().any(|force| *force > 0.0))

@@ -2,7 +2,7 @@
 
 use super::meeting::{Meeting, Probe};
 use super::placement::{FlankPlace, Placement, Sight};
-use crate::gear::{GearPair, Member};
+use crate::gear::{GearPair, Member, PairDeviations};
 use crate::root_finding::bisect;
 
 /// Places besides kinks between which the gap of flanks that are not convex is looked at.
@@ -92,9 +92,17 @@ impl Facing {
         View { placement, seat }.facing(phase)
     }
 
-    /// How the flanks of pair `n` face each other as they are at the mesh position `eta`, the driven gear lagging by `lag`.
-    pub fn real(gears: &GearPair, eta: f64, n: i64, lag: f64) -> Option<Self> {
-        let (placement, phase) = (Placement::real(gears, eta, n, lag), eta - n as f64);
+    /// How the flanks of pair `n` of `gears` with these `deviations` face each other at the mesh position `eta`, the driven gear lagging by
+    /// `lag`.
+    pub fn real(
+        gears: &GearPair,
+        deviations: &PairDeviations,
+        eta: f64,
+        n: i64,
+        lag: f64,
+    ) -> Option<Self> {
+        let placement = Placement::real(gears, deviations, eta, n, lag);
+        let phase = eta - n as f64;
         let seat = nearer_tip(gears, phase);
         View { placement, seat }.facing(phase)
     }

@@ -3,10 +3,10 @@
 use super::drawn::DrawnPair;
 use super::facing::{Facing, Hollow};
 use super::meeting::Standing;
-use super::model::PairModel;
+use super::model::MadePair;
 use super::patch::Extent;
 use super::placement;
-use crate::gear::{GearPair, Member};
+use crate::gear::Member;
 
 /// What coordinates may be rounded by, in meters.
 const ROUNDING: f64 = 1e-12;
@@ -14,15 +14,19 @@ const ROUNDING: f64 = 1e-12;
 /// Pairs whose teeth deviate are laid as drawn at the nearest of so many phases a mesh period.
 const PHASES: f64 = 64.0;
 
+/// An eccentricity moves contacts by no more than so many times itself: the common tangent of the base circles turns, and cot α_w is 4 at
+/// the most.
+const MOST_RUNOUT: f64 = 2.0;
+
 /// The pairs whose flanks face each other at one fraction of the mesh period; numbered from the reference pair of the
 /// period. They are looked for outward from the path of contact, as far as is asked.
 pub(super) struct Facings<'a> {
-    model: &'a PairModel,
+    made: MadePair<'a>,
     fraction: f64,
     /// Whether nothing deviates.
     as_drawn: bool,
-    /// How far deviations may bring flanks nearer.
-    nearer: f64,
+    /// Whether eccentric gears move contacts by more than a phase.
+    runs_out_far: bool,
     /// Every pair looked at, and the δ at which it touches as drawn.
     found: Vec<(i64, f64)>,
     frontier: [Frontier; 2],
@@ -62,13 +66,12 @@ impl Near {
         1 + last.unwrap_or(0)
     }
 
-    /// How far the deviations of its teeth move the contact under `load` in mesh period `period` of `pair` ([`Extent`]).
-    pub(super) fn moved(&self, pair: &GearPair, (period, load): (i64, f64)) -> i32 {
+    /// How far the deviations of its teeth move the contact under `load` in mesh period `period` of `made` ([`Extent`]).
+    pub(super) fn moved(&self, made: MadePair<'_>, (period, load): (i64, f64)) -> i32 {
+        let pair = &made.model.pair;
         let teeth = pair.teeth(period + self.pair);
-        let slopes = Member::BOTH.map(|member| {
-            let g = member.index();
-            pair.gear(member).deviation_slope(teeth[g])
-        });
+        let slopes =
+            Member::BOTH.map(|member| made.deviations.of_gear(member).slope(teeth[member.index()]));
         let Some(facing) = self.drawn.facing() else {
             return 0;
         };
@@ -90,24 +93,24 @@ impl Near {
         Extent::moved(pair, hollow, load, (along, inclined))
     }
 
-    /// How it stands in mesh period `period` of `pair`, with a driven gear that lags by `lag`.
+    /// How it stands in mesh period `period` of `made`, with a driven gear that lags by `lag`.
     pub(super) fn standing<'a>(
         &self,
-        pair: &'a GearPair,
+        made: MadePair<'a>,
         (fraction, period): (f64, i64),
         lag: f64,
     ) -> Option<Standing<'a>> {
         let n = period + self.pair;
         let seat = self.drawn.facing()?.seat;
         let eta = fraction + period as f64;
-        Some(Standing::new(pair, eta, n, lag, (seat, self.drawn.phase)))
+        Some(made.standing(eta, n, lag, (seat, self.drawn.phase)))
     }
 }
 
 impl<'a> Facings<'a> {
     /// The pairs on the path of contact and those beside it; `None` if no flanks face each other at all.
-    pub(super) fn new(model: &'a PairModel, fraction: f64) -> Option<Self> {
-        let gears = &model.pair;
+    pub(super) fn new(made: MadePair<'a>, fraction: f64) -> Option<Self> {
+        let gears = &made.model.pair;
         let (s_a, s_e) = gears.path_of_contact();
         // Pair n touches at the roll length of η − n periods.
         let periods = |s: f64| (s - gears.roll_length_of(0.0)) / gears.base_pitch();
@@ -118,11 +121,15 @@ impl<'a> Facings<'a> {
             step,
             last: f64::NEG_INFINITY,
         };
+        let runout: f64 = Member::BOTH
+            .map(|member| made.deviations.of_gear(member).eccentricity())
+            .iter()
+            .sum();
         let mut facings = Self {
-            model,
+            made,
             fraction,
-            as_drawn: gears.is_as_drawn(),
-            nearer: gears.nearest_deviation(),
+            as_drawn: made.deviations.are_none(),
+            runs_out_far: MOST_RUNOUT * runout > gears.base_pitch() / PHASES,
             found: Vec::new(),
             frontier: [frontier(first - 1, -1), frontier(last + 1, 1)],
             known: (0, Vec::new()),
@@ -143,7 +150,8 @@ impl<'a> Facings<'a> {
 
     /// Looks at pair `n` as drawn; the δ at which it touches, without end where flanks do not face each other.
     fn look_at(&mut self, n: i64) -> f64 {
-        let drawn = self.model.drawn.pair(self.model, self.fraction - n as f64);
+        let model = self.made.model;
+        let drawn = model.drawn.pair(model, self.fraction - n as f64);
         let touch = drawn.facing().map_or(f64::INFINITY, Facing::touch);
         if touch < f64::INFINITY {
             self.found.push((n, touch));
@@ -163,7 +171,7 @@ impl<'a> Facings<'a> {
 
     /// How far deviations may bring flanks nearer.
     pub(super) fn nearer(&self) -> f64 {
-        self.nearer
+        self.made.deviations.nearest()
     }
 
     /// The δ at which the first pair touches as drawn.
@@ -184,7 +192,7 @@ impl<'a> Facings<'a> {
 
     /// The pairs that touch in mesh period `period` before δ is `reach`; at least the one that touches first.
     pub(super) fn within(&mut self, period: i64, reach: f64) -> Vec<Near> {
-        let as_drawn = reach + self.nearer + ROUNDING;
+        let as_drawn = reach + self.nearer() + ROUNDING;
         self.look_as_far_as(as_drawn);
         if self.known.0 != period {
             self.known = (period, Vec::new());
@@ -203,10 +211,10 @@ impl<'a> Facings<'a> {
 
     /// Pair `n` of mesh period `period`.
     fn near(&self, n: i64, period: i64) -> Option<Near> {
-        let gears = &self.model.pair;
+        let model = self.made.model;
         let phase = self.fraction - n as f64;
         if self.as_drawn {
-            let drawn = self.model.drawn.pair(self.model, phase);
+            let drawn = model.drawn.pair(model, phase);
             let hollows = &drawn.facing()?.hollows;
             let touches = hollows.iter().map(|hollow| hollow.touch).collect();
             return Some(Near {
@@ -216,20 +224,20 @@ impl<'a> Facings<'a> {
                 drawn,
             });
         }
-        let shift = shift(gears, phase, period + n);
-        // Along a curve a tooth keeps its pitch deviation, and so what was laid for it; an eccentric gear stands elsewhere at every position.
-        let laid = if gears.is_concentric() {
-            (shift * PHASES).round() / PHASES
-        } else {
+        let [by_tooth, shift] = shifts(self.made, phase, period + n);
+        // Along a curve a tooth keeps its own deviation, and so what was laid for it. A gear that runs out far stands elsewhere at every position.
+        let laid = if self.runs_out_far {
             shift
+        } else {
+            (by_tooth * PHASES).round() / PHASES
         };
         let mut near = Near {
             pair: n,
             ahead: shift - laid,
             touches: Vec::new(),
-            drawn: self.model.drawn.pair(self.model, phase + laid),
+            drawn: model.drawn.pair(model, phase + laid),
         };
-        let standing = near.standing(gears, (self.fraction, period), 0.0)?;
+        let standing = near.standing(self.made, (self.fraction, period), 0.0)?;
         let touch = |hollow: &Hollow| {
             let meeting = standing.meeting(&hollow.probe);
             meeting.gap / meeting.arms[1]
@@ -255,17 +263,19 @@ impl<'a> Facings<'a> {
     }
 }
 
-/// By how many mesh periods pair `n`, with its deviations, touches as if it had gone on from `phase`: the driving flank touches where the
-/// common tangent of both base circles meets it.
-fn shift(gears: &GearPair, phase: f64, n: i64) -> f64 {
+/// By how many mesh periods pair `n` touches as if it had gone on from `phase`, by the deviations of its teeth alone and with gears that run out:
+/// the driving flank touches where the common tangent of both base circles meets it.
+fn shifts(MadePair { model, deviations }: MadePair<'_>, phase: f64, n: i64) -> [f64; 2] {
+    let gears = &model.pair;
     let angles = placement::angles(gears, phase);
-    let centers = placement::centers(gears, n, angles);
+    let centers = placement::centers(gears, deviations, n, angles);
     let driving = gears.driving();
     let between = centers[1] - centers[0];
     let base = driving.base_radius() + gears.driven().base_radius();
     let tangent = between.y.atan2(between.x) - (base / between.norm()).min(1.0).acos();
     let s_1 = driving.base_radius() * (angles[0] + driving.flank().base_half_angle() - tangent);
     let tooth = gears.tooth(Member::Driving, n);
-    let out = driving.deviation(tooth, s_1);
-    (s_1 + out - gears.roll_length_of(phase)) / gears.base_pitch()
+    let out = deviations.of_gear(Member::Driving).at(tooth, s_1);
+    let as_drawn = gears.roll_length_of(phase);
+    [as_drawn + out, s_1 + out].map(|s| (s - as_drawn) / gears.base_pitch())
 }

@@ -3,7 +3,7 @@
 use super::cells::{MeshContact, PairContact};
 use super::facing::Facing;
 use super::model::PositionError;
-use crate::gear::GearPair;
+use crate::gear::{GearPair, PairDeviations};
 
 /// Gaps that differ by less than this part of the module close together: rounding of coordinates.
 const TOGETHER: f64 = 1e-9;
@@ -11,8 +11,8 @@ const TOGETHER: f64 = 1e-9;
 /// Steps to the touching flanks; each squares what is left.
 const MOST_STEPS: u32 = 20;
 
-/// The limit of the contact of `pair` at the mesh position `eta` as the load goes to zero: δ is the kinematic error of modified
-/// and deviating flanks, negative where a flank stands out towards its mate.
+/// The limit of the contact of `pair` with these `deviations` at the mesh position `eta` as the load goes to zero: δ is the kinematic error of
+/// modified and deviating flanks, negative where a flank stands out towards its mate.
 ///
 /// The driven gear is turned until the flanks as they are just touch.
 /// The tangent stiffness of a line contact goes to zero with its load, and so does its pressure.
@@ -20,15 +20,19 @@ const MOST_STEPS: u32 = 20;
 /// # Errors
 ///
 /// [`PositionError::NoContact`] if no flanks face each other.
-pub fn light_contact(pair: &GearPair, eta: f64) -> Result<MeshContact, PositionError> {
+pub fn light_contact(
+    pair: &GearPair,
+    deviations: &PairDeviations,
+    eta: f64,
+) -> Result<MeshContact, PositionError> {
     let rounding = TOGETHER * pair.driving().data().rack.module;
-    let near = pairs_near(pair, eta, rounding)?;
+    let near = pairs_near(pair, deviations, eta, rounding)?;
     let mut lag = 0.0;
     let mut facing = Vec::new();
     for _ in 0..MOST_STEPS {
         facing = near
             .iter()
-            .filter_map(|n| Some((*n, Facing::real(pair, eta, *n, lag)?)))
+            .filter_map(|n| Some((*n, Facing::real(pair, deviations, eta, *n, lag)?)))
             .collect();
         let least = facing.iter().map(|(_, facing)| facing.touch());
         let step = least.fold(f64::INFINITY, f64::min);
@@ -62,8 +66,13 @@ pub fn light_contact(pair: &GearPair, eta: f64) -> Result<MeshContact, PositionE
 }
 
 /// The pairs one of which touches first, whatever its teeth deviate, rising.
-fn pairs_near(pair: &GearPair, eta: f64, rounding: f64) -> Result<Vec<i64>, PositionError> {
-    let touch = |n: i64| Facing::real(pair, eta, n, 0.0).map(|facing| facing.touch());
+fn pairs_near(
+    pair: &GearPair,
+    deviations: &PairDeviations,
+    eta: f64,
+    rounding: f64,
+) -> Result<Vec<i64>, PositionError> {
+    let touch = |n: i64| Facing::real(pair, deviations, eta, n, 0.0).map(|facing| facing.touch());
     let (s_a, s_e) = pair.path_of_contact();
     let periods = |s: f64| (s - pair.roll_length_of(0.0)) / pair.base_pitch();
     let first = (eta - periods(s_e)).floor() as i64;
@@ -77,7 +86,7 @@ fn pairs_near(pair: &GearPair, eta: f64, rounding: f64) -> Result<Vec<i64>, Posi
     // Beyond the path of contact gaps as drawn grow from pair to pair, and a lag closes all of them about alike.
     let most = |found: &[(i64, f64)]| {
         let least = least(found);
-        least + 0.1 * least.abs() + 2.0 * pair.nearest_deviation() + rounding
+        least + 0.1 * least.abs() + 2.0 * deviations.nearest() + rounding
     };
     for (begin, step) in [(first - 1, -1), (last + 1, 1)] {
         let mut n = begin;

@@ -1,7 +1,7 @@
 //! How two flanks push each other where they meet, and how that changes as gears turn and teeth deviate.
 
 use super::placement::{self, FlankPlace, Sight, inclined, quarter_turned};
-use crate::gear::{GearPair, Member, Vector};
+use crate::gear::{GearPair, Member, PairDeviations, Vector};
 
 /// What contact needs of a point at which two flanks face each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -118,10 +118,10 @@ fn turned([cosine, sine]: [f64; 2], v: Vector) -> Vector {
 }
 
 impl<'a> Standing<'a> {
-    /// Pair `n` with its deviations at the mesh position `eta`, the driven gear lagging by `lag`, from where a pair of `phase` was laid on
+    /// Pair `n` with these `deviations` at the mesh position `eta`, the driven gear lagging by `lag`, from where a pair of `phase` was laid on
     /// `seat`.
     pub(super) fn new(
-        pair: &'a GearPair,
+        (pair, deviations): (&'a GearPair, &PairDeviations),
         eta: f64,
         n: i64,
         lag: f64,
@@ -131,8 +131,8 @@ impl<'a> Standing<'a> {
         let ahead = (eta - n as f64 - phase) * pair.base_pitch();
         let advance = [ahead, lag - ahead];
         let lengths = Member::BOTH.map(|member| {
-            let (gear, g) = (pair.gear(member), member.index());
-            advance[g] + gear.deviation(teeth[g], gear.form_roll_length())
+            let g = member.index();
+            advance[g] + deviations.of_gear(member).turn(teeth[g])
         });
         let body = placement::angles(pair, eta - n as f64);
         let body = [body[0], body[1] + lag / pair.driven().base_radius()];
@@ -144,10 +144,22 @@ impl<'a> Standing<'a> {
                 let (sine, cosine) = (lengths[g] / pair.gear(member).base_radius()).sin_cos();
                 [cosine, sine]
             }),
-            centers: placement::centers(pair, n, body),
+            centers: placement::centers(pair, deviations, n, body),
             slopes: Member::BOTH
-                .map(|member| pair.gear(member).deviation_slope(teeth[member.index()])),
+                .map(|member| deviations.of_gear(member).slope(teeth[member.index()])),
         }
+    }
+
+    /// The same with the tooth of `member` standing out more: turned by the length `turn` on its base circle, and inclined by `slope`.
+    pub(super) fn deviating(&self, member: Member, turn: f64, slope: f64) -> Self {
+        let mut other = *self;
+        let (g, r_b) = (member.index(), self.pair.gear(member).base_radius());
+        let (sine, cosine) = (turn / r_b).sin_cos();
+        let so_far = Vector::new(self.turns[g][0], self.turns[g][1]);
+        let turned = turned([cosine, sine], so_far);
+        other.turns[g] = [turned.x, turned.y];
+        other.slopes[g] += slope;
+        other
     }
 
     /// How `probe` meets the other flank.

@@ -6,6 +6,7 @@
 //! - [`flank_table`], [`half_plane`] and `corner`: the compliance of the cells, smooth part, logarithm, and near a sharp tip,
 //! - [`pair_cells`]: the cells of one pair, as drawn,
 //! - [`drawn`] and `memo`: what flanks as drawn have alike whatever carries their teeth, kept,
+//! - [`compliances`] and `factor`: what pairs made to one drawing have alike however their teeth deviate, kept,
 //! - `facings` and [`cells`]: which pairs come near with the deviations of the teeth that stand there, and the cells of all of them; H on
 //!   them, and what their solution says of the mesh,
 //! - [`stage`]: one fraction of the mesh period, from laying the cells to a solution that nothing penetrates,
@@ -33,10 +34,12 @@
 mod active_set;
 mod augmented_lagrangian;
 pub mod cells;
+pub mod compliances;
 mod corner;
 pub mod drawn;
 pub mod facing;
 mod facings;
+mod factor;
 pub mod flank_table;
 pub mod half_plane;
 mod light;
@@ -53,8 +56,10 @@ pub mod stage;
 
 pub use active_set::solve_active_set;
 pub use augmented_lagrangian::{AugmentedLagrangian, default_penalty, solve_augmented_lagrangian};
-pub use cells::{ContactCells, FlankLoad, MeshCells, MeshContact, PairContact, PairLoads};
+pub use cells::{
+    ContactCells, FlankLoad, MeshCells, MeshContact, PairContact, PairInfluence, PairLoads,
+};
 pub use light::light_contact;
-pub use model::{ContactSolver, GearModel, PairModel, PositionError, WarmStart};
+pub use model::{ContactSolver, GearModel, MadePair, PairModel, PositionError, WarmStart};
 pub use problem::{ContactError, ContactProblem, ContactQuantity, ContactSolution};
 pub use stage::Stage;

@@ -2,11 +2,13 @@
 
 use std::sync::Arc;
 
+use super::compliances::Compliances;
 use super::drawn::DrawnFlanks;
 use super::flank_table::FlankTable;
+use super::meeting::Standing;
 use super::stage::Stage;
 use super::{ContactError, MeshCells, MeshContact};
-use crate::gear::GearPair;
+use crate::gear::{GearPair, Member, PairDeviations};
 use crate::ring::body::Coupling;
 use crate::run::Run;
 
@@ -36,7 +38,7 @@ pub struct GearModel {
 /// A pair ready for contact at any position and load.
 #[derive(Debug, Clone)]
 pub struct PairModel {
-    /// The pair.
+    /// The pair as drawn: deviations are those of a [`MadePair`].
     pub pair: GearPair,
     /// Driving and driven gear.
     pub gears: [GearModel; 2],
@@ -48,6 +50,8 @@ pub struct PairModel {
     pub run: Run,
     /// What is known of its flanks as drawn.
     pub drawn: Arc<DrawnFlanks>,
+    /// What is known of compliances on them, with these gears.
+    pub compliances: Arc<Compliances>,
 }
 
 /// What one position leaves for the next: where each pair was in contact, and the transmission error.
@@ -82,14 +86,23 @@ pub enum PositionError {
     Contact(#[from] ContactError),
 }
 
-impl PairModel {
+/// One pair made to the drawings of a model: what its teeth deviate by beside what it shares with all others.
+#[derive(Debug, Clone, Copy)]
+pub struct MadePair<'a> {
+    /// The drawn pair.
+    pub model: &'a PairModel,
+    /// What its teeth deviate by.
+    pub deviations: &'a PairDeviations,
+}
+
+impl<'a> MadePair<'a> {
     /// The contact at mesh position `eta` under `load`, summed up pair by pair.
     ///
     /// # Errors
     ///
     /// [`PositionError`].
     pub fn contact(
-        &self,
+        self,
         eta: f64,
         load: f64,
         warm: &mut WarmStart,
@@ -105,12 +118,49 @@ impl PairModel {
     ///
     /// [`PositionError`].
     pub fn cells(
-        &self,
+        self,
         eta: f64,
         load: f64,
         warm: &mut WarmStart,
     ) -> Result<MeshCells, PositionError> {
         Stage::new(self, eta, load)?.cells(eta.floor() as i64, warm)
+    }
+
+    /// How its pair `n` stands at the mesh position `eta`, the driven gear lagging by `lag`, from where a pair of a phase was laid on a seat.
+    pub(super) fn standing(self, eta: f64, n: i64, lag: f64, laid: (Member, f64)) -> Standing<'a> {
+        Standing::new((&self.model.pair, self.deviations), eta, n, lag, laid)
+    }
+}
+
+impl PairModel {
+    /// A pair that is just as drawn.
+    pub fn as_drawn(&self) -> MadePair<'_> {
+        static NONE: PairDeviations = PairDeviations::NONE;
+        self.made(&NONE)
+    }
+
+    /// A pair whose teeth deviate by `deviations`: these change gaps, arms and the places where flanks meet, and never a compliance.
+    pub fn made<'a>(&'a self, deviations: &'a PairDeviations) -> MadePair<'a> {
+        MadePair {
+            model: self,
+            deviations,
+        }
+    }
+
+    /// The same pair on gears whose teeth move each other as `change` makes of how they do.
+    pub fn with_couplings(&self, change: impl Fn(Member, &Arc<Coupling>) -> Arc<Coupling>) -> Self {
+        let gears = Member::BOTH.map(|member| {
+            let gear = &self.gears[member.index()];
+            GearModel {
+                flank: Arc::clone(&gear.flank),
+                coupling: change(member, &gear.coupling),
+            }
+        });
+        Self {
+            gears,
+            compliances: Arc::default(),
+            ..self.clone()
+        }
     }
 
     /// How far apart coupled teeth of either gear stand at most.

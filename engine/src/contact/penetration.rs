@@ -15,11 +15,11 @@ use super::drawn::Carrying;
 use super::facing::{Facing, FlankRange, RangeEnd, View};
 use super::half_plane::Entries;
 use super::meeting::{Probe, Standing};
-use super::model::PairModel;
+use super::model::{MadePair, PairModel};
 use super::pair_cells::{PairCells, compliance};
 use super::patch::{Cell, Patch, Stretch};
 use crate::fem::dense::entries;
-use crate::gear::{GearPair, Member};
+use crate::gear::Member;
 
 /// Stretches spread over the flanks beside the cells.
 const BESIDE: usize = 48;
@@ -78,7 +78,7 @@ impl<'a> Look<'a> {
     pub(super) fn new(
         looks: Arc<Looks>,
         laid: &Laid,
-        pair: &'a GearPair,
+        made: MadePair<'a>,
         (fraction, period): (f64, i64),
     ) -> Self {
         let beside = |looked: &Looked| !matches!(looked.place, Place::Across(_));
@@ -87,7 +87,7 @@ impl<'a> Look<'a> {
             let seat = laid.cells().patch.seat;
             let (eta, n) = (fraction + period as f64, period + laid.pair);
             [seat, seat.other()]
-                .map(|seat| Standing::new(pair, eta, n, laid.lag, (seat, laid.drawn.phase)))
+                .map(|seat| made.standing(eta, n, laid.lag, (seat, laid.drawn.phase)))
         });
         Self { looks, standing }
     }

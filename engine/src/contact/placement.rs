@@ -6,7 +6,9 @@
 use std::f64::consts::PI;
 
 use super::meeting::{Meeting, Push};
-use crate::gear::{GearPair, Member, SpurGear, Vector, radial, tangential, teeth_on};
+use crate::gear::{
+    GearPair, Member, PairDeviations, SpurGear, Vector, radial, tangential, teeth_on,
+};
 
 /// Both gears at one mesh position, as one tooth pair sees them.
 ///
@@ -18,8 +20,8 @@ pub struct Placement<'a> {
     centers: [Vector; 2],
     /// The angle of each tooth's centerline.
     angles: [f64; 2],
-    /// The teeth whose deviations count.
-    teeth: Option<[usize; 2]>,
+    /// What deviates, and the teeth that stand there; nothing of a pair as drawn.
+    made: Option<(&'a PairDeviations, [usize; 2])>,
 }
 
 /// A place on the boundary of a gear.
@@ -82,14 +84,19 @@ pub(super) fn axes(pair: &GearPair) -> [Vector; 2] {
     [Vector::zeros(), Vector::new(pair.center_distance(), 0.0)]
 }
 
-/// Where the own axes of the gears stand while the centerlines of the teeth of pair `n` point along `angles`.
-pub(super) fn centers(pair: &GearPair, n: i64, angles: [f64; 2]) -> [Vector; 2] {
+/// Where the own axes of gears with these `deviations` stand while the centerlines of the teeth of pair `n` point along `angles`.
+pub(super) fn centers(
+    pair: &GearPair,
+    deviations: &PairDeviations,
+    n: i64,
+    angles: [f64; 2],
+) -> [Vector; 2] {
     let axes = axes(pair);
     Member::BOTH.map(|member| {
         let (gear, g) = (pair.gear(member), member.index());
         // From the tooth in mesh back to tooth 0.
         let tooth_0 = angles[g] - teeth_on(member, n) as f64 * gear.pitch_angle();
-        axes[g] + gear.deviations().displacement(tooth_0)
+        axes[g] + deviations.of_gear(member).displacement(tooth_0)
     })
 }
 
@@ -100,19 +107,26 @@ impl<'a> Placement<'a> {
             pair,
             centers: axes(pair),
             angles: angles(pair, phase),
-            teeth: None,
+            made: None,
         }
     }
 
-    /// The teeth of pair `n` with their deviations at the mesh position `eta`, the driven gear lagging by `lag` on its base circle.
-    pub fn real(pair: &'a GearPair, eta: f64, n: i64, lag: f64) -> Self {
+    /// The teeth of pair `n` of `pair`, with these `deviations`, at the mesh position `eta`, the driven gear lagging by `lag` on its base
+    /// circle.
+    pub fn real(
+        pair: &'a GearPair,
+        deviations: &'a PairDeviations,
+        eta: f64,
+        n: i64,
+        lag: f64,
+    ) -> Self {
         let mut angles = angles(pair, eta - n as f64);
         angles[1] += lag / pair.driven().base_radius();
         Self {
             pair,
-            centers: centers(pair, n, angles),
+            centers: centers(pair, deviations, n, angles),
             angles,
-            teeth: Some(pair.teeth(n)),
+            made: Some((deviations, pair.teeth(n))),
         }
     }
 
@@ -130,12 +144,9 @@ impl<'a> Placement<'a> {
     fn missing(&self, member: Member, s: f64) -> (f64, f64) {
         let gear = self.pair.gear(member);
         let (depth, slope) = (gear.removed(s), gear.removed_slope(s));
-        self.teeth.map_or((depth, slope), |teeth| {
-            let tooth = teeth[member.index()];
-            (
-                depth - gear.deviation(tooth, s),
-                slope - gear.deviation_slope(tooth),
-            )
+        self.made.map_or((depth, slope), |(deviations, teeth)| {
+            let (gear, tooth) = (deviations.of_gear(member), teeth[member.index()]);
+            (depth - gear.at(tooth, s), slope - gear.slope(tooth))
         })
     }
 

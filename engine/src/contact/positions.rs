@@ -1,17 +1,25 @@
-//! The contact at many mesh positions under one load, in parallel.
+//! The contact at many mesh positions under one load, of one pair or of many made to one drawing, in parallel.
 
 use rayon::prelude::*;
 
 use super::{
-    ContactCells, ContactSolution, MeshContact, PairModel, PositionError, Stage, WarmStart,
+    ContactCells, ContactSolution, MadePair, MeshContact, PairModel, PositionError, Stage,
+    WarmStart,
 };
+use crate::gear::PairDeviations;
 use crate::run::{Run, Stopped};
 
 /// Stages that one thread solves in a row, each starting from the last; fixed, so that results do not depend on threads.
 const CHUNK: usize = 5;
 
+/// Pairs of one drawing that one thread solves in a row.
+const PAIRS: usize = 8;
+
 /// Fractions of the mesh period that differ by less are one: far above their rounding, far below any step.
 const SAME_FRACTION: f64 = 1e-9;
+
+/// A fraction of the mesh period, and the places of the positions that have it.
+type Places = (f64, Vec<usize>);
 
 /// Why the contacts of some positions could not be found.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -30,18 +38,18 @@ pub enum PositionsError {
     Stopped(#[from] Stopped),
 }
 
-/// The contact of `model` at each of `positions` under `load`.
+/// The contact of `made` at each of `positions` under `load`.
 ///
 /// # Errors
 ///
 /// [`PositionsError`].
 pub fn contacts(
-    model: &PairModel,
+    made: MadePair<'_>,
     load: f64,
     positions: &[f64],
     run: &Run,
 ) -> Result<Vec<MeshContact>, PositionsError> {
-    contacts_keeping(model, load, positions, run, |_, _| ())
+    contacts_keeping(made, load, positions, run, |_, _| ())
         .map(|contacts| contacts.into_iter().map(|(contact, ())| contact).collect())
 }
 
@@ -51,7 +59,7 @@ pub fn contacts(
 ///
 /// As [`contacts`].
 pub fn contacts_keeping<T: Send>(
-    model: &PairModel,
+    made: MadePair<'_>,
     load: f64,
     positions: &[f64],
     run: &Run,
@@ -62,28 +70,16 @@ pub fn contacts_keeping<T: Send>(
         .par_chunks(CHUNK)
         .map(|chunk| {
             let mut contacts = Vec::new();
-            let mut first = WarmStart::default();
-            for (fraction, places) in chunk {
-                // Each stage starts from the one before it, and each further period of a stage from the last period.
-                let at = |error, mesh_position| PositionsError::At {
-                    mesh_position,
-                    error,
-                };
-                let mut stage = Stage::new(model, *fraction, load)
-                    .map_err(|error| at(error, positions[places[0]]))?;
-                let mut warm = first.clone();
-                for &place in places {
-                    let eta = positions[place];
-                    let contact = stage
-                        .contact((eta - fraction).round() as i64, &mut warm, &keep)
-                        .map_err(|error| at(error, eta))?;
-                    contacts.push((place, contact));
-                    run.reached(1)?;
-                    if place == places[0] {
-                        first = warm.clone();
-                    }
-                }
-            }
+            chunk_of(
+                made,
+                load,
+                positions,
+                chunk,
+                run,
+                |place, contact, cells, solution| {
+                    contacts.push((place, (contact, keep(cells, solution))));
+                },
+            )?;
             Ok(contacts)
         })
         .collect();
@@ -92,12 +88,111 @@ pub fn contacts_keeping<T: Send>(
     Ok(contacts.into_iter().map(|(_, contact)| contact).collect())
 }
 
+/// What `keep` takes of the contacts of many pairs at each of `positions` under `load`: pairs made to the drawing of `model` that deviate by
+/// `members`, whose answers stand pair after pair. A pair has the same answer to the bit alone ([`contacts`]) and among any others.
+///
+/// What the pairs have in common is found once and kept in `model`, fraction of the mesh period by fraction: some hundred pairs at a time, and
+/// positions that repeat a few fractions in every mesh period, cost little more than their contact solves. A pair with an error does
+/// not end the work of the others; a stopped `run` does.
+///
+/// # Errors
+///
+/// [`Stopped`].
+pub fn contacts_of_many<T: Send>(
+    model: &PairModel,
+    members: &[PairDeviations],
+    load: f64,
+    positions: &[f64],
+    run: &Run,
+    keep: impl Fn(&MeshContact) -> T + Sync,
+) -> Result<Vec<Result<Vec<T>, PositionsError>>, Stopped> {
+    let stages = stages(positions);
+    let tasks: Vec<(&[Places], usize)> = stages
+        .chunks(CHUNK)
+        .flat_map(|chunk| {
+            (0..members.len())
+                .step_by(PAIRS)
+                .map(move |first| (chunk, first))
+        })
+        .collect();
+    // A task is a chunk of stages and the first of its pairs.
+    type Kept<T> = Vec<(usize, Result<Vec<(usize, T)>, PositionsError>)>;
+    let solved: Result<Vec<Kept<T>>, Stopped> = tasks
+        .into_par_iter()
+        .map(|(chunk, first)| {
+            let members = members.iter().enumerate().skip(first).take(PAIRS);
+            let solved = members.map(|(number, deviations)| {
+                let mut kept = Vec::new();
+                let made = model.made(deviations);
+                let solved = chunk_of(made, load, positions, chunk, run, |place, contact, _, _| {
+                    kept.push((place, keep(&contact)));
+                });
+                match solved {
+                    Err(PositionsError::Stopped(stopped)) => Err(stopped),
+                    solved => Ok((number, solved.map(|()| kept))),
+                }
+            });
+            solved.collect()
+        })
+        .collect();
+    let mut answers: Vec<Result<Vec<(usize, T)>, PositionsError>> =
+        members.iter().map(|_| Ok(Vec::new())).collect();
+    for (number, solved) in solved?.into_iter().flatten() {
+        match (&mut answers[number], solved) {
+            (Ok(known), Ok(more)) => known.extend(more),
+            (answer @ Ok(_), Err(error)) => *answer = Err(error),
+            (Err(_), _) => {}
+        }
+    }
+    let in_order = |mut kept: Vec<(usize, T)>| {
+        kept.sort_unstable_by_key(|(place, _)| *place);
+        kept.into_iter().map(|(_, kept)| kept).collect()
+    };
+    let answers = answers.into_iter();
+    Ok(answers.map(|answer| answer.map(in_order)).collect())
+}
+
+/// The contacts of `made` on a chunk of stages, each told to `tell` with the place of its position.
+fn chunk_of(
+    made: MadePair<'_>,
+    load: f64,
+    positions: &[f64],
+    chunk: &[Places],
+    run: &Run,
+    mut tell: impl FnMut(usize, MeshContact, &ContactCells<'_>, &ContactSolution),
+) -> Result<(), PositionsError> {
+    let mut first = WarmStart::default();
+    for (fraction, places) in chunk {
+        // Each stage starts from the one before it, and each further period of a stage from the last period.
+        let at = |error, mesh_position| PositionsError::At {
+            mesh_position,
+            error,
+        };
+        let mut stage =
+            Stage::new(made, *fraction, load).map_err(|error| at(error, positions[places[0]]))?;
+        let mut warm = first.clone();
+        for &place in places {
+            let eta = positions[place];
+            let period = (eta - fraction).round() as i64;
+            let told = stage.told(period, &mut warm, |contact, cells, solution| {
+                tell(place, contact, cells, solution);
+            });
+            told.map_err(|error| at(error, eta))?;
+            run.reached(1)?;
+            if place == places[0] {
+                first = warm.clone();
+            }
+        }
+    }
+    Ok(())
+}
+
 /// Positions by their fraction of the mesh period, rising, with the places of those that have it.
-fn stages(positions: &[f64]) -> Vec<(f64, Vec<usize>)> {
+fn stages(positions: &[f64]) -> Vec<Places> {
     let fraction = |place: usize| positions[place] - positions[place].floor();
     let mut places: Vec<usize> = (0..positions.len()).collect();
     places.sort_by(|&a, &b| fraction(a).total_cmp(&fraction(b)));
-    let mut stages: Vec<(f64, Vec<usize>)> = Vec::new();
+    let mut stages: Vec<Places> = Vec::new();
     for place in places {
         match stages.last_mut() {
             Some((known, places)) if fraction(place) - *known < SAME_FRACTION => {

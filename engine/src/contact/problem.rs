@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use faer::{Mat, MatRef};
 
+use super::compliances::Known;
+use super::factor::Factor;
 use crate::run::Stopped;
 
 /// Entries of the compliance that mirror each other may differ by this much, relative to the diagonal.
@@ -19,6 +21,8 @@ const SYMMETRY_TOLERANCE: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub struct ContactProblem {
     compliance: Arc<Mat<f64>>,
+    /// The same, if its factors are kept.
+    known: Option<Known>,
     gaps: Vec<f64>,
     arms: Vec<f64>,
 }
@@ -46,24 +50,6 @@ impl ContactProblem {
         Self::checked(compliance, gaps, arms)
     }
 
-    /// As [`ContactProblem::new`], with H given by its lower triangle.
-    ///
-    /// # Errors
-    ///
-    /// As for [`ContactProblem::new`]; such a compliance is always symmetric.
-    pub fn of_lower_triangle(
-        mut compliance: Mat<f64>,
-        gaps: Vec<f64>,
-        arms: Vec<f64>,
-    ) -> Result<Self, ContactError> {
-        for column in 1..compliance.ncols().min(compliance.nrows()) {
-            for row in 0..column {
-                compliance[(row, column)] = compliance[(column, row)];
-            }
-        }
-        Self::checked(compliance, gaps, arms)
-    }
-
     fn checked(compliance: Mat<f64>, gaps: Vec<f64>, arms: Vec<f64>) -> Result<Self, ContactError> {
         let (rows, columns) = (compliance.nrows(), compliance.ncols());
         if rows == 0 && columns == 0 && gaps.is_empty() && arms.is_empty() {
@@ -78,6 +64,7 @@ impl ContactProblem {
         }
         Ok(Self {
             compliance: Arc::new(compliance),
+            known: None,
             gaps,
             arms,
         })
@@ -92,7 +79,23 @@ impl ContactProblem {
         let points = self.point_count();
         check_points(points, points, &gaps, &arms)?;
         Ok(Self {
-            compliance: Arc::clone(&self.compliance),
+            gaps,
+            arms,
+            ..self.clone()
+        })
+    }
+
+    /// As [`ContactProblem::new`], with an H that is `known`.
+    pub(super) fn of_known(
+        known: &Known,
+        gaps: Vec<f64>,
+        arms: Vec<f64>,
+    ) -> Result<Self, ContactError> {
+        let points = known.compliance.nrows();
+        check_points(points, points, &gaps, &arms)?;
+        Ok(Self {
+            compliance: Arc::clone(&known.compliance),
+            known: Some(known.clone()),
             gaps,
             arms,
         })
@@ -111,6 +114,14 @@ impl ContactProblem {
     /// Column `point` of H: what a unit force at that point does to every gap, in m/N.
     pub(super) fn compliance_column(&self, point: usize) -> &[f64] {
         self.compliance.col_as_slice(point)
+    }
+
+    /// The factor of the compliance of the rising points `set`; `None` where that is not positive definite.
+    pub(super) fn factor(&self, set: &[usize]) -> Arc<Option<Factor>> {
+        match &self.known {
+            Some(known) => known.factor(set),
+            None => Arc::new(Factor::new(&self.compliance, set)),
+        }
     }
 
     /// The gaps g_0 before loading, in m, positive where open.
@@ -210,7 +221,7 @@ pub struct ContactSolution {
     pub transmission_error: f64,
     /// Whether each point is in contact.
     pub active: Vec<bool>,
-    /// The derivative q = dp/dF = H_A^-1 w_A / k of each force to the load, zero off the active set A.
+    /// The derivative q = dp/dF = H_A^-1 w_A / k of each force to the load, zero off the active set A; and that of delta to each gap, dδ/dg.
     pub load_derivative: Vec<f64>,
     /// The tangent stiffness k = dF/d delta = w_A^T H_A^-1 w_A (eq. 3), in N/m, with the active set A held.
     pub stiffness: f64,

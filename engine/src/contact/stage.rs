@@ -7,9 +7,10 @@
 use std::collections::VecDeque;
 
 use super::cells::{ContactCells, Laid, MeshCells, MeshContact};
+use super::compliances::{Known, StatedCells};
 use super::facings::{Facings, Near};
 use super::meeting::Standing;
-use super::model::{PairModel, PositionError, WarmStart};
+use super::model::{MadePair, PositionError, WarmStart};
 use super::patch::Extent;
 use super::penetration::{Found, Look, found};
 use super::{ContactProblem, ContactSolution};
@@ -17,7 +18,7 @@ use super::{ContactProblem, ContactSolution};
 /// Pairs are solved together whose gap is within this much of what load brings together: a little more than touch.
 const REACH: f64 = 1.1;
 
-/// Problems that a stage keeps: those of a gear with as many unlike teeth as a hole pattern usually leaves, on a few sets of pairs.
+/// Compliances that a stage has at hand: those of a gear with as many unlike teeth as a hole pattern usually leaves, on a few sets of pairs.
 const MOST_STATED: usize = 64;
 
 /// What a guess of the reach leaves for the solution to move.
@@ -25,20 +26,19 @@ const GUESS: f64 = 1.2;
 
 /// The mesh at one fraction of its period, under one load.
 pub struct Stage<'a> {
-    model: &'a PairModel,
+    made: MadePair<'a>,
     load: f64,
     facings: Facings<'a>,
-    /// The problems stated last.
+    /// The compliances met last.
     stated: VecDeque<Stated>,
     /// The pairs laid last, where every mesh period has the same.
     laid: Vec<Laid>,
 }
 
-/// A problem, and what its compliance depends on.
+/// A compliance, and what it depends on.
 struct Stated {
-    pairs: Vec<(i64, u64, Extent)>,
-    teeth_like: [usize; 2],
-    problem: ContactProblem,
+    cells: StatedCells,
+    known: Known,
 }
 
 /// What a pair wants beside the cells that it is given at first.
@@ -49,15 +49,15 @@ struct Room {
 }
 
 impl<'a> Stage<'a> {
-    /// The mesh of `model` at the mesh position `eta` and whole mesh periods from there, under `load`.
+    /// The mesh of `made` at the mesh position `eta` and whole mesh periods from there, under `load`.
     ///
     /// # Errors
     ///
     /// [`PositionError::NoContact`] if no flanks face each other.
-    pub fn new(model: &'a PairModel, eta: f64, load: f64) -> Result<Self, PositionError> {
-        let facings = Facings::new(model, eta - eta.floor());
+    pub fn new(made: MadePair<'a>, eta: f64, load: f64) -> Result<Self, PositionError> {
+        let facings = Facings::new(made, eta - eta.floor());
         Ok(Self {
-            model,
+            made,
             load,
             facings: facings.ok_or(PositionError::NoContact)?,
             stated: VecDeque::new(),
@@ -76,10 +76,25 @@ impl<'a> Stage<'a> {
         warm: &mut WarmStart,
         keep: impl FnOnce(&ContactCells<'_>, &ContactSolution) -> T,
     ) -> Result<(MeshContact, T), PositionError> {
+        self.told(period, warm, |contact, cells, solution| {
+            (contact, keep(cells, solution))
+        })
+    }
+
+    /// What `tell` makes of the contact in mesh period `period`, of its cells and their solution.
+    pub(super) fn told<T>(
+        &mut self,
+        period: i64,
+        warm: &mut WarmStart,
+        tell: impl FnOnce(MeshContact, &ContactCells<'_>, &ContactSolution) -> T,
+    ) -> Result<T, PositionError> {
         let load = self.load;
         self.solved(period, warm, |cells, _, solution, found| {
-            let contact = cells.mesh_contact(load, &solution, &found);
-            (contact, keep(cells, &solution))
+            tell(
+                cells.mesh_contact(load, &solution, &found),
+                cells,
+                &solution,
+            )
         })
     }
 
@@ -153,7 +168,7 @@ impl<'a> Stage<'a> {
             let extent = Extent {
                 hollows: near.hollows_within(reach),
                 widened: room.map_or(0, |room| room.widened),
-                moved: near.moved(&self.model.pair, (period, self.load))
+                moved: near.moved(self.made, (period, self.load))
                     + room.map_or(0, |room| room.moved),
             };
             let known = |laid: &&Laid| (laid.pair, laid.extent) == (near.pair, extent);
@@ -163,7 +178,7 @@ impl<'a> Stage<'a> {
             };
             pairs.extend(laid);
         }
-        ContactCells::new(self.model, period, pairs)
+        ContactCells::new(self.made, (self.facings.fraction(), period), pairs)
     }
 
     fn laid_at(
@@ -172,9 +187,9 @@ impl<'a> Stage<'a> {
         extent: Extent,
         (period, touch): (i64, f64),
     ) -> Option<Laid> {
-        let model = self.model;
+        let model = self.made.model;
         let place = (self.facings.fraction(), period);
-        let standing: Standing<'_> = near.standing(&model.pair, place, touch)?;
+        let standing: Standing<'_> = near.standing(self.made, place, touch)?;
         let cells = model.drawn.cells(model, &near.drawn, self.load, extent);
         let laid = Laid::new(near, extent, cells, &standing, touch)?;
         if self.facings.are_as_drawn() {
@@ -193,36 +208,31 @@ impl<'a> Stage<'a> {
             })
     }
 
-    /// The problem on `cells`; of those stated before, one whose compliance is the same is told with other gaps.
+    /// The problem on `cells`. A compliance that was met before is not stated anew.
     fn state(&mut self, cells: &ContactCells<'_>) -> Result<ContactProblem, PositionError> {
         let pairs = cells.laid.iter();
-        let pairs: Vec<_> = pairs
-            .map(|laid| (laid.pair, laid.drawn.phase.to_bits(), laid.extent))
-            .collect();
-        let teeth_like = cells.teeth_like();
-        let stated = &mut self.stated;
-        let before = stated
-            .iter()
-            .find(|stated| stated.teeth_like == teeth_like && stated.pairs == pairs)
-            .map(|stated| &stated.problem);
-        let known = before.is_some();
-        let problem = cells.problem(before)?;
-        if !known {
-            if stated.len() == MOST_STATED {
-                stated.pop_front();
-            }
-            stated.push_back(Stated {
-                pairs,
-                teeth_like,
-                problem: problem.clone(),
-            });
+        let pairs = pairs.map(|laid| (laid.pair, laid.drawn.phase.to_bits(), laid.extent));
+        let spec = StatedCells {
+            load: self.load.to_bits(),
+            pairs: pairs.collect(),
+            teeth_like: cells.teeth_like(),
+        };
+        if let Some(stated) = self.stated.iter().find(|stated| stated.cells == spec) {
+            return cells.problem(&stated.known);
         }
+        let compliances = &self.made.model.compliances;
+        let known = compliances.get(spec.clone(), || cells.compliance());
+        let problem = cells.problem(&known)?;
+        if self.stated.len() == MOST_STATED {
+            self.stated.pop_front();
+        }
+        self.stated.push_back(Stated { cells: spec, known });
         Ok(problem)
     }
 
     /// What penetrates under `solution` on `cells`.
     fn look(&self, cells: &ContactCells<'_>, solution: &ContactSolution) -> Found {
-        let model = self.model;
+        let model = self.made.model;
         let delta = solution.transmission_error;
         let as_drawn = (self.facings.least(), delta + self.facings.nearer());
         let looks: Vec<Look> = cells
@@ -233,7 +243,7 @@ impl<'a> Stage<'a> {
                 let carrying = &solution.active[range];
                 let looks = model.drawn.looks(model, pair, (drawn, carrying), as_drawn);
                 let place = (self.facings.fraction(), cells.period);
-                Some(Look::new(looks, laid, &model.pair, place))
+                Some(Look::new(looks, laid, self.made, place))
             })
             .collect();
         found(cells, &looks, solution)

@@ -24,7 +24,9 @@ pub mod tip;
 pub use accuracy::{Normals, Tolerances, total_pitch_deviation};
 pub use blank::{BlankRegion, Hole, HolePattern, HoleShape, Ligament, Moments, Symmetry, Web};
 pub use data::{DeviationList, GearData, GearError};
-pub use deviation::{Eccentricity, ToothDeviations};
+pub use deviation::{
+    DeviationsError, Eccentricity, GearDeviations, PairDeviations, ToothDeviations,
+};
 pub use involute::Involute;
 pub use material::{Material, PlaneState};
 pub use modification::{

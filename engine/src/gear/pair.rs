@@ -1,7 +1,7 @@
 //! Two spur gears in engagement.
 
 use super::involute::involute_function;
-use super::{SpurGear, gcd};
+use super::{PairDeviations, SpurGear, gcd};
 use crate::root_finding::bisect;
 
 /// One of the two gears of a pair.
@@ -158,20 +158,7 @@ impl GearPair {
                 largest,
             });
         }
-        // Below the base circles together there is no line of action; the backlash decides the nearest distance.
-        let base_radii = self.driving.base_radius() + self.driven.base_radius();
-        // Rounding of a distance that was typed for no backlash is none.
-        let jams = self.least_backlash() < -1e-9 * self.driving.data().rack.module;
-        if center_distance <= base_radii || jams {
-            let backlash = if center_distance <= base_radii {
-                f64::NEG_INFINITY
-            } else {
-                self.least_backlash()
-            };
-            let fits = |pair: &Self| pair.least_backlash() >= 0.0;
-            let smallest = self.least_center_distance(base_radii, tip_radii, fits);
-            return Err(GearPairError::NegativeBacklash { backlash, smallest });
-        }
+        self.leaves_backlash(&self.deviations())?;
         for member in Member::BOTH {
             if !self.clears(member) {
                 let smallest = self
@@ -318,29 +305,50 @@ impl GearPair {
     }
 
     /// The least normal backlash of any two teeth: deviations that stand out and eccentric gears take from it.
-    ///
-    /// Where both gears stand nearer by Σe, each flank closes up by Σe sin α_w.
     pub fn least_backlash(&self) -> f64 {
-        let taken: f64 = Member::BOTH
-            .map(|member| {
-                let gear = self.gear(member);
-                let nearer = gear
-                    .deviations()
-                    .eccentricity
-                    .map_or(0.0, |each| each.amount);
-                gear.deviation_range()[0] + 2.0 * nearer * self.working_pressure_angle().sin()
-            })
-            .iter()
-            .sum();
-        self.backlash() - taken
+        self.least_backlash_with(&self.deviations())
+    }
+
+    fn least_backlash_with(&self, deviations: &PairDeviations) -> f64 {
+        self.backlash() - deviations.taken_backlash(self.working_pressure_angle())
+    }
+
+    /// Whether teeth that have these `deviations` have room.
+    pub(super) fn leaves_backlash(&self, deviations: &PairDeviations) -> Result<(), GearPairError> {
+        let tip_radii = self.driving.tip_radius() + self.driven.tip_radius();
+        // Below the base circles together there is no line of action; the backlash decides the nearest distance.
+        let base_radii = self.driving.base_radius() + self.driven.base_radius();
+        let backlash = if self.center_distance <= base_radii {
+            f64::NEG_INFINITY
+        } else {
+            self.least_backlash_with(deviations)
+        };
+        // Rounding of a distance that was typed for no backlash is none.
+        if backlash >= -1e-9 * self.driving.data().rack.module {
+            return Ok(());
+        }
+        let fits = |pair: &Self| pair.least_backlash_with(deviations) >= 0.0;
+        let smallest = self.least_center_distance(base_radii, tip_radii, fits);
+        Err(GearPairError::NegativeBacklash { backlash, smallest })
+    }
+
+    /// What the teeth of both gears deviate by.
+    pub fn deviations(&self) -> PairDeviations {
+        let teeth = Member::BOTH.map(|member| self.gear(member).deviations());
+        PairDeviations::of(self, teeth)
     }
 
     /// The number of mesh periods after which `member` stands alike again: Z/gcd(Z, N) with holes that repeat N times, 1 without, Z where its teeth
     /// deviate.
     pub fn period_of(&self, member: Member) -> u32 {
         let gear = self.gear(member);
+        self.period_of_gear(member, gear.deviations().is_none())
+    }
+
+    fn period_of_gear(&self, member: Member, teeth_as_drawn: bool) -> u32 {
+        let gear = self.gear(member);
         let z = gear.tooth_count();
-        if gear.deviations().is_none() {
+        if teeth_as_drawn {
             match gear.hole_repeats() {
                 0 => 1,
                 repeats => z / gcd(z, repeats),
@@ -352,8 +360,15 @@ impl GearPair {
 
     /// The number of mesh periods after which the contact repeats: the least common multiple of both gears'.
     pub fn period(&self) -> u32 {
-        let [p_1, p_2] = Member::BOTH.map(|member| self.period_of(member));
-        p_1 / gcd(p_1, p_2) * p_2
+        least_common_multiple(Member::BOTH.map(|member| self.period_of(member)))
+    }
+
+    /// As [`GearPair::period`], of gears that have these `deviations` instead of their own.
+    pub fn period_with(&self, deviations: &PairDeviations) -> u32 {
+        least_common_multiple(
+            Member::BOTH
+                .map(|member| self.period_of_gear(member, deviations.of_gear(member).is_none())),
+        )
     }
 
     /// The tooth of `member` in pair n.
@@ -367,29 +382,11 @@ impl GearPair {
         Member::BOTH.map(|member| self.tooth(member, n))
     }
 
-    /// Whether both gears turn about their own axes.
-    pub fn is_concentric(&self) -> bool {
-        Member::BOTH
-            .into_iter()
-            .all(|member| self.gear(member).deviations().eccentricity.is_none())
-    }
-
     /// Whether nothing of either gear deviates from its drawing: the contact on rigid blanks repeats with every mesh period.
     pub fn is_as_drawn(&self) -> bool {
         Member::BOTH
             .into_iter()
             .all(|member| self.gear(member).deviations().is_none())
-    }
-
-    /// How far deviations may bring any two flanks nearer to each other than they are drawn, along the line of action.
-    pub fn nearest_deviation(&self) -> f64 {
-        let of = Member::BOTH.map(|member| {
-            let gear = self.gear(member);
-            let eccentricity = gear.deviations().eccentricity;
-            // Off the path of contact the arm differs from one; a tenth more is more than it ever makes.
-            1.1 * (gear.deviation_range()[0] + eccentricity.map_or(0.0, |each| each.amount))
-        });
-        of[0] + of[1]
     }
 
     /// The face width on which the gears touch: the smaller of the two.
@@ -401,6 +398,10 @@ impl GearPair {
     pub fn load(&self, output_torque: f64) -> f64 {
         output_torque / self.driven.base_radius()
     }
+}
+
+fn least_common_multiple([p_1, p_2]: [u32; 2]) -> u32 {
+    p_1 / gcd(p_1, p_2) * p_2
 }
 
 /// The teeth counter-clockwise, in the frame of `member`, from the tooth of one pair to that of the pair `pairs` later.

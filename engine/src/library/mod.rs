@@ -10,9 +10,10 @@ use std::sync::Arc;
 pub use shelf::ShelfUsage;
 
 use crate::assembly::{
-    AssemblyError, BlankSpec, ContactsSpec, FlanksSpec, Gear, GearSpec, PartError, Parts, Teeth,
-    TeethSpec, WantedGear, make_gears,
+    AssemblyError, BlankSpec, ContactsSpec, FlanksSpec, Gear, GearSpec, PairSpec, PartError, Parts,
+    Teeth, TeethSpec, WantedGear, make_gears,
 };
+use crate::contact::compliances::Compliances;
 use crate::contact::drawn::DrawnFlanks;
 use crate::contact::positions::{PositionsError, contacts};
 use crate::contact::{MeshContact, PairModel};
@@ -30,6 +31,7 @@ struct Shelves {
     blanks: Shelf<BlankSpec, BlankSubstructure>,
     gears: Shelf<GearSpec, Gear>,
     flanks: Shelf<FlanksSpec, DrawnFlanks>,
+    compliances: Shelf<PairSpec, Compliances>,
     contacts: Shelf<ContactsSpec, Vec<MeshContact>>,
 }
 
@@ -44,10 +46,11 @@ impl Library {
     /// A library that keeps at most `bytes` of parts, of each kind the least recently used leaving first.
     pub fn with_capacity(bytes: usize) -> Self {
         Self(Arc::new(Shelves {
-            teeth: Shelf::new(bytes / 8 * 3, bytes_of_teeth),
+            teeth: Shelf::new(bytes / 4, bytes_of_teeth),
             blanks: Shelf::new(bytes / 4, bytes_of_blank),
             gears: Shelf::new(bytes / 8, bytes_of_gear),
             flanks: Shelf::new(bytes / 8, |_, flanks| flanks.bytes()),
+            compliances: Shelf::new(bytes / 8, |_, compliances| compliances.bytes()),
             contacts: Shelf::new(bytes / 8, |spec, contacts| {
                 bytes_of_contacts(spec, contacts)
             }),
@@ -55,12 +58,13 @@ impl Library {
     }
 
     /// How each of its shelves is used, by what stands on it.
-    pub fn usage(&self) -> [(&'static str, ShelfUsage); 5] {
+    pub fn usage(&self) -> [(&'static str, ShelfUsage); 6] {
         let Shelves {
             teeth,
             blanks,
             gears,
             flanks,
+            compliances,
             contacts,
         } = &*self.0;
         [
@@ -68,6 +72,7 @@ impl Library {
             ("blanks", blanks.usage()),
             ("gears", gears.usage()),
             ("flanks", flanks.usage()),
+            ("compliances", compliances.usage()),
             ("contacts", contacts.usage()),
         ]
     }
@@ -115,6 +120,13 @@ impl Parts for Library {
         flanks
     }
 
+    fn compliances(&self, spec: &PairSpec) -> Arc<Compliances> {
+        let shelf = &self.0.compliances;
+        let compliances = shelf.find(spec).unwrap_or_default();
+        shelf.keep(spec, &compliances);
+        compliances
+    }
+
     fn contacts(
         &self,
         spec: &ContactsSpec,
@@ -126,7 +138,12 @@ impl Parts for Library {
             run.reached(spec.positions.len() as u64)?;
             return Ok(known);
         }
-        let made = Arc::new(contacts(model, spec.load, &spec.positions, run)?);
+        let made = Arc::new(contacts(
+            model.made(&spec.deviations),
+            spec.load,
+            &spec.positions,
+            run,
+        )?);
         shelf.keep(spec, &made);
         Ok(made)
     }

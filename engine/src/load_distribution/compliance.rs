@@ -10,7 +10,7 @@ use super::sharing::LinePair;
 use super::tooth_load::ToothLoad;
 use super::weber_banaschek::ToothCompliance;
 use super::{BodyFormula, FormulaError, Formulas, ToothFormula};
-use crate::gear::{GearPair, Member};
+use crate::gear::{GearPair, Member, PairDeviations};
 
 /// What rounding may take off the path of contact, in base pitches: at a contact ratio of one no position stays empty.
 const ROUNDING: f64 = 1e-9;
@@ -21,6 +21,7 @@ const LEAST_CURVATURE: f64 = 1e-6;
 /// The formulas of a pair, what they need of its gears made once.
 pub struct PairFormulas<'a> {
     pair: &'a GearPair,
+    deviations: PairDeviations,
     formulas: Formulas,
     law: Law,
 }
@@ -55,6 +56,7 @@ impl<'a> PairFormulas<'a> {
         };
         Self {
             pair,
+            deviations: pair.deviations(),
             formulas,
             law,
         }
@@ -93,7 +95,8 @@ impl<'a> PairFormulas<'a> {
             let gear = self.pair.gear(member);
             let s = rolls[member.index()];
             let tooth = self.pair.tooth(member, n);
-            gear.removed(s) - gear.deviation(tooth, s) - gear.runout(tooth, s)
+            let deviations = self.deviations.of_gear(member);
+            gear.removed(s) - deviations.at(tooth, s) - deviations.runout(gear, tooth, s)
         });
         let bodies = Member::BOTH.map(|member| ContactBody {
             material: *self.pair.gear(member).material(),

@@ -6,9 +6,10 @@ use meshwright_engine::analysis::{
     BodyFormula, Case, ContactSolver, Formulas, Method, PlaneState, Resolution, StiffnessRule,
     ToothFormula,
 };
+use meshwright_engine::contact::{MeshContact, PairModel, PositionError, WarmStart};
 use meshwright_engine::gear::{
-    BlankRegion, GearData, GearPair, HolePattern, Material, ModificationData, Rack, ReliefData,
-    ReliefShape, ReliefStart, SpurGear, TipEdge, ToothDeviations,
+    BlankRegion, GearData, GearPair, HolePattern, Material, ModificationData, PairDeviations, Rack,
+    ReliefData, ReliefShape, ReliefStart, SpurGear, TipEdge, ToothDeviations,
 };
 use meshwright_engine::grid::GridLevel;
 
@@ -101,6 +102,39 @@ pub(crate) fn paper_case(number: u32) -> (GearPair, f64) {
             (pair(blank(29, 10e-3), driven, 114.5e-3), 160.0)
         }
         _ => unreachable!("the paper has three test cases"),
+    }
+}
+
+/// The model of a pair beside what its teeth deviate by.
+pub(crate) struct Made {
+    pub(crate) pair: GearPair,
+    pub(crate) model: PairModel,
+    pub(crate) deviations: PairDeviations,
+}
+
+impl Made {
+    /// `model`, that of `pair`, with what this deviates by.
+    pub(crate) fn new(pair: GearPair, model: PairModel) -> Self {
+        Self {
+            deviations: pair.deviations(),
+            pair,
+            model,
+        }
+    }
+
+    /// Such a pair with other deviations.
+    pub(crate) fn of(model: &PairModel, pair: &GearPair, deviations: PairDeviations) -> Self {
+        Self {
+            pair: pair.clone(),
+            model: model.clone(),
+            deviations,
+        }
+    }
+
+    /// From a cold start.
+    pub(crate) fn contact(&self, eta: f64, load: f64) -> Result<MeshContact, PositionError> {
+        let made = self.model.made(&self.deviations);
+        made.contact(eta, load, &mut WarmStart::default())
     }
 }
 

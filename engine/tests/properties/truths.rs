@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use meshwright_engine::analysis::{Analysis, Case, ContactSolver, Curve, analyze, pair_model};
+use meshwright_engine::contact::MeshContact;
 use meshwright_engine::contact::half_plane::{hertz, logarithm_factor};
-use meshwright_engine::contact::{MeshContact, PairModel, WarmStart};
 use meshwright_engine::gear::{
     GearData, GearPair, HoleShape, Member, ModificationData, ReliefStart, RootReliefStart,
     SpurGear, TablePlaces, TipEdge, ToothDeviations, Vector,
@@ -14,7 +14,7 @@ use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
-use crate::cases;
+use crate::cases::{self, Made};
 use crate::drawn::DrawnPair;
 
 /// What must hold of a drawn pair.
@@ -119,14 +119,15 @@ fn curve(pair: &GearPair, torque: f64) -> Result<Curve, String> {
     Ok(solve(&case(pair, &[torque]))?.curves.remove(0))
 }
 
-fn model(pair: &GearPair) -> Result<PairModel, String> {
+fn model(pair: &GearPair) -> Result<Made, String> {
     pair_model(&case(pair, &[1.0]), &Library::default(), &Run::unattended())
+        .map(|model| Made::new(pair.clone(), model))
         .map_err(|error| error.to_string())
 }
 
-fn contact(model: &PairModel, eta: f64, load: f64) -> Result<MeshContact, String> {
+fn contact(model: &Made, eta: f64, load: f64) -> Result<MeshContact, String> {
     model
-        .contact(eta, load, &mut WarmStart::default())
+        .contact(eta, load)
         .map_err(|error| format!("at {eta}: {error}"))
 }
 
@@ -200,13 +201,14 @@ fn polygon_gap(pair: &GearPair, eta: f64, n: i64) -> Option<f64> {
         let angle = turn - gear.flank().base_half_angle() + s / gear.base_radius();
         let tooth = pair.tooth(member, n);
         let tooth_0 = angle - tooth as f64 * gear.pitch_angle();
-        let beside = gear.deviations().displacement(tooth_0);
+        let deviations = pair.deviations();
+        let beside = deviations.of_gear(member).displacement(tooth_0);
         let (from, to) = (gear.form_roll_length(), gear.tip_roll_length());
         (0..=POINTS)
             .map(|i| {
                 let s = from + (to - from) * i as f64 / POINTS as f64;
                 // What is missing turns the flank back, at the radius where it is missing.
-                let back = gear.removed(s) - gear.deviation(tooth, s);
+                let back = gear.removed(s) - deviations.of_gear(member).at(tooth, s);
                 let point = gear.flank().point(s);
                 let angle = angle - back / gear.base_radius();
                 let (sin, cos) = angle.sin_cos();

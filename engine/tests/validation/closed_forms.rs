@@ -57,6 +57,7 @@ fn the_contact_at_the_pitch_point_is_hertz() {
     let model = pair_model(&case, library(), &Run::unattended()).expect("a model");
     let load = case.pair.load(115.0);
     let found = model
+        .as_drawn()
         .cells(0.0, load, &mut WarmStart::default())
         .expect("contact");
     let (_, patch) = found

@@ -193,6 +193,7 @@ fn check_on_whole_gears(case: &Case, positions: &[f64], gap_bound: f64) {
     let driven = other.as_ref().unwrap_or(&driving);
     for &eta in positions {
         let cells = model
+            .as_drawn()
             .cells(eta, load, &mut WarmStart::default())
             .expect("contact");
         let solution = &cells.solution;
@@ -316,6 +317,7 @@ fn moments_about_both_axes_are_in_the_ratio_of_the_base_radii_and_the_compliance
         let model = pair_model(&case, library(), &Run::unattended()).expect("a model");
         for eta in [0.0, 0.3, 0.5, 0.85, 4.4] {
             let cells = model
+                .as_drawn()
                 .cells(eta, load, &mut WarmStart::default())
                 .expect("contact");
             let moment = |member| -> f64 {
@@ -334,7 +336,7 @@ fn moments_about_both_axes_are_in_the_ratio_of_the_base_radii_and_the_compliance
             );
             // From the true geometry the driven moment is the constraint itself, but that arms are those of flanks that touch and directions
             // those of flanks as drawn: they are turned against each other by the angle at which reliefs touch.
-            let touch = light_contact(&pair, eta).expect("contact");
+            let touch = light_contact(&pair, &pair.deviations(), eta).expect("contact");
             let turned = touch.transmission_error / pair.driven().base_radius();
             assert!((t_2.abs() / torque - 1.0).abs() < 1e-9 + 2.0 * turned);
             let on_path = cells
@@ -472,14 +474,15 @@ fn a_solid_pair_repeats_with_every_mesh_period() {
     // Every tooth has its own row of the compliance and every position is solved by itself; only the mechanics makes them
     // alike. What lies off the harmonics of the mesh is no larger than the difference between two periods.
     let case = case(standard_pair(true), &[115.0]);
-    let mut model = pair_model(&case, library(), &Run::unattended()).expect("a model");
-    for member in Member::BOTH {
+    let model = pair_model(&case, library(), &Run::unattended()).expect("a model");
+    let model = model.with_couplings(|member, _| {
         let [tooth_by_tooth, _] = couplings(case.pair.gear(member), case.resolution.grid);
-        model.gears[member.index()].coupling = Arc::new(tooth_by_tooth);
-    }
+        Arc::new(tooth_by_tooth)
+    });
     let load = case.pair.load(115.0);
     let at = |eta: f64| {
-        let contact = model.contact(eta, load, &mut WarmStart::default());
+        let made = model.as_drawn();
+        let contact = made.contact(eta, load, &mut WarmStart::default());
         contact.expect("a contact").transmission_error
     };
     for fraction in [0.0, 0.15, 0.4, 0.62, 0.85] {

@@ -7,7 +7,7 @@ use crate::gear::data::{
 };
 use crate::gear::modification::{Modification, Relief, TablePlaces};
 use crate::gear::tip::BrokenEdge;
-use crate::gear::{GearError, ModificationData, TipEdge};
+use crate::gear::{GearError, ModificationData, TipEdge, ToothDeviations};
 use crate::root_finding::bisect;
 
 impl SpurGear {
@@ -232,9 +232,9 @@ impl SpurGear {
         }
     }
 
-    pub(super) fn check_deviations(&self) -> Result<(), GearError> {
+    /// Whether `deviations` are those of so many teeth.
+    pub(in crate::gear) fn fits(&self, deviations: &ToothDeviations) -> Result<(), GearError> {
         let needed = self.data.tooth_count as usize;
-        let deviations = &self.data.deviations;
         for (list, values) in [
             (DeviationList::Pitch, &deviations.cumulative_pitch),
             (DeviationList::ProfileSlope, &deviations.profile_slope),

@@ -1,7 +1,5 @@
 //! How the flanks of a gear differ from the involute that the rack cuts, and from each other.
 
-use std::f64::consts::PI;
-
 use super::SpurGear;
 use crate::gear::modification::{Modification, Relief};
 use crate::gear::{TipEdge, ToothDeviations};
@@ -75,52 +73,5 @@ impl SpurGear {
     /// How the teeth deviate from each other.
     pub fn deviations(&self) -> &ToothDeviations {
         &self.data.deviations
-    }
-
-    /// How far the loaded flank of `tooth` stands towards its mate at the roll length `s`, along the normal, beyond the drawing.
-    ///
-    /// An arc f on the reference circle turns the flank by f/r, which is f cos α along the base tangent.
-    pub fn deviation(&self, tooth: usize, s: f64) -> f64 {
-        let ToothDeviations {
-            cumulative_pitch,
-            profile_slope,
-            ..
-        } = &self.data.deviations;
-        let pitch = cumulative_pitch
-            .get(tooth)
-            .map_or(0.0, |arc| arc * self.data.rack.pressure_angle.cos());
-        let slope = profile_slope.get(tooth).map_or(0.0, |amount| {
-            let (from, to) = (self.form_roll_length(), self.tip_roll_length());
-            amount * (s - from) / (to - from)
-        });
-        pitch + slope
-    }
-
-    /// How far the eccentricity moves the loaded flank of `tooth` along its normal at the roll length `s`, to the first order in it.
-    pub fn runout(&self, tooth: usize, s: f64) -> f64 {
-        let normal = tooth as f64 * self.pitch_angle() + self.flank.tangent_angle(s) + PI / 2.0;
-        let moved = self.data.deviations.displacement(0.0);
-        moved.x * normal.cos() + moved.y * normal.sin()
-    }
-
-    /// The slope of [`SpurGear::deviation`] by the roll length.
-    pub fn deviation_slope(&self, tooth: usize) -> f64 {
-        let amount = self.data.deviations.profile_slope.get(tooth);
-        amount.map_or(0.0, |amount| {
-            amount / (self.tip_roll_length() - self.form_roll_length())
-        })
-    }
-
-    /// The largest and the smallest [`SpurGear::deviation`] of any point of any flank; nothing deviates from zero in between.
-    pub fn deviation_range(&self) -> [f64; 2] {
-        if self.deviations().are_teeth_alike() {
-            return [0.0; 2];
-        }
-        let ends = [self.form_roll_length(), self.tip_roll_length()];
-        let all = (0..self.data.tooth_count as usize)
-            .flat_map(|tooth| ends.map(|s| self.deviation(tooth, s)));
-        all.fold([0.0, 0.0], |[high, low], each| {
-            [high.max(each), low.min(each)]
-        })
     }
 }

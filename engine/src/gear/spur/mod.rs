@@ -54,7 +54,7 @@ impl SpurGear {
         gear.check_blank()?;
         gear.hole_repeats = gear.data.blank.symmetry().count;
         gear.modifications = gear.checked_modifications()?;
-        gear.check_deviations()?;
+        gear.fits(&gear.data.deviations)?;
         gear.data.deviations = std::mem::take(&mut gear.data.deviations).without_zeros();
         Ok(gear)
     }
