@@ -404,8 +404,12 @@ fn span(text: &str) -> Result<Duration, String> {
         .ok_or_else(|| "a century is the longest".to_owned())
 }
 
-/// A span that is not 0: something is done once in each.
-fn lasting(text: &str) -> Result<Duration, String> {
+/// Reads a span that is not 0: something is done once in each, or ends with it.
+///
+/// # Errors
+///
+/// What was expected.
+pub fn lasting(text: &str) -> Result<Duration, String> {
     let wrong = || "0 is too short; 1s is the least".to_owned();
     span(text).and_then(|span| Some(span).filter(|span| !span.is_zero()).ok_or_else(wrong))
 }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use jiff::Timestamp;
 use subtle::ConstantTimeEq;
 
 use crate::hash::sha256_hex;
@@ -76,13 +77,17 @@ impl Key {
         format!("{PREFIX}_{}_{}", self.id, self.secret)
     }
 
-    /// The record of this key, if it is kept and was not revoked.
+    /// The record of this key, if it is kept, was not revoked and has not expired at `now`.
     ///
     /// # Errors
     ///
     /// [`StoreError`].
-    pub async fn find(&self, store: &Store) -> Result<Option<KeyRecord>, StoreError> {
-        let record = store.find_key(&self.id).await?;
+    pub async fn find(
+        &self,
+        store: &Store,
+        now: Timestamp,
+    ) -> Result<Option<KeyRecord>, StoreError> {
+        let record = store.find_key(&self.id, now).await?;
         // The time of the comparison tells nothing of how much of the secret was right.
         Ok(record.filter(|record| {
             let same = record

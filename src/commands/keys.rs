@@ -1,9 +1,11 @@
 //! `meshwright keys`: who may use the service.
 
 use std::process::ExitCode;
+use std::time::Duration;
 
 use anyhow::{Context, bail};
 use jiff::Timestamp;
+use meshwright::config::lasting;
 use meshwright::jobs::{KeyRecord, Place, Role, Store};
 use meshwright::keys::Key;
 
@@ -48,6 +50,9 @@ struct Create {
     /// What its bearer may do.
     #[arg(long, value_enum, default_value = "client")]
     role: Role,
+    /// How long it opens the door, such as 90d or 12h [default: until it is revoked].
+    #[arg(long, value_parser = lasting, value_name = "TIME")]
+    expires_in: Option<Duration>,
     /// Requests a second; 0 for any number [default: that of the service].
     #[arg(long, value_name = "NUMBER")]
     requests_per_second: Option<u32>,
@@ -103,6 +108,9 @@ impl Create {
             }
         }
         let key = Key::random().context("the system has no source of chance")?;
+        let now = Timestamp::now();
+        let expires_at = self.expires_in.map(|span| now.checked_add(span));
+        let expires_at = expires_at.transpose().context("no calendar goes so far")?;
         let record = KeyRecord {
             id: key.id().to_owned(),
             client: client.clone(),
@@ -111,7 +119,8 @@ impl Create {
             secret_hash: key.secret_hash(),
             requests_per_second: self.requests_per_second,
             queue_limit: self.queue_limit,
-            created_at: Timestamp::now(),
+            created_at: now,
+            expires_at,
             revoked_at: None,
         };
         store.add_key(&record).await?;
@@ -131,9 +140,12 @@ async fn list(store: &Store) -> anyhow::Result<()> {
         "id", "role", "client", "name", "made"
     );
     for key in store.list_keys().await? {
-        let state = key
-            .revoked_at
-            .map_or_else(|| "valid".to_owned(), |at| format!("revoked {at:.0}"));
+        let state = match (key.revoked_at, key.expires_at) {
+            (Some(at), _) => format!("revoked {at:.0}"),
+            (None, Some(at)) if at <= Timestamp::now() => format!("expired {at:.0}"),
+            (None, Some(at)) => format!("valid until {at:.0}"),
+            (None, None) => "valid".to_owned(),
+        };
         println!(
             "{:<18}{:<10}{:<20}{:<20}{:<22}{state}",
             key.id,

@@ -32,7 +32,10 @@ impl Pass {
     /// Whether it would get in now. What cannot be looked up is not held against it.
     pub(super) async fn holds(&self, app: &App) -> bool {
         match &self.0 {
-            Some(key) => !matches!(key.find(app.jobs.store()).await, Ok(None)),
+            Some(key) => {
+                let now = app.jobs.clock().now();
+                !matches!(key.find(app.jobs.store(), now).await, Ok(None))
+            }
             None => true,
         }
     }
@@ -118,6 +121,12 @@ impl Caller {
         let (member, role) = record
             .as_ref()
             .map_or_else(|| Self::anonymous(app), Self::bearer_of);
+        if let Some(record) = &record {
+            // What the log says of the request, it says of its key: who did what, and with what answer.
+            tracing::Span::current()
+                .record("key", &record.id)
+                .record("client", &record.client);
+        }
         // Who reads the body shares the memory for that by it.
         parts
             .extensions
@@ -171,9 +180,10 @@ pub(super) fn bearer(headers: &HeaderMap) -> Result<Option<Key>, Problem> {
 }
 
 async fn recognize(app: &App, key: &Key) -> Result<KeyRecord, Problem> {
-    let found = key.find(app.jobs.store()).await;
+    let found = key.find(app.jobs.store(), app.jobs.clock().now()).await;
     let found = found.map_err(|error| Problem::from(JobError::from(error)))?;
-    let found = found.ok_or_else(|| unauthorized("The key is not known here, or was revoked."))?;
+    let found = found
+        .ok_or_else(|| unauthorized("The key is not known here, was revoked or has expired."))?;
     app.door.prove(key);
     Ok(found)
 }

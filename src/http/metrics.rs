@@ -137,6 +137,18 @@ fn recorder() -> &'static PrometheusHandle {
             "meshwright_cache_evictions_total",
             "Substructures that found no room or had to make room."
         );
+        // What is rare is told from the beginning, so that an alert sees its first time as a growth.
+        for name in [
+            "meshwright_connections_evicted_total",
+            "meshwright_strangers_refused_total",
+            "meshwright_removed_jobs_total",
+            "meshwright_removed_studies_total",
+        ] {
+            metrics::counter!(name).increment(0);
+        }
+        for result in ["arrived", "refused", "given_up"] {
+            metrics::counter!("meshwright_webhook_attempts_total", "result" => result).increment(0);
+        }
         handle
     })
 }

@@ -199,7 +199,7 @@ fn cors(origins: &[HeaderValue]) -> CorsLayer {
         .max_age(Duration::from_secs(3600))
 }
 
-/// What stands in the log beside a request: never its query or headers, which may hold secrets.
+/// What stands in the log beside a request: never its query or headers, which may hold secrets; of a key its public part.
 fn span(request: &Request) -> tracing::Span {
     let id = request
         .headers()
@@ -208,5 +208,6 @@ fn span(request: &Request) -> tracing::Span {
         .unwrap_or_default();
     let trace = request.extensions().get::<Trace>();
     let trace = trace.map_or("", |trace| trace.id.as_str());
-    tracing::info_span!("request", method = %request.method(), path = request.uri().path(), request_id = id, trace_id = trace)
+    let (key, client) = (tracing::field::Empty, tracing::field::Empty);
+    tracing::info_span!("request", method = %request.method(), path = request.uri().path(), request_id = id, trace_id = trace, key, client)
 }

@@ -1,7 +1,7 @@
 //! Who gets in: keys and what they open, names of the service, rates, and what no client sees of another.
 
 use meshwright::http::KeysRule;
-use meshwright::jobs::{KeyRecord, Role, Store};
+use meshwright::jobs::{Clock, KeyRecord, Role, Store};
 use meshwright::keys::Key;
 use reqwest::{Response, StatusCode};
 use serde_json::{Value, json};
@@ -26,6 +26,7 @@ async fn make_key(
         requests_per_second: None,
         queue_limit: None,
         created_at: jiff::Timestamp::now(),
+        expires_at: None,
         revoked_at: None,
     };
     adjust(&mut record);
@@ -489,4 +490,74 @@ async fn those_without_a_key_are_refused_when_they_ask_too_often_and_those_with_
             StatusCode::OK
         );
     }
+}
+
+#[tokio::test]
+async fn a_key_opens_until_it_expires() {
+    let mut bench = Bench::quick().await;
+    let end = jiff::Timestamp::now() + jiff::SignedDuration::from_hours(1);
+    let key = make_key(&bench, "visitor", Role::Client, |record| {
+        record.expires_at = Some(end);
+    })
+    .await;
+    assert_eq!(get(&bench, "/v1/jobs", &key).await.status(), StatusCode::OK);
+    bench.shut_down().await;
+    bench.clock = Clock::given(move || end, jiff::Timestamp::now);
+    bench.start_again().await;
+    problem(get(&bench, "/v1/jobs", &key).await, 401, "unauthorized").await;
+    // It was made, so that the door does not open to everybody.
+    let without = bench.get("/v1/jobs").send().await.unwrap();
+    problem(without, 401, "unauthorized").await;
+}
+
+#[tokio::test]
+async fn the_log_says_which_key_did_what_and_not_its_secret() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = || std::process::Command::new(env!("CARGO_BIN_EXE_meshwright"));
+    let database = folder.path().join("log.db");
+    let made = program()
+        .args([
+            "keys",
+            "create",
+            "portal",
+            "--expires-in",
+            "1h",
+            "--database",
+        ])
+        .arg(&database)
+        .output()
+        .unwrap();
+    let key = String::from_utf8(made.stdout).unwrap();
+    let key = key.trim();
+    let (id, secret) = key[3..].split_once('_').unwrap();
+    let log = std::fs::File::create(folder.path().join("log")).unwrap();
+    let mut service = program()
+        .args(["serve", "--listen", "127.0.0.1:0", "--database"])
+        .arg(&database)
+        .env("MESHWRIGHT_LOG", "info")
+        .stdout(std::process::Stdio::piped())
+        .stderr(log)
+        .spawn()
+        .unwrap();
+    let mut line = String::new();
+    let mut output = std::io::BufReader::new(service.stdout.take().unwrap());
+    std::io::BufRead::read_line(&mut output, &mut line).unwrap();
+    let base = line
+        .split_whitespace()
+        .find(|word| word.starts_with("http://"));
+    let base = base.unwrap().trim_end_matches([';', '/']);
+    let answer = reqwest::Client::new()
+        .delete(format!("{base}/v1/webhooks/no-id"))
+        .bearer_auth(key);
+    assert!(answer.send().await.unwrap().status().is_client_error());
+    service.kill().unwrap();
+    service.wait().unwrap();
+    let log = std::fs::read_to_string(folder.path().join("log")).unwrap();
+    let told = |line: &&str| {
+        ["DELETE", "/v1/webhooks/no-id", id, "portal", "status=4"]
+            .iter()
+            .all(|part| line.contains(part))
+    };
+    assert!(log.lines().any(|line| told(&line)), "{log}");
+    assert!(!log.contains(secret));
 }

@@ -29,6 +29,7 @@ async fn make_key(database: &Place) -> String {
         requests_per_second: None,
         queue_limit: None,
         created_at: Timestamp::now(),
+        expires_at: None,
         revoked_at: None,
     };
     store.add_key(&record).await.unwrap();

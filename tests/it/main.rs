@@ -29,6 +29,7 @@ mod growth;
 mod life;
 mod lists;
 mod one_process;
+mod operators;
 mod page;
 mod population;
 mod previews;

@@ -57,6 +57,8 @@ pub struct KeyRecord {
     pub queue_limit: Option<u32>,
     /// When it was made.
     pub created_at: Timestamp,
+    /// From when on it opens nothing any more.
+    pub expires_at: Option<Timestamp>,
     /// When it was revoked.
     pub revoked_at: Option<Timestamp>,
 }
@@ -72,6 +74,7 @@ from_row! {
             requests_per_second: small(row, "requests_per_second")?,
             queue_limit: small(row, "queue_limit")?,
             created_at: instant(row, "created_at")?,
+            expires_at: optional_instant(row, "expires_at")?,
             revoked_at: optional_instant(row, "revoked_at")?,
         })
     }
@@ -80,7 +83,7 @@ from_row! {
 /// The columns of a key.
 macro_rules! key_columns {
     () => {
-        "id, client, name, role, secret_hash, requests_per_second, queue_limit, created_at, revoked_at"
+        "id, client, name, role, secret_hash, requests_per_second, queue_limit, created_at, expires_at, revoked_at"
     };
 }
 
@@ -89,8 +92,8 @@ impl Store {
     pub async fn add_key(&self, key: &KeyRecord) -> Result<(), StoreError> {
         let mut write = self.begin().await?;
         query(
-            "insert into keys (id, client, name, role, secret_hash, requests_per_second, queue_limit, created_at)
-             values ($1, $2, $3, $4, $5, $6, $7, $8)",
+            "insert into keys (id, client, name, role, secret_hash, requests_per_second, queue_limit, created_at, expires_at)
+             values ($1, $2, $3, $4, $5, $6, $7, $8, $9)",
         )
         .bind(&key.id)
         .bind(&key.client)
@@ -100,6 +103,7 @@ impl Store {
         .bind(key.requests_per_second)
         .bind(key.queue_limit)
         .bind(key.created_at.as_microsecond())
+        .bind(key.expires_at.map(Timestamp::as_microsecond))
         .execute(&mut *write)
         .await?;
         write.commit().await
@@ -117,14 +121,19 @@ impl Store {
         Ok(revoked == 1)
     }
 
-    /// A key that was not revoked.
-    pub async fn find_key(&self, id: &str) -> Result<Option<KeyRecord>, StoreError> {
+    /// A key that was not revoked and has not expired at `now`.
+    pub async fn find_key(
+        &self,
+        id: &str,
+        now: Timestamp,
+    ) -> Result<Option<KeyRecord>, StoreError> {
         let key = query_as(concat!(
             "select ",
             key_columns!(),
-            " from keys where id = $1 and revoked_at is null"
+            " from keys where id = $1 and revoked_at is null and (expires_at is null or expires_at > $2)"
         ))
         .bind(id)
+        .bind(now.as_microsecond())
         .fetch_optional(&self.readers)
         .await?;
         Ok(key)

@@ -1,0 +1,42 @@
+//! What operators look at: the dashboard and the alerts that ship ask for numbers that there are.
+
+use std::collections::BTreeSet;
+
+use serde_json::Value;
+
+use crate::bench::{Bench, submission};
+
+const DASHBOARD: &str = include_str!("../../deploy/grafana/meshwright.json");
+const ALERTS: &str = include_str!("../../deploy/prometheus/alerts.yaml");
+
+/// The names of numbers in a text.
+fn names(text: &str) -> BTreeSet<&str> {
+    let word = |c: char| !(c.is_ascii_alphanumeric() || c == '_');
+    text.split(word)
+        .filter(|word| word.starts_with("meshwright_"))
+        .collect()
+}
+
+#[tokio::test]
+async fn every_number_of_the_dashboard_and_of_the_alerts_is_told() {
+    let bench = Bench::quick().await;
+    let job = bench.submit(&submission(1.0)).await;
+    bench.ended(&job).await;
+    let preview = bench.post("/v1/preview", &submission(1.0)).send().await;
+    assert!(preview.unwrap().status().is_success());
+    let told = bench.get("/metrics").send().await.unwrap();
+    let told = told.text().await.unwrap();
+    let told = names(&told);
+
+    let dashboard: Value = serde_json::from_str(DASHBOARD).unwrap();
+    let panels = dashboard["panels"].as_array().unwrap();
+    let asked = panels
+        .iter()
+        .flat_map(|panel| panel["targets"].as_array().unwrap())
+        .map(|target| target["expr"].as_str().unwrap());
+    let asked: Vec<&str> = asked.chain([ALERTS]).collect();
+    let asked: BTreeSet<&str> = asked.iter().flat_map(|text| names(text)).collect();
+    assert!(asked.len() > 20, "{asked:?}");
+    let missing: Vec<_> = asked.difference(&told).collect();
+    assert!(missing.is_empty(), "{missing:?} of {told:?}");
+}
