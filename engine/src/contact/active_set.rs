@@ -189,7 +189,6 @@ impl<'a> Trial<'a> {
         // [x y] = H_A^-1 [w_A g_A], delta = (F + w^T y) / (w^T x), p = delta x - y.
         self.iterations += 1;
         let factor = self.problem.factor(&set);
-        let factor = Option::as_ref(&factor);
         let factor = factor.ok_or(ContactError::NotPositiveDefinite { points: set.len() })?;
         let mut x: Vec<f64> = set.iter().map(|&j| w[j]).collect();
         let mut y: Vec<f64> = set.iter().map(|&j| self.gaps_at_touch[j]).collect();
@@ -232,12 +231,8 @@ impl<'a> Trial<'a> {
         {
             *gap = g - delta * w;
         }
-        for &j in &self.set {
-            let p = self.forces[j];
-            for (gap, h) in self.gaps.iter_mut().zip(self.problem.compliance_column(j)) {
-                *gap += h * p;
-            }
-        }
+        let pressing = self.set.iter().map(|&j| (j, self.forces[j]));
+        self.problem.open(&mut self.gaps, pressing);
     }
 
     /// Whether `point` belongs into the set, judged by its force if it is held and by its gap if it is free.

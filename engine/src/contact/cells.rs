@@ -11,7 +11,7 @@ use super::drawn::DrawnPair;
 use super::facing::RangeEnd;
 use super::facings::Near;
 use super::meeting::Standing;
-use super::model::{ContactSolver, MadePair, PositionError, WarmStart};
+use super::model::{ContactSolver, MadePair, PositionError, WarmPair, WarmStart};
 use super::pair_cells::PairCells;
 use super::patch::{Extent, Patch};
 use super::penetration::Found;
@@ -79,6 +79,13 @@ impl Laid {
             arms,
             lag,
         })
+    }
+
+    /// The δ at which the first of its cells touches.
+    fn touch(&self) -> f64 {
+        let touches = self.gaps.iter().zip(&self.arms);
+        let touches = touches.map(|(gap, arms)| gap / arms[1]);
+        touches.fold(f64::INFINITY, f64::min)
     }
 
     /// Its cells.
@@ -270,7 +277,7 @@ impl<'a> ContactCells<'a> {
     ) -> Result<ContactSolution, PositionError> {
         Ok(match self.made.model.solver {
             ContactSolver::ActiveSet => {
-                solve_active_set(problem, load, self.touching(warm).as_deref())?
+                solve_active_set(problem, load, self.touching(warm, load).as_deref())?
             }
             ContactSolver::AugmentedLagrangian {
                 penalty,
@@ -497,17 +504,49 @@ impl<'a> ContactCells<'a> {
             .collect()
     }
 
-    /// The cells that touched before; cells move with the contact, so that they mostly still do. A pair that was not there before starts
-    /// open.
-    fn touching(&self, warm: &WarmStart) -> Option<Vec<bool>> {
-        warm.transmission_error?;
-        let touching = self.laid.iter().flat_map(|laid| {
-            let count = laid.gaps.len();
-            let before = warm
-                .active
-                .iter()
-                .find(|(pair, active)| *pair == laid.pair && active.len() == count);
-            before.map_or_else(|| vec![false; count], |(_, active)| active.clone())
+    /// The cells that are likely to touch, judged by a contact of about the same pairs.
+    ///
+    /// Each pair is taken for a spring from where it touches, as stiff as it was; under what it so carries, it touches wherever its gap
+    /// is no deeper than such a force closed before.
+    fn touching(&self, warm: &WarmStart, load: f64) -> Option<Vec<bool>> {
+        let known: Vec<&WarmPair> = self
+            .laid
+            .iter()
+            .filter_map(|laid| warm.pairs.iter().find(|pair| pair.pair == laid.pair))
+            .collect();
+        if known.is_empty() {
+            return None;
+        }
+        let mean = |of: fn(&WarmPair) -> f64| {
+            known.iter().map(|pair| of(pair)).sum::<f64>() / known.len() as f64
+        };
+        let usual = [mean(|pair| pair.stiffness), mean(|pair| pair.closed)];
+        let springs: Vec<(f64, [f64; 2])> = self
+            .laid
+            .iter()
+            .map(|laid| {
+                let known = warm.pairs.iter().find(|pair| pair.pair == laid.pair);
+                let known = known.map(|pair| [pair.stiffness, pair.closed]);
+                (laid.touch(), known.unwrap_or(usual))
+            })
+            .collect();
+        let mut rising: Vec<&(f64, [f64; 2])> = springs.iter().collect();
+        rising.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // δ at which the springs that it reaches carry the load.
+        let (mut stiffness, mut moment, mut delta) = (0.0, 0.0, f64::INFINITY);
+        for (touch, [spring, _]) in rising {
+            if *touch >= delta {
+                break;
+            }
+            stiffness += spring;
+            moment += spring * touch;
+            delta = (load + moment) / stiffness;
+        }
+        let touching = self.laid.iter().zip(&springs).flat_map(|(laid, spring)| {
+            let &(touch, [stiffness, closed]) = spring;
+            let depth = closed * stiffness * (delta - touch);
+            let cells = laid.gaps.iter().zip(&laid.arms);
+            cells.map(move |(gap, arms)| gap / arms[1] - touch <= depth)
         });
         Some(touching.collect())
     }
@@ -530,12 +569,32 @@ impl<'a> ContactCells<'a> {
     }
 
     pub(super) fn warm_start(&self, solution: &ContactSolution) -> WarmStart {
-        let active = self
-            .ranges()
-            .map(|(laid, range)| (laid.pair, solution.active[range].to_vec()));
+        let delta = solution.transmission_error;
+        let pairs = self.ranges().filter_map(|(laid, range)| {
+            let active = &solution.active[range.clone()];
+            let carried = laid.arms.iter().zip(&solution.forces[range]);
+            let force: f64 = carried.map(|(arms, force)| arms[1] * force).sum();
+            let touch = laid.touch();
+            let depths = laid.gaps.iter().zip(&laid.arms);
+            let depths = depths.map(|(gap, arms)| gap / arms[1] - touch);
+            let deepest = depths.clone().zip(active).filter(|(_, active)| **active);
+            let deepest = deepest.fold(0.0, |deepest: f64, (depth, _)| deepest.max(depth));
+            let next = depths.filter(|depth| *depth > deepest);
+            let next = next.fold(f64::INFINITY, f64::min);
+            let closed = if next.is_finite() {
+                f64::midpoint(deepest, next)
+            } else {
+                deepest
+            };
+            (force > 0.0).then(|| WarmPair {
+                pair: laid.pair,
+                stiffness: force / (delta - touch),
+                closed: closed / force,
+            })
+        });
         WarmStart {
-            transmission_error: Some(solution.transmission_error),
-            active: active.collect(),
+            transmission_error: Some(delta),
+            pairs: pairs.collect(),
         }
     }
 }

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use faer::Mat;
 
-use super::factor::Factor;
+use super::factor::{Core, Factor, core_of};
 use super::memo::Memo;
 use super::patch::Extent;
 use crate::fem::dense::entries;
@@ -13,8 +13,8 @@ use crate::fem::dense::entries;
 /// What compliances may take, in bytes: two hundred of eighty cells.
 const MOST_BYTES: usize = 10 << 20;
 
-/// What factors may take, in bytes: some thousand of forty touching cells.
-const MOST_FACTOR_BYTES: usize = 24 << 20;
+/// What cores may take, in bytes: two thousand of forty touching cells.
+const MOST_CORE_BYTES: usize = 36 << 20;
 
 /// What the compliance of the cells of a model depends on.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -27,16 +27,16 @@ pub(super) struct StatedCells {
     pub(super) teeth_like: [usize; 2],
 }
 
-/// The compliances and factors of one model; shared between threads.
+/// The compliances of one model and the factors of cores; shared between threads.
 #[derive(Debug)]
 pub struct Compliances {
     stated: Memo<StatedCells, Numbered>,
-    factors: Arc<Factors>,
+    cores: Arc<Cores>,
     count: AtomicU64,
 }
 
-/// Factors of compliances by the number of the compliance and the set that touches, bit by bit.
-pub(super) type Factors = Memo<(u64, Vec<u64>), Option<Factor>>;
+/// Factors of cores by the number of the compliance, and the blocks.
+type Cores = Memo<(u64, Vec<usize>), Option<Core>>;
 
 #[derive(Debug)]
 struct Numbered {
@@ -49,7 +49,7 @@ struct Numbered {
 pub(super) struct Known {
     pub(super) compliance: Arc<Mat<f64>>,
     number: u64,
-    factors: Arc<Factors>,
+    cores: Arc<Cores>,
 }
 
 impl Default for Compliances {
@@ -58,8 +58,8 @@ impl Default for Compliances {
             stated: Memo::new(MOST_BYTES, |known| {
                 size_of::<Numbered>() + size_of::<f64>() * entries(&known.compliance)
             }),
-            factors: Arc::new(Memo::new(MOST_FACTOR_BYTES, |factor| {
-                size_of::<Factor>() + factor.as_ref().map_or(0, Factor::bytes)
+            cores: Arc::new(Memo::new(MOST_CORE_BYTES, |core| {
+                size_of::<Core>() + core.as_ref().map_or(0, Core::bytes)
             })),
             count: AtomicU64::new(0),
         }
@@ -69,31 +69,30 @@ impl Default for Compliances {
 impl Compliances {
     /// About how much memory is used, in bytes.
     pub fn bytes(&self) -> usize {
-        size_of::<Self>() + self.stated.bytes() + self.factors.bytes()
+        size_of::<Self>() + self.stated.bytes() + self.cores.bytes()
     }
 
     /// The compliance of `cells`, made if it is not there.
     pub(super) fn get(&self, cells: StatedCells, make: impl FnOnce() -> Mat<f64>) -> Known {
-        let numbered = self.stated.get(cells, || Numbered {
+        let numbered = self.stated.get(cells, |_| Numbered {
             number: self.count.fetch_add(1, Ordering::Relaxed),
             compliance: Arc::new(make()),
         });
         Known {
             compliance: Arc::clone(&numbered.compliance),
             number: numbered.number,
-            factors: Arc::clone(&self.factors),
+            cores: Arc::clone(&self.cores),
         }
     }
 }
 
 impl Known {
     /// The factor of what of it belongs to the rising points of `set`; `None` where that is not positive definite.
-    pub(super) fn factor(&self, set: &[usize]) -> Arc<Option<Factor>> {
-        let mut bits = vec![0; self.compliance.nrows().div_ceil(64)];
-        for point in set {
-            bits[point / 64] |= 1 << (point % 64);
-        }
-        self.factors
-            .get((self.number, bits), || Factor::new(&self.compliance, set))
+    pub(super) fn factor(&self, set: &[usize]) -> Option<Factor> {
+        let blocks = core_of(set);
+        let core = self.cores.get((self.number, blocks), |(_, blocks)| {
+            Core::new(&self.compliance, blocks)
+        });
+        Factor::new(&self.compliance, set, core)
     }
 }

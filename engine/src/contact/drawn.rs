@@ -108,7 +108,7 @@ impl DrawnFlanks {
     pub(super) fn pair(&self, model: &PairModel, phase: f64) -> DrawnPair {
         let facing = self
             .facings
-            .get(phase.to_bits(), || Facing::drawn(&model.pair, phase));
+            .get(phase.to_bits(), |_| Facing::drawn(&model.pair, phase));
         DrawnPair { phase, facing }
     }
 
@@ -120,7 +120,7 @@ impl DrawnFlanks {
         load: f64,
         extent: Extent,
     ) -> Arc<Option<PairCells>> {
-        self.cells.get(laid(model, pair, load, extent), || {
+        self.cells.get(laid(model, pair, load, extent), |_| {
             let facing = pair.facing()?;
             PairCells::new(
                 model,
@@ -144,7 +144,7 @@ impl DrawnFlanks {
         let steps = ((reach - least).max(LEAST_REACH).ln() / REACH_STEP.ln()).ceil() as i32;
         let carrying = Carrying::of(carrying);
         let spec = (laid(model, pair, load, extent), steps, carrying);
-        self.looks.get(spec, || {
+        self.looks.get(spec, |_| {
             let reach = least + REACH_STEP.powi(steps);
             let view = view(model, pair.phase, facing);
             Looks::new(model, &view, facing, (cells, carrying), reach)

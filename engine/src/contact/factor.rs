@@ -1,26 +1,74 @@
-//! The Cholesky factor of the compliance of the points that touch.
+//! The Cholesky factor of the compliance of the points that touch, most of it kept from sets that differ at their ends.
+//!
+//! A set is told as its core, all blocks of [`BLOCK`] points that it holds whole, and the points beside. The factor of a core and what
+//! each point beside adds to it are found once. The result hangs on the set alone, whatever was kept.
+
+use std::sync::{Arc, OnceLock};
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt;
 use faer::{Mat, Par};
 
-/// L of H_A = L Lᵀ: its columns from the diagonal down, one after the other, with 1/L_jj on the diagonal.
+/// Points that enter and leave a core together.
+const BLOCK: usize = 4;
+
+/// The factor of a core, and of each point beside what it has below it.
+#[derive(Debug)]
+pub(super) struct Core {
+    points: Vec<usize>,
+    factor: Lower,
+    /// L⁻¹ H of the core and each point of the compliance.
+    beside: Vec<OnceLock<Vec<f64>>>,
+}
+
+/// The factor of a set.
 #[derive(Debug)]
 pub(super) struct Factor {
+    core: Arc<Option<Core>>,
+    /// The places in the set of the points of the core, and of those beside.
+    places: [Vec<usize>; 2],
+    /// The points beside.
+    points: Vec<usize>,
+    factor: Lower,
+}
+
+/// A lower triangle: its columns from the diagonal down, one after the other, with 1/L_jj on the diagonal.
+#[derive(Debug, Default)]
+struct Lower {
     size: usize,
     entries: Vec<f64>,
 }
 
-impl Factor {
-    /// That of the points `set` of `compliance`, the rising; `None` where that is not positive definite.
-    pub(super) fn new(compliance: &Mat<f64>, set: &[usize]) -> Option<Self> {
-        let size = set.len();
+/// The core of the rising points `set`, block by block of the compliance's points.
+pub(super) fn core_of(set: &[usize]) -> Vec<usize> {
+    let mut blocks = Vec::with_capacity(set.len() / BLOCK);
+    let mut first = 0;
+    while first + BLOCK <= set.len() {
+        let point = set[first];
+        if point.is_multiple_of(BLOCK) && set[first + BLOCK - 1] == point + BLOCK - 1 {
+            blocks.push(point / BLOCK);
+            first += BLOCK;
+        } else {
+            first += 1;
+        }
+    }
+    blocks
+}
+
+impl Core {
+    /// That of the `blocks` of `compliance`; `None` where it is not positive definite.
+    pub(super) fn new(compliance: &Mat<f64>, blocks: &[usize]) -> Option<Self> {
+        let points = blocks
+            .iter()
+            .flat_map(|block| BLOCK * block..BLOCK * (block + 1));
+        let points: Vec<usize> = points.collect();
+        let size = points.len();
         let mut factor = Mat::<f64>::zeros(size, size);
-        for (column, &j) in set.iter().enumerate() {
+        for (column, &j) in points.iter().enumerate() {
             let h = compliance.col_as_slice(j);
             for (entry, &i) in factor.col_as_slice_mut(column)[column..]
                 .iter_mut()
-                .zip(&set[column..])
+                .zip(&points[column..])
             {
                 *entry = h[i];
             }
@@ -42,36 +90,170 @@ impl Factor {
             entries.push(column[0].recip());
             entries.extend_from_slice(&column[1..]);
         }
-        Some(Self { size, entries })
+        Some(Self {
+            points,
+            factor: Lower { size, entries },
+            beside: std::iter::repeat_with(OnceLock::new)
+                .take(compliance.nrows())
+                .collect(),
+        })
+    }
+
+    /// How much memory it may come to take beside itself, in bytes.
+    pub(super) fn bytes(&self) -> usize {
+        let beside = self.beside.len() - self.points.len();
+        size_of::<f64>() * (self.factor.entries.len() + self.points.len() * (1 + beside))
+            + size_of::<OnceLock<Vec<f64>>>() * self.beside.len()
+    }
+
+    fn beside(&self, compliance: &Mat<f64>, point: usize) -> &[f64] {
+        self.beside[point].get_or_init(|| {
+            let column = compliance.col_as_slice(point);
+            let mut below: Vec<f64> = self.points.iter().map(|i| column[*i]).collect();
+            self.factor.solve(&mut below);
+            below
+        })
+    }
+}
+
+impl Factor {
+    /// That of the rising points `set` of `compliance`, of which `core` is the core; `None` where it is not positive definite.
+    pub(super) fn new(
+        compliance: &Mat<f64>,
+        set: &[usize],
+        core: Arc<Option<Core>>,
+    ) -> Option<Self> {
+        let known = Option::as_ref(&core)?;
+        let mut places = [Vec::with_capacity(known.points.len()), Vec::new()];
+        let mut points = Vec::new();
+        for (place, &point) in set.iter().enumerate() {
+            if known.points.get(places[0].len()) == Some(&point) {
+                places[0].push(place);
+            } else {
+                places[1].push(place);
+                points.push(point);
+            }
+        }
+        let beside: Vec<&[f64]> = points
+            .iter()
+            .map(|&point| known.beside(compliance, point))
+            .collect();
+        let factor = Lower::of(points.len(), |i, j| {
+            compliance[(points[i], points[j])] - dot(beside[i], beside[j])
+        })?;
+        Some(Self {
+            places,
+            points,
+            factor,
+            core,
+        })
     }
 
     /// Puts H_A⁻¹ times each of `right_sides` in its place.
     pub(super) fn solve(&self, right_sides: [&mut [f64]; 2]) {
-        let [x, y] = right_sides;
-        let mut columns = self.entries.as_slice();
-        for j in 0..self.size {
-            let (column, rest) = columns.split_at(self.size - j);
-            columns = rest;
-            let (x_here, x_below) = x[j..].split_at_mut(1);
-            let (y_here, y_below) = y[j..].split_at_mut(1);
-            x_here[0] *= column[0];
-            y_here[0] *= column[0];
-            subtract(x_below, y_below, &column[1..], x_here[0], y_here[0]);
+        let Some(core) = Option::as_ref(&self.core) else {
+            return;
+        };
+        let beside = self.points.iter().map(|point| core.beside[*point].get());
+        let beside: Vec<&[f64]> = beside.flatten().map(Vec::as_slice).collect();
+        let [in_core, others] = &self.places;
+        let sides = right_sides.each_ref();
+        let picked = |places: &[usize]| {
+            sides.map(|side| -> Vec<f64> { places.iter().map(|place| side[*place]).collect() })
+        };
+        let ([mut x, mut y], [mut u, mut v]) = (picked(in_core), picked(others));
+        core.factor.solve_both(&mut x, &mut y);
+        for ((u, v), beside) in u.iter_mut().zip(&mut v).zip(&beside) {
+            *u -= dot(beside, &x);
+            *v -= dot(beside, &y);
         }
-        let mut columns = self.entries.as_slice();
-        for j in (0..self.size).rev() {
-            let (rest, column) = columns.split_at(columns.len() - (self.size - j));
-            columns = rest;
-            for side in [&mut *x, &mut *y] {
-                let (here, below) = side[j..].split_at_mut(1);
-                here[0] = (here[0] - dot(&column[1..], below)) * column[0];
+        self.factor.solve_both(&mut u, &mut v);
+        self.factor.solve_transposed(&mut u);
+        self.factor.solve_transposed(&mut v);
+        for ((u, v), beside) in u.iter().zip(&v).zip(&beside) {
+            subtract(&mut x, &mut y, beside, *u, *v);
+        }
+        core.factor.solve_transposed(&mut x);
+        core.factor.solve_transposed(&mut y);
+        for (side, (core, others)) in right_sides.into_iter().zip([(x, u), (y, v)]) {
+            for (place, value) in in_core.iter().zip(core) {
+                side[*place] = value;
+            }
+            for (place, value) in self.places[1].iter().zip(others) {
+                side[*place] = value;
+            }
+        }
+    }
+}
+
+impl Lower {
+    /// The factor of the matrix whose lower triangle has these `entries`; `None` where it is not positive definite.
+    fn of(size: usize, entries: impl Fn(usize, usize) -> f64) -> Option<Self> {
+        let mut lower = Vec::with_capacity(size * (size + 1) / 2);
+        for j in 0..size {
+            lower.extend((j..size).map(|i| entries(i, j)));
+        }
+        let mut rest = lower.as_mut_slice();
+        for j in 0..size {
+            let (column, after) = rest.split_at_mut(size - j);
+            if !(column[0] > 0.0 && column[0].is_finite()) {
+                return None;
+            }
+            let scale = column[0].sqrt().recip();
+            column[0] = scale;
+            for entry in &mut column[1..] {
+                *entry *= scale;
+            }
+            let mut others = &mut *after;
+            for k in 1..column.len() {
+                let (other, next) = others.split_at_mut(column.len() - k);
+                let by = column[k];
+                for (other, entry) in other.iter_mut().zip(&column[k..]) {
+                    *other -= by * entry;
+                }
+                others = next;
+            }
+            rest = after;
+        }
+        Some(Self {
+            size,
+            entries: lower,
+        })
+    }
+
+    fn columns(&self) -> impl DoubleEndedIterator<Item = (usize, &[f64])> {
+        let start = |j: usize| j * self.size - j * j.saturating_sub(1) / 2;
+        (0..self.size).map(move |j| (j, &self.entries[start(j)..start(j) + self.size - j]))
+    }
+
+    /// L⁻¹ x in the place of x.
+    fn solve(&self, x: &mut [f64]) {
+        for (j, column) in self.columns() {
+            let (here, below) = x[j..].split_at_mut(1);
+            here[0] *= column[0];
+            for (below, entry) in below.iter_mut().zip(&column[1..]) {
+                *below -= entry * here[0];
             }
         }
     }
 
-    /// How much memory it takes beside itself, in bytes.
-    pub(super) fn bytes(&self) -> usize {
-        size_of_val(self.entries.as_slice())
+    /// The same of two at once.
+    fn solve_both(&self, x: &mut [f64], y: &mut [f64]) {
+        for (j, column) in self.columns() {
+            let (x, x_below) = x[j..].split_at_mut(1);
+            let (y, y_below) = y[j..].split_at_mut(1);
+            x[0] *= column[0];
+            y[0] *= column[0];
+            subtract(x_below, y_below, &column[1..], x[0], y[0]);
+        }
+    }
+
+    /// L⁻ᵀ x in the place of x.
+    fn solve_transposed(&self, x: &mut [f64]) {
+        for (j, column) in self.columns().rev() {
+            let (here, below) = x[j..].split_at_mut(1);
+            here[0] = (here[0] - dot(&column[1..], below)) * column[0];
+        }
     }
 }
 
@@ -102,23 +284,37 @@ fn dot(one: &[f64], other: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
+    fn factor(compliance: &Mat<f64>, set: &[usize]) -> Option<Factor> {
+        let core = Core::new(compliance, &core_of(set));
+        Factor::new(compliance, set, Arc::new(core))
+    }
+
+    #[test]
+    fn a_core_is_the_whole_blocks() {
+        assert_eq!(core_of(&[1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 15]), [1, 3]);
+        assert_eq!(core_of(&[0, 1, 2, 4, 5, 6]), [0; 0]);
+    }
+
     #[test]
     fn a_solution_times_the_matrix_is_the_right_side() {
         for size in [1, 2, 7, 8, 9, 33] {
-            let compliance = Mat::from_fn(size + 3, size + 3, |i, j| {
-                (-0.3 * i.abs_diff(j) as f64).exp() + if i == j { 0.1 } else { 0.0 }
-            });
-            let set: Vec<usize> = (0..size).map(|i| i + usize::from(i > 2)).collect();
-            let factor = Factor::new(&compliance, &set).expect("positive definite");
-            let sides = [0.3, 1.7]
-                .map(|k: f64| -> Vec<f64> { (0..size).map(|i| (k * i as f64).cos()).collect() });
-            let [mut x, mut y] = sides.clone();
-            factor.solve([&mut x, &mut y]);
-            for (solution, side) in [x, y].iter().zip(&sides) {
-                for (row, wanted) in set.iter().zip(side) {
-                    let each = set.iter().zip(solution);
-                    let found: f64 = each.map(|(j, x)| compliance[(*row, *j)] * x).sum();
-                    assert!((found - wanted).abs() < 1e-13, "{size}: {found} {wanted}");
+            for skipped in [0, 2, 5] {
+                let compliance = Mat::from_fn(size + 3, size + 3, |i, j| {
+                    (-0.3 * i.abs_diff(j) as f64).exp() + if i == j { 0.1 } else { 0.0 }
+                });
+                let set: Vec<usize> = (0..size).map(|i| i + usize::from(i >= skipped)).collect();
+                let factor = factor(&compliance, &set).expect("positive definite");
+                let sides = [0.3, 1.7].map(|k: f64| -> Vec<f64> {
+                    (0..size).map(|i| (k * i as f64).cos()).collect()
+                });
+                let [mut x, mut y] = sides.clone();
+                factor.solve([&mut x, &mut y]);
+                for (solution, side) in [x, y].iter().zip(&sides) {
+                    for (row, wanted) in set.iter().zip(side) {
+                        let each = set.iter().zip(solution);
+                        let found: f64 = each.map(|(j, x)| compliance[(*row, *j)] * x).sum();
+                        assert!((found - wanted).abs() < 1e-13, "{size}: {found} {wanted}");
+                    }
                 }
             }
         }
@@ -126,8 +322,9 @@ mod tests {
 
     #[test]
     fn what_is_not_positive_definite_has_none() {
-        let compliance = Mat::from_fn(2, 2, |_, _| 1.0);
-        assert!(Factor::new(&compliance, &[0, 1]).is_none());
-        assert!(Factor::new(&compliance, &[1]).is_some());
+        let compliance = Mat::from_fn(8, 8, |_, _| 1.0);
+        assert!(factor(&compliance, &[0, 1]).is_none());
+        assert!(factor(&compliance, &[0, 1, 2, 3]).is_none());
+        assert!(factor(&compliance, &[1]).is_some());
     }
 }

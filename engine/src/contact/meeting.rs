@@ -89,8 +89,9 @@ pub(super) struct Standing<'a> {
     /// Cosine and sine of the turn of each gear since.
     turns: [[f64; 2]; 2],
     centers: [Vector; 2],
-    /// The profile slope deviations.
+    /// The profile slope deviations, and the roll lengths at which they begin.
     slopes: [f64; 2],
+    forms: [f64; 2],
 }
 
 impl Probe {
@@ -147,6 +148,7 @@ impl<'a> Standing<'a> {
             centers: placement::centers(pair, deviations, n, body),
             slopes: Member::BOTH
                 .map(|member| deviations.of_gear(member).slope(teeth[member.index()])),
+            forms: Member::BOTH.map(|member| pair.gear(member).form_roll_length()),
         }
     }
 
@@ -171,7 +173,7 @@ impl<'a> Standing<'a> {
         let slope = self.slopes[seat];
         if slope != 0.0 {
             let (s, r_b) = (probe.roll_lengths[0], gear.base_radius());
-            let angle = slope * (s - gear.form_roll_length()) / r_b;
+            let angle = slope * (s - self.forms[seat]) / r_b;
             let (sine, cosine) = angle.sin_cos();
             place = turned([cosine, sine], place);
             normal -= slope * r_b / s.max(1e-9 * r_b) * probe.radial;
@@ -192,7 +194,7 @@ impl<'a> Standing<'a> {
         let turn = chord * (1.0 + square * (1.0 / 6.0 + square * (3.0 / 40.0)));
         let foot = probe.foot - r_b * turn;
         let slope = self.slopes[mate];
-        let missing = other.removed(s) - slope * (s - other.form_roll_length());
+        let missing = other.removed(s) - slope * (s - self.forms[mate]);
         let inclination = other.removed_slope(s) - slope;
 
         let on_mate = turned(

@@ -54,15 +54,25 @@ pub struct PairModel {
     pub compliances: Arc<Compliances>,
 }
 
-/// What one position leaves for the next: where each pair was in contact, and the transmission error.
+/// What one position leaves for the next: how each pair carried, and the transmission error.
 ///
 /// Pairs are numbered from the reference pair of the position's own mesh period.
 #[derive(Debug, Clone, Default)]
 pub struct WarmStart {
     /// The transmission error; `None` at a cold start.
     pub(super) transmission_error: Option<f64>,
-    /// The cells that touched, pair by pair.
-    pub(super) active: Vec<(i64, Vec<bool>)>,
+    /// The pairs that carried.
+    pub(super) pairs: Vec<WarmPair>,
+}
+
+/// How a pair carried.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct WarmPair {
+    pub(super) pair: i64,
+    /// Its force by how far δ went on from its touch.
+    pub(super) stiffness: f64,
+    /// By how much it closed its gap, beyond the touch, for each unit of force.
+    pub(super) closed: f64,
 }
 
 /// Why a position has no solution.

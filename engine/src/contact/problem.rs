@@ -6,7 +6,7 @@ use std::sync::Arc;
 use faer::{Mat, MatRef};
 
 use super::compliances::Known;
-use super::factor::Factor;
+use super::factor::{Core, Factor, core_of};
 use crate::run::Stopped;
 
 /// Entries of the compliance that mirror each other may differ by this much, relative to the diagonal.
@@ -117,10 +117,29 @@ impl ContactProblem {
     }
 
     /// The factor of the compliance of the rising points `set`; `None` where that is not positive definite.
-    pub(super) fn factor(&self, set: &[usize]) -> Arc<Option<Factor>> {
+    pub(super) fn factor(&self, set: &[usize]) -> Option<Factor> {
         match &self.known {
             Some(known) => known.factor(set),
-            None => Arc::new(Factor::new(&self.compliance, set)),
+            None => {
+                let core = Core::new(&self.compliance, &core_of(set));
+                Factor::new(&self.compliance, set, Arc::new(core))
+            }
+        }
+    }
+
+    /// Adds to `gaps` what `forces` at their points open, four at a time.
+    pub(super) fn open(&self, gaps: &mut [f64], mut forces: impl Iterator<Item = (usize, f64)>) {
+        while let Some(first) = forces.next() {
+            let mut four = [first; 4];
+            for each in &mut four[1..] {
+                *each = forces.next().unwrap_or((first.0, 0.0));
+            }
+            let [a, b, c, d] = four.map(|(point, _)| self.compliance_column(point));
+            let [p_a, p_b, p_c, p_d] = four.map(|(_, force)| force);
+            let columns = a.iter().zip(b).zip(c.iter().zip(d));
+            for (gap, ((a, b), (c, d))) in gaps.iter_mut().zip(columns) {
+                *gap += (a * p_a + b * p_b) + (c * p_c + d * p_d);
+            }
         }
     }
 
@@ -262,16 +281,8 @@ impl Equilibrium {
             .zip(w)
             .map(|(g_0, w)| (g_0 - first_touch * w) - delta * w)
             .collect();
-        for (point, &force) in self
-            .forces
-            .iter()
-            .enumerate()
-            .filter(|&(_, &force)| force != 0.0)
-        {
-            for (gap, h) in gaps.iter_mut().zip(problem.compliance_column(point)) {
-                *gap += h * force;
-            }
-        }
+        let forces = self.forces.iter().copied().enumerate();
+        problem.open(&mut gaps, forces.filter(|(_, force)| *force != 0.0));
         // Scaled before they are multiplied, so that tiny loads do not underflow.
         let products = self
             .forces

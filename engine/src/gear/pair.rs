@@ -94,6 +94,9 @@ pub struct GearPair {
     driving: SpurGear,
     driven: SpurGear,
     center_distance: f64,
+    working_pressure_angle: f64,
+    line_of_action: f64,
+    pitch_roll_length: f64,
 }
 
 impl GearPair {
@@ -120,13 +123,22 @@ impl GearPair {
                 driven: rack_2.pressure_angle,
             });
         }
-        let pair = Self {
+        let pair = Self::placed(driving, driven, center_distance);
+        pair.check()?;
+        Ok(pair)
+    }
+
+    fn placed(driving: SpurGear, driven: SpurGear, center_distance: f64) -> Self {
+        let base_radii = driving.base_radius() + driven.base_radius();
+        let working_pressure_angle = (base_radii / center_distance).acos();
+        Self {
+            line_of_action: center_distance * working_pressure_angle.sin(),
+            pitch_roll_length: driving.base_radius() * working_pressure_angle.tan(),
+            working_pressure_angle,
             driving,
             driven,
             center_distance,
-        };
-        pair.check()?;
-        Ok(pair)
+        }
     }
 
     /// The same pair on blanks without bores and holes: what is left to say where only flanks matter.
@@ -134,7 +146,7 @@ impl GearPair {
         Self {
             driving: self.driving.without_blank(),
             driven: self.driven.without_blank(),
-            center_distance: self.center_distance,
+            ..*self
         }
     }
 
@@ -143,7 +155,7 @@ impl GearPair {
         Self {
             driving: self.driving.as_drawn(),
             driven: self.driven.as_drawn(),
-            center_distance: self.center_distance,
+            ..*self
         }
     }
 
@@ -185,10 +197,7 @@ impl GearPair {
     }
 
     fn at(&self, center_distance: f64) -> Self {
-        Self {
-            center_distance,
-            ..self.clone()
-        }
+        Self::placed(self.driving.clone(), self.driven.clone(), center_distance)
     }
 
     /// The center distance at which the contact ratio falls to one; it falls as the distance grows.
@@ -228,12 +237,12 @@ impl GearPair {
 
     /// The working pressure angle α_w: cos α_w = (r_b1 + r_b2)/a.
     pub fn working_pressure_angle(&self) -> f64 {
-        ((self.driving.base_radius() + self.driven.base_radius()) / self.center_distance).acos()
+        self.working_pressure_angle
     }
 
     /// The length a sin α_w of the line of action between the base circles, on which s_1 + s_2 is constant.
     pub fn line_of_action(&self) -> f64 {
-        self.center_distance * self.working_pressure_angle().sin()
+        self.line_of_action
     }
 
     /// The base pitch p_b.
@@ -248,7 +257,7 @@ impl GearPair {
 
     /// The roll length on the driving gear at the pitch point C, where the reference pair touches at mesh position 0.
     pub fn pitch_roll_length(&self) -> f64 {
-        self.driving.base_radius() * self.working_pressure_angle().tan()
+        self.pitch_roll_length
     }
 
     /// The roll length on the driving gear at which a pair nominally touches `periods` mesh periods after it passed the pitch
