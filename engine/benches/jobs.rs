@@ -4,6 +4,9 @@ use std::hint::black_box;
 
 use criterion::measurement::WallTime;
 use criterion::{BatchSize, Bencher, BenchmarkGroup, Criterion, criterion_group, criterion_main};
+use meshwright_engine::analysis::forces::{
+    DynamicsRequest, ForceTableRequest, dynamics, force_table,
+};
 use meshwright_engine::analysis::{Case, Method, analyze, pair_model};
 use meshwright_engine::assembly::interface::default_interface_radius;
 use meshwright_engine::assembly::{Parts, TeethSpec};
@@ -249,5 +252,51 @@ fn resolution(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, cold, teeth_known, changes, study, resolution);
+/// Case 2 with its force table, and up and down through 400 speeds once the table is there.
+fn forces(criterion: &mut Criterion) {
+    let case = test_case(2);
+    let (library, run) = (Library::default(), Run::unattended());
+    let request = ForceTableRequest {
+        loads: 12,
+        largest_output_torque: None,
+    };
+    let table = || force_table(&case, request, &library, &run).expect("a table");
+    let analysis = analyze(&case, &library, &run).expect("curves");
+    let speeds = DynamicsRequest {
+        speeds: (0..400)
+            .map(|i| f64::from(i) / 399.0 * 20_000.0 / 60.0)
+            .collect(),
+        damping_ratio: 0.05,
+        inertias: [None; 2],
+        sweeps: [true, true],
+    };
+    let mut group = group(criterion, "forces");
+    group.bench_function("case 2, table of twelve loads", |bencher| {
+        bencher.iter(|| black_box(table()));
+    });
+    let table = table();
+    group.bench_function("case 2, 400 speeds to 20,000 rpm, up and down", |bencher| {
+        bencher.iter(|| {
+            black_box(dynamics(
+                &case.pair,
+                &analysis.curves[0],
+                &table,
+                &speeds,
+                &run,
+            ))
+            .expect("nobody stops it")
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(
+    benches,
+    cold,
+    teeth_known,
+    changes,
+    study,
+    resolution,
+    forces
+);
 criterion_main!(benches);

@@ -31,10 +31,13 @@
 //!    decomposition (ours), and the classical load distribution (eqs. 4 and 5) from closed-form compliances
 //!    ([`load_distribution`], a room of its own).
 //!
+//! 6. **At speed** ([`dynamics`]). δ(θ, F) over a ladder of loads is a table of force with an energy ([`analysis::forces`]), and
+//!    m_e x'' + c x' + F(θ, x) = F_0 is run through speeds, up and down.
+//!
 //! Where the rest of the paper went: the inner unknowns of the annulus (K_in,in and K_in,ed of eqs. 11 and 12) are eliminated
 //! exactly with every blank ([`fem::condensation`]); what is left of it on the circle R_w is [`ring::annulus`], on which
 //! `analysis::decomposition` puts the displacement of the whole gear. The frequency f_0 (eq. 2) is that of the true period ([`gear::GearPair::period`]), the
-//! first order of a [`analysis::spectrum::Spectrum`]. M and C (eq. 8) are dropped: everything is quasi-static.
+//! first order of a [`analysis::spectrum::Spectrum`]. M and C (eq. 8) are dropped: everything but [`dynamics`] is quasi-static.
 //!
 //! *Mesh* always means gear teeth in engagement; finite elements live on a [`grid::Grid`].
 //!
@@ -45,6 +48,7 @@
 pub mod analysis;
 pub mod assembly;
 pub mod contact;
+pub mod dynamics;
 pub mod fem;
 pub mod gear;
 pub mod grid;

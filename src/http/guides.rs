@@ -44,6 +44,7 @@ const GUIDES: &[Guide] = guides! {
     "choose-a-relief"
     "compare-hole-patterns"
     "is-my-thin-web-all-right"
+    "will-it-rattle-or-whine"
     "limits"
     "theory"
     "validity"

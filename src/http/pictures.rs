@@ -27,13 +27,15 @@ pub(super) enum Picture {
     MeshStiffness,
     LoadShare,
     Spectrum,
+    RunUp,
 }
 
-const NAMES: [(&str, Picture); 4] = [
+const NAMES: [(&str, Picture); 5] = [
     ("ste.svg", Picture::TransmissionError),
     ("mesh-stiffness.svg", Picture::MeshStiffness),
     ("load-share.svg", Picture::LoadShare),
     ("spectrum.svg", Picture::Spectrum),
+    ("run-up.svg", Picture::RunUp),
 ];
 
 impl Picture {
@@ -61,6 +63,7 @@ impl Picture {
             ),
             Self::LoadShare => load_share(curves),
             Self::Spectrum => spectrum(curves),
+            Self::RunUp => run_up(curves),
         }?;
         Some(svg(self.title(), Panel::Chart(chart), SIZE))
     }
@@ -71,6 +74,7 @@ impl Picture {
             Self::MeshStiffness => "Mesh stiffness",
             Self::LoadShare => "Load share of the tooth pairs",
             Self::Spectrum => "Spectrum of the transmission error",
+            Self::RunUp => "Run-up and run-down",
         }
     }
 }
@@ -208,6 +212,61 @@ fn spectrum(curves: &[&Value]) -> Option<Chart> {
     })
 }
 
+/// The dynamic transmission error over speed, both branches, with the resonances of the first curve.
+fn run_up(curves: &[&Value]) -> Option<Chart> {
+    let colors = PALETTE.iter().skip(2).chain(&PALETTE).cycle();
+    let mut series = Vec::new();
+    for (curve, &color) in curves.iter().zip(colors) {
+        let Some(dynamics) = curve.get("dynamics") else {
+            continue;
+        };
+        let speeds = numbers(dynamics, "driving_speed_rpm")?;
+        for (branch, look) in [("up", Look::Line), ("down", Look::Dots)] {
+            let Some(error) = dynamics.pointer(&format!("/{branch}/dynamic_transmission_error_um"))
+            else {
+                continue;
+            };
+            let points = speeds.iter().copied().zip(numbers(error, "peak_to_peak")?);
+            let name = format!("{}, {branch}", torque_of(curve));
+            series.push(Series::new(&name, color, look, points.collect()));
+        }
+    }
+    let most = |pick: fn(&(f64, f64)) -> f64| {
+        let points = series.iter().flat_map(|each| &each.points);
+        points.map(pick).fold(0.0, f64::max)
+    };
+    let (last, highest) = (most(|point| point.0), most(|point| point.1));
+    (last > 0.0 && highest > 0.0).then(|| Chart {
+        title: String::new(),
+        x: Axis::linear("speed of the driving gear in 1/min", 0.0, last),
+        y: Axis::linear(
+            "dynamic transmission error, peak to peak, in µm",
+            0.0,
+            1.08 * highest,
+        ),
+        marks: resonances(curves),
+        series,
+    })
+}
+
+/// Where the orders of mesh and holes resonate.
+fn resonances(curves: &[&Value]) -> Vec<Mark> {
+    let found = curves.iter().find_map(|curve| {
+        let resonances = curve.get("dynamics")?.get("resonances")?;
+        resonances.as_array()
+    });
+    let mark = |resonance: &Value| {
+        let label = resonance.get("label")?.as_str()?;
+        let shown = ["H_N", "H_N1", "H_N2", "H_Z2", "H_2Z2", "H_3Z2"].contains(&label);
+        let forced = resonance.get("kind")?.as_str()? == "forced";
+        (shown && forced).then_some(Mark {
+            x: resonance.get("driving_speed_rpm")?.as_f64()?,
+            name: label.to_owned(),
+        })
+    };
+    found.into_iter().flatten().filter_map(mark).collect()
+}
+
 fn named_order(curve: &Value, label: &str) -> Option<f64> {
     let named = curve.get("spectrum")?.get("named")?.as_array()?;
     let line = named
@@ -286,7 +345,10 @@ mod tests {
         json!({ "output_torque_n_m": 115.0, "mesh_position": [0.0, 0.5], "transmission_error_um": [13.0, 14.0],
                 "mesh_stiffness_tangent_n_per_m": [2.2e8, 2.2e8],
                 "load_shares": [{ "pair_offset": 0, "share": [1.0, 0.5] }, { "pair_offset": 1, "share": [0.0, 0.5] }],
-                "spectrum": { "order": [10, 50], "transmission_error_um": [0.3, 0.2], "named": [{ "label": "H_Z2", "order": 50 }] } })
+                "spectrum": { "order": [10, 50], "transmission_error_um": [0.3, 0.2], "named": [{ "label": "H_Z2", "order": 50 }] },
+                "dynamics": { "driving_speed_rpm": [0.0, 500.0, 1000.0], "resonances": [{ "driving_speed_rpm": 500.0, "label": "H_Z2", "kind": "forced" }],
+                              "up": { "dynamic_transmission_error_um": { "peak_to_peak": [3.0, 9.0, 1.0] } },
+                              "down": { "dynamic_transmission_error_um": { "peak_to_peak": [3.0, 8.0, 1.0] } } } })
     }
 
     #[test]
@@ -296,6 +358,7 @@ mod tests {
             ("ste.svg", ["transmission error in µm", "115 N m"]),
             ("mesh-stiffness.svg", ["N/µm", "115 N m"]),
             ("load-share.svg", ["load share in %", "1 after it"]),
+            ("run-up.svg", ["115 N m, down", "H_Z2"]),
             (
                 "spectrum.svg",
                 ["H_Z2", "per revolution of the driven gear"],

@@ -15,11 +15,13 @@ use super::client::Client;
 use super::conditional::{Keep, Tag};
 use super::parameters::{Parameters, job_id};
 use super::pictures::{self, Picture};
-use super::problem::of_missing_results;
+use super::problem::{internal, of_missing_results};
+use crate::exchange::fmu::fmu;
+use crate::exchange::force_table::{self, MeshForces};
 use crate::exchange::look_up;
 use crate::jobs::{Document, JobError};
 use crate::wire::csv::CsvWriter;
-use crate::wire::results::NamedOrderDocument;
+use crate::wire::results::{NamedOrderDocument, ResonanceDocument};
 use crate::wire::{Code, Problem};
 
 /// What a table shows: where in a curve its columns stand, and which they are.
@@ -34,7 +36,7 @@ struct Table {
 
 const POSITION: [&str; 3] = ["mesh_position", "driving_angle_deg", "driven_angle_deg"];
 
-const TABLES: [Table; 3] = [
+const TABLES: [Table; 4] = [
     Table {
         name: "ste",
         within: "",
@@ -71,7 +73,23 @@ const TABLES: [Table; 3] = [
         ],
         beside: &["named"],
     },
+    Table {
+        name: RUN_UP,
+        within: "dynamics",
+        columns: &[
+            "driving_speed_rpm",
+            "branch",
+            "rms_um",
+            "peak_to_peak_um",
+            "dynamic_load_factor",
+            "contact_lost",
+            "period_multiple",
+        ],
+        beside: &["resonances"],
+    },
 ];
+
+const RUN_UP: &str = "run-up";
 
 /// A table of the results as JSON: for each curve its torque, and the columns of the table, which have one value for each
 /// position or order. A column that the results do not have is absent.
@@ -112,6 +130,22 @@ struct CurveColumns {
     mesh_stiffness_tangent_phase_deg: Option<Vec<f64>>,
     /// The orders that have names.
     named: Option<Vec<NamedOrderDocument>>,
+    /// The speed of the driving gear, in 1/min: of the branch that runs up, and again of the one that runs down.
+    driving_speed_rpm: Option<Vec<f64>>,
+    /// `up` or `down`.
+    branch: Option<Vec<String>>,
+    /// The root mean square of the dynamic transmission error, in um.
+    rms_um: Option<Vec<f64>>,
+    /// Its largest less its smallest value, in um.
+    peak_to_peak_um: Option<Vec<f64>>,
+    /// The largest force between the gears over the static load.
+    dynamic_load_factor: Option<Vec<f64>>,
+    /// Whether the loaded flanks part.
+    contact_lost: Option<Vec<bool>>,
+    /// True periods after which the motion repeats; 0 where it was not found to.
+    period_multiple: Option<Vec<u32>>,
+    /// The speeds at which orders resonate.
+    resonances: Option<Vec<ResonanceDocument>>,
 }
 
 /// Which curve.
@@ -132,7 +166,7 @@ pub(super) struct TableParameters {
     get, path = "/v1/jobs/{id}/results/{table}", tag = "Results", operation_id = "get_table",
     params(
         ("id" = String, Path, format = "uuid", description = "The id of the job."),
-        ("table" = String, Path, description = "`ste`, `mesh-stiffness` or `spectrum`, with `.json`, `.csv` or `.svg`; or `load-share.svg`; or `look-up-table.csv`, `look-up-table.txt`, which have one curve over the angle in SI units, datum and signs in their head."),
+        ("table" = String, Path, description = "`ste`, `mesh-stiffness`, `spectrum` or `run-up`, with `.json`, `.csv` or `.svg`; or `load-share.svg`; or `force-table.csv`, `force-table.txt` (CombiTable2D), `force-table.mo` (a Modelica package), `force-table.fmu` (FMU 2.0, `application/octet-stream`); or `look-up-table.csv`, `look-up-table.txt`, which have one curve over the angle in SI units, datum and signs in their head."),
         TableParameters,
         ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
     ),
@@ -195,6 +229,8 @@ fn make(
             return svg.map(pictures::answer);
         }
         File::LookUp(form) => return look_up_table(&results, &curves, form, name),
+        File::Forces(form) => return forces(&results, form, name),
+        File::Fmu => return packed(&results, name),
     };
     let curves = select(table, &curves)?;
     Ok(match form {
@@ -225,6 +261,33 @@ fn look_up_table(
     Ok((file_headers(media_type, name), table).into_response())
 }
 
+fn no_forces() -> Problem {
+    let detail = "These results have no force table: the submission asks for none.";
+    Problem::new(Code::NotFound, detail)
+}
+
+/// The force table as an FMU. What it was computed from tells it from others.
+fn packed(results: &Value, name: &str) -> Result<Response, Problem> {
+    let forces = MeshForces::of(results).ok_or_else(no_forces)?;
+    let hash = results.pointer("/evidence/input_hash");
+    let guid = hash.and_then(Value::as_str).unwrap_or_default();
+    let bytes = fmu(&forces, guid).map_err(|error| {
+        tracing::error!(%error, "an FMU could not be packed");
+        internal()
+    })?;
+    Ok((file_headers("application/octet-stream", name), bytes).into_response())
+}
+
+/// The force table as others read it.
+fn forces(results: &Value, form: force_table::Form, name: &str) -> Result<Response, Problem> {
+    let forces = MeshForces::of(results).ok_or_else(no_forces)?;
+    let media_type = match form {
+        force_table::Form::Csv => "text/csv; charset=utf-8",
+        force_table::Form::Text | force_table::Form::Modelica => "text/plain; charset=utf-8",
+    };
+    Ok((file_headers(media_type, name), forces.write(form)).into_response())
+}
+
 fn file_headers(media_type: &str, name: &str) -> [(HeaderName, String); 2] {
     [
         (CONTENT_TYPE, media_type.to_owned()),
@@ -246,12 +309,18 @@ enum File {
     Table(&'static Table, Form),
     Picture(Picture),
     LookUp(look_up::Form),
+    Forces(force_table::Form),
+    Fmu,
 }
 
 fn find_file(file: &str) -> Result<File, Problem> {
     match file {
         "look-up-table.csv" => return Ok(File::LookUp(look_up::Form::Csv)),
         "look-up-table.txt" => return Ok(File::LookUp(look_up::Form::Text)),
+        "force-table.csv" => return Ok(File::Forces(force_table::Form::Csv)),
+        "force-table.txt" => return Ok(File::Forces(force_table::Form::Text)),
+        "force-table.fmu" => return Ok(File::Fmu),
+        "force-table.mo" => return Ok(File::Forces(force_table::Form::Modelica)),
         _ => {}
     }
     if let Some(picture) = Picture::named(file) {
@@ -269,7 +338,7 @@ fn find_file(file: &str) -> Result<File, Problem> {
     found.ok_or_else(|| {
         Problem::new(
             Code::NotFound,
-            "The tables are ste, mesh-stiffness and spectrum, each as .json or .csv; the pictures are those and load-share, as .svg; there are look-up-table.csv and look-up-table.txt.",
+            "The tables are ste, mesh-stiffness, spectrum and run-up, each as .json or .csv; the pictures are those and load-share, as .svg; there are look-up-table.csv, look-up-table.txt, force-table.csv, force-table.txt, force-table.mo and force-table.fmu.",
         )
     })
 }
@@ -317,6 +386,8 @@ fn select(table: &Table, curves: &[&Value]) -> Result<Vec<Map<String, Value>>, P
 }
 
 fn select_columns(table: &Table, curve: &Value) -> Option<Map<String, Value>> {
+    let one_after_the_other = (table.name == RUN_UP).then(|| branches(curve)).flatten();
+    let curve = one_after_the_other.as_ref().unwrap_or(curve);
     let holder = if table.within.is_empty() {
         curve
     } else {
@@ -333,6 +404,35 @@ fn select_columns(table: &Table, curve: &Value) -> Option<Map<String, Value>> {
         }
     }
     Some(selected).filter(|selected| selected.len() > 1)
+}
+
+/// A curve whose dynamics are columns: the branches one after the other, up first.
+fn branches(curve: &Value) -> Option<Value> {
+    let dynamics = curve.get("dynamics")?;
+    let speeds = dynamics.get("driving_speed_rpm")?.as_array()?;
+    let mut columns: Map<String, Value> = Map::new();
+    let mut add = |name: String, values: &[Value]| {
+        let column = columns.entry(name).or_insert_with(|| json!([]));
+        if let Value::Array(column) = column {
+            column.extend_from_slice(values);
+        }
+    };
+    for branch in ["up", "down"] {
+        let Some(of_branch) = dynamics.get(branch) else {
+            continue;
+        };
+        add("driving_speed_rpm".to_owned(), speeds);
+        add("branch".to_owned(), &vec![json!(branch); speeds.len()]);
+        let error = of_branch.get("dynamic_transmission_error_um")?;
+        for name in ["rms", "peak_to_peak"] {
+            add(format!("{name}_um"), error.get(name)?.as_array()?);
+        }
+        for name in ["dynamic_load_factor", "contact_lost", "period_multiple"] {
+            add(name.to_owned(), of_branch.get(name)?.as_array()?);
+        }
+    }
+    columns.insert("resonances".to_owned(), dynamics.get("resonances")?.clone());
+    Some(json!({ "output_torque_n_m": curve.get("output_torque_n_m")?, "dynamics": columns }))
 }
 
 /// One line for each torque and position or order. Numbers are written as they stand in the results.
@@ -374,6 +474,7 @@ fn nothing_to_show() -> Problem {
 fn no_table(table: &Table) -> Problem {
     let detail = match table.name {
         "spectrum" => "These results have no spectrum: they span no whole number of true periods.",
+        RUN_UP => "These results have no run-up: the submission asks for no dynamics.",
         _ => "These results have no such table.",
     };
     Problem::new(Code::NotFound, detail)

@@ -46,6 +46,7 @@ const EXAMPLES: &[Example] = examples! {
     "unequal-spacing" true "Eight equal holes at unequal angles: what an even ring puts into H_8 spreads over the orders beside it."
     "slots" true "Five kidneys along a circle."
     "stress" true "Design 8R34 with the largest stresses at its roots and at the edges of its holes."
+    "run-up" true "Test case 2 run up and down to 20,000 1/min: the force table, the motion of the gears over speed, and its resonances."
     "bad-case-3-as-printed" false "Test case 3 with the center distance that the paper prints, 118.5 mm: its teeth do not reach each other, and it is refused."
 };
 
@@ -107,6 +108,7 @@ mod tests {
             ("unequal-spacing", "/pair/driven/blank/holes/at_deg/1"),
             ("slots", "/pair/driven/blank/holes/slot/width_mm"),
             ("interface-radii", "/resolution/interface_radius_mm/driving"),
+            ("run-up", "/dynamics/driving_speed_rpm/to"),
         ] {
             let example = examples().iter().find(|example| example.name == name);
             let json = example.expect("ships").json;

@@ -18,7 +18,7 @@ const USUAL_MB: u64 = 400;
 ///
 /// The estimate divides the gears into elements, which takes milliseconds; a usual pair is let through without.
 pub fn memory_above(submission: &Submission, limit_mb: u64) -> Option<u64> {
-    let case = submission.case();
+    let case = submission.costed_case();
     let teeth: u32 = Member::BOTH
         .into_iter()
         .map(|member| case.pair.gear(member).tooth_count())
@@ -27,7 +27,7 @@ pub fn memory_above(submission: &Submission, limit_mb: u64) -> Option<u64> {
     if usual && limit_mb >= USUAL_MB {
         return None;
     }
-    let needed_mb = analysis::estimate(case).memory.div_ceil(1_000_000);
+    let needed_mb = analysis::estimate(&case).memory.div_ceil(1_000_000);
     (needed_mb > limit_mb).then_some(needed_mb)
 }
 

@@ -1,7 +1,7 @@
 //! The JSON documents of the interface as types, in the units of those who read them.
 //!
 //! Read in this order: [`problem`] (what goes wrong), [`submission`] with its parts [`pair`], [`gear`] and
-//! [`resolution`] (what is asked), [`geometry`], [`outline`], [`edges`], [`warning`] and [`results`] (what is answered), [`solve`](mod@solve)
+//! [`resolution`], [`forces`] (what is asked), [`geometry`], [`outline`], [`edges`], [`warning`] and [`results`] (what is answered), [`solve`](mod@solve)
 //! (what leads from the one to the other) and [`examples`](mod@examples); [`preview`], a submission that is answered at
 //! once; [`draw`], teeth at random; then [`study`] and [`study_table`], many submissions at once. `declare`, `units`, `size`, `edit` and `pointer` carry
 //! them: the one declaration of each object, conversions, how much is read at all, changes in place, and places in a submission.
@@ -19,6 +19,7 @@ mod kept;
 pub mod problem;
 pub mod status;
 
+pub mod forces;
 pub mod gear;
 mod interface;
 pub mod pair;

@@ -1,6 +1,7 @@
 //! From a submission to its results, or to what it would come to.
 
 use meshwright_engine::analysis::fields::Fields;
+use meshwright_engine::analysis::forces::run_up_seconds;
 use meshwright_engine::analysis::{self, AnalysisError};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -31,8 +32,15 @@ pub fn solve(submission: &Submission, library: &Library, run: &Run) -> Result<St
 ///
 /// As for [`solve`].
 pub fn results(submission: &Submission, library: &Library, run: &Run) -> Result<Results, Problem> {
-    match analysis::analyze(submission.case(), library, run) {
-        Ok(analysis) => Ok(Results::new(submission, &analysis)),
+    let answer = match submission.forces() {
+        None => analysis::analyze(submission.case(), library, run).map(|analysis| (analysis, None)),
+        Some(request) => {
+            analysis::forces::analyze_with_forces(submission.case(), request, library, run)
+                .map(|(analysis, forces)| (analysis, Some(forces)))
+        }
+    };
+    match answer {
+        Ok((analysis, forces)) => Ok(Results::new(submission, &analysis, forces.as_ref())),
         Err(error) => Err(problem_of(&error)),
     }
 }
@@ -169,7 +177,11 @@ pub struct EstimateDocument {
 /// What `submission` would be computed as, and what that would cost.
 pub fn validate(submission: &Submission) -> Validation {
     let case = submission.case();
-    let estimate = analysis::estimate(case);
+    let estimate = analysis::estimate(&submission.costed_case());
+    let dynamics = submission
+        .forces()
+        .and_then(|forces| forces.dynamics.as_ref());
+    let of_run_ups = dynamics.map_or(0.0, |dynamics| run_up_seconds(case, dynamics));
     Validation {
         valid: true,
         submission: submission.clone(),
@@ -181,8 +193,8 @@ pub fn validate(submission: &Submission) -> Validation {
         estimate: EstimateDocument {
             degrees_of_freedom: estimate.degrees_of_freedom,
             memory_mb: estimate.memory.div_ceil(1_000_000),
-            seconds: estimate.seconds,
-            positions: estimate.positions,
+            seconds: estimate.seconds + of_run_ups,
+            positions: submission.positions_total(),
         },
     }
 }

@@ -1,6 +1,6 @@
 //! The service with its real engine: what a portal gets for the examples that it finds.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::bench::Bench;
 
@@ -130,5 +130,149 @@ async fn every_method_answers_with_the_same_document_and_says_what_it_does_not_s
             method == "load_distribution",
             "{method}: {unseen}"
         );
+    }
+}
+
+fn numbers(list: &Value) -> Vec<f64> {
+    let list = list
+        .as_array()
+        .unwrap_or_else(|| panic!("{list} is a list"));
+    list.iter().map(|each| each.as_f64().unwrap()).collect()
+}
+
+#[tokio::test]
+async fn a_run_up_comes_back_with_its_table_and_in_the_forms_of_other_programs() {
+    let bench = Bench::real().await;
+    let mut submission = example(&bench, "run-up").await;
+    submission["resolution"] = json!({ "grid": "coarse" });
+    submission["dynamics"]["driving_speed_rpm"]["count"] = json!(41);
+    let path = bench.submit(&submission).await;
+    let job = bench.ended(&path).await;
+    assert_eq!(job["status"], "successful", "{job}");
+    // 200 positions of one torque and of twelve loads, all of them done.
+    assert_eq!(job["positions_total"], 200 * 13, "{job}");
+    let results = bench.get(&format!("{path}/results")).send().await.unwrap();
+    let results: Value = results.json().await.unwrap();
+
+    let table = &results["force_table"];
+    let loads = numbers(&table["load_n"]);
+    let torque = loads[11]
+        * results["pair"]["driven"]["base_radius_mm"]
+            .as_f64()
+            .unwrap()
+        * 1e-3;
+    assert!(
+        loads[0] == 0.0 && (torque / 230.0 - 1.0).abs() < 1e-9,
+        "twice the largest torque"
+    );
+    let rows = table["transmission_error_um"].as_array().unwrap();
+    assert_eq!((rows.len(), numbers(&rows[0]).len()), (12, 200));
+    assert_eq!(numbers(&table["mesh_position"]).len(), 200);
+    let backlash = results["pair"]["backlash_mm"].as_f64().unwrap() * 1e3;
+    assert!(
+        numbers(&table["backlash_um"])
+            .iter()
+            .all(|each| *each >= backlash - 1e-6)
+    );
+    for rows in rows.windows(2) {
+        let (below, above) = (numbers(&rows[0]), numbers(&rows[1]));
+        assert!(below.iter().zip(above).all(|(below, above)| *below < above));
+    }
+
+    let curve = &results["curves"][0];
+    let dynamics = &curve["dynamics"];
+    let mean = curve["statistics"]["mesh_stiffness_tangent_n_per_m"]["mean"]
+        .as_f64()
+        .unwrap();
+    let mass = dynamics["equivalent_mass_kg"].as_f64().unwrap();
+    let natural = dynamics["natural_frequency_hz"].as_f64().unwrap();
+    assert!((natural / ((mean / mass).sqrt() / std::f64::consts::TAU) - 1.0).abs() < 1e-9);
+    let of = |gear: &str| {
+        let gear = &results["pair"][gear];
+        let radius = gear["base_radius_mm"].as_f64().unwrap() * 1e-3;
+        radius * radius / gear["polar_inertia_kg_m2"].as_f64().unwrap()
+    };
+    assert!((mass * (of("driving") + of("driven")) - 1.0).abs() < 1e-9);
+    for branch in ["up", "down"] {
+        let branch = &dynamics[branch];
+        let still = branch["dynamic_transmission_error_um"]["peak_to_peak"][0]
+            .as_f64()
+            .unwrap();
+        let curve = curve["statistics"]["transmission_error_um"]["peak_to_peak"]
+            .as_f64()
+            .unwrap();
+        assert!(
+            (still / curve - 1.0).abs() < 0.02,
+            "speed 0 is the static curve: {still} {curve}"
+        );
+        assert_eq!(branch["contact_lost"].as_array().unwrap().len(), 41);
+        let labels: Vec<&str> = branch["orders"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|order| order["label"].as_str().unwrap())
+            .collect();
+        assert!(
+            labels.contains(&"H_N") && labels.contains(&"H_Z2"),
+            "{labels:?}"
+        );
+    }
+    let unseen = results["evidence"]["does_not_see"].to_string();
+    assert!(unseen.contains("shafts, bearings, housing"), "{unseen}");
+
+    let get = async |file: &str| {
+        bench
+            .get(&format!("{path}/results/{file}"))
+            .send()
+            .await
+            .unwrap()
+    };
+    let run_up = get("run-up.csv").await.text().await.unwrap();
+    assert!(
+        run_up.starts_with("output_torque_n_m,driving_speed_rpm,branch,rms_um,peak_to_peak_um,"),
+        "{run_up}"
+    );
+    assert_eq!(run_up.lines().count(), 1 + 2 * 41);
+    let drawn = get("run-up.svg").await.text().await.unwrap();
+    assert!(drawn.starts_with("<svg") && drawn.contains("115 N m, down"));
+    let csv = get("force-table.csv").await.text().await.unwrap();
+    assert_eq!(
+        csv.lines().filter(|line| !line.starts_with('#')).count(),
+        1 + 2 * 12 * 200
+    );
+    assert!(
+        get("force-table.txt")
+            .await
+            .text()
+            .await
+            .unwrap()
+            .starts_with("#1\n")
+    );
+    assert!(
+        get("force-table.mo")
+            .await
+            .text()
+            .await
+            .unwrap()
+            .contains("end MeshwrightMesh;")
+    );
+
+    let fmu = get("force-table.fmu").await.bytes().await.unwrap();
+    assert!(fmu.starts_with(b"PK"));
+
+    let plain = bench.submit(&example(&bench, "standard-pair").await).await;
+    bench.ended(&plain).await;
+    for file in [
+        "force-table.csv",
+        "force-table.fmu",
+        "run-up.csv",
+        "run-up.svg",
+    ] {
+        let answer = bench
+            .get(&format!("{plain}/results/{file}"))
+            .send()
+            .await
+            .unwrap();
+        assert_eq!(answer.status().as_u16(), 404, "{file}");
     }
 }

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import os
+import urllib.request
 
 import meshio
 import numpy as np
@@ -150,3 +152,36 @@ def test_fields_are_read_back_with_the_stresses_of_the_curve(service, tmp_path):
     near_holes = (radius > 34 - 8.386) & (radius < 34 + 8.386)
     assert abs(von_mises[near_holes].max() / hole - 1.0) < 0.03
     assert sorted({int(value) for block in grid.cell_data["gear"] for value in block}) == [0, 1]
+
+
+def test_the_fmu_validates_and_gives_the_loads_of_the_table(service, tmp_path):
+    import fmpy
+    from fmpy.validation import validate_fmu
+
+    results = service.solve(service.example("run-up"))
+    base = os.environ.get("MESHWRIGHT_URL", "http://127.0.0.1:8080")
+    file = str(tmp_path / "mesh.fmu")
+    urllib.request.urlretrieve(f"{base}/v1/jobs/{results.job['id']}/results/force-table.fmu", file)
+    assert validate_fmu(file) == []
+
+    table, pair = results.document["force_table"], results.pair
+    r_1, r_2 = (pair[gear]["base_radius_mm"] * 1e-3 for gear in ("driving", "driven"))
+    loads, rows = np.array(table["load_n"]), np.array(table["transmission_error_um"]) * 1e-6
+    # Through positions and loads of the table, into the backlash, and to the other flank; a revolution later all is as before.
+    places = [(0, 3), (17, 11), (101, 6), (199, 1)]
+    approaches = [rows[load, position] for position, load in places]
+    expected = [loads[load] for _, load in places]
+    places += [(40, 0), (40, 0)]
+    approaches += [rows[0, 40] - 50e-6, table["other_flank_transmission_error_um"][5][40] * 1e-6]
+    expected += [0.0, -loads[5]]
+    theta_1 = np.array([2 * np.pi * (1 + table["mesh_position"][position] / 50) for position, _ in places])
+    theta_2 = (r_1 * theta_1 - np.array(approaches)) / r_2
+    for kind in ("ModelExchange", "CoSimulation"):
+        for angle_1, angle_2, approach, load in zip(theta_1, theta_2, approaches, expected):
+            columns = [("time", float), ("theta_1_rad", float), ("theta_2_rad", float)]
+            inputs = np.array([(0.0, angle_1, angle_2), (1.0, angle_1, angle_2)], dtype=columns)
+            outputs = ["torque_1_n_m", "torque_2_n_m", "transmission_error_um"]
+            told = fmpy.simulate_fmu(file, fmi_type=kind, input=inputs, output=outputs, stop_time=1.0)[-1]
+            assert told["torque_2_n_m"] == pytest.approx(load * r_2, rel=1e-6, abs=1e-6)
+            assert told["torque_1_n_m"] == pytest.approx(-load * r_1, rel=0.02, abs=1e-6)
+            assert told["transmission_error_um"] == pytest.approx(approach * 1e6, abs=1e-6)

@@ -7,7 +7,7 @@ use crate::assembly::interface::{harmonics, interface_radius, orders_of_blank};
 use crate::assembly::pair::cells_per_patch;
 use crate::contact::facing::Facing;
 use crate::contact::{ContactSolver, default_penalty};
-use crate::gear::{Member, gcd};
+use crate::gear::{GearPair, Member, gcd};
 use crate::grid::{GridLevel, ToothGrid};
 
 /// Seconds of one core for the first contact solution at a fraction of the mesh period, for each further one there, and for a linear
@@ -115,12 +115,16 @@ fn of_contacts(case: &Case, level: GridLevel) -> f64 {
     seconds / case.output_torques.len().max(1) as f64
 }
 
+/// The mean stiffness of a mesh in N/m, about.
+pub(super) fn usual_stiffness(pair: &GearPair) -> f64 {
+    let moduli = Member::BOTH.map(|member| pair.gear(member).material().youngs_modulus);
+    STIFFNESS * moduli[0].min(moduli[1]) * pair.common_face_width()
+}
+
 /// The tooth pairs that come together under a torque, about, and whether they are more than without load.
 fn pairs_together(case: &Case, output_torque: f64) -> (usize, bool) {
     let pair = &case.pair;
-    let moduli = Member::BOTH.map(|member| pair.gear(member).material().youngs_modulus);
-    let stiffness = STIFFNESS * moduli[0].min(moduli[1]) * pair.common_face_width();
-    let delta = pair.load(output_torque) / stiffness;
+    let delta = pair.load(output_torque) / usual_stiffness(pair);
     let within = |n: &i64| {
         Facing::drawn(pair, 0.5 - *n as f64).is_some_and(|facing| facing.touch() <= delta)
     };

@@ -2,7 +2,7 @@
 //!
 //! Read in this order: [`case`] (what is asked), `setup` (what the methods work with), `flexible`, `rigid_blank`,
 //! `decomposition`, `projected` and `load_distribution` (the methods), `light` (torque 0, alike for all), [`stress`] (at roots and holes) and [`fields`] (everywhere), `curve_parts` and [`curve`], [`evidence`], [`warning`],
-//! [`error`] and [`spectrum`] (what comes out), `estimate` (what it costs).
+//! [`error`] and [`spectrum`] (what comes out), `estimate` (what it costs); [`forces`] (tables of force, and motion at speed).
 
 pub mod case;
 pub mod curve;
@@ -13,6 +13,7 @@ mod estimate;
 pub mod evidence;
 pub mod fields;
 mod flexible;
+pub mod forces;
 mod light;
 mod load_distribution;
 mod orders;
@@ -59,15 +60,13 @@ pub fn analyze(case: &Case, parts: &dyn Parts, run: &Run) -> Result<Analysis, An
     // Threads work on different bodies and positions; inside one, faer is sequential.
     faer::set_global_parallelism(faer::Par::Seq);
     let level = case.resolution.grid;
-    // Formulas have no grid to refine.
-    let with_estimate = case.resolution.error_estimate && case.method != Method::LoadDistribution;
-    run.expect(if with_estimate { 2 } else { 1 } * expected_positions(case));
+    run.expect(expected(case));
     let loaded = light::without_torque_zero(case);
     if loaded.output_torques.is_empty() {
         return light::alone(case);
     }
     let mut analysis = analyze_at(&loaded, level, parts, run)?;
-    if with_estimate {
+    if is_estimated(case) {
         let curves_only = Case {
             stress: false,
             ..loaded
@@ -120,6 +119,17 @@ pub fn pair_model(case: &Case, parts: &dyn Parts, run: &Run) -> Result<PairModel
     let level = case.resolution.grid;
     let setup = Setup::new((case, as_drawn), level, FARTHEST_COUPLED, parts, run);
     setup.model(Blanks::Flexible).map(|(model, _)| model)
+}
+
+/// Whether a second grid level tells the error of `case`. Formulas have no grid to refine.
+fn is_estimated(case: &Case) -> bool {
+    case.resolution.error_estimate && case.method != Method::LoadDistribution
+}
+
+/// Contact solutions that `case` needs.
+fn expected(case: &Case) -> u64 {
+    let levels = if is_estimated(case) { 2 } else { 1 };
+    levels * expected_positions(case)
 }
 
 /// Contact solutions that `case` needs at one grid level.

@@ -27,7 +27,7 @@ pub use data::{DeviationList, GearData, GearError};
 pub use deviation::{
     DeviationsError, Eccentricity, GearDeviations, PairDeviations, ToothDeviations,
 };
-pub use involute::Involute;
+pub use involute::{Involute, involute_function};
 pub use material::{Material, PlaneState};
 pub use modification::{
     ModificationData, Relief, ReliefData, ReliefShape, ReliefStart, RootReliefData,

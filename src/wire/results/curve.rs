@@ -1,16 +1,18 @@
 //! The curves at one output torque, and their statistics.
 
+use meshwright_engine::analysis::forces::CurveDynamics;
 use meshwright_engine::analysis::{Case, Curve, Statistics};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::decomposition::DecompositionDocument;
 use super::each;
+use super::forces::CurveDynamicsDocument;
 use super::spectrum::SpectrumDocument;
 use super::stress::{PeakStressDocument, StressDocument};
 use crate::wire::units::{or_null, to_mpa, to_um};
 
-/// The curves at one output torque. All lists, those of the spectrum aside, run over the same positions.
+/// The curves at one output torque. All lists, those of the spectrum and of the dynamics aside, run over the same positions.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 #[schema(as = Curve, title = "Curve")]
 pub struct CurveDocument {
@@ -52,10 +54,13 @@ pub struct CurveDocument {
     /// What the decomposition adds up; absent for other methods.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub decomposition: Option<DecompositionDocument>,
+    /// The motion over speed; absent unless the submission asks for it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dynamics: Option<CurveDynamicsDocument>,
 }
 
 impl CurveDocument {
-    pub(super) fn of(case: &Case, curve: &Curve) -> Self {
+    pub(super) fn of(case: &Case, curve: &Curve, dynamics: Option<&CurveDynamics>) -> Self {
         let turned = |tooth_count: u32| {
             each(&curve.mesh_position, |eta| {
                 eta * 360.0 / f64::from(tooth_count)
@@ -103,6 +108,7 @@ impl CurveDocument {
                 .as_ref()
                 .map(|spectrum| SpectrumDocument::of(case, spectrum)),
             decomposition: curve.decomposition.as_ref().map(DecompositionDocument::of),
+            dynamics: dynamics.map(CurveDynamicsDocument::of),
         }
     }
 }

@@ -61,7 +61,7 @@ impl EvidenceDocument {
             stiffness_rule: submission.resolution().stiffness_in_words(),
             resolution: resolution_of(submission),
             definitions: DEFINITIONS.to_vec(),
-            does_not_see: does_not_see(submission.case()),
+            does_not_see: does_not_see(submission.case(), submission.forces()),
             error_estimate: evidence
                 .error_estimate
                 .as_ref()

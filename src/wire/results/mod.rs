@@ -3,6 +3,7 @@
 mod curve;
 mod decomposition;
 mod evidence;
+mod forces;
 mod spectrum;
 mod stress;
 mod unseen;
@@ -11,6 +12,7 @@ mod unseen;
 mod tests;
 
 use meshwright_engine::analysis::Analysis;
+use meshwright_engine::analysis::forces::Forces;
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -19,6 +21,10 @@ pub use decomposition::{
     BlankFitDocument, BlankHarmonicDocument, BlankSampleDocument, DecompositionDocument,
 };
 pub use evidence::{Definition, ErrorEstimateDocument, EvidenceDocument};
+pub use forces::{
+    BranchDocument, CurveDynamicsDocument, DynamicErrorDocument, ForceTableDocument,
+    OrderAmplitudesDocument, ResonanceDocument, ResonanceKindName,
+};
 pub use spectrum::{NamedOrderDocument, OrderKindName, SpectrumDocument};
 pub use stress::{GearPeakStress, GearStressDocument, PeakStressDocument, StressDocument};
 
@@ -44,14 +50,18 @@ pub struct Results {
     pub warnings: Vec<WarningDocument>,
     /// One curve for each output torque, in the order of the submission.
     pub curves: Vec<CurveDocument>,
+    /// The force over mesh position and approach; absent unless the submission asks for it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force_table: Option<ForceTableDocument>,
     /// How good the numbers are, and what they mean.
     pub evidence: EvidenceDocument,
 }
 
 impl Results {
     /// The results of `submission`.
-    pub fn new(submission: &Submission, analysis: &Analysis) -> Self {
+    pub fn new(submission: &Submission, analysis: &Analysis, forces: Option<&Forces>) -> Self {
         let case = submission.case();
+        let dynamics = |i: usize| forces.and_then(|forces| forces.dynamics.get(i));
         Self {
             method: submission.method(),
             pair: PairGeometry::of(&case.pair),
@@ -60,8 +70,10 @@ impl Results {
             curves: analysis
                 .curves
                 .iter()
-                .map(|curve| CurveDocument::of(case, curve))
+                .enumerate()
+                .map(|(i, curve)| CurveDocument::of(case, curve, dynamics(i)))
                 .collect(),
+            force_table: forces.map(|forces| ForceTableDocument::of(&forces.table)),
             evidence: EvidenceDocument::of(submission, analysis),
         }
     }

@@ -121,7 +121,7 @@ fn peaks(stresses: &[f64]) -> Vec<PeakStress> {
 #[test]
 fn the_document_speaks_the_units_of_its_names() {
     let submission = submission("test-case-2", Some(600.0));
-    let text = Results::new(&submission, &analysis(submission.case()))
+    let text = Results::new(&submission, &analysis(submission.case()), None)
         .to_json()
         .expect("finite");
     let document: Value = serde_json::from_str(&text).expect("JSON");
@@ -188,7 +188,7 @@ fn the_document_speaks_the_units_of_its_names() {
 #[test]
 fn all_lists_of_a_curve_have_one_entry_a_position() {
     let submission = submission("standard-pair", None);
-    let text = Results::new(&submission, &analysis(submission.case()))
+    let text = Results::new(&submission, &analysis(submission.case()), None)
         .to_json()
         .expect("finite");
     let document: Value = serde_json::from_str(&text).expect("JSON");
@@ -214,7 +214,7 @@ fn all_lists_of_a_curve_have_one_entry_a_position() {
 #[test]
 fn the_results_of_case_3_stay_below_a_megabyte_and_a_half() {
     let submission = submission("test-case-3", Some(1000.0));
-    let text = Results::new(&submission, &analysis(submission.case()))
+    let text = Results::new(&submission, &analysis(submission.case()), None)
         .to_json()
         .expect("finite");
     assert!(text.len() < 1_500_000, "{} bytes", text.len());
@@ -224,7 +224,7 @@ fn the_results_of_case_3_stay_below_a_megabyte_and_a_half() {
 fn the_same_numbers_give_the_same_bytes_and_a_number_that_is_not_finite_gives_none() {
     let submission = submission("test-case-2", None);
     let mut analysis = analysis(submission.case());
-    let write = |analysis: &Analysis| Results::new(&submission, analysis).to_json();
+    let write = |analysis: &Analysis| Results::new(&submission, analysis, None).to_json();
     assert_eq!(write(&analysis), write(&analysis));
     analysis.curves[0].mesh_stiffness_secant[3] = f64::INFINITY;
     assert_eq!(
@@ -248,7 +248,7 @@ fn an_interface_radius_that_is_left_to_one_gear_s_default_has_results() {
     ] {
         document["resolution"]["interface_radius_mm"] = radii;
         let submission = Submission::parse(document.to_string().as_bytes()).expect("valid");
-        let written = Results::new(&submission, &analysis(submission.case())).to_json();
+        let written = Results::new(&submission, &analysis(submission.case()), None).to_json();
         let written: Value = serde_json::from_str(&written.expect("finite")).expect("JSON");
         let radii = &written["evidence"]["resolution"]["interface_radius_mm"];
         assert!(radii.get("driving").is_none(), "{radii}");

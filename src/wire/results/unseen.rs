@@ -1,12 +1,12 @@
 //! What each method leaves out.
 
+use meshwright_engine::analysis::forces::ForcesRequest;
 use meshwright_engine::analysis::{BodyFormula, Case, Formulas, Method, ToothFormula};
 use meshwright_engine::gear::{SpurGear, TipEdge};
 
-/// What the method of `case` leaves out.
-pub(super) fn does_not_see(case: &Case) -> Vec<&'static str> {
-    const ALWAYS: [&str; 4] = [
-        "inertia and damping: the analysis is quasi-static",
+/// What the method of `case` leaves out, and what `forces` do that are asked for beside the curves.
+pub(super) fn does_not_see(case: &Case, forces: Option<&ForcesRequest>) -> Vec<&'static str> {
+    const ALWAYS: [&str; 3] = [
         "friction between the flanks",
         "anything that varies across the face width: misalignment, lead crowning, helix; the model is plane",
         "shafts, bearings and housing: both hubs are rigid and their axes fixed",
@@ -22,12 +22,33 @@ pub(super) fn does_not_see(case: &Case) -> Vec<&'static str> {
         ],
         Method::LoadDistribution => formulas_do_not_see(case.resolution.formulas),
     };
-    ALWAYS
+    let runs = forces.is_some_and(|forces| forces.dynamics.is_some());
+    let inertia = if runs {
+        "inertia and damping, but in the dynamics: the curves are quasi-static"
+    } else {
+        "inertia and damping: the analysis is quasi-static"
+    };
+    [inertia]
         .into_iter()
+        .chain(ALWAYS)
+        .chain(forces_do_not_see(forces))
         .chain(real_teeth_do_not_see(case))
         .chain(own)
         .chain(stress_not_told(case))
         .collect()
+}
+
+/// What a force table and a run-up leave out.
+fn forces_do_not_see(forces: Option<&ForcesRequest>) -> Vec<&'static str> {
+    let mut unseen = Vec::new();
+    if forces.is_some() {
+        unseen.push("the holes under the other flanks where they are: those flanks carry as the mirror image of the loaded ones, as drawn");
+    }
+    if forces.is_some_and(|forces| forces.dynamics.is_some()) {
+        unseen.push("beyond one torsional degree of freedom: in the dynamics, shafts, bearings, housing and the vibrations of the gear bodies");
+        unseen.push("in the dynamics, that the gears turn unevenly: the mesh position follows the mean speed; the damping is one number, in contact and out of it");
+    }
+    unseen
 }
 
 /// Why stresses that were asked for are not all there.
@@ -122,7 +143,7 @@ mod tests {
             case.method = Method::LoadDistribution;
             case.resolution.formulas.tooth = tooth;
             case.resolution.formulas.body = body;
-            does_not_see(&case).join("\n")
+            does_not_see(&case, None).join("\n")
         };
         let (parts, whole) = (ToothFormula::WeberBanaschek, ToothFormula::Iso6336);
         for (tooth, body, word) in [

@@ -5,6 +5,7 @@ use meshwright_engine::analysis::Method;
 use crate::wire::declare::{
     List, Number, Text, absent, document, flag, list, nested, number, text, word,
 };
+use crate::wire::forces::{DynamicsQuestion, ForceTableQuestion};
 use crate::wire::pair::PairDocument;
 use crate::wire::problem::Code;
 use crate::wire::resolution::ResolutionDocument;
@@ -37,6 +38,12 @@ document! {
         /// Whether the flexible method also tells the largest von Mises stress at the tensile root fillets and at the edges of the holes,
         /// position by position, and where it is.
         pub(super) stress: bool = flag("Stress", false),
+        /// Whether results have a table of the force between the gears over mesh position and approach, for run-ups and other programs. It is
+        /// computed over the true period, and its positions times its loads count as positions of the submission.
+        pub(super) force_table: Option<ForceTableQuestion> = absent(nested("ForceTableRequest"), "no table"),
+        /// Whether each curve has the motion of the gears over speed: run up and down, with resonances, contact loss and jumps. It needs a
+        /// force table, and the usual one stands in where none is asked for.
+        pub(super) dynamics: Option<DynamicsQuestion> = absent(nested("DynamicsRequest"), "no run-up"),
         /// How finely and by which rules.
         pub(super) resolution: ResolutionDocument = nested("Resolution").or_defaults(),
         /// Short strings to find the job by. They do not change the result.

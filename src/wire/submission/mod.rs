@@ -1,5 +1,8 @@
 //! A submission: what is asked, checked once, with every default filled in.
 
+use std::borrow::Cow;
+
+use meshwright_engine::analysis::forces::{ForcesRequest, with_table};
 use meshwright_engine::analysis::spectrum::RotationSpeed;
 use meshwright_engine::analysis::{Case, Method};
 
@@ -16,6 +19,7 @@ pub(super) use document::Document;
 use super::declare::{
     Choice, Document as _, Errors, Kind, Node, ObjectReader, Place, utoipa_schema, word,
 };
+use super::forces::DynamicsQuestion;
 use super::problem::{FieldError, Problem};
 use super::resolution::ResolutionDocument;
 use super::size::{MOST_VALUES, refuse_many_values};
@@ -26,7 +30,7 @@ pub const SOLVER_VERSION: &str = concat!("meshwright ", env!("CARGO_PKG_VERSION"
 
 /// The version of the document of a submission: one more with every field that it gains, in whichever part. A process that reads only
 /// earlier ones leaves the job to others instead of refusing what it does not know.
-pub const DOCUMENT_VERSION: i64 = 1;
+pub const DOCUMENT_VERSION: i64 = 2;
 
 /// What is asked: a gear pair, torques, and how to compute.
 ///
@@ -35,6 +39,7 @@ pub const DOCUMENT_VERSION: i64 = 1;
 pub struct Submission {
     document: Document,
     case: Case,
+    forces: Option<ForcesRequest>,
 }
 
 impl serde::Serialize for Submission {
@@ -138,7 +143,9 @@ impl Submission {
             .resolution
             .span_mesh_periods
             .get_or_insert(pair.period());
-        document.check_size(purpose, errors);
+        document.fill_in_table();
+        document.check_forces(&pair, errors);
+        document.check_size(purpose, &pair, errors);
         let case = Case {
             pair,
             method: document.method,
@@ -149,12 +156,33 @@ impl Submission {
                 .driving_speed_rpm
                 .map(|speed| RotationSpeed(speed / 60.0)),
         };
-        Some(Self { document, case })
+        let forces = document.force_table.as_ref().map(|table| ForcesRequest {
+            table: table.data(),
+            dynamics: document.dynamics.as_ref().map(DynamicsQuestion::data),
+        });
+        Some(Self {
+            document,
+            case,
+            forces,
+        })
     }
 
     /// What the engine is asked.
     pub fn case(&self) -> &Case {
         &self.case
+    }
+
+    /// What the engine is asked beside the curves.
+    pub fn forces(&self) -> Option<&ForcesRequest> {
+        self.forces.as_ref()
+    }
+
+    /// A case that costs what all of the submission does.
+    pub fn costed_case(&self) -> Cow<'_, Case> {
+        match &self.forces {
+            None => Cow::Borrowed(&self.case),
+            Some(forces) => Cow::Owned(with_table(&self.case, forces.table)),
+        }
     }
 
     /// The document with every default filled in.
@@ -174,9 +202,13 @@ impl Submission {
         sha256_hex(format!("{SOLVER_VERSION}\0{text}"))
     }
 
-    /// Positions times torques.
+    /// Positions times torques, those of the force table included.
     pub fn positions_total(&self) -> u64 {
-        self.case.positions() as u64 * self.case.output_torques.len() as u64
+        let per_period = u64::from(self.case.resolution.positions_per_mesh_period);
+        let of_table = self.forces.as_ref().map_or(0, |forces| {
+            u64::from(forces.table.loads) * u64::from(self.case.pair.period()) * per_period
+        });
+        self.case.positions() as u64 * self.case.output_torques.len() as u64 + of_table
     }
 
     /// The method's word.

@@ -148,3 +148,93 @@ fn what_is_too_large_is_told_with_what_would_fit() {
     }
     assert_eq!(problem.errors[0].nearest, Some(333.0));
 }
+
+/// Case 2 with a run-up, and `changes` to it, has to be refused at `pointer`; with the nearest there it is not.
+fn refused_run_up(changes: &[(&str, Value)], pointer: &str, code: Code) {
+    let mut document = case_2();
+    let speeds = json!({ "from": 0, "to": 20_000, "count": 400 });
+    put(
+        &mut document,
+        "/dynamics",
+        json!({ "driving_speed_rpm": speeds }),
+    );
+    assert!(parse(&document).is_ok());
+    for (at, value) in changes {
+        put(&mut document, at, value.clone());
+    }
+    let problem = parse(&document).expect_err(pointer);
+    let error = &problem.errors[0];
+    assert_eq!(
+        (&*error.pointer, error.code),
+        (pointer, code),
+        "{problem:?}"
+    );
+    let nearest = error.nearest.expect("a nearest value");
+    put(&mut document, pointer, json!(nearest));
+    let again = parse(&document);
+    assert!(again.is_ok(), "{nearest:?}: {again:?}");
+}
+
+#[test]
+fn a_run_up_is_refused_where_it_has_no_table_or_no_load_and_the_nearest_will_do() {
+    refused_run_up(
+        &[("/output_torques_n_m", json!([115, 0]))],
+        "/output_torques_n_m/1",
+        Code::TorqueNotPositive,
+    );
+    refused_run_up(
+        &[("/resolution", json!({ "span_mesh_periods": 2 }))],
+        "/resolution/span_mesh_periods",
+        Code::OutOfRange,
+    );
+    refused_run_up(
+        &[("/force_table", json!({ "largest_output_torque_n_m": 50 }))],
+        "/force_table/largest_output_torque_n_m",
+        Code::OutOfRange,
+    );
+    refused_run_up(
+        &[("/resolution", json!({ "positions_per_mesh_period": 400 }))],
+        "/resolution/positions_per_mesh_period",
+        Code::TooLarge,
+    );
+    let speeds = json!({ "driving_speed_rpm": { "from": 0, "to": 100, "count": 4000 } });
+    let torques: Vec<u32> = (1..=20).collect();
+    let many = [
+        ("/dynamics", speeds),
+        ("/output_torques_n_m", json!(torques)),
+        ("/resolution", json!({ "positions_per_mesh_period": 8 })),
+    ];
+    refused_run_up(&many, "/dynamics/driving_speed_rpm/count", Code::TooLarge);
+}
+
+#[test]
+fn a_run_up_brings_the_usual_table_and_both_count() {
+    let mut document = case_2();
+    let alone = parse(&document).expect("valid").positions_total();
+    put(
+        &mut document,
+        "/dynamics",
+        json!({ "driving_speed_rpm": { "from": 0, "to": 20_000 } }),
+    );
+    let submission = parse(&document).expect("valid");
+    let echo: Value = serde_json::from_str(&submission.canonical_json()).expect("JSON");
+    assert_eq!(
+        echo["force_table"],
+        json!({ "loads": 12, "largest_output_torque_n_m": null })
+    );
+    assert_eq!(
+        echo["dynamics"],
+        json!({ "driving_speed_rpm": { "from": 0.0, "to": 20_000.0, "count": 400 }, "damping_ratio": 0.05,
+                "driving_inertia_kg_m2": null, "driven_inertia_kg_m2": null, "sweep": "both" })
+    );
+    assert_eq!(
+        parse(&echo).expect("valid").canonical_json(),
+        submission.canonical_json()
+    );
+    // Twelve loads at 40 positions of 5 mesh periods.
+    assert_eq!(submission.positions_total(), alone + 12 * 200);
+    let request = submission.forces().expect("asked for");
+    let speeds = &request.dynamics.as_ref().expect("asked for").speeds;
+    assert_eq!((speeds.len(), speeds[0]), (400, 0.0));
+    assert!((speeds[399] - 20_000.0 / 60.0).abs() < 1e-9);
+}

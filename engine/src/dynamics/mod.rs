@@ -1,0 +1,31 @@
+//! What the mesh does to the gears at speed: forces over position and approach, and the motion that they make.
+//!
+//! One torsional degree of freedom on the line of action, x = r_b1 θ_1 − r_b2 θ_2:
+//!
+//! m_e x'' + c x' + F(θ, x) = F_0, θ = ωt, 1/m_e = r_b1²/J_1 + r_b2²/J_2, c = 2 ζ √(k m_e),
+//!
+//! with k the mean mesh stiffness under F_0. F is zero in the backlash and that of the other flank beyond it; the damping acts out of
+//! contact too.
+//!
+//! - [`table`]: F(θ, δ) over the true period, interpolated, with its energy and the torques that follow from it,
+//! - [`law`]: piecewise linear laws of force, and the motion under one of their pieces in closed form,
+//! - [`oscillator`]: motion over a period as a chain of such pieces, with its derivative to the state at the beginning,
+//! - [`orbit`]: periodic motions by Newton's method on that derivative, their multipliers, and where a motion settles,
+//! - [`run_up`]: both branches over speed, and what is told of them.
+//!
+//! Time is divided into steps. In each the shape of F is that of the middle of the step, and the static deflection δ_s(θ) under F_0, about
+//! which it stands, moves on evenly: u = x − δ_s obeys m u'' + c u' + G(u) = F_0 − c δ_s' with a law G that is piecewise linear and stays as it
+//! is, and from step to step u' takes up what δ_s' changes. Each piece has a closed form, so that a stiffness that is constant is met
+//! exactly, whatever the step; one that varies is met to second order.
+
+pub mod law;
+pub mod orbit;
+pub mod oscillator;
+pub mod run_up;
+pub mod table;
+
+pub use law::Laws;
+pub use orbit::{Orbit, State};
+pub use oscillator::Oscillator;
+pub use run_up::{Branch, Resonance, ResonanceKind, RunUp, RunUpData};
+pub use table::{ForceTable, Ladder};

@@ -1,0 +1,463 @@
+//! The force between two gears over position and approach, and the energy behind it.
+
+/// How loads rise from one row of a table to the next: as this power, so that rows are dense where a line contact is soft.
+const RISE: i32 = 2;
+
+/// The least rise of δ from row to row in m, less than an atom.
+const APART: f64 = 1e-14;
+
+/// The loads of a table: 0 and so many more, up to the largest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ladder {
+    /// The number of loads, the first of which is 0.
+    pub count: usize,
+    /// The largest load in N.
+    pub largest: f64,
+}
+
+impl Ladder {
+    /// The loads in N, rising from 0.
+    pub fn loads(&self) -> Vec<f64> {
+        let last = (self.count - 1) as f64;
+        (0..self.count)
+            .map(|j| self.largest * (j as f64 / last).powi(RISE))
+            .collect()
+    }
+}
+
+/// F(θ, δ) over the true period: the approach δ at each position under each of a ladder of loads, of both flanks.
+///
+/// Between positions and between loads δ is linear in both; beyond the largest load it goes on straight. [`ForceTable::refined`] puts a
+/// smooth table between the rows that were computed. F follows by inversion: it is zero in the backlash, rises with δ, and has the
+/// energy V(η, δ) = ∫F dδ, from which both torques follow: what a closed path of θ and δ takes it gives back.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForceTable {
+    /// Mesh periods after which it repeats.
+    period: u32,
+    ladder: Ladder,
+    loads: Vec<f64>,
+    /// δ in m at equally spaced positions, a row each load.
+    loaded: Vec<Vec<f64>>,
+    /// δ at minus the loads.
+    other: Vec<Vec<f64>>,
+}
+
+/// What the gears exert at a position and an approach.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Forces {
+    /// F = ∂V/∂δ in N.
+    pub load: f64,
+    /// ∂V/∂η in J per mesh period.
+    pub per_period: f64,
+    /// V in J.
+    pub energy: f64,
+}
+
+impl ForceTable {
+    /// A table over `period` mesh periods whose rows are δ of the loaded and of the other flank, a row each load of the `ladder`.
+    ///
+    /// Each row has to lie beyond the one before; where rounding has it otherwise, it is put there.
+    pub fn new(
+        period: u32,
+        ladder: Ladder,
+        mut loaded: Vec<Vec<f64>>,
+        mut other: Vec<Vec<f64>>,
+    ) -> Self {
+        set_apart(&mut loaded, |a, b| a.max(b + APART));
+        set_apart(&mut other, |a, b| a.min(b - APART));
+        Self {
+            period,
+            ladder,
+            loads: ladder.loads(),
+            loaded,
+            other,
+        }
+    }
+
+    /// Mesh periods after which it repeats.
+    pub fn period(&self) -> u32 {
+        self.period
+    }
+
+    /// Its positions over the period.
+    pub fn positions(&self) -> usize {
+        self.loaded[0].len()
+    }
+
+    /// Its mesh positions, from 0, the end excluded.
+    pub fn mesh_positions(&self) -> Vec<f64> {
+        let step = self.step();
+        (0..self.positions()).map(|i| i as f64 * step).collect()
+    }
+
+    fn step(&self) -> f64 {
+        f64::from(self.period) / self.positions() as f64
+    }
+
+    /// Its loads in N, rising from 0.
+    pub fn loads(&self) -> &[f64] {
+        &self.loads
+    }
+
+    /// δ in m under each load, position by position.
+    pub fn rows(&self) -> &[Vec<f64>] {
+        &self.loaded
+    }
+
+    /// δ in m at which the other flanks carry each load, position by position.
+    pub fn rows_of_other_flank(&self) -> &[Vec<f64>] {
+        &self.other
+    }
+
+    /// The backlash along the line of action in m, position by position.
+    pub fn backlash(&self) -> Vec<f64> {
+        let (one, other) = (&self.loaded[0], &self.other[0]);
+        one.iter().zip(other).map(|(a, b)| a - b).collect()
+    }
+
+    /// δ under `load` ≥ 0 at each position.
+    pub fn transmission_error(&self, load: f64) -> Vec<f64> {
+        (0..self.positions())
+            .map(|i| {
+                let place = self.row_below(|j| self.loads[j] <= load);
+                let part = (load - self.loads[place]) / (self.loads[place + 1] - self.loads[place]);
+                let (low, high) = (self.loaded[place][i], self.loaded[place + 1][i]);
+                low + part * (high - low)
+            })
+            .collect()
+    }
+
+    /// The last row but one at which `reached` holds.
+    fn row_below(&self, reached: impl Fn(usize) -> bool) -> usize {
+        let (mut low, mut high) = (0, self.loads.len() - 1);
+        while high - low > 1 {
+            let middle = usize::midpoint(low, high);
+            if reached(middle) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        low
+    }
+
+    /// The load in N at the mesh position `eta` and the approach `delta`: negative where the other flanks touch.
+    pub fn load(&self, eta: f64, delta: f64) -> f64 {
+        self.forces(eta, delta).load
+    }
+
+    /// What the gears exert at the mesh position `eta` and the approach `delta`.
+    pub fn forces(&self, eta: f64, delta: f64) -> Forces {
+        let place = (eta / self.step()).rem_euclid(self.positions() as f64);
+        let first = (place.floor() as usize).min(self.positions() - 1);
+        let between = Between {
+            first,
+            second: (first + 1) % self.positions(),
+            part: place - first as f64,
+            step: self.step(),
+        };
+        if delta > between.value(&self.loaded[0]) {
+            self.of_flank(&self.loaded, between, delta, 1.0)
+        } else if delta < between.value(&self.other[0]) {
+            self.of_flank(&self.other, between, delta, -1.0)
+        } else {
+            Forces {
+                load: 0.0,
+                per_period: 0.0,
+                energy: 0.0,
+            }
+        }
+    }
+
+    /// The forces of a flank whose load acts in the direction `sign`.
+    fn of_flank(&self, rows: &[Vec<f64>], between: Between, delta: f64, sign: f64) -> Forces {
+        let at = |j: usize| between.value(&rows[j]);
+        let last = self.row_below(|j| sign * (delta - at(j)) >= 0.0);
+        let (low, high) = (at(last), at(last + 1));
+        let part = (delta - low) / (high - low);
+        let load = self.loads[last] + part * (self.loads[last + 1] - self.loads[last]);
+        let slope = |j: usize| between.slope(&rows[j]);
+        let (mut energy, mut per_period) = (0.0, 0.0);
+        for j in 0..last {
+            energy += (self.loads[j] + self.loads[j + 1]) / 2.0 * (at(j + 1) - at(j));
+            per_period -= (slope(j) + slope(j + 1)) / 2.0 * (self.loads[j + 1] - self.loads[j]);
+        }
+        let here = slope(last) + part * (slope(last + 1) - slope(last));
+        energy += (self.loads[last] + load) / 2.0 * (delta - low);
+        per_period -= (slope(last) + here) / 2.0 * (load - self.loads[last]);
+        Forces {
+            load: sign * load,
+            per_period: sign * per_period,
+            energy: sign * energy,
+        }
+    }
+
+    /// The table with `by_position` times as many positions and `by_load` times as many loads, of four at least: on cubics through its
+    /// own, and on the lesser of two branches where pairs of teeth begin or cease to carry.
+    pub fn refined(&self, by_position: usize, by_load: usize) -> Self {
+        let ladder = Ladder {
+            count: (self.ladder.count - 1) * by_load + 1,
+            ..self.ladder
+        };
+        // The other flanks have their kinks upside down.
+        let refine = |rows: &[Vec<f64>], sign: f64| -> Vec<Vec<f64>> {
+            let along: Vec<Vec<f64>> = rows
+                .iter()
+                .map(|row| {
+                    let row: Vec<f64> = row.iter().map(|delta| sign * delta).collect();
+                    (0..row.len() * by_position)
+                        .map(|i| sign * between_closed(&row, i as f64 / by_position as f64))
+                        .collect()
+                })
+                .collect();
+            (0..ladder.count)
+                .map(|j| {
+                    let at = j as f64 / by_load as f64;
+                    (0..along[0].len())
+                        .map(|i| between_open(along.len(), |j| sign * along[j][i], at) * sign)
+                        .collect()
+                })
+                .collect()
+        };
+        Self::new(
+            self.period,
+            ladder,
+            refine(&self.loaded, 1.0),
+            refine(&self.other, -1.0),
+        )
+    }
+}
+
+/// Puts each row beyond the one before.
+fn set_apart(rows: &mut [Vec<f64>], beyond: impl Fn(f64, f64) -> f64) {
+    for j in 1..rows.len() {
+        let (before, rest) = rows.split_at_mut(j);
+        for (value, before) in rest[0].iter_mut().zip(&before[j - 1]) {
+            *value = beyond(*value, *before);
+        }
+    }
+}
+
+/// A place between two positions.
+#[derive(Debug, Clone, Copy)]
+struct Between {
+    first: usize,
+    second: usize,
+    part: f64,
+    /// Their distance in mesh periods.
+    step: f64,
+}
+
+impl Between {
+    fn value(&self, row: &[f64]) -> f64 {
+        row[self.first] + self.part * (row[self.second] - row[self.first])
+    }
+
+    fn slope(&self, row: &[f64]) -> f64 {
+        (row[self.second] - row[self.first]) / self.step
+    }
+}
+
+/// What stands at `place` of a closed row, in steps of the row.
+pub(crate) fn between_closed(row: &[f64], place: f64) -> f64 {
+    let first = place.floor();
+    let value = |k: i64| row[(first as i64 + k).rem_euclid(row.len() as i64) as usize];
+    let part = place - first;
+    let through = || lagrange([-1, 0, 1, 2].map(value), part);
+    if part == 0.0 {
+        value(0)
+    } else {
+        kinked([-2, -1, 0, 1, 2, 3].map(value), part).unwrap_or_else(through)
+    }
+}
+
+/// What stands at `place` of `count` values, four or more.
+fn between_open(count: usize, value: impl Fn(usize) -> f64, place: f64) -> f64 {
+    let first = (place.floor() as usize).min(count - 2);
+    let part = place - first as f64;
+    if part == 0.0 {
+        return value(first);
+    }
+    let through = || {
+        let begin = first.saturating_sub(1).min(count - 4);
+        lagrange(
+            [0, 1, 2, 3].map(|k| value(begin + k)),
+            place - begin as f64 - 1.0,
+        )
+    };
+    if first < 2 || first + 3 >= count {
+        return through();
+    }
+    let about = [0, 1, 2, 3, 4, 5].map(|k| value(first + k - 2));
+    kinked(about, part).unwrap_or_else(through)
+}
+
+/// What stands at `t` between the third and the fourth of six values, if δ has a kink there.
+///
+/// Where one more pair of teeth comes to carry, δ falls behind what it would be without: it is the lesser of two smooth branches, each
+/// of which is known on its own side. Each is continued by its parabola; where there is no kink, one of the two continuations passes
+/// below the value on the other side.
+fn kinked(values: [f64; 6], t: f64) -> Option<f64> {
+    let parabola = |y: [f64; 3], u: f64| {
+        y[0] * (u - 1.0) * (u - 2.0) / 2.0 - y[1] * u * (u - 2.0) + y[2] * u * (u - 1.0) / 2.0
+    };
+    let before = |t: f64| parabola([values[0], values[1], values[2]], t + 2.0);
+    let after = |t: f64| parabola([values[5], values[4], values[3]], 3.0 - t);
+    (before(1.0) > values[3] && after(0.0) > values[2]).then(|| before(t).min(after(t)))
+}
+
+/// The cubic through values at −1, 0, 1 and 2.
+fn lagrange(values: [f64; 4], t: f64) -> f64 {
+    if t == 0.0 {
+        return values[1];
+    }
+    let weights = [
+        -t * (t - 1.0) * (t - 2.0) / 6.0,
+        (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0,
+        -(t + 1.0) * t * (t - 2.0) / 2.0,
+        (t + 1.0) * t * (t - 1.0) / 6.0,
+    ];
+    values.iter().zip(weights).map(|(y, w)| y * w).sum()
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    /// A mesh that softens towards no load, with an approach that varies by position, and another flank 3 below.
+    pub(in crate::dynamics) fn wavy(positions: usize, count: usize) -> ForceTable {
+        let ladder = Ladder {
+            count,
+            largest: 4.0,
+        };
+        let eta = |i: usize| i as f64 / positions as f64;
+        let of = |load: f64, eta: f64| {
+            let wave = 0.2 * (2.0 * PI * eta).cos() + 0.1 * (4.0 * PI * eta + 0.7).sin();
+            0.05 * wave + load.powf(0.9) * (1.0 + wave)
+        };
+        let rows = |sign: f64, from: f64| {
+            ladder
+                .loads()
+                .into_iter()
+                .map(|load| {
+                    (0..positions)
+                        .map(|i| from + sign * of(load, sign * eta(i)))
+                        .collect()
+                })
+                .collect()
+        };
+        ForceTable::new(1, ladder, rows(1.0, 0.0), rows(-1.0, -3.0))
+    }
+
+    #[test]
+    fn no_load_acts_in_the_backlash_and_loads_rise_on_both_sides_of_it() {
+        let table = wavy(40, 9);
+        for eta in [0.0, 0.21, 0.5, 0.999, 3.4, -0.2] {
+            let touch = table.refined(1, 1).loaded[0].clone();
+            let here = between_closed(&touch, eta * 40.0);
+            for inside in [0.01, 1.0, 2.5] {
+                assert_eq!(table.load(eta, here - inside), 0.0);
+            }
+            let mut before = 0.0;
+            for step in 1..60 {
+                let load = table.load(eta, here + 0.1 * f64::from(step));
+                assert!(load > before);
+                before = load;
+            }
+            let mut before = 0.0;
+            for step in 1..60 {
+                let load = table.load(eta, -3.2 - 0.1 * f64::from(step));
+                assert!(load < before);
+                before = load;
+            }
+        }
+    }
+
+    #[test]
+    fn a_load_of_the_table_comes_back_at_its_approach() {
+        let table = wavy(24, 9);
+        for (j, load) in table.loads().iter().enumerate() {
+            for (i, eta) in table.mesh_positions().into_iter().enumerate() {
+                let found = table.load(eta, table.rows()[j][i]);
+                assert!((found - load).abs() < 1e-12, "{found} {load}");
+                let found = table.load(eta, table.rows_of_other_flank()[j][i]);
+                assert!((found + load).abs() < 1e-12, "{found} {load}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_a_closed_path_takes_it_gives_back() {
+        // There and back in position while δ goes through backlash and other flank and beyond the largest load. No interval lies astride a
+        // position of the table, where the torque steps.
+        let table = wavy(24, 9);
+        let (cells, parts) = (17_i32, 20_000_i32);
+        let n = 2 * cells * parts;
+        let path = |i: i32| {
+            let there = i.min(n - i);
+            let eta = f64::from(there) / f64::from(parts) / 24.0;
+            (
+                eta,
+                -0.5 + 5.0 * (2.0 * PI * f64::from(i) / f64::from(n)).sin(),
+            )
+        };
+        let (mut work, mut of_load, mut moved) = (0.0, 0.0, 0.0);
+        for i in 0..n {
+            let (a, b) = (path(i), path(i + 1));
+            let middle = table.forces((a.0 + b.0) / 2.0, (a.1 + b.1) / 2.0);
+            let one = middle.load * (b.1 - a.1);
+            work += one + middle.per_period * (b.0 - a.0);
+            of_load += one;
+            moved += one.abs();
+            if i == n / 5 {
+                let gained = table.forces(b.0, b.1).energy - table.forces(0.0, -0.5).energy;
+                assert!(
+                    (work - gained).abs() < 1e-9 * gained.abs(),
+                    "{work} {gained}"
+                );
+            }
+        }
+        assert!(work.abs() < 1e-9 * moved, "{work} of {moved}");
+        // The load alone does not.
+        assert!(of_load.abs() > 0.01 * moved);
+    }
+
+    #[test]
+    fn a_kink_between_two_values_is_found_where_it_is() {
+        // The lesser of two parabolas, which meet at 0.3 of the way between the third and the fourth value.
+        let one = |x: f64| 1.0 + 0.5 * x + 0.1 * x * x;
+        let other = |x: f64| one(x) - 0.7 * (x - 0.3) - 0.2 * (x - 0.3) * (x - 0.3);
+        let least = |x: f64| if x < 0.3 { one(x) } else { other(x) };
+        let values = [-2.0, -1.0, 0.0, 1.0, 2.0, 3.0].map(least);
+        for t in [0.1, 0.29, 0.31, 0.8] {
+            let found = kinked(values, t).expect("a kink");
+            assert!((found - least(t)).abs() < 1e-12, "{t}");
+        }
+        assert_eq!(
+            kinked(
+                [-2.0, -1.0, 0.0, 1.0, 2.0, 3.0].map(|x: f64| x.powi(3)),
+                0.3
+            ),
+            None
+        );
+    }
+
+    #[test]
+    fn refining_keeps_what_was_computed_and_comes_near_what_was_not() {
+        let coarse = wavy(48, 9);
+        let fine = coarse.refined(4, 4);
+        for (j, row) in coarse.rows().iter().enumerate() {
+            for (i, value) in row.iter().enumerate() {
+                assert_eq!(fine.rows()[4 * j][4 * i], *value);
+            }
+        }
+        let true_one = wavy(192, 33);
+        for (found, expected) in fine.rows().iter().zip(true_one.rows()) {
+            for (found, expected) in found.iter().zip(expected) {
+                assert!((found - expected).abs() < 2e-3, "{found} {expected}");
+            }
+        }
+    }
+}
