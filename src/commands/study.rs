@@ -2,19 +2,24 @@
 
 use std::collections::HashMap;
 use std::fs;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
 use meshwright::wire::study_table::{TableRow, csv, table};
+use meshwright::wire::warning::GearName;
 use meshwright::wire::{
-    Code, Design, Kept, Problem, RowState, Status, Study as StudyDocument, StudyResults, Summary,
-    solve,
+    Code, Design, Kept, PopulationResults, PopulationSample, Problem, RowState, Status,
+    Study as StudyDocument, StudyResults, Summary, solve,
 };
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
+use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
 use super::solve::{EXIT_PROBLEM, read, told};
@@ -30,7 +35,7 @@ const MOST_PRINTED: usize = 40;
 pub(crate) struct Study {
     /// The study; - reads standard input.
     study: PathBuf,
-    /// Where to write table.json, table.csv and, unless the study keeps statistics only, each result; the folder is made if it
+    /// Where to write table.json, table.csv, of a population population.json, and, unless the study keeps statistics only, each result; the folder is made if it
     /// is absent. Without it, only a short table is printed.
     #[arg(long, short, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -61,13 +66,22 @@ impl Study {
         let rows = compute(&study, folder.as_ref())?;
         let elapsed = started.elapsed();
 
+        let population = population(&study, &rows);
         let results = results(&study, rows);
         if let Some(folder) = &folder {
             let json = serde_json::to_string_pretty(&results).context("the table is no JSON")?;
             folder.write("table.json", &format!("{json}\n"))?;
             folder.write("table.csv", &csv(&results.rows))?;
+            if let Some(population) = &population {
+                let json = serde_json::to_string_pretty(population)
+                    .context("the population is no JSON")?;
+                folder.write("population.json", &format!("{json}\n"))?;
+            }
         }
-        print!("{}", short_table(&results, elapsed));
+        match &population {
+            Some(population) => print!("{}", spread_table(population, elapsed)),
+            None => print!("{}", short_table(&results, elapsed)),
+        }
         if let Some(problem) = &results.problem {
             eprintln!("{}", problem["detail"].as_str().unwrap_or_default());
             return Ok(ExitCode::from(EXIT_PROBLEM));
@@ -76,55 +90,70 @@ impl Study {
     }
 }
 
-/// Computes every design on all cores, equal ones once, and writes each result as it comes.
+/// So many designs are held at a time. Equal ones among them are computed once.
+const AT_ONCE: usize = 2_000;
+
+/// Computes every design on all cores, and writes each result as it comes.
 fn compute(study: &StudyDocument, folder: Option<&ResultFolder>) -> anyhow::Result<Vec<RowState>> {
     // What is kept of a study is the same here.
     let folder = folder.filter(|_| study.keep() == Kept::Results);
     let total = study.total();
-    let designs: Vec<Design> = (0..total)
+    let bar = progress_bar(total);
+    let library = Library::with_capacity(LIBRARY_BYTES);
+    let mut states = Vec::with_capacity(total);
+    for first in (0..total).step_by(AT_ONCE) {
+        let rows = first..total.min(first + AT_ONCE);
+        states.extend(compute_some(study, rows, folder, &library, &bar)?);
+    }
+    bar.finish_and_clear();
+    Ok(states)
+}
+
+fn compute_some(
+    study: &StudyDocument,
+    rows: Range<usize>,
+    folder: Option<&ResultFolder>,
+    library: &Library,
+    bar: &ProgressBar,
+) -> anyhow::Result<Vec<RowState>> {
+    let (first, count) = (rows.start, rows.len());
+    let designs: Vec<Design> = rows
         .into_par_iter()
         .filter_map(|row| study.design(row))
         .collect();
-    // Rows by what they compute; the first of equals computes for all.
+    // Designs by what they compute; the first of equals computes for all.
     let mut equals: HashMap<String, Vec<usize>> = HashMap::new();
-    for (row, design) in designs.iter().enumerate() {
+    for (i, design) in designs.iter().enumerate() {
         if let Ok(submission) = &design.submission {
-            equals.entry(submission.input_hash()).or_default().push(row);
+            equals.entry(submission.input_hash()).or_default().push(i);
         }
     }
     let mut work: Vec<Vec<usize>> = equals.into_values().collect();
     // In the order of the study, in which neighbors share most.
     work.sort_unstable();
 
-    let bar = progress_bar(total);
-    bar.inc((total - work.iter().map(Vec::len).sum::<usize>()) as u64);
-    let library = Library::with_capacity(LIBRARY_BYTES);
-    let solved: Vec<(&Vec<usize>, Outcome)> = work
-        .par_iter()
-        .map(|rows| {
-            let document = designs[rows[0]]
-                .submission
-                .as_ref()
-                .map_err(Problem::clone)
-                .and_then(|submission| solve(submission, &library, &Run::unattended()));
-            if let (Some(folder), Ok(document)) = (folder, &document) {
-                for &row in rows {
-                    folder.write_result(row, &designs[row].label, document)?;
-                }
+    bar.inc((count - work.iter().map(Vec::len).sum::<usize>()) as u64);
+    let one = |equal: &Vec<usize>| -> anyhow::Result<Outcome> {
+        let document = designs[equal[0]]
+            .submission
+            .as_ref()
+            .map_err(Problem::clone)
+            .and_then(|submission| solve(submission, library, &Run::unattended()));
+        if let (Some(folder), Ok(document)) = (folder, &document) {
+            for &i in equal {
+                folder.write_result(first + i, &designs[i].label, document)?;
             }
-            bar.inc(rows.len() as u64);
-            // Documents go to the disk; in memory thousands of them would be too many.
-            let summary =
-                document.map(|document| Summary::of_document(&document).unwrap_or_default());
-            Ok((rows, summary))
-        })
-        .collect::<anyhow::Result<_>>()?;
-    bar.finish_and_clear();
+        }
+        bar.inc(equal.len() as u64);
+        // Documents go to the disk; in memory thousands of them would be too many.
+        Ok(document.map(|document| Summary::of_document(&document).unwrap_or_default()))
+    };
+    let solved = on_every_core(&work, one)?;
 
-    let mut outcomes: Vec<Option<Outcome>> = vec![None; total];
-    for (rows, outcome) in solved {
-        for &row in rows {
-            outcomes[row] = Some(outcome.clone());
+    let mut outcomes: Vec<Option<Outcome>> = vec![None; count];
+    for (equal, outcome) in work.iter().zip(solved) {
+        for &i in equal {
+            outcomes[i] = Some(outcome.clone());
         }
     }
     Ok(designs
@@ -132,6 +161,56 @@ fn compute(study: &StudyDocument, folder: Option<&ResultFolder>) -> anyhow::Resu
         .zip(outcomes)
         .map(|(design, outcome)| row_state(design, outcome))
         .collect())
+}
+
+/// Does each piece of work on a core of its own: in one pool for all, a core that waits for a part of one design would begin another one meanwhile,
+/// and another one in that, as long as the memory lasts.
+fn on_every_core<W: Sync, T: Send>(
+    work: &[W],
+    each: impl Fn(&W) -> anyhow::Result<T> + Sync,
+) -> anyhow::Result<Vec<T>> {
+    let cores = thread::available_parallelism().map_or(1, usize::from);
+    let next = AtomicUsize::new(0);
+    let take = || {
+        let pool = ThreadPoolBuilder::new().num_threads(1).build()?;
+        let mut done = Vec::new();
+        loop {
+            let i = next.fetch_add(1, Ordering::Relaxed);
+            let Some(piece) = work.get(i) else {
+                return anyhow::Ok(done);
+            };
+            done.push((i, pool.install(|| each(piece))?));
+        }
+    };
+    let parts = thread::scope(|scope| {
+        let workers: Vec<_> = (0..cores).map(|_| scope.spawn(take)).collect();
+        let ended = workers.into_iter().map(|worker| match worker.join() {
+            Ok(done) => done,
+            Err(panic) => std::panic::resume_unwind(panic),
+        });
+        ended.collect::<anyhow::Result<Vec<_>>>()
+    })?;
+    let mut done: Vec<(usize, T)> = parts.into_iter().flatten().collect();
+    done.sort_by_key(|(i, _)| *i);
+    Ok(done.into_iter().map(|(_, done)| done).collect())
+}
+
+/// What the members of a population come to; none where the designs are none.
+fn population(study: &StudyDocument, rows: &[RowState]) -> Option<PopulationResults> {
+    let mut sample = PopulationSample::new(study, 0..StudyDocument::MOST_TORQUES)?;
+    for (member, row) in (0..).zip(rows) {
+        sample.add(member, row);
+    }
+    let failed = rows.iter().all(|row| row.status == Status::Failed);
+    Some(sample.results(None, ended(failed)))
+}
+
+fn ended(failed: bool) -> Status {
+    if failed {
+        Status::Failed
+    } else {
+        Status::Successful
+    }
 }
 
 fn row_state(design: Design, outcome: Option<Outcome>) -> RowState {
@@ -175,11 +254,7 @@ fn results(study: &StudyDocument, states: Vec<RowState>) -> StudyResults {
     });
     StudyResults {
         id: None,
-        status: if failed {
-            Status::Failed
-        } else {
-            Status::Successful
-        },
+        status: ended(failed),
         done: rows.len() as u64,
         total: rows.len() as u64,
         gear: study.gear(),
@@ -227,6 +302,76 @@ impl ResultFolder {
         let label: String = label.chars().map(plain).take(60).collect();
         self.write(&format!("results/{:05}-{label}.json", row + 1), document)
     }
+}
+
+/// A line for each quantity of a population and each torque, and what makes the peak-to-peak values vary.
+fn spread_table(results: &PopulationResults, elapsed: Duration) -> String {
+    const SHOWN: [&str; 4] = [
+        "transmission_error_um.peak_to_peak",
+        "transmission_error_um.mean",
+        "mesh_stiffness_tangent_n_per_m.mean",
+        "mesh_order_um",
+    ];
+    let mut text = format!(
+        "{:38} {:>8} {:>10} {:>10} {:>10} {:>10} {:>10}  {}\n",
+        "quantity", "torque", "mean", "std", "p5", "p50", "p95", "95 % limits of p95"
+    );
+    let told = |value: f64| {
+        if value.abs() < 1e5 {
+            format!("{value:.3}")
+        } else {
+            format!("{value:.3e}")
+        }
+    };
+    let limit = |value: Option<f64>| value.map_or_else(|| "?".to_owned(), told);
+    let shown = || {
+        let all = results.quantities.iter();
+        all.filter(|quantity| SHOWN.contains(&quantity.name))
+    };
+    for quantity in shown() {
+        let percentile = |percent: f64| {
+            let mut all = quantity.percentiles.iter();
+            all.find(|percentile| percentile.percent == percent)
+        };
+        let value =
+            |percent| percentile(percent).map_or_else(String::new, |found| told(found.value));
+        let limits = percentile(95.0).map_or_else(String::new, |found| {
+            format!("{} to {}", limit(found.low), limit(found.high))
+        });
+        let torque = quantity.output_torque_n_m.map(|torque| torque.to_string());
+        text.push_str(&format!(
+            "{:38} {:>8} {:>10} {:>10} {:>10} {:>10} {:>10}  {limits}\n",
+            quantity.name,
+            torque.unwrap_or_default(),
+            told(quantity.mean),
+            told(quantity.standard_deviation),
+            value(5.0),
+            value(50.0),
+            value(95.0),
+        ));
+    }
+    for quantity in shown().filter(|quantity| quantity.name == SHOWN[0]) {
+        let torque = quantity.output_torque_n_m.unwrap_or_default();
+        for influence in &quantity.influences {
+            let input = match (&influence.path, influence.accuracy) {
+                (Some(path), _) => path.clone(),
+                (None, Some(GearName::Driving)) => "the teeth of the driving gear".to_owned(),
+                (None, _) => "the teeth of the driven gear".to_owned(),
+            };
+            text.push_str(&format!(
+                "At {torque} N m {:.0} % of the variance of the peak-to-peak value come from {input}.\n",
+                100.0 * influence.share
+            ));
+        }
+    }
+    let seconds = elapsed.as_secs_f64();
+    text.push_str(&format!(
+        "{} of {} members computed in {seconds:.2} s, {:.1} a second.\n",
+        results.done - results.failed,
+        results.size,
+        (results.done - results.failed) as f64 / seconds.max(1e-9),
+    ));
+    text
 }
 
 /// A line for each design and torque, or for the best designs of a large study, and what could not be computed.
@@ -381,11 +526,39 @@ mod tests {
         assert_eq!(files, 7);
         assert!(path.join("results/00002-8R34.json").exists());
 
+        assert_eq!(population(&study(), &[]), None);
         let text = short_table(&results, Duration::from_secs(2));
         assert!(
             text.contains("7 of 8 designs computed in 2.00 s, 3.5 a second."),
             "{text}"
         );
         assert!(text.contains("14R34: "), "{text}");
+    }
+    #[test]
+    fn a_population_leaves_what_its_members_come_to() {
+        let mut document: Value =
+            serde_json::from_str(meshwright::wire::examples::STUDY_SECTION_5).unwrap();
+        document["base"]["method"] = json!("load_distribution");
+        document.as_object_mut().unwrap().remove("designs");
+        document.as_object_mut().unwrap().remove("constant_mass");
+        document["population"] = json!({ "size": 80, "vary": [
+            { "path": "/pair/center_distance_mm", "kind": "uniform", "low": 100.45, "high": 100.55 }
+        ] });
+        let study =
+            StudyDocument::parse(document.to_string().as_bytes(), &Run::unattended()).unwrap();
+        let rows = compute(&study, None).unwrap();
+        let found = population(&study, &rows).expect("a population");
+        assert_eq!((found.size, found.done, found.failed), (80, 80, 0));
+        let text = spread_table(&found, Duration::from_secs(2));
+        assert!(
+            text.contains("80 of 80 members computed in 2.00 s, 40.0 a second."),
+            "{text}"
+        );
+        assert!(
+            text.contains(
+                "% of the variance of the peak-to-peak value come from /pair/center_distance_mm."
+            ),
+            "{text}"
+        );
     }
 }

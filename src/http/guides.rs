@@ -43,6 +43,7 @@ const GUIDES: &[Guide] = guides! {
     "from-kisssoft-or-a-drawing"
     "choose-a-relief"
     "compare-hole-patterns"
+    "how-good-will-they-be"
     "is-my-thin-web-all-right"
     "will-it-rattle-or-whine"
     "limits"

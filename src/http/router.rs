@@ -136,6 +136,8 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(fields::edges))
         .routes(routes!(tables::table))
         .routes(routes!(studies::results))
+        .routes(routes!(studies::population))
+        .routes(routes!(studies::design))
         .routes(routes!(studies::file))
         .routes(routes!(studies::submit))
         .routes(routes!(batch::submit))

@@ -4,7 +4,9 @@ use meshwright_engine::gear::{Normals, SpurGear, Tolerances, total_pitch_deviati
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::declare::{Document as _, Errors, Node, ObjectReader, Place, document, nested, number};
+use super::declare::{
+    Document as _, Errors, Node, Number, ObjectReader, Place, document, nested, number,
+};
 use super::gear::{DeviationsDocument, GearDocument};
 use super::problem::Problem;
 use super::size::{MOST_VALUES, refuse_many_values};
@@ -16,13 +18,22 @@ document! {
         /// The gear.
         gear: GearDocument = nested(""),
         /// The accuracy class A of ISO 1328-1:2013, from the finest; each is wider by the square root of 2.
-        iso_1328_class: u32 = number("Accuracy class", "1", 1.0, 11.0),
+        iso_1328_class: u32 = CLASS,
         /// How many times three standard deviations of a deviation fit into its tolerance.
-        capability: f64 = number("Process capability", "1", 0.1, 10.0).or(1.0),
+        capability: f64 = CAPABILITY,
         /// What the numbers are drawn from: the same seed gives the same teeth on every machine.
-        seed: u32 = number("Seed", "1", 0.0, 4_294_967_295.0).or(1.0),
+        seed: u32 = SEED,
     }
 }
+
+/// A class of ISO 1328-1:2013.
+pub(super) const CLASS: Number = number("Accuracy class", "1", 1.0, 11.0);
+
+/// How well a process keeps its tolerances.
+pub(super) const CAPABILITY: Number = number("Process capability", "1", 0.1, 10.0).or(1.0);
+
+/// What random numbers are drawn from.
+pub(super) const SEED: Number = number("Seed", "1", 0.0, 4_294_967_295.0).or(1.0);
 
 /// What is asked: teeth for a gear, of an accuracy, from a seed.
 pub struct Draw {
@@ -98,8 +109,8 @@ impl Draw {
     /// The teeth.
     pub fn drawn(&self) -> DrawnDeviations {
         let tolerances = Tolerances::of(&self.gear, self.class);
-        let mut normals = Normals::new(self.seed, 0);
-        let teeth = tolerances.draw(self.gear.tooth_count(), self.capability, &mut normals);
+        let normals = Normals::new(self.seed, 0);
+        let teeth = tolerances.draw(self.gear.tooth_count(), self.capability, normals);
         let told = |value: f64| significant(to_um(value), 10);
         DrawnDeviations {
             total_pitch_deviation_um: told(total_pitch_deviation(&teeth)),

@@ -3,7 +3,7 @@
 //! Read in this order: [`problem`] (what goes wrong), [`submission`] with its parts [`pair`], [`gear`] and
 //! [`resolution`], [`forces`] (what is asked), [`geometry`], [`outline`], [`edges`], [`warning`] and [`results`] (what is answered), [`solve`](mod@solve)
 //! (what leads from the one to the other) and [`examples`](mod@examples); [`preview`], a submission that is answered at
-//! once; [`draw`], teeth at random; then [`study`] and [`study_table`], many submissions at once. `declare`, `units`, `size`, `edit` and `pointer` carry
+//! once; [`draw`], teeth at random; then [`study`] and [`study_table`], many submissions at once, and [`population`], a study of what is made. `declare`, `units`, `size`, `edit` and `pointer` carry
 //! them: the one declaration of each object, conversions, how much is read at all, changes in place, and places in a submission.
 //!
 //! This is the only place where domain data meets serde, and where mm, um, degrees, GPa and MPa meet SI.
@@ -39,6 +39,7 @@ pub mod solve;
 pub mod draw;
 pub mod preview;
 
+pub mod population;
 pub mod study;
 pub mod study_table;
 
@@ -48,6 +49,7 @@ pub use examples::{Example, examples};
 pub use kept::Kept;
 pub use memory::{memory_above, memory_of, too_much_memory};
 pub use outline::PairOutline;
+pub use population::{PopulationResults, PopulationSample};
 pub use preview::Preview;
 pub use problem::{Code, FieldError, Problem};
 pub use results::Results;

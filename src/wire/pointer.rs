@@ -93,10 +93,40 @@ impl Pointer {
     ///
     /// The code and a sentence that says which step is unknown and what would be known there.
     pub(super) fn check_named(&self) -> Result<(), (Code, String)> {
-        let mut here = vec![&SCHEMA.root];
+        self.named().map(|_| ())
+    }
+
+    /// What kind of number the field at this place takes.
+    ///
+    /// # Errors
+    ///
+    /// As [`check_named`](Self::check_named), or that the field takes no number.
+    pub(super) fn number_kind(&self) -> Result<NumberKind, (Code, String)> {
+        let named = self.named()?;
+        let schemas = SCHEMA.alternatives(&named);
+        let is = |word: &str| {
+            schemas.iter().any(|schema| match &schema["type"] {
+                Value::String(own) => own == word,
+                Value::Array(several) => several.iter().any(|own| own == word),
+                _ => false,
+            })
+        };
+        if is("number") {
+            Ok(NumberKind::Real)
+        } else if is("integer") {
+            Ok(NumberKind::Whole)
+        } else {
+            let detail = format!("{} is no field that takes a number.", self.text);
+            Err((Code::WrongType, detail))
+        }
+    }
+
+    /// What the schema of a submission says of this place.
+    fn named(&self) -> Result<Vec<&'static Value>, (Code, String)> {
+        let mut here: Vec<&'static Value> = vec![&SCHEMA.root];
         for (i, step) in self.steps.iter().enumerate() {
             let schemas = SCHEMA.alternatives(&here);
-            let next: Vec<&Value> = schemas
+            let next: Vec<&'static Value> = schemas
                 .iter()
                 .filter_map(|schema| child(schema, step))
                 .collect();
@@ -121,8 +151,17 @@ impl Pointer {
             }
             here = next;
         }
-        Ok(())
+        Ok(here)
     }
+}
+
+/// A kind of number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum NumberKind {
+    /// Any.
+    Real,
+    /// Whole ones only.
+    Whole,
 }
 
 fn is_within(inner: &str, outer: &str) -> bool {

@@ -28,6 +28,7 @@ mod generated;
 mod growth;
 mod life;
 mod lists;
+mod members;
 mod one_process;
 mod operators;
 mod page;

@@ -28,6 +28,7 @@ mod on_postgres {
     mod growth;
     mod life;
     mod lists;
+    mod members;
     mod page;
     mod population;
     mod previews;

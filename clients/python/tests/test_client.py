@@ -86,6 +86,37 @@ def test_a_study_is_a_frame(service):
     assert table.pareto() == [frame.label[0]]
 
 
+def test_a_population_is_what_numpy_makes_of_its_table(service):
+    base = service.example("standard-pair") | {"method": "load_distribution"}
+    vary = [{"path": "/pair/center_distance_mm", "kind": "normal", "mean": 100.5, "standard_deviation": 0.02, "low": 100.4, "high": 100.6}]
+    asked = {"size": 300, "vary": vary, "accuracy": {"driving": {"iso_1328_class": 6}, "driven": {"iso_1328_class": 6}}}
+    table = service.study({"base": base, "population": asked, "keep": "statistics"})
+    members = table.frame()
+    spread = table.population().frame()
+    for torque, of_torque in members.groupby("output_torque_n_m"):
+        for name, column in [
+            ("transmission_error_um.mean", of_torque.mean_um),
+            ("transmission_error_um.peak_to_peak", of_torque.peak_to_peak_um),
+            ("mesh_stiffness_tangent_n_per_m.mean", of_torque.mean_stiffness_n_per_m),
+        ]:
+            (told,) = [line for line in spread.to_dict("records") if line["name"] == name and line["output_torque_n_m"] == torque]
+            values = column.to_numpy()
+            assert np.isclose(told["mean"], np.mean(values), rtol=1e-12)
+            assert np.isclose(told["standard_deviation"], np.std(values), rtol=1e-9)
+            for percent in (1, 5, 25, 50, 75, 95, 99):
+                assert np.isclose(told[f"p{percent}"], np.percentile(values, percent), rtol=1e-12)
+                assert told[f"p{percent}_low"] <= told[f"p{percent}"] <= told[f"p{percent}_high"]
+    for quantity in table.population().quantities:
+        if quantity["name"] == "transmission_error_um.mean":
+            histogram = quantity["histogram"]
+            values = members[members.output_torque_n_m == quantity["output_torque_n_m"]].mean_um
+            counts, _ = np.histogram(values, bins=histogram["edges"])
+            assert list(counts) == histogram["counts"]
+    assert len(table.population().influences()) >= 3
+    with pytest.raises(ValueError):
+        service.study({"base": base, "designs": [{"label": "one"}]}).population()
+
+
 def solved(service):
     job = service.submit(service.example("test-case-2"))
     while job["status"] not in ("successful", "failed"):

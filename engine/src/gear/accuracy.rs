@@ -56,19 +56,22 @@ impl Tolerances {
     ///
     /// A tolerance is 3 c standard deviations wide to each side, c the `capability`. Single pitch deviations are independent and close by
     /// taking their mean away; so are the slopes of the profiles, which keep theirs; the eccentricity has two components,
-    /// each of σ = F_rT/(6 c), because a runout is twice an eccentricity. F_pT is not enforced.
+    /// each of σ = F_rT/(6 c), because a runout is twice an eccentricity. F_pT is not enforced. Of `normals`, standard normal
+    /// deviates, it takes one for each tooth's pitch, one for each tooth's slope, and two for the eccentricity.
     pub fn draw(
         &self,
         tooth_count: u32,
         capability: f64,
-        normals: &mut Normals,
+        mut normals: impl Iterator<Item = f64>,
     ) -> ToothDeviations {
         let sigma = |tolerance: f64| tolerance / (3.0 * capability);
-        let mut each =
-            |sigma: f64| -> Vec<f64> { (0..tooth_count).map(|_| sigma * normals.draw()).collect() };
-        let single = each(sigma(self.single_pitch));
-        let profile_slope = each(sigma(self.profile_slope));
-        let [x, y] = [(); 2].map(|()| sigma(self.runout) / 2.0 * normals.draw());
+        let mut each = |sigma: f64, count: u32| -> Vec<f64> {
+            let taken = normals.by_ref().take(count as usize);
+            taken.map(|normal| sigma * normal).collect()
+        };
+        let single = each(sigma(self.single_pitch), tooth_count);
+        let profile_slope = each(sigma(self.profile_slope), tooth_count);
+        let off_center = each(sigma(self.runout) / 2.0, 2);
 
         let mean = single.iter().sum::<f64>() / f64::from(tooth_count);
         let cumulative_pitch = single.iter().scan(0.0, |sum, pitch| {
@@ -78,10 +81,13 @@ impl Tolerances {
         ToothDeviations {
             cumulative_pitch: cumulative_pitch.collect(),
             profile_slope,
-            eccentricity: Some(Eccentricity {
-                amount: x.hypot(y),
-                direction: libm::atan2(y, x),
-            }),
+            eccentricity: match off_center[..] {
+                [x, y] => Some(Eccentricity {
+                    amount: (x * x + y * y).sqrt(),
+                    direction: libm::atan2(y, x),
+                }),
+                _ => None,
+            },
         }
     }
 }
@@ -114,8 +120,7 @@ impl Normals {
         }
     }
 
-    /// The next one.
-    pub fn draw(&mut self) -> f64 {
+    fn draw(&mut self) -> f64 {
         if let Some(kept) = self.kept.take() {
             return kept;
         }
@@ -130,6 +135,15 @@ impl Normals {
     fn uniform(&mut self) -> f64 {
         const STEP: f64 = 1.0 / (1_u64 << 53) as f64;
         (self.generator.next_u64() >> 11) as f64 * STEP
+    }
+}
+
+impl Iterator for Normals {
+    type Item = f64;
+
+    /// The next one; there is always one.
+    fn next(&mut self) -> Option<f64> {
+        Some(self.draw())
     }
 }
 
@@ -229,7 +243,7 @@ mod tests {
         let (gear, capability) = (gear(50), 1.33);
         let tolerances = Tolerances::of(&gear, 6);
         let members: Vec<ToothDeviations> = (0..400)
-            .map(|member| tolerances.draw(50, capability, &mut Normals::new(1, member)))
+            .map(|member| tolerances.draw(50, capability, Normals::new(1, member)))
             .collect();
         let spread = |values: &[f64]| {
             (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()

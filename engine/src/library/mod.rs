@@ -115,15 +115,14 @@ impl Parts for Library {
     fn flanks(&self, spec: &FlanksSpec) -> Arc<DrawnFlanks> {
         let shelf = &self.0.flanks;
         let flanks = shelf.find(spec).unwrap_or_default();
-        // They grow where they are used, and are weighed anew each time that somebody asks for them.
-        shelf.keep(spec, &flanks);
+        shelf.keep_growing(spec, &flanks);
         flanks
     }
 
     fn compliances(&self, spec: &PairSpec) -> Arc<Compliances> {
         let shelf = &self.0.compliances;
         let compliances = shelf.find(spec).unwrap_or_default();
-        shelf.keep(spec, &compliances);
+        shelf.keep_growing(spec, &compliances);
         compliances
     }
 

@@ -88,6 +88,12 @@ impl<S: PartialEq + Clone, P> Shelf<S, P> {
         );
     }
 
+    /// The same where parts grow as they are used: all of them are weighed anew, those too that nobody asks for again.
+    pub(super) fn keep_growing(&self, spec: &S, part: &Arc<P>) {
+        self.stock().weigh(self.bytes);
+        self.keep(spec, part);
+    }
+
     /// The part of `spec`, made if it is not there; of two threads that want it at the same moment one makes it and the
     /// other waits. `make` must not itself wait for other threads, or they might wait for each other.
     pub(super) fn made_once<E>(
@@ -158,6 +164,13 @@ impl<S: PartialEq + Clone, P> Stock<S, P> {
         }
     }
 
+    fn weigh(&mut self, bytes: fn(&S, &P) -> usize) {
+        for entry in &mut self.entries {
+            entry.bytes = bytes(&entry.spec, &entry.part);
+        }
+        self.bytes = self.entries.iter().map(|entry| entry.bytes).sum();
+    }
+
     /// The gate of whoever makes the part of `spec`.
     fn gate(&mut self, spec: &S) -> Arc<Mutex<()>> {
         if let Some((_, gate)) = self.making.iter().find(|(making, _)| making == spec) {
@@ -172,6 +185,8 @@ impl<S: PartialEq + Clone, P> Stock<S, P> {
 #[cfg(test)]
 mod tests {
     use std::sync::Barrier;
+    use std::sync::atomic::AtomicUsize;
+    use std::sync::atomic::Ordering::Relaxed;
     use std::thread;
 
     use super::*;
@@ -242,6 +257,22 @@ mod tests {
         assert_eq!(shelf.find(&1).as_deref(), Some(&10));
         let usage = shelf.usage();
         assert_eq!((usage.entries, usage.bytes, usage.misses), (1, 10, 2));
+    }
+
+    #[test]
+    fn parts_that_have_grown_are_weighed_though_nobody_asked_for_them_again() {
+        let shelf: Shelf<u32, AtomicUsize> = Shelf::new(20, |_, part| part.load(Relaxed));
+        for key in 1..=3 {
+            let part = Arc::new(AtomicUsize::new(0));
+            shelf.keep_growing(&key, &part);
+            part.store(15, Relaxed);
+        }
+        assert!(
+            shelf.find(&1).is_none(),
+            "30 bytes were there when the third came"
+        );
+        assert!(shelf.find(&2).is_some() && shelf.find(&3).is_some());
+        assert_eq!(shelf.usage().evictions, 1);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Studies: many variants of a submission at once, and the table that they come to.
 
 mod events;
+mod population;
 mod table;
 mod view;
 
@@ -26,6 +27,7 @@ use crate::wire::{Code, Problem, Study};
 use view::StudyView;
 
 pub(super) use events::*;
+pub(super) use population::*;
 pub(super) use table::*;
 
 /// A study may have so many MiB: a hundred thousand designs, each listed with two changes, have a dozen.

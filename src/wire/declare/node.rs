@@ -72,6 +72,30 @@ impl Node {
         }
     }
 
+    /// The same document for serde.
+    pub(in crate::wire) fn to_value(&self) -> serde_json::Value {
+        use serde_json::{Value, json};
+        match self {
+            Self::Null => Value::Null,
+            Self::Bool(value) => Value::Bool(*value),
+            // A count is written as one.
+            Self::Number(value) if value.fract() == 0.0 && value.abs() < 1e15 => {
+                json!(*value as i64)
+            }
+            Self::Number(value) => json!(value),
+            Self::Text(text) => Value::String(text.clone()),
+            Self::List(items) => items.iter().map(Self::to_value).collect(),
+            Self::Object(fields) => {
+                let fields = fields.iter();
+                Value::Object(
+                    fields
+                        .map(|(key, value)| (key.clone(), value.to_value()))
+                        .collect(),
+                )
+            }
+        }
+    }
+
     /// The value of one of its fields, if it is an object with it.
     pub(in crate::wire) fn into_field(self, name: &str) -> Option<Self> {
         let Self::Object(fields) = self else {

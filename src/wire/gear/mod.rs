@@ -28,7 +28,10 @@ pub(super) use modification::MOST_ENTRIES;
 pub use modification::{CrowningDocument, ModificationDocument, SlopeDocument, TableDocument};
 pub use relief::{ReliefEnd, RootReliefDocument, StartDocument, StartWay, TipReliefDocument};
 
-use super::declare::{Nested, ObjectReader, absent, document, list, nested, number, unless};
+use super::declare::{
+    Document as _, Errors, Nested, Node, ObjectReader, Place, absent, document, list, nested,
+    number, unless,
+};
 use super::units::{Side, from_mm, from_um, rounded_inward};
 
 /// The most profile modifications of one gear, beside its tip relief.
@@ -127,6 +130,18 @@ impl GearDocument {
             tooth_deviations: None,
             ..self
         }
+    }
+
+    /// Gives it other teeth.
+    pub(super) fn set_deviations(&mut self, deviations: DeviationsDocument) {
+        self.tooth_deviations = Some(deviations);
+    }
+
+    /// The gear that `node` is, if it can be read.
+    pub(super) fn at(node: &Node) -> Option<Self> {
+        let errors = Errors::default();
+        let read = Self::read_whole(ObjectReader::new(node, Place::root(&errors))?)?;
+        (errors.count() == 0).then_some(read)
     }
 
     /// The radius from which the addendum counts, in mm: the reference radius plus the profile shift.

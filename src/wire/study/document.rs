@@ -14,6 +14,7 @@ use crate::wire::declare::{
 };
 use crate::wire::kept::Kept;
 use crate::wire::pointer::Pointer;
+use crate::wire::population::Population;
 use crate::wire::problem::{Code, FieldError};
 use crate::wire::submission::TAGS;
 
@@ -64,23 +65,30 @@ pub(super) fn read(node: Node, value: Value, errors: &Errors) -> Option<Study> {
     })
 }
 
+/// What a study may choose its designs by.
+const PLANS: [&str; 3] = ["axes", "designs", "population"];
+
 fn read_plan(reader: &mut ObjectReader<'_>, value: &Value, errors: &Errors) -> Option<Plan> {
-    match (reader.present("axes"), reader.present("designs")) {
-        (Some(axes), None) => read_axes(reader, axes, &value["axes"], errors).map(Plan::Axes),
-        (None, Some(designs)) => {
-            read_designs(reader, designs, &value["designs"], errors).map(Plan::Designs)
-        }
-        (None, None) => {
-            let detail = "A study needs /axes or /designs; it has neither.";
-            reader
-                .place_of("designs")
-                .wrong(Code::MissingField, detail, None)
-        }
-        (Some(_), Some(_)) => {
-            let detail = "A study has either /axes or /designs; it has both.";
-            reader
-                .place_of("designs")
-                .wrong(Code::OutOfRange, detail, None)
+    let given = PLANS.map(|name| reader.present(name).map(|node| (name, node)));
+    let mut given = given.into_iter().flatten();
+    let Some((name, node)) = given.next() else {
+        let detail = "A study needs one of /axes, /designs and /population; it has none.";
+        return reader
+            .place_of("designs")
+            .wrong(Code::MissingField, detail, None);
+    };
+    if let Some((other, _)) = given.next() {
+        let detail = format!("A study has either /{name} or /{other}; it has both.");
+        return reader.place_of(other).wrong(Code::OutOfRange, detail, None);
+    }
+    let values = &value[name];
+    match name {
+        "axes" => read_axes(reader, node, values, errors).map(Plan::Axes),
+        "designs" => read_designs(reader, node, values, errors).map(Plan::Designs),
+        _ => {
+            let (place, base) = (reader.place_of(name), reader.get("base"));
+            let population = Population::read(node, base, &place, errors)?;
+            Some(Plan::Population(Box::new(population)))
         }
     }
 }

@@ -9,6 +9,7 @@ use serde_json::Value;
 use super::{Plan, Study};
 use crate::wire::declare::{Errors, Node, escaped};
 use crate::wire::pointer::Pointer;
+use crate::wire::population::Population;
 use crate::wire::problem::{Code, FieldError, Problem};
 use crate::wire::submission::Submission;
 
@@ -30,6 +31,10 @@ impl Study {
         match &self.plan {
             Plan::Axes(_) => self.check_axes(errors, run),
             Plan::Designs(_) => self.check_designs(errors, run),
+            Plan::Population(population) => {
+                self.check_population(population, errors);
+                Ok(())
+            }
         }
     }
 
@@ -97,6 +102,33 @@ impl Study {
         Ok(())
     }
 
+    /// Refuses what would be wrong with a varied field in the middle of its law.
+    fn check_population(&self, population: &Population, errors: &Errors) {
+        let mut submission = self.base.clone();
+        let places = population.varied().iter().zip(0..).map(|(varied, i)| {
+            let place = format!("/population/vary/{i}/path");
+            (&varied.path, varied.told(varied.median()), place)
+        });
+        let places: Vec<_> = places.collect();
+        for (path, value, place) in &places {
+            if submission.put(path.steps(), Node::of(value)).is_none() {
+                errors.push(names_nothing(path, place));
+            }
+        }
+        for error in Submission::wrong_fields(&submission) {
+            // A field may need others beside it, which the base lacks.
+            let brought = places
+                .iter()
+                .find(|(path, ..)| path.covers(&error.pointer) || is_beside(path, &error.pointer));
+            if let Some((.., place)) = brought {
+                errors.push(FieldError {
+                    pointer: place.clone(),
+                    ..error
+                });
+            }
+        }
+    }
+
     /// A radius that is set twice would be one of them only.
     fn check_constant_mass(&self, errors: &Errors) {
         let Some(rule) = &self.constant_mass else {
@@ -114,6 +146,14 @@ impl Study {
                     let path = axis.path.text();
                     if rule.sets(path) {
                         refuse(format!("/axes/{i}/path"), path);
+                    }
+                }
+            }
+            Plan::Population(population) => {
+                for (i, varied) in population.varied().iter().enumerate() {
+                    let path = varied.path.text();
+                    if rule.sets(path) {
+                        refuse(format!("/population/vary/{i}/path"), path);
                     }
                 }
             }
@@ -145,11 +185,7 @@ fn check_changes(submission: &mut Node, changes: &[(&Pointer, &Value, String)], 
         match submission.put(path.steps(), Node::of(value)) {
             Some(done) => undo.push(done),
             None => {
-                let detail = format!(
-                    "{} names nothing in the base: what stands above it is no object, or a list without this place.",
-                    path.text()
-                );
-                errors.push(FieldError::new(place, Code::UnknownField, detail));
+                errors.push(names_nothing(path, place));
                 break;
             }
         }
@@ -160,6 +196,26 @@ fn check_changes(submission: &mut Node, changes: &[(&Pointer, &Value, String)], 
     for done in undo.into_iter().rev() {
         submission.undo(done);
     }
+}
+
+fn names_nothing(path: &Pointer, place: &str) -> FieldError {
+    let detail = format!(
+        "{} names nothing in the base: what stands above it is no object, or a list without this place.",
+        path.text()
+    );
+    FieldError::new(place, Code::UnknownField, detail)
+}
+
+/// Whether `pointer` names something in the object in which `path` names a field, or that object.
+fn is_beside(path: &Pointer, pointer: &str) -> bool {
+    let object = path
+        .text()
+        .rsplit_once('/')
+        .map_or("", |(object, _)| object);
+    pointer == object
+        || pointer
+            .rsplit_once('/')
+            .is_some_and(|(within, _)| within == object)
 }
 
 fn report_misread(submission: &Node, changes: &[(&Pointer, &Value, String)], errors: &Errors) {

@@ -1,8 +1,8 @@
 //! A study: one submission in many variants, each of which is computed.
 //!
-//! A study has a `base`, and says by `axes` or by `designs` what changes in it. Axes give every combination of their
+//! A study has a `base`, and says by `axes`, by `designs` or by a `population` what changes in it. Axes give every combination of their
 //! values, the last axis changing fastest, as nested loops written in their order would; designs are listed with their
-//! labels. What changes is named by JSON pointers (RFC 6901) into the submission.
+//! labels; the members of a population are drawn from laws. What changes is named by JSON pointers (RFC 6901) into the submission.
 //!
 //! What is wrong with the study itself is refused: a pointer that names no field, a value of the wrong type, a field of
 //! the base that no design mends, a label that stands twice, more designs than the limit. What is wrong with one design
@@ -17,14 +17,18 @@ mod size;
 #[cfg(test)]
 mod tests;
 
+use std::borrow::Cow;
+
+use meshwright_engine::gear::Member;
 use meshwright_engine::run::Run;
 use serde_json::{Map, Value};
 
-use super::declare::{Errors, Node};
+use super::declare::{Choice as _, Errors, Node};
 use super::kept::Kept;
 use super::pointer::Pointer;
+use super::population::{Population, Varied};
 use super::problem::{Code, FieldError, Problem};
-use super::submission::Submission;
+use super::submission::{MOST_TORQUES, Submission};
 use super::warning::GearName;
 use constant_mass::ConstantMass;
 
@@ -47,6 +51,7 @@ pub struct Study {
 enum Plan {
     Axes(Vec<Axis>),
     Designs(Vec<Listed>),
+    Population(Box<Population>),
 }
 
 /// A field and the values that it takes.
@@ -76,7 +81,21 @@ pub struct Design {
     pub submission: Result<Submission, Problem>,
 }
 
+/// Places and what stands there.
+type Changes<'a> = Vec<(&'a Pointer, Cow<'a, Value>)>;
+
+/// A row that has been put together.
+struct Composed {
+    label: String,
+    changes: Map<String, Value>,
+    /// The submission, or why its changes lead nowhere.
+    submission: Result<Node, Problem>,
+}
+
 impl Study {
+    /// The most output torques of a design.
+    pub const MOST_TORQUES: usize = MOST_TORQUES;
+
     /// Reads and checks a study. The work is bounded by the size of the document; `run` stops it earlier.
     ///
     /// # Errors
@@ -107,12 +126,26 @@ impl Study {
         match &self.plan {
             Plan::Axes(axes) => axes.iter().map(|axis| axis.values.len()).product(),
             Plan::Designs(designs) => designs.len(),
+            Plan::Population(population) => population.size(),
+        }
+    }
+
+    /// The population that its designs are, if they are one.
+    pub(super) fn population(&self) -> Option<&Population> {
+        match &self.plan {
+            Plan::Population(population) => Some(population),
+            Plan::Axes(_) | Plan::Designs(_) => None,
         }
     }
 
     /// The document as it was sent, without its white space.
     pub fn document(&self) -> &str {
         &self.document
+    }
+
+    /// The submission that designs are variants of.
+    pub(super) fn base(&self) -> &Node {
+        &self.base
     }
 
     /// What the client calls it.
@@ -136,8 +169,13 @@ impl Study {
         if let Some(rule) = &self.constant_mass {
             return rule.gear.into();
         }
-        let touches = |member: &str| self.paths().any(|path| path.starts_with(&["pair", member]));
-        if touches("driving") && !touches("driven") {
+        let touches = |member: Member| {
+            let mut paths = self.paths();
+            let drawn = self.population();
+            paths.any(|path| path.starts_with(&["pair", member.word()]))
+                || drawn.is_some_and(|population| population.draws_teeth_of(member))
+        };
+        if touches(Member::Driving) && !touches(Member::Driven) {
             GearName::Driving
         } else {
             GearName::Driven
@@ -146,29 +184,68 @@ impl Study {
 
     /// Every place that a design changes, those of the list as often as they stand there.
     fn paths(&self) -> impl Iterator<Item = &Pointer> {
-        let (axes, designs) = match &self.plan {
-            Plan::Axes(axes) => (&axes[..], &[][..]),
-            Plan::Designs(designs) => (&[][..], &designs[..]),
+        let (axes, designs, varied) = match &self.plan {
+            Plan::Axes(axes) => (&axes[..], &[][..], &[][..]),
+            Plan::Designs(designs) => (&[][..], &designs[..], &[][..]),
+            Plan::Population(population) => (&[][..], &[][..], population.varied()),
         };
         let listed = designs.iter().flat_map(|design: &Listed| &design.changes);
         let of_axes = axes.iter().map(|axis: &Axis| &axis.path);
-        of_axes.chain(listed.map(|(path, _)| path))
+        let of_members = varied.iter().map(|varied: &Varied| &varied.path);
+        of_axes
+            .chain(listed.map(|(path, _)| path))
+            .chain(of_members)
     }
 
     /// The design of a row, counted from 0; none beyond the last.
     pub fn design(&self, row: usize) -> Option<Design> {
+        let Composed {
+            label,
+            changes,
+            submission,
+        } = self.composed(row)?;
+        let submission = submission.and_then(|submission| match &self.plan {
+            Plan::Population(population) => {
+                Submission::of_node_with(&submission, |pair, errors| {
+                    population.give_teeth(row as u32, pair, errors)
+                })
+            }
+            Plan::Axes(_) | Plan::Designs(_) => Submission::of_node(&submission),
+        });
+        Some(Design {
+            label,
+            changes,
+            submission,
+        })
+    }
+
+    /// The submission of a row, as JSON; one that cannot be built as far as it can be put together. None beyond the last row.
+    pub fn submission_of(&self, row: usize) -> Option<String> {
+        let design = self.design(row)?;
+        Some(match design.submission {
+            Ok(submission) => submission.canonical_json(),
+            Err(_) => match self.composed(row)?.submission {
+                Ok(node) => node.to_value().to_string(),
+                Err(_) => self.base.to_value().to_string(),
+            },
+        })
+    }
+
+    /// A row put together, before it is looked at as a whole.
+    fn composed(&self, row: usize) -> Option<Composed> {
         let (label, changes) = self.changes(row)?;
         let mut submission = self.base.clone();
         let mut told = Map::new();
         for (path, value) in changes {
-            told.insert(path.text().to_owned(), value.clone());
-            if submission.put(path.steps(), Node::of(value)).is_none() {
+            let put = submission.put(path.steps(), Node::of(&value));
+            told.insert(path.text().to_owned(), value.into_owned());
+            if put.is_none() {
                 let detail = format!(
                     "{} names nothing in this design: what stands above it is no object, or a list without this place.",
                     path.text()
                 );
                 let error = FieldError::new(path.text(), Code::UnknownField, detail);
-                return Some(Design {
+                return Some(Composed {
                     label,
                     changes: told,
                     submission: Err(Problem::of_fields(vec![error])),
@@ -178,19 +255,32 @@ impl Study {
         if let Some(rule) = &self.constant_mass {
             rule.apply(&mut submission, &mut told);
         }
-        Some(Design {
+        Some(Composed {
             label,
             changes: told,
-            submission: Submission::of_node(&submission),
+            submission: Ok(submission),
         })
     }
 
     /// The label and the changes of a row.
-    fn changes(&self, row: usize) -> Option<(String, Vec<(&Pointer, &Value)>)> {
+    fn changes(&self, row: usize) -> Option<(String, Changes<'_>)> {
         match &self.plan {
+            Plan::Population(population) => {
+                let member = u32::try_from(row)
+                    .ok()
+                    .filter(|_| row < population.size())?;
+                let values = population.values(member).into_iter();
+                let changes = population
+                    .varied()
+                    .iter()
+                    .zip(values)
+                    .map(|(varied, value)| (&varied.path, Cow::Owned(varied.told(value))));
+                Some((format!("member {member}"), changes.collect()))
+            }
             Plan::Designs(designs) => {
                 let design = designs.get(row)?;
-                let changes = design.changes.iter().map(|(path, value)| (path, value));
+                let changes = design.changes.iter();
+                let changes = changes.map(|(path, value)| (path, Cow::Borrowed(value)));
                 Some((design.label.clone(), changes.collect()))
             }
             Plan::Axes(axes) => {
@@ -206,7 +296,8 @@ impl Study {
                 let words: Vec<&str> = chosen()
                     .map(|(axis, &place)| axis.words[place].as_str())
                     .collect();
-                let changes = chosen().map(|(axis, &place)| (&axis.path, &axis.values[place]));
+                let changes =
+                    chosen().map(|(axis, &place)| (&axis.path, Cow::Borrowed(&axis.values[place])));
                 Some((words.join(", "), changes.collect()))
             }
         }

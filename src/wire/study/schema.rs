@@ -6,13 +6,14 @@ use super::Study;
 use super::constant_mass::ConstantMass;
 use super::document::{KEEP, LONGEST_LABEL, MOST_CHANGES, NAME};
 use super::size::MOST_DESIGNS;
-use crate::wire::declare::{Document, Kind, Property, object, utoipa_schema};
+use crate::wire::declare::{Document, Kind, Property, nested, object, utoipa_schema};
 use crate::wire::kept::Kept;
+use crate::wire::population::PopulationDocument;
 use crate::wire::submission::TAGS;
 
 impl utoipa::PartialSchema for Study {
     fn schema() -> utoipa::openapi::RefOr<utoipa::openapi::Schema> {
-        let about = "One submission in many variants, at most 100,000, each of which is computed as a job. Give either axes or designs. A design that cannot be built stands in the table with its problem.";
+        let about = "One submission in many variants, at most 100,000, each of which is computed as a job. Give axes, designs or a population. A design that cannot be built stands in the table with its problem.";
         let tags = Vec::<String>::describe(
             "Short strings to find the study by. They do not change the result.",
             &TAGS,
@@ -28,13 +29,28 @@ impl utoipa::PartialSchema for Study {
             ("base", base, true),
             ("axes", axes(), false),
             ("designs", designs(), false),
+            (
+                "population",
+                PopulationDocument::describe("", &nested("")),
+                false,
+            ),
             ("constant_mass", ConstantMass::json_schema(), false),
         ];
         utoipa_schema(object("Study", about, properties))
     }
 }
 
-impl utoipa::ToSchema for Study {}
+impl utoipa::ToSchema for Study {
+    fn schemas(schemas: &mut Vec<(String, utoipa::openapi::RefOr<utoipa::openapi::Schema>)>) {
+        let mut named = Vec::new();
+        PopulationDocument::name_parts(&mut named);
+        schemas.extend(
+            named
+                .into_iter()
+                .map(|(name, schema)| (name.to_owned(), utoipa_schema(schema))),
+        );
+    }
+}
 
 fn axes() -> Value {
     let path = json!({

@@ -2,6 +2,7 @@
 
 mod csv;
 mod pareto;
+mod quantity;
 mod summary;
 #[cfg(test)]
 mod tests;
@@ -15,10 +16,11 @@ use super::problem::Problem;
 use super::results::StatisticsDocument;
 use super::status::Status;
 use super::warning::GearName;
-use summary::{CurveSummary, DRIVEN_HOLE_ORDER, DRIVING_HOLE_ORDER, HOLE_ORDER, MESH_ORDER};
+use summary::CurveSummary;
 
 pub use self::csv::CsvTable;
 pub use pareto::Outline;
+pub(in crate::wire) use quantity::{Of, QUANTITIES};
 pub use summary::Summary;
 
 /// A design and what has come of it so far.
@@ -176,14 +178,9 @@ impl TableRow {
 
 impl RowCurve {
     fn of(gear: GearName, curve: CurveSummary) -> Self {
-        let amplitude = |label: &str| curve.orders.get(label).copied();
-        let own = match gear {
-            GearName::Driving => DRIVING_HOLE_ORDER,
-            GearName::Driven => DRIVEN_HOLE_ORDER,
-        };
         Self {
-            hole_order_um: amplitude(HOLE_ORDER).or_else(|| amplitude(own)),
-            mesh_order_um: amplitude(MESH_ORDER),
+            hole_order_um: curve.hole_order(gear),
+            mesh_order_um: curve.mesh_order(),
             output_torque_n_m: curve.output_torque_n_m,
             statistics: curve.statistics,
         }

@@ -8,6 +8,7 @@ use utoipa::ToSchema;
 use super::pareto::Conditions;
 use crate::wire::results::StatisticsDocument;
 use crate::wire::units::significant;
+use crate::wire::warning::GearName;
 
 /// What of a results document a table shows. It is kept beside the document, so that a table of thousands of rows reads
 /// kilobytes where the documents have hundreds of megabytes.
@@ -19,6 +20,10 @@ pub struct Summary {
     pub(super) driving: GearSummary,
     #[serde(default)]
     pub(super) driven: GearSummary,
+    #[serde(default)]
+    pub(super) contact_ratio: Option<f64>,
+    #[serde(default)]
+    pub(super) backlash_mm: Option<f64>,
     #[serde(default)]
     pub(super) curves: Vec<CurveSummary>,
 }
@@ -38,9 +43,12 @@ pub(super) struct GearSummary {
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct CurveSummary {
-    pub(super) output_torque_n_m: f64,
+pub(in crate::wire) struct CurveSummary {
+    pub(in crate::wire) output_torque_n_m: f64,
     pub(super) statistics: Option<StatisticsDocument>,
+    /// The largest contact pressure over the span, in MPa; none where it has no limit somewhere.
+    #[serde(default)]
+    pub(super) peak_contact_pressure_mpa: Option<f64>,
     /// Amplitudes of the transmission error, in um, by the names of their orders.
     pub(super) orders: BTreeMap<String, f64>,
 }
@@ -52,11 +60,11 @@ const ORDERS: [&str; 4] = [
     DRIVING_HOLE_ORDER,
     DRIVEN_HOLE_ORDER,
 ];
-pub(super) const MESH_ORDER: &str = "H_Z2";
+const MESH_ORDER: &str = "H_Z2";
 /// The holes of the only holed gear, or of both if they make the same order.
-pub(super) const HOLE_ORDER: &str = "H_N";
-pub(super) const DRIVING_HOLE_ORDER: &str = "H_N1";
-pub(super) const DRIVEN_HOLE_ORDER: &str = "H_N2";
+const HOLE_ORDER: &str = "H_N";
+const DRIVING_HOLE_ORDER: &str = "H_N1";
+const DRIVEN_HOLE_ORDER: &str = "H_N2";
 
 impl Summary {
     /// The summary of a results document. Its curves are passed over, not kept. None if it is no results document.
@@ -74,11 +82,15 @@ impl Summary {
         struct Pair {
             driving: GearSummary,
             driven: GearSummary,
+            contact_ratio: Option<f64>,
+            backlash_mm: Option<f64>,
         }
         #[derive(Deserialize)]
         struct Curve {
             output_torque_n_m: f64,
             statistics: Option<StatisticsDocument>,
+            #[serde(default)]
+            peak_contact_pressure_mpa: Vec<Option<f64>>,
             spectrum: Option<Spectrum>,
         }
         #[derive(Deserialize)]
@@ -107,7 +119,10 @@ impl Summary {
                     .filter(|_| shown)
                     .map(|amplitude| (line.label, amplitude))
             });
+            let pressures: Option<Vec<f64>> = curve.peak_contact_pressure_mpa.into_iter().collect();
             CurveSummary {
+                peak_contact_pressure_mpa: pressures
+                    .and_then(|pressures| pressures.into_iter().reduce(f64::max)),
                 output_torque_n_m: curve.output_torque_n_m,
                 statistics: curve.statistics,
                 orders: orders.collect(),
@@ -117,12 +132,36 @@ impl Summary {
             method,
             driving: pair.driving,
             driven: pair.driven,
+            contact_ratio: pair.contact_ratio,
+            backlash_mm: pair.backlash_mm,
             curves: curves.into_iter().map(curve).collect(),
         })
     }
 }
 
+impl CurveSummary {
+    /// The amplitude at the order of the holes; where both gears make an order of their own, that of `gear`.
+    pub(super) fn hole_order(&self, gear: GearName) -> Option<f64> {
+        let own = match gear {
+            GearName::Driving => DRIVING_HOLE_ORDER,
+            GearName::Driven => DRIVEN_HOLE_ORDER,
+        };
+        let found = self.orders.get(HOLE_ORDER).or_else(|| self.orders.get(own));
+        found.copied()
+    }
+
+    /// The amplitude at the mesh order.
+    pub(super) fn mesh_order(&self) -> Option<f64> {
+        self.orders.get(MESH_ORDER).copied()
+    }
+}
+
 impl Summary {
+    /// Its curves, one for each torque.
+    pub(in crate::wire) fn curves(&self) -> &[CurveSummary] {
+        &self.curves
+    }
+
     pub(super) fn pair_mass(&self) -> Option<f64> {
         let sum = self.driving.mass_kg? + self.driven.mass_kg?;
         Some(significant(sum, 10))

@@ -20,6 +20,7 @@ use super::declare::{
     Choice, Document as _, Errors, Kind, Node, ObjectReader, Place, utoipa_schema, word,
 };
 use super::forces::DynamicsQuestion;
+use super::pair::PairDocument;
 use super::problem::{FieldError, Problem};
 use super::resolution::ResolutionDocument;
 use super::size::{MOST_VALUES, refuse_many_values};
@@ -84,6 +85,41 @@ pub(super) enum Purpose {
     },
 }
 
+impl Document {
+    /// The submission, if all that it says goes together.
+    fn checked(mut self, purpose: Purpose, errors: &Errors) -> Option<Submission> {
+        let pair = self.pair.to_pair(errors)?;
+        self.check_torques(&pair, errors);
+        self.check_interface(&pair, errors);
+        self.check_span(&pair, errors);
+        self.resolution
+            .span_mesh_periods
+            .get_or_insert(pair.period());
+        self.fill_in_table();
+        self.check_forces(&pair, errors);
+        self.check_size(purpose, &pair, errors);
+        let case = Case {
+            pair,
+            method: self.method,
+            output_torques: self.output_torques_n_m.clone(),
+            resolution: self.resolution.data(),
+            stress: self.stress,
+            driving_speed: self
+                .driving_speed_rpm
+                .map(|speed| RotationSpeed(speed / 60.0)),
+        };
+        let forces = self.force_table.as_ref().map(|table| ForcesRequest {
+            table: table.data(),
+            dynamics: self.dynamics.as_ref().map(DynamicsQuestion::data),
+        });
+        Some(Submission {
+            document: self,
+            case,
+            forces,
+        })
+    }
+}
+
 impl Submission {
     /// Reads and checks a submission.
     ///
@@ -98,9 +134,22 @@ impl Submission {
 
     /// Reads and checks a submission that is taken apart already.
     pub(super) fn of_node(node: &Node) -> Result<Self, Problem> {
+        Self::of_node_with(node, |_, _| Some(()))
+    }
+
+    /// The same, once `finish` has made of the pair what cannot be written down beforehand. What prevents that it reports.
+    pub(super) fn of_node_with(
+        node: &Node,
+        finish: impl FnOnce(&mut PairDocument, &Errors) -> Option<()>,
+    ) -> Result<Self, Problem> {
         let errors = Errors::default();
-        let read = ObjectReader::new(node, Place::root(&errors))
-            .and_then(|reader| Self::read(reader, Purpose::Job, &errors));
+        let document = ObjectReader::new(node, Place::root(&errors))
+            .and_then(Document::read_whole)
+            .filter(|_| errors.count() == 0);
+        let read = document.and_then(|mut document| {
+            finish(&mut document.pair, &errors)?;
+            document.checked(Purpose::Job, &errors)
+        });
         match read {
             Some(submission) if errors.count() == 0 => Ok(submission),
             _ => Err(errors.into_problem()),
@@ -131,40 +180,11 @@ impl Submission {
         purpose: Purpose,
         errors: &Errors,
     ) -> Option<Self> {
-        let mut document = Document::read_whole(reader)?;
+        let document = Document::read_whole(reader)?;
         if errors.count() > 0 {
             return None;
         }
-        let pair = document.pair.to_pair(errors)?;
-        document.check_torques(&pair, errors);
-        document.check_interface(&pair, errors);
-        document.check_span(&pair, errors);
-        document
-            .resolution
-            .span_mesh_periods
-            .get_or_insert(pair.period());
-        document.fill_in_table();
-        document.check_forces(&pair, errors);
-        document.check_size(purpose, &pair, errors);
-        let case = Case {
-            pair,
-            method: document.method,
-            output_torques: document.output_torques_n_m.clone(),
-            resolution: document.resolution.data(),
-            stress: document.stress,
-            driving_speed: document
-                .driving_speed_rpm
-                .map(|speed| RotationSpeed(speed / 60.0)),
-        };
-        let forces = document.force_table.as_ref().map(|table| ForcesRequest {
-            table: table.data(),
-            dynamics: document.dynamics.as_ref().map(DynamicsQuestion::data),
-        });
-        Some(Self {
-            document,
-            case,
-            forces,
-        })
+        document.checked(purpose, errors)
     }
 
     /// What the engine is asked.

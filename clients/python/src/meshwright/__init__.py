@@ -4,6 +4,6 @@ from .client import AsyncClient, Client
 from .look_up import LookUpTable
 from .problem import FieldError, ProblemError
 from .results import Curve, Results
-from .study import StudyTable
+from .study import PopulationTable, StudyTable
 
-__all__ = ["AsyncClient", "Client", "Curve", "FieldError", "LookUpTable", "ProblemError", "Results", "StudyTable"]
+__all__ = ["AsyncClient", "Client", "Curve", "FieldError", "LookUpTable", "PopulationTable", "ProblemError", "Results", "StudyTable"]

@@ -88,7 +88,11 @@ def study(document: Mapping[str, Any], report: Report) -> Flow[StudyTable]:
         state = yield Call("GET", f"/v1/studies/{state['id']}", pause=pause)
         pause = min(2 * pause, 2.0)
     report(state["done"], state["total"])
-    return StudyTable((yield from get(f"/v1/studies/{state['id']}/results")))
+    path = f"/v1/studies/{state['id']}/results"
+    population: Json | None = None
+    if document.get("population") is not None:
+        population = yield from get(f"{path}/population")
+    return StudyTable((yield from get(path)), population)
 
 
 def example(name: str) -> Flow[Json]:

@@ -1,4 +1,4 @@
-"""The table of a study."""
+"""The table of a study, and what a population comes to."""
 
 from __future__ import annotations
 
@@ -11,9 +11,16 @@ if TYPE_CHECKING:
 class StudyTable:
     """A row for each design, as the service gives it; `frame` has a row for each design and torque."""
 
-    def __init__(self, document: dict[str, Any]) -> None:
+    def __init__(self, document: dict[str, Any], population: dict[str, Any] | None = None) -> None:
         self.document = document
         self.rows: list[dict[str, Any]] = document["rows"]
+        self._population = population
+
+    def population(self) -> PopulationTable:
+        """What the members of a population come to."""
+        if self._population is None:
+            raise ValueError("the designs of this study are no population")
+        return PopulationTable(self._population)
 
     def pareto(self) -> list[str]:
         """The labels of the designs that no other one beats."""
@@ -24,6 +31,47 @@ class StudyTable:
         import pandas
 
         return pandas.DataFrame([line for row in self.rows for line in _lines(row)])
+
+
+class PopulationTable:
+    """How each quantity is spread over the members of a population; `frame` has a row for each quantity and torque."""
+
+    def __init__(self, document: dict[str, Any]) -> None:
+        self.document = document
+        self.quantities: list[dict[str, Any]] = document["quantities"]
+
+    def frame(self) -> pandas.DataFrame:
+        """Percentiles stand in columns `p1` to `p99`, their confidence limits in `p1_low` and `p1_high`."""
+        import pandas
+
+        return pandas.DataFrame([_spread(quantity) for quantity in self.quantities])
+
+    def influences(self) -> pandas.DataFrame:
+        """A row for each quantity, torque and input: the part of the variance that the input makes."""
+        import pandas
+
+        return pandas.DataFrame(
+            [
+                {
+                    "name": quantity["name"],
+                    "output_torque_n_m": quantity["output_torque_n_m"],
+                    "input": influence.get("path") or f"teeth of the {influence['accuracy']} gear",
+                    "share": influence["share"],
+                    "low": influence["low"],
+                    "high": influence["high"],
+                }
+                for quantity in self.quantities
+                for influence in quantity["influences"]
+            ]
+        )
+
+
+def _spread(quantity: dict[str, Any]) -> dict[str, Any]:
+    line = {name: quantity[name] for name in ("name", "output_torque_n_m", "count", "mean", "standard_deviation", "smallest", "largest")}
+    for percentile in quantity["percentiles"]:
+        name = f"p{percentile['percent']:g}"
+        line |= {name: percentile["value"], f"{name}_low": percentile["low"], f"{name}_high": percentile["high"]}
+    return line
 
 
 def _lines(row: dict[str, Any]) -> list[dict[str, Any]]:

@@ -1,0 +1,153 @@
+//! The population that a study is: what its members tell of all, and one member or design by itself.
+
+use std::sync::Arc;
+
+use axum::extract::{Path, State};
+use axum::http::HeaderMap;
+use axum::http::header::CONTENT_TYPE;
+use axum::response::{IntoResponse, Response};
+use meshwright_engine::run::Run;
+
+use super::{study_id, tag_of, tell_when_to_return};
+use crate::http::app::App;
+use crate::http::aside::{aside, turn_to_read};
+use crate::http::client::Client;
+use crate::http::conditional::{Keep, Tag};
+use crate::jobs::StudyRecord;
+use crate::wire::{Code, PopulationResults, PopulationSample, Problem, Study, Submission};
+
+/// Get what a population comes to
+///
+/// Mean, spread, percentiles with their confidence limits, a histogram and influences of every quantity, as far as the study has come; it can
+/// be asked at any time. A percentile's limits are order statistics where members are random, and follow from the independent scramblings where
+/// they are Sobol' points. The share of a field is found by ranks, that of a gear's teeth from pairs of members that have
+/// the gear in common.
+#[utoipa::path(
+    get, path = "/v1/studies/{id}/results/population", tag = "Studies", operation_id = "get_study_population",
+    params(
+        ("id" = String, Path, format = "uuid", description = "The id of the study."),
+        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
+    ),
+    responses(
+        (status = 200, description = "What the members tell so far.", body = PopulationResults, headers(
+            ("ETag" = String, description = "Stands for this answer."),
+            ("Retry-After" = u32, description = "Until the study has ended: seconds after which it is worth looking again."),
+        )),
+        (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
+        (status = 404, description = "There is no such study, or it is no population.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(in crate::http) async fn population(
+    State(app): State<App>,
+    client: Client,
+    Path(id): Path<String>,
+    request: HeaderMap,
+) -> Result<Response, Problem> {
+    let study = app.jobs.find_study(client.name(), study_id(&id)?).await?;
+    let tag = tag_of(&study, "population", &app.edge);
+    let name = Arc::from(client.name());
+    let made = async {
+        let results = results(&app, name, &study).await?;
+        Ok::<_, Problem>(axum::Json(results).into_response())
+    };
+    let mut response = tag.answer(Keep::AskAgain, &request, made).await?;
+    tell_when_to_return(&study, &mut response);
+    Ok(response)
+}
+
+/// The table is read once for as many torques as fit in memory.
+async fn results(
+    app: &App,
+    client: Arc<str>,
+    record: &StudyRecord,
+) -> Result<PopulationResults, Problem> {
+    let study = Arc::new(document(app, &client, record).await?);
+    let at_once = PopulationSample::torques_at_once(&study);
+    let mut whole: Option<PopulationResults> = None;
+    for first in (0..Study::MOST_TORQUES).step_by(at_once) {
+        let Some(mut sample) = PopulationSample::new(&study, first..first + at_once) else {
+            return Err(Problem::new(
+                Code::NotFound,
+                "This study is no population; its table is at /results.",
+            ));
+        };
+        let mut read = 0;
+        loop {
+            let _turn = turn_to_read(&client).await;
+            let rows = app.jobs.study_rows(record.id, read).await?;
+            if rows.is_empty() {
+                break;
+            }
+            let before = read as u32;
+            read += rows.len() as u64;
+            let added = aside(&client, move |_| {
+                (before..)
+                    .zip(&rows)
+                    .for_each(|(member, row)| sample.add(member, row));
+                sample
+            });
+            sample = added.await?;
+        }
+        let (id, status) = (record.id, record.status());
+        let (part, is_last) = aside(&client, move |_| {
+            (sample.results(Some(id), status), sample.has_all_torques())
+        })
+        .await?;
+        match &mut whole {
+            None => whole = Some(part),
+            Some(whole) => whole.quantities.extend(part.quantities),
+        }
+        if is_last {
+            break;
+        }
+    }
+    whole.ok_or_else(crate::http::problem::internal)
+}
+
+/// The study as it was sent, read.
+async fn document(app: &App, client: &str, record: &StudyRecord) -> Result<Study, Problem> {
+    let text = app.jobs.study_text(record.id).await?;
+    aside(client, move |run: &Run| Study::parse(text.as_bytes(), run)).await?
+}
+
+/// Get the submission of a design
+///
+/// The design of a row of the table, as a submission with every default filled in: what its job computes, the drawn teeth of a member among
+/// it. One that cannot be built is given as far as it can be put together.
+#[utoipa::path(
+    get, path = "/v1/studies/{id}/designs/{row}", tag = "Studies", operation_id = "get_study_design",
+    params(
+        ("id" = String, Path, format = "uuid", description = "The id of the study."),
+        ("row" = u32, Path, description = "The place of the design in the table, from 0.", minimum = 0),
+        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
+    ),
+    responses(
+        (status = 200, description = "The submission.", body = Submission, headers(
+            ("ETag" = String, description = "Stands for this answer."),
+        )),
+        (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
+        (status = 404, description = "There is no such study, or it has no such row.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(in crate::http) async fn design(
+    State(app): State<App>,
+    client: Client,
+    Path((id, row)): Path<(String, String)>,
+    request: HeaderMap,
+) -> Result<Response, Problem> {
+    let record = app.jobs.find_study(client.name(), study_id(&id)?).await?;
+    let wanted = row.parse::<usize>().ok();
+    let text = async {
+        let study = document(&app, client.name(), &record).await?;
+        let found = aside(client.name(), move |_| {
+            wanted.and_then(|row| study.submission_of(row))
+        });
+        let Some(text) = found.await? else {
+            let detail = format!("The study has {} designs, counted from 0.", record.total);
+            return Err(Problem::new(Code::NotFound, detail));
+        };
+        Ok(([(CONTENT_TYPE, "application/json")], text).into_response())
+    };
+    let tag = Tag::of(&["design", &record.id.to_string(), &row]);
+    tag.answer(Keep::ForGood, &request, text).await
+}

@@ -1,0 +1,227 @@
+//! A population: members of a design as they are made, each drawn from laws.
+//!
+//! A member is known by its number alone: `document` says what is drawn, [`Population`] draws it, and `results` is what the results of
+//! the members tell of all.
+
+mod document;
+mod results;
+#[cfg(test)]
+mod tests;
+
+use meshwright_engine::gear::{
+    Member, Normals, SpurGear, Tolerances, ToothDeviations, total_pitch_deviation,
+};
+use meshwright_sample::law::Law;
+use meshwright_sample::normal;
+use meshwright_sample::points::Points;
+use serde_json::{Value, json};
+
+use super::declare::{Choice as _, Errors, Node};
+use super::gear::{DeviationsDocument, GearDocument};
+use super::pair::PairDocument;
+use super::pointer::Pointer;
+use super::units::significant;
+use document::GearAccuracy;
+pub(super) use document::PopulationDocument;
+pub use results::*;
+
+/// Members drawn from laws. What exists has laws that can be drawn from, of fields that take a number.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Population {
+    size: u32,
+    points: Points,
+    varied: Vec<Varied>,
+    /// Of each gear, driving and driven: how accurately it is made.
+    accuracy: [Option<GearAccuracy>; 2],
+}
+
+/// A field and its law.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Varied {
+    pub(super) path: Pointer,
+    pub(super) law: Law,
+    /// Whether the field takes whole numbers, to which what is drawn is rounded.
+    whole: bool,
+}
+
+impl Varied {
+    /// The value of the field for a number between 0 and 1.
+    fn at(&self, u: f64) -> f64 {
+        let value = self.law.quantile(u);
+        if self.whole {
+            value.round()
+        } else {
+            // So many digits are the same whichever machine adds them up.
+            significant(value, 12)
+        }
+    }
+
+    /// A value of the field as JSON has it.
+    pub(super) fn told(&self, value: f64) -> Value {
+        if self.whole {
+            json!(value as i64)
+        } else {
+            json!(value)
+        }
+    }
+
+    /// The value in the middle of its law.
+    pub(super) fn median(&self) -> f64 {
+        self.at(0.5)
+    }
+}
+
+/// A part of what differs between members, of which it is told how much of the variance it makes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Source<'a> {
+    /// A field.
+    Field(&'a Pointer),
+    /// All teeth of a gear together.
+    Teeth(Member),
+}
+
+const GEARS: [Member; 2] = [Member::Driving, Member::Driven];
+
+impl Population {
+    /// The number of members.
+    pub(super) fn size(&self) -> usize {
+        self.size as usize
+    }
+
+    /// The fields that are varied.
+    pub(super) fn varied(&self) -> &[Varied] {
+        &self.varied
+    }
+
+    /// Whether the teeth of `gear` are drawn.
+    pub(super) fn draws_teeth_of(&self, gear: Member) -> bool {
+        self.accuracy[gear as usize].is_some()
+    }
+
+    /// What a member has in its varied fields, in their order.
+    pub(super) fn values(&self, member: u32) -> Vec<f64> {
+        let axes = self.varied.iter().zip(0..);
+        axes.map(|(varied, axis)| varied.at(self.points.at(member, axis)))
+            .collect()
+    }
+
+    /// Gives the gears of a member their teeth; what prevents a gear is reported to `errors`.
+    pub(super) fn give_teeth(
+        &self,
+        member: u32,
+        pair: &mut PairDocument,
+        errors: &Errors,
+    ) -> Option<()> {
+        for gear in GEARS {
+            let Some(accuracy) = &self.accuracy[gear as usize] else {
+                continue;
+            };
+            let document = match gear {
+                Member::Driving => &mut pair.driving,
+                Member::Driven => &mut pair.driven,
+            };
+            let made = document.clone().without_deviations();
+            match made.to_gear(&format!("/pair/{gear}")) {
+                Ok(made) => {
+                    let teeth = self.teeth(member, gear, accuracy, &Gauge::of(&made, accuracy));
+                    document.set_deviations(DeviationsDocument::of(&teeth));
+                }
+                Err(faults) => {
+                    faults.into_iter().for_each(|fault| errors.push(fault));
+                    return None;
+                }
+            }
+        }
+        Some(())
+    }
+
+    /// The teeth that `gear` has in a member.
+    ///
+    /// The eccentricity, two numbers that act on the whole, stands on axes of the points behind those of the fields; the teeth, hundreds
+    /// of numbers of which none matters by itself, are random.
+    fn teeth(
+        &self,
+        member: u32,
+        gear: Member,
+        accuracy: &GearAccuracy,
+        gauge: &Gauge,
+    ) -> ToothDeviations {
+        let drawn = self.drawn_for(member, gear);
+        let stream = (u64::from(gear as u8) + 1) << 32 | u64::from(drawn);
+        let normals = Normals::new(u64::from(self.points.seed), stream);
+        let first = self.varied.len() as u32 + 2 * gear as u32;
+        let eccentricity =
+            [first, first + 1].map(|axis| normal::quantile(self.points.at(drawn, axis)));
+        let teeth = normals.take(2 * gauge.tooth_count as usize);
+        gauge.tolerances.draw(
+            gauge.tooth_count,
+            accuracy.capability,
+            teeth.chain(eccentricity),
+        )
+    }
+
+    /// The member for which the gear of `member` was drawn first: every gear of some batches stands in two pairs, so that what two pairs
+    /// of one gear have in common tells what the gear makes of the variance.
+    fn drawn_for(&self, member: u32, gear: Member) -> u32 {
+        if self.is_shared(member, gear) {
+            member.min(meshwright_sample::partner(member))
+        } else {
+            member
+        }
+    }
+
+    /// Whether the partner of `member` has the same `gear`. Where both gears are drawn they take turns, batch by batch.
+    fn is_shared(&self, member: u32, gear: Member) -> bool {
+        let drawn: Vec<Member> = GEARS
+            .into_iter()
+            .filter(|gear| self.draws_teeth_of(*gear))
+            .collect();
+        // Where nothing else differs the gear makes all of the variance, and two pairs of it would be one.
+        let alone = drawn.len() == 1 && self.varied.is_empty();
+        !alone && !drawn.is_empty() && drawn[meshwright_sample::batch(member) % drawn.len()] == gear
+    }
+
+    /// Everything that differs between members.
+    fn sources(&self) -> Vec<Source<'_>> {
+        let fields = self.varied.iter().map(|varied| Source::Field(&varied.path));
+        let teeth = GEARS.into_iter().filter(|gear| self.draws_teeth_of(*gear));
+        fields.chain(teeth.map(Source::Teeth)).collect()
+    }
+
+    /// What the teeth of a base are measured by, gear by gear; none where they are not drawn, or its gear cannot be made.
+    fn gauges(&self, base: &Node) -> [Option<Gauge>; 2] {
+        GEARS.map(|gear| {
+            let accuracy = self.accuracy[gear as usize].as_ref()?;
+            let document = GearDocument::at(base.at(&["pair", gear.word()])?)?;
+            let made = document.without_deviations().to_gear("").ok()?;
+            Some(Gauge::of(&made, accuracy))
+        })
+    }
+
+    /// Whether a field of `gear` is varied, which its tolerances may depend on.
+    fn varies(&self, gear: Member) -> bool {
+        let mut paths = self.varied.iter().map(|varied| &varied.path);
+        paths.any(|path| path.starts_with(&["pair", gear.word()]))
+    }
+}
+
+/// What teeth are drawn and measured by.
+#[derive(Debug, Clone)]
+struct Gauge {
+    tolerances: Tolerances,
+    tooth_count: u32,
+}
+
+impl Gauge {
+    fn of(gear: &SpurGear, accuracy: &GearAccuracy) -> Self {
+        Self {
+            tolerances: Tolerances::of(gear, accuracy.iso_1328_class),
+            tooth_count: gear.tooth_count(),
+        }
+    }
+
+    /// Whether teeth deviate by more in total than the tolerance F_pT.
+    fn is_exceeded(&self, teeth: &ToothDeviations) -> bool {
+        total_pitch_deviation(teeth) > self.tolerances.total_pitch
+    }
+}

@@ -1,0 +1,506 @@
+//! What is drawn, what is refused, and what the members tell.
+
+use meshwright_engine::run::Run;
+use serde_json::{Value, json};
+
+use super::*;
+use crate::wire::study_table::{RowState, Summary};
+use crate::wire::{Code, Design, Problem, Status, Study};
+
+fn base() -> Value {
+    let gear = json!({
+        "tooth_count": 20, "module_mm": 2.0, "face_width_mm": 20.0, "blank": { "bore_radius_mm": 8.0 }
+    });
+    json!({
+        "method": "load_distribution",
+        "pair": { "center_distance_mm": 40.2, "driving": gear, "driven": gear },
+        "output_torques_n_m": [50.0]
+    })
+}
+
+fn document(population: Value) -> Value {
+    json!({ "base": base(), "population": population })
+}
+
+fn parse(document: &Value) -> Result<Study, Problem> {
+    Study::parse(document.to_string().as_bytes(), &Run::unattended())
+}
+
+fn study(population: Value) -> Study {
+    parse(&document(population)).expect("a population")
+}
+
+fn refused(document: &Value) -> Vec<(String, Code, Option<f64>)> {
+    let problem = parse(document).expect_err("refused");
+    let errors = problem.errors.iter();
+    errors
+        .map(|error| (error.pointer.clone(), error.code, error.nearest))
+        .collect()
+}
+
+fn distance() -> Value {
+    json!({ "path": "/pair/center_distance_mm", "kind": "normal", "mean": 40.2, "standard_deviation": 0.02, "low": 40.15, "high": 40.25 })
+}
+
+fn teeth(design: &Design, gear: Member) -> ToothDeviations {
+    let submission = design.submission.as_ref().expect("it can be built");
+    let pair = &submission.case().pair;
+    match gear {
+        Member::Driving => pair.driving().deviations().clone(),
+        Member::Driven => pair.driven().deviations().clone(),
+    }
+}
+
+#[test]
+fn a_member_is_known_by_its_number_alone_and_says_what_it_changes() {
+    let asked = json!({ "size": 1000, "seed": 7, "vary": [distance()],
+        "accuracy": { "driving": { "iso_1328_class": 6 }, "driven": { "iso_1328_class": 8, "capability": 1.33 } } });
+    let (whole, again) = (study(asked.clone()), study(asked));
+    assert_eq!(whole.total(), 1000);
+    for row in [999, 3, 0] {
+        assert_eq!(whole.design(row), again.design(row));
+        let design = whole.design(row).unwrap();
+        assert_eq!(design.label, format!("member {row}"));
+        let changed: Vec<&String> = design.changes.keys().collect();
+        assert_eq!(
+            changed,
+            ["/pair/center_distance_mm"],
+            "not hundreds of teeth"
+        );
+        let submission = design.submission.as_ref().expect("it can be built");
+        assert_eq!(submission.case().pair.period(), 20, "a revolution");
+        assert_eq!(whole.submission_of(row), Some(submission.canonical_json()));
+    }
+    assert_eq!(whole.design(1000), None);
+    assert_eq!(whole.submission_of(1000), None);
+    let other = study(json!({ "size": 1000, "seed": 8, "vary": [distance()] }));
+    assert_ne!(
+        whole.design(5).unwrap().changes,
+        other.design(5).unwrap().changes
+    );
+}
+
+#[test]
+fn every_gear_of_a_batch_stands_in_two_pairs_and_all_others_are_made_once() {
+    let whole = study(json!({ "size": 64, "vary": [distance()],
+        "accuracy": { "driving": { "iso_1328_class": 6 }, "driven": { "iso_1328_class": 6 } } }));
+    let designs: Vec<Design> = (0..64).map(|row| whole.design(row).unwrap()).collect();
+    for gear in GEARS {
+        for (i, one) in designs.iter().enumerate() {
+            for (j, other) in designs.iter().enumerate().skip(i + 1) {
+                let pair = i % 2 == 0 && j == i + 1;
+                let shared = pair && (i / 2 % 2 == 0) == (gear == Member::Driving);
+                assert_eq!(
+                    teeth(one, gear) == teeth(other, gear),
+                    shared,
+                    "{i} {j} {gear}"
+                );
+                assert_ne!(one.changes, other.changes);
+            }
+        }
+    }
+    // Where nothing else differs, nothing is made twice.
+    let alone = study(json!({ "size": 64, "accuracy": { "driven": { "iso_1328_class": 6 } } }));
+    let designs: Vec<ToothDeviations> = (0..64)
+        .map(|row| teeth(&alone.design(row).unwrap(), Member::Driven))
+        .collect();
+    for (i, one) in designs.iter().enumerate() {
+        assert!(!designs[i + 1..].contains(one));
+    }
+}
+
+#[test]
+fn the_population_of_the_guide_is_one() {
+    let example = include_str!("../../../api/examples/population-class-6.json");
+    let whole = Study::parse(example.as_bytes(), &Run::unattended()).expect("a population");
+    let guide = include_str!("../../../docs/how-good-will-they-be.md");
+    let block = guide
+        .split("```json\n\"population\": ")
+        .nth(1)
+        .and_then(|rest| rest.split("```").next());
+    let told: Value = serde_json::from_str(block.expect("a block")).expect("JSON");
+    let mut own: Value = serde_json::from_str(example).expect("JSON");
+    own["population"]
+        .as_object_mut()
+        .unwrap()
+        .remove("sampling");
+    assert_eq!(own["population"], told);
+    assert!(whole.design(255).unwrap().submission.is_ok());
+}
+
+#[test]
+fn members_follow_their_laws() {
+    for sampling in ["sobol", "random"] {
+        let whole = study(json!({ "size": 4096, "sampling": sampling, "vary": [
+            distance(),
+            { "path": "/pair/driven/tooth_thickness_deviation_um", "kind": "uniform", "low": -60, "high": -20 },
+            { "path": "/output_torques_n_m/0", "kind": "triangular", "low": 40, "mode": 50, "high": 70 },
+            { "path": "/resolution/positions_per_mesh_period", "kind": "uniform", "low": 10, "high": 12 },
+        ] }));
+        let population = whole.population().unwrap();
+        let values: Vec<Vec<f64>> = (0..4096).map(|member| population.values(member)).collect();
+        let mean = |i: usize, f: &dyn Fn(f64) -> f64| {
+            values.iter().map(|values| f(values[i])).sum::<f64>() / 4096.0
+        };
+        // Cut at 2.5 standard deviations the variance is 1 - 2 x 2.5 phi(2.5)/(2 Phi(2.5) - 1) = 0.911257 of what it was.
+        assert!((mean(0, &|x| x) - 40.2).abs() < 1.5e-3);
+        let variance = mean(0, &|x| (x - 40.2).powi(2));
+        assert!(
+            (variance / (0.02_f64.powi(2) * 0.911_257) - 1.0).abs() < 0.1,
+            "{variance}"
+        );
+        assert!(
+            values
+                .iter()
+                .all(|values| (40.15..=40.25).contains(&values[0]))
+        );
+        assert!((mean(1, &|x| x) + 40.0).abs() < 1.0);
+        assert!((mean(2, &|x| x) - 160.0 / 3.0).abs() < 0.6);
+        // A field of whole numbers takes the nearest: the ends half as often.
+        let often = |count: f64| mean(3, &|x| f64::from(u8::from(x == count)));
+        for (count, share) in [(10.0, 0.25), (11.0, 0.5), (12.0, 0.25)] {
+            assert!(
+                (often(count) - share).abs() < 0.04,
+                "{count}: {}",
+                often(count)
+            );
+        }
+        assert!(whole.design(11).unwrap().submission.is_ok());
+    }
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused_with_its_place_and_the_nearest() {
+    let vary = |law: Value| document(json!({ "size": 10, "vary": [law] }));
+    let field = |path: &str| vary(json!({ "path": path, "kind": "uniform", "low": 1, "high": 2 }));
+    for (document, expected) in [
+        (
+            document(json!({ "size": 10 })),
+            vec![("/population/vary", Code::MissingField, None)],
+        ),
+        (
+            document(json!({ "vary": [distance()] })),
+            vec![("/population/size", Code::MissingField, None)],
+        ),
+        (
+            document(json!({ "size": 1, "vary": [distance()] })),
+            vec![("/population/size", Code::OutOfRange, Some(2.0))],
+        ),
+        (
+            document(json!({ "size": 1_000_000, "vary": [distance()] })),
+            vec![("/population/size", Code::OutOfRange, Some(100_000.0))],
+        ),
+        (
+            document(json!({ "size": 10, "vary": [distance()], "sampling": "halton" })),
+            vec![("/population/sampling", Code::WrongType, None)],
+        ),
+        (
+            document(json!({ "size": 10, "vary": [distance(), distance()] })),
+            vec![("/population/vary/1/path", Code::OutOfRange, None)],
+        ),
+        (
+            document(json!({ "size": 10, "accuracy": { "driven": { "iso_1328_class": 12 } } })),
+            vec![(
+                "/population/accuracy/driven/iso_1328_class",
+                Code::OutOfRange,
+                Some(11.0),
+            )],
+        ),
+        (
+            document(json!({ "size": 10, "accuracy": {} })),
+            vec![("/population/vary", Code::MissingField, None)],
+        ),
+        (
+            field("/pair/driven/blank/hole/radius_mm"),
+            vec![("/population/vary/0/path", Code::UnknownField, None)],
+        ),
+        (
+            field("/method"),
+            vec![("/population/vary/0/path", Code::WrongType, None)],
+        ),
+        (
+            field("/pair/driven"),
+            vec![("/population/vary/0/path", Code::WrongType, None)],
+        ),
+        (
+            field("/output_torques_n_m/3"),
+            vec![("/population/vary/0/path", Code::UnknownField, None)],
+        ),
+        // There is no relief, and one has more than an amount.
+        (
+            field("/pair/driven/tip_relief/amount_um"),
+            vec![("/population/vary/0/path", Code::MissingField, None)],
+        ),
+        // No number in the middle of the law would be taken.
+        (
+            vary(
+                json!({ "path": "/pair/driven/material/poisson_ratio", "kind": "uniform", "low": 1, "high": 3 }),
+            ),
+            vec![("/population/vary/0/path", Code::OutOfRange, Some(0.49))],
+        ),
+        (
+            vary(
+                json!({ "path": "/pair/center_distance_mm", "kind": "uniform", "low": 41, "high": 40 }),
+            ),
+            vec![("/population/vary/0/high", Code::OutOfRange, None)],
+        ),
+        (
+            vary(
+                json!({ "path": "/pair/center_distance_mm", "kind": "normal", "mean": 41, "standard_deviation": 1, "low": 39, "high": 40 }),
+            ),
+            vec![("/population/vary/0/mean", Code::OutOfRange, Some(40.0))],
+        ),
+        (
+            vary(
+                json!({ "path": "/pair/center_distance_mm", "kind": "triangular", "low": 39, "mode": 38, "high": 40 }),
+            ),
+            vec![("/population/vary/0/mode", Code::OutOfRange, Some(39.0))],
+        ),
+        (
+            vary(
+                json!({ "path": "/pair/center_distance_mm", "kind": "normal", "mean": 41, "standard_deviation": 0 }),
+            ),
+            vec![(
+                "/population/vary/0/standard_deviation",
+                Code::OutOfRange,
+                Some(1e-12),
+            )],
+        ),
+        (
+            vary(json!({ "path": "/pair/center_distance_mm", "kind": "lognormal" })),
+            vec![("/population/vary/0/kind", Code::WrongType, None)],
+        ),
+        (
+            vary(
+                json!({ "path": "/pair/center_distance_mm", "kind": "uniform", "low": 40, "high": 41, "mean": 40 }),
+            ),
+            vec![("/population/vary/0/mean", Code::UnknownField, None)],
+        ),
+    ] {
+        let expected: Vec<_> = expected
+            .into_iter()
+            .map(|(place, code, nearest)| (place.to_owned(), code, nearest))
+            .collect();
+        assert_eq!(refused(&document), expected, "{document}");
+    }
+    let mut both = document(json!({ "size": 10, "vary": [distance()] }));
+    both["designs"] = json!([{ "label": "a" }]);
+    assert_eq!(refused(&both)[0].0, "/population");
+    let mut measured =
+        document(json!({ "size": 10, "accuracy": { "driving": { "iso_1328_class": 6 } } }));
+    measured["base"]["pair"]["driving"]["tooth_deviations"] =
+        json!({ "eccentricity": { "amount_um": 3 } });
+    assert_eq!(
+        refused(&measured),
+        [(
+            "/population/accuracy/driving".to_owned(),
+            Code::ConflictingFields,
+            None
+        )]
+    );
+    let drawn = document(
+        json!({ "size": 10, "accuracy": { "driving": { "iso_1328_class": 6 } },
+        "vary": [{ "path": "/pair/driving/tooth_deviations/eccentricity/amount_um", "kind": "uniform", "low": 1, "high": 2 }] }),
+    );
+    assert_eq!(refused(&drawn)[0].1, Code::ConflictingFields);
+}
+
+/// A row with results in which the peak-to-peak value is this.
+fn row(design: &Design, range: Option<f64>) -> RowState {
+    let summary = range.map(|range| {
+        let values = json!({ "mean": 1.0, "rms": 0.0, "peak_to_peak": range });
+        let document = json!({ "method": "flexible", "pair": { "contact_ratio": 1.5 }, "curves": [{
+            "output_torque_n_m": 50.0,
+            "statistics": { "partial": false, "transmission_error_um": values, "mesh_stiffness_tangent_n_per_m": values },
+        }] });
+        Summary::of_document(&document.to_string()).expect("a results document")
+    });
+    RowState {
+        label: design.label.clone(),
+        changes: design.changes.clone(),
+        job: None,
+        status: if summary.is_some() {
+            Status::Successful
+        } else {
+            Status::Failed
+        },
+        summary,
+        problem: None,
+    }
+}
+
+fn told(study: &Study, range: impl Fn(&Design) -> Option<f64>) -> Value {
+    let mut sample = PopulationSample::new(study, 0..60).expect("a population");
+    for member in 0..study.total() {
+        let design = study.design(member).unwrap();
+        sample.add(member as u32, &row(&design, range(&design)));
+    }
+    serde_json::to_value(sample.results(None, Status::Successful)).unwrap()
+}
+
+fn quantity<'a>(results: &'a Value, name: &str) -> &'a Value {
+    let mut quantities = results["quantities"].as_array().unwrap().iter();
+    quantities
+        .find(|quantity| quantity["name"] == name)
+        .expect(name)
+}
+
+const RANGE: &str = "transmission_error_um.peak_to_peak";
+
+fn moved(design: &Design) -> f64 {
+    (design.changes["/pair/center_distance_mm"].as_f64().unwrap() - 40.2) / 0.02
+}
+
+/// What the teeth of a gear make of a result: the deviation of one of them.
+fn stands_out(design: &Design, gear: Member) -> f64 {
+    1e6 * teeth(design, gear).profile_slope[3]
+}
+
+#[test]
+fn numbers_are_those_of_their_definitions() {
+    let whole = study(json!({ "size": 1003, "vary": [distance()], "sampling": "random" }));
+    // One member in a hundred fails.
+    let range = |design: &Design| {
+        let failed = design.label.ends_with("77");
+        (!failed).then(|| 3.0 + moved(design))
+    };
+    let results = told(&whole, range);
+    let mut values: Vec<f64> = (0..1003)
+        .filter_map(|row| range(&whole.design(row).unwrap()))
+        .collect();
+    let n = values.len() as f64;
+    assert_eq!(
+        (
+            results["size"].as_u64(),
+            results["done"].as_u64(),
+            results["failed"].as_u64()
+        ),
+        (Some(1003), Some(1003), Some(10))
+    );
+    let found = quantity(&results, RANGE);
+    assert_eq!(
+        (found["output_torque_n_m"].as_f64(), found["count"].as_u64()),
+        (Some(50.0), Some(993))
+    );
+    let mean = values.iter().sum::<f64>() / n;
+    let close = |found: &Value, expected: f64| {
+        let found = found.as_f64().unwrap();
+        assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+    };
+    close(&found["mean"], mean);
+    close(
+        &found["standard_deviation"],
+        (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt(),
+    );
+    values.sort_by(f64::total_cmp);
+    close(&found["smallest"], values[0]);
+    close(&found["largest"], values[992]);
+    // 992 steps lie between 993 members: the quarter of all is the value at place 248.
+    assert_eq!(found["percentiles"][2]["percent"], 25.0);
+    close(&found["percentiles"][2]["value"], values[248]);
+    let (low, high) = (
+        &found["percentiles"][2]["low"],
+        &found["percentiles"][2]["high"],
+    );
+    assert!(low.as_f64().unwrap() < values[248] && values[248] < high.as_f64().unwrap());
+    let counts: Vec<u64> = found["histogram"]["counts"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|count| count.as_u64().unwrap())
+        .collect();
+    assert_eq!(counts.iter().sum::<u64>(), 993);
+    // Nothing else varies, and nothing makes the contact ratio vary.
+    let influences = found["influences"].as_array().unwrap();
+    assert_eq!(influences.len(), 1);
+    assert!(
+        influences[0]["path"] == "/pair/center_distance_mm"
+            && influences[0]["share"].as_f64().unwrap() > 0.98
+    );
+    assert_eq!(quantity(&results, "contact_ratio")["influences"], json!([]));
+    assert_eq!(
+        quantity(&results, "contact_ratio")["output_torque_n_m"],
+        Value::Null
+    );
+    let extreme = &found["members"]["largest"];
+    let design = whole.design(extreme.as_u64().unwrap() as usize).unwrap();
+    close(&found["largest"], range(&design).unwrap());
+}
+
+#[test]
+fn influences_are_those_that_the_result_was_made_of() {
+    for sampling in ["sobol", "random"] {
+        let whole = study(
+            json!({ "size": 2048, "sampling": sampling, "vary": [distance()],
+            "accuracy": { "driving": { "iso_1328_class": 5 }, "driven": { "iso_1328_class": 7 } } }),
+        );
+        // Class 7 is twice as wide as class 5: its variance is four times as large.
+        let sigma = 4.84 / 3.0;
+        let range = |design: &Design| {
+            Some(
+                sigma * 2.0 * moved(design)
+                    + stands_out(design, Member::Driving)
+                    + stands_out(design, Member::Driven),
+            )
+        };
+        let results = told(&whole, range);
+        let parts = [4.0 * 0.911_257, 1.0, 4.0];
+        let all: f64 = parts.iter().sum();
+        let influences = &quantity(&results, RANGE)["influences"];
+        for (i, (name, word)) in [
+            ("path", "/pair/center_distance_mm"),
+            ("accuracy", "driving"),
+            ("accuracy", "driven"),
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let found = &influences[i];
+            assert_eq!(found[name], word);
+            let number = |name: &str| found[name].as_f64().unwrap();
+            let expected = parts[i] / all;
+            assert!(
+                (number("share") - expected).abs() < 0.1,
+                "{sampling}: {found} {expected}"
+            );
+            assert!(
+                number("low") - 0.02 <= expected && expected <= number("high") + 0.02,
+                "{sampling}: {found} {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn gears_beyond_the_total_pitch_tolerance_are_counted() {
+    // At a tenth of the capability the single pitches are ten times as wide as the class: nearly all are beyond; at ten times, none.
+    for (capability, least, most) in [(0.1, 0.95, 1.0), (10.0, 0.0, 0.0)] {
+        let asked = |vary: Value| json!({ "size": 40, "vary": vary, "accuracy": { "driven": { "iso_1328_class": 6, "capability": capability } } });
+        // A varied face of the same gear is measured by its own tolerances, and F_pT does not depend on it.
+        let face = json!([{ "path": "/pair/driven/face_width_mm", "kind": "uniform", "low": 19, "high": 21 }]);
+        let beyond = [json!([]), face].map(|vary| {
+            let results = told(&study(asked(vary)), |_| Some(1.0));
+            results["beyond_total_pitch_tolerance"].clone()
+        });
+        assert_eq!(beyond[0]["driving"], Value::Null);
+        for beyond in beyond {
+            let share = beyond["driven"].as_f64().unwrap();
+            assert!((least..=most).contains(&share), "{capability}: {share}");
+        }
+    }
+}
+
+#[test]
+fn torques_are_looked_at_some_at_a_time() {
+    let whole = study(json!({ "size": 20, "vary": [distance()] }));
+    let mut sample = PopulationSample::new(&whole, 1..3).expect("a population");
+    for member in 0..20 {
+        let design = whole.design(member).unwrap();
+        sample.add(member as u32, &row(&design, Some(1.0)));
+    }
+    // There is one torque, and it belongs to the look before.
+    assert!(sample.has_all_torques());
+    let results = serde_json::to_value(sample.results(None, Status::Running)).unwrap();
+    assert_eq!(results["quantities"], json!([]));
+    assert!(PopulationSample::torques_at_once(&whole) > 60);
+}
