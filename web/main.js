@@ -15,6 +15,7 @@ import { Form } from "./form.js";
 import { Geometry } from "./geometry.js";
 import { Headline } from "./headline.js";
 import { jobs } from "./jobs.js";
+import { population } from "./population.js";
 import { Follower, resultsOf } from "./preview.js";
 import { openapi } from "./schema.js";
 import { stresses } from "./series.js";

@@ -166,6 +166,28 @@ await step("a study runs and shows its table and its front", service, async (pag
   await axe(page);
 });
 
+await step("a population shows how good the pairs will be that are made, and opens one of them", service, async (page) => {
+  await open(page, service);
+  await tab(page, "population");
+  await page.locator("#population-size").fill("24");
+  await page.locator("#population-torques").fill("60, 115");
+  await page.locator("#law-0").selectOption("/pair/center_distance_mm");
+  await page.locator("#law-0-kind").selectOption("uniform");
+  await page.locator("#population button[type=submit]").click();
+  await page.waitForFunction(() => /24 of 24 members, successful/.test(document.querySelector("#population [role=status]").innerText), null, { timeout: 120_000 });
+  assert.match(await page.locator("#population .out").innerText(), /95 of 100 pairs stay below \d/);
+  assert.equal(await page.locator("#population .scatter").count(), 2, "a histogram, and percentiles over the torque");
+  const influences = await page.locator("#population .influences tbody").innerText();
+  assert.match(influences, /[Cc]enter distance/);
+  assert.match(influences, /teeth of the driven gear/);
+  await axe(page);
+  await page.locator("#population button", { hasText: "Open the largest member" }).click();
+  await page.waitForFunction(() => location.hash || true);
+  const opened = await designOf(page);
+  assert.equal(opened.pair.driven.tooth_deviations.pitch_single_um.length, opened.pair.driven.tooth_count);
+  assert.equal(opened.output_torques_n_m.length, 2);
+});
+
 await step("a job is submitted, followed and opened", service, async (page) => {
   await open(page, service);
   await tab(page, "jobs");

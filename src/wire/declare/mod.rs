@@ -24,7 +24,7 @@ pub(super) use nested::{
 };
 pub(super) use node::{Node, escaped};
 pub(super) use number::{Number, number};
-pub(super) use optional::{Optional, absent, or_else, unless};
+pub(super) use optional::{Optional, absent, or_else, or_null, unless};
 pub(super) use reader::{ObjectReader, Place};
 pub(super) use words::{Choice, OneWord, Text, flag, is_short_text, text, word, words};
 

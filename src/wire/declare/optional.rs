@@ -115,16 +115,7 @@ impl<T: Kind> Kind for Option<T> {
             None => about.to_owned(),
             Some(other) => format!("{about} Not together with {other}."),
         };
-        let mut schema = T::describe(&about, &spec.spec);
-        let null = json!({ "type": "null" });
-        // Null is as good as absent.
-        if schema.get("type").is_some() {
-            schema["type"] = json!([schema["type"], "null"]);
-        } else if let Some(alternatives) = schema["oneOf"].as_array_mut() {
-            alternatives.insert(0, null);
-        } else {
-            schema = json!({ "oneOf": [null, schema] });
-        }
+        let mut schema = or_null(T::describe(&about, &spec.spec));
         if let Absent::Means(meaning) = spec.absent {
             schema["default"] = Value::Null;
             schema["x-absent"] = json!(meaning);
@@ -138,4 +129,17 @@ impl<T: Kind> Kind for Option<T> {
     fn name_parts(named: &mut Named) {
         T::name_parts(named);
     }
+}
+
+/// The schema of what may be null as well, which is as good as absent.
+pub(in crate::wire) fn or_null(mut schema: Value) -> Value {
+    let null = json!({ "type": "null" });
+    if schema.get("type").is_some() {
+        schema["type"] = json!([schema["type"], "null"]);
+    } else if let Some(alternatives) = schema["oneOf"].as_array_mut() {
+        alternatives.insert(0, null);
+    } else {
+        schema = json!({ "oneOf": [null, schema] });
+    }
+    schema
 }

@@ -6,7 +6,7 @@ use super::Study;
 use super::constant_mass::ConstantMass;
 use super::document::{KEEP, LONGEST_LABEL, MOST_CHANGES, NAME};
 use super::size::MOST_DESIGNS;
-use crate::wire::declare::{Document, Kind, Property, nested, object, utoipa_schema};
+use crate::wire::declare::{Document, Kind, Property, nested, object, or_null, utoipa_schema};
 use crate::wire::kept::Kept;
 use crate::wire::population::PopulationDocument;
 use crate::wire::submission::TAGS;
@@ -27,14 +27,14 @@ impl utoipa::PartialSchema for Study {
             ("tags", tags, false),
             KEEP.property::<Kept>(),
             ("base", base, true),
-            ("axes", axes(), false),
-            ("designs", designs(), false),
+            ("axes", or_null(axes()), false),
+            ("designs", or_null(designs()), false),
             (
                 "population",
-                PopulationDocument::describe("", &nested("")),
+                or_null(PopulationDocument::describe("", &nested(""))),
                 false,
             ),
-            ("constant_mass", ConstantMass::json_schema(), false),
+            ("constant_mass", or_null(ConstantMass::json_schema()), false),
         ];
         utoipa_schema(object("Study", about, properties))
     }

@@ -123,7 +123,7 @@ fn a_submission_with_other_fields_or_words_has_another_version() {
     // Who changes the fields raises DOCUMENT_VERSION, once between two releases, and puts the new hash here: a process of the version before
     // would refuse the jobs of this one.
     assert_eq!(
-        (DOCUMENT_VERSION, sha256_hex(&told.join("\n")).as_str()),
+        (DOCUMENT_VERSION, sha256_hex(told.join("\n")).as_str()),
         (
             2,
             "510a03cdb02fd8df367fa19b806aad4b04ef65e763b99cd956ca07a8d597e1b2"

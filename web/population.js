@@ -1,0 +1,194 @@
+// How good the pairs will be that are made by a design: members drawn from laws and classes of accuracy, and what they come to.
+
+import { follow, hasEnded, json, post, ProblemError, request } from "./api.js";
+import { at, nameOf } from "./design.js";
+import { h, s, fixed, number } from "./dom.js";
+import { figure } from "./figure.js";
+
+/** What has come so far is fetched so often at most while members are computed, in milliseconds. */
+const PAUSE = 1000;
+
+/** The quantities to look at: name, unit, and what they are multiplied by. */
+const QUANTITIES = {
+  "transmission_error_um.peak_to_peak": ["STE peak-to-peak", "µm", 1],
+  "transmission_error_um.mean": ["STE mean", "µm", 1],
+  "mesh_stiffness_tangent_n_per_m.mean": ["mean stiffness", "N/µm", 1e-6],
+  mesh_order_um: ["H_Z2", "µm", 1],
+  hole_order_um: ["H_N", "µm", 1],
+};
+
+/** A member has at most so many positions in a mesh period: what many members tell settles long before one curve does. */
+const POSITIONS = 10;
+
+const CLASSES = Array.from({ length: 11 }, (_, i) => i + 1);
+
+/** The fields that are offered first, with what they usually vary by. */
+const FIRST = [["/pair/center_distance_mm", 0.02], ["/pair/driving/tip_relief/amount_um", 1.5]];
+
+/** The population of `design` in `place`; `form` knows the fields, `onOpen` opens a member as a design. */
+export function population(place, design, form, onOpen) {
+  const size = h("input", { type: "number", id: "population-size", value: 200, min: 2, max: 100000, step: 1 });
+  const torques = h("input", { type: "text", id: "population-torques", spellcheck: false });
+  const classes = ["driving", "driven"].map((gear) => h("select", { id: `population-${gear}` }, h("option", { value: "" }, "as designed"), ...CLASSES.map((each) => h("option", { value: each, selected: each === 6 }, `class ${each}`))));
+  const laws = FIRST.map((_, i) => law(i, design, form));
+  const run = h("button", { type: "submit", className: "primary" }, "Draw them");
+  const cancel = h("button", { type: "button", hidden: true }, "Cancel");
+  const state = h("p", { className: "note", role: "status" });
+  const quantity = h("select", { id: "population-quantity", on: { change: () => last && draw() } }, ...Object.entries(QUANTITIES).map(([name, [words, unit]]) => h("option", { value: name }, `${words} in ${unit}`)));
+  const torque = h("select", { id: "population-torque", on: { change: () => last && draw() } });
+  const picker = h("div", { className: "line", hidden: true }, h("label", { htmlFor: quantity.id }, "Look at"), quantity, h("label", { htmlFor: torque.id }, "at"), torque, h("span", { className: "unit" }, "N m"));
+  const out = h("div", { className: "out" });
+  place.replaceChildren(
+    h("p", { className: "note" }, "Every member has teeth of its own, drawn within the class of ISO 1328-1, and fields that vary by a law. ", h("a", { href: "guides/how-good-will-they-be" }, "How good will they be?")),
+    h("form", { on: { submit: (event) => { event.preventDefault(); start(); } } },
+      h("div", { className: "line" }, h("label", { htmlFor: size.id }, "Members"), size, ...classes.flatMap((each, i) => [h("label", { htmlFor: each.id }, `teeth of the ${["driving", "driven"][i]} gear`), each])),
+      ...laws.map((each) => each.element),
+      h("div", { className: "line" }, h("label", { htmlFor: torques.id }, "Torques"), torques, h("span", { className: "unit" }, "N m")),
+      h("div", { className: "line" }, run, cancel)),
+    state, picker, out);
+  let last = null;
+
+  const suggest = () => {
+    laws.forEach((each) => each.refresh());
+    const own = design.get("/output_torques_n_m") ?? [100];
+    if (!torques.value) torques.value = (own.length > 1 ? own : [0.4, 0.7, 1, 1.4].map((part) => Number((part * own[0]).toPrecision(3)))).join(", ");
+  };
+
+  function asked() {
+    const base = structuredClone(design.submission);
+    base.output_torques_n_m = torques.value.split(/[\s,;]+/).filter(Boolean).map(Number);
+    base.resolution = { ...base.resolution, positions_per_mesh_period: Math.min(POSITIONS, base.resolution?.positions_per_mesh_period ?? POSITIONS) };
+    // The span of the drawing is not that of teeth that all differ.
+    delete base.resolution.span_mesh_periods;
+    const accuracy = {};
+    classes.forEach((each, i) => { if (each.value) accuracy[["driving", "driven"][i]] = { iso_1328_class: Number(each.value) }; });
+    const vary = laws.flatMap((each) => each.read());
+    return { base, keep: "statistics", name: `${nameOf(design.submission)} as made`, population: { size: Number(size.value), vary, accuracy: Object.keys(accuracy).length ? accuracy : null } };
+  }
+
+  async function start() {
+    run.disabled = true;
+    out.replaceChildren();
+    try {
+      await watch(await post("v1/studies", asked()));
+    } catch (error) {
+      if (!(error instanceof ProblemError)) throw error;
+      const details = error.problem.errors?.map(({ detail }) => detail) ?? [error.message];
+      state.replaceChildren(...details.map((detail) => h("span", { className: "field-error" }, detail, " ")));
+    } finally {
+      run.disabled = false;
+      cancel.hidden = true;
+    }
+  }
+
+  /** Shows a population as its members come. */
+  async function watch(made) {
+    const address = `v1/studies/${made.id}`;
+    cancel.hidden = false;
+    cancel.onclick = () => request(`${address}/cancel`, { method: "POST" }).catch(() => {});
+    let shown = performance.now();
+    last = null;
+    const told = (_, data) => {
+      if (data.total) state.textContent = `${data.done} of ${data.total} members`;
+      if (performance.now() - shown < PAUSE) return;
+      shown = performance.now();
+      json(`${address}/results/population`).then((results) => hasEnded(last?.results.status) || show(results, address), () => {});
+    };
+    if (!hasEnded(made.status)) await follow(address, told);
+    const results = await json(`${address}/results/population`);
+    show(results, address);
+    state.textContent = `${results.done} of ${results.size} members, ${results.status}${results.failed ? `; ${results.failed} could not be computed` : ""}`;
+  }
+
+  function show(results, address) {
+    last = { results, address };
+    const known = [...new Set(results.quantities.map((each) => each.output_torque_n_m).filter((each) => each !== null))];
+    if (torque.options.length !== known.length || known.some((each, i) => Number(torque.options[i].value) !== each)) torque.replaceChildren(...known.map((each) => h("option", { value: each }, number(each))));
+    const there = new Set(results.quantities.map(({ name }) => name));
+    for (const option of quantity.options) option.hidden = !there.has(option.value);
+    draw();
+  }
+
+  function draw() {
+    const { results, address } = last;
+    const [words, unit, factor] = QUANTITIES[quantity.value];
+    const all = results.quantities.filter(({ name }) => name === quantity.value);
+    const one = all.find((each) => each.output_torque_n_m === Number(torque.value)) ?? all[0];
+    picker.hidden = !one;
+    if (!one) return out.replaceChildren();
+    const percentile = (each, percent) => each.percentiles.find((found) => found.percent === percent);
+    const p95 = percentile(one, 95);
+    const told = (value) => (value === null ? "?" : fixed(value * factor, 3));
+    const at95 = `95 of 100 pairs stay below ${told(p95.value)} ${unit} (with 95 % confidence between ${told(p95.low)} and ${told(p95.high)}); half are below ${told(percentile(one, 50).value)}.`;
+    const beyond = Object.entries(results.beyond_total_pitch_tolerance).filter(([, share]) => share !== null).map(([gear, share]) => `${fixed(100 * share, 1)} % of the ${gear} gears are beyond F_pT of their class.`);
+    const member = (name, number) => h("button", { type: "button", on: { click: () => open(address, number) } }, `Open the ${name} member`);
+    const pictures = [
+      figure({ lines: [outlineOf(one.histogram, factor)], x: `${words} in ${unit}`, y: "members", title: `Histogram of the ${words}` }),
+      ...(all.length > 1 ? [figure({ lines: [[95, "5 4"], [50, null], [5, "2 3"]].map(([percent, dash]) => ({ name: `${percent} % are below`, color: "currentColor", dash: dash?.split(" "), x: all.map((each) => each.output_torque_n_m), y: all.map((each) => percentile(each, percent).value * factor) })), x: "output torque in N m", y: `${words} in ${unit}`, title: `Percentiles of the ${words} over the torque` })] : []),
+    ];
+    out.replaceChildren(h("p", {}, at95, " ", beyond.join(" ")), ...pictures, influencesOf(one), h("div", { className: "buttons" }, member("median", one.members.median), member("smallest", one.members.smallest), member("largest", one.members.largest)));
+  }
+
+  /** What makes the variance, as bars with their limits. */
+  function influencesOf({ influences }) {
+    if (!influences.length) return h("p", { className: "note" }, "Nothing varies so far.");
+    const name = ({ path, accuracy }) => (path ? form.titleOf(path) : `teeth of the ${accuracy} gear`);
+    const rows = influences.map((each) => {
+      const [low, high] = [each.low ?? each.share, each.high ?? each.share];
+      const bar = s("svg", { viewBox: "0 0 200 14", width: 200, height: 14, "aria-hidden": "true" },
+        s("rect", { x: 0, y: 3, width: 200 * each.share, height: 8, class: "dot" }),
+        s("line", { x1: 200 * low, x2: 200 * high, y1: 7, y2: 7, stroke: "currentColor", "stroke-width": 1.5 }));
+      return h("tr", {}, h("th", { scope: "row" }, name(each)), h("td", {}, bar), h("td", {}, `${fixed(100 * each.share, 0)} %`), h("td", {}, each.low === null ? "–" : `${fixed(100 * low, 0)} to ${fixed(100 * high, 0)} %`));
+    });
+    const head = ["Part of the variance by", "", "Share", "95 % limits"].map((words) => h("th", { scope: "col" }, words || h("span", { className: "visually-hidden" }, "Bar")));
+    return h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Influences" }, h("table", { className: "influences" }, h("thead", {}, h("tr", {}, ...head)), h("tbody", {}, ...rows)));
+  }
+
+  async function open(address, member) {
+    onOpen(await json(`${address}/designs/${member}`), null);
+  }
+
+  suggest();
+  return { refresh: suggest };
+}
+
+/** The outline of a histogram's bars. */
+function outlineOf({ edges, counts }, factor) {
+  const x = [edges[0], ...counts.flatMap((_, i) => [edges[i], edges[i + 1]]), edges.at(-1)];
+  return { x: x.map((each) => each * factor), y: [0, ...counts.flatMap((count) => [count, count]), 0] };
+}
+
+/** A field and the law that it follows, around the value that the design has. */
+function law(index, design, form) {
+  const id = `law-${index}`;
+  const field = h("select", { id, on: { change: () => { spread.value = suggested(); } } });
+  const kind = h("select", { id: `${id}-kind`, ariaLabel: "Law" }, h("option", { value: "normal" }, "normal, standard deviation"), h("option", { value: "uniform" }, "uniform, plus or minus"), h("option", { value: "triangular" }, "triangular, plus or minus"));
+  const spread = h("input", { type: "number", id: `${id}-spread`, min: 0, step: "any", ariaLabel: "Spread" });
+  const element = h("div", { className: "line" }, h("label", { htmlFor: id }, index ? "and" : "Vary"), field, h("label", { htmlFor: kind.id }, "by"), kind, spread);
+  const valueOf = () => at(design.submission, field.value) ?? form.fields().find(({ pointer }) => pointer === field.value)?.value;
+  const suggested = () => {
+    const usual = FIRST.find(([path]) => path === field.value)?.[1];
+    const value = valueOf();
+    return usual ?? (typeof value === "number" && value ? Number(Math.abs(0.02 * value).toPrecision(2)) : 0.01);
+  };
+
+  function read() {
+    const [value, by] = [valueOf(), Number(spread.value)];
+    if (!field.value || typeof value !== "number" || !(by > 0)) return [];
+    const path = field.value;
+    if (kind.value === "normal") return [{ path, kind: "normal", mean: value, standard_deviation: by, low: value - 3 * by, high: value + 3 * by }];
+    const ends = { low: value - by, high: value + by };
+    return [kind.value === "uniform" ? { path, kind: "uniform", ...ends } : { path, kind: "triangular", mode: value, ...ends }];
+  }
+
+  /** Only fields that have a number in this design can vary. */
+  function refresh() {
+    const chosen = element.dataset.begun ? field.value : FIRST[index][0];
+    element.dataset.begun = "yes";
+    const fields = form.fields().filter(({ pointer }) => typeof at(design.submission, pointer) === "number");
+    field.replaceChildren(h("option", { value: "" }, "nothing else"), ...fields.map(({ pointer, title }) => h("option", { value: pointer }, title)));
+    field.value = fields.some(({ pointer }) => pointer === chosen) ? chosen : "";
+    if (!spread.value) spread.value = suggested();
+  }
+  return { element, read, refresh };
+}
