@@ -148,16 +148,16 @@ impl<S: PartialEq + Clone, P> Stock<S, P> {
     }
 
     fn keep(&mut self, entry: Entry<S, P>, capacity: usize) {
-        if entry.bytes > capacity {
-            // All others would have to go, and then it would go itself.
-            self.evictions += 1;
-            return;
-        }
         if let Some(place) = self.entries.iter().position(|old| old.spec == entry.spec) {
             self.bytes -= self.entries.remove(place).bytes;
         }
-        self.bytes += entry.bytes;
-        self.entries.push(entry);
+        if entry.bytes > capacity {
+            // All others would have to go, and then it would go itself.
+            self.evictions += 1;
+        } else {
+            self.bytes += entry.bytes;
+            self.entries.push(entry);
+        }
         while self.bytes > capacity {
             self.bytes -= self.entries.remove(0).bytes;
             self.evictions += 1;

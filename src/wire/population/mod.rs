@@ -1,6 +1,6 @@
 //! A population: members of a design as they are made, each drawn from laws.
 //!
-//! A member is known by its number alone: `document` says what is drawn, [`Population`] draws it, and `results` is what the results of
+//! A member is known by its number alone: `document` says what is drawn, `Population` draws it, and `results` is what the results of
 //! the members tell of all.
 
 mod document;
