@@ -13,6 +13,7 @@ export class Beginnings {
   /** An object that is not there yet. */
   object(pointer, kind) {
     if (pointer.endsWith("/slot")) return slotOf(this.design.get(pointer.slice(0, -"/slot".length)));
+    if (pointer === "/dynamics") return { driving_speed_rpm: { from: 0, to: 6000, count: 60 } };
     const fitting = this.#fitting(pointer, pointer.split("/").pop());
     return fitting ?? this.#begin(kind);
   }

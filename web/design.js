@@ -91,7 +91,9 @@ export class Design {
     let next = this.submission;
     for (const [pointer, value] of Object.entries(values)) next = withValue(next, pointer, value);
     if (same(next, this.submission)) return;
-    this.#change({ submission: next }, by, this.#hand ?? Object.keys(values).join());
+    // What is typed is one change until it rests; each press of a button is one by itself.
+    const key = by === "mend" ? null : Object.keys(values).join();
+    this.#change({ submission: next }, by, this.#hand ?? key);
   }
 
   /** Goes back to what could be computed, as part of the change that led away from it. */

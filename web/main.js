@@ -448,6 +448,7 @@ async function begin() {
   panels = {
     sweep: sweep(byId("sweep"), design, limits, positions),
     study: study(byId("study"), design, form, open),
+    population: population(byId("population"), design, form, open),
     jobs: jobs(byId("jobs"), design, open),
     export: exporting(byId("export"), { current, designs: () => [live, ...design.kept], drawing, charts, position: () => position }),
   };

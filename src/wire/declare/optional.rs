@@ -133,13 +133,13 @@ impl<T: Kind> Kind for Option<T> {
 
 /// The schema of what may be null as well, which is as good as absent.
 pub(in crate::wire) fn or_null(mut schema: Value) -> Value {
-    let null = json!({ "type": "null" });
+    let nothing = json!({ "type": "null" });
     if schema.get("type").is_some() {
         schema["type"] = json!([schema["type"], "null"]);
-    } else if let Some(alternatives) = schema["oneOf"].as_array_mut() {
-        alternatives.insert(0, null);
+    } else if let Some(alternatives) = schema.get_mut("oneOf").and_then(Value::as_array_mut) {
+        alternatives.insert(0, nothing);
     } else {
-        schema = json!({ "oneOf": [null, schema] });
+        schema = json!({ "oneOf": [nothing, schema] });
     }
     schema
 }
