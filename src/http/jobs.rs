@@ -31,6 +31,7 @@ pub(super) struct ListParameters {
     )]
     status: Option<String>,
     /// Jobs with this tag.
+    #[param(pattern = "^[^\\x00]*$")]
     tag: Option<String>,
     /// Jobs of these ids, separated by commas; those that do not exist are left out. 200 at most.
     #[param(

@@ -101,8 +101,10 @@ pub(in crate::http) async fn submit(
 #[into_params(parameter_in = Query)]
 pub(in crate::http) struct StudyListParameters {
     /// Studies of this name.
+    #[param(pattern = "^[^\\x00]*$")]
     name: Option<String>,
     /// Studies with this tag.
+    #[param(pattern = "^[^\\x00]*$")]
     tag: Option<String>,
     /// Studies from the first one on that was submitted at this instant or later (RFC 3339).
     #[param(format = DateTime)]
