@@ -5,16 +5,16 @@
 #![allow(dead_code, unused_imports, unreachable_pub, missing_docs)]
 
 // The documents alone, without the service around them, which would take minutes to build.
-#[path = "../../src/exchange/mod.rs"]
-mod exchange;
 #[path = "../../src/hash.rs"]
 mod hash;
+#[path = "../../src/exchange/rexs/mod.rs"]
+mod rexs;
 #[path = "../../src/wire/mod.rs"]
 mod wire;
 
-use exchange::rexs::{Choices, export, import, is_xml};
 use libfuzzer_sys::fuzz_target;
 use meshwright_engine::run::Run;
+use rexs::{Choices, export, import, is_xml};
 use wire::{Preview, Problem, Study, Submission};
 
 /// So many designs of a study are expanded.
