@@ -2,7 +2,7 @@
 //!
 //! Read in this order: [`involute`] (one flank), [`rack`] (the tool and the fillet it leaves), [`modification`]
 //! and [`tip`] (what is taken off it), [`deviation`] (what teeth differ by) and [`accuracy`] (how far they may), [`blank`], [`material`], [`data`] (what a drawing says),
-//! [`spur`], `mass` and `outline` (a whole gear), [`pair`] (two of them at a center distance).
+//! [`spur`], `mass` and `outline` (a whole gear), [`solid`] (the same with an extent along its axis), [`pair`] (two of them at a center distance).
 //!
 //! Every gear is described in its own frame: the center of the gear is the origin, the centerline of tooth 0 is the
 //! x axis, and the loaded flank of each tooth lies on its counter-clockwise side.
@@ -18,6 +18,7 @@ pub mod modification;
 mod outline;
 pub mod pair;
 pub mod rack;
+pub mod solid;
 pub mod spur;
 pub mod tip;
 
@@ -35,6 +36,7 @@ pub use modification::{
 };
 pub use pair::{GearPair, GearPairError, Member, teeth_on};
 pub use rack::Rack;
+pub use solid::{Hand, Helix, Hub, Layer, SolidGear, SolidGearError};
 pub use spur::SpurGear;
 pub use tip::TipEdge;
 

@@ -57,21 +57,27 @@ pub struct Trochoid {
     /// The depth d of the rounding's center below the rolling line; negative at large shifts.
     center_depth: f64,
     tip_radius: f64,
+    /// σ: how much longer the rack is in this section than in the one in which its rounding is round.
+    stretch: f64,
     pressure_angle: f64,
 }
 
 impl Trochoid {
     /// The fillet left by `rack`, shifted outward by `shift` (x m), on a gear of `tooth_count` teeth.
     ///
-    /// A tooth that is thicker by `thickness` on the reference circle carries its fillet with its flank.
-    pub fn new(rack: &Rack, tooth_count: u32, shift: f64, thickness: f64) -> Self {
+    /// A tooth that is thicker by `thickness` on the reference circle carries its fillet with its flank. The rounding is round in
+    /// the `normal` section of the rack; where the rack runs across the gear's teeth at an angle it is an ellipse, longer along
+    /// the rack as the modules are.
+    pub fn new(rack: &Rack, normal: &Rack, tooth_count: u32, shift: f64, thickness: f64) -> Self {
         let reference_radius = rack.module * f64::from(tooth_count) / 2.0;
+        let stretch = rack.module / normal.module;
         Self {
             reference_radius,
             space_angle: PI / f64::from(tooth_count) + thickness / (2.0 * reference_radius),
-            half_tip_land: rack.half_tip_land(),
-            center_depth: rack.dedendum - rack.tip_radius - shift,
-            tip_radius: rack.tip_radius,
+            half_tip_land: stretch * normal.half_tip_land(),
+            center_depth: normal.dedendum - normal.tip_radius - shift,
+            tip_radius: normal.tip_radius,
+            stretch,
             pressure_angle: rack.pressure_angle,
         }
     }
@@ -89,13 +95,18 @@ impl Trochoid {
             half_tip_land: e,
             center_depth: d,
             tip_radius: rho,
+            stretch,
             ..
         } = *self;
         let (sin, cos) = gamma.sin_cos();
+        // The place on the rounding, from its center, whose normal is at γ: it passes through the pitch point.
+        let longer = stretch * stretch - 1.0;
+        let q = (1.0 + longer * cos * cos).sqrt();
+        let (beside, below) = (rho * (stretch * stretch) * cos / q, rho * sin / q);
         // The pitch point of the rolling stands at angle φ of the gear, the rounding's center a length l beside it.
-        let l = -d * cos / sin;
+        let l = -d * cos / sin + rho * longer * cos / q;
         let phi = space_angle - (l + e) / r;
-        (r - d - rho * sin) * radial(phi) + (l - rho * cos) * tangential(phi)
+        (r - d - below) * radial(phi) + (l - beside) * tangential(phi)
     }
 }
 
@@ -125,7 +136,7 @@ mod tests {
             (60, 1.4),
         ] {
             let shift = x * rack.module;
-            let fillet = Trochoid::new(&rack, z, shift, 0.0);
+            let fillet = Trochoid::new(&rack, &rack, z, shift, 0.0);
             let r = rack.module * f64::from(z) / 2.0;
             let alpha = rack.pressure_angle;
             let psi_b = PI / (2.0 * f64::from(z))
@@ -159,7 +170,7 @@ mod tests {
         };
         for (z, x) in [(30_u32, 0.0), (40, 0.95), (40, 1.2)] {
             let (shift, r) = (x * rack.module, rack.module * f64::from(z) / 2.0);
-            let fillet = Trochoid::new(&rack, z, shift, 0.0);
+            let fillet = Trochoid::new(&rack, &rack, z, shift, 0.0);
             let (start, end) = fillet.ends();
             let boundary: Vec<(f64, f64)> = (0..=2000)
                 .map(|i| fillet.point(start + (end - start) * f64::from(i) / 2000.0))

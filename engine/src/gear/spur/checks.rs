@@ -12,7 +12,7 @@ use crate::root_finding::bisect;
 
 impl SpurGear {
     pub(super) fn check_rack(&self) -> Result<(), GearError> {
-        let rack = &self.data.rack;
+        let rack = &self.normal_rack;
         let largest = rack.largest_tip_radius();
         if rack.tip_radius > largest {
             return Err(GearError::RackTipRadius {
@@ -20,7 +20,8 @@ impl SpurGear {
                 largest,
             });
         }
-        let largest = 2.0 * rack.half_tip_land();
+        let stretch = self.data.rack.module / rack.module;
+        let largest = 2.0 * (stretch * rack.half_tip_land());
         // Rounding of a full tip radius leaves a land of nothing, or a little less.
         if self.data.thickness_deviation > largest.max(0.0) {
             return Err(GearError::TeethTooThick {
@@ -35,7 +36,7 @@ impl SpurGear {
         let rack = &self.data.rack;
         let (r, sin) = (self.reference_radius(), rack.pressure_angle.sin());
         if self.form_roll_length_signed() < 0.0 {
-            let smallest = (rack.straight_depth() - r * sin * sin) / rack.module;
+            let smallest = (self.normal_rack.straight_depth() - r * sin * sin) / rack.module;
             return Err(GearError::Undercut {
                 profile_shift: self.data.profile_shift,
                 smallest,

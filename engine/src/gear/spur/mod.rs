@@ -10,7 +10,7 @@ use super::modification::Modification;
 use super::rack::Trochoid;
 use super::tip::BrokenEdge;
 use super::{
-    BlankRegion, GearData, GearError, Hole, HolePattern, Involute, Material, TipEdge,
+    BlankRegion, GearData, GearError, Hole, HolePattern, Involute, Material, Rack, TipEdge,
     ToothDeviations, Vector,
 };
 
@@ -20,6 +20,8 @@ use super::{
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpurGear {
     data: GearData,
+    /// The rack as it is across its own teeth: round at its tips. Of a spur gear that of the drawing.
+    normal_rack: Rack,
     flank: Involute,
     broken_edge: Option<BrokenEdge>,
     modifications: Vec<Modification>,
@@ -33,6 +35,12 @@ impl SpurGear {
     ///
     /// [`GearError`] says which part cannot be made and what would do.
     pub fn new(data: GearData) -> Result<Self, GearError> {
+        let normal_rack = data.rack;
+        Self::cut_by(normal_rack, data)
+    }
+
+    /// The transverse section of a gear that `normal_rack` cuts at an angle, with `data` as they are in that section.
+    pub(in crate::gear) fn cut_by(normal_rack: Rack, data: GearData) -> Result<Self, GearError> {
         let rack = &data.rack;
         let (z, alpha) = (f64::from(data.tooth_count), rack.pressure_angle);
         let r = rack.module * z / 2.0;
@@ -42,6 +50,7 @@ impl SpurGear {
             + data.thickness_deviation / (2.0 * r);
         let mut gear = Self {
             data,
+            normal_rack,
             flank: Involute::new(r * alpha.cos(), psi_b),
             broken_edge: None,
             modifications: Vec::new(),
@@ -131,6 +140,11 @@ impl SpurGear {
         }
     }
 
+    /// The rack across its own teeth: of a spur gear that of the drawing.
+    pub(in crate::gear) fn normal_rack(&self) -> &Rack {
+        &self.normal_rack
+    }
+
     /// The number of teeth Z.
     pub fn tooth_count(&self) -> u32 {
         self.data.tooth_count
@@ -185,6 +199,7 @@ impl SpurGear {
     pub fn fillet(&self) -> Trochoid {
         Trochoid::new(
             &self.data.rack,
+            &self.normal_rack,
             self.data.tooth_count,
             self.profile_shift_length(),
             self.data.thickness_deviation,
@@ -300,14 +315,14 @@ impl SpurGear {
     fn form_roll_length_signed(&self) -> f64 {
         let sin = self.data.rack.pressure_angle.sin();
         self.reference_radius() * sin
-            - (self.data.rack.straight_depth() - self.profile_shift_length()) / sin
+            - (self.normal_rack.straight_depth() - self.profile_shift_length()) / sin
     }
 }
 
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::gear::{ModificationData, Rack, ReliefData, ReliefShape, ReliefStart};
+    use crate::gear::{ModificationData, ReliefData, ReliefShape, ReliefStart};
 
     /// The paper's gears (Table 1): module 2 mm, 20 degrees, addendum 2 mm, dedendum 2.5 mm, width 20 mm, steel.
     pub(crate) fn paper_gear(tooth_count: u32) -> GearData {
