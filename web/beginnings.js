@@ -1,19 +1,33 @@
 // What a part of the form begins with when it is asked for: values that fit the gear it is for, else defaults.
 
-import { kindOf } from "./schema.js";
+import { USUAL_POSITIONS } from "./preview.js";
+import { kindOf, resolve } from "./schema.js";
 
 const TURN = Math.PI / 180;
 const rounded = (value, digits = 3) => Number(value.toPrecision(digits));
 
+/** A run-up begins with so many speeds, up to so many times that of the resonance at the mesh order. */
+const SPEEDS = 100;
+const BEYOND_RESONANCE = 1.3;
+
 export class Beginnings {
-  constructor(api, design) {
-    Object.assign(this, { api, design });
+  /** `limits` are those of the service; `results` gives those of the design as it was computed last, null before. */
+  constructor(api, design, { limits, results }) {
+    Object.assign(this, { api, design, limits, results });
+  }
+
+  /** All that is set where an object is asked for that is not there yet: itself, and what it needs beside it. */
+  values(pointer, kind) {
+    const values = { [pointer]: this.object(pointer, kind) };
+    const table = pointer === "/dynamics" && !this.design.get("/force_table") ? this.#table() : {};
+    return Object.keys(table).length ? { ...values, "/force_table": table } : values;
   }
 
   /** An object that is not there yet. */
   object(pointer, kind) {
     if (pointer.endsWith("/slot")) return slotOf(this.design.get(pointer.slice(0, -"/slot".length)));
-    if (pointer === "/dynamics") return { driving_speed_rpm: { from: 0, to: 6000, count: 60 } };
+    if (pointer === "/force_table") return this.#table();
+    if (pointer === "/dynamics") return this.#runUp();
     const fitting = this.#fitting(pointer, pointer.split("/").pop());
     return fitting ?? this.#begin(kind);
   }
@@ -57,6 +71,28 @@ export class Beginnings {
     const inner = bore + 0.2 * (root - bore);
     const outer = Math.max(root - 3.6 * module, bore + 0.6 * (root - bore));
     return { inner_radius_mm: rounded(inner), outer_radius_mm: rounded(outer), thickness_mm: rounded(gear.face_width_mm / 2) };
+  }
+
+  /** The usual table, or one of fewer loads where the true period is so long that more would be too many positions. */
+  #table() {
+    const { minimum, default: usual } = resolve(this.api, this.api.components.schemas.ForceTableRequest).properties.loads;
+    const period = this.results()?.pair.period_mesh_periods ?? 1;
+    const { positions_per_mesh_period: positions = USUAL_POSITIONS, span_mesh_periods: span } = this.design.get("/resolution") ?? {};
+    const ofCurves = (span ?? period) * this.design.get("/output_torques_n_m").length;
+    const loads = Math.floor((this.limits.positions / positions - ofCurves) / period);
+    return loads < usual ? { loads: Math.max(loads, minimum) } : {};
+  }
+
+  /** From rest to beyond the speed at which the mesh order meets the gears on their teeth. */
+  #runUp() {
+    const { pair, curves } = this.results() ?? {};
+    const stiffness = curves?.[0].statistics.mesh_stiffness_tangent_n_per_m.mean;
+    if (!stiffness) return { driving_speed_rpm: { from: 0, to: 6000, count: SPEEDS } };
+    const [driving, driven] = [pair.driving, pair.driven].map((gear) => (gear.base_radius_mm / 1000) ** 2 / gear.polar_inertia_kg_m2);
+    const frequency = Math.sqrt(stiffness * (driving + driven)) / (2 * Math.PI);
+    const resonance = (60 * frequency) / this.design.get("/pair/driving/tooth_count");
+    const step = 10 ** Math.floor(Math.log10(resonance));
+    return { driving_speed_rpm: { from: 0, to: Math.ceil((BEYOND_RESONANCE * resonance) / step) * step, count: SPEEDS } };
   }
 
   /** The start of a relief as the field `name` says it: at the same place of the flank as before, else half a module below the tip, or above the root. */

@@ -51,6 +51,8 @@ export class Design {
     this.submission = null;
     this.kept = [];
     this.by = "start";
+    /** How often the submission has changed. */
+    this.changes = 0;
   }
 
   /** Calls `listener` with what changed the design. */
@@ -152,6 +154,7 @@ export class Design {
 
   #tell(by) {
     this.by = by;
+    if (by !== "kept") this.changes += 1;
     for (const listener of this.#listeners) listener(by);
   }
 }

@@ -30,9 +30,9 @@ export class Form {
   #last = {};
   #unlocked = new Set();
 
-  /** `notify` says what else a change has changed. */
-  constructor(place, api, design, notify) {
-    Object.assign(this, { place, api, design, notify, beginnings: new Beginnings(api, design) });
+  /** `notify` says what else a change has changed; `limits` are those of the service, and `results` the last that there are. */
+  constructor(place, api, design, { notify, limits, results }) {
+    Object.assign(this, { place, api, design, notify, beginnings: new Beginnings(api, design, { limits, results }) });
     place.addEventListener("submit", (event) => event.preventDefault());
     // Made once: what they say stays while fields are made anew around them.
     this.tools = Object.fromEntries(MEMBERS.map((member) => [member, deviations(member, design)]));
@@ -255,13 +255,13 @@ export class Form {
     }, kind, words?.id ?? null);
   }
 
-  /** Sets a field, and takes away what it stands in place of. */
-  #put(pointer, value) {
+  /** Sets a field and `further` ones, and takes away what it stands in place of. */
+  #put(pointer, value, further = {}) {
     const [, member, name] = /^\/pair\/(driving|driven)\/(module_mm|pressure_angle_deg|tooth_count)$/.exec(pointer) ?? [];
     if (member) return this.#putBasic(ALIKE.includes(name) && !this.#unlocked.has(name) ? MEMBERS : [member], name, value);
     const holder = pointer.slice(0, pointer.lastIndexOf("/") + 1);
     const others = value === undefined ? [] : (INSTEAD[pointer.slice(holder.length)] ?? []).filter((name) => this.design.get(holder + name) !== undefined);
-    this.design.setAll({ [pointer]: value, ...Object.fromEntries(others.map((name) => [holder + name, undefined])) }, "form");
+    this.design.setAll({ [pointer]: value, ...further, ...Object.fromEntries(others.map((name) => [holder + name, undefined])) }, "form");
   }
 
   #remember(member) {
@@ -385,12 +385,17 @@ export class Form {
 
   #fieldset(pointer, kind, title, fields, optional) {
     const said = help(kind.schema);
-    const box = h("input", { type: "checkbox", id: `field-${pointer}`, on: { change: (event) => (event.target.checked ? this.#put(pointer, this.beginnings.object(pointer, kind)) : this.#takeAway(pointer)) } });
+    const box = h("input", { type: "checkbox", id: `field-${pointer}`, on: { change: (event) => (event.target.checked ? this.#begin(pointer, kind) : this.#takeAway(pointer)) } });
     const legend = optional ? h("legend", {}, h("label", { title: said }, box, ` ${title}`)) : h("legend", { title: said }, title);
     const element = h("fieldset", { className: "field" }, legend, ...fields);
     return this.#register(pointer, element, kind.schema, () => {
       box.checked = (at(this.design.submission, pointer) ?? null) !== null;
     });
+  }
+
+  #begin(pointer, kind) {
+    const { [pointer]: value, ...others } = this.beginnings.values(pointer, kind);
+    this.#put(pointer, value, others);
   }
 
   /** Takes an object away; holes that are no slots any more are round, and as wide. */

@@ -189,14 +189,21 @@ function legendOf({ name, results }, designs) {
   return differ ? `${name} ${results.method.replace(/_/g, " ")}` : name;
 }
 
-const carry = debounced(250, async () => {
-  history.replaceState(null, "", await toFragment(design.submission));
-});
+/** The address carries the design, and which change of it that is: packing takes a while, and a newer one may be done before. */
+async function address() {
+  const { changes, submission } = design;
+  const fragment = await toFragment(submission);
+  if (design.changes === changes) history.replaceState({ changes }, "", fragment);
+}
+
+const carry = debounced(250, address);
 
 design.onChange((by) => {
   byId("undo").disabled = !design.canUndo;
   byId("redo").disabled = !design.canRedo;
   if (by === "kept") return showDesigns();
+  // For those who test: the address carries this change once its state has the number.
+  document.body.dataset.changes = design.changes;
   if (by === "undo" && shown && same(shown.submission, design.submission) && !problem) showDesigns();
   deformation.off();
   form?.refresh();
@@ -282,7 +289,7 @@ async function picture(kind) {
 
 async function share() {
   const button = byId("share");
-  history.replaceState(null, "", await toFragment(design.submission));
+  await address();
   const done = await copied(location.href);
   button.textContent = done ? "Link copied" : "Copy it from the address bar";
   setTimeout(() => { button.textContent = "Copy link"; }, done ? 2000 : 6000);
@@ -441,7 +448,7 @@ async function begin() {
   setUpStart(examples, given);
   design.replace(given ?? examples.find(({ name }) => name === FIRST_EXAMPLE).submission, "start");
   const [api, limits] = await Promise.all([openapi(), json("v1/limits")]);
-  form = new Form(byId("form"), api, design, notify);
+  form = new Form(byId("form"), api, design, { notify, limits, results: () => shown?.results });
   lay();
   showProblem();
   const positions = () => live?.results.curves[0].mesh_position.length ?? 200;

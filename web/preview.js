@@ -3,7 +3,7 @@
 import { hasEnded, json, post, ProblemError, request, solved } from "./api.js";
 
 /** In a mesh period, where a design does not say it. */
-const USUAL_POSITIONS = 40;
+export const USUAL_POSITIONS = 40;
 /** A draft has about so many positions, and at least so many in a mesh period. */
 const DRAFT_POSITIONS = 60;
 const LEAST_POSITIONS = 10;

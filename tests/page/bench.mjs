@@ -1,7 +1,7 @@
 // What an engineer does with the bench in a day: typing over, dragging too far, long curves, comparing, exporting, going back.
 
 import assert from "node:assert/strict";
-import { answer, axe, changed, designOf, downloaded, drag, field, holeAt, named, open, openDesign, step, tab } from "./harness.mjs";
+import { answer, axe, changed, changing, designOf, downloaded, drag, field, holeAt, named, open, openDesign, settled, step, tab } from "./harness.mjs";
 
 const DRIVEN = "/pair/driven";
 const HOLES = `${DRIVEN}/blank/holes`;
@@ -148,7 +148,7 @@ export async function benchSteps(service) {
     page.on("request", (request) => { if (/v1\/preview$/.test(request.url())) previews.push(request.postData()); });
     await openDesign(page, service, LONG);
     await page.locator("#progress").waitFor();
-    await page.waitForFunction(() => !document.body.classList.contains("busy") && document.querySelector("#answer-p-p .value").textContent !== "–", null, { timeout: 120_000 });
+    await page.waitForFunction(() => !document.body.classList.contains("busy") && document.querySelector("#answer-p-p .value").textContent !== "–");
     const long = await answer(page, "p-p");
     assert.ok(long > 0);
     assert.ok(await page.locator("#problem").isHidden());
@@ -180,7 +180,7 @@ export async function benchSteps(service) {
     short.pair.driven.blank = { bore_radius_mm: 10, holes: { count: 5, circle_radius_mm: 17, radius_mm: 2 } };
     short.output_torques_n_m = [20, 50, 80];
     await openDesign(page, service, short);
-    await page.waitForFunction(() => document.querySelectorAll("#table tbody tr").length === 3, null, { timeout: 120_000 });
+    await page.waitForFunction(() => document.querySelectorAll("#table tbody tr").length === 3);
     assert.equal(await page.locator("#chart-ste .entry").count(), 3);
   });
 
@@ -197,13 +197,12 @@ export async function benchSteps(service) {
 
   await step("every part of the form begins with what fits the gear", service, async (page) => {
     await openDesign(page, service, { ...LONG, pair: { ...LONG.pair, driving: { ...LONG.pair.driving, tooth_count: 24 }, driven: { ...LONG.pair.driven, tooth_count: 48, profile_shift: 0, blank: { bore_radius_mm: 20 } }, center_distance_mm: 91 }, output_torques_n_m: [150] });
-    await page.waitForFunction(() => !document.body.classList.contains("busy"));
+    await settled(page);
     const pointers = await page.locator("#form fieldset > legend input[type=checkbox], #form .variants > .row > select").evaluateAll((all) => all.map(({ id }) => id));
     assert.ok(pointers.length > 8, pointers.join());
     const seen = new Set();
     const settle = async (what) => {
-      await page.waitForTimeout(60);
-      await page.waitForFunction(() => !document.body.classList.contains("busy"), null, { timeout: 60_000 });
+      await settled(page);
       const wrong = await page.locator("#problem").evaluate((place) => (place.hidden ? "" : place.innerText));
       assert.equal(wrong, "", what);
     };
@@ -229,9 +228,10 @@ export async function benchSteps(service) {
         for (const each of await inner()) await tryAll(each, depth + 1);
       }
     };
-    const fragment = await page.evaluate(() => location.hash);
+    const hash = () => page.evaluate(() => location.hash);
+    const fragment = await hash();
     const again = async () => {
-      await page.evaluate((hash) => { location.hash = hash; }, fragment);
+      if ((await hash()) !== fragment) await changing(page, () => page.evaluate((began) => { location.hash = began; }, fragment));
       await settle("as it began");
     };
     for (const id of pointers) {
@@ -251,6 +251,35 @@ export async function benchSteps(service) {
       }
       await again();
     }
+  });
+
+  await step("a force table and a run-up begin with what a long period leaves room for", service, async (page) => {
+    // The driven gear's teeth differ: 48 mesh periods, of which 12 loads would be too many positions.
+    const uneven = { pitch_single_um: Array.from({ length: 48 }, (_, i) => (i % 2 ? 1 : -1) * (i % 5)) };
+    const sum = uneven.pitch_single_um.reduce((all, value) => all + value, 0);
+    uneven.pitch_single_um[0] -= sum;
+    const pair = { center_distance_mm: 91, driving: { ...LONG.pair.driving, tooth_count: 24 }, driven: { ...LONG.pair.driven, tooth_count: 48, profile_shift: 0, blank: { bore_radius_mm: 20 }, tooth_deviations: uneven } };
+    for (const name of ["force_table", "dynamics"]) {
+      await openDesign(page, service, { ...LONG, pair, output_torques_n_m: [150] });
+      await settled(page);
+      assert.equal(await page.locator("#position").getAttribute("max"), "48");
+      await (await field(page, `/${name}`)).check();
+      // More than a preview takes: a job does it, and refuses nothing.
+      await page.locator("#progress").waitFor();
+      assert.ok(await page.locator("#problem").isHidden(), await page.locator("#problem").innerText());
+      assert.equal((await designOf(page)).force_table.loads, 9);
+      await page.locator("#stop").click();
+      await page.locator("#problem", { hasText: "cancelled" }).waitFor();
+    }
+  });
+
+  await step("a run-up begins with speeds up to beyond the resonance", service, async (page) => {
+    await open(page, service);
+    await (await field(page, "/dynamics")).check();
+    await settled(page);
+    const { from, to, count } = (await designOf(page)).dynamics.driving_speed_rpm;
+    // Case 2: 2.194e8 N/m on 0.302 kg is 4290 Hz, which 50 teeth meet at 5148 1/min.
+    assert.deepEqual([from, to, count], [0, 7000, 100]);
   });
 
   await step("undo and redo take back everything, by keys too", service, async (page) => {

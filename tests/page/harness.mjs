@@ -4,7 +4,8 @@ import assert from "node:assert/strict";
 import { AxeBuilder } from "@axe-core/playwright";
 import { chromium } from "playwright-core";
 
-const PATIENCE = 20_000;
+/** In milliseconds, for a machine that has much else to do. */
+const PATIENCE = 120_000;
 const only = process.env.ONLY ? new RegExp(process.env.ONLY) : null;
 
 const browser = await chromium.launch({ executablePath: process.env.BROWSER, args: ["--no-sandbox"] });
@@ -15,8 +16,8 @@ let failed = 0;
 export async function step(name, service, work, options = {}, others = []) {
   if (only && !only.test(name)) return;
   const context = await browser.newContext({ viewport: { width: 1280, height: 1000 }, acceptDownloads: true, ...options });
+  context.setDefaultTimeout(PATIENCE);
   const page = await context.newPage();
-  page.setDefaultTimeout(PATIENCE);
   const faults = [];
   page.on("console", (message) => {
     // The browser itself logs a refusal; the page shows it at its field.
@@ -78,9 +79,27 @@ export const tab = (page, name) => page.locator(`#tab-${name}`).click();
 /** What the live design is called in the table, once it is called so. */
 export const named = (page, words) => page.waitForFunction((name) => document.querySelector("#table tr.live th")?.textContent.includes(name) && !document.body.classList.contains("busy"), words);
 
-/** The design that the address carries. */
+/** Waits until the last change of the design has been answered, and the address carries it. */
+export const settled = (page) => page.waitForFunction(() => !document.body.classList.contains("busy") && history.state?.changes === Number(document.body.dataset.changes));
+
+/** Does what changes the design sooner or later, and waits until it has, and is settled. */
+export async function changing(page, work) {
+  const before = await page.evaluate(() => document.body.dataset.changes);
+  await work();
+  await page.waitForFunction((known) => document.body.dataset.changes !== known, before);
+  await settled(page);
+}
+
+/** The address that the page gives away. */
+export async function linkOf(page) {
+  await page.locator("#share").click();
+  await page.waitForFunction(() => document.querySelector("#share").textContent !== "Copy link");
+  return page.url();
+}
+
+/** The design as it is now, by the address that carries it. */
 export async function designOf(page) {
-  await page.waitForTimeout(400);
+  await page.waitForFunction(() => history.state?.changes === Number(document.body.dataset.changes));
   return page.evaluate(async () => {
     const text = location.hash.slice("#design=".length).replace(/-/g, "+").replace(/_/g, "/");
     const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { benchSteps } from "./bench.mjs";
-import { answer, axe, changed, designOf, drag, downloaded, end, field, holeAt, named, open, step, tab } from "./harness.mjs";
+import { answer, axe, changed, changing, designOf, drag, downloaded, end, field, holeAt, linkOf, named, open, step, tab } from "./harness.mjs";
 import { start } from "./service.mjs";
 
 const DRAGS = 200;
@@ -62,11 +62,8 @@ await step("a link opened again gives the same design", service, async (page, co
   await open(page, service);
   await (await field(page, `${HOLES}/count`)).fill("8");
   await named(page, "8×");
-  await page.locator("#share").click();
-  await page.waitForFunction(() => location.hash.startsWith("#design="));
-  await page.waitForTimeout(400);
   const again = await context.newPage();
-  await again.goto(page.url());
+  await again.goto(await linkOf(page));
   await named(again, "8×");
   assert.equal(await again.locator("#headline").innerText(), await page.locator("#headline").innerText());
 });
@@ -117,10 +114,8 @@ await step("lists of holes and slots are opened, changed and computed", service,
   await named(page, "4×r7.5@34+2×r6@34");
   await (await of("/1/radius_mm")).fill("5");
   await named(page, "4×r7.5@34+2×r5@34");
-  await page.locator("#share").click();
-  await page.waitForFunction(() => location.hash.startsWith("#design="));
   const again = await context.newPage();
-  await again.goto(page.url());
+  await again.goto(await linkOf(page));
   await named(again, "4×r7.5@34+2×r5@34");
   assert.equal(await again.locator(`[id="field-${HOLES}/0/at_deg"]`).inputValue(), "0, 85, 185, 268");
   // One pattern becomes a list of them, and a further one stands between its holes.
@@ -174,15 +169,14 @@ await step("a population shows how good the pairs will be that are made, and ope
   await page.locator("#law-0").selectOption("/pair/center_distance_mm");
   await page.locator("#law-0-kind").selectOption("uniform");
   await page.locator("#population button[type=submit]").click();
-  await page.waitForFunction(() => /24 of 24 members, successful/.test(document.querySelector("#population [role=status]").innerText), null, { timeout: 120_000 });
+  await page.waitForFunction(() => /24 of 24 members, successful/.test(document.querySelector("#population [role=status]").innerText));
   assert.match(await page.locator("#population .out").innerText(), /95 of 100 pairs stay below \d/);
   assert.equal(await page.locator("#population .scatter").count(), 2, "a histogram, and percentiles over the torque");
   const influences = await page.locator("#population .influences tbody").innerText();
   assert.match(influences, /[Cc]enter distance/);
   assert.match(influences, /teeth of the driven gear/);
   await axe(page);
-  await page.locator("#population button", { hasText: "Open the largest member" }).click();
-  await page.waitForFunction(() => location.hash || true);
+  await changing(page, () => page.locator("#population button", { hasText: "Open the largest member" }).click());
   const opened = await designOf(page);
   assert.equal(opened.pair.driven.tooth_deviations.pitch_single_um.length, opened.pair.driven.tooth_count);
   assert.equal(opened.output_torques_n_m.length, 2);

@@ -190,6 +190,12 @@ impl Document {
         if fitting_torques >= 1 {
             ways.push(format!("{fitting_torques} torques"));
         }
+        let (fewest_loads, _) = ForceTableQuestion::loads.spec.bounds;
+        let fitting_loads =
+            (limit / positions).saturating_sub(of_curves) / u64::from(pair.period());
+        if of_table > 0 && fitting_loads >= fewest_loads as u64 {
+            ways.push(format!("{fitting_loads} loads"));
+        }
         if fitting_span >= 1 && of_table == 0 {
             ways.push(format!("a span of {fitting_span} mesh periods"));
         }

@@ -208,6 +208,25 @@ fn a_run_up_is_refused_where_it_has_no_table_or_no_load_and_the_nearest_will_do(
 }
 
 #[test]
+fn a_table_of_too_many_positions_is_refused_with_the_loads_that_fit() {
+    let mut document = case_2();
+    put(
+        &mut document,
+        "/resolution",
+        json!({ "positions_per_mesh_period": 400 }),
+    );
+    // Five mesh periods: 20,000 / 400 = 5 of the curve and 9 loads of 5.
+    let mut with = |loads: u32| {
+        put(&mut document, "/force_table", json!({ "loads": loads }));
+        parse(&document)
+    };
+    let problem = with(10).expect_err("too large");
+    let detail = &problem.errors[0].detail;
+    assert!(detail.contains(", or 9 loads"), "{detail}");
+    assert!(with(9).is_ok());
+}
+
+#[test]
 fn a_run_up_brings_the_usual_table_and_both_count() {
     let mut document = case_2();
     let alone = parse(&document).expect("valid").positions_total();
