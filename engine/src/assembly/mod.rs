@@ -9,6 +9,7 @@
 
 pub mod blank;
 pub mod cut;
+pub mod face_yield;
 pub mod gear;
 pub mod inside;
 pub mod interface;
@@ -18,6 +19,7 @@ pub mod teeth;
 
 pub use blank::BlankSpec;
 pub use cut::CutGear;
+pub use face_yield::{FaceResolution, FaceYield};
 pub use gear::{Carrier, Gear, GearGrids, GearSpec, WantedGear, make_gears};
 pub use inside::{Inside, Probes};
 pub use pair::{Blanks, Modeling, PairSpec};

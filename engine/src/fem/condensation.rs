@@ -76,7 +76,7 @@ pub fn condense_with(
     asked: &[Functional],
 ) -> Result<Condensed, FemError> {
     let numbering = Numbering::new(grid.nodes.len(), kept, fixed);
-    let mut matrix = BlockMatrix::<COMPONENTS>::new(&grid.elements, &numbering);
+    let mut matrix = BlockMatrix::new(COMPONENTS, &grid.elements, &numbering);
     for (element, k) in grid
         .elements
         .iter()
@@ -110,7 +110,7 @@ pub fn condense_with(
 }
 
 /// L Lᵀ of a lower triangle.
-fn squared(l: &Mat<f64>) -> Mat<f64> {
+pub(super) fn squared(l: &Mat<f64>) -> Mat<f64> {
     let mut square = Mat::<f64>::zeros(l.nrows(), l.nrows());
     triangular::matmul(
         square.as_mut(),

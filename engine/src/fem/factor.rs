@@ -25,16 +25,17 @@ pub(super) struct Factor {
 
 impl Factor {
     /// Factorizes `matrix`, that of `part`, in an order of few entries which leaves the kept nodes of `numbering` last.
-    pub(super) fn new<const C: usize>(
+    pub(super) fn new(
         part: &'static str,
-        matrix: BlockMatrix<C>,
+        matrix: BlockMatrix,
         numbering: &Numbering,
     ) -> Result<Self, FemError> {
-        let unknowns = C * numbering.count;
+        let size = matrix.size();
+        let unknowns = size * numbering.count;
         let order = matrix.fill_reducing_order(numbering.interior);
         order
             .and_then(|order| {
-                Self::in_order(&matrix.into_unknowns(), order, C * numbering.interior)
+                Self::in_order(&matrix.into_unknowns(), order, size * numbering.interior)
             })
             .map_err(|failure| match failure {
                 Failure::Size => FemError::TooLarge { part, unknowns },
@@ -130,7 +131,7 @@ impl Factor {
         numbering: &Numbering,
         trailing: &Mat<f64>,
     ) -> Mat<f64> {
-        let (factor, (_, place)) = (self.supernodal(), self.order.as_ref().arrays());
+        let place = self.places();
         let mut solved = Mat::<f64>::zeros(self.symbolic.nrows(), asked.len());
         for (column, functional) in asked.iter().enumerate() {
             for &(node, weight) in functional.terms() {
@@ -142,18 +143,28 @@ impl Factor {
                 solved[(place[COMPONENTS * node + 1] as usize, column)] += weight.y;
             }
         }
+        self.half_solve_in_place(&mut solved);
+        let on_kept = solved.subrows(self.interior, trailing.nrows());
+        trailing * on_kept
+    }
+
+    /// Where each unknown stands in the order of the factor.
+    pub(super) fn places(&self) -> &[u32] {
+        self.order.as_ref().arrays().1
+    }
+
+    /// Overwrites `columns`, which stand in the order of the factor, with L⁻¹ times them.
+    pub(super) fn half_solve_in_place(&self, columns: &mut Mat<f64>) {
         let scratch = self
             .symbolic
-            .solve_in_place_scratch::<f64>(asked.len(), Par::Seq);
+            .solve_in_place_scratch::<f64>(columns.ncols(), Par::Seq);
         let mut memory = MemBuffer::new(scratch);
-        factor.l_solve_with_conj(
+        self.supernodal().l_solve_with_conj(
             Conj::No,
-            solved.as_mut(),
+            columns.as_mut(),
             Par::Seq,
             MemStack::new(&mut memory),
         );
-        let on_kept = solved.subrows(self.interior, trailing.nrows());
-        trailing * on_kept
     }
 
     /// The solutions of the whole system, in place of the right-hand sides `columns` on the numbered unknowns.

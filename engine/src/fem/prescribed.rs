@@ -41,7 +41,7 @@ pub fn displacements(
     for (place, node) in moved.iter().enumerate() {
         places[*node as usize] = place;
     }
-    let mut matrix = BlockMatrix::<COMPONENTS>::new(&grid.elements, &numbering);
+    let mut matrix = BlockMatrix::new(COMPONENTS, &grid.elements, &numbering);
     // The elements that reach a moved node pull at the free ones.
     let mut reaching = Vec::new();
     let stiffnesses = element_stiffnesses(grid, material, thickness);

@@ -1,6 +1,6 @@
 //! The grid of one tooth and the rim under it.
 
-use super::tooth_plan::Plan;
+use super::tooth_plan::{Plan, Sizes};
 use super::{Grid, GridError, GridLevel, checked};
 use crate::gear::SpurGear;
 
@@ -43,6 +43,28 @@ impl ToothGrid {
         interface_radius: f64,
         level: GridLevel,
     ) -> Result<Self, GridError> {
+        Self::of_sizes(gear, interface_radius, &Sizes::OF_SECTION, level)
+    }
+
+    /// The same in fewer elements, even ones: for a section that carries polynomials along the axis.
+    ///
+    /// # Errors
+    ///
+    /// As [`ToothGrid::new`].
+    pub fn of_prism(
+        gear: &SpurGear,
+        interface_radius: f64,
+        level: GridLevel,
+    ) -> Result<Self, GridError> {
+        Self::of_sizes(gear, interface_radius, &Sizes::OF_PRISM, level)
+    }
+
+    fn of_sizes(
+        gear: &SpurGear,
+        interface_radius: f64,
+        sizes: &Sizes,
+        level: GridLevel,
+    ) -> Result<Self, GridError> {
         let root_radius = gear.root_radius();
         if !(interface_radius > 0.0 && interface_radius < root_radius) {
             return Err(GridError::InterfaceOutsideRim {
@@ -50,7 +72,7 @@ impl ToothGrid {
                 root_radius,
             });
         }
-        let plan = Plan::new(gear, interface_radius, level);
+        let plan = Plan::new(gear, interface_radius, sizes, level);
         let tooth = plan.build();
         Ok(Self {
             grid: checked(tooth.grid)?,

@@ -53,6 +53,56 @@ const LARGEST_CORE: f64 = 0.8;
 /// and even. The sharpest corner is the same from 0.2 to 0.45.
 const DEEP_RIM: f64 = 0.3;
 
+/// How large the elements of a tooth are at the standard level, in modules, and how many there are at least.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sizes {
+    /// Along the loaded flank at its tip corner, and at a broken edge.
+    at_tip: f64,
+    at_edge: f64,
+    /// The largest along the flank.
+    on_flank: f64,
+    /// Of the first layer across the tooth at its tip.
+    first_across: f64,
+    /// The largest across the tooth there, as a part of its thickness.
+    across: f64,
+    /// How many such layers there are at least.
+    least_across: f64,
+    /// Along the fillet and the root land.
+    on_fillet: f64,
+    /// Of the first layer below the fillet.
+    below_fillet: f64,
+    /// The least number of elements along the flank, across the tooth, along the root, and below it.
+    least: [usize; 4],
+}
+
+impl Sizes {
+    /// Sizes of a section by itself, whose flank resolves all of its compliance but the logarithm of contacts.
+    pub(super) const OF_SECTION: Self = Self {
+        at_tip: SIZE_AT_TIP,
+        at_edge: SIZE_AT_EDGE,
+        on_flank: SIZE_ON_FLANK,
+        first_across: SIZE_AT_TIP,
+        across: SIZE_ACROSS,
+        least_across: 16.0,
+        on_fillet: SIZE_ON_FILLET,
+        below_fillet: SIZE_BELOW_FILLET,
+        least: [8, 8, 4, 6],
+    };
+
+    /// Sizes of a section that carries polynomials along the axis, from whose flank the half space is taken off: even ones do.
+    pub(super) const OF_PRISM: Self = Self {
+        at_tip: f64::INFINITY,
+        at_edge: f64::INFINITY,
+        on_flank: 0.17,
+        first_across: f64::INFINITY,
+        across: 0.25,
+        least_across: 0.0,
+        on_fillet: 0.5,
+        below_fillet: 0.25,
+        least: [8, 4, 2, 4],
+    };
+}
+
 /// The boundary of the sector as points on the doubled lattice, all of the half with the loaded flank.
 pub(super) struct Plan<'a> {
     gear: &'a SpurGear,
@@ -78,7 +128,13 @@ pub(super) struct Plan<'a> {
 }
 
 impl<'a> Plan<'a> {
-    pub(super) fn new(gear: &'a SpurGear, interface_radius: f64, level: GridLevel) -> Self {
+    pub(super) fn new(
+        gear: &'a SpurGear,
+        interface_radius: f64,
+        sizes: &Sizes,
+        level: GridLevel,
+    ) -> Self {
+        let of = sizes;
         let m = gear.data().rack.module;
         let curve = RootCurve::new(gear);
         let (gamma_0, gamma_1) = curve.fillet.ends();
@@ -86,25 +142,26 @@ impl<'a> Plan<'a> {
 
         // The flank, by the distance from the tip corner, or from the broken edge.
         let flank = gear.flank();
-        let edge = edge(gear, level);
+        let edge = edge(gear, of, level);
         let (a_form, a_tip) = (
             flank.arc_length(gear.form_roll_length()),
             flank.arc_length(gear.tip_form_roll_length()),
         );
         let length = a_tip - a_form;
         let finest = if edge.is_empty() {
-            SIZE_AT_TIP
+            of.at_tip
         } else {
-            SIZE_AT_EDGE
+            of.at_edge
         };
         let sizes = Grading {
             length,
             first: finest * m,
             last: f64::INFINITY,
             growth: GROWTH_FROM_TIP,
-            largest: SIZE_ON_FLANK * m,
+            largest: of.on_flank * m,
         };
-        let fractions = reversed(&sizes.divide(sizes.count_at(8, level)));
+        let [on_flank, across_least, ..] = of.least;
+        let fractions = reversed(&sizes.divide(sizes.count_at(on_flank, level)));
         let last = fractions.len() - 1;
         let roll_lengths: Vec<f64> = (0..=last)
             .map(|i| match i {
@@ -120,7 +177,7 @@ impl<'a> Plan<'a> {
             first: sizes.size(length),
             last: f64::INFINITY,
             growth: GROWTH_AT_ROOT,
-            largest: SIZE_ON_FILLET * m,
+            largest: of.on_fillet * m,
         };
         let below_fractions = reversed(&below.divide(below.count_at(2, level)));
         let below_form = below_fractions.len() - 1;
@@ -159,14 +216,14 @@ impl<'a> Plan<'a> {
         let across = Grading {
             length: thickness,
             last: f64::INFINITY,
-            first: (SIZE_AT_TIP * m).min(thickness / 16.0),
+            first: (of.first_across * m).min(thickness / of.least_across),
             growth: GROWTH_ACROSS,
-            largest: SIZE_ACROSS * thickness,
+            largest: of.across * thickness,
         };
-        let across_count = across.count_at(8, level);
+        let across_count = across.count_at(across_least, level);
         let across_tip = reversed(&across.divide(across_count));
 
-        let (root, depth) = Self::rim(gear, &curve, division, interface_radius, level);
+        let (root, depth) = Self::rim(gear, &curve, division, interface_radius, (of, level));
         let corner = side[0].0;
         let (core_angle, fillet_angles) = interface_angles(gear, corner, &root, interface_radius);
         let [depth_at_core, depth_at_side] = {
@@ -178,7 +235,7 @@ impl<'a> Plan<'a> {
             lengths.map(|length| {
                 let layers = Grading {
                     length,
-                    first: (SIZE_BELOW_FILLET * m).min(length),
+                    first: (of.below_fillet * m).min(length),
                     last: f64::INFINITY,
                     growth: GROWTH_AT_ROOT,
                     largest: length,
@@ -209,11 +266,11 @@ impl<'a> Plan<'a> {
         curve: &RootCurve,
         division: f64,
         interface_radius: f64,
-        level: GridLevel,
+        (of, level): (&Sizes, GridLevel),
     ) -> (Vec<Vector>, usize) {
         let m = gear.data().rack.module;
         let length = curve.length() - division;
-        let count = level.count((length / (SIZE_ON_FILLET * m)).max(4.0));
+        let count = level.count((length / (of.on_fillet * m)).max(of.least[2] as f64));
         let root = uniform(count)
             .into_iter()
             .map(|f| curve.point(division + length * f))
@@ -222,12 +279,12 @@ impl<'a> Plan<'a> {
         let depth = f64::midpoint(corner, gear.root_radius()) - interface_radius;
         let layers = Grading {
             length: depth,
-            first: SIZE_BELOW_FILLET * m,
+            first: of.below_fillet * m,
             last: f64::INFINITY,
             growth: GROWTH_AT_ROOT,
             largest: depth,
         };
-        (root, layers.count_at(6, level))
+        (root, layers.count_at(of.least[3], level))
     }
 
     pub(super) fn build(&self) -> ToothGrid {
@@ -377,7 +434,7 @@ impl<'a> Plan<'a> {
 ///
 /// A rounding ends in the tip circle without a corner, which no block of quadrilaterals can have: it is left [`TURN_LEFT_OUT`] before
 /// that, where the mate cannot press, and the tooth ends in a circle there. So does a chamfer where hardly any land is left.
-fn edge(gear: &SpurGear, level: GridLevel) -> Vec<(Vector, f64)> {
+fn edge(gear: &SpurGear, of: &Sizes, level: GridLevel) -> Vec<(Vector, f64)> {
     if gear.edge_point(0.0).is_none() {
         return Vec::new();
     }
@@ -401,10 +458,10 @@ fn edge(gear: &SpurGear, level: GridLevel) -> Vec<(Vector, f64)> {
     let m = gear.data().rack.module;
     let sizes = Grading {
         length,
-        first: SIZE_AT_EDGE * m,
+        first: of.at_edge * m,
         last: f64::INFINITY,
         growth: GROWTH_FROM_TIP,
-        largest: SIZE_ON_FLANK * m,
+        largest: of.on_flank * m,
     };
     let fractions = sizes.divide(sizes.count_at(2, level));
     let nodes = fractions.into_iter().skip(1);

@@ -1,0 +1,740 @@
+//! What the loaded flanks of one gear yield, all across their face.
+
+use std::f64::consts::PI;
+
+use faer::{Mat, c64};
+
+use super::PartError;
+use crate::fem::FemError;
+use crate::fem::axial::AxialBasis;
+use crate::fem::dense::Cholesky;
+use crate::gear::{Layer, Material, SolidGear};
+use crate::grid::{GridLevel, ToothGrid};
+use crate::quadrature::legendre;
+use crate::ring::solid::gear::{ClassAnswers, answers, between_teeth};
+use crate::ring::solid::revolution::Revolution;
+use crate::ring::solid::tooth::{SolidTooth, flank_compliance_alone};
+use crate::ring::teeth::FARTHEST_COUPLED;
+use crate::run::Run;
+
+/// The degree up the flank of what a tooth yields under its own load, less the half space.
+const OWN_DEGREE: usize = 8;
+/// The degree up the flank of what it yields under the loads of others.
+const OTHER_DEGREE: usize = 5;
+/// How many nodes of the flank apart loads and displacements must be to tell the smooth part from the grid's own error.
+const NODES_APART: usize = 3;
+/// Singular values below this share of the largest say nothing.
+const FIT_TOLERANCE: f64 = 1e-9;
+/// The orders that the interface circle carries: fields of the teeth fall to e^−this on their way to it.
+const DECAY: f64 = 4.5;
+/// The degree of the pieces of a rim that is broken at the faces of its web.
+const PIECE_DEGREE: usize = 4;
+
+/// How finely the yield of a face is resolved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct FaceResolution {
+    /// The degree P of the polynomials across the face.
+    pub face_order: usize,
+    /// The degree of those across a web or a hub.
+    pub web_order: usize,
+    /// The orders of its outer circle in which holes of a web are seen.
+    pub web_harmonics: usize,
+}
+
+impl FaceResolution {
+    /// For results: oblique line loads within half a percent.
+    pub const STANDARD: Self = Self {
+        face_order: 8,
+        web_order: 4,
+        web_harmonics: 14,
+    };
+
+    /// For first looks: within a percent.
+    pub const DRAFT: Self = Self {
+        face_order: 6,
+        web_order: 3,
+        web_harmonics: 10,
+    };
+}
+
+/// What the loaded flanks of one gear yield, all across their face: everything but the half space under each load.
+///
+/// The yield of tooth i at the roll length s and the height z, along the normal into the tooth, is
+///
+/// ```text
+/// u_i(s, z) = Σ over the forces N on (j, s', z') of  basis(s, z)ᵀ smooth[i, j] basis(s', z') N
+///           + Σ over those on tooth i itself of  (1 − ν²)/(π E) N / √(perp² + gen²)
+/// perp = (s² − s'²)/(2 r_b) − τ (s + s')/2 (z − z'),   gen = (z − z')/cos β_b
+/// ```
+///
+/// with the bore held. The basis has products of Legendre polynomials in s², over the flank, and of functions across the face.
+#[derive(Debug, Clone)]
+pub struct FaceYield {
+    axial: AxialBasis,
+    /// The squares of the roll lengths at which the flank begins and ends.
+    squares: [f64; 2],
+    tooth_count: usize,
+    /// What tooth d yields to tooth 0, d = 0 … [`FARTHEST_COUPLED`].
+    blocks: Vec<Mat<f64>>,
+    degrees_of_freedom: u64,
+}
+
+impl FaceYield {
+    /// What the flanks of `gear` yield.
+    ///
+    /// # Errors
+    ///
+    /// [`PartError`] if a part cannot be divided or condensed, or if the work is stopped.
+    pub fn of(gear: &SolidGear, resolution: FaceResolution, run: &Run) -> Result<Self, PartError> {
+        let axial = face_basis(gear, resolution);
+        let radius = interface_radius(gear);
+        let section = gear.section().without_blank().with_plain_flanks();
+        let grid = ToothGrid::of_prism(&section, radius, GridLevel::Standard)?;
+        run.check()?;
+        let tooth = SolidTooth::new(gear, &grid, &axial)?;
+        run.check()?;
+        let carriers = carriers(gear, &axial, radius, resolution, run)?;
+        let classes = answers(&tooth, &carriers, None, run)?;
+        let flank = FlankFit::new(gear, &axial, &tooth.roll_lengths);
+        let (blocks, squares) = (blocks(&tooth, &classes, &flank), flank.squares);
+        let own = tooth.grid_nodes - tooth.sector.side_nodes - 1;
+        Ok(Self {
+            axial,
+            squares,
+            tooth_count: tooth.sector.count,
+            blocks,
+            degrees_of_freedom: (own * tooth.sector.size * tooth.sector.count) as u64,
+        })
+    }
+
+    /// What the flank of one tooth alone yields: a sector of the gear from `inner_radius` outward whose sides are free and whose inner
+    /// circle is held. No gear is like this, but what others compute of one tooth often is.
+    ///
+    /// # Errors
+    ///
+    /// As [`FaceYield::of`].
+    pub fn of_sector(
+        gear: &SolidGear,
+        inner_radius: f64,
+        resolution: FaceResolution,
+    ) -> Result<Self, PartError> {
+        let axial = face_basis(gear, resolution);
+        let section = gear.section().without_blank().with_plain_flanks();
+        let grid = ToothGrid::of_prism(&section, inner_radius, GridLevel::Standard)?;
+        let compliance = flank_compliance_alone(gear, &grid, &axial)?;
+        let flank = FlankFit::new(gear, &axial, &grid.flank_roll_lengths);
+        let (blocks, squares) = (vec![flank.own(&compliance)], flank.squares);
+        let degrees_of_freedom = 3 * axial.len() * (grid.grid.nodes.len() - grid.arc_nodes.len());
+        Ok(Self {
+            axial,
+            squares,
+            tooth_count: 1,
+            blocks,
+            degrees_of_freedom: degrees_of_freedom as u64,
+        })
+    }
+
+    /// The number of functions on a flank.
+    pub fn basis_len(&self) -> usize {
+        (OWN_DEGREE + 1) * self.axial.len()
+    }
+
+    /// The values of all functions at a roll length and a height from the middle of the gear's own face.
+    ///
+    /// # Panics
+    ///
+    /// If `row` has not [`FaceYield::basis_len`] places.
+    pub fn basis(&self, roll_length: f64, z: f64, row: &mut [f64]) {
+        assert_eq!(row.len(), self.basis_len());
+        let (up, _) = up_the_flank(self.squares, roll_length, OWN_DEGREE);
+        let across = self.axial.values(z);
+        for (row, up) in row.chunks_exact_mut(across.len()).zip(up) {
+            for (value, across) in row.iter_mut().zip(&across) {
+                *value = up * across;
+            }
+        }
+    }
+
+    /// What the functions of the listed teeth yield to each other, in m/N: symmetric, a block for each two of them. Teeth count
+    /// counter-clockwise from any, modulo Z.
+    ///
+    /// # Panics
+    ///
+    /// If two teeth are farther apart than [`FARTHEST_COUPLED`].
+    pub fn smooth(&self, teeth: &[usize]) -> Mat<f64> {
+        let (size, z) = (self.basis_len(), self.tooth_count);
+        let mut smooth = Mat::zeros(teeth.len() * size, teeth.len() * size);
+        for (a, i) in teeth.iter().enumerate() {
+            for (b, j) in teeth.iter().enumerate() {
+                let ahead = (i % z + z - j % z) % z;
+                let mut block = smooth.submatrix_mut(a * size, b * size, size, size);
+                if ahead <= z - ahead {
+                    block.copy_from(&self.blocks[ahead]);
+                } else {
+                    block.copy_from(self.blocks[z - ahead].transpose());
+                }
+            }
+        }
+        smooth
+    }
+
+    /// The unknowns before condensation.
+    pub fn degrees_of_freedom(&self) -> u64 {
+        self.degrees_of_freedom
+    }
+
+    /// The number of entries, for the books of a cache.
+    pub fn entries(&self) -> usize {
+        self.blocks.iter().map(crate::fem::dense::entries).sum()
+    }
+}
+
+/// The functions across the face: one polynomial, or pieces that are broken where the rim stands on a narrower web.
+fn face_basis(gear: &SolidGear, resolution: FaceResolution) -> AxialBasis {
+    let [low, high] = gear.face_heights();
+    let layers = gear.layers();
+    let mut breaks = vec![low, high];
+    if let [rim, web, ..] = layers.as_slice()
+        && rim.heights == [low, high]
+    {
+        // A face that is nearly flush is.
+        let slack = 0.02 * (high - low);
+        let inside = |z: &f64| *z > low + slack && *z < high - slack;
+        breaks.extend(web.heights.into_iter().filter(inside));
+        breaks.sort_by(f64::total_cmp);
+    }
+    if breaks.len() == 2 {
+        AxialBasis::new(&breaks, resolution.face_order)
+    } else {
+        AxialBasis::new(&breaks, PIECE_DEGREE.min(resolution.face_order / 2))
+    }
+}
+
+/// Where the teeth meet what carries them: one module below the root circle, or halfway to where the rim ends.
+fn interface_radius(gear: &SolidGear) -> f64 {
+    let root = gear.section().root_radius();
+    let end = gear.layers()[0].inner_radius;
+    (root - gear.normal_rack().module).max(f64::midpoint(root, end))
+}
+
+/// The stiffness of each order on the interface circle of all that is below.
+fn carriers(
+    gear: &SolidGear,
+    axial: &AxialBasis,
+    radius: f64,
+    resolution: FaceResolution,
+    run: &Run,
+) -> Result<Vec<Mat<c64>>, PartError> {
+    let section = gear.section();
+    let material = section.material();
+    let depth = section.root_radius() - radius;
+    let z = section.tooth_count() as usize;
+    let most = ((DECAY * radius / depth - 1e-9).ceil() as usize).clamp(z, 8 * z);
+    let layers = gear.layers();
+    let mut carriers = Vec::with_capacity(most + 1);
+    for order in 0..=most {
+        run.check()?;
+        let below = below_rim(gear, &layers, axial, resolution, order)?;
+        let rim = Revolution {
+            material,
+            twist: gear.twist(),
+            axial,
+            radii: [layers[0].inner_radius, radius],
+        };
+        carriers.push(rim.on_outer(order as i64, below.as_ref())?);
+    }
+    Ok(carriers)
+}
+
+/// The stiffness of `order` under the rim, on its functions: nothing where the rim is all there is.
+fn below_rim(
+    gear: &SolidGear,
+    layers: &[Layer],
+    rim: &AxialBasis,
+    resolution: FaceResolution,
+    order: usize,
+) -> Result<Option<Mat<c64>>, FemError> {
+    let material = gear.section().material();
+    let mut below: Option<(Mat<c64>, AxialBasis)> = None;
+    for layer in layers[1..].iter().rev() {
+        let axial = carrier_basis(layer, gear, resolution);
+        let body = Revolution {
+            material,
+            twist: 0.0,
+            axial: &axial,
+            radii: [layer.inner_radius, layer.outer_radius],
+        };
+        let carried = match &below {
+            Some((stiffness, under)) => Some(on_other(stiffness, under, &axial, order, 0.0)?),
+            None => None,
+        };
+        below = Some((body.on_outer(order as i64, carried.as_ref())?, axial));
+    }
+    below
+        .map(|(stiffness, under)| on_other(&stiffness, &under, rim, order, gear.twist()))
+        .transpose()
+}
+
+/// The functions across a layer below the rim.
+fn carrier_basis(layer: &Layer, gear: &SolidGear, resolution: FaceResolution) -> AxialBasis {
+    let width = layer.heights[1] - layer.heights[0];
+    let degree = if width > 0.5 * gear.face_width() {
+        resolution.face_order
+    } else {
+        resolution.web_order
+    };
+    AxialBasis::new(&layer.heights, degree)
+}
+
+/// The stiffness of `order` on the functions `upper`, which stand on a circle carried by `stiffness` on the functions `lower`.
+///
+/// The circle of the narrower follows that of the wider, in the mean over each of its functions. `twist` is that of the upper
+/// frame; the lower one stands still.
+fn on_other(
+    stiffness: &Mat<c64>,
+    lower: &AxialBasis,
+    upper: &AxialBasis,
+    order: usize,
+    twist: f64,
+) -> Result<Mat<c64>, FemError> {
+    let width = |basis: &AxialBasis| basis.heights()[1] - basis.heights()[0];
+    if width(lower) <= width(upper) {
+        // U_lower = T U_upper.
+        let t = trace(lower, upper, order, twist);
+        return Ok(t.adjoint() * stiffness * &t);
+    }
+    // U_upper = T U_lower, and forces go the other way: compliances add up, T S⁻¹ Tᴴ.
+    let t = trace(upper, lower, order, -twist);
+    let mut half = t.adjoint().to_owned();
+    let failed = FemError::NotPositiveDefinite {
+        part: "the hub",
+        unknowns: stiffness.nrows(),
+    };
+    let factor = Cholesky::new(stiffness.clone()).ok_or(failed.clone())?;
+    factor.half_solve_in_place(half.as_mut());
+    let compliance = half.adjoint() * &half;
+    let mut inverse = Mat::<c64>::identity(compliance.nrows(), compliance.nrows());
+    Cholesky::new(compliance)
+        .ok_or(failed)?
+        .solve_in_place(inverse.as_mut());
+    Ok(inverse)
+}
+
+/// T: the displacement of `order` on the functions `narrow` of a circle that follows the functions `wide`, whose frame turns by
+/// `twist` against its own: ∫ f_p e^{−i n τ z} g_q dz for each component.
+pub(crate) fn trace(narrow: &AxialBasis, wide: &AxialBasis, order: usize, twist: f64) -> Mat<c64> {
+    let phase = order as f64 * twist;
+    let real = narrow.integrals(wide, |z| (phase * z).cos());
+    let imaginary = narrow.integrals(wide, |z| -(phase * z).sin());
+    let (rows, columns) = (narrow.len(), wide.len());
+    let mut t = Mat::<c64>::zeros(3 * rows, 3 * columns);
+    for c in 0..3 {
+        for q in 0..columns {
+            for p in 0..rows {
+                t[(c * rows + p, c * columns + q)] = c64::new(real[(p, q)], imaginary[(p, q)]);
+            }
+        }
+    }
+    t
+}
+
+/// The Legendre polynomials in the square of the roll length, over the flank, and their derivatives by the roll length.
+fn up_the_flank([from, to]: [f64; 2], roll_length: f64, degree: usize) -> (Vec<f64>, Vec<f64>) {
+    let t = (2.0 * roll_length * roll_length - from - to) / (to - from);
+    let (mut values, mut slopes) = (vec![0.0; degree + 1], vec![0.0; degree + 1]);
+    legendre(t, &mut values, &mut slopes);
+    let by_roll = 4.0 * roll_length / (to - from);
+    slopes.iter_mut().for_each(|slope| *slope *= by_roll);
+    (values, slopes)
+}
+
+/// How values at the nodes of a flank become polynomials over it.
+struct FlankFit<'a> {
+    gear: &'a SolidGear,
+    axial: &'a AxialBasis,
+    roll_lengths: &'a [f64],
+    squares: [f64; 2],
+}
+
+impl<'a> FlankFit<'a> {
+    fn new(gear: &'a SolidGear, axial: &'a AxialBasis, roll_lengths: &'a [f64]) -> Self {
+        let last = roll_lengths[roll_lengths.len() - 1];
+        Self {
+            gear,
+            axial,
+            roll_lengths,
+            squares: [roll_lengths[0].powi(2), last.powi(2)],
+        }
+    }
+
+    /// The polynomials of [`OTHER_DEGREE`] nearest to values at the nodes: a row for each of all the polynomials, the higher ones
+    /// empty.
+    fn smoothing(&self) -> Mat<f64> {
+        let nodes = self.roll_lengths;
+        let values = Mat::from_fn(nodes.len(), OTHER_DEGREE + 1, |i, a| {
+            up_the_flank(self.squares, nodes[i], OTHER_DEGREE).0[a]
+        });
+        let inverse = pseudo_inverse(&values);
+        Mat::from_fn(OWN_DEGREE + 1, nodes.len(), |a, i| {
+            if a <= OTHER_DEGREE {
+                inverse[(a, i)]
+            } else {
+                0.0
+            }
+        })
+    }
+
+    /// The polynomials nearest to the compliance `g` of one flank under its own loads, node by node, less the half space: from
+    /// nodes that stand [`NODES_APART`].
+    fn own(&self, g: &Mat<f64>) -> Mat<f64> {
+        let (nodes, m, degrees) = (self.roll_lengths.len(), self.axial.len(), OWN_DEGREE + 1);
+        let apart: Vec<(usize, usize)> = (0..nodes)
+            .flat_map(|i| (0..nodes).map(move |j| (i, j)))
+            .filter(|(i, j)| i.abs_diff(*j) >= NODES_APART)
+            .collect();
+        let polynomials: Vec<Vec<f64>> = self
+            .roll_lengths
+            .iter()
+            .map(|s| up_the_flank(self.squares, *s, OWN_DEGREE).0)
+            .collect();
+        let products = Mat::from_fn(apart.len(), degrees * degrees, |row, ab| {
+            let (i, j) = apart[row];
+            polynomials[i][ab / degrees] * polynomials[j][ab % degrees]
+        });
+        let space = HalfSpace::new(self.gear, self.axial, self.least_distance());
+        let mut smooth = Mat::<f64>::zeros(apart.len(), m * m);
+        for (row, &(i, j)) in apart.iter().enumerate() {
+            // Exchanged nodes exchange the functions.
+            if i < j {
+                continue;
+            }
+            let kernel = space.between(self.roll_lengths[i], self.roll_lengths[j]);
+            let other = apart.partition_point(|pair| *pair < (j, i));
+            for p in 0..m {
+                for q in 0..m {
+                    smooth[(row, p * m + q)] = g[(i * m + p, j * m + q)] - kernel[(p, q)];
+                    smooth[(other, p * m + q)] = g[(j * m + p, i * m + q)] - kernel[(q, p)];
+                }
+            }
+        }
+        let shares = pseudo_inverse(&products) * smooth;
+        let mut own = Mat::from_fn(degrees * m, degrees * m, |i, j| {
+            shares[((i / m) * degrees + j / m, (i % m) * m + j % m)]
+        });
+        crate::fem::dense::symmetrize(&mut own);
+        own
+    }
+
+    /// The least length along the flank between nodes that stand [`NODES_APART`].
+    fn least_distance(&self) -> f64 {
+        let flank = self.gear.section().flank();
+        let arcs: Vec<f64> = self
+            .roll_lengths
+            .iter()
+            .map(|s| flank.arc_length(*s))
+            .collect();
+        let steps = arcs.windows(NODES_APART + 1);
+        steps
+            .map(|arcs| arcs[NODES_APART] - arcs[0])
+            .fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// The half space's compliance between lines along the flank: (1 − ν²)/(π E) ∫∫ f_p f_q / distance.
+struct HalfSpace {
+    points: Vec<(f64, Vec<f64>)>,
+    scale: f64,
+    twist: f64,
+    base_radius: f64,
+    along: f64,
+}
+
+impl HalfSpace {
+    fn new(gear: &SolidGear, axial: &AxialBasis, least_distance: f64) -> Self {
+        let section = gear.section();
+        let Material {
+            youngs_modulus: e,
+            poisson_ratio: nu,
+            ..
+        } = *section.material();
+        let breaks = axial.breaks();
+        let longest = breaks
+            .windows(2)
+            .map(|ends| ends[1] - ends[0])
+            .fold(0.0, f64::max);
+        // Three points to the shortest distance of two lines resolve what is between them.
+        let count = (3.0 * longest / least_distance).ceil() as usize + 12;
+        let points = axial.rule(count).into_iter().map(|(z, w)| {
+            let weighted = axial.values(z).into_iter().map(|f| w * f).collect();
+            (z, weighted)
+        });
+        Self {
+            points: points.collect(),
+            scale: (1.0 - nu * nu) / (PI * e),
+            twist: gear.twist(),
+            base_radius: section.base_radius(),
+            along: 1.0 / gear.base_helix_angle().cos(),
+        }
+    }
+
+    /// Between the displacement at roll length `s` and the load at `loaded`.
+    fn between(&self, s: f64, loaded: f64) -> Mat<f64> {
+        let m = self.points[0].1.len();
+        let level = (s * s - loaded * loaded) / (2.0 * self.base_radius);
+        let slope = self.twist * f64::midpoint(s, loaded);
+        let mut sum = Mat::zeros(m, m);
+        let mut line = vec![0.0; m];
+        for (z, f) in &self.points {
+            line.fill(0.0);
+            for (z_loaded, g) in &self.points {
+                let apart = z - z_loaded;
+                let (across, along) = (level - slope * apart, self.along * apart);
+                let near = self.scale / (across * across + along * along).sqrt();
+                for (sum, g) in line.iter_mut().zip(g) {
+                    *sum += near * g;
+                }
+            }
+            for (q, line) in line.iter().enumerate() {
+                for (p, f) in f.iter().enumerate() {
+                    sum[(p, q)] += f * line;
+                }
+            }
+        }
+        sum
+    }
+}
+
+/// What each tooth up to [`FARTHEST_COUPLED`] places away yields to the loads of tooth 0.
+fn blocks(tooth: &SolidTooth, classes: &[ClassAnswers], flank: &FlankFit<'_>) -> Vec<Mat<f64>> {
+    let z = tooth.sector.count;
+    let of_classes = || classes.iter().map(|answer| (answer.class, &answer.flank));
+    let own = &tooth.held + between_teeth(of_classes(), z, 0);
+    let (smoothing, m) = (flank.smoothing(), flank.axial.len());
+    let farthest = FARTHEST_COUPLED.min(z / 2);
+    let mut blocks = vec![flank.own(&own)];
+    for distance in 1..=farthest {
+        let other = between_teeth(of_classes(), z, distance);
+        blocks.push(smoothed(&smoothing, &other, m));
+    }
+    blocks
+}
+
+/// Q g Qᵀ, with Q the same for each of `m` functions along the axis.
+fn smoothed(smoothing: &Mat<f64>, g: &Mat<f64>, m: usize) -> Mat<f64> {
+    let once = smoothed_rows(smoothing, g, m);
+    smoothed_rows(smoothing, &once.transpose().to_owned(), m)
+        .transpose()
+        .to_owned()
+}
+
+fn smoothed_rows(smoothing: &Mat<f64>, g: &Mat<f64>, m: usize) -> Mat<f64> {
+    let mut rows = Mat::zeros(smoothing.nrows() * m, g.ncols());
+    for j in 0..g.ncols() {
+        for node in 0..smoothing.ncols() {
+            for a in 0..smoothing.nrows() {
+                let share = smoothing[(a, node)];
+                for p in 0..m {
+                    rows[(a * m + p, j)] += share * g[(node * m + p, j)];
+                }
+            }
+        }
+    }
+    rows
+}
+
+/// The least-squares inverse of a tall matrix.
+fn pseudo_inverse(a: &Mat<f64>) -> Mat<f64> {
+    let Ok(svd) = a.thin_svd() else {
+        return Mat::zeros(a.ncols(), a.nrows());
+    };
+    let (u, v, s) = (svd.U(), svd.V(), svd.S().column_vector());
+    let kept = (0..s.nrows())
+        .take_while(|&i| s[i] > FIT_TOLERANCE * s[0])
+        .count();
+    let scaled = Mat::from_fn(v.nrows(), kept, |i, j| v[(i, j)] / s[j]);
+    scaled * u.subcols(0, kept).transpose()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gear::spur::tests::paper_gear;
+    use crate::gear::{Helix, Hub, Web};
+    use crate::grid::ToothGrid as PlaneGrid;
+    use crate::ring::blank::BlankSubstructure;
+    use crate::ring::body::Coupling;
+    use crate::ring::teeth::TeethRing;
+    use crate::ring::tooth::ToothSubstructure;
+
+    const COARSE: FaceResolution = FaceResolution {
+        face_order: 4,
+        web_order: 3,
+        web_harmonics: 8,
+    };
+
+    fn gear(beta: f64, web: Option<(f64, f64)>, hub: Option<Hub>) -> SolidGear {
+        let mut data = paper_gear(24);
+        data.blank.bore_radius = 8e-3;
+        data.blank.web = web.map(|(thickness, _)| Web {
+            inner_radius: if hub.is_some() { 10e-3 } else { 8e-3 },
+            outer_radius: 17e-3,
+            thickness,
+        });
+        let offset = web.map_or(0.0, |(_, offset)| offset);
+        SolidGear::new(data, Helix::right(beta), offset, hub).expect("can be made")
+    }
+
+    fn yields(gear: &SolidGear) -> FaceYield {
+        FaceYield::of(gear, COARSE, &Run::unattended()).expect("definite")
+    }
+
+    /// What (s, z) of tooth `i` yields to a unit force at (s', z') of tooth `j`, without the half space.
+    fn between(
+        face: &FaceYield,
+        (i, s, z): (usize, f64, f64),
+        (j, t, y): (usize, f64, f64),
+    ) -> f64 {
+        let n = face.basis_len();
+        let (mut at, mut of) = (vec![0.0; n], vec![0.0; n]);
+        face.basis(s, z, &mut at);
+        face.basis(t, y, &mut of);
+        let smooth = face.smooth(&[i, j]);
+        let rows = at.iter().enumerate().map(|(a, f)| {
+            let row = of.iter().enumerate().map(|(b, g)| smooth[(a, n + b)] * g);
+            f * row.sum::<f64>()
+        });
+        rows.sum()
+    }
+
+    /// Points over the flank: roll lengths and heights.
+    fn places(gear: &SolidGear) -> Vec<(f64, f64)> {
+        let section = gear.section();
+        let (from, to) = (section.form_roll_length(), section.tip_roll_length());
+        [0.15, 0.5, 0.8]
+            .into_iter()
+            .flat_map(|up| [-9e-3, -3e-3, 4e-3, 8.5e-3].map(|z| (from + up * (to - from), z)))
+            .collect()
+    }
+
+    #[test]
+    fn the_yield_is_mutual_and_the_teeth_are_alike() {
+        let gear = gear(0.3, Some((5e-3, -4e-3)), None);
+        let face = yields(&gear);
+        let smooth = face.smooth(&[3, 4, 1]);
+        assert!((&smooth - smooth.transpose()).norm_max() < 1e-12 * smooth.norm_max());
+        let (p, q) = (places(&gear)[1], places(&gear)[7]);
+        let one = between(&face, (0, p.0, p.1), (1, q.0, q.1));
+        let round = between(&face, (23, p.0, p.1), (24, q.0, q.1));
+        let back = between(&face, (1, q.0, q.1), (0, p.0, p.1));
+        assert!((one / round - 1.0).abs() < 1e-12 && (one / back - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_gear_and_its_image_in_the_plane_of_its_face_yield_alike() {
+        let hub = |offset| Hub {
+            outer_radius: 10e-3,
+            width: 30e-3,
+            offset,
+        };
+        let (one, image) = (
+            gear(0.3, Some((5e-3, -4e-3)), Some(hub(1e-3))),
+            gear(-0.3, Some((5e-3, 4e-3)), Some(hub(-1e-3))),
+        );
+        let (face, mirrored) = (yields(&one), yields(&image));
+        for (s, z) in places(&one) {
+            for (t, y) in places(&one).into_iter().step_by(3) {
+                for tooth in [0, 1, 23] {
+                    let here = between(&face, (tooth, s, z), (0, t, y));
+                    let there = between(&mirrored, (tooth, s, -z), (0, t, -y));
+                    // The bases are others, by rounding.
+                    assert!((here - there).abs() < 1e-6 * 1e-9, "{here:e} {there:e}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_web_as_wide_as_the_face_is_the_solid_blank() {
+        for beta in [0.0, 0.3] {
+            let (solid, webbed) = (
+                gear(beta, None, None),
+                gear(beta, Some((19.9999e-3, 0.0)), None),
+            );
+            let (one, other) = (yields(&solid), yields(&webbed));
+            for (s, z) in places(&solid) {
+                for (tooth, t, y) in [(0, s, -z), (1, s, z), (2, s, 0.0)] {
+                    let a = between(&one, (tooth, s, z), (0, t, y));
+                    let b = between(&other, (tooth, s, z), (0, t, y));
+                    // Of the largest, some 1e-9 m/N: what a polynomial of degree 4 in a still frame misses of one that turns.
+                    assert!((a - b).abs() < 4e-3 * 1e-9, "{beta}: {a:e} {b:e}");
+                }
+            }
+        }
+    }
+
+    /// The mean over the face of what tooth 1 yields to a load on tooth 0 that is even over the face, times the face width: of a
+    /// straight gear whose face is so wide, and of the plane with Young's modulus and Poisson's ratio as given.
+    fn neighbor(face_width: f64, plane: (f64, f64)) -> (f64, f64) {
+        let mut data = paper_gear(24);
+        data.blank.bore_radius = 8e-3;
+        data.face_width = face_width;
+        let solid = SolidGear::new(data.clone(), Helix::STRAIGHT, 0.0, None).expect("can be made");
+        let resolution = FaceResolution {
+            face_order: 6,
+            ..COARSE
+        };
+        let face = FaceYield::of(&solid, resolution, &Run::unattended()).expect("definite");
+        let section = solid.section();
+        let s = f64::midpoint(section.form_roll_length(), section.tip_roll_length());
+        let rule = face.axial.rule(12);
+        let mean: f64 = rule
+            .iter()
+            .flat_map(|(z, w)| rule.iter().map(move |(y, v)| (*z, *y, w * v)))
+            .map(|(z, y, w)| w * between(&face, (1, s, z), (0, s, y)))
+            .sum::<f64>()
+            / face_width;
+
+        data.face_width = 1.0;
+        (data.material.youngs_modulus, data.material.poisson_ratio) = plane;
+        let section = crate::gear::SpurGear::new(data).expect("can be made");
+        let run = Run::unattended();
+        let radius = interface_radius(&solid);
+        let grid = PlaneGrid::new(&section.without_blank(), radius, GridLevel::Standard)
+            .expect("a usable grid");
+        let tooth = ToothSubstructure::new(&section, &grid).expect("definite");
+        let harmonics = crate::ring::cyclic::Harmonics { largest: 90 };
+        let ring = TeethRing::new(&tooth, harmonics, &run).expect("definite");
+        let blank = crate::grid::BlankGrid::new(8e-3, radius, None, 24, 8.0, GridLevel::Standard)
+            .expect("a usable grid");
+        let blank =
+            BlankSubstructure::new(&blank, radius, section.material(), 1.0, harmonics, &run)
+                .expect("definite");
+        let coupling = Coupling::on_blank(&ring, &blank, 0.0, 2, &run).expect("definite");
+        let (x, _) = coupling.block(0, 1);
+        let h = &tooth.modes * x * tooth.modes.transpose();
+        // Between the nodes around s, linearly: the neighbor's yield is smooth.
+        let after = tooth.roll_lengths.partition_point(|roll| *roll < s);
+        let part = (s - tooth.roll_lengths[after - 1])
+            / (tooth.roll_lengths[after] - tooth.roll_lengths[after - 1]);
+        let weights = [(after - 1, 1.0 - part), (after, part)];
+        let mut plane = 0.0;
+        for (i, w) in weights {
+            for (j, v) in weights {
+                plane += h[(2 * i, 2 * j)] * w * v;
+            }
+        }
+        (mean, plane)
+    }
+
+    #[test]
+    fn a_narrow_straight_gear_is_in_plane_stress_and_a_wide_one_nearly_in_plane_strain() {
+        let (e, nu) = (210e9_f64, 0.3_f64);
+        let (narrow, stress) = neighbor(0.2e-3, (e, nu));
+        assert!((narrow / stress - 1.0).abs() < 5e-3, "{narrow} {stress}");
+        let (wide, strain) = neighbor(120e-3, (e / (1.0 - nu * nu), nu / (1.0 - nu)));
+        let (middle, _) = neighbor(20e-3, (e, nu));
+        assert!((wide / strain - 1.0).abs() < 1.5e-2, "{wide} {strain}");
+        let part = middle / narrow;
+        assert!((wide / narrow - 0.03..1.01).contains(&part), "{part}");
+    }
+}

@@ -1,0 +1,380 @@
+//! Bodies of revolution, order by order: rims, webs and hubs without holes.
+//!
+//! In polar components times e^{inφ}, ∂_φ becomes i n and the derivative along the axis of a turning frame d/dz − i τ n: one small
+//! problem in the radius for each order n, Hermitian, whose unknowns stand circle by circle, component by component, function by
+//! function.
+
+use faer::{Mat, c64};
+use nalgebra::SMatrix;
+
+use crate::fem::FemError;
+use crate::fem::axial::{AxialBasis, AxialMatrices};
+use crate::fem::dense::Cholesky;
+use crate::fem::prism::{COMPONENTS, Law3};
+use crate::gear::Material;
+use crate::quadrature::gauss_legendre;
+
+/// The size of the elements at both circles of a layer, by the length r/n in which an order fades; quadratic elements of it
+/// err by less than a thousandth.
+const SIZE_BY_FADING: f64 = 0.5;
+/// The growth of elements away from both circles.
+const GROWTH: f64 = 0.4;
+/// The least number of elements in the depth of a layer.
+const LEAST_ELEMENTS: f64 = 3.0;
+
+/// A layer: a ring whose section in the plane of the axis is a rectangle.
+#[derive(Debug, Clone)]
+pub struct Revolution<'a> {
+    /// What it is made of.
+    pub material: &'a Material,
+    /// τ: the turn of its frame per length, in radians a meter.
+    pub twist: f64,
+    /// The functions along the axis.
+    pub axial: &'a AxialBasis,
+    /// The inner and the outer radius.
+    pub radii: [f64; 2],
+}
+
+/// A layer on both of its circles.
+#[derive(Debug, Clone)]
+pub struct Ports {
+    /// The stiffness on (inner, outer).
+    pub stiffness: Mat<c64>,
+    /// The unknowns of one circle.
+    pub size: usize,
+}
+
+type Radial = SMatrix<nalgebra::Complex<f64>, 9, 9>;
+type RadialStrains = SMatrix<nalgebra::Complex<f64>, 6, 9>;
+
+impl Revolution<'_> {
+    /// The unknowns of one circle.
+    pub fn size(&self) -> usize {
+        COMPONENTS * self.axial.len()
+    }
+
+    /// The stiffness of `order` on the outer circle, with `below` under the inner one: what carries it there, or nothing where it
+    /// is held.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError::NotPositiveDefinite`].
+    pub fn on_outer(&self, order: i64, below: Option<&Mat<c64>>) -> Result<Mat<c64>, FemError> {
+        let size = self.size();
+        let matrices = self.axial.matrices();
+        let mut carried = below.cloned();
+        for ends in self.division(order).windows(2) {
+            let mut k = self.element(order, [ends[0], ends[1]], &matrices);
+            carried = Some(match &carried {
+                Some(below) => {
+                    add_block(&mut k, 0, below);
+                    last_of(&k, size)?
+                }
+                None => last_of(
+                    &k.submatrix(size, size, 2 * size, 2 * size).to_owned(),
+                    size,
+                )?,
+            });
+        }
+        Ok(carried.unwrap_or_else(|| Mat::zeros(size, size)))
+    }
+
+    /// The stiffness of `order` on both circles.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError::NotPositiveDefinite`].
+    pub fn on_both(&self, order: i64) -> Result<Ports, FemError> {
+        let size = self.size();
+        let matrices = self.axial.matrices();
+        let mut ports: Option<Mat<c64>> = None;
+        for ends in self.division(order).windows(2) {
+            let element = self.element(order, [ends[0], ends[1]], &matrices);
+            // Unknowns (inner circle, outer circle so far, middle, next): the middle ones go.
+            let joined = match ports {
+                None => in_order(&element, &[1, 0, 2], size),
+                Some(ports) => {
+                    let mut k = Mat::<c64>::zeros(4 * size, 4 * size);
+                    add_block(&mut k, 0, &ports);
+                    add_block(&mut k, size, &element);
+                    in_order(&k, &[1, 2, 0, 3], size)
+                }
+            };
+            ports = Some(last_of(&joined, 2 * size)?);
+        }
+        Ok(Ports {
+            stiffness: ports.unwrap_or_else(|| Mat::zeros(2 * size, 2 * size)),
+            size,
+        })
+    }
+
+    /// The radii of its elements for `order`: small at both circles, where that order fades.
+    fn division(&self, order: i64) -> Vec<f64> {
+        let [inner, outer] = self.radii;
+        let depth = outer - inner;
+        let fading = |radius: f64| SIZE_BY_FADING * radius / (1.0 + order.unsigned_abs() as f64);
+        let largest = depth / LEAST_ELEMENTS;
+        let size = |r: f64| {
+            let from_inner = fading(inner) + GROWTH * (r - inner);
+            let from_outer = fading(outer) + GROWTH * (outer - r);
+            from_inner.min(from_outer).min(largest)
+        };
+        // The number of elements up to each of many radii, and radii at equal parts of it.
+        const STEPS: usize = 512;
+        let radius = |i: usize| inner + depth * i as f64 / STEPS as f64;
+        let mut counts = vec![0.0];
+        for i in 0..STEPS {
+            let step = radius(i + 1) - radius(i);
+            counts.push(counts[i] + step / size(f64::midpoint(radius(i), radius(i + 1))));
+        }
+        let count = counts[STEPS].ceil().max(LEAST_ELEMENTS) as usize;
+        let mut radii: Vec<f64> = (0..=count)
+            .map(|k| {
+                let wanted = counts[STEPS] * k as f64 / count as f64;
+                let i = counts.partition_point(|c| *c < wanted).clamp(1, STEPS);
+                let part = (wanted - counts[i - 1]) / (counts[i] - counts[i - 1]);
+                radius(i - 1) + part * (radius(i) - radius(i - 1))
+            })
+            .collect();
+        (radii[0], radii[count]) = (inner, outer);
+        radii
+    }
+
+    /// The stiffness of one element on its inner circle, its middle and its outer circle.
+    fn element(&self, order: i64, [from, to]: [f64; 2], axial: &AxialMatrices) -> Mat<c64> {
+        let law = Law3::new(self.material);
+        let (n, functions) = (order as f64, self.axial.len());
+        let i = |x: f64| nalgebra::Complex::new(0.0, x);
+        let real = |x: f64| nalgebra::Complex::new(x, 0.0);
+        let [mut plain, mut mixed, mut slopes] = [Radial::zeros(); 3];
+        let (middle, half) = (f64::midpoint(from, to), (to - from) / 2.0);
+        for (x, w) in gauss_legendre(4) {
+            let radius = middle + half * x;
+            let weight = real(std::f64::consts::TAU * radius * w * half);
+            let values = [x * (x - 1.0) / 2.0, 1.0 - x * x, x * (x + 1.0) / 2.0];
+            let by_radius = [(x - 0.5) / half, -2.0 * x / half, (x + 0.5) / half];
+            let (mut b_0, mut b_1) = (RadialStrains::zeros(), RadialStrains::zeros());
+            for (node, (value, by_radius)) in values.into_iter().zip(by_radius).enumerate() {
+                let [r, t, z] = [3 * node, 3 * node + 1, 3 * node + 2];
+                let around = i(n * value / radius);
+                let turned = i(-self.twist * n * value);
+                b_0[(0, r)] = real(by_radius);
+                b_0[(1, r)] = real(value / radius);
+                b_0[(1, t)] = around;
+                b_0[(2, z)] = turned;
+                b_0[(3, t)] = real(by_radius - value / radius);
+                b_0[(3, r)] = around;
+                b_0[(4, z)] = real(by_radius);
+                b_0[(4, r)] = turned;
+                b_0[(5, z)] = around;
+                b_0[(5, t)] = turned;
+                b_1[(2, z)] = real(value);
+                b_1[(4, r)] = real(value);
+                b_1[(5, t)] = real(value);
+            }
+            let stressed = |strains: &RadialStrains| {
+                let mut stresses = RadialStrains::zeros();
+                for column in 0..9 {
+                    let stress = law.stress(std::array::from_fn(|k| strains[(k, column)]));
+                    for (k, stress) in stress.into_iter().enumerate() {
+                        stresses[(k, column)] = stress * weight;
+                    }
+                }
+                stresses
+            };
+            let (s_0, s_1) = (stressed(&b_0), stressed(&b_1));
+            plain += b_0.adjoint() * s_0;
+            mixed += b_0.adjoint() * s_1;
+            slopes += b_1.adjoint() * s_1;
+        }
+        let unknowns = 9 * functions;
+        let mut k = Mat::<c64>::zeros(unknowns, unknowns);
+        for b in 0..9 {
+            for a in 0..9 {
+                let at = |m: &Radial, a: usize, b: usize| c64::new(m[(a, b)].re, m[(a, b)].im);
+                let (of, mix, back, slope) = (
+                    at(&plain, a, b),
+                    at(&mixed, a, b),
+                    at(&mixed, b, a).conj(),
+                    at(&slopes, a, b),
+                );
+                for q in 0..functions {
+                    for p in 0..functions {
+                        let mut value = mix * axial.slope[(p, q)]
+                            + back * axial.slope[(q, p)]
+                            + slope * axial.slopes[(p, q)];
+                        if p == q {
+                            value += of;
+                        }
+                        k[(a * functions + p, b * functions + q)] = value;
+                    }
+                }
+            }
+        }
+        k
+    }
+}
+
+/// What is left of `k` on its last `kept` unknowns when the others are free.
+pub(super) fn last_of(k: &Mat<c64>, kept: usize) -> Result<Mat<c64>, FemError> {
+    let free = k.nrows() - kept;
+    let factor = Cholesky::new(k.submatrix(0, 0, free, free).to_owned()).ok_or(
+        FemError::NotPositiveDefinite {
+            part: "a ring",
+            unknowns: free,
+        },
+    )?;
+    let mut half = k.submatrix(0, free, free, kept).to_owned();
+    factor.half_solve_in_place(half.as_mut());
+    Ok(k.submatrix(free, free, kept, kept) - half.adjoint() * &half)
+}
+
+/// Adds `block` to `k` from the unknown `first` on.
+pub(super) fn add_block(k: &mut Mat<c64>, first: usize, block: &Mat<c64>) {
+    for j in 0..block.ncols() {
+        for i in 0..block.nrows() {
+            k[(first + i, first + j)] += block[(i, j)];
+        }
+    }
+}
+
+/// `k` with its blocks of `size` unknowns in another order.
+fn in_order(k: &Mat<c64>, order: &[usize], size: usize) -> Mat<c64> {
+    let place = |i: usize| order[i / size] * size + i % size;
+    Mat::from_fn(k.nrows(), k.ncols(), |i, j| k[(place(i), place(j))])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STEEL: Material = Material {
+        youngs_modulus: 210e9,
+        poisson_ratio: 0.3,
+        density: 7850.0,
+    };
+
+    fn ring(twist: f64, axial: &AxialBasis) -> Revolution<'_> {
+        Revolution {
+            material: &STEEL,
+            twist,
+            axial,
+            radii: [33e-3, 38e-3],
+        }
+    }
+
+    #[test]
+    fn rigid_motions_need_no_force() {
+        let axial = AxialBasis::new(&[-10e-3, 10e-3], 8);
+        let m = axial.len();
+        for twist in [0.0, 8.55] {
+            let i = c64::new(0.0, 1.0);
+            let [one, none] = [1.0, 0.0].map(|x| c64::new(x, 0.0));
+            // Order, and its amplitudes (radial, tangential, axial) at (r, z), of a shift along x, one along the axis, a turn about
+            // the axis, and one about y: (z, 0, −x).
+            type Motion = fn(f64, f64) -> [f64; 3];
+            let motions: [(i64, Motion); 4] = [
+                (1, |_, _| [0.5, 0.5, 0.0]),
+                (0, |_, _| [0.0, 0.0, 1.0]),
+                (0, |r, _| [0.0, r * 1e2, 0.0]),
+                (1, |r, z| [50.0 * z, 50.0 * z, -50.0 * r]),
+            ];
+            for (order, of) in motions {
+                let ports = ring(twist, &axial).on_both(order).expect("definite");
+                let mut u = Mat::<c64>::zeros(6 * m, 1);
+                for (circle, r) in [33e-3, 38e-3].into_iter().enumerate() {
+                    for (z, w) in axial.rule(30) {
+                        let turn = c64::new(0.0, order as f64 * twist * z).exp() * w;
+                        let [radial, tangential, along] = of(r, z);
+                        // Of e_x: u_r = cos φ, u_t = −sin φ.
+                        let tangential = if order == 0 { one } else { i } * tangential;
+                        for (p, f) in axial.values(z).into_iter().enumerate() {
+                            for (c, u_c) in [one * radial, tangential, one * along]
+                                .into_iter()
+                                .enumerate()
+                            {
+                                u[((3 * circle + c) * m + p, 0)] += turn * u_c * f;
+                            }
+                        }
+                    }
+                }
+                let force = &ports.stiffness * &u;
+                let scale = ports.stiffness.norm_max() * u.norm_max();
+                assert!(
+                    force.norm_max() < 1e-9 * scale,
+                    "order {order}, twist {twist}"
+                );
+                assert_ne!(u[(m, 0)] + u[(0, 0)] + u[(2 * m, 0)], none);
+            }
+        }
+    }
+
+    #[test]
+    fn layers_one_upon_the_other_are_one_layer() {
+        let axial = AxialBasis::new(&[-10e-3, -5e-3, 10e-3], 4);
+        for order in [0, 1, 5, -5, 40] {
+            let layer = |radii| Revolution {
+                radii,
+                ..ring(8.55, &axial)
+            };
+            let whole = layer([15e-3, 38e-3])
+                .on_outer(order, None)
+                .expect("definite");
+            let below = layer([15e-3, 33e-3])
+                .on_outer(order, None)
+                .expect("definite");
+            let above = ring(8.55, &axial);
+            let stacked = above.on_outer(order, Some(&below)).expect("definite");
+            // The elements are others, which an even pull hardly notices.
+            let yields = |k: &Mat<c64>| {
+                let mut load = Mat::<c64>::zeros(k.nrows(), 1);
+                for (z, w) in axial.rule(30) {
+                    for (p, f) in axial.values(z).into_iter().enumerate() {
+                        load[(p, 0)] += c64::new(w * f, 0.0);
+                    }
+                }
+                let mut half = load;
+                Cholesky::new(k.clone())
+                    .expect("definite")
+                    .half_solve_in_place(half.as_mut());
+                (half.adjoint() * &half)[(0, 0)].re
+            };
+            assert!(
+                (yields(&whole) / yields(&stacked) - 1.0).abs() < 2e-4,
+                "{order}"
+            );
+            let mut ports = above.on_both(order).expect("definite");
+            add_block(&mut ports.stiffness, 0, &below);
+            let joined = last_of(&ports.stiffness, ports.size).expect("definite");
+            assert!((&joined - &stacked).norm_max() < 1e-9 * whole.norm_max());
+        }
+    }
+
+    #[test]
+    fn a_ring_is_as_stiff_in_a_turning_frame_as_in_a_still_one() {
+        // A radial pull of order n, even over the width, on the outer circle of a ring whose inner circle is held.
+        let axial = AxialBasis::new(&[-10e-3, 10e-3], 14);
+        for order in [2, 10, 20] {
+            let yields = |twist: f64| {
+                let k = ring(twist, &axial).on_outer(order, None).expect("definite");
+                let mut load = Mat::<c64>::zeros(k.nrows(), 1);
+                for (z, w) in axial.rule(30) {
+                    let turn = c64::new(0.0, order as f64 * twist * z).exp() * w;
+                    for (p, f) in axial.values(z).into_iter().enumerate() {
+                        load[(p, 0)] += turn * f;
+                    }
+                }
+                let mut half = load;
+                Cholesky::new(k)
+                    .expect("definite")
+                    .half_solve_in_place(half.as_mut());
+                (half.adjoint() * &half)[(0, 0)].re
+            };
+            let (still, turning) = (yields(0.0), yields(8.55));
+            assert!(
+                (turning / still - 1.0).abs() < 1e-4,
+                "{order}: {still} {turning}"
+            );
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! One of equal sectors around an axis, with functions along it, and the classes of their ring.
+//!
+//! As [`crate::ring::cyclic`] has it for the plane: the displacement of a class k turns by e^{ik2π/S} from a sector to the next, and on
+//! the circle it holds the orders n ≡ k (mod S).
+
+use faer::{Mat, c64};
+
+/// A sector on its interface: right side, left side, arc, node by node.
+#[derive(Debug, Clone)]
+pub struct SolidSector {
+    /// The number S of sectors in the ring.
+    pub count: usize,
+    /// The unknowns of a node.
+    pub size: usize,
+    /// The stiffness, in N/m.
+    pub stiffness: Mat<f64>,
+    /// The number of nodes on each side.
+    pub side_nodes: usize,
+    /// The angles of the nodes on the arc.
+    pub arc_angles: Vec<f64>,
+}
+
+impl SolidSector {
+    /// The orders of `class` up to `largest`.
+    pub fn orders(&self, class: usize, largest: usize) -> Vec<i64> {
+        let harmonics = crate::ring::cyclic::Harmonics { largest };
+        harmonics.orders_of_class(class, self.count)
+    }
+
+    /// e^{i order angle}.
+    pub fn turn(order: i64, angle: f64) -> c64 {
+        let (sin, cos) = (order as f64 * angle).sin_cos();
+        c64::new(cos, sin)
+    }
+
+    /// The unknowns of a class: those of one side, and those of each of `orders` on the circle.
+    pub fn unknowns(&self, orders: &[i64]) -> usize {
+        self.size * (self.side_nodes + orders.len())
+    }
+
+    /// `rows` on the interface as rows on the unknowns of the class: sides, then order by order.
+    pub fn on_class(&self, rows: &Mat<f64>, class: usize, orders: &[i64]) -> Mat<c64> {
+        let (size, sides) = (self.size, self.size * self.side_nodes);
+        let angle = std::f64::consts::TAU * (class % self.count) as f64 / self.count as f64;
+        let across = Self::turn(1, angle);
+        let mut on_class = Mat::<c64>::zeros(rows.nrows(), self.unknowns(orders));
+        for j in 0..sides {
+            let (right, left) = (rows.col_as_slice(j), rows.col_as_slice(sides + j));
+            let column = on_class.col_as_slice_mut(j);
+            for ((to, r), l) in column.iter_mut().zip(right).zip(left) {
+                *to = across * *l + c64::new(*r, 0.0);
+            }
+        }
+        for (node, &angle) in self.arc_angles.iter().enumerate() {
+            for (k, &order) in orders.iter().enumerate() {
+                let turn = Self::turn(order, angle);
+                for c in 0..size {
+                    let from = rows.col_as_slice(2 * sides + node * size + c);
+                    let column = on_class.col_as_slice_mut(sides + k * size + c);
+                    for (to, from) in column.iter_mut().zip(from) {
+                        *to += turn * *from;
+                    }
+                }
+            }
+        }
+        on_class
+    }
+
+    /// The Hermitian stiffness of one sector on the unknowns of the class.
+    pub fn class_stiffness(&self, class: usize, orders: &[i64]) -> Mat<c64> {
+        let half = self.on_class(&self.stiffness, class, orders);
+        // Pᴴ (K P): the same on the rows of K P, which are the conjugates of the columns of its adjoint.
+        let adjoint = half.adjoint().to_owned();
+        let parts = [
+            Mat::from_fn(adjoint.nrows(), adjoint.ncols(), |i, j| adjoint[(i, j)].re),
+            Mat::from_fn(adjoint.nrows(), adjoint.ncols(), |i, j| adjoint[(i, j)].im),
+        ];
+        let [real, imaginary] = parts.map(|part| self.on_class(&part, class, orders));
+        let n = real.nrows();
+        Mat::from_fn(n, n, |i, j| {
+            real[(i, j)] + c64::new(0.0, 1.0) * imaginary[(i, j)]
+        })
+    }
+}
