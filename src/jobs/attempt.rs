@@ -237,15 +237,18 @@ impl Shop {
     }
 
     /// Has something written. While nothing can be stored it waits: what was computed is not given up for the disk's sake, nor is the job.
+    /// A store that does not answer is asked again while the lease lasts, each time with more patience: it may just be slow.
     async fn written<T, F: Future<Output = Result<T, StoreError>>>(
         &self,
         write: impl Fn() -> F,
     ) -> Result<T, StoreError> {
+        let mut patience = self.pace.lease / 3;
         loop {
-            match write().await {
+            match self.answered_within(patience, write()).await {
                 Err(error) if error.may_pass() && !self.jobs.stop().is_cancelled() => {
                     warn!(error = %error, "an outcome waits until it can be written");
                     self.jobs.wait_for_storage().await;
+                    patience = patience.saturating_mul(2);
                 }
                 written => return written,
             }
@@ -352,10 +355,18 @@ impl Shop {
         &self,
         answer: impl Future<Output = Result<T, StoreError>>,
     ) -> Result<T, StoreError> {
+        self.answered_within(self.pace.lease / 3, answer).await
+    }
+
+    async fn answered_within<T>(
+        &self,
+        patience: Duration,
+        answer: impl Future<Output = Result<T, StoreError>>,
+    ) -> Result<T, StoreError> {
         if !self.jobs.store.is_shared() {
             return answer.await;
         }
-        let answer = tokio::time::timeout(self.pace.lease / 3, answer).await;
+        let answer = tokio::time::timeout(patience, answer).await;
         answer.unwrap_or_else(|_| Err(sqlx::Error::PoolTimedOut.into()))
     }
 

@@ -479,10 +479,16 @@ async fn five_thousand_jobs_with_and_without_trouble() {
 struct Way {
     address: String,
     open: watch::Sender<bool>,
+    /// The first connection on which this is said is dead from then on, and nobody is told.
+    fatal: Arc<std::sync::Mutex<Option<&'static str>>>,
 }
 
 impl Way {
     async fn to(address: &str) -> Self {
+        Self::with_fatal(address, None).await
+    }
+
+    async fn with_fatal(address: &str, fatal: Option<&'static str>) -> Self {
         const HOST: &str = "127.0.0.1:";
         let (before, behind) = address.split_once(HOST).unwrap();
         let (port, name) = behind.split_once('/').unwrap();
@@ -490,22 +496,46 @@ impl Way {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let own = listener.local_addr().unwrap();
         let (open, is_open) = watch::channel(true);
+        let fatal = Arc::new(std::sync::Mutex::new(fatal));
+        let words = Arc::clone(&fatal);
         tokio::spawn(async move {
             while let Ok((client, _)) = listener.accept().await {
                 let server = TcpStream::connect(&server).await.unwrap();
                 let (to_client, to_server) = (client.into_split(), server.into_split());
-                tokio::spawn(carry(to_client.0, to_server.1, is_open.clone()));
-                tokio::spawn(carry(to_server.0, to_client.1, is_open.clone()));
+                let said = Some(Arc::clone(&words));
+                tokio::spawn(carry(to_client.0, to_server.1, is_open.clone(), said));
+                tokio::spawn(carry(to_server.0, to_client.1, is_open.clone(), None));
             }
         });
         let address = format!("{before}{own}/{name}");
-        Self { address, open }
+        Self {
+            address,
+            open,
+            fatal,
+        }
     }
 }
 
-async fn carry(mut from: OwnedReadHalf, mut to: OwnedWriteHalf, mut open: watch::Receiver<bool>) {
+async fn carry(
+    mut from: OwnedReadHalf,
+    mut to: OwnedWriteHalf,
+    mut open: watch::Receiver<bool>,
+    fatal: Option<Arc<std::sync::Mutex<Option<&'static str>>>>,
+) {
     let mut bytes = vec![0; 1 << 16];
     while let Ok(count @ 1..) = from.read(&mut bytes).await {
+        let is_said = |words: &str| {
+            bytes[..count]
+                .windows(words.len())
+                .any(|part| part == words.as_bytes())
+        };
+        let dies = fatal.as_ref().is_some_and(|fatal| {
+            let mut fatal = fatal.lock().unwrap();
+            fatal.take_if(|words| is_said(words)).is_some()
+        });
+        if dies {
+            std::future::pending::<()>().await;
+        }
         if open.wait_for(|open| *open).await.is_err()
             || to.write_all(&bytes[..count]).await.is_err()
         {
@@ -573,4 +603,25 @@ async fn a_worker_cut_off_from_the_server_gives_up_its_job_and_works_again_when_
         fleet.number("select count(*) from jobs where status = 'dismissed' and attempt = 2");
     assert_eq!(ended.await, 1, "the job that was cancelled stays so");
     assert_eq!(fleet.number("select count(*) from jobs").await, 21);
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn results_whose_connection_dies_are_written_by_another_one_within_the_lease() {
+    let _alone = stores::ALONE.lock().await;
+    let address = server::database().await;
+    let mut fleet = Fleet::start(&address, 0, 1, "6s");
+    // The connection dies when the results are said on it, before anything is locked; nobody is told.
+    let way = Way::with_fatal(&address, Some("insert into documents")).await;
+    let half_open = start(&Place::Postgres(way.address.clone()), "worker", "6s");
+    let submitted = fleet.submit(1);
+    fleet
+        .until("select count(*) from jobs where status <> 'accepted'", 1)
+        .await;
+    // Somebody who would take it over when the lease is over.
+    fleet.hire();
+    fleet.successful(1).await;
+    submitted.taken().await;
+    assert!(way.fatal.lock().unwrap().is_none(), "a connection died");
+    assert_eq!(fleet.number("select attempt from jobs").await, 1);
+    half_open.kill();
 }
