@@ -6,10 +6,12 @@ use std::time::Duration;
 
 use axum::http::{HeaderValue, Uri};
 use jiff::SignedDuration;
+use jsonwebtoken::Algorithm;
 
 use crate::http::{Bounds, DoorRules, KeysRule};
 use crate::jobs::{Cores, Keep, Migrate, Pace, Place, PreviewRules, Rules};
 use crate::machine;
+use crate::tokens::{self, Claim, ClaimValue, IssuerUrl, TokenRules};
 use crate::webhooks::HookTarget;
 use crate::wire;
 
@@ -116,6 +118,10 @@ pub struct Config {
     /// Who gets in, and how much of the service each gets.
     #[command(flatten)]
     pub door: DoorOptions,
+
+    /// Whose tokens open the door as keys do.
+    #[command(flatten)]
+    pub oidc: OidcOptions,
 }
 
 /// What a process does, of what the service does.
@@ -244,6 +250,69 @@ pub struct DoorOptions {
     pub webhook_hosts: Vec<HookTarget>,
 }
 
+/// Whose tokens open the door as keys do.
+#[derive(Debug, Clone, clap::Args)]
+pub struct OidcOptions {
+    /// Identity provider (OpenID Connect) whose tokens open the door beside keys, as they have it under iss [default: keys alone].
+    #[arg(
+        long,
+        env = "MESHWRIGHT_OIDC_ISSUER",
+        value_name = "URL",
+        requires = "oidc_audience"
+    )]
+    pub oidc_issuer: Option<IssuerUrl>,
+
+    /// What its tokens for this service have under aud.
+    #[arg(
+        long,
+        env = "MESHWRIGHT_OIDC_AUDIENCE",
+        value_name = "NAME",
+        requires = "oidc_issuer"
+    )]
+    pub oidc_audience: Option<String>,
+
+    /// Claim that names the client: its name, or a JSON pointer into the claims. Take one that its bearer cannot choose.
+    #[arg(
+        long,
+        env = "MESHWRIGHT_OIDC_CLIENT_CLAIM",
+        default_value = "sub",
+        value_name = "CLAIM"
+    )]
+    pub oidc_client_claim: Claim,
+
+    /// Claim that makes an operator, as the word or in a list: roles=admin, /realm_access/roles=admin [default: no token does].
+    #[arg(
+        long,
+        env = "MESHWRIGHT_OIDC_OPERATOR_CLAIM",
+        value_name = "CLAIM=VALUE"
+    )]
+    pub oidc_operator_claim: Option<ClaimValue>,
+
+    /// Algorithms that its tokens may be signed with, separated by commas.
+    #[arg(
+        long,
+        env = "MESHWRIGHT_OIDC_ALGORITHM",
+        value_delimiter = ',',
+        default_value = "RS256",
+        value_parser = tokens::algorithm,
+        value_name = "NAME"
+    )]
+    pub oidc_algorithm: Vec<Algorithm>,
+}
+
+impl OidcOptions {
+    /// What tokens have to be; none where nobody makes any.
+    pub fn rules(&self) -> Option<TokenRules> {
+        Some(TokenRules {
+            issuer: self.oidc_issuer.clone()?,
+            audience: self.oidc_audience.clone()?,
+            algorithms: self.oidc_algorithm.clone(),
+            client: self.oidc_client_claim.clone(),
+            operator: self.oidc_operator_claim.clone(),
+        })
+    }
+}
+
 impl Config {
     /// The number of workers: none where jobs are computed elsewhere, as given, or as many as the machine is good for.
     pub fn worker_count(&self) -> usize {
@@ -330,7 +399,8 @@ impl Config {
         let loopback = self.listen.ip().is_loopback();
         DoorRules {
             keys: self.door.keys.unwrap_or_default(),
-            local: loopback && hosts.is_empty(),
+            // Who names somebody that vouches for people wants to know who they are.
+            local: loopback && hosts.is_empty() && self.oidc.oidc_issuer.is_none(),
             // Elsewhere the names of the service are known only if they are told; there, keys are needed anyway.
             strict_hosts: loopback || !hosts.is_empty(),
             hosts,

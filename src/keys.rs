@@ -11,6 +11,12 @@ use crate::jobs::{KeyRecord, Store, StoreError};
 /// What every key begins with, so that programs that look for leaked secrets know it.
 const PREFIX: &str = "mw";
 
+/// Whether a text is meant to be a key.
+pub fn has_prefix(text: &str) -> bool {
+    text.strip_prefix(PREFIX)
+        .is_some_and(|rest| rest.starts_with('_'))
+}
+
 const ID_BYTES: usize = 8;
 const SECRET_BYTES: usize = 32;
 
@@ -97,6 +103,11 @@ impl Key {
             bool::from(same)
         }))
     }
+}
+
+/// Whether a client may be called so, whoever says it: 1 to 100 characters, none of them a control character.
+pub fn is_client_name(text: &str) -> bool {
+    (1..=100).contains(&text.chars().count()) && !text.chars().any(char::is_control)
 }
 
 #[cfg(test)]

@@ -17,6 +17,8 @@ pub mod webhooks;
 
 pub mod keys;
 
+pub mod tokens;
+
 pub mod http;
 
 pub mod config;

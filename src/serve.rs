@@ -15,6 +15,7 @@ use crate::config::{Config, Part};
 use crate::http::{App, Door, Edge, KeysRule, Readings, Server, router, router_of_metrics};
 use crate::jobs::{Budget, Clock, Jobs, Keeper, OpenError, Place, Previews, Solve, Store, Workers};
 use crate::lock::{DatabaseLock, LockError};
+use crate::tokens::Tokens;
 use crate::webhooks::{Deliveries, HookRules, Webhooks};
 use crate::wire::{Problem, Submission};
 
@@ -129,8 +130,15 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         door.found_keys();
     }
     let keys_are_off = config.door.keys == Some(KeysRule::None);
+    let tokens = match config.oidc.rules().filter(|_| config.role.answers()) {
+        Some(rules) => {
+            let tokens = Tokens::start(rules, jobs.clock().clone());
+            Some(tokens.context("the identity provider cannot be asked")?)
+        }
+        None => None,
+    };
     let asks_for_keys = door.always_asks_for_keys() || (has_keys && !keys_are_off);
-    if config.role.answers() && asks_for_keys && !has_keys {
+    if config.role.answers() && asks_for_keys && !has_keys && tokens.is_none() {
         warn!(
             "nobody gets in without a key, and there is none yet: make one with `meshwright keys create`"
         );
@@ -145,6 +153,7 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         public_url: config.public_url.clone().unwrap_or_default(),
         cors_origins: config.cors_origin.clone(),
         asks_for_keys,
+        issuer: tokens.as_ref().map(|it| it.issuer().to_owned()),
         metrics_here: metrics_listener.is_none(),
     };
     let app = App {
@@ -154,6 +163,7 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         computes: config.role.computes(),
         workers_alive: workers.alive(),
         webhooks,
+        tokens,
         door: Arc::new(door),
         edge: Arc::new(edge),
         readings: Arc::new(Readings::default()),

@@ -7,7 +7,7 @@ use anyhow::{Context, bail};
 use jiff::Timestamp;
 use meshwright::config::lasting;
 use meshwright::jobs::{KeyRecord, Place, Role, Store};
-use meshwright::keys::Key;
+use meshwright::keys::{Key, is_client_name};
 
 /// Make, list and revoke API keys.
 #[derive(Debug, clap::Args)]
@@ -99,9 +99,7 @@ impl Create {
     async fn run(&self, store: &Store) -> anyhow::Result<()> {
         let client = self.client.as_ref().unwrap_or(&self.name);
         for (what, text) in [("name", &self.name), ("client", client)] {
-            let is_plain =
-                (1..=100).contains(&text.chars().count()) && !text.chars().any(char::is_control);
-            if !is_plain {
+            if !is_client_name(text) {
                 bail!(
                     "the {what} has to have 1 to 100 characters, none of them a control character"
                 );

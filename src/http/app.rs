@@ -9,6 +9,7 @@ use meshwright_engine::library::Library;
 use super::door::Door;
 use super::health::Readings;
 use crate::jobs::{Budget, Jobs, Previews};
+use crate::tokens::Tokens;
 use crate::webhooks::Webhooks;
 
 /// What handlers work with.
@@ -24,6 +25,8 @@ pub struct App {
     pub workers_alive: Arc<AtomicUsize>,
     /// Where clients are told.
     pub webhooks: Webhooks,
+    /// Who gets in by a token, where there is an identity provider.
+    pub tokens: Option<Tokens>,
     /// Who gets in, and how much of the service each gets.
     pub door: Arc<Door>,
     /// How the service looks from outside.
@@ -45,6 +48,8 @@ pub struct Edge {
     pub cors_origins: Vec<HeaderValue>,
     /// Whether keys are needed from the start, for the OpenAPI document.
     pub asks_for_keys: bool,
+    /// Whose tokens open the door as keys do, for the same.
+    pub issuer: Option<String>,
     /// Whether the numbers of the service are served beside everything else.
     pub metrics_here: bool,
 }

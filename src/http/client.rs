@@ -1,4 +1,4 @@
-//! Who asks: the client behind a request, known by its key.
+//! Who asks: the client behind a request, known by its key or by a token of the identity provider.
 
 use std::sync::Arc;
 
@@ -6,12 +6,15 @@ use axum::extract::FromRequestParts;
 use axum::http::header::AUTHORIZATION;
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, Method};
+use jiff::Timestamp;
 
 use super::app::App;
 use super::guests::Guest;
 use super::problem::Refusal;
+use crate::hash::sha256_hex;
 use crate::jobs::{JobError, KeyRecord, Member, Role};
-use crate::keys::Key;
+use crate::keys::{self, Key};
+use crate::tokens::{self, Bearer, TokenError};
 use crate::wire::{Code, Problem};
 
 /// The client of requests without a key, where none is needed.
@@ -25,18 +28,42 @@ pub(super) struct Client(pub(super) Member, pub(super) Pass);
 #[derive(Debug, Clone)]
 pub(super) struct ClientName(pub(super) Arc<str>);
 
-/// What a request got in by: its key, or that none is needed.
-pub(super) struct Pass(Option<Key>);
+/// What a request got in by.
+pub(super) enum Pass {
+    /// Its key.
+    Key(Key),
+    /// A token, which ends by itself.
+    Until(Timestamp),
+    /// None is needed.
+    Open,
+}
 
 impl Pass {
     /// Whether it would get in now. What cannot be looked up is not held against it.
     pub(super) async fn holds(&self, app: &App) -> bool {
-        match &self.0 {
-            Some(key) => {
-                let now = app.jobs.clock().now();
-                !matches!(key.find(app.jobs.store(), now).await, Ok(None))
-            }
-            None => true,
+        let now = app.jobs.clock().now();
+        match self {
+            Self::Key(key) => !matches!(key.find(app.jobs.store(), now).await, Ok(None)),
+            Self::Until(end) => now < *end,
+            Self::Open => true,
+        }
+    }
+}
+
+/// What a request has with it to get in by.
+pub(super) enum Credential {
+    /// A key of the service.
+    Key(Key),
+    /// A token, not looked at yet.
+    Token(String),
+}
+
+impl Credential {
+    /// What tells it from others and does not tell it to anybody.
+    pub(super) fn fingerprint(&self) -> String {
+        match self {
+            Self::Key(key) => key.secret_hash(),
+            Self::Token(token) => sha256_hex(token),
         }
     }
 }
@@ -101,91 +128,128 @@ struct Caller {
     member: Member,
     role: Role,
     pass: Pass,
+    /// Requests a second, where they are not the usual ones.
+    rate: Option<u32>,
 }
 
 impl Caller {
     async fn of(parts: &mut Parts, app: &App) -> Result<Self, Refusal> {
-        let key = bearer(&parts.headers)?;
-        let record = match &key {
-            Some(key) => Some(recognize(app, key).await?),
+        let credential = bearer(&parts.headers)?;
+        let fingerprint = credential.as_ref().map(Credential::fingerprint);
+        let caller = match credential {
+            Some(Credential::Key(key)) => Self::with_key(app, key).await?,
+            Some(Credential::Token(token)) => Self::with_token(app, &token).await?,
             None if asks_for_keys(app, &parts.headers).await? => {
                 return Err(unauthorized("Send a key: Authorization: Bearer KEY.").into());
             }
-            None => None,
+            None => Self::anonymous(app),
         };
-        if record.is_some()
-            && let Some(guest) = parts.extensions.get::<Arc<Guest>>()
-        {
-            guest.recognize();
-        }
-        let (member, role) = record
-            .as_ref()
-            .map_or_else(|| Self::anonymous(app), Self::bearer_of);
-        if let Some(record) = &record {
-            // What the log says of the request, it says of its key: who did what, and with what answer.
-            tracing::Span::current()
-                .record("key", &record.id)
-                .record("client", &record.client);
+        if let Some(fingerprint) = fingerprint {
+            app.door.prove(fingerprint);
+            if let Some(guest) = parts.extensions.get::<Arc<Guest>>() {
+                guest.recognize();
+            }
+            tracing::Span::current().record("client", &caller.member.client);
         }
         // Who reads the body shares the memory for that by it.
         parts
             .extensions
-            .insert(ClientName(Arc::from(member.client.as_str())));
-        let pass = Pass(key);
-        let caller = Self { member, role, pass };
-        let rate = record.and_then(|record| record.requests_per_second);
+            .insert(ClientName(Arc::from(caller.member.client.as_str())));
         app.door
-            .count_request(&caller.member.client, rate)
+            .count_request(&caller.member.client, caller.rate)
             .map_err(Refusal::too_often)?;
         Ok(caller)
     }
 
     /// Where no key is needed everybody is alike, and may do everything and have the whole queue.
-    fn anonymous(app: &App) -> (Member, Role) {
+    fn anonymous(app: &App) -> Self {
         let member = Member {
             client: ANONYMOUS.to_owned(),
             queue_limit: Some(app.jobs.rules().queue_limit),
         };
-        (member, Role::Operator)
+        Self {
+            member,
+            role: Role::Operator,
+            pass: Pass::Open,
+            rate: None,
+        }
     }
 
-    fn bearer_of(record: &KeyRecord) -> (Member, Role) {
-        let member = Member {
-            client: record.client.clone(),
-            queue_limit: record.queue_limit,
-        };
-        (member, record.role)
+    async fn with_key(app: &App, key: Key) -> Result<Self, Problem> {
+        let record = recognize(app, &key).await?;
+        app.door.found_keys();
+        // What the log says of the request, it says of its key: who did what, and with what answer.
+        tracing::Span::current().record("key", &record.id);
+        Ok(Self {
+            member: Member {
+                client: record.client,
+                queue_limit: record.queue_limit,
+            },
+            role: record.role,
+            pass: Pass::Key(key),
+            rate: record.requests_per_second,
+        })
+    }
+
+    async fn with_token(app: &App, token: &str) -> Result<Self, Problem> {
+        let tokens = app.tokens.as_ref().ok_or_else(no_credential)?;
+        let bearer: Bearer = tokens
+            .recognize(token)
+            .await
+            .map_err(|error| match &error {
+                TokenError::Refused(why) => unauthorized(why),
+                TokenError::Unreachable => {
+                    Problem::new(Code::IdentityProviderUnavailable, error.to_string())
+                }
+            })?;
+        let span = tracing::Span::current();
+        span.record("subject", bearer.subject);
+        span.record("token", bearer.id);
+        Ok(Self {
+            member: Member {
+                client: bearer.client,
+                queue_limit: None,
+            },
+            role: bearer.role,
+            pass: Pass::Until(bearer.until),
+            rate: None,
+        })
     }
 }
 
-/// The key that a request has with it. What a proxy may have left there for itself is none.
-pub(super) fn bearer(headers: &HeaderMap) -> Result<Option<Key>, Problem> {
+/// What a request has with it to get in by. What a proxy may have left there for itself is none.
+pub(super) fn bearer(headers: &HeaderMap) -> Result<Option<Credential>, Problem> {
     let mut found = None;
     for header in headers.get_all(AUTHORIZATION) {
         let text = header.to_str().unwrap_or_default();
-        let (scheme, key) = text.split_once(' ').unwrap_or((text, ""));
+        let (scheme, text) = text.split_once(' ').unwrap_or((text, ""));
         if !scheme.eq_ignore_ascii_case("bearer") {
             continue;
         }
-        match (Key::parse(key.trim()), &found) {
-            (Some(key), None) => found = Some(key),
-            _ => {
-                return Err(unauthorized(
-                    "What Authorization has is no key; it has the form Bearer mw_ID_SECRET, and stands once.",
-                ));
-            }
+        let text = text.trim();
+        let credential = if keys::has_prefix(text) {
+            Key::parse(text).map(Credential::Key)
+        } else {
+            tokens::has_form(text).then(|| Credential::Token(text.to_owned()))
+        };
+        match (credential, &found) {
+            (Some(credential), None) => found = Some(credential),
+            _ => return Err(no_credential()),
         }
     }
     Ok(found)
+}
+
+fn no_credential() -> Problem {
+    unauthorized(
+        "What Authorization has is no key; it has the form Bearer mw_ID_SECRET, or is a token of the identity provider where there is one, and stands once.",
+    )
 }
 
 async fn recognize(app: &App, key: &Key) -> Result<KeyRecord, Problem> {
     let found = key.find(app.jobs.store(), app.jobs.clock().now()).await;
     let found = found.map_err(|error| Problem::from(JobError::from(error)))?;
-    let found = found
-        .ok_or_else(|| unauthorized("The key is not known here, was revoked or has expired."))?;
-    app.door.prove(key);
-    Ok(found)
+    found.ok_or_else(|| unauthorized("The key is not known here, was revoked or has expired."))
 }
 
 /// Whether a request needs a key.

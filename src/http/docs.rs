@@ -44,18 +44,21 @@ struct Introduction;
 /// The name of the security scheme.
 const KEY: &str = "key";
 
+/// The same for tokens, where there is somebody who makes them.
+const TOKEN: &str = "token";
+
 pub(super) fn introduction() -> OpenApi {
     let mut openapi = Introduction::openapi();
     let scheme = HttpBuilder::new()
         .scheme(HttpAuthScheme::Bearer)
         .bearer_format("mw_ID_SECRET")
-        .description(Some("A key that the operator of the service made (`meshwright keys create`). Needed as soon as there is one, and wherever others than this machine can call."))
+        .description(Some("A key that the operator of the service made (`meshwright keys create`). Needed as soon as there is one, and wherever others than this machine can call. Where the operator names an identity provider, one of its tokens will do as well."))
         .build();
     openapi
         .components
         .get_or_insert_default()
         .add_security_scheme(KEY, SecurityScheme::Http(scheme));
-    say_whether_keys_are_needed(&mut openapi, false);
+    say_whether_keys_are_needed(&mut openapi, false, None);
     openapi
 }
 
@@ -108,14 +111,30 @@ fn problem(description: &str) -> RefOr<utoipa::openapi::Response> {
         .into()
 }
 
-/// Says whether requests need a key, those aside that never do.
-pub(super) fn say_whether_keys_are_needed(openapi: &mut OpenApi, needed: bool) {
-    let with_key = SecurityRequirement::new(KEY, Vec::<String>::new());
-    openapi.security = Some(if needed {
-        vec![with_key]
-    } else {
-        vec![SecurityRequirement::default(), with_key]
-    });
+/// Says whether requests need a key, those aside that never do, and whose tokens will do as well.
+pub(super) fn say_whether_keys_are_needed(
+    openapi: &mut OpenApi,
+    needed: bool,
+    issuer: Option<&str>,
+) {
+    let with = |name: &str| SecurityRequirement::new(name, Vec::<String>::new());
+    let mut security = vec![with(KEY)];
+    if let Some(issuer) = issuer {
+        let scheme = HttpBuilder::new()
+            .scheme(HttpAuthScheme::Bearer)
+            .bearer_format("JWT")
+            .description(Some(format!("A token of {issuer}, for this service.")))
+            .build();
+        openapi
+            .components
+            .get_or_insert_default()
+            .add_security_scheme(TOKEN, SecurityScheme::Http(scheme));
+        security.push(with(TOKEN));
+    }
+    if !needed {
+        security.insert(0, SecurityRequirement::default());
+    }
+    openapi.security = Some(security);
 }
 
 /// The OpenAPI document of the service, as it is without a public address.

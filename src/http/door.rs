@@ -19,7 +19,6 @@ use governor::{DefaultDirectRateLimiter, Quota};
 use super::guests::{Guest, Origin};
 use super::problem::Refusal;
 use super::strangers::Strangers;
-use crate::keys::Key;
 use crate::wire::{Code, Problem};
 
 /// A client may send so many times its requests of a second at once.
@@ -112,11 +111,10 @@ impl Door {
         self.has_keys.store(true, Ordering::Relaxed);
     }
 
-    /// The key was found to be one that is known.
-    pub(super) fn prove(&self, key: &Key) {
-        self.found_keys();
+    /// What a request got in by, told by its fingerprint, was found to be known.
+    pub(super) fn prove(&self, fingerprint: String) {
         if let Some(strangers) = &self.strangers {
-            strangers.prove(key);
+            strangers.prove(fingerprint);
         }
     }
 

@@ -110,9 +110,11 @@ fn retry_after(code: Code) -> Option<&'static str> {
         // Previews take a fraction of a second each.
         Code::PreviewsFull => Some("1"),
         Code::Overloaded | Code::RateLimited | Code::ServerTimeout => Some("1"),
-        Code::QueueFull | Code::ClientQueueFull | Code::Unavailable | Code::StorageUnavailable => {
-            Some("5")
-        }
+        Code::QueueFull
+        | Code::ClientQueueFull
+        | Code::Unavailable
+        | Code::StorageUnavailable
+        | Code::IdentityProviderUnavailable => Some("5"),
         _ => None,
     }
 }

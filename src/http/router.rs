@@ -18,6 +18,7 @@ use tower_http::cors::{AllowOrigin, CorsLayer};
 use tower_http::timeout::TimeoutLayer;
 use tower_http::trace::{DefaultOnResponse, TraceLayer};
 use tracing::Level;
+use tracing::field::Empty;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -39,7 +40,7 @@ pub fn router(app: App) -> Router {
     let (router, mut openapi) = routes().split_for_parts();
     openapi.servers = Some(vec![docs::server(&edge.public_url)]);
     docs::add_common_answers(&mut openapi);
-    docs::say_whether_keys_are_needed(&mut openapi, edge.asks_for_keys);
+    docs::say_whether_keys_are_needed(&mut openapi, edge.asks_for_keys, edge.issuer.as_deref());
     let is_https = edge.public_url.starts_with("https://");
     let door = Arc::clone(&app.door);
 
@@ -201,7 +202,8 @@ fn cors(origins: &[HeaderValue]) -> CorsLayer {
         .max_age(Duration::from_secs(3600))
 }
 
-/// What stands in the log beside a request: never its query or headers, which may hold secrets; of a key its public part.
+/// What stands in the log beside a request: never its query or headers, which may hold secrets; of a key its
+/// public part, of a token what its issuer calls it and its bearer.
 fn span(request: &Request) -> tracing::Span {
     let id = request
         .headers()
@@ -210,6 +212,8 @@ fn span(request: &Request) -> tracing::Span {
         .unwrap_or_default();
     let trace = request.extensions().get::<Trace>();
     let trace = trace.map_or("", |trace| trace.id.as_str());
-    let (key, client) = (tracing::field::Empty, tracing::field::Empty);
-    tracing::info_span!("request", method = %request.method(), path = request.uri().path(), request_id = id, trace_id = trace, key, client)
+    tracing::info_span!(
+        "request", method = %request.method(), path = request.uri().path(), request_id = id, trace_id = trace,
+        key = Empty, subject = Empty, token = Empty, client = Empty
+    )
 }

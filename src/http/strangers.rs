@@ -11,9 +11,8 @@ use governor::clock::{Clock as _, DefaultClock};
 use governor::state::keyed::HashMapStateStore;
 use governor::{DefaultDirectRateLimiter, NotUntil, Quota, RateLimiter};
 
-use super::client::bearer;
+use super::client::{Credential, bearer};
 use super::guests::Origin;
-use crate::keys::Key;
 
 /// An origin may send so many times its requests of a second at once: the page alone takes thirty.
 const BURST_SECONDS: u32 = 5;
@@ -36,7 +35,7 @@ pub(super) struct Strangers {
     of_origin: Keyed<(Origin, bool)>,
     of_all: DefaultDirectRateLimiter,
     least: Keyed<(Origin, bool)>,
-    /// The hashes of keys that were found to be known. Whether they still are is asked of the store each time.
+    /// The fingerprints of keys and tokens that were found to be known. Whether they still are is looked at each time.
     proven: Mutex<HashSet<String>>,
 }
 
@@ -63,11 +62,11 @@ impl Strangers {
     ///
     /// The time after which it may come again.
     pub(super) fn admit(&self, origin: Origin, headers: &HeaderMap) -> Result<(), Duration> {
-        let key = bearer(headers).ok().flatten();
-        if key.as_ref().is_some_and(|key| self.is_proven(key)) {
+        let shown = bearer(headers).ok().flatten();
+        if shown.as_ref().is_some_and(|shown| self.is_proven(shown)) {
             return Ok(());
         }
-        let who = (origin, key.is_some());
+        let who = (origin, shown.is_some());
         forget_the_quiet(&self.of_origin);
         self.of_origin.check_key(&who).map_err(wait)?;
         if self.of_all.check().is_ok() {
@@ -77,18 +76,18 @@ impl Strangers {
         self.least.check_key(&who).map_err(wait)
     }
 
-    /// A key was found to be known.
-    pub(super) fn prove(&self, key: &Key) {
+    /// A key or token of this fingerprint was found to be known.
+    pub(super) fn prove(&self, fingerprint: String) {
         let mut proven = self.proven.lock().expect("nothing panics with this lock");
         if proven.len() >= MOST_REMEMBERED {
             proven.clear();
         }
-        proven.insert(key.secret_hash());
+        proven.insert(fingerprint);
     }
 
-    fn is_proven(&self, key: &Key) -> bool {
+    fn is_proven(&self, shown: &Credential) -> bool {
         let proven = self.proven.lock().expect("nothing panics with this lock");
-        proven.contains(&key.secret_hash())
+        proven.contains(&shown.fingerprint())
     }
 }
 
@@ -110,6 +109,7 @@ mod tests {
     use axum::http::header::AUTHORIZATION;
 
     use super::*;
+    use crate::keys::Key;
 
     fn origin(last: u8) -> Origin {
         IpAddr::from([127, 0, 0, last]).into()
@@ -133,7 +133,7 @@ mod tests {
         assert!((50..60).contains(&admitted(&strangers, 1, &none)));
         // Who has a key can show it all the same; one that proves to be none stays among the strangers.
         assert!((50..60).contains(&admitted(&strangers, 1, &with(&key))));
-        strangers.prove(&key);
+        strangers.prove(key.secret_hash());
         assert_eq!(admitted(&strangers, 1, &with(&key)), 1000);
         assert!(admitted(&strangers, 1, &with(&Key::random().unwrap())) < 10);
     }

@@ -13,7 +13,6 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use hmac::{Hmac, KeyInit, Mac};
 use reqwest::dns::{Addrs, Name, Resolve, Resolving};
-use reqwest::redirect::Policy;
 use reqwest::{Client, StatusCode};
 use sha2::Sha256;
 use tokio::task::{JoinHandle, JoinSet};
@@ -24,6 +23,7 @@ use uuid::Uuid;
 use super::addresses::HookRules;
 use super::hooks::Webhooks;
 use super::store::{Attempt, Message, Refusal, Waiting};
+use crate::client::{bounded, told};
 use crate::jobs::StoreError;
 
 /// One attempt takes so long at most.
@@ -66,12 +66,8 @@ impl Deliveries {
 }
 
 fn client(rules: &HookRules) -> Result<Client, reqwest::Error> {
-    crate::client()
-        .timeout(TIME_OUT)
-        .redirect(Policy::none())
-        .no_proxy()
+    bounded(TIME_OUT)
         .dns_resolver(Arc::new(PublicOnly(Arc::clone(&rules.reachable))))
-        .user_agent(concat!("Meshwright/", env!("CARGO_PKG_VERSION")))
         .build()
 }
 
@@ -280,7 +276,7 @@ impl Courier {
             .body(message.body.clone());
         match request.send().await {
             Ok(answer) => Sent::answered(answer.status()),
-            Err(error) => Sent::not(Refused::Again(told(&error))),
+            Err(error) => Sent::not(Refused::Again(told(&error, TIME_OUT))),
         }
     }
 }
@@ -337,23 +333,6 @@ fn signature(secret: &str, id: &str, timestamp: i64, body: &str) -> Option<Strin
     let mut mac = Hmac::<Sha256>::new_from_slice(&key).expect("a key of any length will do");
     mac.update(format!("{id}.{timestamp}.{body}").as_bytes());
     Some(format!("v1,{}", BASE64.encode(mac.finalize().into_bytes())))
-}
-
-/// An error with its causes, without the address, which may have a secret in it.
-fn told(error: &reqwest::Error) -> String {
-    let mut causes = Vec::new();
-    let mut cause = std::error::Error::source(error);
-    while let Some(error) = cause {
-        causes.push(error.to_string());
-        cause = error.source();
-    }
-    if error.is_timeout() {
-        format!("no answer within {} s", TIME_OUT.as_secs())
-    } else if causes.is_empty() {
-        "it cannot be reached".to_owned()
-    } else {
-        format!("it cannot be reached: {}", causes.join(": "))
-    }
 }
 
 #[cfg(test)]

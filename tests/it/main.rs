@@ -46,6 +46,7 @@ mod strain;
 mod studies;
 mod tables;
 mod time;
+mod tokens;
 mod upgrade;
 mod uploads;
 mod webhooks;

@@ -34,8 +34,7 @@ export async function step(name, service, work, options = {}, others = []) {
     console.log(`page: ok: ${name}`);
   } catch (error) {
     failed += 1;
-    const said = await page.locator("[role=status]:visible, [role=alert]:visible").allInnerTexts().catch(() => []);
-    console.log(`page: FAILED: ${name}\n${error.stack}\n${faults.join("\n")}\nThe page says: ${said.filter(Boolean).join(" | ")}`);
+    console.log(`page: FAILED: ${name}\n${error.stack}\n${faults.join("\n")}`);
   }
   await context.close();
 }
