@@ -2,17 +2,18 @@
 
 use std::f64::consts::PI;
 
+use faer::traits::ComplexField;
 use faer::{Mat, c64};
 
 use super::PartError;
-use crate::fem::FemError;
+use super::carrier::{Carrier, Stack};
+use super::holed::HoledChange;
 use crate::fem::axial::AxialBasis;
-use crate::fem::dense::Cholesky;
-use crate::gear::{Layer, Material, SolidGear};
+use crate::fem::dense::{entries, symmetrize};
+use crate::gear::{Material, SolidGear};
 use crate::grid::{GridLevel, ToothGrid};
 use crate::quadrature::legendre;
 use crate::ring::solid::gear::{ClassAnswers, answers, between_teeth};
-use crate::ring::solid::revolution::Revolution;
 use crate::ring::solid::tooth::{SolidTooth, flank_compliance_alone};
 use crate::ring::teeth::FARTHEST_COUPLED;
 use crate::run::Run;
@@ -25,11 +26,6 @@ const OTHER_DEGREE: usize = 5;
 const NODES_APART: usize = 3;
 /// Singular values below this share of the largest say nothing.
 const FIT_TOLERANCE: f64 = 1e-9;
-/// The orders that the interface circle carries: fields of the teeth fall to e^−this on their way to it.
-const DECAY: f64 = 4.5;
-/// The degree of the pieces of a rim that is broken at the faces of its web.
-const PIECE_DEGREE: usize = 4;
-
 /// How finely the yield of a face is resolved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct FaceResolution {
@@ -76,6 +72,8 @@ pub struct FaceYield {
     tooth_count: usize,
     /// What tooth d yields to tooth 0, d = 0 … [`FARTHEST_COUPLED`].
     blocks: Vec<Mat<f64>>,
+    /// What holes change.
+    holes: Option<HoledChange>,
     degrees_of_freedom: u64,
 }
 
@@ -86,24 +84,42 @@ impl FaceYield {
     ///
     /// [`PartError`] if a part cannot be divided or condensed, or if the work is stopped.
     pub fn of(gear: &SolidGear, resolution: FaceResolution, run: &Run) -> Result<Self, PartError> {
-        let axial = face_basis(gear, resolution);
-        let radius = interface_radius(gear);
+        let stack = Stack::new(gear, resolution);
         let section = gear.section().without_blank().with_plain_flanks();
-        let grid = ToothGrid::of_prism(&section, radius, GridLevel::Standard)?;
+        let grid = ToothGrid::of_prism(&section, stack.interface_radius, GridLevel::Standard)?;
         run.check()?;
-        let tooth = SolidTooth::new(gear, &grid, &axial)?;
-        run.check()?;
-        let carriers = carriers(gear, &axial, radius, resolution, run)?;
-        let classes = answers(&tooth, &carriers, None, run)?;
-        let flank = FlankFit::new(gear, &axial, &tooth.roll_lengths);
-        let (blocks, squares) = (blocks(&tooth, &classes, &flank), flank.squares);
+        let (tooth, carrier) = rayon::join(
+            || SolidTooth::new(gear, &grid, &stack.face),
+            || Carrier::new(&stack, run),
+        );
+        let (tooth, carrier) = (tooth?, carrier?);
+        let seen = carrier.web.as_ref().map(|web| web.largest);
+        let classes = answers(&tooth, &carrier.stiffness, seen, run)?;
+        let flank = FlankFit::new(gear, &stack.face, &tooth.roll_lengths);
+        let blocks = blocks(&tooth, &classes, &flank);
+        let holes = match &carrier.web {
+            Some(web) => {
+                let smoothing = flank.smoothing();
+                let onto = |answers: &Mat<c64>| {
+                    smoothed_rows(
+                        &smoothing,
+                        &answers.transpose().to_owned(),
+                        stack.face.len(),
+                    )
+                };
+                Some(HoledChange::new(&stack, web, &classes, &onto, run)?)
+            }
+            None => None,
+        };
         let own = tooth.grid_nodes - tooth.sector.side_nodes - 1;
+        let degrees_of_freedom = (own * tooth.sector.size * tooth.sector.count) as u64;
         Ok(Self {
-            axial,
-            squares,
+            squares: flank.squares,
             tooth_count: tooth.sector.count,
             blocks,
-            degrees_of_freedom: (own * tooth.sector.size * tooth.sector.count) as u64,
+            holes,
+            degrees_of_freedom,
+            axial: stack.face,
         })
     }
 
@@ -118,7 +134,7 @@ impl FaceYield {
         inner_radius: f64,
         resolution: FaceResolution,
     ) -> Result<Self, PartError> {
-        let axial = face_basis(gear, resolution);
+        let axial = Stack::new(gear, resolution).face;
         let section = gear.section().without_blank().with_plain_flanks();
         let grid = ToothGrid::of_prism(&section, inner_radius, GridLevel::Standard)?;
         let compliance = flank_compliance_alone(gear, &grid, &axial)?;
@@ -130,6 +146,7 @@ impl FaceYield {
             squares,
             tooth_count: 1,
             blocks,
+            holes: None,
             degrees_of_freedom: degrees_of_freedom as u64,
         })
     }
@@ -147,6 +164,22 @@ impl FaceYield {
     pub fn basis(&self, roll_length: f64, z: f64, row: &mut [f64]) {
         assert_eq!(row.len(), self.basis_len());
         let (up, _) = up_the_flank(self.squares, roll_length, OWN_DEGREE);
+        let across = self.axial.values(z);
+        for (row, up) in row.chunks_exact_mut(across.len()).zip(up) {
+            for (value, across) in row.iter_mut().zip(&across) {
+                *value = up * across;
+            }
+        }
+    }
+
+    /// The derivatives of all functions by the roll length.
+    ///
+    /// # Panics
+    ///
+    /// As [`FaceYield::basis`].
+    pub fn basis_slope(&self, roll_length: f64, z: f64, row: &mut [f64]) {
+        assert_eq!(row.len(), self.basis_len());
+        let (_, up) = up_the_flank(self.squares, roll_length, OWN_DEGREE);
         let across = self.axial.values(z);
         for (row, up) in row.chunks_exact_mut(across.len()).zip(up) {
             for (value, across) in row.iter_mut().zip(&across) {
@@ -173,7 +206,13 @@ impl FaceYield {
                 } else {
                     block.copy_from(self.blocks[z - ahead].transpose());
                 }
+                if let Some(holes) = &self.holes {
+                    block += holes.between(i % z, j % z);
+                }
             }
+        }
+        if self.holes.is_some() {
+            symmetrize(&mut smooth);
         }
         smooth
     }
@@ -185,157 +224,9 @@ impl FaceYield {
 
     /// The number of entries, for the books of a cache.
     pub fn entries(&self) -> usize {
-        self.blocks.iter().map(crate::fem::dense::entries).sum()
+        let blocks: usize = self.blocks.iter().map(entries).sum();
+        blocks + self.holes.as_ref().map_or(0, HoledChange::entries)
     }
-}
-
-/// The functions across the face: one polynomial, or pieces that are broken where the rim stands on a narrower web.
-fn face_basis(gear: &SolidGear, resolution: FaceResolution) -> AxialBasis {
-    let [low, high] = gear.face_heights();
-    let layers = gear.layers();
-    let mut breaks = vec![low, high];
-    if let [rim, web, ..] = layers.as_slice()
-        && rim.heights == [low, high]
-    {
-        // A face that is nearly flush is.
-        let slack = 0.02 * (high - low);
-        let inside = |z: &f64| *z > low + slack && *z < high - slack;
-        breaks.extend(web.heights.into_iter().filter(inside));
-        breaks.sort_by(f64::total_cmp);
-    }
-    if breaks.len() == 2 {
-        AxialBasis::new(&breaks, resolution.face_order)
-    } else {
-        AxialBasis::new(&breaks, PIECE_DEGREE.min(resolution.face_order / 2))
-    }
-}
-
-/// Where the teeth meet what carries them: one module below the root circle, or halfway to where the rim ends.
-fn interface_radius(gear: &SolidGear) -> f64 {
-    let root = gear.section().root_radius();
-    let end = gear.layers()[0].inner_radius;
-    (root - gear.normal_rack().module).max(f64::midpoint(root, end))
-}
-
-/// The stiffness of each order on the interface circle of all that is below.
-fn carriers(
-    gear: &SolidGear,
-    axial: &AxialBasis,
-    radius: f64,
-    resolution: FaceResolution,
-    run: &Run,
-) -> Result<Vec<Mat<c64>>, PartError> {
-    let section = gear.section();
-    let material = section.material();
-    let depth = section.root_radius() - radius;
-    let z = section.tooth_count() as usize;
-    let most = ((DECAY * radius / depth - 1e-9).ceil() as usize).clamp(z, 8 * z);
-    let layers = gear.layers();
-    let mut carriers = Vec::with_capacity(most + 1);
-    for order in 0..=most {
-        run.check()?;
-        let below = below_rim(gear, &layers, axial, resolution, order)?;
-        let rim = Revolution {
-            material,
-            twist: gear.twist(),
-            axial,
-            radii: [layers[0].inner_radius, radius],
-        };
-        carriers.push(rim.on_outer(order as i64, below.as_ref())?);
-    }
-    Ok(carriers)
-}
-
-/// The stiffness of `order` under the rim, on its functions: nothing where the rim is all there is.
-fn below_rim(
-    gear: &SolidGear,
-    layers: &[Layer],
-    rim: &AxialBasis,
-    resolution: FaceResolution,
-    order: usize,
-) -> Result<Option<Mat<c64>>, FemError> {
-    let material = gear.section().material();
-    let mut below: Option<(Mat<c64>, AxialBasis)> = None;
-    for layer in layers[1..].iter().rev() {
-        let axial = carrier_basis(layer, gear, resolution);
-        let body = Revolution {
-            material,
-            twist: 0.0,
-            axial: &axial,
-            radii: [layer.inner_radius, layer.outer_radius],
-        };
-        let carried = match &below {
-            Some((stiffness, under)) => Some(on_other(stiffness, under, &axial, order, 0.0)?),
-            None => None,
-        };
-        below = Some((body.on_outer(order as i64, carried.as_ref())?, axial));
-    }
-    below
-        .map(|(stiffness, under)| on_other(&stiffness, &under, rim, order, gear.twist()))
-        .transpose()
-}
-
-/// The functions across a layer below the rim.
-fn carrier_basis(layer: &Layer, gear: &SolidGear, resolution: FaceResolution) -> AxialBasis {
-    let width = layer.heights[1] - layer.heights[0];
-    let degree = if width > 0.5 * gear.face_width() {
-        resolution.face_order
-    } else {
-        resolution.web_order
-    };
-    AxialBasis::new(&layer.heights, degree)
-}
-
-/// The stiffness of `order` on the functions `upper`, which stand on a circle carried by `stiffness` on the functions `lower`.
-///
-/// The circle of the narrower follows that of the wider, in the mean over each of its functions. `twist` is that of the upper
-/// frame; the lower one stands still.
-fn on_other(
-    stiffness: &Mat<c64>,
-    lower: &AxialBasis,
-    upper: &AxialBasis,
-    order: usize,
-    twist: f64,
-) -> Result<Mat<c64>, FemError> {
-    let width = |basis: &AxialBasis| basis.heights()[1] - basis.heights()[0];
-    if width(lower) <= width(upper) {
-        // U_lower = T U_upper.
-        let t = trace(lower, upper, order, twist);
-        return Ok(t.adjoint() * stiffness * &t);
-    }
-    // U_upper = T U_lower, and forces go the other way: compliances add up, T S⁻¹ Tᴴ.
-    let t = trace(upper, lower, order, -twist);
-    let mut half = t.adjoint().to_owned();
-    let failed = FemError::NotPositiveDefinite {
-        part: "the hub",
-        unknowns: stiffness.nrows(),
-    };
-    let factor = Cholesky::new(stiffness.clone()).ok_or(failed.clone())?;
-    factor.half_solve_in_place(half.as_mut());
-    let compliance = half.adjoint() * &half;
-    let mut inverse = Mat::<c64>::identity(compliance.nrows(), compliance.nrows());
-    Cholesky::new(compliance)
-        .ok_or(failed)?
-        .solve_in_place(inverse.as_mut());
-    Ok(inverse)
-}
-
-/// T: the displacement of `order` on the functions `narrow` of a circle that follows the functions `wide`, whose frame turns by
-/// `twist` against its own: ∫ f_p e^{−i n τ z} g_q dz for each component.
-pub(crate) fn trace(narrow: &AxialBasis, wide: &AxialBasis, order: usize, twist: f64) -> Mat<c64> {
-    let phase = order as f64 * twist;
-    let real = narrow.integrals(wide, |z| (phase * z).cos());
-    let imaginary = narrow.integrals(wide, |z| -(phase * z).sin());
-    let (rows, columns) = (narrow.len(), wide.len());
-    let mut t = Mat::<c64>::zeros(3 * rows, 3 * columns);
-    for c in 0..3 {
-        for q in 0..columns {
-            for p in 0..rows {
-                t[(c * rows + p, c * columns + q)] = c64::new(real[(p, q)], imaginary[(p, q)]);
-            }
-        }
-    }
-    t
 }
 
 /// The Legendre polynomials in the square of the roll length, over the flank, and their derivatives by the roll length.
@@ -421,7 +312,7 @@ impl<'a> FlankFit<'a> {
         let mut own = Mat::from_fn(degrees * m, degrees * m, |i, j| {
             shares[((i / m) * degrees + j / m, (i % m) * m + j % m)]
         });
-        crate::fem::dense::symmetrize(&mut own);
+        symmetrize(&mut own);
         own
     }
 
@@ -527,14 +418,18 @@ fn smoothed(smoothing: &Mat<f64>, g: &Mat<f64>, m: usize) -> Mat<f64> {
         .to_owned()
 }
 
-fn smoothed_rows(smoothing: &Mat<f64>, g: &Mat<f64>, m: usize) -> Mat<f64> {
+/// Q g, of real or complex columns.
+fn smoothed_rows<T>(smoothing: &Mat<f64>, g: &Mat<T>, m: usize) -> Mat<T>
+where
+    T: ComplexField + Copy + std::ops::Mul<f64, Output = T> + std::ops::AddAssign,
+{
     let mut rows = Mat::zeros(smoothing.nrows() * m, g.ncols());
     for j in 0..g.ncols() {
         for node in 0..smoothing.ncols() {
             for a in 0..smoothing.nrows() {
                 let share = smoothing[(a, node)];
                 for p in 0..m {
-                    rows[(a * m + p, j)] += share * g[(node * m + p, j)];
+                    rows[(a * m + p, j)] += g[(node * m + p, j)] * share;
                 }
             }
         }
@@ -559,7 +454,7 @@ fn pseudo_inverse(a: &Mat<f64>) -> Mat<f64> {
 mod tests {
     use super::*;
     use crate::gear::spur::tests::paper_gear;
-    use crate::gear::{Helix, Hub, Web};
+    use crate::gear::{Helix, HolePattern, Hub, Web};
     use crate::grid::ToothGrid as PlaneGrid;
     use crate::ring::blank::BlankSubstructure;
     use crate::ring::body::Coupling;
@@ -674,9 +569,10 @@ mod tests {
 
     /// The mean over the face of what tooth 1 yields to a load on tooth 0 that is even over the face, times the face width: of a
     /// straight gear whose face is so wide, and of the plane with Young's modulus and Poisson's ratio as given.
-    fn neighbor(face_width: f64, plane: (f64, f64)) -> (f64, f64) {
+    fn neighbor(face_width: f64, plane: (f64, f64), holes: Option<HolePattern>) -> (f64, f64) {
         let mut data = paper_gear(24);
         data.blank.bore_radius = 8e-3;
+        data.blank.holes = holes.map_or_else(Vec::new, |pattern| pattern.holes());
         data.face_width = face_width;
         let solid = SolidGear::new(data.clone(), Helix::STRAIGHT, 0.0, None).expect("can be made");
         let resolution = FaceResolution {
@@ -698,18 +594,21 @@ mod tests {
         (data.material.youngs_modulus, data.material.poisson_ratio) = plane;
         let section = crate::gear::SpurGear::new(data).expect("can be made");
         let run = Run::unattended();
-        let radius = interface_radius(&solid);
+        let radius = Stack::new(&solid, resolution).interface_radius;
         let grid = PlaneGrid::new(&section.without_blank(), radius, GridLevel::Standard)
             .expect("a usable grid");
         let tooth = ToothSubstructure::new(&section, &grid).expect("definite");
         let harmonics = crate::ring::cyclic::Harmonics { largest: 90 };
         let ring = TeethRing::new(&tooth, harmonics, &run).expect("definite");
-        let blank = crate::grid::BlankGrid::new(8e-3, radius, None, 24, 8.0, GridLevel::Standard)
+        let level = GridLevel::Standard;
+        let blank = crate::grid::BlankGrid::new(8e-3, radius, holes.as_ref(), 24, 8.0, level)
             .expect("a usable grid");
         let blank =
             BlankSubstructure::new(&blank, radius, section.material(), 1.0, harmonics, &run)
                 .expect("definite");
-        let coupling = Coupling::on_blank(&ring, &blank, 0.0, 2, &run).expect("definite");
+        let coupling =
+            Coupling::on_blank(&ring, &blank, section.hole_angle(), 2, &run).expect("definite");
+        // Tooth 1 and, before it, tooth 0: what tooth 0 yields to tooth 1 is what tooth 1 yields to it.
         let (x, _) = coupling.block(0, 1);
         let h = &tooth.modes * x * tooth.modes.transpose();
         // Between the nodes around s, linearly: the neighbor's yield is smooth.
@@ -729,12 +628,91 @@ mod tests {
     #[test]
     fn a_narrow_straight_gear_is_in_plane_stress_and_a_wide_one_nearly_in_plane_strain() {
         let (e, nu) = (210e9_f64, 0.3_f64);
-        let (narrow, stress) = neighbor(0.2e-3, (e, nu));
+        let (narrow, stress) = neighbor(0.2e-3, (e, nu), None);
         assert!((narrow / stress - 1.0).abs() < 5e-3, "{narrow} {stress}");
-        let (wide, strain) = neighbor(120e-3, (e / (1.0 - nu * nu), nu / (1.0 - nu)));
-        let (middle, _) = neighbor(20e-3, (e, nu));
+        let (wide, strain) = neighbor(120e-3, (e / (1.0 - nu * nu), nu / (1.0 - nu)), None);
+        let (middle, _) = neighbor(20e-3, (e, nu), None);
         assert!((wide / strain - 1.0).abs() < 1.5e-2, "{wide} {strain}");
         let part = middle / narrow;
         assert!((wide / narrow - 0.03..1.01).contains(&part), "{part}");
+    }
+
+    #[test]
+    fn holes_change_a_narrow_gear_as_they_change_it_in_plane_stress() {
+        let pattern = HolePattern {
+            count: 5,
+            circle_radius: 14.5e-3,
+            radius: 3.2e-3,
+            phase: 0.3,
+        };
+        let material = (210e9, 0.3);
+        let (solid, solid_plane) = neighbor(0.2e-3, material, None);
+        let (holed, plane) = neighbor(0.2e-3, material, Some(pattern));
+        let (change, expected) = (holed / solid - 1.0, plane / solid_plane - 1.0);
+        assert!(expected > 0.1, "{expected}: holes that matter");
+        assert!(
+            (change / expected - 1.0).abs() < 0.02,
+            "{change} {expected}"
+        );
+    }
+
+    fn holed(beta: f64, hub: Option<Hub>, turned: f64) -> SolidGear {
+        let mut data = paper_gear(24);
+        data.blank.bore_radius = 6e-3;
+        data.blank.web = Some(Web {
+            inner_radius: hub.map_or(6e-3, |hub| hub.outer_radius),
+            outer_radius: 18e-3,
+            thickness: 6e-3,
+        });
+        data.blank.holes = HolePattern {
+            count: 4,
+            circle_radius: 13e-3,
+            radius: 3e-3,
+            phase: 0.2,
+        }
+        .holes();
+        data.blank.holes[1].angle += turned;
+        SolidGear::new(data, Helix::right(beta), -7e-3, hub).expect("can be made")
+    }
+
+    #[test]
+    fn equal_holes_as_one_sector_are_those_of_the_whole_web() {
+        let hub = Hub {
+            outer_radius: 8e-3,
+            width: 26e-3,
+            offset: 0.0,
+        };
+        for hub in [None, Some(hub)] {
+            let (pattern, whole) = (
+                yields(&holed(0.3, hub, 0.0)),
+                yields(&holed(0.3, hub, 1e-7)),
+            );
+            let plain = yields(&holed(0.3, hub, 0.0).without_holes());
+            let (mut apart, mut change) = (0.0_f64, 0.0_f64);
+            for (s, z) in places(&gear(0.3, None, None)).into_iter().step_by(2) {
+                for (i, j) in [(0, 0), (5, 4), (11, 12), (2, 23)] {
+                    let of = |face: &FaceYield| between(face, (i, s, z), (j, s, -z));
+                    apart = apart.max((of(&pattern) - of(&whole)).abs());
+                    change = change.max((of(&pattern) - of(&plain)).abs());
+                }
+            }
+            // Quadrilaterals and triangles.
+            assert!(apart < 0.02 * change, "{apart:e} of {change:e}");
+            assert!(change > 1e-10, "{change:e}: holes that matter");
+        }
+    }
+
+    #[test]
+    fn teeth_that_stand_alike_to_the_holes_yield_alike() {
+        let gear = holed(-0.3, None, 0.0);
+        let face = yields(&gear);
+        let [p, q] = [0, 6].map(|i| places(&gear)[i]);
+        let of = |i, j| between(&face, (i, p.0, p.1), (j, q.0, q.1));
+        // Four holes, 24 teeth: every sixth.
+        assert!((of(1, 0) / of(7, 6) - 1.0).abs() < 1e-9);
+        assert!((of(1, 0) / of(13, 12) - 1.0).abs() < 1e-9);
+        assert!((of(1, 0) / of(4, 3) - 1.0).abs() > 1e-4);
+        let smooth = face.smooth(&[3, 4, 2]);
+        assert!((&smooth - smooth.transpose()).norm_max() < 1e-15 * smooth.norm_max());
     }
 }

@@ -8,9 +8,11 @@
 //! who makes them, and whether anyone keeps them, is asked of [`Parts`].
 
 pub mod blank;
+mod carrier;
 pub mod cut;
 pub mod face_yield;
 pub mod gear;
+mod holed;
 pub mod inside;
 pub mod interface;
 pub mod pair;

@@ -139,7 +139,7 @@ pub enum SolidGearError {
         /// The nearest that would do.
         nearest: f64,
     },
-    /// A hole crosses the edge between parts of unlike width, or stands in another one than the first hole.
+    /// A hole crosses an edge between parts of unlike width, or stands outside of the web.
     #[error(
         "hole {hole} reaches from {from} m to {to} m; it must lie between {inner_radius} m and {outer_radius} m"
     )]
@@ -354,17 +354,21 @@ impl SolidGear {
         }
     }
 
-    /// All holes stand in one layer.
+    /// All holes stand in one part.
     fn check_holes(&self) -> Result<(), SolidGearError> {
         let holes: &[Hole] = self.section.holes();
-        let Some(first) = holes.first() else {
+        if holes.is_empty() {
             return Ok(());
-        };
+        }
+        // Holes stand in the web, or where there is none in the part that carries the teeth.
         let layers = self.layers();
-        let home = layers
-            .iter()
-            .find(|layer| layer.inner_radius < first.circle_radius)
-            .unwrap_or(&layers[layers.len() - 1]);
+        let has_web = self
+            .section
+            .data()
+            .blank
+            .web_in(self.face_width())
+            .is_some();
+        let home = &layers[usize::from(has_web && layers.len() > 1)];
         for (index, hole) in holes.iter().enumerate() {
             let (from, to) = (hole.inner_reach(), hole.outer_reach());
             if !(from > home.inner_radius && to < home.outer_radius) {

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::revolution::add_block;
 use super::sector::SolidSector;
 use super::tooth::SolidTooth;
+use super::web::of_order;
 use crate::fem::FemError;
 use crate::fem::dense::Cholesky;
 use crate::run::Run;
@@ -48,7 +49,8 @@ pub fn answers(
             let sides = sector.size * sector.side_nodes;
             let mut stiffness = sector.class_stiffness(class, &orders);
             for (k, &order) in orders.iter().enumerate() {
-                let share = carrier_of(carriers, order, 1.0 / sector.count as f64);
+                let share = faer::Scale(c64::new(1.0 / sector.count as f64, 0.0));
+                let share = of_order(carriers, order) * share;
                 add_block(&mut stiffness, sides + k * sector.size, &share);
             }
             let unknowns = stiffness.nrows();
@@ -85,15 +87,6 @@ pub fn answers(
             })
         })
         .collect()
-}
-
-/// The stiffness of an order of either sign, times `share`.
-fn carrier_of(carriers: &[Mat<c64>], order: i64, share: f64) -> Mat<c64> {
-    let of = &carriers[order.unsigned_abs() as usize];
-    Mat::from_fn(of.nrows(), of.ncols(), |i, j| {
-        let value = of[(i, j)] * share;
-        if order < 0 { value.conj() } else { value }
-    })
 }
 
 /// The sum over all classes of `of` turned by their share of `distance` teeth, over Z: the block between the tooth `distance`

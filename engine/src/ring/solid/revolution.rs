@@ -216,7 +216,7 @@ impl Revolution<'_> {
 }
 
 /// What is left of `k` on its last `kept` unknowns when the others are free.
-pub(super) fn last_of(k: &Mat<c64>, kept: usize) -> Result<Mat<c64>, FemError> {
+pub(crate) fn last_of(k: &Mat<c64>, kept: usize) -> Result<Mat<c64>, FemError> {
     let free = k.nrows() - kept;
     let factor = Cholesky::new(k.submatrix(0, 0, free, free).to_owned()).ok_or(
         FemError::NotPositiveDefinite {

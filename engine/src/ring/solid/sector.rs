@@ -5,7 +5,7 @@
 
 use faer::{Mat, c64};
 
-/// A sector on its interface: right side, left side, arc, node by node.
+/// A sector on its interface: right side, left side, arcs, node by node.
 #[derive(Debug, Clone)]
 pub struct SolidSector {
     /// The number S of sectors in the ring.
@@ -16,8 +16,8 @@ pub struct SolidSector {
     pub stiffness: Mat<f64>,
     /// The number of nodes on each side.
     pub side_nodes: usize,
-    /// The angles of the nodes on the arc.
-    pub arc_angles: Vec<f64>,
+    /// The angles of the nodes on its arcs, one arc after the other.
+    pub arcs: Vec<Vec<f64>>,
 }
 
 impl SolidSector {
@@ -33,12 +33,12 @@ impl SolidSector {
         c64::new(cos, sin)
     }
 
-    /// The unknowns of a class: those of one side, and those of each of `orders` on the circle.
+    /// The unknowns of a class: those of one side, and on each arc those of each of `orders`.
     pub fn unknowns(&self, orders: &[i64]) -> usize {
-        self.size * (self.side_nodes + orders.len())
+        self.size * (self.side_nodes + self.arcs.len() * orders.len())
     }
 
-    /// `rows` on the interface as rows on the unknowns of the class: sides, then order by order.
+    /// `rows` on the interface as rows on the unknowns of the class: sides, then arc by arc, order by order.
     pub fn on_class(&self, rows: &Mat<f64>, class: usize, orders: &[i64]) -> Mat<c64> {
         let (size, sides) = (self.size, self.size * self.side_nodes);
         let angle = std::f64::consts::TAU * (class % self.count) as f64 / self.count as f64;
@@ -51,16 +51,21 @@ impl SolidSector {
                 *to = across * *l + c64::new(*r, 0.0);
             }
         }
-        for (node, &angle) in self.arc_angles.iter().enumerate() {
-            for (k, &order) in orders.iter().enumerate() {
-                let turn = Self::turn(order, angle);
-                for c in 0..size {
-                    let from = rows.col_as_slice(2 * sides + node * size + c);
-                    let column = on_class.col_as_slice_mut(sides + k * size + c);
-                    for (to, from) in column.iter_mut().zip(from) {
-                        *to += turn * *from;
+        let mut from = 2 * sides;
+        for (arc, angles) in self.arcs.iter().enumerate() {
+            let first = sides + arc * orders.len() * size;
+            for &angle in angles {
+                for (k, &order) in orders.iter().enumerate() {
+                    let turn = Self::turn(order, angle);
+                    for c in 0..size {
+                        let from = rows.col_as_slice(from + c);
+                        let column = on_class.col_as_slice_mut(first + k * size + c);
+                        for (to, from) in column.iter_mut().zip(from) {
+                            *to += turn * *from;
+                        }
                     }
                 }
+                from += size;
             }
         }
         on_class

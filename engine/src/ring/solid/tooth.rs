@@ -54,7 +54,7 @@ impl SolidTooth {
                 size: prism.unknowns_of_node(),
                 stiffness: condensed.stiffness,
                 side_nodes: right.len(),
-                arc_angles: grid.arc_angles.clone(),
+                arcs: vec![grid.arc_angles.clone()],
             },
             rows: condensed.rows,
             held: condensed.held,

@@ -1,0 +1,263 @@
+//! What holes change of the yield of flanks: a change of few unknowns, those of the web's outer circle.
+//!
+//! With the web's stiffness S + ΔS instead of S, C the compliance of the whole gear without holes on that circle and q_j its answer to
+//! tooth j, teeth yield to each other by −q_iᵀ (I + ΔS C)⁻¹ ΔS q_j more. Teeth, rim and plain web stay as they are.
+
+use std::f64::consts::TAU;
+
+use faer::linalg::solvers::Solve as _;
+use faer::{Mat, c64};
+
+use super::PartError;
+use super::carrier::{Stack, WebPorts};
+use crate::fem::prism::Prism;
+use crate::gear::{BlankRegion, gcd};
+use crate::grid::{BlankGrid, GridLevel};
+use crate::ring::solid::gear::ClassAnswers;
+use crate::ring::solid::web::holed_ring;
+use crate::run::Run;
+
+/// Elements around the web for each order in which holes are seen, at the standard level.
+const ELEMENTS_PER_ORDER: f64 = 10.0;
+
+/// What holes change of the yield of flanks.
+#[derive(Debug, Clone)]
+pub(crate) struct HoledChange {
+    tooth_count: usize,
+    /// The unknowns of a component of an order.
+    size: usize,
+    /// q: the answer of the web's circle to the functions on the flank of tooth 0.
+    answers: Mat<f64>,
+    /// −(I + ΔS C)⁻¹ ΔS q_j, of the teeth after which all repeats.
+    changes: Vec<Mat<f64>>,
+}
+
+impl HoledChange {
+    /// Of the gear of `stack`, whose web is seen through `web` and answers to teeth as in `classes`. `onto` makes rows for the functions
+    /// on a flank of columns for its nodes.
+    pub(crate) fn new(
+        stack: &Stack<'_>,
+        web: &WebPorts,
+        classes: &[ClassAnswers],
+        onto: &dyn Fn(&Mat<c64>) -> Mat<c64>,
+        run: &Run,
+    ) -> Result<Self, PartError> {
+        let section = stack.gear.section();
+        let (z, largest) = (section.tooth_count() as usize, web.largest);
+        let size = web.of[0].plain.nrows();
+        let holed = holed_stiffness(stack, largest, run)?;
+        let mut change = holed;
+        let place = |order: i64| (order + largest as i64) as usize * size;
+        for order in -(largest as i64)..=largest as i64 {
+            let plain = &web.of[order.unsigned_abs() as usize].plain;
+            for j in 0..size {
+                for i in 0..size {
+                    let value = plain[(i, j)];
+                    change[(place(order) + i, place(order) + j)] -=
+                        if order < 0 { value.conj() } else { value };
+                }
+            }
+        }
+
+        // C and q of tooth 0, on the orders of both signs.
+        let share = 1.0 / z as f64;
+        let mut compliance = Mat::<c64>::zeros(change.nrows(), change.ncols());
+        let mut answers: Option<Mat<c64>> = None;
+        for class in classes {
+            let inner = class.circle.nrows() / class.orders.len().max(1);
+            let follows: Vec<Mat<c64>> = class
+                .orders
+                .iter()
+                .map(|&order| {
+                    conjugate_below_zero(&web.of[order.unsigned_abs() as usize].follows, order)
+                })
+                .collect();
+            for (a, &n) in class.orders.iter().enumerate() {
+                let rows = class.circle.subrows(a * inner, inner);
+                let answer = onto(&(&follows[a] * rows));
+                let answers =
+                    answers.get_or_insert_with(|| Mat::zeros(change.nrows(), answer.nrows()));
+                for j in 0..answer.nrows() {
+                    for i in 0..size {
+                        let value = answer[(j, i)] * share;
+                        answers[(place(n) + i, j)] = value;
+                        answers[(place(-n) + i, j)] = value.conj();
+                    }
+                }
+                for (b, &m) in class.orders.iter().enumerate() {
+                    let between = class
+                        .compliance
+                        .submatrix(a * inner, b * inner, inner, inner);
+                    let block = &follows[a] * between * follows[b].adjoint();
+                    for j in 0..size {
+                        for i in 0..size {
+                            let value = block[(i, j)] * share;
+                            compliance[(place(n) + i, place(m) + j)] = value;
+                            compliance[(place(-n) + i, place(-m) + j)] = value.conj();
+                        }
+                    }
+                }
+            }
+        }
+        for order in -(largest as i64)..=largest as i64 {
+            let held = conjugate_below_zero(&web.of[order.unsigned_abs() as usize].held, order);
+            for j in 0..size {
+                for i in 0..size {
+                    compliance[(place(order) + i, place(order) + j)] += held[(i, j)];
+                }
+            }
+        }
+
+        let change = form_on_real(&change, largest, size, 0.5);
+        let compliance = form_on_real(&compliance, largest, size, 1.0);
+        let answers = rows_on_real(&answers.unwrap_or_else(|| Mat::zeros(0, 0)), largest, size);
+        let unknowns = change.nrows();
+        let coupled = Mat::<f64>::identity(unknowns, unknowns) + &change * compliance;
+        let factor = coupled.partial_piv_lu();
+        run.check()?;
+        let repeats = gcd(z as u32, section.hole_repeats().max(1)) as usize;
+        let of_tooth = |tooth: usize| {
+            let turned = turned(&answers, size, TAU * tooth as f64 / z as f64);
+            -factor.solve(&change * turned)
+        };
+        Ok(Self {
+            tooth_count: z,
+            size,
+            changes: (0..z / repeats).map(of_tooth).collect(),
+            answers,
+        })
+    }
+
+    /// What tooth `i` yields more to the functions of tooth `j`.
+    pub(crate) fn between(&self, i: usize, j: usize) -> Mat<f64> {
+        let (z, known) = (self.tooth_count, j % self.changes.len());
+        let seen = (i + z - (j - known)) % z;
+        let turned = turned(&self.answers, self.size, TAU * seen as f64 / z as f64);
+        turned.transpose() * &self.changes[known]
+    }
+
+    /// The number of entries, for the books of a cache.
+    pub(crate) fn entries(&self) -> usize {
+        self.answers.nrows() * self.answers.ncols() * (1 + self.changes.len())
+    }
+}
+
+/// The stiffness of the web with its holes, on the orders of both signs.
+fn holed_stiffness(stack: &Stack<'_>, largest: usize, run: &Run) -> Result<Mat<c64>, PartError> {
+    let (section, layer) = (stack.gear.section(), &stack.layers[1]);
+    let region = BlankRegion {
+        bore_radius: layer.inner_radius,
+        web: None,
+        ..section.data().blank.clone()
+    };
+    let z = section.tooth_count();
+    let grid = BlankGrid::of_region(
+        &region,
+        section.face_width(),
+        layer.outer_radius,
+        z,
+        ELEMENTS_PER_ORDER * largest as f64 / f64::from(z),
+        GridLevel::Coarse,
+    )?;
+    let hub = (0..=largest)
+        .map(|order| stack.below(1, order))
+        .collect::<Result<Option<Vec<_>>, _>>()?;
+    let prism = Prism {
+        grid: &grid.grid,
+        material: section.material(),
+        twist: 0.0,
+        axial: &stack.across[1],
+    };
+    let ring = holed_ring(&grid, region.phase(), &prism, hub.as_deref(), largest, run)?;
+    Ok(ring)
+}
+
+/// That of an order of either sign, of that of 0 or more.
+fn conjugate_below_zero(of: &Mat<c64>, order: i64) -> Mat<c64> {
+    if order < 0 {
+        of.conjugate().to_owned()
+    } else {
+        of.clone()
+    }
+}
+
+/// Where the cosine of an order stands, in blocks; the sine follows.
+fn block(order: usize) -> usize {
+    if order == 0 { 0 } else { 2 * order - 1 }
+}
+
+/// A Hermitian form in the amplitudes of the orders −`largest` … `largest` as one in a_0, a_1, b_1, …
+///
+/// With `share` 1/2 one in displacements, c_n = (a_n − i b_n)/2; with `share` 1 one in the forces that work on them.
+fn form_on_real(form: &Mat<c64>, largest: usize, size: usize, share: f64) -> Mat<f64> {
+    let count = (2 * largest + 1) * size;
+    let mut real = Mat::zeros(count, count);
+    // (block, sign of the order, weight) of the real unknowns that an order of no sign has.
+    let parts = |n: usize| -> Vec<(usize, i64, c64)> {
+        if n == 0 {
+            return vec![(0, 1, c64::new(1.0, 0.0))];
+        }
+        let signs = [1, -1].into_iter();
+        signs
+            .flat_map(|sign| {
+                [
+                    (block(n), sign, c64::new(share, 0.0)),
+                    (block(n) + 1, sign, c64::new(0.0, -share * sign as f64)),
+                ]
+            })
+            .collect()
+    };
+    let place = |n: usize, sign: i64| (sign * n as i64 + largest as i64) as usize * size;
+    for n in 0..=largest {
+        for m in 0..=largest {
+            for (row, s, by) in parts(n) {
+                for (column, t, with) in parts(m) {
+                    let (weight, from, to) = (by.conj() * with, place(n, s), place(m, t));
+                    for j in 0..size {
+                        for i in 0..size {
+                            real[(row * size + i, column * size + j)] +=
+                                (weight * form[(from + i, to + j)]).re;
+                        }
+                    }
+                }
+            }
+        }
+    }
+    real
+}
+
+/// Amplitudes of the orders −`largest` … `largest` as a_0, a_1, b_1, …
+fn rows_on_real(rows: &Mat<c64>, largest: usize, size: usize) -> Mat<f64> {
+    let mut real = Mat::zeros((2 * largest + 1) * size, rows.ncols());
+    for n in 0..=largest {
+        for j in 0..rows.ncols() {
+            for i in 0..size {
+                let value = rows[((n + largest) * size + i, j)];
+                if n == 0 {
+                    real[(i, j)] = value.re;
+                } else {
+                    real[(block(n) * size + i, j)] = 2.0 * value.re;
+                    real[((block(n) + 1) * size + i, j)] = -2.0 * value.im;
+                }
+            }
+        }
+    }
+    real
+}
+
+/// The answer to the tooth at `angle`, of that to tooth 0.
+fn turned(answers: &Mat<f64>, size: usize, angle: f64) -> Mat<f64> {
+    let mut turned = answers.clone();
+    let orders = answers.nrows() / size / 2;
+    for n in 1..=orders {
+        let (sin, cos) = (n as f64 * angle).sin_cos();
+        for j in 0..answers.ncols() {
+            for i in 0..size {
+                let (a, b) = (block(n) * size + i, (block(n) + 1) * size + i);
+                turned[(a, j)] = cos * answers[(a, j)] - sin * answers[(b, j)];
+                turned[(b, j)] = cos * answers[(b, j)] + sin * answers[(a, j)];
+            }
+        }
+    }
+    turned
+}
