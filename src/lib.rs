@@ -7,6 +7,8 @@ mod hash;
 mod machine;
 mod private;
 
+pub mod spans;
+
 pub mod wire;
 
 pub mod exchange;

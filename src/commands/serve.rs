@@ -9,6 +9,7 @@ use anyhow::Context;
 use meshwright::config::Config;
 use meshwright::jobs::Clock;
 use meshwright::serve::{END, UnusableDatabase, World, serve};
+use meshwright::spans::Spans;
 use meshwright::webhooks::HookRules;
 use meshwright::wire;
 use tracing_subscriber::EnvFilter;
@@ -26,6 +27,10 @@ pub(crate) struct Serve {
     /// Submit test case 2 of the paper to the service once it runs, show what comes of it, and go on serving.
     #[arg(long)]
     demo: bool,
+    /// Collector of OpenTelemetry that is told a span of each request and each job, by OTLP over HTTP: http://localhost:4318 [default:
+    /// nobody is told].
+    #[arg(long, env = "MESHWRIGHT_OTLP_ENDPOINT", value_parser = endpoint, value_name = "URL")]
+    otlp_endpoint: Option<String>,
     /// Write the log as JSON, one object to a line.
     #[arg(long, env = "MESHWRIGHT_LOG_JSON")]
     log_json: bool,
@@ -72,6 +77,8 @@ impl Serve {
             clock: Clock::system(),
             hooks: HookRules::to_public(self.config.door.webhook_hosts.clone()),
         };
+        let spans = self.otlp_endpoint.as_deref().map(Spans::start);
+        let spans = spans.transpose().context("spans cannot be told")?;
         let service = serve(&self.config, world).await?;
         match service.address() {
             Some(address) => {
@@ -85,11 +92,27 @@ impl Serve {
         signal().await?;
         end_in_any_case();
         // A second signal does not wait for the end of the first.
+        let end = async {
+            service.shut_down().await;
+            if let Some(spans) = spans {
+                spans.end().await;
+            }
+        };
         tokio::select! {
-            () = service.shut_down() => Ok(()),
+            () = end => Ok(()),
             second = signal() => second,
         }
     }
+}
+
+/// Checks the address of a collector, below which /v1/traces is.
+fn endpoint(text: &str) -> Result<String, String> {
+    let uri: axum::http::Uri = text.parse().map_err(|error| format!("{error}"))?;
+    let known_scheme = matches!(uri.scheme_str(), Some("http" | "https"));
+    if !known_scheme || uri.host().is_none() || uri.query().is_some() {
+        return Err("expected http:// or https://, a host, and perhaps a path".to_owned());
+    }
+    Ok(text.to_owned())
 }
 
 /// Ends the process when its shutdown has taken too long, even where no thread of the runtime is left to notice that. What was

@@ -13,6 +13,7 @@ use super::app::App;
 use super::aside::aside;
 use super::client::Client;
 use super::document::Document;
+use super::headers::Made;
 use super::parameters::IdempotencyKey;
 use super::view::{JobView, with_public_type};
 use crate::jobs::Submitted;
@@ -112,7 +113,12 @@ pub(super) async fn submit(
         })
         .collect();
     let taken = items.iter().filter(|item| item.job.is_some()).count();
-    Ok((StatusCode::ACCEPTED, Json(BatchAnswer { taken, items })).into_response())
+    let made = outcomes.iter().filter_map(|(job, _)| job.as_ref());
+    let made = made.filter(|job| !job.status.has_ended()).map(|job| job.id);
+    let made = Made(made.collect());
+    let mut response = (StatusCode::ACCEPTED, Json(BatchAnswer { taken, items })).into_response();
+    response.extensions_mut().insert(made);
+    Ok(response)
 }
 
 /// The key of a submission of a batch: none that a single submission can have, because no header has a line's end in it.

@@ -1,15 +1,20 @@
 //! Headers that every answer bears: what a browser may not do with it, and under what name it stands in the log.
 
-use axum::extract::{Request, State};
+use std::time::SystemTime;
+
+use axum::extract::{MatchedPath, Request, State};
 use axum::http::header::{
     CACHE_CONTROL, CONTENT_SECURITY_POLICY, DATE, HeaderName, HeaderValue, REFERRER_POLICY,
     STRICT_TRANSPORT_SECURITY, X_CONTENT_TYPE_OPTIONS, X_FRAME_OPTIONS,
 };
 use axum::middleware::Next;
 use axum::response::Response;
+use opentelemetry::KeyValue;
+use opentelemetry::trace::SpanId;
 use uuid::Uuid;
 
 use crate::jobs::Clock;
+use crate::spans::{self, Span};
 
 /// What is no page runs nothing. The page runs its own files and talks to its own service; the documentation brings scripts of its own.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
@@ -108,12 +113,70 @@ fn value(text: &str) -> HeaderValue {
     HeaderValue::from_str(text).expect("hexadecimal digits are visible ASCII")
 }
 
+/// The jobs that a request has made and that are computed, for its span.
+#[derive(Clone)]
+pub(super) struct Made(pub(super) Vec<Uuid>);
+
+/// Tells the span of a request, to the head of its answer, and what it has made.
+pub(super) async fn tell(request: Request, next: Next) -> Response {
+    /// The most characters of a path that are told.
+    const LONGEST_PATH: usize = 200;
+    let trace = request.extensions().get::<Trace>();
+    // Health is asked for all the time, by those who keep the service alive.
+    let is_quiet = request.uri().path().starts_with("/health/");
+    let Some(trace) = trace.filter(|trace| trace.is_told() && !is_quiet).cloned() else {
+        return next.run(request).await;
+    };
+    let begin = SystemTime::now();
+    let method = request.method().to_string();
+    // The pattern, not the address: what is alike has one name.
+    let route = request.extensions().get::<MatchedPath>();
+    let route = route.map_or("none", MatchedPath::as_str).to_owned();
+    let id = request.headers().get(REQUEST_ID);
+    let id = id.and_then(|id| id.to_str().ok()).unwrap_or_default();
+    let path: String = request.uri().path().chars().take(LONGEST_PATH).collect();
+    let mut attributes = vec![
+        KeyValue::new("http.request.method", method.clone()),
+        KeyValue::new("http.route", route.clone()),
+        KeyValue::new("url.path", path),
+        KeyValue::new("meshwright.request.id", id.to_owned()),
+    ];
+    let mut response = next.run(request).await;
+    let status = response.status();
+    let status_code = i64::from(status.as_u16());
+    attributes.push(KeyValue::new("http.response.status_code", status_code));
+    let made = response.extensions_mut().remove::<Made>();
+    let made = made.into_iter().flat_map(|Made(jobs)| jobs);
+    spans::tell(|| Span {
+        place: spans::place(bytes(&trace.id), bytes(&trace.span)),
+        parent: SpanId::from_bytes(bytes(&trace.parent)),
+        is_entry: true,
+        name: format!("{method} {route}").into(),
+        begin,
+        end: SystemTime::now(),
+        attributes,
+        causes: made.map(|job| spans::place_of_job(job, None)).collect(),
+        failed: status.is_server_error(),
+    });
+    response
+}
+
+/// The bytes of hexadecimal digits, from the last one on; zeros where there are none.
+fn bytes<const COUNT: usize>(digits: &str) -> [u8; COUNT] {
+    let number = u128::from_str_radix(digits, 16).unwrap_or(0).to_be_bytes();
+    let mut bytes = [0; COUNT];
+    bytes.copy_from_slice(&number[number.len() - COUNT..]);
+    bytes
+}
+
 /// A place in a trace (W3C Trace Context).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Trace {
     /// The id of the whole trace.
     pub(super) id: String,
     span: String,
+    /// The span that this one is a part of; empty at the beginning.
+    parent: String,
     flags: String,
 }
 
@@ -122,7 +185,8 @@ impl Trace {
         Self {
             id: Uuid::new_v4().simple().to_string(),
             span: String::new(),
-            flags: "00".to_owned(),
+            parent: String::new(),
+            flags: if spans::are_told() { "01" } else { "00" }.to_owned(),
         }
     }
 
@@ -142,16 +206,28 @@ impl Trace {
         let is_zero = |text: &str| text.bytes().all(|byte| byte == b'0');
         // A later version may have more parts behind these.
         let known = version != "ff" && (version != "00" || parts.next().is_none());
-        (known && !is_zero(&id) && !is_zero(&span)).then_some(Self { id, span, flags })
+        (known && !is_zero(&id) && !is_zero(&span)).then_some(Self {
+            id,
+            span,
+            parent: String::new(),
+            flags,
+        })
     }
 
     /// A step of its own in the same trace.
     fn step(self) -> Self {
         let span = Uuid::new_v4().simple().to_string();
         Self {
+            parent: self.span,
             span: span[..16].to_owned(),
             ..self
         }
+    }
+
+    /// Whether spans are told, and whoever began the trace wants that.
+    fn is_told(&self) -> bool {
+        let flags = u8::from_str_radix(&self.flags, 16).unwrap_or(0);
+        spans::are_told() && flags & 1 == 1
     }
 
     fn to_header(&self) -> String {

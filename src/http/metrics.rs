@@ -92,6 +92,10 @@ fn recorder() -> &'static PrometheusHandle {
             "Requests without a known key that were refused because too many came."
         );
         metrics::describe_counter!(
+            "meshwright_spans_forgotten_total",
+            "Spans that found no place in the queue to the collector."
+        );
+        metrics::describe_counter!(
             "meshwright_removed_jobs_total",
             "Jobs removed because they were old or there was no room."
         );
@@ -141,6 +145,7 @@ fn recorder() -> &'static PrometheusHandle {
         for name in [
             "meshwright_connections_evicted_total",
             "meshwright_strangers_refused_total",
+            "meshwright_spans_forgotten_total",
             "meshwright_removed_jobs_total",
             "meshwright_removed_studies_total",
         ] {

@@ -57,6 +57,7 @@ pub fn router(app: App) -> Router {
                 .on_response(DefaultOnResponse::new().level(Level::INFO)),
         )
         .layer(from_fn(metrics::count))
+        .layer(from_fn(headers::tell))
         .option_layer((!edge.cors_origins.is_empty()).then(|| cors(&edge.cors_origins)))
         .layer(from_fn(packing::pack))
         .layer(from_fn_with_state(Arc::clone(&edge), problem::shape))

@@ -10,6 +10,7 @@ use super::app::App;
 use super::aside::aside;
 use super::client::Client;
 use super::document::Document;
+use super::headers::Made;
 use super::parameters::IdempotencyKey;
 use super::prefer::Wait;
 use super::view::JobView;
@@ -53,6 +54,7 @@ pub(super) async fn submit(
     // What was read is small now, and its client may wait for long.
     drop((document, memory));
     let Submitted { mut job, repeated } = app.jobs.submit(&client.0, &submission, key).await?;
+    let made = (!job.status.has_ended()).then(|| Made(vec![job.id]));
 
     // The job was made: whatever goes wrong from here on, it is told of it.
     let wait = wait.grant(&app.door, client.name());
@@ -75,6 +77,9 @@ pub(super) async fn submit(
         response
             .headers_mut()
             .insert(RETRY_AFTER, HeaderValue::from_static("1"));
+    }
+    if let Some(made) = made {
+        response.extensions_mut().insert(made);
     }
     response
         .headers_mut()

@@ -10,6 +10,8 @@ use std::time::Duration;
 
 use jiff::{SignedDuration, Timestamp};
 use meshwright_engine::run::Run;
+use opentelemetry::KeyValue;
+use opentelemetry::trace::SpanId;
 use rayon::ThreadPool;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, MissedTickBehavior, interval_at, sleep};
@@ -21,6 +23,7 @@ use super::job::Job;
 use super::live::{Entered, Running};
 use super::store::{Claim, End, Lease, Packed, Results, Started, StoreError};
 use super::worker::{Shop, Solve};
+use crate::spans::{self, Span};
 use crate::wire::{Code, Kept, Problem, SOLVER_VERSION, Submission, Summary, memory_of};
 
 /// What a computation leaves: the results document or its name, and what the tables of studies show of it.
@@ -424,6 +427,34 @@ fn tell_end(job: &Job, end: End, outcome: &Outcome) {
     metrics::histogram!("meshwright_job_waiting_time_seconds", "kind" => kind)
         .record(waited.unwrap_or(0.0).max(0.0));
     info!(job = %job.id, client = job.client, status, code, wall_time_seconds = seconds, "job ended");
+    tell_spans(job, end, status, code);
+}
+
+/// The job from its submission to its end, and within it the attempt that brought it there.
+fn tell_spans(job: &Job, end: End, status: &'static str, code: &'static str) {
+    let span = |attempt: Option<i64>, name: &'static str, begin: Timestamp| Span {
+        place: spans::place_of_job(job.id, attempt),
+        parent: attempt.map_or(SpanId::INVALID, |_| {
+            spans::place_of_job(job.id, None).span_id()
+        }),
+        is_entry: false,
+        name: name.into(),
+        begin: begin.into(),
+        end: end.at.into(),
+        attributes: vec![
+            KeyValue::new("meshwright.job.id", job.id.to_string()),
+            KeyValue::new("meshwright.job.client", job.client.clone()),
+            KeyValue::new("meshwright.job.method", job.method.clone()),
+            KeyValue::new("meshwright.job.attempt", job.attempt),
+            KeyValue::new("meshwright.job.status", status),
+            KeyValue::new("meshwright.job.code", code),
+        ],
+        causes: Vec::new(),
+        failed: status != "successful",
+    };
+    spans::tell(|| span(None, "job", job.submitted_at));
+    let begin = job.started_at.unwrap_or(job.submitted_at);
+    spans::tell(|| span(Some(job.attempt), "compute", begin));
 }
 
 /// The cause stands in the log; clients learn that it was not their fault.

@@ -42,6 +42,7 @@ mod repeats;
 mod rexs;
 mod shares;
 mod sigkill;
+mod spans;
 mod strain;
 mod studies;
 mod tables;
