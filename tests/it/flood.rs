@@ -17,13 +17,13 @@ use crate::process::Process;
 use crate::stores;
 
 /// Makes a key, as `meshwright keys create` does.
-async fn make_key(database: &Place) -> String {
+pub(crate) async fn make_key(database: &Place, client: &str) -> String {
     let store = Store::open(database).await.unwrap();
     let key = Key::random().unwrap();
     let record = KeyRecord {
         id: key.id().to_owned(),
-        client: "portal".to_owned(),
-        name: "portal".to_owned(),
+        client: client.to_owned(),
+        name: client.to_owned(),
         role: Role::Client,
         secret_hash: key.secret_hash(),
         requests_per_second: None,
@@ -77,7 +77,7 @@ fn flood(service: SocketAddr, addresses: u8) -> JoinSet<()> {
 async fn eighty_sockets_that_take_nothing_lock_nobody_out_of_sixty_four_places() {
     let engine = Arc::new(|_: &_, _: &_| Ok(RESULTS.to_owned()));
     let bench = Bench::start(|config| config.door.connections = 64, engine).await;
-    let key = make_key(&bench.config.database).await;
+    let key = make_key(&bench.config.database, "portal").await;
     let service = bench.service().address().unwrap();
     let ask = async || {
         let request = bench.get("/v1/jobs").bearer_auth(&key);
@@ -107,7 +107,7 @@ async fn bear(addresses: u8) -> (usize, Vec<Duration>, Duration) {
     let folder = tempfile::tempdir().unwrap();
     let database = stores::place(&folder).await;
     let process = Process::start(&database);
-    let key = make_key(&database).await;
+    let key = make_key(&database, "portal").await;
     let service = process.base.trim_start_matches("http://").parse().unwrap();
     let client = meshwright::client().timeout(PATIENCE).build().unwrap();
     let ask = async || {

@@ -1,0 +1,104 @@
+//! One client who reads a large table on many connections at once, and what another one notices of it, for `docs/reliability.md`.
+
+use std::time::{Duration, Instant};
+
+use reqwest::Client;
+use serde_json::{Value, json};
+
+use crate::bench::PATIENCE;
+use crate::flood::make_key;
+use crate::process::Process;
+use crate::stores;
+
+const ROWS: u64 = 20_000;
+
+/// A study of which a few designs are computed; the others cannot be built, and each of their rows says why.
+fn study() -> Value {
+    let gear = json!({
+        "tooth_count": 50, "module_mm": 2.0, "face_width_mm": 20.0, "blank": { "bore_radius_mm": 15.0 },
+    });
+    let base = json!({
+        "method": "load_distribution",
+        "pair": { "center_distance_mm": 100.5, "driving": gear, "driven": gear },
+        "output_torques_n_m": [20.0],
+    });
+    let bores = (0..ROWS).map(|i| if i < 20 { 10.0 } else { 60.0 } + i as f64 / 1000.0);
+    let bores: Vec<f64> = bores.collect();
+    json!({ "base": base, "axes": [{ "path": "/pair/driven/blank/bore_radius_mm", "values": bores }] })
+}
+
+/// The median of short questions, one after the other, as long as `more` says.
+async fn median(client: &Client, url: &str, key: &str, more: impl Fn(usize) -> bool) -> Duration {
+    let mut taken = Vec::new();
+    while more(taken.len()) {
+        let start = Instant::now();
+        let answer = client.get(url).bearer_auth(key).send().await.unwrap();
+        assert_eq!(answer.status(), 200);
+        answer.bytes().await.unwrap();
+        taken.push(start.elapsed());
+        tokio::time::sleep(Duration::from_millis(10)).await;
+    }
+    taken.sort();
+    taken[taken.len() / 2]
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[ignore = "it measures, and wants the machine for itself: ./chaos"]
+async fn who_reads_a_large_table_on_forty_connections_leaves_the_service_to_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let database = stores::place(&folder).await;
+    let process = Process::start(&database);
+    let (reader, other) = (
+        make_key(&database, "reader").await,
+        make_key(&database, "other").await,
+    );
+    let client = meshwright::client().timeout(15 * PATIENCE).build().unwrap();
+    let made = client.post(format!("{}/v1/studies", process.base));
+    let made = made
+        .bearer_auth(&reader)
+        .json(&study())
+        .send()
+        .await
+        .unwrap();
+    assert_eq!(made.status(), 202);
+    let path = made.headers()["location"].to_str().unwrap().to_owned();
+    let state = format!("{}{path}", process.base);
+    loop {
+        let answer = client
+            .get(&state)
+            .bearer_auth(&reader)
+            .send()
+            .await
+            .unwrap();
+        let study: Value = answer.json().await.unwrap();
+        if study["done"] == ROWS {
+            break;
+        }
+        tokio::time::sleep(Duration::from_millis(100)).await;
+    }
+
+    let url = format!("{}/v1/jobs", process.base);
+    let before = median(&client, &url, &other, |count| count < 100).await;
+    let start = Instant::now();
+    let readers: Vec<_> = (0..40)
+        .map(|_| {
+            let request = client.get(format!("{state}/results/table.ndjson"));
+            let request = request.bearer_auth(&reader);
+            tokio::spawn(async move {
+                let table = request.send().await.unwrap().text().await.unwrap();
+                table.lines().count() as u64
+            })
+        })
+        .collect();
+    let done = || readers.iter().all(tokio::task::JoinHandle::is_finished);
+    // A machine that is quicker than the questions has nothing to tell.
+    let during = median(&client, &url, &other, |count| count < 20 || !done()).await;
+    let took = start.elapsed();
+    for reader in readers {
+        assert_eq!(reader.await.unwrap(), ROWS);
+    }
+    println!(
+        "a table of {ROWS} rows read on 40 connections: {took:?}; another client's questions meanwhile {during:?} (median), {before:?} before"
+    );
+    assert!(during < Duration::from_millis(50), "{during:?}");
+}
