@@ -10,16 +10,16 @@ use super::problem::internal;
 use crate::jobs::{Budget, Part};
 use crate::wire::Problem;
 
-/// So many pieces of such work are done at the same time, half of them for one client; others wait for their turn, which clients take
-/// one after the other. It is the cores that are short.
+/// So many pieces of such work are done at the same time; others wait for their turn, which clients take one after the other.
+/// It is the cores that are short.
 static ROOM: LazyLock<Budget> = LazyLock::new(|| {
-    let cores = thread::available_parallelism().map_or(1, usize::from) as u64;
-    Budget::shared(2 * cores, cores)
+    let cores = thread::available_parallelism().map_or(1, usize::from);
+    Budget::of(2 * cores as u64)
 });
 
-/// So many tables are read at the same time, one of each client: each takes a connection to the database, of which there are twice as
-/// many, so that short questions never wait for long ones, and a core, of which one client's tables keep no more than one.
-static READERS: LazyLock<Budget> = LazyLock::new(|| Budget::shared(2, 1));
+/// So many tables are read at the same time: each takes a connection to the database, of which there are twice as many, so that
+/// short questions never wait for long ones.
+static READERS: LazyLock<Budget> = LazyLock::new(|| Budget::of(2));
 
 /// The turn of `client` to read some of a table.
 pub(super) async fn turn_to_read(client: &str) -> Part {
@@ -61,19 +61,23 @@ mod tests {
     use super::*;
 
     #[tokio::test]
-    async fn however_many_tables_a_client_reads_one_is_made_at_a_time_and_another_client_waits_for_none()
-     {
+    async fn however_many_tables_a_client_reads_two_are_made_at_a_time_and_another_client_is_next()
+    {
         let first = turn_to_read("reader").await;
+        let _second = turn_to_read("reader").await;
         let mut others: Vec<_> = (0..40).map(|_| Box::pin(turn_to_read("reader"))).collect();
         for other in &mut others {
             assert!(poll!(other).is_pending());
         }
-        drop(turn_to_read("somebody else").await);
+        let mut late = Box::pin(turn_to_read("somebody else"));
+        assert!(poll!(&mut late).is_pending());
         drop(first);
-        // Each keeps its turn.
-        let asked = others.iter_mut().map(|other| async { poll!(other) });
-        let asked = futures_util::future::join_all(asked).await;
-        assert_eq!(asked.iter().filter(|turn| turn.is_ready()).count(), 1);
+        // Kept, so that nobody else has it.
+        let turn = poll!(&mut late);
+        assert!(turn.is_ready());
+        for other in &mut others {
+            assert!(poll!(other).is_pending());
+        }
     }
 
     #[tokio::test]

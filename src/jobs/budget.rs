@@ -16,8 +16,6 @@ pub struct Budget(Arc<Shared>);
 #[derive(Debug)]
 struct Shared {
     most: u64,
-    /// So much of it one client has at most.
-    each: u64,
     state: Mutex<State>,
 }
 
@@ -46,17 +44,10 @@ pub struct Part {
 }
 
 impl Budget {
-    /// A budget of so much, all of which one client may have while nobody else wants any.
+    /// A budget of so much.
     pub fn of(most: u64) -> Self {
-        Self::shared(most, most)
-    }
-
-    /// A budget of so much, of which one client has no more than `each`, whoever else there is: the rest is there at once for the
-    /// next one.
-    pub fn shared(most: u64, each: u64) -> Self {
         Self(Arc::new(Shared {
             most,
-            each,
             state: Mutex::new(State {
                 free: most,
                 held: HashMap::new(),
@@ -101,7 +92,7 @@ impl Budget {
         let number = state.arrived;
         let waiting = Waiting {
             client: client.into(),
-            amount: amount.min(self.0.most).min(self.0.each),
+            amount: amount.min(self.0.most),
             answer,
         };
         state.waiting.insert(number, waiting);
@@ -164,7 +155,6 @@ impl State {
         let first = self
             .waiting
             .iter()
-            .filter(|(_, waiting)| held(waiting) + waiting.amount <= shared.each)
             .min_by_key(|(number, waiting)| (held(waiting), **number));
         let (&number, waiting) = first.filter(|(_, waiting)| waiting.amount <= self.free)?;
         let (client, amount) = (Arc::clone(&waiting.client), waiting.amount);
@@ -219,20 +209,6 @@ mod tests {
         drop(first);
         assert!(poll!(&mut hogs[0]).is_pending());
         assert!(poll!(&mut other).is_ready());
-    }
-
-    #[tokio::test]
-    async fn of_what_is_shared_nobody_has_all_though_nobody_else_wants_any() {
-        let budget = Budget::shared(3, 2);
-        let first = budget.take("hog", 1).await;
-        let _second = budget.take("hog", 1).await;
-        let mut third = pin!(budget.take("hog", 1));
-        assert!(poll!(&mut third).is_pending());
-        // Who comes after him does not wait behind him.
-        let _other = budget.take("other", 1).await;
-        assert_eq!(budget.free(), 0);
-        drop(first);
-        assert!(poll!(&mut third).is_ready());
     }
 
     #[tokio::test]
