@@ -31,9 +31,9 @@ export function setKey(given) {
 export async function request(path, { method = "GET", body, headers = {}, signal } = {}) {
   const all = { ...headers };
   if (key) all.authorization = `Bearer ${key}`;
-  if (body !== undefined) all["content-type"] = "application/json";
+  if (body !== undefined) all["content-type"] ??= "application/json";
   const init = { method, headers: all, signal, cache: "no-cache", credentials: "same-origin" };
-  if (body !== undefined) init.body = JSON.stringify(body);
+  if (body !== undefined) init.body = typeof body === "string" ? body : JSON.stringify(body);
   let response;
   try {
     response = await fetch(new URL(path, document.baseURI), init);

@@ -7,6 +7,11 @@ import { largestStress } from "./headline.js";
 import { looks } from "./charts.js";
 
 const order = (curve, pattern) => curve.spectrum?.named.find(({ label }) => pattern.test(label))?.transmission_error_um;
+/** The value of a stress at the roots of both gears that is farthest from none. */
+const root = (name) => ({ stress }) => {
+  const known = ["driving", "driven"].flatMap((gear) => stress?.[gear][name] ?? []).filter((value) => value !== null);
+  return known.length ? known.reduce((most, value) => (Math.abs(value) > Math.abs(most) ? value : most)) : undefined;
+};
 const pressure = (curve) => {
   const known = curve.peak_contact_pressure_mpa.filter((value) => value !== null);
   return known.length ? Math.max(...known) : undefined;
@@ -24,10 +29,15 @@ const COLUMNS = [
   ["H_Z2", "µm", (curve) => order(curve, /^H_Z2?$/), (value) => number(value, 3)],
   ["Max pressure", "MPa", pressure, (value) => fixed(value, 0)],
   ["Max stress", "MPa", (curve) => largestStress(curve) ?? undefined, (value) => fixed(value, 1)],
+  ["Root tension", "MPa", root("root_tension_mpa"), (value) => fixed(value, 1)],
+  ["Root compression", "MPa", root("root_compression_mpa"), (value) => fixed(value, 1)],
   ["Driving mass", "kg", (_, { pair }) => pair.driving.mass_kg, (value) => fixed(value, 3)],
   ["Driven mass", "kg", (_, { pair }) => pair.driven.mass_kg, (value) => fixed(value, 3)],
   ["Removed", "%", (_, { pair }) => pair.driven.mass_removed_percent, (value) => fixed(value, 1)],
 ];
+
+/** Columns that are there where stresses were asked for. */
+const STRESSES = ["Max stress", "Root tension", "Root compression"];
 
 /** The numbers of `designs` as CSV: a line for each design and torque. */
 export function designsCsv(designs) {
@@ -54,7 +64,7 @@ export class Compare {
     this.designs = designs;
     const focused = document.activeElement?.id;
     const stressed = designs.some(({ results }) => results.curves.some(({ stress }) => stress));
-    const columns = COLUMNS.filter(([name]) => stressed || name !== "Max stress");
+    const columns = COLUMNS.filter(([name]) => stressed || !STRESSES.includes(name));
     const head = h("tr", {}, h("th", { scope: "col" }, "Design"), ...columns.map(([name, unit]) => h("th", { scope: "col" }, name, h("small", {}, ` ${unit}`))), h("th", { scope: "col" }, h("span", { className: "visually-hidden" }, "Actions")));
     const colors = looks();
     const rows = designs.flatMap((design, i) => design.results.curves.map((curve, j) => this.#row(design, curve, [i, j], columns, colors)));

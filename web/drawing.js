@@ -16,6 +16,7 @@ export class Drawing {
   #view = "pair";
   #position = 0;
   #deformed = null;
+  #factorAt = null;
 
   /** Draws in `place`. `onTurn` is told the mesh position that a hand turned to. */
   constructor(place, design, { onTurn }) {
@@ -63,6 +64,12 @@ export class Drawing {
     if (edges) this.world.prepend(this.#deformed.element);
     this.svg.classList.toggle("under-load", Boolean(edges));
     return this.#deformed;
+  }
+
+  /** Shows forces as they are in motion: `factorAt` gives them over the static ones at a mesh position; null shows the static ones. */
+  setMotion(factorAt) {
+    this.#factorAt = factorAt;
+    this.#drawForces();
   }
 
   /** Turns both gears to a mesh position. */
@@ -140,12 +147,14 @@ export class Drawing {
     const size = this.#outline.driving.circles.tip_mm - this.#outline.driving.circles.root_mm;
     const index = indexAt(curve, this.#position);
     const period = this.#position - Math.floor(this.#position);
+    const factor = this.#factorAt?.(this.#position) ?? 1;
+    this.svg.classList.toggle("parted", factor <= 0);
     const arrows = curve.load_shares.flatMap(({ pair_offset: offset, share }) => {
       const carried = share[index];
-      if (!(carried > 1e-3)) return [];
+      if (!(carried > 1e-3) || factor <= 0) return [];
       const t = (period - offset - a.mesh_position) / (e.mesh_position - a.mesh_position);
       const at = [0, 1].map((i) => a.at_mm[i] + t * (e.at_mm[i] - a.at_mm[i]));
-      const tip = [0, 1].map((i) => at[i] + unit[i] * size * 2.2 * carried);
+      const tip = [0, 1].map((i) => at[i] + unit[i] * size * 2.2 * carried * factor);
       return [arrow(at, tip, unit, size / 5), s("circle", { cx: at[0], cy: at[1], r: size / 14, class: "touch" })];
     });
     this.forces.replaceChildren(...arrows);

@@ -9,9 +9,11 @@ import { fileOf, pictureOf, stacked } from "./figure.js";
 import { inLight, sheetOf } from "./sheet.js";
 import { copied, snippets } from "./snippets.js";
 
-/** Files that the service makes of a job: the name of each below the results, and what it is called on the page. */
+/** Files that the service makes of a job: the name of each, what it is called on the page, and what of the results it needs. */
 const FILES_OF_JOBS = [
-  ["look-up-table.csv", "Look-up table, CSV"], ["look-up-table.txt", "Look-up table, Modelica text"], ["fields.vtu", "Stress and displacement, VTU"],
+  ["submission.rexs", "Pair for a gearbox program, REXS"], ["look-up-table.csv", "Look-up table, CSV"], ["look-up-table.txt", "Look-up table, Modelica text"], ["fields.vtu", "Stress and displacement, VTU"],
+  ["run-up.csv", "Run-up, CSV", ({ curves }) => curves[0].dynamics], ["run-up.svg", "Run-up, SVG", ({ curves }) => curves[0].dynamics],
+  ...[["csv", "CSV"], ["txt", "CombiTable2D"], ["mo", "Modelica"], ["fmu", "FMU"]].map(([kind, name]) => [`force-table.${kind}`, `Force table, ${name}`, ({ force_table: table }) => table]),
 ];
 
 const LANGUAGES = { curl: "curl", python: "Python", typescript: "TypeScript" };
@@ -60,12 +62,14 @@ export function exporting(place, { current, designs, drawing, charts, position }
     state.textContent = "A job computes it.";
     const job = await solved(live.submission);
     const query = file === "fields.vtu" ? `?mesh_position=${position().toFixed(4)}` : "";
-    save(`meshwright-${file}`, "", await (await request(`v1/jobs/${job.id}/results/${file}${query}`)).blob());
+    const place = file === "submission.rexs" ? file : `results/${file}${query}`;
+    save(file === "submission.rexs" ? "meshwright.rexs" : `meshwright-${file}`, "", await (await request(`v1/jobs/${job.id}/${place}`)).blob());
     state.textContent = "";
   }
 
   async function show() {
     const live = await current();
+    FILES_OF_JOBS.forEach(([, , needs], i) => { ofJobs[i].hidden = Boolean(needs) && !(live && needs(live.results)); });
     if (live) code.textContent = snippets(live.submission, new URL(".", document.baseURI).href)[language.value];
   }
 

@@ -26,8 +26,8 @@ function range(values, room) {
 }
 
 /**
- * A figure of `lines` `{ name, color, dash, x, y }`, where null breaks a line, of `points` `{ x, y, label, strong }`, and of `stems` `{ name, color, x, y }`, over named
- * axes. Looks come from `colors`, or from the style sheet where there are none.
+ * A figure of `lines` `{ name, color, dash, width, parted, x, y }`, where null breaks a line, of `points` `{ x, y, label, strong }`, and of `stems` `{ name, color, x, y }`, over named
+ * axes. Looks come from `colors`, or from the style sheet where there are none. Its `frame` tells where a value of x is, and which value is at a place.
  */
 export function figure({ title, x, y, lines = [], points = [], stems = [], colors = null, width = 520, height = 300, heading = false, xRange = null, label = title }) {
   const named = [...lines, ...stems].filter(({ name }) => name);
@@ -56,7 +56,7 @@ export function figure({ title, x, y, lines = [], points = [], stems = [], color
     const level = frame.top - 15 * (legend.length - i) + 2;
     svg.append(s("line", { x1: frame.left + at, x2: frame.left + at + 22, y1: level, y2: level, stroke: color, "stroke-width": 2, "stroke-dasharray": dash?.length ? dash.join(" ") : null }), words(name, { ...ink, x: frame.left + at + 27, y: level + 4 }));
   }));
-  for (const each of lines) svg.append(s("path", { d: pathOf(each, px, py, [left, right]), fill: "none", class: each.color ? undefined : "line", stroke: each.color, "stroke-width": 1.5, "stroke-dasharray": each.dash?.length ? each.dash.join(" ") : null }));
+  for (const each of lines) svg.append(s("path", { d: pathOf(each, px, py, [left, right]), fill: "none", class: each.parted ? "parted-line" : each.color ? undefined : "line", stroke: each.color, "stroke-width": each.width ?? 1.5, "stroke-dasharray": each.dash?.length ? each.dash.join(" ") : null }));
   stems.forEach((each, k) => each.x.forEach((place, i) => {
     if (place < left || place > right) return;
     svg.append(s("line", { x1: px(place) + 2 * k, x2: px(place) + 2 * k, y1: py(0), y2: py(each.y[i]), stroke: each.color, "stroke-width": 1.5 }));
@@ -70,6 +70,7 @@ export function figure({ title, x, y, lines = [], points = [], stems = [], color
       svg.append(words(point.label, { x: px(point.x) + (atEnd ? -8 : 8), y: py(point.y) - 7, "text-anchor": atEnd ? "end" : "start", class: "name" }));
     }
   }
+  svg.frame = { x: [left, right], px, valueAt: (at) => left + ((at - frame.left) / (width - frame.left - frame.right)) * (right - left), top: frame.top, bottom: height - frame.bottom };
   return svg;
 }
 

@@ -385,7 +385,7 @@ export class Form {
 
   #fieldset(pointer, kind, title, fields, optional) {
     const said = help(kind.schema);
-    const box = h("input", { type: "checkbox", id: `field-${pointer}`, on: { change: (event) => (event.target.checked ? this.#begin(pointer, kind) : this.#takeAway(pointer)) } });
+    const box = h("input", { type: "checkbox", id: `field-${pointer}`, on: { change: (event) => (event.target.checked ? this.begin(pointer, kind) : this.#takeAway(pointer)) } });
     const legend = optional ? h("legend", {}, h("label", { title: said }, box, ` ${title}`)) : h("legend", { title: said }, title);
     const element = h("fieldset", { className: "field" }, legend, ...fields);
     return this.#register(pointer, element, kind.schema, () => {
@@ -393,7 +393,8 @@ export class Form {
     });
   }
 
-  #begin(pointer, kind) {
+  /** Puts an object into the design that is not there yet, with what it begins with. */
+  begin(pointer, kind = null) {
     const { [pointer]: value, ...others } = this.beginnings.values(pointer, kind);
     this.#put(pointer, value, others);
   }

@@ -18,8 +18,8 @@ export function jobs(place, design, onOpen) {
   const rows = new Map();
   const followed = new Map();
 
-  /** Does something to a job, then shows how the jobs stand. */
-  async function act(work) {
+  /** Does something, and says why where it was refused. */
+  async function attempt(work) {
     try {
       state.textContent = "";
       await work();
@@ -27,6 +27,11 @@ export function jobs(place, design, onOpen) {
       if (!(error instanceof ProblemError)) throw error;
       state.textContent = error.problem.errors?.[0]?.detail ?? error.message;
     }
+  }
+
+  /** Does something to a job, then shows how the jobs stand. */
+  async function act(work) {
+    await attempt(work);
     await refresh();
   }
 
@@ -69,12 +74,20 @@ export function jobs(place, design, onOpen) {
   function rowOf(job) {
     const address = `v1/jobs/${job.id}`;
     const button = (name, work) => h("button", { type: "button", on: { click: () => act(work) }, ariaLabel: `${name} ${job.id.slice(-6)}` }, name);
-    const file = (name) => async () => save(`${job.id}-${name}`, "", await (await request(`${address}/results${name === "results.json" ? "" : `/${name}`}`)).blob());
+    // A file changes no job: the rows stay as they are under the pointer.
+    const file = (words, name) => h("button", { type: "button", ariaLabel: `${words} ${job.id.slice(-6)}`, on: { click: () => attempt(async () => save(`${job.id}-${name}`, "", await (await request(`${address}/results${name === "results.json" ? "" : `/${name}`}`)).blob())) } }, words);
     const open = async () => onOpen((await json(address)).submission, job.status === "successful" ? await json(`${address}/results`) : null);
+    // What else there is depends on what was asked for.
+    const more = h("button", { type: "button", ariaLabel: `More files of ${job.id.slice(-6)}`, on: { click: () => attempt(async () => {
+      const { submission } = await json(address);
+      const files = [["Look-up table", "look-up-table.csv"], ...(submission.dynamics ? [["Run-up CSV", "run-up.csv"], ["Run-up SVG", "run-up.svg"]] : []), ...(submission.dynamics || submission.force_table ? ["csv", "txt", "mo", "fmu"].map((kind) => [`Forces ${kind.toUpperCase()}`, `force-table.${kind}`]) : [])];
+      const rexs = h("button", { type: "button", on: { click: () => attempt(async () => save(`${job.id}.rexs`, "", await (await request(`${address}/submission.rexs`)).blob())) } }, "REXS");
+      more.replaceWith(rexs, ...files.map(([words, name]) => file(words, name)));
+    }) } }, "More files");
     const buttons = [button("Open", open)];
     if (!hasEnded(job.status)) buttons.push(button("Cancel", () => request(`${address}/cancel`, { method: "POST" })));
     else buttons.push(button("Run again", async () => post("v1/jobs", (await json(address)).submission)));
-    if (job.status === "successful") buttons.push(button("JSON", file("results.json")), button("CSV", file("ste.csv")), button("SVG", file("ste.svg")), button("VTU", file("fields.vtu")));
+    if (job.status === "successful") buttons.push(file("JSON", "results.json"), file("CSV", "ste.csv"), file("SVG", "ste.svg"), file("VTU", "fields.vtu"), more);
     const progress = hasEnded(job.status) ? job.status : h("span", {}, `${job.status} `, h("progress", { max: 100, value: job.progress_percent, ariaLabel: "Progress" }), ` ${job.progress_percent} %`);
     const why = job.problem ? h("small", {}, ` ${job.problem.detail}`) : null;
     const row = h("tr", {}, h("th", { scope: "row" }, new Date(job.submitted_at).toLocaleString()), h("td", {}, job.method.replace(/_/g, " ")), h("td", {}, progress, why), h("td", {}, (job.wall_time_seconds ?? null) === null ? "" : `${number(job.wall_time_seconds, 2)} s`), h("td", { className: "actions" }, ...buttons));

@@ -1,6 +1,6 @@
 // The page: one design, drawn and computed while it changes, and the views that show it.
 
-import { hasKey, json, onKeyNeeded, ProblemError, setKey } from "./api.js";
+import { hasKey, json, onKeyNeeded, post, ProblemError, setKey } from "./api.js";
 import { Brush } from "./brush.js";
 import { byId, debounced, fixed, h, number } from "./dom.js";
 import { Charts } from "./charts.js";
@@ -17,6 +17,7 @@ import { Headline } from "./headline.js";
 import { jobs } from "./jobs.js";
 import { population } from "./population.js";
 import { Follower, resultsOf } from "./preview.js";
+import { RunUp } from "./runup.js";
 import { openapi } from "./schema.js";
 import { stresses } from "./series.js";
 import { sheetOf } from "./sheet.js";
@@ -180,7 +181,7 @@ function showDesigns(moving = false) {
   const choice = byId("against");
   choice.replaceChildren(...design.kept.map((each, i) => h("option", { value: i, selected: each === against }, each.name)));
   byId("against-label").hidden = design.kept.length === 0;
-  if (tab === "export") panels.export?.refresh();
+  if (["export", "run-up"].includes(tab)) panels[tab]?.refresh();
 }
 
 /** What a design is called beside others: by its method too, where they differ in it. */
@@ -305,6 +306,12 @@ function setUpButtons() {
   byId("share").addEventListener("click", share);
   byId("undo").addEventListener("click", () => design.undo());
   byId("redo").addEventListener("click", () => design.redo());
+  byId("open-file").addEventListener("change", async (event) => {
+    const [file] = event.target.files;
+    if (file) await openFile(file);
+    // The same file may be opened again.
+    event.target.value = "";
+  });
   byId("warned").addEventListener("click", () => showWarned(byId("warnings").hidden));
   byId("against").addEventListener("change", (event) => {
     against = design.kept[Number(event.target.value)];
@@ -439,6 +446,29 @@ function setUpStart(examples, given) {
   note();
 }
 
+/** Takes the pair of a file: a model of a gearbox, a submission, or what the page itself has saved. */
+async function openFile(file) {
+  const note = byId("start-note");
+  try {
+    const text = await file.text();
+    if (!text.trimStart().startsWith("<")) {
+      const document = JSON.parse(text);
+      design.replace(document.submission ?? document, "open");
+      return;
+    }
+    const { submissions, not_read: left, assumed, refused } = await post("v1/rexs", text, { headers: { "content-type": "application/xml" } });
+    const [submission] = submissions;
+    if (!submission) throw new ProblemError({ detail: refused.map(({ place, detail }) => `${place}: ${detail}`).join(" ") || "The model has no pair of spur gears." });
+    design.replace(submission, "open");
+    const more = submissions.length > 1 ? [`The first of ${submissions.length} pairs.`] : [];
+    note.replaceChildren([...more, ...assumed, ...(left.length ? [`Not read: ${left.map(({ component, attribute }) => [component, attribute].filter(Boolean).join(" ")).join(", ")}.`] : [])].join(" "));
+  } catch (error) {
+    if (!(error instanceof ProblemError || error instanceof SyntaxError)) throw error;
+    const why = error instanceof SyntaxError ? `${file.name} is neither a model of a gearbox nor a submission: ${error.message}` : (error.problem.errors?.[0]?.detail ?? error.message);
+    note.replaceChildren(h("span", { className: "field-error" }, why));
+  }
+}
+
 async function begin() {
   setUpButtons();
   setUpTheme();
@@ -452,7 +482,14 @@ async function begin() {
   lay();
   showProblem();
   const positions = () => live?.results.curves[0].mesh_position.length ?? 200;
+  const runUp = new RunUp(byId("run-up"), {
+    designs: () => (live ? [live, ...design.kept] : []),
+    ask: () => form.begin("/dynamics"),
+    focus: () => form.focus("/dynamics/driving_speed_rpm"),
+    stage: { turn: (by) => turn(position + by), move: (factorAt) => drawing.setMotion(factorAt), rest: () => drawing.setMotion(null) },
+  });
   panels = {
+    "run-up": runUp,
     sweep: sweep(byId("sweep"), design, limits, positions),
     study: study(byId("study"), design, form, open),
     population: population(byId("population"), design, form, open),

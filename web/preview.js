@@ -168,7 +168,7 @@ export class Follower {
 }
 
 /**
- * `submission` as it is asked for under a hand: on the coarse grid, whose transmission error is within 0.2 % of that of the standard
+ * `submission` as it is asked for under a hand: without what goes on from its curves, on the coarse grid, whose transmission error is within 0.2 % of that of the standard
  * grid, and at every second or fourth position. What is drawn lies on the curve that follows. Null where that saves nothing.
  */
 function draftOf(submission, period) {
@@ -176,8 +176,9 @@ function draftOf(submission, period) {
   const periods = (span ?? period) * submission.output_torques_n_m.length;
   const parts = [1, 2, 4].filter((part) => all % part === 0 && all / part >= LEAST_POSITIONS);
   const part = parts.find((each) => (all / each) * periods <= DRAFT_POSITIONS) ?? parts.at(-1) ?? 1;
-  if (part === 1 && grid === "coarse") return null;
-  return { ...submission, resolution: { ...submission.resolution, positions_per_mesh_period: all / part, grid: "coarse" } };
+  const { force_table: table, dynamics, ...asked } = submission;
+  if (part === 1 && grid === "coarse" && !table && !dynamics) return null;
+  return { ...asked, resolution: { ...submission.resolution, positions_per_mesh_period: all / part, grid: "coarse" } };
 }
 
 /** The next frame, or a while where nobody looks and none comes. */

@@ -24,6 +24,10 @@ const QUANTITIES = {
 /** Fields that are looked for first. */
 const FIRST = ["/pair/driven/blank/holes/count", "/pair/driven/blank/holes/circle_radius_mm", "/pair/driven/blank/holes/radius_mm", "/pair/driven/tip_relief/amount_um"];
 
+/** The blanks' parts that a design may lack and an axis may change all the same. */
+const PART = /^(\/pair\/\w+\/blank\/(?:holes|web))\//;
+const WEBS = ["driving", "driven"].flatMap((gear) => [["thickness_mm", "Web thickness"], ["inner_radius_mm", "Web inner radius"], ["outer_radius_mm", "Web outer radius"]].map(([name, words]) => ({ pointer: `/pair/${gear}/blank/web/${name}`, title: `${gear}: web, ${words.toLowerCase()} (mm)` })));
+
 const COUNT = { "/pair/driven/blank/holes/count": "6, 8, 10" };
 
 /** The study of `design` in `place`; `form` knows the fields, `onOpen` opens the design of a row. */
@@ -65,9 +69,9 @@ export function study(place, design, form, onOpen) {
     }
   }
 
-  /** The design, with holes to begin with where an axis changes holes that it lacks. */
+  /** The design, with holes or a web to begin with where an axis changes what it lacks. */
   function base() {
-    const touched = axes.flatMap((each) => each.read()).map(({ path }) => /^(\/pair\/\w+\/blank\/holes)\//.exec(path)?.[1]).filter(Boolean);
+    const touched = axes.flatMap((each) => each.read()).map(({ path }) => PART.exec(path)?.[1]).filter(Boolean);
     let submission = design.submission;
     for (const pointer of touched) if (!at(submission, pointer)) submission = withValue(submission, pointer, form.beginnings.object(pointer, null));
     return submission;
@@ -143,7 +147,9 @@ function axis(index, design, form) {
   function suggested() {
     if (COUNT[field.value]) return COUNT[field.value];
     const known = form.fields().find(({ pointer }) => pointer === field.value);
-    const value = at(design.submission, field.value) ?? known?.value;
+    const [, part] = PART.exec(field.value) ?? [];
+    const begun = part && !at(design.submission, part) ? at(form.beginnings.object(part, null), field.value.slice(part.length)) : undefined;
+    const value = at(design.submission, field.value) ?? known?.value ?? begun;
     if (known?.kind.kind === "choice") return known.kind.schema.enum.join(", ");
     if (typeof value !== "number") return "";
     if (value === 0) return known?.kind.whole ? "0, 1, 2" : "0, 0.1, 0.2";
@@ -161,7 +167,7 @@ function axis(index, design, form) {
   function refresh() {
     const chosen = field.value;
     const fields = form.fields().filter(({ pointer }) => pointer !== "/tags");
-    const listed = [...FIRST.map((pointer) => fields.find((each) => each.pointer === pointer) ?? { pointer, title: form.titleOf(pointer).replace(/^./, (letter) => `driven: ${letter}`) }), ...fields.filter(({ pointer }) => !FIRST.includes(pointer))];
+    const listed = [...FIRST.map((pointer) => fields.find((each) => each.pointer === pointer) ?? { pointer, title: form.titleOf(pointer).replace(/^./, (letter) => `driven: ${letter}`) }), ...fields.filter(({ pointer }) => !FIRST.includes(pointer)), ...WEBS.filter(({ pointer }) => !fields.some((each) => each.pointer === pointer))];
     field.replaceChildren(h("option", { value: "" }, "none"), ...listed.map(({ pointer, title }) => h("option", { value: pointer }, title)), h("option", { value: "/output_torques_n_m" }, "Output torque (N m)"));
     field.value = chosen;
   }

@@ -282,6 +282,123 @@ export async function benchSteps(service) {
     assert.deepEqual([from, to, count], [0, 7000, 100]);
   });
 
+  await step("a run-up is asked for, shown with both branches, and its resonances are named", service, async (page) => {
+    await open(page, service);
+    await tab(page, "run-up");
+    await page.locator("#run-up-ask").click();
+    await page.locator("#run-up .waterfall").waitFor();
+    await settled(page);
+    const chart = page.locator("#run-up .speeds").first().locator("svg");
+    assert.match(await chart.textContent(), /10×r7\.5@34, up[\s\S]*10×r7\.5@34, down/);
+    assert.match(await chart.getAttribute("aria-label"), /running up, at most (6\.9|7\.0)\d µm peak-to-peak at 5,\d{3} rpm; flanks never part/);
+    const row = page.locator("#run-up tbody tr", { hasText: "5,148" }).first();
+    assert.match(await row.innerText(), /H_Z2\s+mesh\s+once: forced/);
+    assert.match(await page.locator("#run-up tbody").innerText(), /2,574\s+H_2Z2\s+mesh, second order\s+once: forced/);
+    assert.match(await page.locator("#run-up .waterfall").textContent(), /mesh, second order, at 2,574 rpm/);
+    // The row, the slider and the pointer look at one speed.
+    await row.locator("button").click();
+    assert.match(await page.locator("#speed-readout").innerText(), /Running up at 5,1\d\d rpm: 6\.\d\d µm peak-to-peak, up to 1\.3\d times the load, most at H_Z2 \(mesh\)/);
+    await page.locator("#speed").focus();
+    await page.keyboard.press("Home");
+    assert.match(await page.locator("#speed-readout").innerText(), /Running up at 0 rpm: 1\.75 µm peak-to-peak, up to 1\.00 times/);
+    const box = await chart.boundingBox();
+    await page.mouse.move(box.x + 0.6 * box.width, box.y + 0.5 * box.height);
+    const pointed = Number((await page.locator("output[for=speed]").innerText()).replace(/\D/g, ""));
+    assert.ok(pointed > 3200 && pointed < 4600, String(pointed));
+    assert.equal(await page.locator("#run-up .speed-now").first().getAttribute("x1"), await page.locator("#run-up .speed-now").first().getAttribute("x2"));
+    await axe(page);
+  });
+
+  await step("flanks that part are marked and seen, and the motion that turns the gears is that of the service", service, async (page) => {
+    const light = await (await fetch(`${service.url}v1/examples`)).json().then(({ items }) => items.find(({ name }) => name === "test-case-2").submission);
+    await openDesign(page, service, { ...light, output_torques_n_m: [20], dynamics: { driving_speed_rpm: { from: 0, to: 8000, count: 161 } } });
+    await settled(page);
+    await tab(page, "run-up");
+    await page.locator("#run-up .waterfall").waitFor();
+    // 20 N m do not hold the teeth together: running up they part from 3,910 1/min (docs/will-it-rattle-or-whine.md), running down they stay apart below.
+    assert.match(await page.locator("#run-up .speeds svg").first().getAttribute("aria-label"), /running up.*flanks part from 3,9\d0 rpm to 7,6\d0 rpm.*running down.*flanks part from 3,[0-4]\d0 rpm/);
+    assert.ok((await page.locator("#run-up .parted-line").count()) === 2);
+    const look = async (index) => {
+      await page.locator("#speed").fill(String(index));
+      return page.locator("#speed-readout").innerText();
+    };
+    const turn = page.locator("#run-up-turn");
+    await look(40);
+    await turn.click();
+    for (const [index, lost] of [[40, false], [120, true]]) {
+      await turn.evaluate((button) => { delete button.dataset.peakToPeak; });
+      const said = await look(index);
+      assert.equal(/flanks part/i.test(said), lost, said);
+      const told = Number(/([\d.]+) µm peak-to-peak/.exec(said)[1]);
+      await page.waitForFunction(() => document.querySelector("#run-up-turn").dataset.peakToPeak);
+      const seen = Number(await turn.getAttribute("data-peak-to-peak"));
+      assert.ok(Math.abs(seen / told - 1) < 0.03, `${seen} µm is turned, ${told} µm told`);
+    }
+    await page.locator(".gears.parted").waitFor();
+    assert.equal(await page.locator(".gears.parted .force").count(), 0);
+    await turn.click();
+    assert.equal(await page.locator(".gears.parted").count(), 0);
+    await axe(page);
+    // Its files: those of the live design, and those of a finished job.
+    await tab(page, "export");
+    for (const kind of ["run-up.csv", "run-up.svg", "force-table.csv"]) {
+      const { bytes } = await downloaded(page, () => page.locator(`[data-download="${kind}"]`).click());
+      assert.ok(bytes.length > 3000, `${kind} has ${bytes.length} bytes`);
+    }
+    await tab(page, "jobs");
+    await page.locator("#jobs tbody tr", { hasText: "successful" }).first().locator("button", { hasText: "More files" }).click();
+    const { name, bytes } = await downloaded(page, () => page.locator("#jobs button", { hasText: "Run-up CSV" }).first().click());
+    assert.match(name, /run-up\.csv$/);
+    assert.match(bytes.toString(), /contact_lost/);
+  });
+
+  await step("kept designs stand in one run-up", service, async (page) => {
+    await open(page, service);
+    await tab(page, "run-up");
+    await page.locator("#run-up-ask").click();
+    await page.locator("#run-up .waterfall").waitFor();
+    await settled(page);
+    await page.locator("#pin").click();
+    await (await field(page, `${HOLES}/count`)).fill("8");
+    await settled(page);
+    const chart = page.locator("#run-up .speeds").first().locator("svg");
+    await page.waitForFunction(() => /8×r7\.5@34, up[\s\S]*10×r7\.5@34, up/.test(document.querySelector("#run-up .speeds svg")?.textContent));
+    const colors = await chart.locator("path[stroke]").evaluateAll((paths) => new Set(paths.map((path) => getComputedStyle(path).stroke)).size);
+    assert.equal(colors, 2);
+    // A hidden one is not there.
+    await tab(page, "compare");
+    await page.locator("#table input[type=checkbox]").uncheck();
+    await tab(page, "run-up");
+    assert.doesNotMatch(await chart.textContent(), /10×r7\.5@34/);
+  });
+
+  await step("the excitation sounds when it is asked for, at the orders of the speed", service, async (page) => {
+    await page.addInitScript(() => {
+      window.audio = { contexts: 0, closed: 0, tones: [] };
+      window.AudioContext = class { constructor() { window.audio.contexts += 1; this.currentTime = 0; this.destination = {}; } close() { window.audio.closed += 1; } };
+      const param = (value) => ({ value, setTargetAtTime(to) { this.value = to; } });
+      window.GainNode = class { constructor(_, { gain }) { this.gain = param(gain); } connect(to) { return to; } };
+      window.OscillatorNode = class { constructor(_, { frequency }) { this.frequency = param(frequency); } connect(to) { window.audio.tones.push([this.frequency, to.gain]); return to; } start() {} };
+    });
+    await open(page, service);
+    await tab(page, "run-up");
+    await page.locator("#run-up-ask").click();
+    await page.locator("#run-up .waterfall").waitFor();
+    assert.equal(await page.evaluate(() => window.audio.contexts), 0, "nothing until it is pressed");
+    assert.match(await page.locator("#run-up").innerText(), /It is not the noise of a gearbox/);
+    await page.locator("#run-up tbody tr", { hasText: "5,148" }).first().locator("button").click();
+    await page.locator("#run-up-hear").click();
+    const loudest = () => page.evaluate(() => window.audio.tones.map(([hz, gain]) => [hz.value, gain.value]).reduce((a, b) => (b[1] > a[1] ? b : a)));
+    // 50 teeth at 5,148 1/min meet 4,290 times a second; the nearest speed that was computed is less than a hundredth away.
+    const [hz, part] = await loudest();
+    assert.ok(Math.abs(hz / 4290 - 1) < 0.01, `${hz} Hz`);
+    assert.ok(part > 0.3 && part <= 1, String(part));
+    await page.locator("#speed").fill("50");
+    assert.notEqual((await loudest())[0], hz);
+    await tab(page, "curves");
+    assert.equal(await page.evaluate(() => window.audio.closed), 1, "silent when nobody looks");
+  });
+
   await step("undo and redo take back everything, by keys too", service, async (page) => {
     await open(page, service);
     const first = await answer(page, "p-p");
@@ -448,6 +565,58 @@ export async function benchSteps(service) {
     await page.locator("#language").selectOption("typescript");
     await page.waitForFunction(() => document.querySelector("#code").textContent.includes("service.solve(submission)"));
     await axe(page);
+  });
+
+  await step("a pair is taken out of a gearbox program, and given back to it", service, async (page) => {
+    await open(page, service);
+    await tab(page, "export");
+    const { name, bytes } = await downloaded(page, () => page.locator('[data-download="submission.rexs"]').click());
+    assert.match(name, /\.rexs$/);
+    assert.match(bytes.toString(), /<model /);
+    const before = await designOf(page);
+    await page.locator("#start").selectOption("new pair");
+    await settled(page);
+    await changing(page, () => page.locator("#open-file").setInputFiles({ name: "gearbox.rexs", mimeType: "application/xml", buffer: bytes }));
+    const { pair, output_torques_n_m: torques } = await designOf(page);
+    assert.deepEqual([pair.center_distance_mm, pair.driven.tooth_count, pair.driven.blank.holes.count, pair.driven.blank.holes.radius_mm], [100.5, 50, 10, 7.5]);
+    assert.deepEqual(torques, before.output_torques_n_m);
+    await page.locator("#undo").click();
+    assert.equal((await designOf(page)).pair.driven.tooth_count, 50);
+    // What is no model is refused with the reason, and the design stays; a submission and what the page saved are opened too.
+    const still = await designOf(page);
+    await page.locator("#open-file").setInputFiles({ name: "gearbox.rexs", mimeType: "application/xml", buffer: Buffer.from("<model") });
+    await page.locator("#start-note .field-error").waitFor();
+    assert.deepEqual(await designOf(page), still);
+    await changing(page, () => page.locator("#open-file").setInputFiles({ name: "meshwright.json", mimeType: "application/json", buffer: Buffer.from(JSON.stringify({ submission: before, results: {} })) }));
+    assert.deepEqual(await designOf(page), before);
+    await axe(page);
+  });
+
+  await step("a study varies the web of a gear that has none yet, and the table tells tension from compression", service, async (page) => {
+    await open(page, service);
+    await (await field(page, "/stress")).check();
+    await settled(page);
+    await tab(page, "compare");
+    assert.match(await page.locator("#table thead").innerText(), /Root tension[\s\S]*Root compression/);
+    const [tension, compression] = await page.locator("#table tr.live").evaluate((row) => {
+      const heads = [...row.closest("table").querySelectorAll("thead th")].map((head) => head.textContent);
+      return ["Root tension", "Root compression"].map((name) => Number(row.children[heads.findIndex((head) => head.startsWith(name))].textContent));
+    });
+    assert.ok(tension > 10 && compression < -10, `${tension} ${compression}`);
+    await tab(page, "study");
+    await page.locator("#axis-0").selectOption("/pair/driven/blank/holes/count");
+    await page.locator("#axis-0-values").fill("8, 10");
+    await page.locator("#axis-1").selectOption("/pair/driving/blank/web/thickness_mm");
+    assert.match(await page.locator("#axis-1-values").inputValue(), /^\d/);
+    await page.locator("#axis-1-values").fill("9, 12");
+    await page.locator("#study button[type=submit]").click();
+    await page.waitForFunction(() => /of 4 designs, successful/.test(document.querySelector("#study [role=status]").innerText));
+    assert.equal(await page.locator("#study tbody tr").count(), 4);
+    // Less web is less mass.
+    await page.locator("#study-up").selectOption("mass");
+    assert.match(await page.locator("#study tbody").innerText(), /thickness_mm=9/);
+    const masses = await page.locator("#study .scatter circle").evaluateAll((dots) => new Set(dots.map((dot) => dot.getAttribute("cy"))).size);
+    assert.equal(masses, 4);
   });
 
   await step("a study varies any field, and shows two columns", service, async (page) => {

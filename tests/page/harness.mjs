@@ -34,7 +34,8 @@ export async function step(name, service, work, options = {}, others = []) {
     console.log(`page: ok: ${name}`);
   } catch (error) {
     failed += 1;
-    console.log(`page: FAILED: ${name}\n${error.stack}\n${faults.join("\n")}`);
+    const said = await page.locator("[role=status]:visible, [role=alert]:visible").allInnerTexts().catch(() => []);
+    console.log(`page: FAILED: ${name}\n${error.stack}\n${faults.join("\n")}\nThe page says: ${said.filter(Boolean).join(" | ")}`);
   }
   await context.close();
 }

@@ -16,12 +16,12 @@ async function freePort() {
   return port;
 }
 
-/** Starts a service; `env` adds to its environment. */
+/** Starts a service; `env` adds to its environment. Previews have time, for a machine that has much else to do. */
 export async function start(env = {}) {
   const folder = mkdtempSync(join(tmpdir(), "meshwright-"));
   const program = process.env.MESHWRIGHT;
   const port = await freePort();
-  const all = { ...process.env, MESHWRIGHT_LOG: "warn", MESHWRIGHT_LISTEN: `127.0.0.1:${port}`, MESHWRIGHT_DATABASE: join(folder, "jobs.db"), ...env };
+  const all = { ...process.env, MESHWRIGHT_LOG: "warn", MESHWRIGHT_PREVIEW_TIME_LIMIT_SECONDS: "60", MESHWRIGHT_LISTEN: `127.0.0.1:${port}`, MESHWRIGHT_DATABASE: join(folder, "jobs.db"), ...env };
   const child = spawn(program, ["serve"], { cwd: folder, env: all, stdio: ["ignore", "ignore", "inherit"] });
   const ended = new Promise((resolve) => child.once("exit", resolve));
   const url = `http://127.0.0.1:${port}/`;
