@@ -102,6 +102,8 @@ async fn a_preview_is_the_document_of_a_job_to_the_last_digit_and_is_not_kept() 
             "flanks",
             "compliances",
             "contacts",
+            "faces",
+            "yields",
         ] {
             let line = format!("meshwright_cache_{name}{{shelf=\"{shelf}\"}} ");
             assert!(numbers.contains(&line), "{line} in {numbers}");

@@ -4,6 +4,7 @@
 mod calculix;
 mod fillets;
 mod paper;
+mod solid;
 #[path = "../../engine/tests/validation/support.rs"]
 mod support;
 

@@ -26,11 +26,12 @@ const HOLED_PART: f64 = 0.75;
 const HOLE_DECAY: f64 = 3.25;
 const MOST_HOLE_ORDERS: usize = 24;
 
-/// The parts of a gear from its root circle to its bore, each with its functions along the axis.
-#[derive(Debug, Clone)]
-pub(crate) struct Stack<'a> {
-    /// The gear.
-    pub(crate) gear: &'a SolidGear,
+/// The parts of a gear from its root circle to its bore, each with its functions along the axis: all that its yield depends on, but
+/// for the holes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stack {
+    /// The gear with plain flanks and without holes.
+    pub(crate) gear: SolidGear,
     /// The functions across the face, of teeth and rim.
     pub(crate) face: AxialBasis,
     /// Where the teeth meet what carries them.
@@ -43,8 +44,9 @@ pub(crate) struct Stack<'a> {
     pub(crate) hole_orders: Option<usize>,
 }
 
-impl<'a> Stack<'a> {
-    pub(crate) fn new(gear: &'a SolidGear, resolution: FaceResolution) -> Self {
+impl Stack {
+    /// The parts of `gear`.
+    pub fn new(gear: &SolidGear, resolution: FaceResolution) -> Self {
         let section = gear.section();
         let (root, module) = (section.root_radius(), gear.normal_rack().module);
         let mut layers = gear.layers();
@@ -79,7 +81,7 @@ impl<'a> Stack<'a> {
             AxialBasis::new(&layer.heights, degree)
         }));
         Self {
-            gear,
+            gear: gear.with_plain_flanks().without_holes(),
             face,
             interface_radius,
             layers,
@@ -182,7 +184,7 @@ pub(crate) struct WebPort {
 }
 
 impl Carrier {
-    pub(crate) fn new(stack: &Stack<'_>, run: &Run) -> Result<Self, PartError> {
+    pub(crate) fn new(stack: &Stack, run: &Run) -> Result<Self, PartError> {
         let seen = stack.hole_orders;
         let orders = (0..=stack.orders()).into_par_iter();
         let of_orders = orders
@@ -216,7 +218,7 @@ impl Carrier {
 }
 
 /// The stiffness of `order` on the interface circle, and the outer circle of the web.
-fn through_rim(stack: &Stack<'_>, order: usize) -> Result<(Mat<c64>, WebPort), FemError> {
+fn through_rim(stack: &Stack, order: usize) -> Result<(Mat<c64>, WebPort), FemError> {
     let failed = FemError::NotPositiveDefinite {
         part: "the rim",
         unknowns: 3 * stack.face.len(),

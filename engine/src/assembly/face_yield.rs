@@ -1,13 +1,14 @@
 //! What the loaded flanks of one gear yield, all across their face.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use faer::traits::ComplexField;
 use faer::{Mat, c64};
 
-use super::PartError;
 use super::carrier::{Carrier, Stack};
-use super::holed::HoledChange;
+use super::holed::{HoledChange, SeenWeb};
+use super::{MakeAll, PartError, Parts};
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::{entries, symmetrize};
 use crate::gear::{Material, SolidGear};
@@ -26,6 +27,7 @@ const OTHER_DEGREE: usize = 5;
 const NODES_APART: usize = 3;
 /// Singular values below this share of the largest say nothing.
 const FIT_TOLERANCE: f64 = 1e-9;
+
 /// How finely the yield of a face is resolved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct FaceResolution {
@@ -53,6 +55,24 @@ impl FaceResolution {
     };
 }
 
+/// What the yield of a face depends on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FaceYieldSpec {
+    gear: SolidGear,
+    resolution: FaceResolution,
+}
+
+/// What the flanks of a gear yield without its holes, and what the circle outside of these would answer.
+#[derive(Debug)]
+pub struct PlainFace {
+    /// The squares of the roll lengths at which the flank begins and ends.
+    squares: [f64; 2],
+    /// What tooth d yields to tooth 0, d = 0 … [`FARTHEST_COUPLED`].
+    blocks: Vec<Mat<f64>>,
+    web: Option<SeenWeb>,
+    degrees_of_freedom: u64,
+}
+
 /// What the loaded flanks of one gear yield, all across their face: everything but the half space under each load.
 ///
 /// The yield of tooth i at the roll length s and the height z, along the normal into the tooth, is
@@ -67,60 +87,97 @@ impl FaceResolution {
 #[derive(Debug, Clone)]
 pub struct FaceYield {
     axial: AxialBasis,
-    /// The squares of the roll lengths at which the flank begins and ends.
-    squares: [f64; 2],
     tooth_count: usize,
-    /// What tooth d yields to tooth 0, d = 0 … [`FARTHEST_COUPLED`].
-    blocks: Vec<Mat<f64>>,
+    plain: Arc<PlainFace>,
     /// What holes change.
     holes: Option<HoledChange>,
-    degrees_of_freedom: u64,
 }
 
-impl FaceYield {
-    /// What the flanks of `gear` yield.
+impl FaceYieldSpec {
+    /// That of `gear`. No modification or deviation counts, nor a broken edge: they are gaps and hardly change how a tooth bends.
+    pub fn new(gear: &SolidGear, resolution: FaceResolution) -> Self {
+        Self {
+            gear: gear.with_plain_flanks(),
+            resolution,
+        }
+    }
+
+    /// Makes it of `parts`.
     ///
     /// # Errors
     ///
-    /// [`PartError`] if a part cannot be divided or condensed, or if the work is stopped.
-    pub fn of(gear: &SolidGear, resolution: FaceResolution, run: &Run) -> Result<Self, PartError> {
-        let stack = Stack::new(gear, resolution);
-        let section = gear.section().without_blank().with_plain_flanks();
+    /// As [`FaceYield::of`].
+    pub fn make<P: Parts + ?Sized>(&self, parts: &P, run: &Run) -> Result<FaceYield, PartError> {
+        let stack = Stack::new(&self.gear, self.resolution);
+        let plain = parts.plain_face(&stack, run)?;
+        let section = self.gear.section();
+        let holes = match &plain.web {
+            Some(web) => Some(HoledChange::new(&stack, section, web, run)?),
+            None => None,
+        };
+        Ok(FaceYield {
+            tooth_count: section.tooth_count() as usize,
+            plain,
+            holes,
+            axial: stack.face,
+        })
+    }
+}
+
+impl PlainFace {
+    /// That of `stack`.
+    ///
+    /// # Errors
+    ///
+    /// As [`FaceYield::of`].
+    pub fn new(stack: &Stack, run: &Run) -> Result<Self, PartError> {
+        let gear = &stack.gear;
+        let section = gear.section().without_blank();
         let grid = ToothGrid::of_prism(&section, stack.interface_radius, GridLevel::Standard)?;
         run.check()?;
         let (tooth, carrier) = rayon::join(
             || SolidTooth::new(gear, &grid, &stack.face),
-            || Carrier::new(&stack, run),
+            || Carrier::new(stack, run),
         );
         let (tooth, carrier) = (tooth?, carrier?);
         let seen = carrier.web.as_ref().map(|web| web.largest);
         let classes = answers(&tooth, &carrier.stiffness, seen, run)?;
         let flank = FlankFit::new(gear, &stack.face, &tooth.roll_lengths);
-        let blocks = blocks(&tooth, &classes, &flank);
-        let holes = match &carrier.web {
-            Some(web) => {
-                let smoothing = flank.smoothing();
-                let onto = |answers: &Mat<c64>| {
-                    smoothed_rows(
-                        &smoothing,
-                        &answers.transpose().to_owned(),
-                        stack.face.len(),
-                    )
-                };
-                Some(HoledChange::new(&stack, web, &classes, &onto, run)?)
-            }
-            None => None,
-        };
+        let web = carrier.web.map(|web| {
+            let smoothing = flank.smoothing();
+            let onto = |answers: &Mat<c64>| {
+                smoothed_rows(
+                    &smoothing,
+                    &answers.transpose().to_owned(),
+                    stack.face.len(),
+                )
+            };
+            SeenWeb::new(web, tooth.sector.count, &classes, &onto)
+        });
         let own = tooth.grid_nodes - tooth.sector.side_nodes - 1;
-        let degrees_of_freedom = (own * tooth.sector.size * tooth.sector.count) as u64;
         Ok(Self {
             squares: flank.squares,
-            tooth_count: tooth.sector.count,
-            blocks,
-            holes,
-            degrees_of_freedom,
-            axial: stack.face,
+            blocks: blocks(&tooth, &classes, &flank),
+            web,
+            degrees_of_freedom: (own * tooth.sector.size * tooth.sector.count) as u64,
         })
+    }
+
+    /// The number of entries, for the books of a cache.
+    pub fn entries(&self) -> usize {
+        let blocks: usize = self.blocks.iter().map(entries).sum();
+        blocks + self.web.as_ref().map_or(0, SeenWeb::entries)
+    }
+}
+
+impl FaceYield {
+    /// What the flanks of `gear` yield, every part of it made anew.
+    ///
+    /// # Errors
+    ///
+    /// [`PartError`] if a part cannot be divided or condensed, or if the work is stopped.
+    pub fn of(gear: &SolidGear, resolution: FaceResolution, run: &Run) -> Result<Self, PartError> {
+        FaceYieldSpec::new(gear, resolution).make(&MakeAll, run)
     }
 
     /// What the flank of one tooth alone yields: a sector of the gear from `inner_radius` outward whose sides are free and whose inner
@@ -139,15 +196,18 @@ impl FaceYield {
         let grid = ToothGrid::of_prism(&section, inner_radius, GridLevel::Standard)?;
         let compliance = flank_compliance_alone(gear, &grid, &axial)?;
         let flank = FlankFit::new(gear, &axial, &grid.flank_roll_lengths);
-        let (blocks, squares) = (vec![flank.own(&compliance)], flank.squares);
         let degrees_of_freedom = 3 * axial.len() * (grid.grid.nodes.len() - grid.arc_nodes.len());
+        let plain = PlainFace {
+            squares: flank.squares,
+            blocks: vec![flank.own(&compliance)],
+            web: None,
+            degrees_of_freedom: degrees_of_freedom as u64,
+        };
         Ok(Self {
             axial,
-            squares,
             tooth_count: 1,
-            blocks,
+            plain: Arc::new(plain),
             holes: None,
-            degrees_of_freedom: degrees_of_freedom as u64,
         })
     }
 
@@ -163,7 +223,7 @@ impl FaceYield {
     /// If `row` has not [`FaceYield::basis_len`] places.
     pub fn basis(&self, roll_length: f64, z: f64, row: &mut [f64]) {
         assert_eq!(row.len(), self.basis_len());
-        let (up, _) = up_the_flank(self.squares, roll_length, OWN_DEGREE);
+        let (up, _) = up_the_flank(self.plain.squares, roll_length, OWN_DEGREE);
         let across = self.axial.values(z);
         for (row, up) in row.chunks_exact_mut(across.len()).zip(up) {
             for (value, across) in row.iter_mut().zip(&across) {
@@ -179,7 +239,7 @@ impl FaceYield {
     /// As [`FaceYield::basis`].
     pub fn basis_slope(&self, roll_length: f64, z: f64, row: &mut [f64]) {
         assert_eq!(row.len(), self.basis_len());
-        let (_, up) = up_the_flank(self.squares, roll_length, OWN_DEGREE);
+        let (_, up) = up_the_flank(self.plain.squares, roll_length, OWN_DEGREE);
         let across = self.axial.values(z);
         for (row, up) in row.chunks_exact_mut(across.len()).zip(up) {
             for (value, across) in row.iter_mut().zip(&across) {
@@ -202,9 +262,9 @@ impl FaceYield {
                 let ahead = (i % z + z - j % z) % z;
                 let mut block = smooth.submatrix_mut(a * size, b * size, size, size);
                 if ahead <= z - ahead {
-                    block.copy_from(&self.blocks[ahead]);
+                    block.copy_from(&self.plain.blocks[ahead]);
                 } else {
-                    block.copy_from(self.blocks[z - ahead].transpose());
+                    block.copy_from(self.plain.blocks[z - ahead].transpose());
                 }
                 if let Some(holes) = &self.holes {
                     block += holes.between(i % z, j % z);
@@ -219,13 +279,12 @@ impl FaceYield {
 
     /// The unknowns before condensation.
     pub fn degrees_of_freedom(&self) -> u64 {
-        self.degrees_of_freedom
+        self.plain.degrees_of_freedom
     }
 
-    /// The number of entries, for the books of a cache.
+    /// The number of entries, for the books of a cache: it keeps the plain face even where that has gone.
     pub fn entries(&self) -> usize {
-        let blocks: usize = self.blocks.iter().map(entries).sum();
-        blocks + self.holes.as_ref().map_or(0, HoledChange::entries)
+        self.plain.entries() + self.holes.as_ref().map_or(0, HoledChange::entries)
     }
 }
 

@@ -10,8 +10,9 @@ use faer::{Mat, c64};
 
 use super::PartError;
 use super::carrier::{Stack, WebPorts};
+use crate::fem::dense::entries;
 use crate::fem::prism::Prism;
-use crate::gear::{BlankRegion, gcd};
+use crate::gear::{BlankRegion, SpurGear, gcd};
 use crate::grid::{BlankGrid, GridLevel};
 use crate::ring::solid::gear::ClassAnswers;
 use crate::ring::solid::web::holed_ring;
@@ -20,49 +21,49 @@ use crate::run::Run;
 /// Elements around the web for each order in which holes are seen, at the standard level.
 const ELEMENTS_PER_ORDER: f64 = 10.0;
 
+/// The outer circle of a web as the teeth see it, while the web has no holes.
+#[derive(Debug)]
+pub(crate) struct SeenWeb {
+    /// The largest order in which holes are seen.
+    largest: usize,
+    /// The unknowns of a component of an order.
+    size: usize,
+    tooth_count: usize,
+    /// S: the stiffness of the web without holes, of the orders 0 ….
+    plain: Vec<Mat<c64>>,
+    /// C: the compliance of the whole gear on the circle.
+    compliance: Mat<f64>,
+    /// q: the answer of the circle to the functions on the flank of tooth 0.
+    answers: Mat<f64>,
+}
+
 /// What holes change of the yield of flanks.
 #[derive(Debug, Clone)]
 pub(crate) struct HoledChange {
     tooth_count: usize,
-    /// The unknowns of a component of an order.
     size: usize,
-    /// q: the answer of the web's circle to the functions on the flank of tooth 0.
     answers: Mat<f64>,
     /// −(I + ΔS C)⁻¹ ΔS q_j, of the teeth after which all repeats.
     changes: Vec<Mat<f64>>,
 }
 
-impl HoledChange {
-    /// Of the gear of `stack`, whose web is seen through `web` and answers to teeth as in `classes`. `onto` makes rows for the functions
-    /// on a flank of columns for its nodes.
+impl SeenWeb {
+    /// Of a gear whose web is seen through `web` and answers to its teeth as in `classes`. `onto` makes rows for the functions on a
+    /// flank of columns for its nodes.
     pub(crate) fn new(
-        stack: &Stack<'_>,
-        web: &WebPorts,
+        web: WebPorts,
+        tooth_count: usize,
         classes: &[ClassAnswers],
         onto: &dyn Fn(&Mat<c64>) -> Mat<c64>,
-        run: &Run,
-    ) -> Result<Self, PartError> {
-        let section = stack.gear.section();
-        let (z, largest) = (section.tooth_count() as usize, web.largest);
+    ) -> Self {
+        let largest = web.largest;
         let size = web.of[0].plain.nrows();
-        let holed = holed_stiffness(stack, largest, run)?;
-        let mut change = holed;
+        let unknowns = (2 * largest + 1) * size;
         let place = |order: i64| (order + largest as i64) as usize * size;
-        for order in -(largest as i64)..=largest as i64 {
-            let plain = &web.of[order.unsigned_abs() as usize].plain;
-            for j in 0..size {
-                for i in 0..size {
-                    let value = plain[(i, j)];
-                    change[(place(order) + i, place(order) + j)] -=
-                        if order < 0 { value.conj() } else { value };
-                }
-            }
-        }
-
-        // C and q of tooth 0, on the orders of both signs.
-        let share = 1.0 / z as f64;
-        let mut compliance = Mat::<c64>::zeros(change.nrows(), change.ncols());
-        let mut answers: Option<Mat<c64>> = None;
+        // Of tooth 0, on the orders of both signs.
+        let share = 1.0 / tooth_count as f64;
+        let mut compliance = Mat::<c64>::zeros(unknowns, unknowns);
+        let mut answers = Mat::<c64>::zeros(unknowns, 0);
         for class in classes {
             let inner = class.circle.nrows() / class.orders.len().max(1);
             let follows: Vec<Mat<c64>> = class
@@ -75,8 +76,7 @@ impl HoledChange {
             for (a, &n) in class.orders.iter().enumerate() {
                 let rows = class.circle.subrows(a * inner, inner);
                 let answer = onto(&(&follows[a] * rows));
-                let answers =
-                    answers.get_or_insert_with(|| Mat::zeros(change.nrows(), answer.nrows()));
+                answers.resize_with(unknowns, answer.nrows(), |_, _| c64::new(0.0, 0.0));
                 for j in 0..answer.nrows() {
                     for i in 0..size {
                         let value = answer[(j, i)] * share;
@@ -107,24 +107,67 @@ impl HoledChange {
                 }
             }
         }
+        Self {
+            compliance: form_on_real(&compliance, largest, size, 1.0),
+            answers: rows_on_real(&answers, largest, size),
+            plain: web.of.into_iter().map(|port| port.plain).collect(),
+            largest,
+            size,
+            tooth_count,
+        }
+    }
 
+    /// The number of entries, for the books of a cache.
+    pub(crate) fn entries(&self) -> usize {
+        let plain: usize = self
+            .plain
+            .iter()
+            .map(|of| 2 * of.nrows() * of.ncols())
+            .sum();
+        plain + entries(&self.compliance) + entries(&self.answers)
+    }
+}
+
+impl HoledChange {
+    /// Of the holes of `section`, whose gear is otherwise that of `stack` and sees its web as `web`.
+    pub(crate) fn new(
+        stack: &Stack,
+        section: &SpurGear,
+        web: &SeenWeb,
+        run: &Run,
+    ) -> Result<Self, PartError> {
+        let &SeenWeb {
+            largest,
+            size,
+            tooth_count: z,
+            ref answers,
+            ..
+        } = web;
+        let mut change = holed_stiffness(stack, section, largest, run)?;
+        for order in -(largest as i64)..=largest as i64 {
+            let plain = conjugate_below_zero(&web.plain[order.unsigned_abs() as usize], order);
+            let first = (order + largest as i64) as usize * size;
+            for j in 0..size {
+                for i in 0..size {
+                    change[(first + i, first + j)] -= plain[(i, j)];
+                }
+            }
+        }
         let change = form_on_real(&change, largest, size, 0.5);
-        let compliance = form_on_real(&compliance, largest, size, 1.0);
-        let answers = rows_on_real(&answers.unwrap_or_else(|| Mat::zeros(0, 0)), largest, size);
         let unknowns = change.nrows();
-        let coupled = Mat::<f64>::identity(unknowns, unknowns) + &change * compliance;
+        let coupled = Mat::<f64>::identity(unknowns, unknowns) + &change * &web.compliance;
         let factor = coupled.partial_piv_lu();
         run.check()?;
         let repeats = gcd(z as u32, section.hole_repeats().max(1)) as usize;
         let of_tooth = |tooth: usize| {
-            let turned = turned(&answers, size, TAU * tooth as f64 / z as f64);
+            let turned = turned(answers, size, TAU * tooth as f64 / z as f64);
             -factor.solve(&change * turned)
         };
         Ok(Self {
             tooth_count: z,
             size,
             changes: (0..z / repeats).map(of_tooth).collect(),
-            answers,
+            answers: answers.clone(),
         })
     }
 
@@ -143,8 +186,13 @@ impl HoledChange {
 }
 
 /// The stiffness of the web with its holes, on the orders of both signs.
-fn holed_stiffness(stack: &Stack<'_>, largest: usize, run: &Run) -> Result<Mat<c64>, PartError> {
-    let (section, layer) = (stack.gear.section(), &stack.layers[1]);
+fn holed_stiffness(
+    stack: &Stack,
+    section: &SpurGear,
+    largest: usize,
+    run: &Run,
+) -> Result<Mat<c64>, PartError> {
+    let layer = &stack.layers[1];
     let region = BlankRegion {
         bore_radius: layer.inner_radius,
         web: None,

@@ -20,8 +20,9 @@ mod parts;
 pub mod teeth;
 
 pub use blank::BlankSpec;
+pub use carrier::Stack;
 pub use cut::CutGear;
-pub use face_yield::{FaceResolution, FaceYield};
+pub use face_yield::{FaceResolution, FaceYield, FaceYieldSpec, PlainFace};
 pub use gear::{Carrier, Gear, GearGrids, GearSpec, WantedGear, make_gears};
 pub use inside::{Inside, Probes};
 pub use pair::{Blanks, Modeling, PairSpec};

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use super::carrier::Stack;
+use super::face_yield::{FaceYield, FaceYieldSpec, PlainFace};
 use super::{BlankSpec, Gear, PairSpec, Teeth, TeethSpec, WantedGear, make_gears};
 use crate::contact::compliances::Compliances;
 use crate::contact::drawn::DrawnFlanks;
@@ -44,6 +46,24 @@ pub trait Parts: Sync {
     /// [`AssemblyError`].
     fn gears(&self, wanted: &[WantedGear], run: &Run) -> Result<Vec<Arc<Gear>>, AssemblyError> {
         make_gears(wanted, self, run)
+    }
+
+    /// What the flanks of a solid gear yield without holes.
+    ///
+    /// # Errors
+    ///
+    /// [`PartError`].
+    fn plain_face(&self, spec: &Stack, run: &Run) -> Result<Arc<PlainFace>, PartError> {
+        PlainFace::new(spec, run).map(Arc::new)
+    }
+
+    /// What the flanks of a solid gear yield.
+    ///
+    /// # Errors
+    ///
+    /// [`PartError`].
+    fn face_yield(&self, spec: &FaceYieldSpec, run: &Run) -> Result<Arc<FaceYield>, PartError> {
+        spec.make(self, run).map(Arc::new)
     }
 
     /// What is known of the flanks of `spec`: a place for it, if nothing is.

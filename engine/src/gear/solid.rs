@@ -252,6 +252,14 @@ impl SolidGear {
         }
     }
 
+    /// The same gear with flanks as the rack cuts them, each like the other, up to a sharp tip.
+    pub fn with_plain_flanks(&self) -> Self {
+        Self {
+            section: self.section.with_plain_flanks(),
+            ..self.clone()
+        }
+    }
+
     /// Where the face begins and ends.
     pub fn face_heights(&self) -> [f64; 2] {
         let half = self.face_width() / 2.0;

@@ -10,8 +10,8 @@ use std::sync::Arc;
 pub use shelf::ShelfUsage;
 
 use crate::assembly::{
-    AssemblyError, BlankSpec, ContactsSpec, FlanksSpec, Gear, GearSpec, PairSpec, PartError, Parts,
-    Teeth, TeethSpec, WantedGear, make_gears,
+    AssemblyError, BlankSpec, ContactsSpec, FaceYield, FaceYieldSpec, FlanksSpec, Gear, GearSpec,
+    PairSpec, PartError, Parts, PlainFace, Stack, Teeth, TeethSpec, WantedGear, make_gears,
 };
 use crate::contact::compliances::Compliances;
 use crate::contact::drawn::DrawnFlanks;
@@ -33,6 +33,8 @@ struct Shelves {
     flanks: Shelf<FlanksSpec, DrawnFlanks>,
     compliances: Shelf<PairSpec, Compliances>,
     contacts: Shelf<ContactsSpec, Vec<MeshContact>>,
+    faces: Shelf<Stack, PlainFace>,
+    yields: Shelf<FaceYieldSpec, FaceYield>,
 }
 
 impl Default for Library {
@@ -47,18 +49,20 @@ impl Library {
     pub fn with_capacity(bytes: usize) -> Self {
         Self(Arc::new(Shelves {
             teeth: Shelf::new(bytes / 4, bytes_of_teeth),
-            blanks: Shelf::new(bytes / 4, bytes_of_blank),
+            blanks: Shelf::new(bytes / 8, bytes_of_blank),
             gears: Shelf::new(bytes / 8, bytes_of_gear),
             flanks: Shelf::new(bytes / 8, |_, flanks| flanks.bytes()),
             compliances: Shelf::new(bytes / 8, |_, compliances| compliances.bytes()),
             contacts: Shelf::new(bytes / 8, |spec, contacts| {
                 bytes_of_contacts(spec, contacts)
             }),
+            faces: Shelf::new(bytes / 16, |_, face| size_of::<f64>() * face.entries()),
+            yields: Shelf::new(bytes / 16, |_, face| size_of::<f64>() * face.entries()),
         }))
     }
 
     /// How each of its shelves is used, by what stands on it.
-    pub fn usage(&self) -> [(&'static str, ShelfUsage); 6] {
+    pub fn usage(&self) -> [(&'static str, ShelfUsage); 8] {
         let Shelves {
             teeth,
             blanks,
@@ -66,6 +70,8 @@ impl Library {
             flanks,
             compliances,
             contacts,
+            faces,
+            yields,
         } = &*self.0;
         [
             ("teeth", teeth.usage()),
@@ -74,6 +80,8 @@ impl Library {
             ("flanks", flanks.usage()),
             ("compliances", compliances.usage()),
             ("contacts", contacts.usage()),
+            ("faces", faces.usage()),
+            ("yields", yields.usage()),
         ]
     }
 }
@@ -110,6 +118,26 @@ impl Parts for Library {
             .into_iter()
             .filter_map(|known| known.or_else(|| made.next()))
             .collect())
+    }
+
+    fn plain_face(&self, spec: &Stack, run: &Run) -> Result<Arc<PlainFace>, PartError> {
+        let shelf = &self.0.faces;
+        if let Some(known) = shelf.find(spec) {
+            return Ok(known);
+        }
+        let made = PlainFace::new(spec, run).map(Arc::new)?;
+        shelf.keep(spec, &made);
+        Ok(made)
+    }
+
+    fn face_yield(&self, spec: &FaceYieldSpec, run: &Run) -> Result<Arc<FaceYield>, PartError> {
+        let shelf = &self.0.yields;
+        if let Some(known) = shelf.find(spec) {
+            return Ok(known);
+        }
+        let made = spec.make(self, run).map(Arc::new)?;
+        shelf.keep(spec, &made);
+        Ok(made)
     }
 
     fn flanks(&self, spec: &FlanksSpec) -> Arc<DrawnFlanks> {
@@ -168,4 +196,53 @@ fn bytes_of_gear(_: &GearSpec, gear: &Gear) -> usize {
 fn bytes_of_contacts(spec: &ContactsSpec, contacts: &[MeshContact]) -> usize {
     let positions = size_of::<ContactsSpec>() + size_of_val(spec.positions.as_slice());
     positions + contacts.iter().map(MeshContact::bytes).sum::<usize>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assembly::{FaceResolution, MakeAll};
+    use crate::gear::spur::tests::paper_gear;
+    use crate::gear::{Helix, HolePattern, SolidGear, Web};
+
+    fn holed(radius: f64) -> SolidGear {
+        let mut data = paper_gear(24);
+        data.blank.bore_radius = 6e-3;
+        data.blank.web = Some(Web {
+            inner_radius: 6e-3,
+            outer_radius: 18e-3,
+            thickness: 6e-3,
+        });
+        data.blank.holes = HolePattern {
+            count: 4,
+            circle_radius: 13e-3,
+            radius,
+            phase: 0.2,
+        }
+        .holes();
+        SolidGear::new(data, Helix::right(0.3), 0.0, None).expect("can be made")
+    }
+
+    #[test]
+    fn another_hole_in_a_web_makes_no_tooth_anew_and_the_same_bits() {
+        let (library, run) = (Library::default(), Run::unattended());
+        let resolution = FaceResolution {
+            face_order: 4,
+            web_order: 2,
+            web_harmonics: 6,
+        };
+        for radius in [3e-3, 3.5e-3, 3e-3] {
+            let spec = FaceYieldSpec::new(&holed(radius), resolution);
+            let kept = library.face_yield(&spec, &run).expect("definite");
+            let alone = MakeAll.face_yield(&spec, &run).expect("definite");
+            assert_eq!(kept.smooth(&[0, 1, 23]), alone.smooth(&[0, 1, 23]));
+        }
+        let uses = library.usage();
+        let used = |name| {
+            let shelf = uses.iter().find(|(shelf, _)| *shelf == name);
+            shelf.map(|(_, usage)| (usage.misses, usage.hits))
+        };
+        assert_eq!(used("faces"), Some((1, 1)));
+        assert_eq!(used("yields"), Some((2, 1)));
+    }
 }
