@@ -13,15 +13,16 @@ COPY engine/Cargo.toml engine/
 COPY paper/Cargo.toml paper/build.rs paper/
 COPY plot/Cargo.toml plot/
 COPY sample/Cargo.toml sample/
+COPY search/Cargo.toml search/
 COPY migrations migrations
-RUN mkdir -p web src/http benches/load engine/src engine/benches paper/src plot/src sample/src \
-    && touch src/http/docs.js src/lib.rs engine/src/lib.rs plot/src/lib.rs sample/src/lib.rs \
+RUN mkdir -p web src/http benches/load engine/src engine/benches paper/src plot/src sample/src search/src \
+    && touch src/http/docs.js src/lib.rs engine/src/lib.rs plot/src/lib.rs sample/src/lib.rs search/src/lib.rs \
     && for file in src/main benches/load/main engine/benches/jobs engine/benches/parts paper/src/main; do \
          echo 'fn main() {}' > "$file.rs"; done \
     && cargo build --release --locked --bin meshwright
 COPY . .
 # The empty sources were newer than these.
-RUN touch src/lib.rs src/main.rs engine/src/lib.rs sample/src/lib.rs && cargo build --release --locked --bin meshwright
+RUN touch src/lib.rs src/main.rs engine/src/lib.rs sample/src/lib.rs search/src/lib.rs && cargo build --release --locked --bin meshwright
 
 FROM ${RUN_IMAGE}
 # The certificates are for webhooks and for a PostgreSQL elsewhere.

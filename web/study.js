@@ -1,10 +1,12 @@
-// Many designs at once: axes of values over any fields, a table, a picture of two of its columns, and which designs no other beats.
+// Many designs at once: axes of values over any fields, a table, a picture of two of its columns, and which designs no other beats; or a search
+// that chooses the values itself.
 
 import { follow, hasEnded, json, post, ProblemError, request } from "./api.js";
 import { h, fixed, number } from "./dom.js";
 import { at, nameOf, withValue } from "./design.js";
 import { save } from "./download.js";
 import { figure } from "./figure.js";
+import { search } from "./search.js";
 
 /** A table is fetched so often at most while a study runs, in milliseconds. */
 const PAUSE = 400;
@@ -43,12 +45,14 @@ export function study(place, design, form, onOpen) {
   const picker = h("div", { className: "line", hidden: true }, h("label", { htmlFor: up.id }, "Picture:"), up, h("label", { htmlFor: across.id }, "over"), across);
   const out = h("div", { className: "out" });
   const state = h("p", { className: "note", role: "status" });
+  const searched = h("div", {});
   const formOf = h("form", { on: { submit: (event) => { event.preventDefault(); start(); } } },
     ...axes.map((each) => each.element),
     h("div", { className: "line" }, constant, h("label", { htmlFor: "study-mass" }, "Same mass: holes remove"), removed, h("span", { className: "unit" }, "% of the"), gear, h("span", {}, "blank, by their radius")),
     h("div", { className: "line" }, run, cancel));
-  place.replaceChildren(h("p", { className: "note" }, "Every combination of these values is computed from the design; values are separated by commas. “Best” is a design that no other beats: none is at least as good in mass, peak-to-peak and mean stiffness, and better in one."), formOf, state, picker, picture, out);
+  place.replaceChildren(h("p", { className: "note" }, "Every combination of these values is computed from the design; values are separated by commas. “Best” is a design that no other beats: none is at least as good in mass, peak-to-peak and mean stiffness, and better in one."), formOf, state, picker, picture, out, h("details", { id: "search" }, h("summary", {}, "Let a search choose the values"), searched));
   axes[0].choose(FIRST[0]);
+  const seeker = search(searched, design, form, onOpen);
   let last = null;
 
   async function start() {
@@ -133,7 +137,7 @@ export function study(place, design, form, onOpen) {
     onOpen(job.submission, null);
   }
 
-  return { refresh: () => axes.forEach((each) => each.refresh()) };
+  return { refresh: () => [...axes, seeker].forEach((each) => each.refresh()) };
 }
 
 /** Values over a field that is chosen from all that the form has. */

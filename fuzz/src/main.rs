@@ -15,7 +15,7 @@ mod wire;
 use libfuzzer_sys::fuzz_target;
 use meshwright_engine::run::Run;
 use rexs::{Choices, export, import, is_xml};
-use wire::{Preview, Problem, Study, Submission};
+use wire::{Preview, Problem, Searching, Study, Submission};
 
 /// So many designs of a study are expanded.
 const DESIGNS: usize = 8;
@@ -59,6 +59,14 @@ fuzz_target!(|bytes: &[u8]| {
     }
     match Study::parse(bytes, &Run::unattended()) {
         Ok(study) => {
+            if let Some(mut search) = Searching::new(study.clone()) {
+                for row in 0..search.ask().min(DESIGNS) {
+                    if let Err(problem) = &search.design(row).submission {
+                        check(problem);
+                    }
+                }
+                return;
+            }
             for row in 0..study.total().min(DESIGNS) {
                 let design = study.design(row).expect("there are so many");
                 if let Err(problem) = &design.submission {

@@ -14,8 +14,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use meshwright::wire::study_table::{TableRow, csv, table};
 use meshwright::wire::warning::GearName;
 use meshwright::wire::{
-    Code, Design, Kept, PopulationResults, PopulationSample, Problem, RowState, Status,
-    Study as StudyDocument, StudyResults, Summary, solve,
+    Code, Design, Kept, PopulationResults, PopulationSample, Problem, RowState, SearchState,
+    Searching, Status, Study as StudyDocument, StudyResults, Summary, solve,
 };
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -35,7 +35,7 @@ const MOST_PRINTED: usize = 40;
 pub(crate) struct Study {
     /// The study; - reads standard input.
     study: PathBuf,
-    /// Where to write table.json, table.csv, of a population population.json, and, unless the study keeps statistics only, each result; the folder is made if it
+    /// Where to write table.json, table.csv, of a population population.json, of a search search.json with how it went and best.json with the submission of the best design, and, unless the study keeps statistics only, each result; the folder is made if it
     /// is absent. Without it, only a short table is printed.
     #[arg(long, short, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -63,11 +63,21 @@ impl Study {
         let folder = self.output.as_deref().map(ResultFolder::make).transpose()?;
 
         let started = Instant::now();
-        let rows = compute(&study, folder.as_ref())?;
+        let (rows, search) = match Searching::new(study.clone()) {
+            Some(search) => {
+                let (rows, state) = self::search(&study, search, folder.as_ref(), started)?;
+                (rows, Some(state))
+            }
+            None => (compute(&study, folder.as_ref())?, None),
+        };
         let elapsed = started.elapsed();
 
         let population = population(&study, &rows);
-        let results = results(&study, rows);
+        let best = search.as_ref().and_then(|search| {
+            let row = rows.get(usize::try_from(search.best.as_ref()?.row).ok()?)?;
+            study.submission_searched(&row.label, &row.changes)
+        });
+        let results = results(&study, rows, search.as_ref());
         if let Some(folder) = &folder {
             let json = serde_json::to_string_pretty(&results).context("the table is no JSON")?;
             folder.write("table.json", &format!("{json}\n"))?;
@@ -77,6 +87,20 @@ impl Study {
                     .context("the population is no JSON")?;
                 folder.write("population.json", &format!("{json}\n"))?;
             }
+        }
+        if let Some(search) = &search {
+            if let Some(folder) = &folder {
+                let json = serde_json::to_string_pretty(search).context("the search is no JSON")?;
+                folder.write("search.json", &format!("{json}\n"))?;
+                if let Some(best) = &best {
+                    folder.write("best.json", &format!("{best}\n"))?;
+                }
+            }
+            print!("{}", search_table(&study, search, elapsed));
+            return Ok(match &results.problem {
+                Some(_) => ExitCode::from(EXIT_PROBLEM),
+                None => ExitCode::SUCCESS,
+            });
         }
         match &population {
             Some(population) => print!("{}", spread_table(population, elapsed)),
@@ -88,6 +112,62 @@ impl Study {
         }
         Ok(ExitCode::SUCCESS)
     }
+}
+
+/// Computes a search to its end: its rows, and what is told of it.
+fn search(
+    study: &StudyDocument,
+    mut search: Searching,
+    folder: Option<&ResultFolder>,
+    started: Instant,
+) -> anyhow::Result<(Vec<RowState>, SearchState)> {
+    let folder = folder.filter(|_| study.keep() == Kept::Results);
+    let bar = progress_bar(study.total());
+    let library = Library::with_capacity(LIBRARY_BYTES);
+    let mut rows: Vec<RowState> = Vec::new();
+    let is_over = |search: &Searching| {
+        let seconds = search.seconds();
+        seconds.is_some_and(|seconds| started.elapsed().as_secs_f64() >= seconds)
+    };
+    while !is_over(&search) {
+        let count = search.ask();
+        if count == 0 {
+            break;
+        }
+        let mut generation = Vec::with_capacity(count);
+        for first in (0..count).step_by(AT_ONCE) {
+            let places = first..count.min(first + AT_ONCE);
+            let designs: Vec<Design> = places
+                .into_par_iter()
+                .map(|row| search.design(row))
+                .collect();
+            let place = rows.len() + first;
+            generation.extend(compute_designs(place, designs, folder, &library, &bar)?);
+        }
+        for row in generation {
+            search.tell(row.clone());
+            rows.push(row);
+        }
+        if let Some(best) = search.state().best {
+            bar.set_message(format!("best {}", numbers(&best.goals)));
+        }
+    }
+    search.end();
+    if let Some(design) = search.confirmation() {
+        let confirmed = compute_designs(rows.len(), vec![design], folder, &library, &bar)?;
+        confirmed.iter().for_each(|row| search.confirm(row));
+        rows.extend(confirmed);
+    }
+    bar.finish_and_clear();
+    Ok((rows, search.state()))
+}
+
+/// Some numbers as they are shown.
+fn numbers(values: &[Option<f64>]) -> String {
+    let told = values
+        .iter()
+        .map(|value| value.map_or_else(|| "?".to_owned(), |value| format!("{value:.4}")));
+    told.collect::<Vec<_>>().join(", ")
 }
 
 /// So many designs are held at a time. Equal ones among them are computed once.
@@ -116,11 +196,23 @@ fn compute_some(
     library: &Library,
     bar: &ProgressBar,
 ) -> anyhow::Result<Vec<RowState>> {
-    let (first, count) = (rows.start, rows.len());
+    let first = rows.start;
     let designs: Vec<Design> = rows
         .into_par_iter()
         .filter_map(|row| study.design(row))
         .collect();
+    compute_designs(first, designs, folder, library, bar)
+}
+
+/// Computes designs that stand behind the first ones of the table; equal ones are computed once.
+fn compute_designs(
+    first: usize,
+    designs: Vec<Design>,
+    folder: Option<&ResultFolder>,
+    library: &Library,
+    bar: &ProgressBar,
+) -> anyhow::Result<Vec<RowState>> {
+    let count = designs.len();
     // Designs by what they compute; the first of equals computes for all.
     let mut equals: HashMap<String, Vec<usize>> = HashMap::new();
     for (i, design) in designs.iter().enumerate() {
@@ -241,14 +333,21 @@ fn row_state(design: Design, outcome: Option<Outcome>) -> RowState {
     }
 }
 
-fn results(study: &StudyDocument, states: Vec<RowState>) -> StudyResults {
+fn results(
+    study: &StudyDocument,
+    states: Vec<RowState>,
+    search: Option<&SearchState>,
+) -> StudyResults {
     let rows = table(study.gear(), states);
     let failed = rows.iter().all(|row| row.status == Status::Failed);
     let problem = failed.then(|| {
-        let detail = format!(
-            "None of the {} designs could be computed; each row of the table has its problem.",
-            rows.len()
-        );
+        let searched = search.and_then(SearchState::why_nothing);
+        let detail = searched.unwrap_or_else(|| {
+            format!(
+                "None of the {} designs could be computed; each row of the table has its problem.",
+                rows.len()
+            )
+        });
         serde_json::to_value(Problem::new(Code::NoDesignComputed, detail))
             .expect("a problem is strings")
     });
@@ -266,7 +365,7 @@ fn results(study: &StudyDocument, states: Vec<RowState>) -> StudyResults {
 fn progress_bar(total: usize) -> ProgressBar {
     let bar = ProgressBar::new(total as u64);
     if let Ok(style) =
-        ProgressStyle::with_template("{bar:40} {pos}/{len} designs, {elapsed}, {eta} to go")
+        ProgressStyle::with_template("{bar:40} {pos}/{len} designs, {elapsed}, {eta} to go  {msg}")
     {
         bar.set_style(style);
     }
@@ -302,6 +401,76 @@ impl ResultFolder {
         let label: String = label.chars().map(plain).take(60).collect();
         self.write(&format!("results/{:05}-{label}.json", row + 1), document)
     }
+}
+
+/// What a search found: the best design, of two goals the front, and what the best one comes to by the flexible method on the fine grid.
+fn search_table(study: &StudyDocument, search: &SearchState, elapsed: Duration) -> String {
+    let mut text = String::new();
+    let names = study.goals().join(", ");
+    let conditions = study.conditions().join(", ");
+    let mut say = |line: String| {
+        text.push_str(line.trim_end());
+        text.push('\n');
+    };
+    match &search.best {
+        None => say(search
+            .why_nothing()
+            .unwrap_or_else(|| "No design could be had.".to_owned())),
+        Some(best) => {
+            say(format!(
+                "best: row {}, {names}: {}",
+                best.row,
+                numbers(&best.goals)
+            ));
+            if !best.feasible {
+                say(
+                    "  It does not keep every condition; no design that was looked at does."
+                        .to_owned(),
+                );
+            }
+            for (path, value) in &best.values {
+                say(format!("  {path} = {value}"));
+            }
+            if !best.conditions.is_empty() {
+                say(format!("  {conditions}: {}", numbers(&best.conditions)));
+            }
+        }
+    }
+    if search.front.len() > 1 {
+        say(format!("front of {} designs, {names}:", search.front.len()));
+        for design in &search.front {
+            let values = design.values.values().map(ToString::to_string);
+            let values = values.collect::<Vec<_>>().join(", ");
+            say(format!("  {}  at {values}", numbers(&design.goals)));
+        }
+    }
+    if let Some(confirmed) = &search.confirmed {
+        let goals = numbers(&confirmed.goals);
+        match &confirmed.error_estimate {
+            Some(estimate) => say(format!(
+                "by the flexible method on the fine grid: {goals}; another grid level changes the peak-to-peak value by {:.4} um, the mean by {:.4} um",
+                estimate.transmission_error_peak_to_peak_um, estimate.transmission_error_mean_um
+            )),
+            None => {
+                let problem = confirmed.problem.as_ref();
+                let detail = problem.and_then(|problem| problem["detail"].as_str());
+                say(format!("not confirmed: {}", detail.unwrap_or_default()));
+            }
+        }
+    }
+    for refusal in &search.refusals {
+        say(format!(
+            "{} designs refused, {}; the first: {}",
+            refusal.count, refusal.code, refusal.detail
+        ));
+    }
+    say(format!(
+        "{} designs in {} generations, {:.2} s.",
+        search.evaluations,
+        search.generations.len(),
+        elapsed.as_secs_f64()
+    ));
+    text
 }
 
 /// A line for each quantity of a population and each torque, and what makes the peak-to-peak values vary.
@@ -501,6 +670,7 @@ mod tests {
         let results = results(
             &study(),
             compute(&study(), Some(&ResultFolder::make(&path).unwrap())).unwrap(),
+            None,
         );
         let labels: Vec<&str> = results.rows.iter().map(|row| &*row.label).collect();
         assert_eq!(

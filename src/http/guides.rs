@@ -44,6 +44,7 @@ const GUIDES: &[Guide] = guides! {
     "choose-a-relief"
     "compare-hole-patterns"
     "how-good-will-they-be"
+    "find-a-design"
     "is-my-thin-web-all-right"
     "will-it-rattle-or-whine"
     "limits"

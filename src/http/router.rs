@@ -139,6 +139,7 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(tables::table))
         .routes(routes!(studies::results))
         .routes(routes!(studies::population))
+        .routes(routes!(studies::best))
         .routes(routes!(studies::design))
         .routes(routes!(studies::file))
         .routes(routes!(studies::submit))

@@ -15,6 +15,7 @@ mod live;
 mod others;
 mod previews;
 mod queue;
+mod searches;
 pub(crate) mod store;
 mod studies;
 mod study;

@@ -11,6 +11,7 @@ use meshwright_engine::run::Run;
 
 use super::error::JobError;
 use super::queue::{Jobs, Member};
+use super::searches;
 use super::store::{
     Cursor, Document, NewJob, NewRow, NewStudy, StoreError, StoredRow, StudyFilter, StudyOutcome,
 };
@@ -21,7 +22,7 @@ use crate::wire::{
 };
 
 /// So many designs are expanded and written in one transaction. Others write in between.
-const CHUNK: usize = 500;
+pub(super) const CHUNK: usize = 500;
 
 /// So many rows of a table are read at a time, and so many documents.
 const ROWS_AT_ONCE: u32 = 500;
@@ -73,8 +74,21 @@ impl Jobs {
     ) -> Result<StudySubmitted, JobError> {
         self.refuse_if_failing()?;
         let now = self.clock.now();
+        let owner = Owner {
+            study: Uuid::now_v7(),
+            client: member.client.clone(),
+            submitted_at: now,
+            memory_mb: self.rules.job_memory_mb,
+            keep: study.keep(),
+        };
+        let Expanded {
+            study,
+            rows,
+            search,
+            owner,
+        } = begun(study, owner).await?;
         let new = NewStudy {
-            id: Uuid::now_v7(),
+            id: owner.study,
             client: member.client.clone(),
             name: study.name().map(str::to_owned),
             tags: study.tags().to_vec(),
@@ -83,18 +97,11 @@ impl Jobs {
             document_version: DOCUMENT_VERSION,
             gear: study.gear(),
             total: study.total() as u64,
+            search,
             submitted_at: now,
             idempotency_key,
             client_limit: self.rules.client_design_limit,
         };
-        let owner = Owner {
-            study: new.id,
-            client: member.client.clone(),
-            submitted_at: now,
-            memory_mb: self.rules.job_memory_mb,
-            keep: study.keep(),
-        };
-        let (study, rows, owner) = expand(study, 0, owner).await?;
         let outcome = self.store.begin_study(&new, &rows, self.bounds()).await?;
         let (id, repeated) = match outcome {
             StudyOutcome::Taken => {
@@ -169,7 +176,12 @@ impl Jobs {
         tokio::spawn(async move {
             let id = owner.study;
             // The next process goes on where this one stops.
-            if let Err(error) = jobs.expand_all(study, expanded, owner).await {
+            let expanded = if study.is_search() {
+                jobs.search_on(study, owner).await
+            } else {
+                jobs.expand_all(study, expanded, owner).await
+            };
+            if let Err(error) = expanded {
                 error!(study = %id, error = %error, "a study cannot be expanded now");
             }
         });
@@ -191,6 +203,7 @@ impl Jobs {
                     owner.study,
                     expanded as u64,
                     &rows,
+                    None,
                     self.clock.now(),
                     self.bounds(),
                 )
@@ -410,9 +423,9 @@ impl Jobs {
 }
 
 /// Whose jobs the designs become.
-struct Owner {
-    study: Uuid,
-    client: String,
+pub(super) struct Owner {
+    pub(super) study: Uuid,
+    pub(super) client: String,
     submitted_at: Timestamp,
     /// So much memory may a design take.
     memory_mb: u64,
@@ -421,7 +434,7 @@ struct Owner {
 }
 
 impl Owner {
-    fn row(&self, design: Design) -> NewRow {
+    pub(super) fn row(&self, design: Design) -> NewRow {
         let submission = design.submission.and_then(|submission| {
             match memory_above(&submission, self.memory_mb) {
                 None => Ok(submission),
@@ -444,6 +457,38 @@ impl Owner {
     }
 }
 
+/// A study with its first rows.
+struct Expanded {
+    study: Study,
+    rows: Vec<NewRow>,
+    /// How a search stands before it begins.
+    search: Option<String>,
+    owner: Owner,
+}
+
+/// The first rows of a study.
+async fn begun(study: Study, owner: Owner) -> Result<Expanded, JobError> {
+    if study.is_search() {
+        let made = blocking(move || {
+            let (rows, search) = searches::begun(&study, &owner);
+            Expanded {
+                study,
+                rows,
+                search,
+                owner,
+            }
+        });
+        return made.await;
+    }
+    let (study, rows, owner) = expand(study, 0, owner).await?;
+    Ok(Expanded {
+        study,
+        rows,
+        search: None,
+        owner,
+    })
+}
+
 /// The next chunk of rows behind the first `expanded` ones.
 async fn expand(
     study: Study,
@@ -459,7 +504,7 @@ async fn expand(
 }
 
 /// Does work of some milliseconds where it holds nobody up.
-async fn blocking<T: Send + 'static>(
+pub(super) async fn blocking<T: Send + 'static>(
     work: impl FnOnce() -> T + Send + 'static,
 ) -> Result<T, JobError> {
     match tokio::task::spawn_blocking(work).await {

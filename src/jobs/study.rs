@@ -19,7 +19,7 @@ pub struct StudyRecord {
     pub tags: Vec<String>,
     /// The gear whose mass and holes the table tells.
     pub gear: GearName,
-    /// Number of designs.
+    /// Number of designs; of a search that has not ended, the most that it may come to.
     pub total: u64,
     /// Designs that have their row.
     pub(super) expanded: u64,
@@ -43,6 +43,8 @@ pub struct StudyRecord {
     pub cancelled_at: Option<Timestamp>,
     /// When the last of its jobs ended, of those that have.
     pub(super) last_end: Option<Timestamp>,
+    /// How far a search has come, JSON; none for other studies.
+    pub search: Option<String>,
 }
 
 impl StudyRecord {
@@ -108,6 +110,7 @@ mod tests {
             submitted_at: Timestamp::UNIX_EPOCH,
             cancelled_at: None,
             last_end: None,
+            search: None,
         };
         let status = |accepted, running, successful, failed, dismissed| {
             StudyRecord {

@@ -3,7 +3,7 @@
 //! Read in this order: [`problem`] (what goes wrong), [`submission`] with its parts [`pair`], [`gear`] and
 //! [`resolution`], [`forces`] (what is asked), [`geometry`], [`outline`], [`edges`], [`warning`] and [`results`] (what is answered), [`solve`](mod@solve)
 //! (what leads from the one to the other) and [`examples`](mod@examples); [`preview`], a submission that is answered at
-//! once; [`draw`], teeth at random; then [`study`] and [`study_table`], many submissions at once, and [`population`], a study of what is made. `declare`, `units`, `size`, `edit` and `pointer` carry
+//! once; [`draw`], teeth at random; then [`study`] and [`study_table`], many submissions at once, [`population`], a study of what is made, and [`search`], a study that chooses its designs itself. `declare`, `units`, `size`, `edit` and `pointer` carry
 //! them: the one declaration of each object, conversions, how much is read at all, changes in place, and places in a submission.
 //!
 //! This is the only place where domain data meets serde, and where mm, um, degrees, GPa and MPa meet SI.
@@ -40,6 +40,7 @@ pub mod draw;
 pub mod preview;
 
 pub mod population;
+pub mod search;
 pub mod study;
 pub mod study_table;
 
@@ -53,6 +54,7 @@ pub use population::{PopulationResults, PopulationSample};
 pub use preview::Preview;
 pub use problem::{Code, FieldError, Problem};
 pub use results::Results;
+pub use search::{SearchState, Searching};
 pub use solve::{Limits, Validation, limits, solve, validate};
 pub use status::Status;
 pub use study::{Design, Study};

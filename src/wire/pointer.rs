@@ -4,7 +4,8 @@ use std::sync::LazyLock;
 
 use serde_json::{Map, Value};
 
-use super::declare::Document as _;
+use super::declare::{Document as _, Named};
+use super::population::PopulationDocument;
 use super::problem::Code;
 use super::submission::Document;
 
@@ -93,7 +94,7 @@ impl Pointer {
     ///
     /// The code and a sentence that says which step is unknown and what would be known there.
     pub(super) fn check_named(&self) -> Result<(), (Code, String)> {
-        self.named().map(|_| ())
+        self.named(&SCHEMA, &self.steps).map(|_| ())
     }
 
     /// What kind of number the field at this place takes.
@@ -102,8 +103,35 @@ impl Pointer {
     ///
     /// As [`check_named`](Self::check_named), or that the field takes no number.
     pub(super) fn number_kind(&self) -> Result<NumberKind, (Code, String)> {
-        let named = self.named()?;
-        let schemas = SCHEMA.alternatives(&named);
+        self.number_kind_in(&SCHEMA, &self.steps)
+    }
+
+    /// What kind of number the field takes that is a variable of a search: one of the submission, or one of its population.
+    ///
+    /// # Errors
+    ///
+    /// As [`number_kind`](Self::number_kind).
+    pub(super) fn number_kind_of_variable(&self) -> Result<NumberKind, (Code, String)> {
+        match self.steps.as_slice() {
+            [first, rest @ ..] if first == "population" => match rest {
+                // The members are what designs are compared by.
+                [only] if only == "size" || only == "seed" => {
+                    let detail = format!("{} has to be the same for all designs.", self.text);
+                    Err((Code::OutOfRange, detail))
+                }
+                rest => self.number_kind_in(&POPULATION, rest),
+            },
+            steps => self.number_kind_in(&SCHEMA, steps),
+        }
+    }
+
+    fn number_kind_in(
+        &self,
+        schema: &'static Schema,
+        steps: &[String],
+    ) -> Result<NumberKind, (Code, String)> {
+        let named = self.named(schema, steps)?;
+        let schemas = schema.alternatives(&named);
         let is = |word: &str| {
             schemas.iter().any(|schema| match &schema["type"] {
                 Value::String(own) => own == word,
@@ -121,17 +149,21 @@ impl Pointer {
         }
     }
 
-    /// What the schema of a submission says of this place.
-    fn named(&self) -> Result<Vec<&'static Value>, (Code, String)> {
-        let mut here: Vec<&'static Value> = vec![&SCHEMA.root];
-        for (i, step) in self.steps.iter().enumerate() {
-            let schemas = SCHEMA.alternatives(&here);
+    /// What a schema says of the place behind these last steps.
+    fn named(
+        &self,
+        schema: &'static Schema,
+        steps: &[String],
+    ) -> Result<Vec<&'static Value>, (Code, String)> {
+        let mut here: Vec<&'static Value> = vec![&schema.root];
+        for (i, step) in steps.iter().enumerate() {
+            let schemas = schema.alternatives(&here);
             let next: Vec<&'static Value> = schemas
                 .iter()
                 .filter_map(|schema| child(schema, step))
                 .collect();
             if next.is_empty() {
-                let place = format!("/{}", self.steps[..i].join("/"));
+                let place = format!("/{}", steps[..i].join("/"));
                 let known: Vec<&str> = schemas
                     .iter()
                     .filter_map(|schema| schema["properties"].as_object())
@@ -144,8 +176,8 @@ impl Pointer {
                     known.join(", ")
                 };
                 let detail = format!(
-                    "{} names no field of a submission; at {place} there is {known}.",
-                    self.text
+                    "{} names no field of {}; at {place} there is {known}.",
+                    self.text, schema.of
                 );
                 return Err((Code::UnknownField, detail));
             }
@@ -170,8 +202,10 @@ fn is_within(inner: &str, outer: &str) -> bool {
         .is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
 }
 
-/// The schema of a submission, with those that it refers to.
+/// The schema of a document, with those that it refers to.
 struct Schema {
+    /// What it is of.
+    of: &'static str,
     root: Value,
     named: Map<String, Value>,
 }
@@ -179,16 +213,26 @@ struct Schema {
 static SCHEMA: LazyLock<Schema> = LazyLock::new(|| {
     let mut named = Vec::new();
     Document::name_fields(&mut named);
-    let named = named.into_iter();
-    Schema {
-        root: Document::json_schema(),
-        named: named
-            .map(|(name, schema)| (name.to_owned(), schema))
-            .collect(),
-    }
+    Schema::new("a submission", Document::json_schema(), named)
+});
+
+static POPULATION: LazyLock<Schema> = LazyLock::new(|| {
+    let mut named = Vec::new();
+    PopulationDocument::name_fields(&mut named);
+    Schema::new("a population", PopulationDocument::json_schema(), named)
 });
 
 impl Schema {
+    fn new(of: &'static str, root: Value, named: Named) -> Self {
+        let named = named.into_iter();
+        let named = named.map(|(name, schema)| (name.to_owned(), schema));
+        Self {
+            of,
+            root,
+            named: named.collect(),
+        }
+    }
+
     /// The schemas behind references and alternatives.
     fn alternatives<'a>(&'a self, schemas: &[&'a Value]) -> Vec<&'a Value> {
         let mut found = Vec::new();

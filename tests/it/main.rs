@@ -42,6 +42,7 @@ mod recovery;
 mod refusals;
 mod repeats;
 mod rexs;
+mod searches;
 mod shares;
 mod sigkill;
 mod spans;

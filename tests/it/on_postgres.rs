@@ -38,6 +38,7 @@ mod on_postgres {
     mod refusals;
     mod repeats;
     mod rexs;
+    mod searches;
     mod shares;
     mod sigkill;
     mod strain;

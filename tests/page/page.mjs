@@ -161,6 +161,24 @@ await step("a study runs and shows its table and its front", service, async (pag
   await axe(page);
 });
 
+await step("a search finds a design, shows how it came to it, and opens it", service, async (page) => {
+  await open(page, service);
+  await tab(page, "study");
+  await page.locator("#search summary").click();
+  await page.locator("#variable-0").selectOption("/pair/driving/tip_relief/amount_um");
+  await page.locator("#variable-1").selectOption("");
+  for (const [name, value] of [["low", "2"], ["high", "12"], ["step", "1"]]) await page.locator(`#variable-0-${name}`).fill(value);
+  await page.locator("#search-evaluations").fill("8");
+  await page.locator("#search-run").click();
+  await page.waitForFunction(() => /designs looked at, successful/.test(document.querySelector("#search-state").innerText), null, { timeout: 120_000 });
+  assert.match(await page.locator("#search-out").innerText(), /flexible method on the fine grid: STE peak-to-peak \d/);
+  await axe(page);
+  const found = Number(await page.locator("#search-out tbody td").nth(1).innerText());
+  await page.locator("#search-out button", { hasText: "Use this design" }).click();
+  await page.waitForFunction(() => location.hash || true);
+  assert.equal((await designOf(page)).pair.driving.tip_relief.amount_um, found);
+});
+
 await step("a population shows how good the pairs will be that are made, and opens one of them", service, async (page) => {
   await open(page, service);
   await tab(page, "population");

@@ -117,6 +117,23 @@ def test_a_population_is_what_numpy_makes_of_its_table(service):
         service.study({"base": base, "designs": [{"label": "one"}]}).population()
 
 
+def test_a_search_gives_its_best_design(service):
+    base = service.example("standard-pair") | {"method": "load_distribution", "output_torques_n_m": [115]}
+    paths = [f"/pair/{gear}/tip_relief/amount_um" for gear in ("driving", "driven")]
+    asked = {"variables": [{"path": path, "low": 1, "high": 20, "step": 1} for path in paths], "minimize": [{"quantity": "transmission_error_um.peak_to_peak"}], "evaluations": 30}
+    study = service.study({"base": base, "search": asked})
+    found = study.search["best"]
+    least = study.frame().query("label != 'confirmed'").peak_to_peak_um.min()
+    assert found["goals"] == [least]
+    best = study.best()
+    assert [best["pair"][gear]["tip_relief"]["amount_um"] for gear in ("driving", "driven")] == [found["values"][path] for path in paths]
+    asked["minimize"].append({"cost": [{"path": path, "weight": 1} for path in paths]})
+    front = service.study({"base": base, "search": asked}).front()
+    assert front.goal_1.is_monotonic_increasing and front.goal_2.is_monotonic_decreasing
+    with pytest.raises(ValueError):
+        service.study({"base": base, "designs": [{"label": "one"}]}).best()
+
+
 def solved(service):
     job = service.submit(service.example("test-case-2"))
     while job["status"] not in ("successful", "failed"):

@@ -14,7 +14,9 @@ use crate::http::aside::{aside, turn_to_read};
 use crate::http::client::Client;
 use crate::http::conditional::{Keep, Tag};
 use crate::jobs::StudyRecord;
-use crate::wire::{Code, PopulationResults, PopulationSample, Problem, Study, Submission};
+use crate::wire::{
+    Code, PopulationResults, PopulationSample, Problem, SearchState, Study, Submission,
+};
 
 /// Get what a population comes to
 ///
@@ -136,13 +138,13 @@ pub(in crate::http) async fn design(
     request: HeaderMap,
 ) -> Result<Response, Problem> {
     let record = app.jobs.find_study(client.name(), study_id(&id)?).await?;
-    let wanted = row.parse::<usize>().ok();
+    let wanted = row.parse::<u32>().ok();
     let text = async {
-        let study = document(&app, client.name(), &record).await?;
-        let found = aside(client.name(), move |_| {
-            wanted.and_then(|row| study.submission_of(row))
-        });
-        let Some(text) = found.await? else {
+        let found = match wanted {
+            Some(row) => submission_of(&app, client.name(), &record, row).await?,
+            None => None,
+        };
+        let Some(text) = found else {
             let detail = format!("The study has {} designs, counted from 0.", record.total);
             return Err(Problem::new(Code::NotFound, detail));
         };
@@ -150,4 +152,74 @@ pub(in crate::http) async fn design(
     };
     let tag = Tag::of(&["design", &record.id.to_string(), &row]);
     tag.answer(Keep::ForGood, &request, text).await
+}
+
+/// The submission of a row; none if there is no such row.
+async fn submission_of(
+    app: &App,
+    client: &str,
+    record: &StudyRecord,
+    row: u32,
+) -> Result<Option<String>, Problem> {
+    let study = document(app, client, record).await?;
+    if !study.is_search() {
+        return aside(client, move |_| study.submission_of(row as usize)).await;
+    }
+    // What a search asked for stands in its rows.
+    let rows = app.jobs.study_rows(record.id, u64::from(row)).await?;
+    aside(client, move |_| {
+        let row = rows.first()?;
+        study.submission_searched(&row.label, &row.changes)
+    })
+    .await
+}
+
+/// Get the best design of a search
+///
+/// The design of `search.best`, as a submission with every default filled in: the best so far while the search runs.
+#[utoipa::path(
+    get, path = "/v1/studies/{id}/best", tag = "Studies", operation_id = "get_study_best",
+    params(
+        ("id" = String, Path, format = "uuid", description = "The id of the study."),
+        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
+    ),
+    responses(
+        (status = 200, description = "The submission.", body = Submission, headers(
+            ("ETag" = String, description = "Stands for this answer."),
+            ("Retry-After" = u32, description = "Until the search has ended: seconds after which it is worth looking again."),
+        )),
+        (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
+        (status = 404, description = "There is no such study, it is no search, or no design of it could be had so far.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(in crate::http) async fn best(
+    State(app): State<App>,
+    client: Client,
+    Path(id): Path<String>,
+    request: HeaderMap,
+) -> Result<Response, Problem> {
+    let record = app.jobs.find_study(client.name(), study_id(&id)?).await?;
+    let Some(state) = &record.search else {
+        return Err(Problem::new(
+            Code::NotFound,
+            "This study is no search; its table is at /results.",
+        ));
+    };
+    let state: SearchState =
+        serde_json::from_str(state).map_err(|_| crate::http::problem::internal())?;
+    let Some(best) = state.best else {
+        let detail = state
+            .why_nothing()
+            .unwrap_or_else(|| "No design of this search has been computed so far.".to_owned());
+        return Err(Problem::new(Code::ResultNotReady, detail));
+    };
+    let text = async {
+        let found = submission_of(&app, client.name(), &record, best.row as u32).await?;
+        let text = found.ok_or_else(crate::http::problem::internal)?;
+        Ok::<_, Problem>(([(CONTENT_TYPE, "application/json")], text).into_response())
+    };
+    let tag = Tag::of(&["best", &record.id.to_string(), &best.row.to_string()]);
+    let mut response = tag.answer(Keep::AskAgain, &request, text).await?;
+    tell_when_to_return(&record, &mut response);
+    Ok(response)
 }

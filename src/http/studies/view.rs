@@ -11,7 +11,7 @@ use uuid::Uuid;
 use crate::http::app::Edge;
 use crate::http::view::with_public_type;
 use crate::jobs::StudyRecord;
-use crate::wire::{Code, Problem, Status, Study};
+use crate::wire::{Code, Problem, SearchState, Status, Study};
 
 /// A study: how far it has come, and where to find its table.
 #[derive(Serialize, ToSchema)]
@@ -24,7 +24,7 @@ pub(in crate::http) struct StudyView {
     status: Status,
     /// Designs that have come to an end, whichever.
     done: u64,
-    /// Designs in all.
+    /// Designs in all; of a search that has not ended, the most that it may come to.
     total: u64,
     /// Designs that have results.
     successful: u64,
@@ -46,6 +46,10 @@ pub(in crate::http) struct StudyView {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<Problem>)]
     problem: Option<Value>,
+    /// Of a search: how far it has come.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<SearchState>)]
+    search: Option<Box<RawValue>>,
     links: StudyLinks,
     /// The study as it was sent. Absent in lists, and where it has more than 64 KiB: `links.document` has it whole.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -73,6 +77,9 @@ pub(in crate::http) struct StudyLinks {
     events: String,
     /// Its jobs, one for each design that can be built.
     jobs: String,
+    /// Of a search: the submission of the best design.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    best: Option<String>,
     /// Where to cancel it, by POST; absent when it has ended.
     #[serde(skip_serializing_if = "Option::is_none")]
     cancel: Option<String>,
@@ -95,6 +102,10 @@ impl StudyView {
             submitted_at: study.submitted_at,
             finished_at: study.finished_at(),
             problem: why_failed(study, edge),
+            search: study
+                .search
+                .clone()
+                .and_then(|text| RawValue::from_string(text).ok()),
             links: StudyLinks::new(study, edge),
             study: None,
         }
@@ -126,6 +137,7 @@ impl StudyLinks {
             results_ndjson: format!("{self_}/results/documents.ndjson"),
             events: format!("{self_}/events"),
             jobs: format!("{}/v1/jobs?study={}", edge.public_url, study.id),
+            best: study.search.is_some().then(|| format!("{self_}/best")),
             cancel: (!study.status().has_ended()).then(|| format!("{self_}/cancel")),
             self_,
         }
@@ -144,10 +156,19 @@ pub(super) fn why_failed(study: &StudyRecord, edge: &Edge) -> Option<Value> {
     if study.status() != Status::Failed {
         return None;
     }
-    let detail = format!(
-        "None of the {} designs has results: {} could not be built, {} could not be computed. Each row of the table has its problem.",
-        study.total, study.unbuildable, study.failed
-    );
+    let searched: Option<SearchState> = study
+        .search
+        .as_ref()
+        .and_then(|text| serde_json::from_str(text).ok());
+    let usual = || {
+        format!(
+            "None of the {} designs has results: {} could not be built, {} could not be computed. Each row of the table has its problem.",
+            study.total, study.unbuildable, study.failed
+        )
+    };
+    let detail = searched
+        .and_then(|search| search.why_nothing())
+        .unwrap_or_else(usual);
     let problem = serde_json::to_value(Problem::new(Code::NoDesignComputed, detail))
         .expect("a problem is plain data");
     Some(with_public_type(problem, &edge.public_url))

@@ -39,7 +39,7 @@ macro_rules! job_columns {
 macro_rules! study_columns {
     () => {
         "id, sequence, name, tags, gear, total, expanded, unbuildable, accepted, running, successful, failed, dismissed, version, \
-         submitted_at, last_end, cancelled_at"
+         submitted_at, last_end, cancelled_at, search"
     };
 }
 
@@ -134,6 +134,7 @@ from_row! {
             submitted_at: instant(row, "submitted_at")?,
             last_end: optional_instant(row, "last_end")?,
             cancelled_at: optional_instant(row, "cancelled_at")?,
+            search: row.try_get("search")?,
         })
     }
 }

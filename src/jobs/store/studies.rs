@@ -39,6 +39,8 @@ pub(in crate::jobs) struct NewStudy {
     pub(in crate::jobs) body_hash: String,
     pub(in crate::jobs) gear: GearName,
     pub(in crate::jobs) total: u64,
+    /// How a search stands before it begins.
+    pub(in crate::jobs) search: Option<String>,
     pub(in crate::jobs) submitted_at: Timestamp,
     /// The word under which the client may ask again and get this study.
     pub(in crate::jobs) idempotency_key: Option<String>,
@@ -54,6 +56,15 @@ pub(in crate::jobs) struct NewRow {
     pub(in crate::jobs) changes: String,
     /// The job, or the problem document of a design that cannot be built.
     pub(in crate::jobs) job: Result<NewJob, String>,
+}
+
+/// How far a search has come with the rows that are added.
+#[derive(Debug, Clone)]
+pub(in crate::jobs) struct SearchStep {
+    /// The rows that it comes to in all, if that is known by now.
+    pub(in crate::jobs) total: Option<u64>,
+    /// JSON.
+    pub(in crate::jobs) state: String,
 }
 
 /// What came of a study.
@@ -104,6 +115,7 @@ impl Store {
         id: Uuid,
         expanded: u64,
         rows: &[NewRow],
+        step: Option<&SearchStep>,
         now: Timestamp,
         bounds: QueueBounds<'_>,
     ) -> Result<bool, StoreError> {
@@ -119,6 +131,14 @@ impl Store {
             write.rollback().await?;
             return Ok(false);
         };
+        if let Some(step) = step {
+            query("update studies set search = $2, total = coalesce($3, total) where id = $1")
+                .bind(id.to_string())
+                .bind(&step.state)
+                .bind(step.total.map(column))
+                .execute(&mut *write)
+                .await?;
+        }
         if !append(&mut write, &client, id, expanded, rows, bounds).await? {
             write.rollback().await?;
             return Ok(false);
@@ -126,6 +146,23 @@ impl Store {
         note_study(&mut write, id, now).await?;
         write.commit().await?;
         Ok(true)
+    }
+
+    /// Keeps a study that waits for what came of its rows, so that no other process takes it.
+    pub(in crate::jobs) async fn hold_study(
+        &self,
+        id: Uuid,
+        steady: Timestamp,
+    ) -> Result<(), StoreError> {
+        let mut write = self.begin().await?;
+        query(dialect::expanding())
+            .bind(id.to_string())
+            .bind(steady.as_microsecond())
+            .bind(micros(EXPANDING_FOR))
+            .execute(&mut *write)
+            .await?;
+        write.commit().await?;
+        Ok(())
     }
 
     /// The studies that do not have all their rows, and that nobody expands: ids and clients. They are this process's now.
@@ -347,6 +384,13 @@ async fn insert_study(connection: &mut Connection, study: &NewStudy) -> Result<(
         .bind(&study.document)
         .execute(&mut *connection)
         .await?;
+    if let Some(state) = &study.search {
+        query("update studies set search = $2 where id = $1")
+            .bind(&id)
+            .bind(state)
+            .execute(&mut *connection)
+            .await?;
+    }
     for tag in &study.tags {
         query("insert into study_tags (client, tag, sequence, study) values ($1, $2, $3, $4) on conflict do nothing")
             .bind(&study.client)

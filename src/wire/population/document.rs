@@ -141,7 +141,12 @@ impl Population {
 
 impl PopulationDocument {
     /// The population, if its laws can be drawn from.
-    fn made(self, base: Option<&Node>, place: &Place<'_>, errors: &Errors) -> Option<Population> {
+    pub(in crate::wire) fn made(
+        self,
+        base: Option<&Node>,
+        place: &Place<'_>,
+        errors: &Errors,
+    ) -> Option<Population> {
         let before = errors.count();
         let accuracy = match self.accuracy {
             Some(AccuracyDocument { driving, driven }) => [driving, driven],
@@ -180,7 +185,7 @@ impl PopulationDocument {
             let place = place.of("path");
             if let Some(gear) = drawn {
                 let detail = format!(
-                    "{} lies in the teeth of the {gear} gear, which /population/accuracy draws.",
+                    "{} lies in the teeth of the {gear} gear, which accuracy draws.",
                     path.text()
                 );
                 place.wrong::<()>(Code::ConflictingFields, detail, None);

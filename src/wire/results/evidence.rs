@@ -2,7 +2,7 @@
 
 use meshwright_engine::analysis::Analysis;
 use meshwright_engine::analysis::ErrorEstimate;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
@@ -128,7 +128,7 @@ const DEFINITIONS: &[Definition] = &[
 ];
 
 /// What a second grid level changes, the largest over the torques.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = ErrorEstimate, title = "Error estimate")]
 pub struct ErrorEstimateDocument {
     /// In the mean transmission error, in um.

@@ -16,6 +16,7 @@ use crate::wire::kept::Kept;
 use crate::wire::pointer::Pointer;
 use crate::wire::population::Population;
 use crate::wire::problem::{Code, FieldError};
+use crate::wire::search::Search;
 use crate::wire::submission::TAGS;
 
 /// The most axes, and the most changes of one design: the submission has fewer fields.
@@ -66,13 +67,13 @@ pub(super) fn read(node: Node, value: Value, errors: &Errors) -> Option<Study> {
 }
 
 /// What a study may choose its designs by.
-const PLANS: [&str; 3] = ["axes", "designs", "population"];
+const PLANS: [&str; 4] = ["axes", "designs", "population", "search"];
 
 fn read_plan(reader: &mut ObjectReader<'_>, value: &Value, errors: &Errors) -> Option<Plan> {
     let given = PLANS.map(|name| reader.present(name).map(|node| (name, node)));
     let mut given = given.into_iter().flatten();
     let Some((name, node)) = given.next() else {
-        let detail = "A study needs one of /axes, /designs and /population; it has none.";
+        let detail = "A study needs one of /axes, /designs, /population and /search; it has none.";
         return reader
             .place_of("designs")
             .wrong(Code::MissingField, detail, None);
@@ -85,6 +86,11 @@ fn read_plan(reader: &mut ObjectReader<'_>, value: &Value, errors: &Errors) -> O
     match name {
         "axes" => read_axes(reader, node, values, errors).map(Plan::Axes),
         "designs" => read_designs(reader, node, values, errors).map(Plan::Designs),
+        "search" => {
+            let (place, base) = (reader.place_of(name), reader.get("base"));
+            let search = Search::read(node, base, &place, errors)?;
+            Some(Plan::Search(Box::new(search)))
+        }
         _ => {
             let (place, base) = (reader.place_of(name), reader.get("base"));
             let population = Population::read(node, base, &place, errors)?;

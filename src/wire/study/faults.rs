@@ -11,6 +11,7 @@ use crate::wire::declare::{Errors, Node, escaped};
 use crate::wire::pointer::Pointer;
 use crate::wire::population::Population;
 use crate::wire::problem::{Code, FieldError, Problem};
+use crate::wire::search::Search;
 use crate::wire::submission::Submission;
 
 /// Between so many designs it is asked whether anybody still waits.
@@ -32,7 +33,14 @@ impl Study {
             Plan::Axes(_) => self.check_axes(errors, run),
             Plan::Designs(_) => self.check_designs(errors, run),
             Plan::Population(population) => {
-                self.check_population(population, errors);
+                self.check_population(population, "/population", errors);
+                Ok(())
+            }
+            Plan::Search(search) => {
+                if let Some(population) = search.population() {
+                    self.check_population(population, "/search/population", errors);
+                }
+                self.check_search(search, errors);
                 Ok(())
             }
         }
@@ -103,10 +111,10 @@ impl Study {
     }
 
     /// Refuses what would be wrong with a varied field in the middle of its law.
-    fn check_population(&self, population: &Population, errors: &Errors) {
+    fn check_population(&self, population: &Population, at: &str, errors: &Errors) {
         let mut submission = self.base.clone();
         let places = population.varied().iter().zip(0..).map(|(varied, i)| {
-            let place = format!("/population/vary/{i}/path");
+            let place = format!("{at}/vary/{i}/path");
             (&varied.path, varied.told(varied.median()), place)
         });
         let places: Vec<_> = places.collect();
@@ -123,6 +131,30 @@ impl Study {
             if let Some((.., place)) = brought {
                 errors.push(FieldError {
                     pointer: place.clone(),
+                    ..error
+                });
+            }
+        }
+    }
+
+    /// Refuses what would be wrong with a variable at an end of its range.
+    fn check_search(&self, search: &Search, errors: &Errors) {
+        for (i, end, changes) in search.ends() {
+            let path = search.path_of(i);
+            let found = match search.population_with(&self.base, &changes) {
+                Err(errors) => errors,
+                Ok(_) => match self.node_searched(&changes) {
+                    Some(node) => Submission::wrong_fields(&node),
+                    None => vec![names_nothing(path, path.text())],
+                },
+            };
+            // A field may need others beside it, which the base lacks.
+            let own = found
+                .into_iter()
+                .find(|error| path.covers(&error.pointer) || is_beside(path, &error.pointer));
+            if let Some(error) = own {
+                errors.push(FieldError {
+                    pointer: format!("/search/variables/{i}/{end}"),
                     ..error
                 });
             }
@@ -154,6 +186,20 @@ impl Study {
                     let path = varied.path.text();
                     if rule.sets(path) {
                         refuse(format!("/population/vary/{i}/path"), path);
+                    }
+                }
+            }
+            Plan::Search(search) => {
+                for (i, path) in search.paths_of_variables().enumerate() {
+                    if rule.sets(path.text()) {
+                        refuse(format!("/search/variables/{i}/path"), path.text());
+                    }
+                }
+                let varied = search.population().into_iter().flat_map(Population::varied);
+                for (i, varied) in varied.enumerate() {
+                    let path = varied.path.text();
+                    if rule.sets(path) {
+                        refuse(format!("/search/population/vary/{i}/path"), path);
                     }
                 }
             }

@@ -1,8 +1,8 @@
 //! A study: one submission in many variants, each of which is computed.
 //!
-//! A study has a `base`, and says by `axes`, by `designs` or by a `population` what changes in it. Axes give every combination of their
+//! A study has a `base`, and says by `axes`, by `designs`, by a `population` or by a `search` what changes in it. Axes give every combination of their
 //! values, the last axis changing fastest, as nested loops written in their order would; designs are listed with their
-//! labels; the members of a population are drawn from laws. What changes is named by JSON pointers (RFC 6901) into the submission.
+//! labels; the members of a population are drawn from laws; a search chooses its designs by what came of those before. What changes is named by JSON pointers (RFC 6901) into the submission.
 //!
 //! What is wrong with the study itself is refused: a pointer that names no field, a value of the wrong type, a field of
 //! the base that no design mends, a label that stands twice, more designs than the limit. What is wrong with one design
@@ -28,6 +28,7 @@ use super::kept::Kept;
 use super::pointer::Pointer;
 use super::population::{Population, Varied};
 use super::problem::{Code, FieldError, Problem};
+use super::search::{Role, Search, confirming};
 use super::submission::{MOST_TORQUES, Submission};
 use super::warning::GearName;
 use constant_mass::ConstantMass;
@@ -52,6 +53,7 @@ enum Plan {
     Axes(Vec<Axis>),
     Designs(Vec<Listed>),
     Population(Box<Population>),
+    Search(Box<Search>),
 }
 
 /// A field and the values that it takes.
@@ -121,12 +123,13 @@ impl Study {
         }
     }
 
-    /// The number of designs.
+    /// The number of designs; of a search the most that it may come to.
     pub fn total(&self) -> usize {
         match &self.plan {
             Plan::Axes(axes) => axes.iter().map(|axis| axis.values.len()).product(),
             Plan::Designs(designs) => designs.len(),
             Plan::Population(population) => population.size(),
+            Plan::Search(search) => search.most_rows(),
         }
     }
 
@@ -134,8 +137,32 @@ impl Study {
     pub(super) fn population(&self) -> Option<&Population> {
         match &self.plan {
             Plan::Population(population) => Some(population),
-            Plan::Axes(_) | Plan::Designs(_) => None,
+            Plan::Axes(_) | Plan::Designs(_) | Plan::Search(_) => None,
         }
+    }
+
+    /// The search that chooses its designs, if one does.
+    pub(super) fn search(&self) -> Option<&Search> {
+        match &self.plan {
+            Plan::Search(search) => Some(search),
+            Plan::Axes(_) | Plan::Designs(_) | Plan::Population(_) => None,
+        }
+    }
+
+    /// What a search makes small, in words.
+    pub fn goals(&self) -> Vec<String> {
+        self.search().map_or_else(Vec::new, Search::goals_in_words)
+    }
+
+    /// What the conditions of a search are about, in words.
+    pub fn conditions(&self) -> Vec<String> {
+        let search = self.search();
+        search.map_or_else(Vec::new, Search::conditions_in_words)
+    }
+
+    /// Whether its designs are chosen by a search, one after the other.
+    pub fn is_search(&self) -> bool {
+        self.search().is_some()
     }
 
     /// The document as it was sent, without its white space.
@@ -171,7 +198,9 @@ impl Study {
         }
         let touches = |member: Member| {
             let mut paths = self.paths();
-            let drawn = self.population();
+            let drawn = self
+                .population()
+                .or(self.search().and_then(Search::population));
             paths.any(|path| path.starts_with(&["pair", member.word()]))
                 || drawn.is_some_and(|population| population.draws_teeth_of(member))
         };
@@ -188,16 +217,19 @@ impl Study {
             Plan::Axes(axes) => (&axes[..], &[][..], &[][..]),
             Plan::Designs(designs) => (&[][..], &designs[..], &[][..]),
             Plan::Population(population) => (&[][..], &[][..], population.varied()),
+            Plan::Search(_) => (&[][..], &[][..], &[][..]),
         };
+        let searched = self.search().into_iter().flat_map(Search::paths);
         let listed = designs.iter().flat_map(|design: &Listed| &design.changes);
         let of_axes = axes.iter().map(|axis: &Axis| &axis.path);
         let of_members = varied.iter().map(|varied: &Varied| &varied.path);
         of_axes
             .chain(listed.map(|(path, _)| path))
             .chain(of_members)
+            .chain(searched)
     }
 
-    /// The design of a row, counted from 0; none beyond the last.
+    /// The design of a row, counted from 0; none beyond the last, and none of a search, whose rows follow from each other.
     pub fn design(&self, row: usize) -> Option<Design> {
         let Composed {
             label,
@@ -210,7 +242,7 @@ impl Study {
                     population.give_teeth(row as u32, pair, errors)
                 })
             }
-            Plan::Axes(_) | Plan::Designs(_) => Submission::of_node(&submission),
+            Plan::Axes(_) | Plan::Designs(_) | Plan::Search(_) => Submission::of_node(&submission),
         });
         Some(Design {
             label,
@@ -222,20 +254,114 @@ impl Study {
     /// The submission of a row, as JSON; one that cannot be built as far as it can be put together. None beyond the last row.
     pub fn submission_of(&self, row: usize) -> Option<String> {
         let design = self.design(row)?;
-        Some(match design.submission {
+        Some(self.written(design.submission, || self.composed(row)))
+    }
+
+    /// The submission of a row of a search, of which this is told; none if it is no row of one.
+    pub fn submission_searched(&self, label: &str, told: &Map<String, Value>) -> Option<String> {
+        let (role, search) = (Role::of_label(label)?, self.search()?);
+        let changes = search.changes_among(told)?;
+        let design = self.searched(role, &changes);
+        Some(self.written(design.submission, || {
+            let (composed, _) = self.composed_of_search(role, &changes).ok()?;
+            Some(composed)
+        }))
+    }
+
+    fn written(
+        &self,
+        submission: Result<Submission, Problem>,
+        composed: impl FnOnce() -> Option<Composed>,
+    ) -> String {
+        match submission {
             Ok(submission) => submission.canonical_json(),
-            Err(_) => match self.composed(row)?.submission {
-                Ok(node) => node.to_value().to_string(),
-                Err(_) => self.base.to_value().to_string(),
+            Err(_) => match composed().map(|composed| composed.submission) {
+                Some(Ok(node)) => node.to_value().to_string(),
+                _ => self.base.to_value().to_string(),
             },
-        })
+        }
+    }
+
+    /// A design of a search, its variables having these values.
+    pub(super) fn searched(&self, role: Role, changes: &Map<String, Value>) -> Design {
+        let (composed, population) = match self.composed_of_search(role, changes) {
+            Ok(composed) => composed,
+            Err(errors) => {
+                return Design {
+                    label: role.to_string(),
+                    changes: changes.clone(),
+                    submission: Err(Problem::of_fields(errors)),
+                };
+            }
+        };
+        let submission = composed
+            .submission
+            .and_then(|node| match (role, &population) {
+                (Role::Member(_, member), Some(population)) => {
+                    Submission::of_node_with(&node, |pair, errors| {
+                        population.give_teeth(member, pair, errors)
+                    })
+                }
+                _ => Submission::of_node(&node),
+            });
+        Design {
+            label: composed.label,
+            changes: composed.changes,
+            submission,
+        }
+    }
+
+    /// The same before it is looked at as a whole; none if its changes lead nowhere.
+    pub(super) fn node_searched(&self, changes: &Map<String, Value>) -> Option<Node> {
+        let (composed, _) = self.composed_of_search(Role::Design(1), changes).ok()?;
+        composed.submission.ok()
+    }
+
+    /// A design of a search put together, and the population that it has members of.
+    fn composed_of_search(
+        &self,
+        role: Role,
+        told: &Map<String, Value>,
+    ) -> Result<(Composed, Option<Population>), Vec<FieldError>> {
+        let population = match self.search() {
+            Some(search) => search.population_with(&self.base, told)?,
+            None => None,
+        };
+        let varied = population.as_ref().map_or(&[][..], Population::varied);
+        let drawn: Vec<f64> = match (role, &population) {
+            (Role::Member(_, member), Some(population)) => population.values(member),
+            // As it is drawn, a design has the middle of each law.
+            _ => varied.iter().map(Varied::median).collect(),
+        };
+        let drawn = varied.iter().zip(drawn);
+        let drawn = drawn.map(|(varied, value)| (&varied.path, Cow::Owned(varied.told(value))));
+        let own = self.search().into_iter().flat_map(Search::paths_of_base);
+        let own = own.filter_map(|path| Some((path, Cow::Borrowed(told.get(path.text())?))));
+        let confirming = match role {
+            Role::Confirmed => confirming(),
+            Role::Design(_) | Role::Member(..) => &[],
+        };
+        let fixed = confirming.iter();
+        let fixed = fixed.map(|(path, value)| (path, Cow::Borrowed(value)));
+        let changes: Changes<'_> = own.chain(drawn).chain(fixed).collect();
+        let composed = self.put_together(role.to_string(), told.clone(), changes);
+        Ok((composed, population))
     }
 
     /// A row put together, before it is looked at as a whole.
     fn composed(&self, row: usize) -> Option<Composed> {
         let (label, changes) = self.changes(row)?;
+        Some(self.put_together(label, Map::new(), changes))
+    }
+
+    /// The base with these changes, which are told beside what is told already.
+    fn put_together(
+        &self,
+        label: String,
+        mut told: Map<String, Value>,
+        changes: Changes<'_>,
+    ) -> Composed {
         let mut submission = self.base.clone();
-        let mut told = Map::new();
         for (path, value) in changes {
             let put = submission.put(path.steps(), Node::of(&value));
             told.insert(path.text().to_owned(), value.into_owned());
@@ -245,26 +371,27 @@ impl Study {
                     path.text()
                 );
                 let error = FieldError::new(path.text(), Code::UnknownField, detail);
-                return Some(Composed {
+                return Composed {
                     label,
                     changes: told,
                     submission: Err(Problem::of_fields(vec![error])),
-                });
+                };
             }
         }
         if let Some(rule) = &self.constant_mass {
             rule.apply(&mut submission, &mut told);
         }
-        Some(Composed {
+        Composed {
             label,
             changes: told,
             submission: Ok(submission),
-        })
+        }
     }
 
     /// The label and the changes of a row.
     fn changes(&self, row: usize) -> Option<(String, Changes<'_>)> {
         match &self.plan {
+            Plan::Search(_) => None,
             Plan::Population(population) => {
                 let member = u32::try_from(row)
                     .ok()

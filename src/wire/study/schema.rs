@@ -9,11 +9,12 @@ use super::size::MOST_DESIGNS;
 use crate::wire::declare::{Document, Kind, Property, nested, object, or_null, utoipa_schema};
 use crate::wire::kept::Kept;
 use crate::wire::population::PopulationDocument;
+use crate::wire::search::SearchDocument;
 use crate::wire::submission::TAGS;
 
 impl utoipa::PartialSchema for Study {
     fn schema() -> utoipa::openapi::RefOr<utoipa::openapi::Schema> {
-        let about = "One submission in many variants, at most 100,000, each of which is computed as a job. Give axes, designs or a population. A design that cannot be built stands in the table with its problem.";
+        let about = "One submission in many variants, at most 100,000, each of which is computed as a job. Give axes, designs, a population or a search. A design that cannot be built stands in the table with its problem.";
         let tags = Vec::<String>::describe(
             "Short strings to find the study by. They do not change the result.",
             &TAGS,
@@ -34,6 +35,11 @@ impl utoipa::PartialSchema for Study {
                 or_null(PopulationDocument::describe("", &nested(""))),
                 false,
             ),
+            (
+                "search",
+                or_null(SearchDocument::describe("", &nested(""))),
+                false,
+            ),
             ("constant_mass", or_null(ConstantMass::json_schema()), false),
         ];
         utoipa_schema(object("Study", about, properties))
@@ -44,6 +50,7 @@ impl utoipa::ToSchema for Study {
     fn schemas(schemas: &mut Vec<(String, utoipa::openapi::RefOr<utoipa::openapi::Schema>)>) {
         let mut named = Vec::new();
         PopulationDocument::name_parts(&mut named);
+        SearchDocument::name_parts(&mut named);
         schemas.extend(
             named
                 .into_iter()

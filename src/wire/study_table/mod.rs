@@ -20,7 +20,7 @@ use summary::CurveSummary;
 
 pub use self::csv::CsvTable;
 pub use pareto::Outline;
-pub(in crate::wire) use quantity::{Of, QUANTITIES};
+pub(in crate::wire) use quantity::{Of, QUANTITIES, Quantity};
 pub use summary::Summary;
 
 /// A design and what has come of it so far.

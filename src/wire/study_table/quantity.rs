@@ -5,16 +5,38 @@ use crate::wire::results::{GearPeakStress, StatisticsValues};
 use crate::wire::warning::GearName;
 
 /// A number of a design.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(in crate::wire) struct Quantity {
     /// Its name on the wire.
     pub(in crate::wire) name: &'static str,
     /// Where it stands.
     pub(in crate::wire) of: Of,
+    /// The field of the submission by which it is asked for; none if it is always told.
+    pub(in crate::wire) needs: Option<&'static str>,
+    /// What it is as good as for a design that has none: the ligament beside holes that there are not.
+    pub(in crate::wire) absent: Option<f64>,
+}
+
+impl PartialEq for Quantity {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Quantity {
+    const fn needs(self, field: &'static str) -> Self {
+        let needs = Some(field);
+        Self { needs, ..self }
+    }
+
+    const fn or(self, absent: f64) -> Self {
+        let absent = Some(absent);
+        Self { absent, ..self }
+    }
 }
 
 /// Where a number of a design stands.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(in crate::wire) enum Of {
     /// It is the pair's, whatever the torque.
     Pair(fn(&Summary) -> Option<f64>),
@@ -23,13 +45,20 @@ pub(in crate::wire) enum Of {
 }
 
 const fn pair(name: &'static str, of: fn(&Summary) -> Option<f64>) -> Quantity {
-    let of = Of::Pair(of);
-    Quantity { name, of }
+    quantity(name, Of::Pair(of))
 }
 
 const fn curve(name: &'static str, of: fn(&CurveSummary, GearName) -> Option<f64>) -> Quantity {
-    let of = Of::Curve(of);
-    Quantity { name, of }
+    quantity(name, Of::Curve(of))
+}
+
+const fn quantity(name: &'static str, of: Of) -> Quantity {
+    Quantity {
+        name,
+        of,
+        needs: None,
+        absent: None,
+    }
 }
 
 /// Every number that has a name.
@@ -52,23 +81,30 @@ pub(in crate::wire) const QUANTITIES: &[Quantity] = &[
     curve("mesh_stiffness_tangent_n_per_m.peak_to_peak", |curve, _| {
         Some(stiffness(curve)?.peak_to_peak)
     }),
-    curve("hole_order_um", CurveSummary::hole_order),
+    curve("hole_order_um", CurveSummary::hole_order).or(0.0),
     curve("mesh_order_um", |curve, _| curve.mesh_order()),
     curve("peak_contact_pressure_mpa", |curve, _| {
         curve.peak_contact_pressure_mpa
-    }),
+    })
+    .or(f64::INFINITY),
     curve("stress.driving.root_mpa", |curve, _| {
         Some(stress(curve, GearName::Driving)?.root_mpa)
-    }),
+    })
+    .needs("stress"),
     curve("stress.driving.hole_mpa", |curve, _| {
         stress(curve, GearName::Driving)?.hole_mpa
-    }),
+    })
+    .needs("stress")
+    .or(0.0),
     curve("stress.driven.root_mpa", |curve, _| {
         Some(stress(curve, GearName::Driven)?.root_mpa)
-    }),
+    })
+    .needs("stress"),
     curve("stress.driven.hole_mpa", |curve, _| {
         stress(curve, GearName::Driven)?.hole_mpa
-    }),
+    })
+    .needs("stress")
+    .or(0.0),
     pair("mass_kg.driving", |design| design.driving.mass_kg),
     pair("mass_kg.driven", |design| design.driven.mass_kg),
     pair("mass_removed_percent.driving", |design| {
@@ -79,12 +115,18 @@ pub(in crate::wire) const QUANTITIES: &[Quantity] = &[
     }),
     pair("least_ligament_mm.driving", |design| {
         design.driving.least_ligament_mm
-    }),
+    })
+    .or(f64::INFINITY),
     pair("least_ligament_mm.driven", |design| {
         design.driven.least_ligament_mm
-    }),
+    })
+    .or(f64::INFINITY),
     pair("contact_ratio", |design| design.contact_ratio),
     pair("backlash_mm", |design| design.backlash_mm),
+    curve("dynamic_transmission_error_um.peak_to_peak", |curve, _| {
+        curve.dynamic_peak_to_peak_um
+    })
+    .needs("dynamics"),
 ];
 
 fn ste(curve: &CurveSummary) -> Option<&StatisticsValues> {

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::pareto::Conditions;
-use crate::wire::results::StatisticsDocument;
+use crate::wire::results::{ErrorEstimateDocument, StatisticsDocument};
 use crate::wire::units::significant;
 use crate::wire::warning::GearName;
 
@@ -26,6 +26,9 @@ pub struct Summary {
     pub(super) backlash_mm: Option<f64>,
     #[serde(default)]
     pub(super) curves: Vec<CurveSummary>,
+    /// What a second grid level changes, where it was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    error_estimate: Option<ErrorEstimateDocument>,
 }
 
 /// The mass of a gear and what holes leave of it.
@@ -49,6 +52,9 @@ pub(in crate::wire) struct CurveSummary {
     /// The largest contact pressure over the span, in MPa; none where it has no limit somewhere.
     #[serde(default)]
     pub(super) peak_contact_pressure_mpa: Option<f64>,
+    /// The largest peak-to-peak value of the dynamic transmission error over the speeds of a run-up, whichever way it is run through.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) dynamic_peak_to_peak_um: Option<f64>,
     /// Amplitudes of the transmission error, in um, by the names of their orders.
     pub(super) orders: BTreeMap<String, f64>,
 }
@@ -76,6 +82,12 @@ impl Summary {
             pair: Pair,
             #[serde(default)]
             curves: Vec<Curve>,
+            #[serde(default)]
+            evidence: Evidence,
+        }
+        #[derive(Default, Deserialize)]
+        struct Evidence {
+            error_estimate: Option<ErrorEstimateDocument>,
         }
         #[derive(Default, Deserialize)]
         #[serde(default)]
@@ -92,6 +104,20 @@ impl Summary {
             #[serde(default)]
             peak_contact_pressure_mpa: Vec<Option<f64>>,
             spectrum: Option<Spectrum>,
+            dynamics: Option<Dynamics>,
+        }
+        #[derive(Deserialize)]
+        struct Dynamics {
+            up: Option<Branch>,
+            down: Option<Branch>,
+        }
+        #[derive(Deserialize)]
+        struct Branch {
+            dynamic_transmission_error_um: DynamicError,
+        }
+        #[derive(Deserialize)]
+        struct DynamicError {
+            peak_to_peak: Vec<f64>,
         }
         #[derive(Deserialize)]
         struct Spectrum {
@@ -108,6 +134,7 @@ impl Summary {
             method,
             pair,
             curves,
+            evidence,
         } = serde_json::from_str(document).ok()?;
         let curve = |curve: Curve| {
             let named = curve
@@ -120,7 +147,13 @@ impl Summary {
                     .map(|amplitude| (line.label, amplitude))
             });
             let pressures: Option<Vec<f64>> = curve.peak_contact_pressure_mpa.into_iter().collect();
+            let branches = curve.dynamics.into_iter();
+            let branches = branches.flat_map(|dynamics| [dynamics.up, dynamics.down]);
+            let dynamic = branches
+                .flatten()
+                .flat_map(|branch| branch.dynamic_transmission_error_um.peak_to_peak);
             CurveSummary {
+                dynamic_peak_to_peak_um: dynamic.reduce(f64::max),
                 peak_contact_pressure_mpa: pressures
                     .and_then(|pressures| pressures.into_iter().reduce(f64::max)),
                 output_torque_n_m: curve.output_torque_n_m,
@@ -135,6 +168,7 @@ impl Summary {
             contact_ratio: pair.contact_ratio,
             backlash_mm: pair.backlash_mm,
             curves: curves.into_iter().map(curve).collect(),
+            error_estimate: evidence.error_estimate,
         })
     }
 }
@@ -160,6 +194,11 @@ impl Summary {
     /// Its curves, one for each torque.
     pub(in crate::wire) fn curves(&self) -> &[CurveSummary] {
         &self.curves
+    }
+
+    /// What a second grid level changes, where it was asked for.
+    pub(in crate::wire) fn error_estimate(&self) -> Option<ErrorEstimateDocument> {
+        self.error_estimate.clone()
     }
 
     pub(super) fn pair_mass(&self) -> Option<f64> {

@@ -92,7 +92,11 @@ def study(document: Mapping[str, Any], report: Report) -> Flow[StudyTable]:
     population: Json | None = None
     if document.get("population") is not None:
         population = yield from get(f"{path}/population")
-    return StudyTable((yield from get(path)), population)
+    search: Json | None = state.get("search")
+    best: Json | None = None
+    if search is not None and search["best"] is not None:
+        best = yield from get(f"/v1/studies/{state['id']}/best")
+    return StudyTable((yield from get(path)), population, search, best)
 
 
 def example(name: str) -> Flow[Json]:

@@ -11,10 +11,33 @@ if TYPE_CHECKING:
 class StudyTable:
     """A row for each design, as the service gives it; `frame` has a row for each design and torque."""
 
-    def __init__(self, document: dict[str, Any], population: dict[str, Any] | None = None) -> None:
+    def __init__(
+        self,
+        document: dict[str, Any],
+        population: dict[str, Any] | None = None,
+        search: dict[str, Any] | None = None,
+        best: dict[str, Any] | None = None,
+    ) -> None:
         self.document = document
         self.rows: list[dict[str, Any]] = document["rows"]
+        self.search = search
         self._population = population
+        self._best = best
+
+    def best(self) -> dict[str, Any]:
+        """The submission of the best design that a search found; how good it is stands in `search["best"]`."""
+        if self.search is None:
+            raise ValueError("the designs of this study were not searched for")
+        if self._best is None:
+            raise ValueError("no design of this search could be had; its refusals say why")
+        return self._best
+
+    def front(self) -> pandas.DataFrame:
+        """The front of a search of two goals: a row for each design, its variables and its goals."""
+        import pandas
+
+        designs = (self.search or {}).get("front", [])
+        return pandas.DataFrame([{"row": each["row"], **each["values"]} | {f"goal_{i + 1}": goal for i, goal in enumerate(each["goals"])} for each in designs])
 
     def population(self) -> PopulationTable:
         """What the members of a population come to."""

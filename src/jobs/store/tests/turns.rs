@@ -36,6 +36,7 @@ async fn study_with(store: &Store, id: Uuid, client: &str, inputs: Vec<String>) 
         body_hash: String::new(),
         gear: GearName::Driven,
         total: inputs.len() as u64,
+        search: None,
         submitted_at: at(1),
         idempotency_key: None,
         client_limit: i64::MAX,

@@ -261,6 +261,7 @@ fn study(total: u64) -> NewStudy {
         body_hash: "h".to_owned(),
         gear: GearName::Driven,
         total,
+        search: None,
         submitted_at: at(1),
         idempotency_key: Some("k".to_owned()),
         client_limit: 100,
@@ -314,7 +315,7 @@ async fn a_study_is_taken_once_and_its_designs_stand_once_whoever_expands_it() {
     let went_on = at_once(&stores, move |_, store: Store| async move {
         let rows = rows(id, 5..20);
         store
-            .continue_study(id, 5, &rows, at(2), bounds(2, 10))
+            .continue_study(id, 5, &rows, None, at(2), bounds(2, 10))
             .await
             .unwrap()
     })

@@ -1,0 +1,687 @@
+//! What is sought, what is refused, and how a search goes on from its rows.
+
+use meshwright_engine::library::Library;
+use meshwright_engine::run::Run;
+
+use super::*;
+use crate::wire::study_table::{Of, RowState, Summary};
+use crate::wire::warning::GearName;
+use crate::wire::{Design, Problem, Status, Study, solve};
+
+fn base() -> Value {
+    let gear = json!({
+        "tooth_count": 20, "module_mm": 2.0, "face_width_mm": 20.0, "blank": { "bore_radius_mm": 8.0 },
+        "tip_relief": { "amount_um": 5.0, "start": { "radial_length_mm": 0.8 } }
+    });
+    json!({
+        "method": "load_distribution",
+        "pair": { "center_distance_mm": 40.2, "driving": gear, "driven": gear },
+        "output_torques_n_m": [50.0, 100.0],
+        "resolution": { "positions_per_mesh_period": 16, "span_mesh_periods": 1 }
+    })
+}
+
+const RANGE: &str = "transmission_error_um.peak_to_peak";
+
+/// Reliefs of both gears for the least peak-to-peak value.
+fn reliefs() -> Value {
+    json!({
+        "variables": [
+            { "path": "/pair/driving/tip_relief/amount_um", "low": 0.5, "high": 30 },
+            { "path": "/pair/driven/tip_relief/amount_um", "low": 0.5, "high": 30 },
+        ],
+        "minimize": [{ "quantity": RANGE }],
+        "evaluations": 40,
+    })
+}
+
+fn document(search: Value) -> Value {
+    json!({ "base": base(), "search": search })
+}
+
+fn parse(document: &Value) -> Result<Study, Problem> {
+    Study::parse(document.to_string().as_bytes(), &Run::unattended())
+}
+
+fn searching(search: Value) -> Searching {
+    let study = parse(&document(search)).expect("a search");
+    Searching::new(study).expect("it is one")
+}
+
+/// Pointers and codes of what is wrong.
+fn refused(document: &Value) -> Vec<(String, Code, Option<f64>)> {
+    let problem = parse(document).expect_err("it is refused");
+    let errors = problem.errors.into_iter();
+    errors
+        .map(|error| (error.pointer, error.code, error.nearest))
+        .collect()
+}
+
+/// A row as it is once its design has been computed.
+fn computed(design: Design, library: &Library) -> RowState {
+    let solved = design
+        .submission
+        .and_then(|submission| solve(&submission, library, &Run::unattended()));
+    let (summary, problem) = match solved {
+        Ok(document) => (Summary::of_document(&document), None),
+        Err(problem) => (None, serde_json::to_value(problem).ok()),
+    };
+    RowState {
+        label: design.label,
+        changes: design.changes,
+        job: None,
+        status: if summary.is_some() {
+            Status::Successful
+        } else {
+            Status::Failed
+        },
+        summary,
+        problem,
+    }
+}
+
+/// The rows of the next generation.
+fn asked(search: &mut Searching) -> Vec<Design> {
+    let count = search.ask();
+    (0..count).map(|row| search.design(row)).collect()
+}
+
+/// Goes on with a search until it has so many rows, or to its end.
+fn go_on(search: &mut Searching, most: usize) -> Vec<RowState> {
+    let library = Library::with_capacity(16 << 20);
+    let mut all = Vec::new();
+    while all.len() < most {
+        let designs = asked(search);
+        if designs.is_empty() {
+            break;
+        }
+        let rows: Vec<RowState> = designs
+            .into_iter()
+            .map(|design| computed(design, &library))
+            .collect();
+        rows.iter().cloned().for_each(|row| search.tell(row));
+        all.extend(rows);
+    }
+    all
+}
+
+#[test]
+fn a_search_begins_with_its_base_and_ends_with_what_is_better() {
+    let mut search = searching(reliefs());
+    let rows = go_on(&mut search, usize::MAX);
+    assert_eq!(rows.len(), 40);
+    assert_eq!(rows[0].label, "design 1");
+    assert_eq!(
+        Value::Object(rows[0].changes.clone()),
+        json!({ "/pair/driving/tip_relief/amount_um": 5.0, "/pair/driven/tip_relief/amount_um": 5.0 })
+    );
+    let range = |row: &RowState| range_at(row, 0).max(range_at(row, 1));
+    let state = search.state();
+    let best = state.best.expect("a best one");
+    let least = rows.iter().map(range).fold(f64::INFINITY, f64::min);
+    assert_eq!(best.goals, [Some(least)]);
+    assert_eq!(
+        range(&rows[best.row as usize]),
+        least,
+        "the row is that of the best"
+    );
+    assert_eq!(best.values, rows[best.row as usize].changes);
+    assert!(
+        least < 0.9 * range(&rows[0]),
+        "{least} against {}",
+        range(&rows[0])
+    );
+    assert_eq!(
+        (state.evaluations, state.ended_by),
+        (40, Some(SearchEnd::Evaluations))
+    );
+    let bests: Vec<f64> = state
+        .generations
+        .iter()
+        .filter_map(|generation| generation.best)
+        .collect();
+    assert!(bests.windows(2).all(|two| two[1] <= two[0]), "{bests:?}");
+    assert_eq!(bests.last(), Some(&least));
+}
+
+/// The peak-to-peak value of a row at the torque of this number.
+fn range_at(row: &RowState, torque: usize) -> f64 {
+    let mut quantities = crate::wire::study_table::QUANTITIES.iter();
+    let quantity = quantities.find(|quantity| quantity.name == RANGE);
+    let curves = row.summary.as_ref().expect("it is computed").curves();
+    match quantity.expect("it is known").of {
+        Of::Curve(of) => of(&curves[torque], GearName::Driven).expect("it is told"),
+        Of::Pair(_) => unreachable!("it is that of a curve"),
+    }
+}
+
+#[test]
+fn a_search_goes_on_from_its_rows_alone() {
+    let mut whole = searching(reliefs());
+    let rows = go_on(&mut whole, usize::MAX);
+    let mut first = searching(reliefs());
+    let begun = go_on(&mut first, 20).len();
+    // Another process is told the rows, as the table has them.
+    let mut second = searching(reliefs());
+    let mut told = rows.iter().take(begun).cloned();
+    while second.rows() < begun as u64 {
+        let count = second.ask();
+        told.by_ref().take(count).for_each(|row| second.tell(row));
+    }
+    assert_eq!(second.state(), first.state());
+    let rest = go_on(&mut second, usize::MAX);
+    assert_eq!(rest, rows[begun..]);
+    assert_eq!(second.state(), whole.state());
+}
+
+#[test]
+fn a_row_is_told_from_its_label_and_its_changes() {
+    let search = json!({
+        "variables": [
+            { "path": "/pair/driving/tip_relief/amount_um", "low": 2, "high": 10 },
+            { "path": "/search/none", "low": 1, "high": 2 },
+        ],
+        "minimize": [{ "quantity": RANGE, "percent": 95 }],
+        "population": { "size": 3, "vary": [
+            { "path": "/pair/center_distance_mm", "kind": "normal", "mean": 40.2, "standard_deviation": 0.01 }
+        ], "accuracy": { "driven": { "iso_1328_class": 6 } } },
+        "evaluations": 8,
+    });
+    let mut with_class = search;
+    with_class["variables"][1] =
+        json!({ "path": "/population/accuracy/driven/iso_1328_class", "low": 4, "high": 8 });
+    let mut search = searching(with_class);
+    let designs = asked(&mut search);
+    let labels: Vec<&str> = designs.iter().map(|design| &*design.label).collect();
+    let expected = [
+        "design 1",
+        "design 1, member 0",
+        "design 1, member 1",
+        "design 1, member 2",
+        "design 2",
+    ];
+    assert_eq!(labels[..5], expected);
+    for design in &designs {
+        let told = search
+            .study
+            .submission_searched(&design.label, &design.changes);
+        let submission = design.submission.as_ref().expect("it can be built");
+        assert_eq!(told, Some(submission.canonical_json()), "{}", design.label);
+        assert_eq!(
+            Role::of_label(&design.label)
+                .map(|role| role.to_string())
+                .as_deref(),
+            Some(&*design.label)
+        );
+    }
+    let value = |design: &Design| -> Value {
+        serde_json::from_str(
+            &design
+                .submission
+                .as_ref()
+                .expect("it can be built")
+                .canonical_json(),
+        )
+        .expect("JSON")
+    };
+    // As it is drawn, it has the middle of the law and no deviations; members have both.
+    let (drawn, member) = (value(&designs[0]), value(&designs[1]));
+    assert_eq!(drawn["pair"]["center_distance_mm"], 40.2);
+    assert!(drawn["pair"]["driven"]["tooth_deviations"].is_null());
+    assert_ne!(member["pair"]["center_distance_mm"], 40.2);
+    assert!(member["pair"]["driven"]["tooth_deviations"].is_object());
+    // Equal members of two classes err by the same share of their tolerances.
+    let class = |design: &Design| {
+        design.changes["/population/accuracy/driven/iso_1328_class"]
+            .as_f64()
+            .expect("a class")
+    };
+    let pitch = |design: &Design| {
+        value(design)["pair"]["driven"]["tooth_deviations"]["pitch_single_um"][3]
+            .as_f64()
+            .expect("a number")
+    };
+    let mut others = designs
+        .iter()
+        .filter(|design| design.label.ends_with("member 0"));
+    let other = others
+        .find(|design| class(design) != 6.0)
+        .expect("another class");
+    let wider = 2.0_f64.sqrt().powf(class(other) - class(&designs[1]));
+    let ratio = pitch(other) / pitch(&designs[1]);
+    assert!(
+        (ratio / wider - 1.0).abs() < 1e-3,
+        "{ratio} against {wider}"
+    );
+}
+
+/// The coarsest class of the driven gear for which the 90th percentile over its members stays below a bound.
+fn coarsest(bound: f64) -> (Searching, Vec<RowState>) {
+    let mut search = searching(json!({
+        "variables": [{ "path": "/population/accuracy/driven/iso_1328_class", "low": 3, "high": 10 }],
+        "minimize": [{ "cost": [{ "path": "/population/accuracy/driven/iso_1328_class", "weight": -1 }] }],
+        "subject_to": [{ "quantity": RANGE, "at_most": bound, "percent": 90 }],
+        "population": { "size": 16, "accuracy": { "driven": { "iso_1328_class": 6 } } },
+        "evaluations": 20,
+    }));
+    let rows = go_on(&mut search, usize::MAX);
+    (search, rows)
+}
+
+#[test]
+fn percentiles_conditions_and_costs_decide_what_is_best() {
+    let (all, rows) = coarsest(1e6);
+    let state = all.state();
+    assert_eq!(
+        (state.evaluations, state.ended_by),
+        (8, Some(SearchEnd::Exhausted)),
+        "eight classes there are"
+    );
+    assert_eq!(rows.len(), 8 * 17);
+    let at_torque = |class: i64, torque: usize| {
+        let members = rows.iter().filter(|row| {
+            row.changes["/population/accuracy/driven/iso_1328_class"] == class
+                && row.label.contains("member")
+        });
+        let mut values: Vec<f64> = members.map(|row| range_at(row, torque)).collect();
+        values.sort_by(f64::total_cmp);
+        meshwright_sample::percentile::percentile(&values, 90.0)
+    };
+    let percentile = |class: i64| at_torque(class, 0).max(at_torque(class, 1));
+    let bound = (percentile(6) + percentile(7)) / 2.0;
+    let expected = (3..=10).rev().find(|class| percentile(*class) <= bound);
+    let best = coarsest(bound).0.state().best.expect("a best one");
+    let class = best.values["/population/accuracy/driven/iso_1328_class"].as_i64();
+    assert_eq!(class, expected);
+    let class = class.expect("a class");
+    assert!(best.feasible && best.goals == [Some(-class as f64)]);
+    assert!((best.conditions[0].expect("told") - percentile(class)).abs() < 1e-9);
+}
+
+#[test]
+fn refusals_are_counted_and_their_distance_is_that_of_the_nearest_that_would_do() {
+    let mut search = searching(json!({
+        "variables": [{ "path": "/pair/center_distance_mm", "low": 45, "high": 50 }],
+        "minimize": [{ "quantity": RANGE }],
+        "evaluations": 12,
+    }));
+    let rows = go_on(&mut search, usize::MAX);
+    assert_eq!(rows.len(), 12);
+    let state = search.state();
+    assert_eq!(state.best, None);
+    assert_eq!(
+        (&*state.refusals[0].code, state.refusals[0].count),
+        ("teeth_do_not_reach", 12)
+    );
+    let why = state.why_nothing().expect("nothing was found");
+    assert!(
+        why.contains("None of the 12 designs") && why.contains("teeth_do_not_reach"),
+        "{why}"
+    );
+    assert_eq!(search.confirmation(), None);
+    for row in &rows {
+        let problem = row.problem.as_ref().expect("it is refused");
+        let nearest = problem["errors"][0]["nearest"]
+            .as_f64()
+            .expect("there is one");
+        let own = row.changes["/pair/center_distance_mm"]
+            .as_f64()
+            .expect("a number");
+        let node = search.study.node_searched(&row.changes);
+        let distance = measure::distance(row, node.as_ref());
+        assert!(
+            (distance - (own - nearest) / own).abs() < 1e-12,
+            "{distance}"
+        );
+    }
+}
+
+#[test]
+fn the_best_design_is_confirmed_by_the_flexible_method_on_the_fine_grid() {
+    let mut search = searching(reliefs());
+    go_on(&mut search, 10);
+    let design = search.confirmation().expect("a best one");
+    assert!(Searching::is_confirmation(&design.label));
+    let submission = design.submission.as_ref().expect("it can be built");
+    let told: Value = serde_json::from_str(&submission.canonical_json()).expect("JSON");
+    assert_eq!(
+        (
+            &told["method"],
+            &told["resolution"]["grid"],
+            &told["resolution"]["error_estimate"]
+        ),
+        (&json!("flexible"), &json!("fine"), &json!(true))
+    );
+    let best = search.state().best.expect("a best one");
+    assert_eq!(
+        told["pair"]["driving"]["tip_relief"]["amount_um"],
+        best.values["/pair/driving/tip_relief/amount_um"]
+    );
+}
+
+#[test]
+fn what_is_wrong_with_a_search_is_refused_with_its_place() {
+    let variable = |change: Value| {
+        let mut search = reliefs();
+        for (name, value) in change.as_object().expect("fields") {
+            search["variables"][0][name] = value.clone();
+        }
+        document(search)
+    };
+    let with = |name: &str, value: Value| {
+        let mut search = reliefs();
+        search[name] = value;
+        document(search)
+    };
+    let both = {
+        let mut study = document(reliefs());
+        study["axes"] = json!([{ "path": "/output_torques_n_m/0", "values": [1, 2] }]);
+        study
+    };
+    let class =
+        json!([{ "path": "/population/accuracy/driven/iso_1328_class", "low": 1, "high": 8 }]);
+    let population = json!({ "size": 4, "accuracy": { "driven": { "iso_1328_class": 6 } } });
+    let of_members = |change: &dyn Fn(&mut Value)| {
+        let mut search = reliefs();
+        search["population"] = population.clone();
+        search["minimize"][0]["percent"] = json!(95);
+        change(&mut search);
+        document(search)
+    };
+    let path = "/search/variables/0/path";
+    let cases: Vec<(Value, &str, Code, Option<f64>)> = vec![
+        (
+            variable(json!({ "path": "/pair/driving/tip_relief/depth_um" })),
+            path,
+            Code::UnknownField,
+            None,
+        ),
+        (
+            variable(json!({ "path": "/pair/driving/tip_relief" })),
+            path,
+            Code::WrongType,
+            None,
+        ),
+        (
+            variable(json!({ "path": "/method" })),
+            path,
+            Code::WrongType,
+            None,
+        ),
+        (
+            variable(json!({ "path": "/population/size" })),
+            path,
+            Code::OutOfRange,
+            None,
+        ),
+        (
+            variable(json!({ "path": "/population/vary/0/height" })),
+            path,
+            Code::UnknownField,
+            None,
+        ),
+        (
+            with("variables", class.clone()),
+            path,
+            Code::MissingField,
+            None,
+        ),
+        (
+            with("variables", json!([])),
+            "/search/variables",
+            Code::MissingField,
+            None,
+        ),
+        (
+            variable(json!({ "low": 31 })),
+            "/search/variables/0/high",
+            Code::OutOfRange,
+            None,
+        ),
+        (
+            variable(json!({ "low": 30 })),
+            "/search/variables/0/high",
+            Code::OutOfRange,
+            None,
+        ),
+        (
+            variable(json!({ "low": -4 })),
+            "/search/variables/0/low",
+            Code::OutOfRange,
+            Some(0.0),
+        ),
+        (
+            variable(json!({ "low": 0, "step": 7 })),
+            "/search/variables/0/step",
+            Code::OutOfRange,
+            Some(7.5),
+        ),
+        (
+            variable(json!({ "low": 10, "step": 40 })),
+            "/search/variables/0/step",
+            Code::OutOfRange,
+            Some(20.0),
+        ),
+        (
+            variable(
+                json!({ "path": "/pair/driving/tooth_count", "low": 20, "high": 24, "step": 0.5 }),
+            ),
+            "/search/variables/0/step",
+            Code::WrongType,
+            Some(1.0),
+        ),
+        (
+            variable(json!({ "path": "/pair/driven/tip_relief/amount_um" })),
+            "/search/variables/1/path",
+            Code::OutOfRange,
+            None,
+        ),
+        (
+            with("minimize", json!([{ "quantity": "noise" }])),
+            "/search/minimize/0/quantity",
+            Code::WrongType,
+            None,
+        ),
+        (
+            with("minimize", json!([])),
+            "/search/minimize",
+            Code::MissingField,
+            None,
+        ),
+        (
+            with("minimize", json!([{}])),
+            "/search/minimize/0",
+            Code::MissingField,
+            None,
+        ),
+        (
+            with(
+                "minimize",
+                json!([{ "quantity": "stress.driven.root_mpa" }]),
+            ),
+            "/search/minimize/0/quantity",
+            Code::MissingField,
+            None,
+        ),
+        (
+            with("minimize", json!([{ "quantity": RANGE, "percent": 95 }])),
+            "/search/minimize/0/percent",
+            Code::MissingField,
+            None,
+        ),
+        (
+            with(
+                "minimize",
+                json!([{ "cost": [{ "path": "/pair/center_distance_mm", "weight": 1 }] }]),
+            ),
+            "/search/minimize/0/cost/0/path",
+            Code::UnknownField,
+            None,
+        ),
+        (
+            with(
+                "minimize",
+                json!([{ "quantity": RANGE }, { "quantity": RANGE }, { "quantity": RANGE }]),
+            ),
+            "/search/minimize",
+            Code::TooLarge,
+            Some(2.0),
+        ),
+        (
+            with("subject_to", json!([{ "quantity": "contact_ratio" }])),
+            "/search/subject_to/0",
+            Code::MissingField,
+            None,
+        ),
+        (
+            with(
+                "subject_to",
+                json!([{ "quantity": "contact_ratio", "at_least": 1.5, "at_most": 1.4 }]),
+            ),
+            "/search/subject_to/0/at_most",
+            Code::OutOfRange,
+            None,
+        ),
+        (
+            with(
+                "subject_to",
+                json!([{ "quantity": "contact_ratio", "at_most": 1.4 }, { "quantity": "contact_ratio", "at_least": 1.5 }]),
+            ),
+            "/search/subject_to/1/at_least",
+            Code::OutOfRange,
+            None,
+        ),
+        (
+            with("evaluations", json!(1)),
+            "/search/evaluations",
+            Code::OutOfRange,
+            Some(2.0),
+        ),
+        (
+            with("evaluations", json!(100_000)),
+            "/search/evaluations",
+            Code::OutOfRange,
+            Some(20_000.0),
+        ),
+        (
+            with("seconds", json!(0)),
+            "/search/seconds",
+            Code::OutOfRange,
+            Some(1.0),
+        ),
+        (
+            with("budget", json!(3)),
+            "/search/budget",
+            Code::UnknownField,
+            None,
+        ),
+        (
+            with("population", population.clone()),
+            "/search/population",
+            Code::ConflictingFields,
+            None,
+        ),
+        (both, "/search", Code::OutOfRange, None),
+        (
+            of_members(&|search| {
+                search["evaluations"] = json!(3000);
+                search["population"]["size"] = json!(50);
+            }),
+            "/search/evaluations",
+            Code::TooLarge,
+            Some(1960.0),
+        ),
+        (
+            of_members(&|search| {
+                search["population"]["vary"] = json!([{ "path": "/pair/driving/tip_relief/amount_um", "kind": "uniform", "low": 4, "high": 6 }]);
+            }),
+            path,
+            Code::ConflictingFields,
+            None,
+        ),
+        (
+            of_members(&|search| {
+                search["variables"] = json!([{ "path": "/population/accuracy/driven/iso_1328_class", "low": 1, "high": 12 }]);
+            }),
+            "/search/variables/0/high",
+            Code::OutOfRange,
+            Some(11.0),
+        ),
+        (
+            of_members(&|search| {
+                search["population"]["accuracy"]["driven"]["iso_1328_class"] = json!(0)
+            }),
+            "/search/population/accuracy/driven/iso_1328_class",
+            Code::OutOfRange,
+            Some(1.0),
+        ),
+    ];
+    for (study, pointer, code, nearest) in cases {
+        assert_eq!(
+            refused(&study),
+            [(pointer.to_owned(), code, nearest)],
+            "{study}"
+        );
+    }
+}
+
+#[test]
+fn a_law_is_moved_by_its_mean_and_refused_where_it_does_not_go_with_its_cuts() {
+    let mut search = searching(json!({
+        "variables": [{ "path": "/population/vary/0/mean", "low": 2, "high": 12 }],
+        "minimize": [{ "quantity": RANGE, "percent": 50 }],
+        "population": { "size": 2, "vary": [
+            { "path": "/pair/driving/tip_relief/amount_um", "kind": "normal", "mean": 5, "standard_deviation": 1, "low": null, "high": 12 }
+        ] },
+        "evaluations": 4,
+    }));
+    let designs = asked(&mut search);
+    let amount = |design: &Design| -> f64 {
+        let submission = design
+            .submission
+            .as_ref()
+            .expect("it can be built")
+            .canonical_json();
+        let submission: Value = serde_json::from_str(&submission).expect("JSON");
+        submission["pair"]["driving"]["tip_relief"]["amount_um"]
+            .as_f64()
+            .expect("a number")
+    };
+    for drawn in designs
+        .iter()
+        .filter(|design| !design.label.contains("member"))
+    {
+        let mean = drawn.changes["/population/vary/0/mean"]
+            .as_f64()
+            .expect("a number");
+        assert!(
+            (amount(drawn) - mean).abs() < 0.5,
+            "the middle of a law that is cut a little"
+        );
+    }
+    assert_ne!(amount(&designs[1]), amount(&designs[2]));
+}
+
+#[test]
+fn the_searches_of_the_guide_are_searches() {
+    let guide = include_str!("../../../docs/find-a-design.md");
+    let told: Vec<Value> = guide
+        .split("```json\n\"search\": ")
+        .skip(1)
+        .filter_map(|rest| serde_json::from_str(rest.split("```").next()?).ok())
+        .collect();
+    let examples = [
+        include_str!("../../../api/examples/search-reliefs.json"),
+        include_str!("../../../api/examples/search-holes.json"),
+        include_str!("../../../api/examples/search-classes.json"),
+    ];
+    assert_eq!(told.len(), examples.len());
+    for (example, told) in examples.into_iter().zip(told) {
+        let mut search = Study::parse(example.as_bytes(), &Run::unattended())
+            .map(|study| Searching::new(study).expect("it is one"))
+            .expect("a search");
+        assert!(asked(&mut search)[0].submission.is_ok());
+        let own: Value = serde_json::from_str(example).expect("JSON");
+        assert_eq!(own["search"], told);
+    }
+}

@@ -1,0 +1,156 @@
+// A search: fields that may differ, what is to be small and what has to hold; the service chooses which designs to compute.
+
+import { follow, hasEnded, json, post, ProblemError, request } from "./api.js";
+import { at, nameOf } from "./design.js";
+import { h, fixed, number } from "./dom.js";
+import { figure } from "./figure.js";
+
+/** How a search stands is fetched so often at most, in milliseconds. */
+const PAUSE = 500;
+
+/** What can be made small or bounded: words, unit, and what it is multiplied by to be shown. */
+const QUANTITIES = {
+  "transmission_error_um.peak_to_peak": ["STE peak-to-peak", "µm", 1],
+  "transmission_error_um.mean": ["STE mean", "µm", 1],
+  mesh_order_um: ["H_Z2", "µm", 1],
+  hole_order_um: ["H_N", "µm", 1],
+  peak_contact_pressure_mpa: ["contact pressure", "MPa", 1],
+  "mass_kg.driving": ["mass of the driving gear", "kg", 1],
+  "mass_kg.driven": ["mass of the driven gear", "kg", 1],
+  "mass_removed_percent.driven": ["removed by holes of the driven gear", "%", 1],
+  "least_ligament_mm.driven": ["least material around its holes", "mm", 1],
+  contact_ratio: ["contact ratio", "1", 1],
+  backlash_mm: ["backlash", "mm", 1],
+};
+
+/** Fields that are searched first. */
+const FIRST = ["/pair/driving/tip_relief/amount_um", "/pair/driven/tip_relief/amount_um", ""];
+
+const quantities = (id, label, none) => h("select", { id, ariaLabel: label }, ...(none ? [h("option", { value: "" }, none)] : []), ...Object.entries(QUANTITIES).map(([name, [words, unit]]) => h("option", { value: name }, `${words} in ${unit}`)));
+
+/** The search of `design` in `place`; `form` knows the fields, `onOpen` opens a design. */
+export function search(place, design, form, onOpen) {
+  const variables = FIRST.map((_, i) => variable(i, design, form));
+  const goals = [quantities("search-goal", "What is to be small", null), quantities("search-goal-2", "And what besides", "nothing else")];
+  const bounded = quantities("search-bounded", "What has to hold", "nothing");
+  const side = h("select", { id: "search-side", ariaLabel: "Side of the bound" }, h("option", { value: "at_least" }, "at least"), h("option", { value: "at_most" }, "at most"));
+  const bound = h("input", { type: "number", id: "search-bound", step: "any", ariaLabel: "Bound" });
+  const evaluations = h("input", { type: "number", id: "search-evaluations", value: 150, min: 2, max: 20000, step: 1 });
+  const run = h("button", { type: "button", className: "primary", id: "search-run", on: { click: () => start() } }, "Search");
+  const cancel = h("button", { type: "button", hidden: true }, "Cancel");
+  const state = h("p", { className: "note", role: "status", id: "search-state" });
+  const out = h("div", { className: "out", id: "search-out" });
+  place.replaceChildren(
+    h("p", { className: "note" }, "Each generation of designs is chosen by what came of those before; it begins with this design. ", h("a", { href: "guides/find-a-design" }, "Find a design")),
+    ...variables.map((each) => each.element),
+    h("div", { className: "line" }, h("label", { htmlFor: goals[0].id }, "for the least"), goals[0], h("label", { htmlFor: goals[1].id }, "and"), goals[1]),
+    h("div", { className: "line" }, h("label", { htmlFor: bounded.id }, "with"), bounded, side, bound),
+    h("div", { className: "line" }, h("label", { htmlFor: evaluations.id }, "Designs"), evaluations, run, cancel),
+    state, out);
+
+  function asked() {
+    const minimize = goals.map(({ value }) => value).filter(Boolean).map((quantity) => ({ quantity }));
+    const subject_to = bounded.value && bound.value ? [{ quantity: bounded.value, [side.value]: Number(bound.value) }] : [];
+    return { base: design.submission, name: `${nameOf(design.submission)}, searched`, search: { variables: variables.flatMap((each) => each.read()), minimize, subject_to, evaluations: Number(evaluations.value) } };
+  }
+
+  async function start() {
+    run.disabled = true;
+    out.replaceChildren();
+    try {
+      const question = asked();
+      await watch(await post("v1/studies", question), question);
+    } catch (error) {
+      if (!(error instanceof ProblemError)) throw error;
+      const details = error.problem.errors?.map(({ detail }) => detail) ?? [error.message];
+      state.replaceChildren(...details.map((detail) => h("span", { className: "field-error" }, detail, " ")));
+    } finally {
+      run.disabled = false;
+      cancel.hidden = true;
+    }
+  }
+
+  /** Shows a search as its generations come. */
+  async function watch(made, question) {
+    const address = `v1/studies/${made.id}`;
+    cancel.hidden = false;
+    cancel.onclick = () => request(`${address}/cancel`, { method: "POST" }).catch(() => {});
+    let [shown, ended] = [performance.now(), false];
+    const told = (_, data) => {
+      if (data.total) state.textContent = `${data.done} of at most ${data.total} designs`;
+      if (performance.now() - shown < PAUSE) return;
+      shown = performance.now();
+      json(address).then((study) => ended || show(study, question), () => {});
+    };
+    if (!hasEnded(made.status)) await follow(address, told);
+    const study = await json(address);
+    ended = true;
+    show(study, question);
+    state.textContent = study.problem?.detail ?? `${study.search.evaluations} designs looked at, ${study.status}`;
+  }
+
+  function show({ id, search: found }, question) {
+    const address = `v1/studies/${id}`;
+    const parts = question.search.minimize.map(({ quantity }) => QUANTITIES[quantity]);
+    const conditions = question.search.subject_to.map(({ quantity }) => QUANTITIES[quantity]);
+    const told = (values, names) => names.map(([words, unit, factor], i) => `${words} ${values?.[i] === null || values?.[i] === undefined ? "?" : number(values[i] * factor, 4)} ${unit}`).join(", ");
+    const { best, front, confirmed, generations } = found;
+    if (!best) return out.replaceChildren();
+    const rows = Object.entries(best.values).map(([path, value]) => h("tr", {}, h("th", { scope: "row" }, form.titleOf(path)), h("td", {}, number(at(design.submission, path) ?? null, 5)), h("td", {}, number(value, 5))));
+    const table = h("table", {}, h("thead", {}, h("tr", {}, ...["Field", "This design", "Best so far"].map((words) => h("th", { scope: "col" }, words)))), h("tbody", {}, ...rows));
+    const use = (row, words) => h("button", { type: "button", on: { click: async () => onOpen(await json(`${address}/designs/${row}`), null) } }, words);
+    const reached = generations.map((each, i) => [i + 1, each.best]).filter(([, value]) => value !== null);
+    const pictures = front.length > 1
+      ? [figure({ points: front.map(({ goals: [x, y], row }) => ({ x: x * parts[0][2], y: y * parts[1][2], label: `row ${row}`, strong: row === best.row })), x: `${parts[0][0]} in ${parts[0][1]}`, y: `${parts[1][0]} in ${parts[1][1]}`, title: "The front: no design found is better in both; the large point is the best compromise" }), frontOf(front, parts, use)]
+      : reached.length > 1 ? [figure({ lines: [{ x: reached.map(([i]) => i), y: reached.map(([, value]) => value * parts[0][2]) }], x: "generation", y: `${parts[0][0]} in ${parts[0][1]}`, title: "The best so far, generation by generation" })] : [];
+    const fine = confirmed && (confirmed.error_estimate
+      ? `By the flexible method on the fine grid: ${told(confirmed.goals, parts)}; another grid level changes the peak-to-peak value by ${fixed(confirmed.error_estimate.transmission_error_peak_to_peak_um, 4)} µm.`
+      : `It could not be confirmed: ${confirmed.problem?.detail ?? "there are no results"}`);
+    out.replaceChildren(
+      h("p", {}, h("strong", {}, told(best.goals, parts)), conditions.length ? `, with ${told(best.conditions, conditions)}` : "", best.feasible ? "" : ". No design so far keeps the condition; this one comes nearest to it"),
+      h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Best design of the search" }, table),
+      h("div", { className: "buttons" }, use(best.row, "Use this design")),
+      ...(fine ? [h("p", {}, fine)] : []), ...pictures);
+  }
+
+  /** The designs of a front, each to be used. */
+  function frontOf(front, parts, use) {
+    const head = [...parts.map(([words, unit]) => `${words} in ${unit}`), ""].map((words) => h("th", { scope: "col" }, words || h("span", { className: "visually-hidden" }, "Actions")));
+    const rows = front.map(({ row, goals }) => h("tr", {}, ...goals.map((value, i) => h("td", {}, number(value * parts[i][2], 4))), h("td", {}, use(row, "Use"))));
+    return h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Designs of the front" }, h("table", {}, h("thead", {}, h("tr", {}, ...head)), h("tbody", {}, ...rows)));
+  }
+
+  const refresh = () => variables.forEach((each) => each.refresh());
+  refresh();
+  return { refresh };
+}
+
+/** A field and the range that is searched, around the value that the design has. */
+function variable(index, design, form) {
+  const id = `variable-${index}`;
+  const field = h("select", { id, on: { change: () => suggest() } });
+  const [low, high, step] = ["low", "high", "step"].map((name) => h("input", { type: "number", id: `${id}-${name}`, step: "any", ariaLabel: `${{ low: "Smallest", high: "Largest", step: "Step of the" }[name]} value of variable ${index + 1}` }));
+  const element = h("div", { className: "line" }, h("label", { htmlFor: id }, index ? "and" : "Choose"), field, h("label", { htmlFor: low.id }, "from"), low, h("label", { htmlFor: high.id }, "to"), high, h("label", { htmlFor: step.id }, "in steps of"), step);
+
+  function suggest() {
+    const known = form.fields().find(({ pointer }) => pointer === field.value);
+    const value = at(design.submission, field.value);
+    if (typeof value !== "number") return;
+    const ends = value === 0 ? [0, 1] : [0.4 * value, 2 * value].sort((a, b) => a - b);
+    const round = (end) => (known?.kind.whole ? Math.round(end) : Number(end.toPrecision(3)));
+    [low.value, high.value, step.value] = [round(ends[0]), round(ends[1]), known?.kind.whole ? 1 : ""];
+  }
+
+  const read = () => (field.value && low.value !== "" && high.value !== "" ? [{ path: field.value, low: Number(low.value), high: Number(high.value), step: step.value === "" ? null : Number(step.value) }] : []);
+
+  /** Only fields that have a number in this design can be searched. */
+  function refresh() {
+    const chosen = element.dataset.begun ? field.value : FIRST[index];
+    element.dataset.begun = "yes";
+    const fields = form.fields().filter(({ pointer }) => typeof at(design.submission, pointer) === "number");
+    field.replaceChildren(h("option", { value: "" }, "nothing else"), ...fields.map(({ pointer, title }) => h("option", { value: pointer }, title)));
+    field.value = fields.some(({ pointer }) => pointer === chosen) ? chosen : "";
+    if (low.value === "") suggest();
+  }
+  return { element, read, refresh };
+}
