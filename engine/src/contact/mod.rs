@@ -13,6 +13,7 @@
 //! - `light`: what is left of it as the load vanishes,
 //! - `penetration`: the look over the whole flanks that proves it,
 //! - [`positions`]: many positions of one load, in parallel,
+//! - [`face`]: the same along faces of helical, misaligned or uneven gears, slice by slice,
 //! - [`model`]: what all of this is asked of,
 //! - [`ContactProblem`]: compliance, gaps and arms; and [`ContactSolution`]: forces, delta, stiffness, residuals,
 //! - [`solve_active_set`]: the exact solver, for every position of a mesh,
@@ -37,6 +38,7 @@ pub mod cells;
 pub mod compliances;
 mod corner;
 pub mod drawn;
+pub mod face;
 pub mod facing;
 mod facings;
 mod factor;

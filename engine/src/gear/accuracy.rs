@@ -81,6 +81,7 @@ impl Tolerances {
         ToothDeviations {
             cumulative_pitch: cumulative_pitch.collect(),
             profile_slope,
+            lead_slope: Vec::new(),
             eccentricity: match off_center[..] {
                 [x, y] => Some(Eccentricity {
                     amount: (x * x + y * y).sqrt(),

@@ -46,6 +46,8 @@ pub enum DeviationList {
     Pitch,
     /// The profile slope.
     ProfileSlope,
+    /// The lead slope.
+    LeadSlope,
 }
 
 /// Why a gear cannot be made as drawn. Lengths are in meters.

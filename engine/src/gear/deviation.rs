@@ -22,6 +22,9 @@ pub struct ToothDeviations {
     pub cumulative_pitch: Vec<f64>,
     /// The profile slope deviation f_Hα of each loaded flank: nothing at the form circle, this at the tip circle.
     pub profile_slope: Vec<f64>,
+    /// The lead slope of each loaded flank, as [`super::LeadModification::Slope`]: nothing removed at the end at −z of the face, this at that at +z.
+    /// The plane does not know it.
+    pub lead_slope: Vec<f64>,
     /// The eccentricity of the teeth.
     pub eccentricity: Option<Eccentricity>,
 }
@@ -29,7 +32,11 @@ pub struct ToothDeviations {
 impl ToothDeviations {
     /// The same said shortest: what deviates by nothing is not there.
     pub(super) fn without_zeros(mut self) -> Self {
-        for list in [&mut self.cumulative_pitch, &mut self.profile_slope] {
+        for list in [
+            &mut self.cumulative_pitch,
+            &mut self.profile_slope,
+            &mut self.lead_slope,
+        ] {
             if list.iter().all(|deviation| *deviation == 0.0) {
                 list.clear();
             }
@@ -45,7 +52,9 @@ impl ToothDeviations {
 
     /// Whether no tooth deviates. Of a gear that exists.
     pub fn are_teeth_alike(&self) -> bool {
-        self.cumulative_pitch.is_empty() && self.profile_slope.is_empty()
+        self.cumulative_pitch.is_empty()
+            && self.profile_slope.is_empty()
+            && self.lead_slope.is_empty()
     }
 
     /// Where the gear's own axis stands from the axis of rotation while the centerline of tooth 0 points along `angle`.
@@ -69,6 +78,8 @@ pub struct GearDeviations {
     turns: Vec<f64>,
     /// f_Hα of each flank. Empty where none is inclined.
     profile_slopes: Vec<f64>,
+    /// What each lead slope removes. Empty where none does.
+    lead_slopes: Vec<f64>,
     /// The roll lengths between which a profile slope deviation grows from nothing to all of it.
     ends: [f64; 2],
     eccentricity: Option<Eccentricity>,
@@ -79,6 +90,7 @@ impl GearDeviations {
     const NONE: Self = Self {
         turns: Vec::new(),
         profile_slopes: Vec::new(),
+        lead_slopes: Vec::new(),
         ends: [0.0, 1.0],
         eccentricity: None,
     };
@@ -92,6 +104,7 @@ impl GearDeviations {
         Self {
             turns: arcs.map(|arc| arc * cosine).collect(),
             profile_slopes: teeth.profile_slope,
+            lead_slopes: teeth.lead_slope,
             ends: [gear.form_roll_length(), gear.tip_roll_length()],
             eccentricity: teeth.eccentricity,
         }
@@ -99,7 +112,10 @@ impl GearDeviations {
 
     /// Whether every tooth stands as drawn, about the axis of rotation.
     pub fn is_none(&self) -> bool {
-        self.turns.is_empty() && self.profile_slopes.is_empty() && self.eccentricity.is_none()
+        self.turns.is_empty()
+            && self.profile_slopes.is_empty()
+            && self.lead_slopes.is_empty()
+            && self.eccentricity.is_none()
     }
 
     /// How far the loaded flank of `tooth` stands towards its mate at the roll length `s`, along the normal, beyond the drawing.
@@ -109,6 +125,11 @@ impl GearDeviations {
             amount * (s - from) / (to - from)
         });
         self.turn(tooth) + slope
+    }
+
+    /// What the lead slope of `tooth` removes at the end at +z of the face, in proportion to the distance from the other end.
+    pub fn lead_slope(&self, tooth: usize) -> f64 {
+        self.lead_slopes.get(tooth).copied().unwrap_or(0.0)
     }
 
     /// What of [`GearDeviations::at`] is alike all along the flank of `tooth`.
@@ -123,9 +144,11 @@ impl GearDeviations {
         amount.map_or(0.0, |amount| amount / (to - from))
     }
 
-    /// How far the eccentricity moves the loaded flank of `tooth` of `gear` along its normal at the roll length `s`, to the first order in it.
-    pub fn runout(&self, gear: &SpurGear, tooth: usize, s: f64) -> f64 {
-        let normal = tooth as f64 * gear.pitch_angle() + gear.flank().tangent_angle(s) + PI / 2.0;
+    /// How far the eccentricity moves the loaded flank of `tooth` of `gear` along its normal at the roll length `s`, to the first order in it, in
+    /// the section that is turned by `turn`.
+    pub fn runout(&self, gear: &SpurGear, tooth: usize, s: f64, turn: f64) -> f64 {
+        let tooth_angle = tooth as f64 * gear.pitch_angle() + turn;
+        let normal = tooth_angle + gear.flank().tangent_angle(s) + PI / 2.0;
         let moved = self.displacement(0.0);
         moved.x * normal.cos() + moved.y * normal.sin()
     }

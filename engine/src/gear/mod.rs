@@ -2,7 +2,8 @@
 //!
 //! Read in this order: [`involute`] (one flank), [`rack`] (the tool and the fillet it leaves), [`modification`]
 //! and [`tip`] (what is taken off it), [`deviation`] (what teeth differ by) and [`accuracy`] (how far they may), [`blank`], [`material`], [`data`] (what a drawing says),
-//! [`spur`], `mass` and `outline` (a whole gear), [`solid`] (the same with an extent along its axis), [`pair`] (two of them at a center distance).
+//! [`spur`], `mass` and `outline` (a whole gear), [`solid`] (the same with an extent along its axis), [`pair`] (two of them at a center distance),
+//! [`lead`] and [`solid_pair`] (two of them along their faces).
 //!
 //! Every gear is described in its own frame: the center of the gear is the origin, the centerline of tooth 0 is the
 //! x axis, and the loaded flank of each tooth lies on its counter-clockwise side.
@@ -12,6 +13,7 @@ pub mod blank;
 pub mod data;
 pub mod deviation;
 pub mod involute;
+pub mod lead;
 mod mass;
 pub mod material;
 pub mod modification;
@@ -19,6 +21,7 @@ mod outline;
 pub mod pair;
 pub mod rack;
 pub mod solid;
+pub mod solid_pair;
 pub mod spur;
 pub mod tip;
 
@@ -29,6 +32,7 @@ pub use deviation::{
     DeviationsError, Eccentricity, GearDeviations, PairDeviations, ToothDeviations,
 };
 pub use involute::{Involute, involute_function};
+pub use lead::{FaceEnds, LeadError, LeadModification};
 pub use material::{Material, PlaneState};
 pub use modification::{
     ModificationData, Relief, ReliefData, ReliefShape, ReliefStart, RootReliefData,
@@ -37,6 +41,7 @@ pub use modification::{
 pub use pair::{GearPair, GearPairError, Member, teeth_on};
 pub use rack::Rack;
 pub use solid::{Hand, Helix, Hub, Layer, SolidGear, SolidGearError};
+pub use solid_pair::{Alignment, ContactLine, SolidPair, SolidPairError};
 pub use spur::SpurGear;
 pub use tip::TipEdge;
 

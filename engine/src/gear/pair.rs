@@ -159,6 +159,15 @@ impl GearPair {
         }
     }
 
+    /// Slices of the flanks of both gears, one meter long, in plane strain: what a contact is near a line of it.
+    pub(crate) fn long_slices(&self) -> Self {
+        Self {
+            driving: self.driving.long_slice(),
+            driven: self.driven.long_slice(),
+            ..*self
+        }
+    }
+
     fn check(&self) -> Result<(), GearPairError> {
         let tip_radii = self.driving.tip_radius() + self.driven.tip_radius();
         let center_distance = self.center_distance;

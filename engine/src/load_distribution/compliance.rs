@@ -96,7 +96,7 @@ impl<'a> PairFormulas<'a> {
             let s = rolls[member.index()];
             let tooth = self.pair.tooth(member, n);
             let deviations = self.deviations.of_gear(member);
-            gear.removed(s) - deviations.at(tooth, s) - deviations.runout(gear, tooth, s)
+            gear.removed(s) - deviations.at(tooth, s) - deviations.runout(gear, tooth, s, 0.0)
         });
         let bodies = Member::BOTH.map(|member| ContactBody {
             material: *self.pair.gear(member).material(),

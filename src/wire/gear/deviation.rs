@@ -156,6 +156,7 @@ impl DeviationsDocument {
                 Some(values) => summed(values).into_iter().map(from_um).collect(),
             },
             profile_slope: meters(self.profile_slope_um.as_deref().unwrap_or_default()),
+            lead_slope: Vec::new(),
             eccentricity: self.eccentricity.as_ref().map(|eccentricity| Eccentricity {
                 amount: from_um(eccentricity.amount_um),
                 direction: eccentricity.phase_deg.to_radians(),

@@ -183,6 +183,7 @@ impl GearDocument {
                     match list {
                         DeviationList::Pitch => "pitch",
                         DeviationList::ProfileSlope => "profile slope",
+                        DeviationList::LeadSlope => "lead slope",
                     }
                 ),
                 None,

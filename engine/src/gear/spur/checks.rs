@@ -239,6 +239,7 @@ impl SpurGear {
         for (list, values) in [
             (DeviationList::Pitch, &deviations.cumulative_pitch),
             (DeviationList::ProfileSlope, &deviations.profile_slope),
+            (DeviationList::LeadSlope, &deviations.lead_slope),
         ] {
             if !values.is_empty() && values.len() != needed {
                 return Err(GearError::DeviationCount {

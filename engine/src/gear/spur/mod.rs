@@ -10,8 +10,8 @@ use super::modification::Modification;
 use super::rack::Trochoid;
 use super::tip::BrokenEdge;
 use super::{
-    BlankRegion, GearData, GearError, Hole, HolePattern, Involute, Material, Rack, TipEdge,
-    ToothDeviations, Vector,
+    BlankRegion, GearData, GearError, Hole, HolePattern, Involute, Material, PlaneState, Rack,
+    TipEdge, ToothDeviations, Vector,
 };
 
 /// A spur gear that can be made: neither undercut nor pointed, with its holes inside its blank.
@@ -125,6 +125,23 @@ impl SpurGear {
                 ..self.data.clone()
             },
             ..self.clone()
+        }
+    }
+
+    /// A slice of the same flanks, one meter long, in a body that cannot yield along its axis: plane strain is plane stress with E/(1 − ν²).
+    pub(in crate::gear) fn long_slice(&self) -> Self {
+        let plane = self.without_blank().as_drawn();
+        let material = Material {
+            youngs_modulus: plane.data.material.plane_modulus(PlaneState::Strain),
+            ..plane.data.material
+        };
+        Self {
+            data: GearData {
+                face_width: 1.0,
+                material,
+                ..plane.data
+            },
+            ..plane
         }
     }
 

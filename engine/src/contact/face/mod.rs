@@ -1,0 +1,489 @@
+//! Contact along faces: lines that cross the flanks, cut into slices.
+//!
+//! Every transverse section of the pair is a plane pair at another phase, so that what flanks see of each other, where they touch first and
+//! how they push there is what the plane knows ([`crate::contact::facing`]). A slice is a piece of the contact of one section: a nonlinear spring between
+//! the flanks ([`spring`]), Hertz's where it stands free, and the plane's patch of cells where a tip edge, a fillet or a kink is near.
+//! What else gives way is linear: the smooth yield of both gears ([`FlankYield`]), and the half space between
+//! the slices of one line (`compliance`). Newton's method on the springs (`balance`) has the plane's contact problem as its step.
+//!
+//! ```text
+//! g + H N + f(N) − δ w ≥ 0,   N ≥ 0,   wᵀN = F,   w = arm cos β_b
+//! ```
+//!
+//! N is normal to the flanks, F and δ are along the line of action of the transverse section.
+
+mod balance;
+mod compliance;
+mod slice;
+pub mod spring;
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use faer::Mat;
+use rayon::prelude::*;
+
+use super::facing::Facing;
+use super::positions::PositionsError;
+use super::{MeshContact, PairContact, PositionError};
+use crate::gear::{GearPair, Member, PairDeviations, SolidPair, gcd};
+use crate::run::Run;
+use balance::{Balance, balance};
+use compliance::compliance;
+use slice::Slice;
+
+/// How the flanks of one gear give way, smoothly, to forces normal to them.
+///
+/// z runs from the middle of the gear's own face. The displacement of tooth i at (s, z) into the tooth, under the force N on tooth j at (s', z'), is
+/// basis(s, z)ᵀ smooth_ij basis(s', z') N, and of one tooth besides what a half space yields, which is left to the contact.
+pub trait FlankYield: Send + Sync {
+    /// The number of functions over a flank.
+    fn basis_len(&self) -> usize;
+
+    /// Their values at the roll length `roll_length` and the height `z`, into `row`.
+    fn basis(&self, roll_length: f64, z: f64, row: &mut [f64]);
+
+    /// The compliance in m/N between the functions of the `teeth`, one block of rows and columns a tooth; symmetric.
+    fn smooth(&self, teeth: &[usize]) -> Mat<f64>;
+}
+
+/// How many slices the whole face is cut into, unless a case says otherwise.
+pub const SLICES: usize = 40;
+
+/// By how much the reach within which pairs are looked for is more than δ.
+const REACH: f64 = 1.3;
+
+/// Matrices of smooth yields that are kept.
+const MOST_KEPT: usize = 256;
+
+/// Two gears with an extent along their axes, ready for contact.
+pub struct FaceModel {
+    pair: SolidPair,
+    deviations: PairDeviations,
+    yields: [Arc<dyn FlankYield>; 2],
+    /// Slices of the whole face.
+    slices: usize,
+    /// How far apart teeth may stand that are loaded together.
+    coupled: usize,
+    /// One meter of the flanks as drawn.
+    long: GearPair,
+    kept: Mutex<Vec<(Teeth, Arc<Mat<f64>>)>>,
+}
+
+/// So many teeth of a gear in the order of their pairs, from `first` on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Teeth {
+    gear: usize,
+    first: usize,
+    count: usize,
+}
+
+/// What is found among the flanks within a reach.
+enum Reached {
+    Contact(FaceContact),
+    /// Nothing: the first of them touch at this δ.
+    Touch(f64),
+}
+
+impl Reached {
+    fn delta(&self) -> f64 {
+        match self {
+            Self::Contact(contact) => contact.mesh.transmission_error,
+            Self::Touch(touch) => *touch,
+        }
+    }
+
+    fn contact(self) -> Option<FaceContact> {
+        match self {
+            Self::Contact(contact) => Some(contact),
+            Self::Touch(_) => None,
+        }
+    }
+}
+
+/// The load on one slice.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SliceLoad {
+    /// The pair n.
+    pub pair: i64,
+    /// Its middle, from the middle of the common face.
+    pub z: f64,
+    /// Its length along the axis.
+    pub length: f64,
+    /// Its part of the load F along the line of action, in N.
+    pub force: f64,
+    /// Where it touches: roll length on the driving and on the driven gear.
+    pub roll_lengths: [f64; 2],
+    /// The largest pressure in Pa; `None` at a sharp tip corner, where it has no limit.
+    pub pressure: Option<f64>,
+    /// Half the width of the contact along the profile, in meters.
+    pub half_width: f64,
+}
+
+/// The contact of the whole mesh at one position and load, along the faces.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FaceContact {
+    /// Summed up pair by pair. Its largest pressure is that of the slices that have one.
+    pub mesh: MeshContact,
+    /// The slices that carry, pair by pair, along z.
+    pub slices: Vec<SliceLoad>,
+}
+
+impl FaceContact {
+    /// Where the load stands in the mean along the common face, from its middle.
+    pub fn load_centroid(&self) -> f64 {
+        let slices = self.slices.iter();
+        let (moment, force) = slices.fold((0.0, 0.0), |(moment, force), slice| {
+            (moment + slice.force * slice.z, force + slice.force)
+        });
+        moment / force
+    }
+
+    /// The load in each of `count` equal strips of a common face of `width`, in N.
+    pub fn strips(&self, width: f64, count: usize) -> Vec<f64> {
+        let mut strips = vec![0.0; count];
+        let strip = width / count as f64;
+        for slice in &self.slices {
+            let from = (slice.z - 0.5 * slice.length + 0.5 * width) / strip;
+            let to = from + slice.length / strip;
+            let density = slice.force / (to - from);
+            let first = (from.floor().max(0.0) as usize).min(count - 1);
+            for (i, load) in strips.iter_mut().enumerate().skip(first) {
+                let (low, high) = (i as f64, (i + 1) as f64);
+                if low >= to {
+                    break;
+                }
+                *load += density * (to.min(high) - from.max(low)).max(0.0);
+            }
+        }
+        strips
+    }
+}
+
+impl FaceModel {
+    /// The `pair`, each of whose gears yields as `yields` say, with its face cut into so many `slices`, and teeth loaded together up to
+    /// `coupled` apart.
+    pub fn new(
+        pair: SolidPair,
+        yields: [Arc<dyn FlankYield>; 2],
+        slices: usize,
+        coupled: usize,
+    ) -> Self {
+        Self {
+            deviations: pair.section().deviations(),
+            long: pair.section().long_slices(),
+            pair,
+            yields,
+            slices,
+            coupled,
+            kept: Mutex::default(),
+        }
+    }
+
+    /// The pair.
+    pub fn pair(&self) -> &SolidPair {
+        &self.pair
+    }
+
+    /// The contact at each of `positions` under `load`.
+    ///
+    /// # Errors
+    ///
+    /// [`PositionsError`].
+    pub fn contacts(
+        &self,
+        load: f64,
+        positions: &[f64],
+        run: &Run,
+    ) -> Result<Vec<FaceContact>, PositionsError> {
+        let at = |error, mesh_position| PositionsError::At {
+            mesh_position,
+            error,
+        };
+        let Some(&first) = positions.first() else {
+            return Ok(Vec::new());
+        };
+        let mut reach = self
+            .first_reach(first, load)
+            .map_err(|error| at(error, first))?;
+        let mut told = false;
+        loop {
+            let phases = self.phases_within(reach);
+            let solved: Result<Vec<Reached>, PositionsError> = positions
+                .par_iter()
+                .map(|&eta| {
+                    let reached = self.reached(eta, load, phases, reach);
+                    run.reached(u64::from(!told))?;
+                    reached.map_err(|error| at(error, eta))
+                })
+                .collect();
+            let solved = solved?;
+            told = true;
+            let farthest = solved.iter().map(Reached::delta).fold(reach, f64::max);
+            if farthest == reach {
+                let contacts = solved.into_iter().filter_map(Reached::contact);
+                return Ok(contacts.collect());
+            }
+            reach = beyond(farthest);
+        }
+    }
+
+    /// The contact at the position `eta` under `load` among the flanks that touch before δ is `reach`, or how far it would take to reach any.
+    fn reached(
+        &self,
+        eta: f64,
+        load: f64,
+        phases: [f64; 2],
+        reach: f64,
+    ) -> Result<Reached, PositionError> {
+        match self.contact_within(eta, load, phases) {
+            Err(PositionError::NoContact) => match self.least_touch(eta) {
+                Some(touch) if touch > reach => Ok(Reached::Touch(touch)),
+                _ => Err(PositionError::NoContact),
+            },
+            contact => Ok(Reached::Contact(contact?)),
+        }
+    }
+
+    /// How far flanks are to be looked for under `load`: a little more than δ at the position `eta`.
+    fn first_reach(&self, eta: f64, load: f64) -> Result<f64, PositionError> {
+        let moduli = Member::BOTH.map(|member| self.long.gear(member).material().youngs_modulus);
+        // Solid gears yield by about half of this.
+        let stiffness = 0.05 * moduli[0].min(moduli[1]) * self.pair.common_face_width();
+        let touch = self.least_touch(eta).ok_or(PositionError::NoContact)?;
+        let mut reach = touch + load / stiffness;
+        loop {
+            let contact = self.contact_within(eta, load, self.phases_within(reach))?;
+            let delta = contact.mesh.transmission_error;
+            if delta <= reach {
+                return Ok(beyond(delta));
+            }
+            reach = beyond(delta);
+        }
+    }
+
+    /// The δ at which the pair touches at the position `eta`, as the slices of its theoretical contact lines see it.
+    pub fn least_touch(&self, eta: f64) -> Option<f64> {
+        let slices = self.slices_on_path(eta).into_iter();
+        slices
+            .map(|slice| slice.gap / slice.weights[1])
+            .reduce(f64::min)
+    }
+
+    /// The slices of the theoretical contact lines at the position `eta`.
+    fn slices_on_path(&self, eta: f64) -> Vec<Slice> {
+        let (s_a, s_e) = self.pair.section().path_of_contact();
+        slice::lay(self, eta, [s_a, s_e].map(|s| self.pair.phase_at(s)), None)
+    }
+
+    /// How far leads, deviations and the axes may bring flanks nearer to each other than their sections are.
+    fn nearer(&self) -> f64 {
+        const PLACES: usize = 33;
+        let half = 0.5 * self.pair.common_face_width();
+        let at = |i: usize| half * (2.0 * i as f64 / (PLACES - 1) as f64 - 1.0);
+        let counts = Member::BOTH.map(|member| self.pair.section().gear(member).tooth_count());
+        let pairs = counts[0].max(counts[1]) as usize;
+        let pairs = if self.deviations.are_none() { 1 } else { pairs };
+        let gaps = (0..pairs).flat_map(|pair| {
+            let teeth = counts.map(|count| pair % count as usize);
+            (0..PLACES).map(move |i| self.pair.lead_gap(&self.deviations, teeth, at(i)))
+        });
+        self.deviations.nearest() - gaps.fold(0.0, f64::min)
+    }
+
+    /// The phases between which sections may touch before δ is `reach`.
+    fn phases_within(&self, reach: f64) -> [f64; 2] {
+        const STEP: f64 = 1.0 / 32.0;
+        let limit = reach + self.nearer();
+        let touches = |phase: f64| {
+            Facing::drawn(&self.long, phase).is_some_and(|facing| facing.touch() <= limit)
+        };
+        let (s_a, s_e) = self.pair.section().path_of_contact();
+        let ends = [s_a, s_e].map(|s| self.pair.phase_at(s));
+        let outermost = |end: f64, way: f64, other: f64| {
+            let mut out = end + way;
+            while touches(out) {
+                out += way;
+            }
+            let (mut outside, mut inside) = (out, out);
+            while !touches(inside) && (inside - other) * way > 0.0 {
+                outside = inside;
+                inside -= way * STEP;
+            }
+            crate::root_finding::bisect(inside, outside, touches)
+        };
+        [
+            outermost(ends[0], -1.0, ends[1]),
+            outermost(ends[1], 1.0, ends[0]),
+        ]
+    }
+
+    /// The contact at the position `eta` under `load` of sections in `phases`.
+    fn contact_within(
+        &self,
+        eta: f64,
+        load: f64,
+        phases: [f64; 2],
+    ) -> Result<FaceContact, PositionError> {
+        let slices = slice::lay(self, eta, phases, Some(load));
+        let (Some(first), Some(last)) = (slices.first(), slices.last()) else {
+            return Err(PositionError::NoContact);
+        };
+        let apart = first.pair.abs_diff(last.pair) as usize;
+        if apart > self.coupled {
+            return Err(PositionError::TooFarApart {
+                apart,
+                coupled: self.coupled,
+            });
+        }
+        let compliance = compliance(self, &slices);
+        let balance = balance(compliance, &slices, load)?;
+        Ok(self.told(&slices, &balance, load))
+    }
+
+    /// The smooth compliance of the teeth of `member` in the pairs from `first` on.
+    fn smooth(&self, member: Member, first: i64, count: usize) -> Arc<Mat<f64>> {
+        let gear = self.pair.section().gear(member);
+        let z = gear.tooth_count() as usize;
+        // Teeth stand alike once the holes under them do.
+        let alike = match gear.hole_repeats() {
+            0 => 1,
+            repeats => z / gcd(gear.tooth_count(), repeats) as usize,
+        };
+        let key = Teeth {
+            gear: member.index(),
+            first: self.pair.section().tooth(member, first) % alike,
+            count,
+        };
+        let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, known)) = lock().iter().find(|(teeth, _)| *teeth == key) {
+            return Arc::clone(known);
+        }
+        let step = self.pair.section().tooth(member, 1);
+        let teeth: Vec<usize> = (0..count).map(|i| (key.first + i * step) % z).collect();
+        let made = Arc::new(self.yields[member.index()].smooth(&teeth));
+        let mut kept = lock();
+        if kept.len() == MOST_KEPT {
+            kept.remove(0);
+        }
+        kept.push((key, Arc::clone(&made)));
+        made
+    }
+
+    /// What `balance` says of the mesh.
+    fn told(&self, slices: &[Slice], balance: &Balance, load: f64) -> FaceContact {
+        let mut pairs: Vec<PairContact> = Vec::new();
+        let mut peak_pressure = None::<f64>;
+        let mut loads = Vec::new();
+        for (slice, &force) in slices.iter().zip(&balance.forces) {
+            if pairs.last().is_none_or(|pair| pair.pair != slice.pair) {
+                pairs.push(PairContact {
+                    pair: slice.pair,
+                    share: 0.0,
+                    tip_corner: None,
+                    fillet: None,
+                });
+            }
+            if force <= 0.0 {
+                continue;
+            }
+            let pressed = slice.spring.pressed(force);
+            if let Some(pair) = pairs.last_mut() {
+                pair.share += slice.weights[1] * force / load;
+                pair.tip_corner = pair.tip_corner.or(pressed.tip_corner);
+                pair.fillet = pair.fillet.or(pressed.fillet);
+            }
+            peak_pressure = match (peak_pressure, pressed.pressure) {
+                (Some(one), Some(other)) => Some(one.max(other)),
+                (one, other) => one.or(other),
+            };
+            loads.push(SliceLoad {
+                pair: slice.pair,
+                z: slice.z,
+                length: slice.length,
+                force: slice.weights[1] * force,
+                roll_lengths: slice.roll_lengths,
+                pressure: pressed.pressure,
+                half_width: pressed.half_width,
+            });
+        }
+        let forces = balance.forces.iter();
+        let sum = |arm: usize| -> f64 {
+            let weighed = slices.iter().zip(forces.clone());
+            weighed
+                .map(|(slice, force)| slice.weights[arm] * force)
+                .sum()
+        };
+        let complementarity = forces
+            .clone()
+            .zip(&balance.gaps)
+            .map(|(p, g)| (p * g).abs());
+        FaceContact {
+            mesh: MeshContact {
+                transmission_error: balance.transmission_error,
+                stiffness: balance.stiffness,
+                driving_load: sum(0),
+                pairs,
+                peak_pressure,
+                equilibrium: (sum(1) - load).abs() / load,
+                complementarity: complementarity.fold(0.0, f64::max),
+                penetration: balance.penetration(slices),
+                iterations: balance.iterations,
+            },
+            slices: loads,
+        }
+    }
+}
+
+/// The limit of the contact of `pair` at the mesh position `eta` as the load goes to zero, its face cut into so many `slices`: δ is that at which
+/// the first of them touches.
+///
+/// # Errors
+///
+/// [`PositionError::NoContact`] if no flanks face each other.
+pub fn light_face(pair: &SolidPair, slices: usize, eta: f64) -> Result<MeshContact, PositionError> {
+    let rigid: Arc<dyn FlankYield> = Arc::new(Rigid);
+    let yields = [Arc::clone(&rigid), rigid];
+    let model = FaceModel::new(pair.clone(), yields, slices, usize::MAX);
+    let slices = model.slices_on_path(eta);
+    let touches = slices
+        .iter()
+        .map(|slice| (slice.pair, slice.gap / slice.weights[1]));
+    let first = touches.min_by(|a, b| a.1.total_cmp(&b.1));
+    let (pair, transmission_error) = first.ok_or(PositionError::NoContact)?;
+    Ok(MeshContact {
+        transmission_error,
+        stiffness: 0.0,
+        driving_load: 0.0,
+        pairs: vec![PairContact {
+            pair,
+            share: 1.0,
+            tip_corner: None,
+            fillet: None,
+        }],
+        peak_pressure: Some(0.0),
+        equilibrium: 0.0,
+        complementarity: 0.0,
+        penetration: 0.0,
+        iterations: 0,
+    })
+}
+
+/// Flanks that yield nowhere.
+struct Rigid;
+
+impl FlankYield for Rigid {
+    fn basis_len(&self) -> usize {
+        0
+    }
+
+    fn basis(&self, _: f64, _: f64, _: &mut [f64]) {}
+
+    fn smooth(&self, _: &[usize]) -> Mat<f64> {
+        Mat::new()
+    }
+}
+
+/// A reach somewhat beyond `delta`.
+fn beyond(delta: f64) -> f64 {
+    delta + (REACH - 1.0) * delta.abs()
+}

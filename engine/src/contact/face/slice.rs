@@ -1,0 +1,169 @@
+//! The slices of the contact lines at one position: where each stands, how far its flanks are apart, and its spring.
+
+use super::FaceModel;
+use super::spring::Spring;
+use crate::contact::facing::{Facing, View};
+use crate::contact::half_plane::{hertz, logarithm_factor};
+use crate::contact::placement::Placement;
+use crate::gear::{ContactLine, Member};
+
+/// The load for each length of a contact line, over that of the mean, for which cells are laid.
+const HEAVIER: f64 = 2.5;
+
+/// No slice is shorter than so many half-widths of its contact: a line that short is none.
+const SHORTEST: f64 = 1.5;
+
+/// One slice.
+pub(super) struct Slice {
+    /// The pair n.
+    pub(super) pair: i64,
+    /// Its middle, from the middle of the common face.
+    pub(super) z: f64,
+    /// Its length along the axis, and along the contact line.
+    pub(super) length: f64,
+    pub(super) along: f64,
+    /// Where it touches: roll length on the driving and on the driven gear.
+    pub(super) roll_lengths: [f64; 2],
+    /// The arms about the driving and the driven axis over the base radii, times cos β_b.
+    pub(super) weights: [f64; 2],
+    /// The gap along the normal, the spring not pressed.
+    pub(super) gap: f64,
+    /// Σ 2(1 − ν²)/(πE).
+    pub(super) factor: f64,
+    pub(super) spring: Spring,
+}
+
+/// The slices of all lines of `model` at the position `eta` on which sections are in `phases`; with the springs that they have under `load`, or
+/// Hertz's alone.
+///
+/// Slices of one line are equally long, so that they move with it.
+pub(super) fn lay(model: &FaceModel, eta: f64, phases: [f64; 2], load: Option<f64>) -> Vec<Slice> {
+    let lines = model.pair.lines(eta, phases);
+    let total: f64 = lines
+        .iter()
+        .map(|line| line.heights[1] - line.heights[0])
+        .sum();
+    // For each length along a contact line.
+    let density = load.map(|load| HEAVIER * load / total);
+    let layer = Layer::new(model, density);
+    lines
+        .iter()
+        .flat_map(|line| layer.line(eta, line))
+        .collect()
+}
+
+/// What all slices of one position have alike.
+struct Layer<'a> {
+    model: &'a FaceModel,
+    cosine: f64,
+    factor: f64,
+    density: Option<f64>,
+}
+
+impl<'a> Layer<'a> {
+    fn new(model: &'a FaceModel, density: Option<f64>) -> Self {
+        let factors = Member::BOTH.map(|member| {
+            let modulus = model.long.gear(member).material().youngs_modulus;
+            logarithm_factor(modulus, 1.0)
+        });
+        Self {
+            model,
+            cosine: model.pair.base_helix_angle().cos(),
+            factor: factors[0] + factors[1],
+            density,
+        }
+    }
+
+    fn line(&self, eta: f64, line: &ContactLine) -> Vec<Slice> {
+        let [from, to] = line.heights;
+        let pair = &self.model.pair;
+        let regular = pair.common_face_width() / self.model.slices as f64;
+        let half_width = self.density.map_or(0.0, |density| {
+            let s = 0.5 * pair.section().line_of_action();
+            hertz(density, 0.5 * s / self.cosine, self.factor, 1.0).0
+        });
+        let shortest = regular.max(SHORTEST * half_width * self.cosine);
+        let count = ((to - from) / shortest - 1e-9).ceil().max(1.0);
+        let length = (to - from) / count;
+        let straight = pair.advance() == 0.0;
+        let mut known: Option<Facing> = None;
+        (0..count as usize)
+            .filter_map(|i| {
+                let z = from + (i as f64 + 0.5) * length;
+                let phase = pair.phase(eta, line.pair, z);
+                let facing = match known.take().filter(|_| straight) {
+                    Some(facing) => facing,
+                    None => Facing::drawn(&self.model.long, phase)?,
+                };
+                let slice = self.slice(line.pair, (z, length), (phase, &facing));
+                known = Some(facing);
+                Some(slice)
+            })
+            .collect()
+    }
+
+    fn slice(&self, n: i64, (z, length): (f64, f64), (phase, facing): (f64, &Facing)) -> Slice {
+        let model = self.model;
+        let view = View {
+            placement: Placement::drawn(&model.long, phase),
+            seat: facing.seat,
+        };
+        let hollow = &facing.hollows[0];
+        // Where flanks face each other the hollow is seen.
+        let meeting = view.point(hollow.arc).map(|point| view.meeting(&point));
+        let arms = meeting.map_or([1.0, 1.0], |meeting| meeting.arms);
+        let weights = arms.map(|arm| arm * self.cosine);
+        let along = length / self.cosine;
+        let radius = {
+            let [one, other] = hollow.roll_lengths.map(|s| s / self.cosine);
+            one * other / (one + other)
+        };
+        let (spring, section_gap) = match self.density {
+            Some(density) if self.is_crowded(facing, density, radius) => {
+                Spring::patch(&view, facing, (along, self.cosine, self.factor), density)
+            }
+            _ => (
+                Spring::hertz(along, radius, self.factor, self.density.unwrap_or(1.0)),
+                hollow.touch * weights[1],
+            ),
+        };
+        Slice {
+            pair: n,
+            z,
+            length,
+            along,
+            roll_lengths: hollow.roll_lengths,
+            weights,
+            gap: section_gap + weights[1] * self.opening(n, z, hollow.roll_lengths),
+            factor: self.factor,
+            spring,
+        }
+    }
+
+    /// By how much leads, axes and deviations open pair `n` at `z`, along the base tangent.
+    fn opening(&self, n: i64, z: f64, roll_lengths: [f64; 2]) -> f64 {
+        let (pair, deviations) = (&self.model.pair, &self.model.deviations);
+        let teeth = pair.section().teeth(n);
+        let out = Member::BOTH.map(|member| {
+            let (g, teeth_of) = (member.index(), deviations.of_gear(member));
+            let (tooth, s) = (teeth[g], roll_lengths[g]);
+            let turn = pair.gear(member).twist() * pair.own_height(member, z);
+            teeth_of.at(tooth, s) + teeth_of.runout(pair.section().gear(member), tooth, s, turn)
+        });
+        pair.lead_gap(deviations, teeth, z) - out[0] - out[1]
+    }
+
+    /// Whether a contact under `density` may reach an end of the flanks or a kink, or is not that of two parabolas.
+    fn is_crowded(&self, facing: &Facing, density: f64, radius: f64) -> bool {
+        const BESIDE: f64 = 1.5;
+        const COMMON_TANGENT: f64 = 0.02;
+        let (half_width, _) = hertz(density, radius, self.factor, 1.0);
+        let hollow = &facing.hollows[0];
+        let near = |place: &f64| (place - hollow.arc).abs() < BESIDE * half_width;
+        let inclined = |angle: &f64| *angle * radius > COMMON_TANGENT * half_width;
+        [facing.range.from, facing.range.to].iter().any(near)
+            || facing.kinks.iter().any(near)
+            || hollow.openings.iter().any(inclined)
+            || facing.hollows.len() > 1
+    }
+}

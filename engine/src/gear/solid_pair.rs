@@ -1,0 +1,363 @@
+//! Two gears with an extent along their axes in engagement: where their flanks meet along the faces.
+//!
+//! Every transverse section of the pair is the same pair of spur gears at another phase: a contact goes on by tan β_b/p_bt mesh
+//! periods with each length along the axis. z runs from the middle of the common face; +z is the side from which the
+//! driving gear is seen to turn counter-clockwise.
+
+use super::lead::{LeadError, LeadModification};
+use super::{GearPair, GearPairError, Member, PairDeviations, SolidGear};
+
+/// The least part of the narrower face on which two gears touch.
+const LEAST_OVERLAP: f64 = 0.1;
+
+/// How the axes of two gears, and their faces, stand from where they should. Lengths are in meters.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Alignment {
+    /// Where the mid plane of the driven face stands from that of the driving one.
+    pub axial_offset: f64,
+    /// By how much the axes are apart too far at the +z end of the common face and not at its −z end, in their plane.
+    pub in_plane: f64,
+    /// The same across their plane, positive where it opens the loaded flanks.
+    pub out_of_plane: f64,
+}
+
+/// Why two gears with an extent along their axes cannot mesh. Lengths are in meters.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum SolidPairError {
+    /// Their sections cannot mesh.
+    #[error(transparent)]
+    Section(#[from] GearPairError),
+    /// Teeth of parallel axes wind as much one way as the other.
+    #[error("helix angles of {driving} rad and {driven} rad do not mesh on parallel axes")]
+    HelixMismatch {
+        /// Of the driving gear, positive if right-handed.
+        driving: f64,
+        /// Of the driven gear.
+        driven: f64,
+    },
+    /// The faces stand beside each other, or nearly.
+    #[error(
+        "an axial offset of {axial_offset} m leaves no common face; {nearest} m leaves a tenth of the narrower one"
+    )]
+    FacesDoNotOverlap {
+        /// The offset asked for.
+        axial_offset: f64,
+        /// The nearest that leaves enough.
+        nearest: f64,
+    },
+    /// A lead cannot be modified so.
+    #[error("the leads of the {member} gear: {error}")]
+    Lead {
+        /// The gear.
+        member: Member,
+        /// Why.
+        error: LeadError,
+    },
+}
+
+/// A stretch of the common face on which a pair of teeth is in some part of its engagement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactLine {
+    /// The pair n.
+    pub pair: i64,
+    /// Where it begins and ends along the axis.
+    pub heights: [f64; 2],
+}
+
+/// Two gears on parallel axes, the first driving the second. Lengths are in meters, angles in radians.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SolidPair {
+    gears: [SolidGear; 2],
+    section: GearPair,
+    leads: [Vec<LeadModification>; 2],
+    alignment: Alignment,
+    /// Where the common face begins and ends, from the middle of the driving face.
+    common: [f64; 2],
+}
+
+impl SolidPair {
+    /// Sets two gears, driving and driven, with their modified `leads` at the operating `center_distance`.
+    ///
+    /// # Errors
+    ///
+    /// [`SolidPairError`] says why they cannot mesh there.
+    pub fn new(
+        gears: [SolidGear; 2],
+        leads: [Vec<LeadModification>; 2],
+        center_distance: f64,
+        alignment: Alignment,
+    ) -> Result<Self, SolidPairError> {
+        let [driving, driven] = gears.each_ref().map(|gear| gear.helix().signed());
+        if driving != -driven {
+            return Err(SolidPairError::HelixMismatch { driving, driven });
+        }
+        let [one, other] = gears.each_ref().map(|gear| gear.section().clone());
+        let section = GearPair::new(one, other, center_distance)?;
+        for member in Member::BOTH {
+            let width = gears[member.index()].face_width();
+            for (i, lead) in leads[member.index()].iter().enumerate() {
+                let checked = lead.check(i, width);
+                checked.map_err(|error| SolidPairError::Lead { member, error })?;
+            }
+        }
+        let [b_1, b_2] = gears.each_ref().map(SolidGear::face_width);
+        let offset = alignment.axial_offset;
+        let common = [
+            (-0.5 * b_1).max(offset - 0.5 * b_2),
+            (0.5 * b_1).min(offset + 0.5 * b_2),
+        ];
+        let least = LEAST_OVERLAP * b_1.min(b_2);
+        // Rounding of an offset that was typed for the least is the least.
+        if !(common[1] - common[0] >= least * (1.0 - 1e-9)) {
+            return Err(SolidPairError::FacesDoNotOverlap {
+                axial_offset: offset,
+                nearest: (0.5 * (b_1 + b_2) - least).copysign(offset),
+            });
+        }
+        Ok(Self {
+            gears,
+            section,
+            leads,
+            alignment,
+            common,
+        })
+    }
+
+    /// The transverse section: a pair of spur gears.
+    pub fn section(&self) -> &GearPair {
+        &self.section
+    }
+
+    /// The gear that is `member` of the pair.
+    pub fn gear(&self, member: Member) -> &SolidGear {
+        &self.gears[member.index()]
+    }
+
+    /// How the leads of `member` are modified.
+    pub fn leads(&self, member: Member) -> &[LeadModification] {
+        &self.leads[member.index()]
+    }
+
+    /// How axes and faces stand.
+    pub fn alignment(&self) -> Alignment {
+        self.alignment
+    }
+
+    /// The width b of the common face.
+    pub fn common_face_width(&self) -> f64 {
+        self.common[1] - self.common[0]
+    }
+
+    /// Where `z` of the common face stands from the middle of the face of `member`.
+    pub fn own_height(&self, member: Member, z: f64) -> f64 {
+        let from_driving = z + f64::midpoint(self.common[0], self.common[1]);
+        match member {
+            Member::Driving => from_driving,
+            Member::Driven => from_driving - self.alignment.axial_offset,
+        }
+    }
+
+    /// tan β_b, positive where the driving gear is right-handed.
+    fn base_helix_tangent(&self) -> f64 {
+        self.gears[0].twist() * self.section.driving().base_radius()
+    }
+
+    /// The helix angle β_b at the base circles, without a sign.
+    pub fn base_helix_angle(&self) -> f64 {
+        self.base_helix_tangent().abs().atan()
+    }
+
+    /// The overlap ratio ε_β = b tan β_b/p_bt of the common face.
+    pub fn overlap_ratio(&self) -> f64 {
+        self.common_face_width() * self.advance().abs()
+    }
+
+    /// The total contact ratio ε_γ = ε_α + ε_β.
+    pub fn total_contact_ratio(&self) -> f64 {
+        self.section.contact_ratio() + self.overlap_ratio()
+    }
+
+    /// By how many mesh periods contacts go on with each meter along the axis.
+    pub fn advance(&self) -> f64 {
+        self.base_helix_tangent() / self.section.base_pitch()
+    }
+
+    /// The phase of pair `n` in the section at `z`: mesh periods since it passed the pitch point there.
+    pub fn phase(&self, eta: f64, n: i64, z: f64) -> f64 {
+        eta - n as f64 + z * self.advance()
+    }
+
+    /// Where on the common face each pair is in a phase between `first` and `last` at the mesh position `eta`.
+    pub fn lines(&self, eta: f64, [first, last]: [f64; 2]) -> Vec<ContactLine> {
+        let (half, advance) = (0.5 * self.common_face_width(), self.advance());
+        let beside = half * advance.abs();
+        let pairs = (eta - last - beside).ceil() as i64..=(eta - first + beside).floor() as i64;
+        pairs
+            .filter_map(|pair| {
+                let [from, to] = [first, last].map(|phase| phase - (eta - pair as f64));
+                let heights = if advance == 0.0 {
+                    [-half, half]
+                } else if advance > 0.0 {
+                    [from / advance, to / advance]
+                } else {
+                    [to / advance, from / advance]
+                };
+                let heights = heights.map(|z| z.clamp(-half, half));
+                (heights[1] > heights[0]).then_some(ContactLine { pair, heights })
+            })
+            .collect()
+    }
+
+    /// The theoretical contact lines at the mesh position `eta`: those on the path of contact.
+    pub fn contact_lines(&self, eta: f64) -> Vec<ContactLine> {
+        let (s_a, s_e) = self.section.path_of_contact();
+        self.lines(eta, [s_a, s_e].map(|s| self.phase_at(s)))
+    }
+
+    /// The length of the theoretical contact lines at the mesh position `eta`.
+    pub fn contact_length(&self, eta: f64) -> f64 {
+        let lines = self.contact_lines(eta).into_iter();
+        let heights = lines.map(|line| line.heights[1] - line.heights[0]);
+        heights.sum::<f64>() / self.base_helix_angle().cos()
+    }
+
+    /// The phase at which a pair nominally touches at the roll length `s` of the driving gear.
+    pub fn phase_at(&self, s: f64) -> f64 {
+        (s - self.section.pitch_roll_length()) / self.section.base_pitch()
+    }
+
+    /// How far the loaded flanks of `teeth` are apart at `z` beyond what their sections say, along the base tangent: by their leads and by
+    /// how the axes stand. `deviations` are those of the teeth.
+    pub fn lead_gap(&self, deviations: &PairDeviations, teeth: [usize; 2], z: f64) -> f64 {
+        let along = z / self.common_face_width() + 0.5;
+        let alpha = self.section.working_pressure_angle();
+        let Alignment {
+            in_plane,
+            out_of_plane,
+            ..
+        } = self.alignment;
+        let opening = (in_plane * alpha.sin() + out_of_plane * alpha.cos()) * along;
+        let removed = Member::BOTH.map(|member| {
+            let (width, own) = (self.gear(member).face_width(), self.own_height(member, z));
+            let leads = self.leads(member).iter();
+            let slope = LeadModification::Slope {
+                amount: deviations.of_gear(member).lead_slope(teeth[member.index()]),
+            };
+            leads.map(|lead| lead.removed(own, width)).sum::<f64>() + slope.removed(own, width)
+        });
+        opening + removed[0] + removed[1]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gear::Helix;
+    use crate::gear::spur::tests::paper_gear;
+
+    fn pair(beta: f64, width: f64, alignment: Alignment) -> Result<SolidPair, SolidPairError> {
+        let gear = |beta: f64, width: f64| {
+            let mut data = paper_gear(40);
+            data.face_width = width;
+            SolidGear::new(data, Helix::right(beta), 0.0, None).expect("a gear that can be made")
+        };
+        let gears = [gear(beta, width), gear(-beta, 20e-3)];
+        let a = 2.0 * gears[0].section().reference_radius();
+        SolidPair::new(gears, [Vec::new(), Vec::new()], a, alignment)
+    }
+
+    #[test]
+    fn the_ratios_are_those_of_the_standard() {
+        let pair = pair(20_f64.to_radians(), 20e-3, Alignment::default()).expect("meshes");
+        // ε_β = b sin β/(π m_n).
+        let overlap = 20.0 * 20_f64.to_radians().sin() / (std::f64::consts::PI * 2.0);
+        assert!((pair.overlap_ratio() - overlap).abs() < 1e-13);
+        // sin β_b = sin β cos α_n.
+        let sine = 20_f64.to_radians().sin() * 20_f64.to_radians().cos();
+        assert!((pair.base_helix_angle().sin() - sine).abs() < 1e-15);
+        let total = pair.section().contact_ratio() + overlap;
+        assert!((pair.total_contact_ratio() - total).abs() < 1e-13);
+    }
+
+    #[test]
+    fn the_contact_lines_have_one_length_where_the_overlap_is_whole() {
+        let beta = 20_f64.to_radians();
+        for whole in [1.0, 2.0] {
+            let width = whole * std::f64::consts::PI * 2e-3 / beta.sin();
+            let mut gears = [beta, -beta].map(|beta| {
+                let mut data = paper_gear(40);
+                data.face_width = width;
+                SolidGear::new(data, Helix::right(beta), 0.0, None).expect("can be made")
+            });
+            for _ in 0..2 {
+                let a = 2.0 * gears[0].section().reference_radius();
+                let none = [Vec::new(), Vec::new()];
+                let pair = SolidPair::new(gears.clone(), none, a, Alignment::default());
+                let pair = pair.expect("meshes");
+                // ε_α b/cos β_b for each unit of the overlap ratio, whatever the position.
+                let expected =
+                    pair.section().contact_ratio() * width / pair.base_helix_angle().cos();
+                for i in 0..97 {
+                    let length = pair.contact_length(f64::from(i) / 97.0);
+                    assert!((length / expected - 1.0).abs() < 1e-12, "{length}");
+                }
+                gears.reverse();
+            }
+        }
+        let other = pair(beta, 17e-3, Alignment::default()).expect("meshes");
+        let lengths: Vec<f64> = (0..16)
+            .map(|i| other.contact_length(f64::from(i) / 16.0))
+            .collect();
+        let least = lengths.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = lengths.iter().copied().fold(0.0, f64::max);
+        assert!(most / least > 1.01, "elsewhere it swings");
+    }
+
+    #[test]
+    fn faces_that_stand_apart_are_refused_and_the_named_offset_cures_it() {
+        let offset = |axial_offset| Alignment {
+            axial_offset,
+            ..Alignment::default()
+        };
+        for sign in [1.0, -1.0] {
+            let Err(SolidPairError::FacesDoNotOverlap { nearest, .. }) =
+                pair(0.1, 10e-3, offset(sign * 15e-3))
+            else {
+                panic!("they touch at an edge only")
+            };
+            assert!((nearest - sign * 14e-3).abs() < 1e-12);
+            let cured = pair(0.1, 10e-3, offset(nearest)).expect("a millimeter of common face");
+            assert!((cured.common_face_width() - 1e-3).abs() < 1e-12);
+        }
+        let inside = pair(0.1, 10e-3, offset(3e-3)).expect("the narrow face within the wide one");
+        assert!((inside.common_face_width() - 10e-3).abs() < 1e-15);
+        assert!((inside.own_height(Member::Driving, 0.0)).abs() < 1e-15);
+        assert!((inside.own_height(Member::Driven, 0.0) + 3e-3).abs() < 1e-15);
+    }
+
+    #[test]
+    fn gears_that_wind_the_same_way_do_not_mesh() {
+        let gear = |beta: f64| {
+            SolidGear::new(paper_gear(40), Helix::right(beta), 0.0, None).expect("can be made")
+        };
+        let gears = [gear(0.2), gear(0.2)];
+        let a = 2.0 * gears[0].section().reference_radius();
+        let refused = SolidPair::new(gears, [Vec::new(), Vec::new()], a, Alignment::default());
+        assert!(matches!(refused, Err(SolidPairError::HelixMismatch { .. })));
+    }
+
+    #[test]
+    fn a_misalignment_opens_from_nothing_to_its_part_along_the_line_of_action() {
+        let alignment = Alignment {
+            axial_offset: 0.0,
+            in_plane: 10e-6,
+            out_of_plane: 20e-6,
+        };
+        let pair = pair(0.2, 20e-3, alignment).expect("meshes");
+        let alpha = pair.section().working_pressure_angle();
+        let gap = |z| pair.lead_gap(&PairDeviations::NONE, [0, 0], z);
+        assert!(gap(-10e-3).abs() < 1e-18);
+        let whole = 10e-6 * alpha.sin() + 20e-6 * alpha.cos();
+        assert!((gap(10e-3) - whole).abs() < 1e-18);
+    }
+}

@@ -1,0 +1,511 @@
+//! Contact along faces: what holds whatever yields under the teeth. The yield here is given by a closed form.
+
+use std::sync::Arc;
+
+use faer::Mat;
+use meshwright_engine::contact::face::{FaceContact, FaceModel, FlankYield, SLICES};
+use meshwright_engine::gear::{
+    Alignment, BlankRegion, FaceEnds, GearData, Helix, LeadModification, Material, Member,
+    ModificationData, Rack, ReliefData, ReliefShape, ReliefStart, SolidGear, SolidPair, TipEdge,
+    ToothDeviations,
+};
+use meshwright_engine::run::Run;
+
+/// A flank that bends and tilts: functions of the distance from the root times Legendre polynomials across the face.
+struct Manufactured {
+    /// Half the face, and the roll lengths at which the flank begins and ends.
+    half: f64,
+    ends: [f64; 2],
+    /// In m/N.
+    compliance: f64,
+}
+
+const ACROSS: usize = 5;
+
+impl Manufactured {
+    fn of(gear: &SolidGear) -> Self {
+        let section = gear.section();
+        let material = section.material();
+        Self {
+            half: gear.face_width() / 2.0,
+            ends: [section.form_roll_length(), section.tip_roll_length()],
+            compliance: 10.0 / (material.youngs_modulus * gear.face_width()),
+        }
+    }
+}
+
+impl FlankYield for Manufactured {
+    fn basis_len(&self) -> usize {
+        2 * ACROSS
+    }
+
+    fn basis(&self, roll_length: f64, z: f64, row: &mut [f64]) {
+        let [from, to] = self.ends;
+        let t = (roll_length - from) / (to - from);
+        let x = z / self.half;
+        let across = [
+            1.0,
+            x,
+            1.5 * x * x - 0.5,
+            2.5 * x.powi(3) - 1.5 * x,
+            4.375 * x.powi(4) - 3.75 * x * x + 0.375,
+        ];
+        for (p, value) in across.into_iter().enumerate() {
+            row[p] = value;
+            row[ACROSS + p] = t * value;
+        }
+    }
+
+    fn smooth(&self, teeth: &[usize]) -> Mat<f64> {
+        let size = self.basis_len();
+        Mat::from_fn(size * teeth.len(), size * teeth.len(), |row, column| {
+            let (a, b) = (row / size, column / size);
+            if row % size != column % size {
+                return 0.0;
+            }
+            let order = (row % size) % ACROSS;
+            let own = 1.0 / (1.0 + order as f64).powi(2);
+            let near = if a == b {
+                1.0
+            } else {
+                0.3_f64.powi(a.abs_diff(b) as i32)
+            };
+            self.compliance * own * near
+        })
+    }
+}
+
+#[derive(Clone)]
+struct Drawing {
+    teeth: [u32; 2],
+    /// Of the driving gear, in degrees.
+    beta: f64,
+    scale: f64,
+    widths: [f64; 2],
+    relief: f64,
+    leads: [Vec<LeadModification>; 2],
+    alignment: Alignment,
+    deviations: [ToothDeviations; 2],
+}
+
+impl Default for Drawing {
+    fn default() -> Self {
+        Self {
+            teeth: [25, 50],
+            beta: 20.0,
+            scale: 1.0,
+            widths: [20e-3, 20e-3],
+            relief: 0.0,
+            leads: [Vec::new(), Vec::new()],
+            alignment: Alignment::default(),
+            deviations: Default::default(),
+        }
+    }
+}
+
+impl Drawing {
+    fn pair(&self) -> SolidPair {
+        let gears = Member::BOTH.map(|member| {
+            let (g, m) = (member.index(), 2e-3 * self.scale);
+            let relief = ModificationData::TipRelief(ReliefData {
+                amount: self.relief * self.scale,
+                shape: ReliefShape::Linear,
+                start: ReliefStart::RadialLength(0.8 * m),
+            });
+            let data = GearData {
+                tooth_count: self.teeth[g],
+                rack: Rack {
+                    module: m,
+                    pressure_angle: 20_f64.to_radians(),
+                    addendum: m,
+                    dedendum: 1.25 * m,
+                    tip_radius: 0.38 * m,
+                },
+                profile_shift: 0.0,
+                thickness_deviation: -0.05 * m,
+                tip_edge: TipEdge::Sharp,
+                face_width: self.widths[g] * self.scale,
+                modifications: if self.relief == 0.0 {
+                    Vec::new()
+                } else {
+                    vec![relief]
+                },
+                deviations: self.deviations[g].clone(),
+                material: Material {
+                    youngs_modulus: 210e9,
+                    poisson_ratio: 0.3,
+                    density: 7850.0,
+                },
+                blank: BlankRegion::solid(4.0 * m),
+            };
+            let sign = if member == Member::Driving { 1.0 } else { -1.0 };
+            let helix = Helix::right(sign * self.beta.to_radians());
+            SolidGear::new(data, helix, 0.0, None).expect("a gear that can be made")
+        });
+        let a = gears[0].section().reference_radius() + gears[1].section().reference_radius();
+        SolidPair::new(gears, self.leads.clone(), a, self.alignment).expect("meshes")
+    }
+
+    fn model(&self) -> FaceModel {
+        self.model_of(SLICES)
+    }
+
+    fn model_of(&self, slices: usize) -> FaceModel {
+        let pair = self.pair();
+        let yields = Member::BOTH
+            .map(|member| Arc::new(Manufactured::of(pair.gear(member))) as Arc<dyn FlankYield>);
+        FaceModel::new(pair, yields, slices, 20)
+    }
+}
+
+fn contacts(model: &FaceModel, load: f64, positions: &[f64]) -> Vec<FaceContact> {
+    let solved = model.contacts(load, positions, &Run::unattended());
+    solved.expect("a balance at every position")
+}
+
+fn period(count: usize) -> Vec<f64> {
+    (0..count).map(|i| i as f64 / count as f64).collect()
+}
+
+fn deltas(contacts: &[FaceContact]) -> Vec<f64> {
+    contacts
+        .iter()
+        .map(|contact| contact.mesh.transmission_error)
+        .collect()
+}
+
+fn crowned() -> [Vec<LeadModification>; 2] {
+    let relief = LeadModification::EndRelief {
+        amount: 6e-6,
+        length: 4e-3,
+        ends: FaceEnds::Plus,
+    };
+    [
+        vec![LeadModification::Crowning { amount: 8e-6 }],
+        vec![LeadModification::Slope { amount: 5e-6 }, relief],
+    ]
+}
+
+/// Numbers in [0, 1) that look drawn.
+fn drawn(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+#[test]
+fn every_position_of_pairs_drawn_at_random_comes_to_a_balance_that_penetrates_nowhere() {
+    for seed in 0..60 {
+        let mut draw = drawn(seed + 1);
+        let mut between = |low: f64, high: f64| low + (high - low) * draw();
+        let beta = if seed % 6 == 0 {
+            0.0
+        } else {
+            between(-35.0, 35.0)
+        };
+        let drawing = Drawing {
+            teeth: [
+                20 + between(0.0, 30.0) as u32,
+                25 + between(0.0, 60.0) as u32,
+            ],
+            beta,
+            scale: 10_f64.powf(between(-0.6, 0.6)),
+            widths: [between(6e-3, 40e-3), between(6e-3, 40e-3)],
+            relief: if seed % 2 == 0 {
+                0.0
+            } else {
+                between(2e-6, 20e-6)
+            },
+            leads: if seed % 3 == 0 {
+                [Vec::new(), Vec::new()]
+            } else {
+                crowned()
+            },
+            alignment: Alignment {
+                axial_offset: between(-1e-3, 1e-3),
+                in_plane: between(-20e-6, 20e-6),
+                out_of_plane: between(-20e-6, 20e-6),
+            },
+            deviations: Default::default(),
+        };
+        let model = drawing.model();
+        let width = model.pair().common_face_width();
+        // From a touch to teeth that are about to break.
+        let load = width * drawing.scale * 10_f64.powf(between(2.0, 6.3));
+        let positions = period(7);
+        for (eta, contact) in positions.iter().zip(contacts(&model, load, &positions)) {
+            let mesh = &contact.mesh;
+            let what = format!("seed {seed} at {eta}: {mesh:?}");
+            assert!(mesh.equilibrium < 1e-9, "{what}");
+            assert!(mesh.stiffness > 0.0 && mesh.iterations < 200, "{what}");
+            let carried: f64 = contact.slices.iter().map(|slice| slice.force).sum();
+            assert!((carried / load - 1.0).abs() < 1e-9, "{what}");
+            assert!(
+                contact.slices.iter().all(|slice| slice.force > 0.0),
+                "{what}"
+            );
+            let touch = model.least_touch(*eta).expect("they face each other");
+            let pressed = mesh.transmission_error - touch;
+            assert!(pressed > 0.0, "{what}");
+            assert!(mesh.complementarity < 1e-9 * load * pressed, "{what}");
+            assert!(mesh.penetration < 0.03 * pressed, "{what}: {pressed}");
+        }
+    }
+}
+
+#[test]
+fn mirrored_gears_have_mirrored_contacts() {
+    let drawing = Drawing {
+        relief: 8e-6,
+        leads: [
+            vec![LeadModification::EndRelief {
+                amount: 6e-6,
+                length: 4e-3,
+                ends: FaceEnds::Plus,
+            }],
+            vec![LeadModification::Table {
+                places: vec![-9e-3, 2e-3, 8e-3],
+                removed: vec![4e-6, 0.0, 3e-6],
+            }],
+        ],
+        ..Drawing::default()
+    };
+    let mirrored = Drawing {
+        beta: -drawing.beta,
+        leads: [
+            vec![LeadModification::EndRelief {
+                amount: 6e-6,
+                length: 4e-3,
+                ends: FaceEnds::Minus,
+            }],
+            vec![LeadModification::Table {
+                places: vec![-8e-3, -2e-3, 9e-3],
+                removed: vec![3e-6, 0.0, 4e-6],
+            }],
+        ],
+        ..drawing.clone()
+    };
+    let positions = period(9);
+    let one = contacts(&drawing.model(), 3000.0, &positions);
+    let other = contacts(&mirrored.model(), 3000.0, &positions);
+    for (one, other) in one.iter().zip(&other) {
+        let (delta, mirrored) = (one.mesh.transmission_error, other.mesh.transmission_error);
+        assert!((delta / mirrored - 1.0).abs() < 1e-12, "{delta} {mirrored}");
+        assert!((one.load_centroid() + other.load_centroid()).abs() < 1e-12);
+        let mut strips = other.strips(20e-3, 10);
+        strips.reverse();
+        for (a, b) in one.strips(20e-3, 10).iter().zip(strips) {
+            assert!((a - b).abs() < 1e-8 * 3000.0);
+        }
+    }
+}
+
+#[test]
+fn the_gear_that_drives_may_be_driven() {
+    let alignment = Alignment {
+        axial_offset: 3e-3,
+        in_plane: 10e-6,
+        out_of_plane: 6e-6,
+    };
+    let drawing = Drawing {
+        relief: 6e-6,
+        widths: [18e-3, 24e-3],
+        leads: crowned(),
+        alignment,
+        ..Drawing::default()
+    };
+    let [one, other] = drawing.leads.clone();
+    let swapped = Drawing {
+        teeth: [50, 25],
+        beta: -20.0,
+        widths: [24e-3, 18e-3],
+        leads: [other, one],
+        alignment: Alignment {
+            axial_offset: -3e-3,
+            ..alignment
+        },
+        ..drawing.clone()
+    };
+    let positions = period(9);
+    let backwards: Vec<f64> = positions.iter().map(|eta| -eta).collect();
+    let one = contacts(&drawing.model(), 3000.0, &positions);
+    let other = contacts(&swapped.model(), 3000.0, &backwards);
+    for (one, other) in one.iter().zip(&other) {
+        let (a, b) = (one.mesh.transmission_error, other.mesh.transmission_error);
+        // Off the line of action arms differ a little, and each driven gear carries F.
+        assert!((a / b - 1.0).abs() < 2e-3, "{a} {b}");
+        assert!((one.load_centroid() - other.load_centroid()).abs() < 0.05e-3);
+    }
+}
+
+#[test]
+fn a_misalignment_is_a_lead_slope_of_the_same_gap() {
+    let alignment = Alignment {
+        axial_offset: 0.0,
+        in_plane: 10e-6,
+        out_of_plane: 6e-6,
+    };
+    let tilted = Drawing {
+        alignment,
+        ..Drawing::default()
+    };
+    let alpha = tilted.pair().section().working_pressure_angle();
+    let amount = 10e-6 * alpha.sin() + 6e-6 * alpha.cos();
+    let positions = period(8);
+    let expected = deltas(&contacts(&tilted.model(), 3000.0, &positions));
+    let straight = deltas(&contacts(&Drawing::default().model(), 3000.0, &positions));
+    let of_teeth = |teeth: usize| ToothDeviations {
+        lead_slope: vec![amount; teeth],
+        ..ToothDeviations::default()
+    };
+    let slope = || vec![LeadModification::Slope { amount }];
+    for sloped in [
+        Drawing {
+            leads: [slope(), Vec::new()],
+            ..Drawing::default()
+        },
+        Drawing {
+            leads: [Vec::new(), slope()],
+            ..Drawing::default()
+        },
+        Drawing {
+            deviations: [of_teeth(25), ToothDeviations::default()],
+            ..Drawing::default()
+        },
+    ] {
+        let found = deltas(&contacts(&sloped.model(), 3000.0, &positions));
+        for ((a, b), straight) in found.iter().zip(&expected).zip(&straight) {
+            assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
+            assert!(b - straight > 1e-6);
+        }
+    }
+}
+
+#[test]
+fn the_deviation_of_one_tooth_is_felt_by_its_pair_alone() {
+    let mut deviations: [ToothDeviations; 2] = Default::default();
+    let mut pitch = vec![0.0; 25];
+    pitch[3] = 5e-6;
+    deviations[0].cumulative_pitch = pitch;
+    let deviating = Drawing {
+        deviations,
+        ..Drawing::default()
+    };
+    let positions: Vec<f64> = (0..25).map(|i| f64::from(i) + 0.2).collect();
+    let load = 3000.0;
+    let found = deltas(&contacts(&deviating.model(), load, &positions));
+    let plain = deltas(&contacts(&Drawing::default().model(), load, &[0.2]))[0];
+    // Pair n has the driving tooth −n: tooth 3 meets in pair 22.
+    for (eta, delta) in positions.iter().zip(&found) {
+        let (felt, far) = ((delta - plain).abs(), (*eta - 22.0).abs());
+        let what = format!("{eta}: {delta} against {plain}");
+        assert!(far > 1.0 || felt > 0.1e-6, "{what}");
+        // Slices are laid a little farther, which δ feels everywhere.
+        assert!(far < 2.0 || felt < 0.02e-6, "{what}");
+        // Standing out, it makes contact earlier.
+        assert!(delta - plain < 0.02e-6, "{what}");
+    }
+}
+
+#[test]
+fn larger_gears_under_the_square_of_the_load_yield_in_proportion() {
+    let drawing = |scale: f64| Drawing {
+        scale,
+        relief: 6e-6,
+        alignment: Alignment {
+            axial_offset: 0.0,
+            in_plane: 12e-6 * scale,
+            out_of_plane: 0.0,
+        },
+        ..Drawing::default()
+    };
+    let positions = period(8);
+    let small = contacts(&drawing(1.0).model(), 2000.0, &positions);
+    let large = contacts(&drawing(4.0).model(), 2000.0 * 16.0, &positions);
+    for (small, large) in small.iter().zip(&large) {
+        let (a, b) = (&small.mesh, &large.mesh);
+        assert!((b.transmission_error / a.transmission_error / 4.0 - 1.0).abs() < 1e-9);
+        assert!((b.stiffness / a.stiffness / 4.0 - 1.0).abs() < 1e-7);
+        let (p, q) = (a.peak_pressure, b.peak_pressure);
+        assert!((p.expect("Hertz's") / q.expect("Hertz's") - 1.0).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn more_load_presses_farther_and_the_stiffness_is_the_slope() {
+    for drawing in [
+        Drawing::default(),
+        Drawing {
+            relief: 10e-6,
+            leads: crowned(),
+            ..Drawing::default()
+        },
+        Drawing {
+            beta: 0.0,
+            ..Drawing::default()
+        },
+    ] {
+        let model = drawing.model();
+        for eta in [0.0, 0.3, 0.71] {
+            let at = |load: f64| contacts(&model, load, &[eta]).remove(0).mesh;
+            let mut last = f64::NEG_INFINITY;
+            for load in [0.1, 10.0, 100.0, 1000.0, 3000.0, 10_000.0, 100_000.0] {
+                let mesh = at(load);
+                assert!(mesh.transmission_error > last, "{load}");
+                last = mesh.transmission_error;
+            }
+            // Slices are laid for the load, so that the step must not be too small.
+            let (load, step) = (3000.0, 30.0);
+            let rise = at(load + step).transmission_error - at(load - step).transmission_error;
+            let slope = 2.0 * step / rise;
+            let told = at(load).stiffness;
+            assert!((told / slope - 1.0).abs() < 0.01, "{told} {slope}");
+        }
+    }
+}
+
+#[test]
+fn finer_slices_change_little() {
+    for drawing in [
+        Drawing::default(),
+        Drawing {
+            relief: 10e-6,
+            leads: crowned(),
+            ..Drawing::default()
+        },
+    ] {
+        let positions = period(16);
+        let at = |slices: usize| deltas(&contacts(&drawing.model_of(slices), 3000.0, &positions));
+        let (coarse, fine) = (at(40), at(160));
+        for (coarse, fine) in coarse.iter().zip(&fine) {
+            assert!((coarse / fine - 1.0).abs() < 3e-3, "{coarse} {fine}");
+        }
+    }
+}
+
+#[test]
+fn without_a_misalignment_or_with_it_the_strips_carry_the_whole_load() {
+    let drawing = Drawing {
+        alignment: Alignment {
+            axial_offset: 4e-3,
+            in_plane: 0.0,
+            out_of_plane: 10e-6,
+        },
+        ..Drawing::default()
+    };
+    let model = drawing.model();
+    let width = model.pair().common_face_width();
+    assert!((width - 16e-3).abs() < 1e-12);
+    for contact in contacts(&model, 2000.0, &period(8)) {
+        for count in [1, 10, 37] {
+            let strips = contact.strips(width, count);
+            assert!((strips.iter().sum::<f64>() / 2000.0 - 1.0).abs() < 1e-9);
+        }
+        let strips = contact.strips(width, 2);
+        assert!(strips[0] > strips[1] && contact.load_centroid() < 0.0);
+    }
+}
