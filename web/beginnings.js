@@ -38,6 +38,7 @@ export class Beginnings {
     const name = pointer.split("/").pop();
     if (name === "start") return this.#start(pointer, Object.keys(kind.schema.properties)[0], there);
     if (/\/profile_modifications\/\d+$/.test(pointer)) return this.#modification(pointer, kind);
+    if (/\/lead_modifications\/\d+$/.test(pointer)) return this.#lead(pointer, kind);
     if (name === "interface_radius_mm") return this.#interface(kind);
     if (name !== "holes") return this.#begin(kind);
     const patterns = there ? [there].flat() : [this.object(pointer, kind)];
@@ -47,6 +48,7 @@ export class Beginnings {
   /** A further entry of a list. */
   further(pointer, kind, values) {
     if (pointer.endsWith("/profile_modifications")) return this.#modification(pointer, kindOf(this.api, kind.items.kind === "variants" ? kind.items.variants[0] : kind.items.schema));
+    if (pointer.endsWith("/lead_modifications")) return { kind: "crowning", amount_um: 5 };
     if (!pointer.endsWith("/holes")) return this.#begin(kind.items);
     return values.length ? between(values.at(-1)) : this.object(pointer, kind);
   }
@@ -66,6 +68,7 @@ export class Beginnings {
       return { count: 6, circle_radius_mm: circle, radius_mm: rounded(Math.min(0.27 * (root - bore), 0.3 * circle), 2), phase_deg: 0 };
     }
     if (name === "tip_relief") return { amount_um: 10, shape: "linear", start: { radial_length_mm: rounded(0.5 * module, 2) } };
+    if (name === "hub") return { outer_radius_mm: rounded(bore + 0.2 * (root - bore)), width_mm: gear.face_width_mm };
     if (name !== "web") return undefined;
     // Half the face, under a rim that a plane model stands for where there is room for it.
     const inner = bore + 0.2 * (root - bore);
@@ -115,6 +118,14 @@ export class Beginnings {
     if (name === "table") return { kind: name, roll_length_mm: [rounded(flank.form, 5), rounded((flank.form + flank.tip) / 2, 5), rounded(flank.tip, 5)], removed_um: [0, 0, 5] };
     if (name === "tip_relief") return { kind: name, amount_um: 5, start: { radial_length_mm: rounded(0.5 * gear.module_mm, 2) } };
     if (name === "root_relief") return { kind: name, amount_um: 5, start: { diameter_mm: rounded(2 * flank.radiusAt(flank.form + 0.25 * (flank.tip - flank.form)), 6) } };
+    return { kind: name, amount_um: 5 };
+  }
+
+  #lead(pointer, kind) {
+    const name = kind.schema.properties?.kind?.enum?.[0] ?? "crowning";
+    const face = this.#gear(pointer)?.face_width_mm ?? 20;
+    if (name === "table") return { kind: name, z_mm: [-face / 2, 0, face / 2], removed_um: [5, 0, 5] };
+    if (name === "end_relief") return { kind: name, amount_um: 5, length_mm: rounded(0.2 * face, 2), side: "both" };
     return { kind: name, amount_um: 5 };
   }
 

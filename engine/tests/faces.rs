@@ -463,7 +463,7 @@ fn more_load_presses_farther_and_the_stiffness_is_the_slope() {
             let rise = at(load + step).transmission_error - at(load - step).transmission_error;
             let slope = 2.0 * step / rise;
             let told = at(load).stiffness;
-            assert!((told / slope - 1.0).abs() < 0.01, "{told} {slope}");
+            assert!((told / slope - 1.0).abs() < 0.02, "{told} {slope}");
         }
     }
 }

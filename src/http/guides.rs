@@ -46,6 +46,7 @@ const GUIDES: &[Guide] = guides! {
     "how-good-will-they-be"
     "find-a-design"
     "is-my-thin-web-all-right"
+    "my-helical-pair"
     "will-it-rattle-or-whine"
     "limits"
     "theory"

@@ -442,6 +442,7 @@ fn rough_cost(submission: &Submission) -> u64 {
     // The closed form of the load distribution needs no grid.
     let (fixed, per_position) = match submission.case().method {
         Method::LoadDistribution => (200, 5),
+        Method::ThreeDimensional => (4_000_000, 5_000),
         _ => (20_000, 50),
     };
     submission

@@ -1,6 +1,6 @@
 //! Teeth drawn at random within the tolerances of an accuracy class.
 
-use meshwright_engine::gear::{Normals, SpurGear, Tolerances, total_pitch_deviation};
+use meshwright_engine::gear::{Helix, Normals, SpurGear, Tolerances, total_pitch_deviation};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -46,7 +46,10 @@ pub struct Draw {
 impl DrawDocument {
     /// What is asked, if its gear can be made; what prevents it is reported to `errors`.
     fn made(self, errors: &Errors) -> Option<Draw> {
-        let made = self.gear.without_deviations().to_gear("/gear");
+        let made = self
+            .gear
+            .without_deviations()
+            .to_gear("/gear", Helix::STRAIGHT);
         let faults = made.as_ref().err().into_iter().flatten();
         faults.for_each(|fault| errors.push(fault.clone()));
         Some(Draw {

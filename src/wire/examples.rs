@@ -46,6 +46,7 @@ const EXAMPLES: &[Example] = examples! {
     "unequal-spacing" true "Eight equal holes at unequal angles: what an even ring puts into H_8 spreads over the orders beside it."
     "slots" true "Five kidneys along a circle."
     "stress" true "Design 8R34 with the largest stresses at its roots and at the edges of its holes."
+    "helical-pair" true "A helical pair in three dimensions: a crowned pinion on a shaft askew, and a wheel whose web stands at one side. The load along the face and its factor K_Hbeta."
     "run-up" true "Test case 2 run up and down to 20,000 1/min: the force table, the motion of the gears over speed, and its resonances."
     "bad-case-3-as-printed" false "Test case 3 with the center distance that the paper prints, 118.5 mm: its teeth do not reach each other, and it is refused."
 };

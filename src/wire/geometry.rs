@@ -1,7 +1,9 @@
 //! The pair as its drawing makes it: what follows from the submission without any load.
 
+use std::f64::consts::PI;
+
 use meshwright_engine::analysis::Case;
-use meshwright_engine::gear::{GearPair, Member};
+use meshwright_engine::gear::{GearPair, Member, SolidGear, SolidPair};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -27,6 +29,22 @@ pub struct PairGeometry {
     pub least_backlash_mm: f64,
     /// The face width on which the gears touch, in mm: the smaller of the two.
     pub contact_width_mm: f64,
+    /// The helix angle at the base circles, in degrees, without a sign; absent, as what follows, for plane methods. With a helix all other values of the
+    /// pair are those of its transverse section.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub helix_angle_base_deg: Option<f64>,
+    /// The overlap ratio: the common face over the axial pitch.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub overlap_ratio: Option<f64>,
+    /// The total contact ratio: the transverse contact ratio and the overlap ratio together.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub total_contact_ratio: Option<f64>,
+    /// The transverse module, in mm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub transverse_module_mm: Option<f64>,
+    /// The pressure angle in the transverse section at the reference circle, in degrees.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub transverse_pressure_angle_deg: Option<f64>,
     /// The path of contact along the theoretical line of action.
     pub path_of_contact: PathOfContact,
     /// Gear 1, which drives.
@@ -137,8 +155,12 @@ pub struct Frequencies {
 }
 
 impl PairGeometry {
-    /// What follows for `pair`.
-    pub fn of(pair: &GearPair) -> Self {
+    /// What follows for the pair of `case`.
+    pub fn of(case: &Case) -> Self {
+        let pair = &case.pair;
+        let faces = case.faces.as_ref().map(|faces| &faces.pair);
+        let rack = &pair.driving().data().rack;
+        let width = faces.map_or(pair.common_face_width(), SolidPair::common_face_width);
         Self {
             center_distance_mm: to_mm(pair.center_distance()),
             working_pressure_angle_deg: pair.working_pressure_angle().to_degrees(),
@@ -147,10 +169,15 @@ impl PairGeometry {
             period_mesh_periods: pair.period(),
             backlash_mm: to_mm(pair.backlash()),
             least_backlash_mm: to_mm(pair.least_backlash()),
-            contact_width_mm: to_mm(pair.common_face_width()),
+            contact_width_mm: to_mm(width),
+            helix_angle_base_deg: faces.map(|pair| pair.base_helix_angle().to_degrees()),
+            overlap_ratio: faces.map(SolidPair::overlap_ratio),
+            total_contact_ratio: faces.map(SolidPair::total_contact_ratio),
+            transverse_module_mm: faces.map(|_| to_mm(rack.module)),
+            transverse_pressure_angle_deg: faces.map(|_| rack.pressure_angle.to_degrees()),
             path_of_contact: PathOfContact::of(pair),
-            driving: GearGeometry::of(pair, Member::Driving),
-            driven: GearGeometry::of(pair, Member::Driven),
+            driving: GearGeometry::of_case(case, Member::Driving),
+            driven: GearGeometry::of_case(case, Member::Driven),
         }
     }
 }
@@ -176,6 +203,17 @@ impl PathOfContact {
 }
 
 impl GearGeometry {
+    fn of_case(case: &Case, member: Member) -> Self {
+        let gear = Self::of(&case.pair, member);
+        let solid = case.faces.as_ref().map(|faces| faces.pair.gear(member));
+        let [mass, inertia] = solid.map_or([0.0, 0.0], added_by_hub);
+        Self {
+            mass_kg: gear.mass_kg + mass,
+            polar_inertia_kg_m2: gear.polar_inertia_kg_m2 + inertia,
+            ..gear
+        }
+    }
+
     fn of(pair: &GearPair, member: Member) -> Self {
         let gear = pair.gear(member);
         // What rounding leaves of holes that balance each other has no direction.
@@ -223,6 +261,31 @@ impl Frequencies {
     }
 }
 
+/// The mass and the polar inertia that a hub of its own width has more than its section, in which what lies around the bore is as wide as the face,
+/// or as thick as the web.
+fn added_by_hub(gear: &SolidGear) -> [f64; 2] {
+    let Some(hub) = gear.hub() else {
+        return [0.0, 0.0];
+    };
+    let (section, blank) = (gear.section(), &gear.section().data().blank);
+    let density = section.material().density;
+    let ring = |from: f64, to: f64, width: f64| {
+        let to = to.max(from);
+        [
+            density * PI * (to.powi(2) - from.powi(2)) * width,
+            0.5 * density * PI * (to.powi(4) - from.powi(4)) * width,
+        ]
+    };
+    let web = blank.web.map_or(hub.outer_radius, |web| web.inner_radius);
+    let thickness = blank.web.map_or(0.0, |web| web.thickness);
+    let within = web.min(hub.outer_radius);
+    let [inner, outer] = [
+        ring(blank.bore_radius, within, hub.width - gear.face_width()),
+        ring(within, hub.outer_radius, hub.width - thickness),
+    ];
+    [inner[0] + outer[0], inner[1] + outer[1]]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -234,10 +297,9 @@ mod tests {
             .find(|example| example.name == name)
             .expect("ships");
         PairGeometry::of(
-            &Submission::parse(example.json.as_bytes())
+            Submission::parse(example.json.as_bytes())
                 .expect("valid")
-                .case()
-                .pair,
+                .case(),
         )
     }
 
@@ -322,5 +384,25 @@ mod tests {
             .least_ligament_mm
             .expect("holes");
         assert!((ligament - 4.109_06).abs() < 1e-5, "{ligament}");
+    }
+
+    #[test]
+    fn a_hub_weighs_what_it_is_wider_than_the_face() {
+        // The driven gear of the example: bore 20 mm, hub to 30 mm, 24 mm wide on a face of 20 mm.
+        let hub = geometry("helical-pair").driven;
+        let example = examples()
+            .iter()
+            .find(|example| example.name == "helical-pair")
+            .expect("ships");
+        let without = example
+            .json
+            .replace("\"width_mm\": 24.0", "\"width_mm\": 20.0");
+        assert_ne!(without, example.json);
+        let submission = Submission::parse(without.as_bytes()).expect("valid");
+        let plain = PairGeometry::of(submission.case()).driven;
+        let mass = 7850.0 * PI * (0.03_f64.powi(2) - 0.02_f64.powi(2)) * 4e-3;
+        assert!((hub.mass_kg - plain.mass_kg - mass).abs() < 1e-12);
+        let inertia = 7850.0 * PI / 2.0 * (0.03_f64.powi(4) - 0.02_f64.powi(4)) * 4e-3;
+        assert!((hub.polar_inertia_kg_m2 - plain.polar_inertia_kg_m2 - inertia).abs() < 1e-15);
     }
 }

@@ -1,18 +1,28 @@
 //! The pair of a submission, and what is wrong with gears that cannot mesh.
 
-use meshwright_engine::gear::{GearPair, GearPairError, Member, SpurGear};
+use meshwright_engine::gear::{
+    Alignment, GearPair, GearPairError, Helix, Member, SolidPair, SolidPairError, SpurGear,
+};
 
-use super::declare::{Errors, document, nested, number};
-use super::gear::GearDocument;
+use super::declare::{Errors, absent, document, nested, number};
+use super::gear::{GearDocument, LeadModificationDocument};
 use super::problem::{Code, FieldError};
-use super::units::{Side, from_mm, plain, rounded_inward, to_mm};
+use super::units::{Side, from_mm, from_um, plain, rounded_inward, to_mm};
 
 document! {
-    /// Two spur gears at a center distance, the first driving the second.
+    /// Two spur or helical gears at a center distance, the first driving the second.
     pub struct PairDocument as "Pair", "Gear pair" {
         /// The operating center distance, not the reference one. Teeth have to reach each other with a contact ratio of at least one,
         /// without negative backlash and without interference.
         center_distance_mm: f64 = number("Center distance", "mm", 0.5, 20_000.0),
+        /// The helix angle at the reference circle: positive where the driving gear is right-handed and the driven one left-handed. Module,
+        /// pressure angle, rack and profile shift are those of the normal section then. Other than 0 it needs three dimensions.
+        helix_angle_deg: f64 = number("Helix angle", "deg", -45.0, 45.0).or(0.0),
+        /// Where the mid plane of the driven face stands from that of the driving one; +z is the side from which the driving gear is seen
+        /// to turn counter-clockwise. Other than 0 it needs three dimensions.
+        axial_offset_mm: f64 = number("Axial offset", "mm", -2_000.0, 2_000.0).or(0.0),
+        /// How the axes stand askew over the common face. It needs three dimensions.
+        misalignment_um: Option<MisalignmentDocument> = absent(nested("Misalignment"), "none"),
         /// Gear 1, which drives.
         pub(super) driving: GearDocument = nested(""),
         /// Gear 2, which is driven.
@@ -20,17 +30,129 @@ document! {
     }
 }
 
+document! {
+    /// How the axes stand askew: by how much the flanks open from the -z end of the common face to its +z end.
+    pub struct MisalignmentDocument as "Misalignment", "Misalignment" {
+        /// By how much the axes are farther apart, in their plane; along the line of action it is times the sine of the working pressure
+        /// angle.
+        in_plane_um: f64 = number("Misalignment in the plane of the axes", "um", -1_000.0, 1_000.0).or(0.0),
+        /// By how much they pass each other, across their plane, positive where the loaded flanks open; along the line of action it is
+        /// times the cosine of the working pressure angle.
+        out_of_plane_um: f64 = number("Misalignment out of the plane of the axes", "um", -1_000.0, 1_000.0).or(0.0),
+    }
+}
+
 impl PairDocument {
+    /// The helix of the gear `member`.
+    pub(super) fn helix(&self, member: Member) -> Helix {
+        let beta = self.helix_angle_deg.to_radians();
+        Helix::right(match member {
+            Member::Driving => beta,
+            Member::Driven => -beta,
+        })
+    }
+
+    /// Refuses what a plane `method` does not know.
+    pub(super) fn refuse_three_dimensions(&self, method: &str, errors: &Errors) {
+        let number =
+            |value: f64, name: &str| (value != 0.0).then(|| (format!("/pair/{name}"), Some(0.0)));
+        let askew = self.misalignment_um.as_ref().filter(|misalignment| {
+            misalignment.in_plane_um != 0.0 || misalignment.out_of_plane_um != 0.0
+        });
+        let own = [
+            number(self.helix_angle_deg, Self::helix_angle_deg.name),
+            number(self.axial_offset_mm, Self::axial_offset_mm.name),
+            askew.map(|_| (format!("/pair/{}", Self::misalignment_um.name), None)),
+        ];
+        let of_gears = [&self.driving, &self.driven].into_iter().zip(Member::BOTH);
+        let of_gears =
+            of_gears.flat_map(|(gear, member)| gear.beyond_the_plane(&format!("/pair/{member}")));
+        for (pointer, nearest) in own.into_iter().flatten().chain(of_gears) {
+            let detail = format!(
+                "{pointer} is not known to the plane, in which {method} computes; three_dimensional knows it."
+            );
+            errors.push(
+                FieldError::new(pointer, Code::NeedsThreeDimensions, detail).nearest(nearest),
+            );
+        }
+    }
+
+    /// The pair along its faces, if its gears can be made and mesh; what prevents it is reported to `errors`.
+    pub(super) fn to_solid_pair(&self, errors: &Errors) -> Option<SolidPair> {
+        let mismatches = self.mismatches();
+        let matched = mismatches.is_empty();
+        mismatches
+            .into_iter()
+            .for_each(|mismatch| errors.push(mismatch));
+        let [driving, driven] = [
+            (&self.driving, Member::Driving),
+            (&self.driven, Member::Driven),
+        ]
+        .map(|(gear, member)| {
+            let made = gear.to_solid(&format!("/pair/{member}"), self.helix(member));
+            made.map_err(|faults| faults.into_iter().for_each(|fault| errors.push(fault)))
+        });
+        let (driving, driven) = (driving.ok()?, driven.ok()?);
+        if !matched {
+            return None;
+        }
+        let sections = [driving.section().clone(), driven.section().clone()];
+        let askew = self.misalignment_um.as_ref();
+        let alignment = Alignment {
+            axial_offset: from_mm(self.axial_offset_mm),
+            in_plane: askew.map_or(0.0, |askew| from_um(askew.in_plane_um)),
+            out_of_plane: askew.map_or(0.0, |askew| from_um(askew.out_of_plane_um)),
+        };
+        let pair = SolidPair::new(
+            [driving, driven],
+            [self.driving.leads(), self.driven.leads()],
+            from_mm(self.center_distance_mm),
+            alignment,
+        );
+        let told = match pair {
+            Ok(pair) => return Some(pair),
+            Err(SolidPairError::Section(error)) => self.told(&sections[0], &sections[1], &error),
+            Err(SolidPairError::FacesDoNotOverlap {
+                axial_offset,
+                nearest,
+            }) => {
+                let pointer = format!("/pair/{}", Self::axial_offset_mm.name);
+                let side = if nearest < 0.0 {
+                    Side::AtLeast
+                } else {
+                    Side::AtMost
+                };
+                let nearest = rounded_inward(to_mm(nearest), side, 0);
+                let detail = format!(
+                    "{pointer} is {} mm, which leaves less than a tenth of the narrower face in common; {} mm leaves so much.",
+                    plain(to_mm(axial_offset)),
+                    plain(nearest)
+                );
+                let error = FieldError::new(pointer, Code::FacesDoNotOverlap, detail);
+                Some(error.nearest(nearest))
+            }
+            Err(SolidPairError::Lead { member, error }) => {
+                let pointer = format!("/pair/{member}/lead_modifications");
+                Some(LeadModificationDocument::fault(&pointer, &error))
+            }
+            // Both hands come from one angle.
+            Err(SolidPairError::HelixMismatch { .. }) => None,
+        };
+        told.into_iter().for_each(|told| errors.push(told));
+        None
+    }
+
     /// The pair, if its gears can be made and mesh; what prevents it is reported to `errors`.
     pub(super) fn to_pair(&self, errors: &Errors) -> Option<GearPair> {
-        let made =
-            |gear: &GearDocument, member: Member| match gear.to_gear(&format!("/pair/{member}")) {
-                Ok(gear) => Some(gear),
-                Err(faults) => {
-                    faults.into_iter().for_each(|fault| errors.push(fault));
-                    None
-                }
-            };
+        let made = |gear: &GearDocument, member: Member| match gear
+            .to_gear(&format!("/pair/{member}"), Helix::STRAIGHT)
+        {
+            Ok(gear) => Some(gear),
+            Err(faults) => {
+                faults.into_iter().for_each(|fault| errors.push(fault));
+                None
+            }
+        };
         let mismatches = self.mismatches();
         let matched = mismatches.is_empty();
         mismatches

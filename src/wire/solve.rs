@@ -57,6 +57,7 @@ pub fn fields(
     library: &Library,
     run: &Run,
 ) -> Result<Fields, Problem> {
+    submission.refuse_faces("Displacements and stresses inside the gears are told")?;
     analysis::fields::fields(
         submission.case(),
         output_torque_n_m,
@@ -185,7 +186,7 @@ pub fn validate(submission: &Submission) -> Validation {
     Validation {
         valid: true,
         submission: submission.clone(),
-        pair: PairGeometry::of(&case.pair),
+        pair: PairGeometry::of(case),
         warnings: analysis::warnings(case)
             .iter()
             .map(WarningDocument::of)

@@ -1,8 +1,9 @@
 //! What is asked: a pair, the torques and how to compute.
 
 use super::spectrum::RotationSpeed;
+use crate::assembly::FaceResolution;
 use crate::contact::ContactSolver;
-use crate::gear::{GearPair, Member};
+use crate::gear::{GearPair, Member, SolidPair};
 use crate::grid::GridLevel;
 use crate::load_distribution::Formulas;
 
@@ -17,6 +18,8 @@ pub enum Method {
     ProjectedDecomposition,
     /// Closed-form compliances on the theoretical lines of contact: eqs. 4 and 5.
     LoadDistribution,
+    /// Both whole gears flexible in three dimensions, contact along the faces.
+    ThreeDimensional,
 }
 
 /// How the tangent stiffness is obtained.
@@ -54,11 +57,26 @@ pub struct Resolution {
     pub error_estimate: bool,
 }
 
+/// What a pair is along its faces, and how finely that is computed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Faces {
+    /// The pair, whose section is that of its case.
+    pub pair: SolidPair,
+    /// How finely its gears are resolved along their faces.
+    pub resolution: FaceResolution,
+    /// Slices into which the common face is cut.
+    pub slices: usize,
+    /// Whether the load along the face is told at every position, and not only in the mean.
+    pub at_each_position: bool,
+}
+
 /// A pair under load, and how to compute it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
-    /// The pair.
+    /// The pair: a plane one, or the transverse section.
     pub pair: GearPair,
+    /// The pair along its faces, for the method that sees them.
+    pub faces: Option<Faces>,
     /// The method.
     pub method: Method,
     /// Output torques T on the driven gear, in newton meters; positive.

@@ -98,6 +98,19 @@ pub struct DecompositionParts {
     pub blanks: Vec<BlankFit>,
 }
 
+/// The load along the common face. Lengths are in meters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FaceLoad {
+    /// The middles of equal strips, from the middle of the common face.
+    pub heights: Vec<f64>,
+    /// The load in N/m on each: its mean over the positions, in one row, or a row a position.
+    pub load: Vec<Vec<f64>>,
+    /// K_Hβ: the largest of ten equal strips over their mean, the mean over the positions of each.
+    pub face_load_factor: f64,
+    /// Where the load stands in the mean, at each position.
+    pub load_centroid: Vec<f64>,
+}
+
 /// The curves at one output torque. All lists run over the same positions, in SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
@@ -129,6 +142,8 @@ pub struct Curve {
     pub spectrum: Option<Spectrum>,
     /// The parts of the decomposition, for that method.
     pub decomposition: Option<DecompositionParts>,
+    /// The load along the common face, by the method that sees it, under load.
+    pub face: Option<FaceLoad>,
     /// The largest stresses in the driving and in the driven gear, where they were asked for, by the flexible method, under load.
     pub stresses: Option<[GearStresses; 2]>,
 }

@@ -1,7 +1,7 @@
 //! A curve put together from what a method finds at each position.
 
 use super::Case;
-use super::curve::{Curve, DecompositionParts, LoadShare, Statistics};
+use super::curve::{Curve, DecompositionParts, FaceLoad, LoadShare, Statistics};
 use super::spectrum::Spectrum;
 use super::stress::GearStresses;
 use crate::contact::MeshContact;
@@ -17,6 +17,7 @@ pub(super) struct CurveParts {
     pub(super) load_shares: Vec<LoadShare>,
     pub(super) decomposition: Option<DecompositionParts>,
     pub(super) stresses: Option<[GearStresses; 2]>,
+    pub(super) face: Option<FaceLoad>,
 }
 
 impl CurveParts {
@@ -56,6 +57,7 @@ impl CurveParts {
             spectrum,
             decomposition: self.decomposition,
             stresses: self.stresses,
+            face: self.face,
         }
     }
 }
@@ -76,6 +78,7 @@ impl CurveParts {
             load_shares: load_shares(&case.mesh_positions(), contacts),
             decomposition: None,
             stresses: None,
+            face: None,
         }
     }
 
@@ -97,6 +100,7 @@ impl CurveParts {
                 .collect(),
             decomposition: None,
             stresses: None,
+            face: None,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What a case will cost, known before it is computed.
 
-use super::case::{Case, Method};
-use super::expected_positions;
+use super::case::{Case, Faces, Method};
+use super::{expected, expected_positions};
 use crate::assembly::blank::blank_grid;
 use crate::assembly::interface::{harmonics, interface_radius, orders_of_blank};
 use crate::assembly::pair::cells_per_patch;
@@ -66,6 +66,9 @@ pub fn estimate(case: &Case) -> Estimate {
         estimate.seconds = SECONDS[0] / 10.0 * expected_positions(case) as f64;
         return estimate;
     }
+    if let Some(faces) = &case.faces {
+        return of_faces(case, faces, estimate);
+    }
     if case.stress && case.method == Method::Flexible {
         let teeth = Member::BOTH.map(|member| f64::from(case.pair.gear(member).tooth_count()));
         estimate.seconds += PER_ANSWER * (teeth[0] + teeth[1]) * positions as f64;
@@ -92,6 +95,40 @@ pub fn estimate(case: &Case) -> Estimate {
             }
         }
     }
+    estimate
+}
+
+/// Seconds of one core for the yield of one gear at the order 8 across the face, and for the contact of a slice with another one at a
+/// position. Measured as [`SECONDS`].
+const FACE_SECONDS: [f64; 2] = [3.0, 0.7e-6];
+
+/// Bytes of one gear along its face at the order 8 while it is made, of which the factor of a tooth is the most.
+const FACE_MEMORY: f64 = 400e6;
+
+/// Nodes of a tooth and its rim in a section, about.
+const SECTION_NODES: f64 = 330.0;
+
+/// What a case costs along its faces; `alone` is what any case does.
+fn of_faces(case: &Case, faces: &Faces, alone: Estimate) -> Estimate {
+    let [per_gear, per_slices] = FACE_SECONDS;
+    let orders = if case.resolution.error_estimate { 2 } else { 1 };
+    let mut estimate = alone;
+    for run in 0..orders {
+        // A finer run has two orders more.
+        let functions = (faces.resolution.face_order + 2 * run + 1) as f64;
+        let growth = (functions / 9.0).powi(3);
+        estimate.seconds += 2.0 * per_gear * growth;
+        estimate.memory += (2.0 * FACE_MEMORY * growth) as u64;
+        if run == 0 {
+            let teeth = Member::BOTH.map(|member| case.pair.gear(member).tooth_count());
+            let unknowns = 3.0 * functions * SECTION_NODES * f64::from(teeth[0] + teeth[1]);
+            estimate.degrees_of_freedom = unknowns as u64;
+        }
+    }
+    // Two pairs or more carry along all of the face.
+    let slices = faces.slices as f64 * (1.0 + faces.pair.total_contact_ratio());
+    estimate.seconds += per_slices * slices * slices * expected(case) as f64;
+    estimate.memory += 8 * (estimate.positions * faces.slices as u64);
     estimate
 }
 

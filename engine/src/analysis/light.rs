@@ -4,6 +4,7 @@ use super::curve_parts::CurveParts;
 use super::evidence::Evidence;
 use super::warning::warnings;
 use super::{Analysis, AnalysisError, Case, Curve};
+use crate::contact::face::light_face;
 use crate::contact::light_contact;
 
 /// `case` without its torques of zero.
@@ -41,8 +42,11 @@ fn curve(case: &Case) -> Result<Curve, AnalysisError> {
         .repeating_positions()
         .into_iter()
         .map(|eta| {
-            light_contact(&case.pair, &deviations, eta)
-                .map_err(|error| AnalysisError::at_position(error, eta))
+            let contact = match &case.faces {
+                None => light_contact(&case.pair, &deviations, eta),
+                Some(faces) => light_face(&faces.pair, faces.slices, eta),
+            };
+            contact.map_err(|error| AnalysisError::at_position(error, eta))
         })
         .collect::<Result<Vec<_>, _>>()?;
     let each = contacts.iter();

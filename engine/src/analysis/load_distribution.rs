@@ -77,6 +77,7 @@ fn curve_parts(case: &Case, contacts: &[Shared], load: f64) -> CurveParts {
         load_shares: load_shares(case, contacts, load),
         decomposition: None,
         stresses: None,
+        face: None,
     }
 }
 

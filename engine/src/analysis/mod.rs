@@ -1,7 +1,7 @@
 //! From a pair to its curves: the methods, their results and spectra.
 //!
 //! Read in this order: [`case`] (what is asked), `setup` (what the methods work with), `flexible`, `rigid_blank`,
-//! `decomposition`, `projected` and `load_distribution` (the methods), `light` (torque 0, alike for all), [`stress`] (at roots and holes) and [`fields`] (everywhere), `curve_parts` and [`curve`], [`evidence`], [`warning`],
+//! `decomposition`, `projected`, `three_dimensional` and `load_distribution` (the methods), `light` (torque 0, alike for all), [`stress`] (at roots and holes) and [`fields`] (everywhere), `curve_parts` and [`curve`], [`evidence`], [`warning`],
 //! [`error`] and [`spectrum`] (what comes out), `estimate` (what it costs); [`forces`] (tables of force, and motion at speed).
 
 pub mod case;
@@ -22,10 +22,11 @@ mod rigid_blank;
 mod setup;
 pub mod spectrum;
 pub mod stress;
+mod three_dimensional;
 pub mod warning;
 
-pub use case::{Case, Method, Resolution, StiffnessRule};
-pub use curve::{Analysis, Curve, Statistics};
+pub use case::{Case, Faces, Method, Resolution, StiffnessRule};
+pub use curve::{Analysis, Curve, FaceLoad, Statistics};
 pub use error::AnalysisError;
 pub use estimate::{Estimate, estimate};
 pub use evidence::{ErrorEstimate, Evidence};
@@ -94,6 +95,7 @@ fn analyze_at(
             Method::Flexible => flexible::solve(setup),
             Method::Decomposition => decomposition::solve(setup),
             Method::ProjectedDecomposition => projected::solve(setup),
+            Method::ThreeDimensional => three_dimensional::solve(case, level, run),
             Method::LoadDistribution => load_distribution::solve(case, run),
         };
         match answer {
@@ -141,7 +143,7 @@ fn expected_positions(case: &Case) -> u64 {
     };
     let repeating = case.repeating_positions().len() as u64;
     match case.method {
-        Method::Flexible => torques * solves * case.positions() as u64,
+        Method::Flexible | Method::ThreeDimensional => torques * solves * case.positions() as u64,
         Method::Decomposition => decomposition::expected_positions(case),
         Method::ProjectedDecomposition => projected::expected_positions(case),
         Method::LoadDistribution => torques * repeating,

@@ -249,6 +249,7 @@ mod tests {
         let gear = SpurGear::new(data).expect("a gear that can be made");
         Case {
             pair: GearPair::new(gear.clone(), gear, 100.5e-3).expect("a pair that meshes"),
+            faces: None,
             method: Method::ProjectedDecomposition,
             output_torques: vec![115.0],
             resolution: Resolution {

@@ -113,13 +113,13 @@ pub fn warnings(case: &Case) -> Vec<Warning> {
             warnings.push(Warning::ThinLigament { member, ligament });
         }
         // The method of closed forms takes no web into its numbers.
-        if case.method != Method::LoadDistribution {
+        if case.method != Method::LoadDistribution && case.faces.is_none() {
             warnings.extend(web_outside_plane(gear, member));
         }
     }
     let widths = [pair.driving().face_width(), pair.driven().face_width()];
     let ratio = widths[0].max(widths[1]) / pair.common_face_width();
-    if ratio > LIKE_WIDTHS {
+    if ratio > LIKE_WIDTHS && case.faces.is_none() {
         warnings.push(Warning::FaceWidthsDiffer { ratio });
     }
     if !case.covers_whole_periods() {
@@ -177,7 +177,7 @@ pub(super) fn warn_of_tips(warnings: &mut Vec<Warning>, contacts: &[MeshContact]
 }
 
 /// Warns of a tip corner, once for each gear.
-fn warn_of_corner(warnings: &mut Vec<Warning>, member: Member, share: f64) {
+pub(super) fn warn_of_corner(warnings: &mut Vec<Warning>, member: Member, share: f64) {
     for warning in &mut *warnings {
         if let Warning::TipCornerContact {
             member: known,

@@ -108,7 +108,8 @@ impl SolidPair {
         ];
         let least = LEAST_OVERLAP * b_1.min(b_2);
         // Rounding of an offset that was typed for the least is the least.
-        if !(common[1] - common[0] >= least * (1.0 - 1e-9)) {
+        let enough = common[1] - common[0] >= least * (1.0 - 1e-9);
+        if !enough {
             return Err(SolidPairError::FacesDoNotOverlap {
                 axial_offset: offset,
                 nearest: (0.5 * (b_1 + b_2) - least).copysign(offset),

@@ -143,6 +143,7 @@ impl Made {
 pub(crate) fn case(pair: GearPair, output_torques: &[f64]) -> Case {
     Case {
         pair,
+        faces: None,
         method: Method::Flexible,
         output_torques: output_torques.to_vec(),
         resolution: Resolution {

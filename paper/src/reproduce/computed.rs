@@ -22,6 +22,7 @@ pub(crate) fn method_name(method: Method) -> &'static str {
         Method::Flexible => "flexible",
         Method::Decomposition => "decomposition",
         Method::ProjectedDecomposition => "projected decomposition",
+        Method::ThreeDimensional => "three-dimensional",
         Method::LoadDistribution => "load distribution",
     }
 }

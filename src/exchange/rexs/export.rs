@@ -43,7 +43,7 @@ const STAGE: usize = 2;
 /// says by `rotational_meshing_position` the angles at which it stands then.
 pub fn export(submission: &Submission, results: Option<&Value>, date: &str) -> String {
     let document = serde_json::to_value(submission).expect("a submission is words and numbers");
-    let geometry = PairGeometry::of(&submission.case().pair);
+    let geometry = PairGeometry::of(submission.case());
     let mut components = Xml {
         indent: "    ",
         ..Xml::default()

@@ -472,6 +472,10 @@ fn every_valid_example_comes_back_as_the_same_pair() {
         document["dynamics"] = Value::Null;
         document["force_table"] = Value::Null;
         let gone = Submission::parse(document.to_string().as_bytes()).expect("valid");
+        if gone.case().faces.is_some() {
+            assert!(gone.refuse_faces("Models in REXS are written").is_err());
+            continue;
+        }
         let there = solved(&gone);
         let imported = taken(&export(&gone, Some(&there), DATE));
         let mut submission = imported.submission.clone();

@@ -1,6 +1,6 @@
 //! What carries the teeth: the bore, the holes and the web.
 
-use meshwright_engine::gear::{BlankRegion, Web};
+use meshwright_engine::gear::{BlankRegion, Hub, Web};
 
 use super::holes::HolesDocument;
 use crate::wire::declare::{absent, document, nested, number};
@@ -15,6 +15,8 @@ document! {
         pub(super) holes: HolesDocument = (),
         /// A ring that is thinner, or thicker, than the face is wide.
         pub(super) web: Option<WebDocument> = absent(nested("Web"), "none"),
+        /// The ring on the bore where it is not as wide as the face. It needs three dimensions.
+        pub(in crate::wire) hub: Option<HubDocument> = absent(nested("Hub"), "as wide as the face"),
     }
 }
 
@@ -29,10 +31,38 @@ document! {
         /// Its thickness, symmetric to the middle of the face: 1 % to four times the face width. A web as thick as the face is wide is
         /// none.
         pub(super) thickness_mm: f64 = number("Thickness of the web", "mm", 0.001, 8_000.0),
+        /// Where the middle of the web stands from that of the face. Other than 0 it needs three dimensions.
+        pub(in crate::wire) offset_mm: f64 = number("Offset of the web", "mm", -1_000.0, 1_000.0).or(0.0),
+    }
+}
+
+document! {
+    /// The ring on the bore where it is not as wide as the face.
+    pub struct HubDocument as "Hub", "Hub" {
+        /// Where the hub ends: between the bore and the rim.
+        pub(super) outer_radius_mm: f64 = number("Outer radius of the hub", "mm", 0.02, 7_500.0),
+        /// Its width: at least that of the web that stands on it.
+        pub(super) width_mm: f64 = number("Width of the hub", "mm", 0.1, 4_000.0),
+        /// Where its middle stands from that of the face.
+        pub(super) offset_mm: f64 = number("Offset of the hub", "mm", -1_000.0, 1_000.0).or(0.0),
     }
 }
 
 impl BlankDocument {
+    /// Where the middle of the web stands from that of the face, in m.
+    pub(super) fn web_offset(&self) -> f64 {
+        self.web.as_ref().map_or(0.0, |web| from_mm(web.offset_mm))
+    }
+
+    /// The hub as the engine is told.
+    pub(super) fn hub_data(&self) -> Option<Hub> {
+        self.hub.as_ref().map(|hub| Hub {
+            outer_radius: from_mm(hub.outer_radius_mm),
+            width: from_mm(hub.width_mm),
+            offset: from_mm(hub.offset_mm),
+        })
+    }
+
     /// What the engine is told.
     pub(super) fn data(&self) -> BlankRegion {
         BlankRegion {

@@ -24,6 +24,9 @@ document! {
         /// The slope deviation of the loaded flank of each tooth, tooth 0 first: nothing at the form circle, this much towards the mate at
         /// the tip circle, linear in the roll length.
         profile_slope_um: Option<Vec<f64>> = absent(each_tooth("Profile slope deviations"), "none"),
+        /// What is taken off the loaded flank of each tooth at the +z end of the face, tooth 0 first, linear from nothing at its -z end, as a
+        /// slope of lead_modifications takes it: positive is away from the mate. It needs three dimensions.
+        pub(in crate::wire) lead_slope_um: Option<Vec<f64>> = absent(each_tooth("Lead slopes"), "none"),
         /// The gear's own axis beside the axis of rotation.
         eccentricity: Option<EccentricityDocument> = absent(nested("Eccentricity"), "none"),
     }
@@ -60,6 +63,8 @@ impl DeviationsDocument {
             pitch_cumulative_um: None,
             pitch_single_um: Some(single.collect()),
             profile_slope_um: Some(deviations.profile_slope.iter().copied().map(told).collect()),
+            lead_slope_um: (!deviations.lead_slope.is_empty())
+                .then(|| deviations.lead_slope.iter().copied().map(told).collect()),
             eccentricity: deviations
                 .eccentricity
                 .map(|eccentricity| EccentricityDocument {
@@ -75,6 +80,7 @@ impl DeviationsDocument {
             (Self::pitch_cumulative_um.name, &self.pitch_cumulative_um),
             (Self::pitch_single_um.name, &self.pitch_single_um),
             (Self::profile_slope_um.name, &self.profile_slope_um),
+            (Self::lead_slope_um.name, &self.lead_slope_um),
         ];
         let given = lists.into_iter();
         given.filter_map(|(name, values)| Some((name, values.as_deref()?)))
@@ -156,7 +162,7 @@ impl DeviationsDocument {
                 Some(values) => summed(values).into_iter().map(from_um).collect(),
             },
             profile_slope: meters(self.profile_slope_um.as_deref().unwrap_or_default()),
-            lead_slope: Vec::new(),
+            lead_slope: meters(self.lead_slope_um.as_deref().unwrap_or_default()),
             eccentricity: self.eccentricity.as_ref().map(|eccentricity| Eccentricity {
                 amount: from_um(eccentricity.amount_um),
                 direction: eccentricity.phase_deg.to_radians(),

@@ -1,6 +1,6 @@
 //! The gears of a submission, and what is wrong with those that cannot be made.
 //!
-//! The document by its parts: `tip`, `relief`, `modification`, `deviation`, `material`, `blank` and `holes`. Then what prevents
+//! The document by its parts: `tip`, `relief`, `modification`, `deviation`, `lead`, `material`, `blank` and `holes`; `solid` is the gear along its axis. Then what prevents
 //! a gear (`proportions`, `faults`, `blank_faults`), which fields could change (`field`), and the values that together would do (`repair`).
 
 mod blank;
@@ -9,20 +9,26 @@ mod deviation;
 mod faults;
 mod field;
 mod holes;
+mod lead;
 mod material;
 mod modification;
 mod proportions;
 mod relief;
 mod repair;
+mod solid;
 #[cfg(test)]
 mod tests;
 
 use meshwright_engine::gear::{GearData, Rack, TipEdge, ToothDeviations};
 
-pub use blank::{BlankDocument, WebDocument};
+pub use blank::{BlankDocument, HubDocument, WebDocument};
 pub use deviation::{DeviationsDocument, EccentricityDocument};
 pub(super) use holes::MOST_HOLES;
 pub use holes::{HolesDocument, PatternDocument, SlotDocument};
+pub use lead::{
+    EndReliefDocument, LeadCrowningDocument, LeadModificationDocument, LeadSlopeDocument,
+    LeadTableDocument,
+};
 pub use material::MaterialDocument;
 pub(super) use modification::MOST_ENTRIES;
 pub use modification::{CrowningDocument, ModificationDocument, SlopeDocument, TableDocument};
@@ -86,6 +92,9 @@ document! {
         /// What is taken off the loaded flanks beside the tip relief; they add up. Default: none.
         profile_modifications: Vec<ModificationDocument> =
             list("Profile modifications", EACH, MOST_MODIFICATIONS).or_empty().or_null(),
+        /// What is taken off the loaded flanks along the face; they add up. They need three dimensions. Default: none.
+        pub(super) lead_modifications: Vec<LeadModificationDocument> =
+            list("Lead modifications", EACH, MOST_MODIFICATIONS).or_empty().or_null(),
         /// What the teeth deviate from each other by. The contact then repeats once a revolution.
         tooth_deviations: Option<DeviationsDocument> = absent(nested("Tooth deviations"), "nothing"),
         /// What teeth and blank are made of. Default: steel.

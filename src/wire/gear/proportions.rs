@@ -1,6 +1,6 @@
 //! Bounds of a gear's numbers that depend on its other numbers, so that nothing degenerate reaches the grids.
 
-use meshwright_engine::gear::SpurGear;
+use meshwright_engine::gear::{Helix, SpurGear};
 
 use super::GearDocument;
 use super::faults::Fault;
@@ -12,9 +12,9 @@ use crate::wire::units::{Side, from_mm, plain};
 
 impl GearDocument {
     /// Makes the gear, or tells the first thing that prevents it.
-    pub(super) fn made(&self) -> Result<SpurGear, Fault> {
+    pub(super) fn made(&self, helix: Helix) -> Result<SpurGear, Fault> {
         self.check_proportions()?;
-        let gear = SpurGear::new(self.data()).map_err(|error| self.fault(&error))?;
+        let gear = self.section(helix).map_err(|error| self.fault(&error))?;
         // A relief that begins where it ends is a step, which no grid and no contact search can follow.
         let short = self.relief_places().find_map(|place| {
             let relief = self.relief(place).filter(Relief::is_there)?;

@@ -1,6 +1,6 @@
 //! The values that together would make a gear, where a submission's do not.
 
-use meshwright_engine::gear::SpurGear;
+use meshwright_engine::gear::{Helix, SpurGear};
 
 use super::GearDocument;
 use super::faults::Fault;
@@ -8,29 +8,33 @@ use crate::wire::problem::FieldError;
 use crate::wire::units::{plain, rounded_inward};
 
 impl GearDocument {
-    /// The gear, if it can be made.
+    /// The gear, or its transverse section, if it can be made.
     ///
     /// # Errors
     ///
     /// Every field that has to change, each with a value such that all these values together make a gear, where there
     /// are such values.
-    pub(in crate::wire) fn to_gear(&self, pointer: &str) -> Result<SpurGear, Vec<FieldError>> {
+    pub(in crate::wire) fn to_gear(
+        &self,
+        pointer: &str,
+        helix: Helix,
+    ) -> Result<SpurGear, Vec<FieldError>> {
         let lists = self.list_faults(pointer);
         if lists.is_empty() {
-            return self.with_numbers(pointer);
+            return self.with_numbers(pointer, helix);
         }
         // What else is wrong is told together with the lists.
-        let others = self.without_lists().with_numbers(pointer).err();
+        let others = self.without_lists().with_numbers(pointer, helix).err();
         let others = others.into_iter().flatten();
         Err(lists.into_iter().chain(others).collect())
     }
 
-    fn with_numbers(&self, pointer: &str) -> Result<SpurGear, Vec<FieldError>> {
+    fn with_numbers(&self, pointer: &str, helix: Helix) -> Result<SpurGear, Vec<FieldError>> {
         const MOST_REPAIRS: usize = 12;
         let mut repaired = self.clone();
         let mut faults: Vec<Fault> = Vec::new();
         for _ in 0..MOST_REPAIRS {
-            let mut fault = match repaired.made() {
+            let mut fault = match repaired.made(helix) {
                 Ok(gear) if faults.is_empty() => return Ok(gear),
                 Ok(_) => return Err(self.told(pointer, faults)),
                 Err(fault) => fault,

@@ -9,7 +9,7 @@ mod results;
 mod tests;
 
 use meshwright_engine::gear::{
-    Member, Normals, SpurGear, Tolerances, ToothDeviations, total_pitch_deviation,
+    Helix, Member, Normals, SpurGear, Tolerances, ToothDeviations, total_pitch_deviation,
 };
 use meshwright_sample::law::Law;
 use meshwright_sample::normal;
@@ -116,12 +116,13 @@ impl Population {
             let Some(accuracy) = &self.accuracy[gear as usize] else {
                 continue;
             };
+            let helix = pair.helix(gear);
             let document = match gear {
                 Member::Driving => &mut pair.driving,
                 Member::Driven => &mut pair.driven,
             };
             let made = document.clone().without_deviations();
-            match made.to_gear(&format!("/pair/{gear}")) {
+            match made.to_gear(&format!("/pair/{gear}"), helix) {
                 Ok(made) => {
                     let teeth = self.teeth(member, gear, accuracy, &Gauge::of(&made, accuracy));
                     document.set_deviations(DeviationsDocument::of(&teeth));
@@ -193,7 +194,12 @@ impl Population {
         GEARS.map(|gear| {
             let accuracy = self.accuracy[gear as usize].as_ref()?;
             let document = GearDocument::at(base.at(&["pair", gear.word()])?)?;
-            let made = document.without_deviations().to_gear("").ok()?;
+            let angle = match base.at(&["pair", "helix_angle_deg"]) {
+                Some(Node::Number(angle)) => Some(*angle),
+                _ => None,
+            };
+            let helix = Helix::right(angle.unwrap_or(0.0).to_radians());
+            let made = document.without_deviations().to_gear("", helix).ok()?;
             Some(Gauge::of(&made, accuracy))
         })
     }

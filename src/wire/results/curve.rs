@@ -1,7 +1,7 @@
 //! The curves at one output torque, and their statistics.
 
 use meshwright_engine::analysis::forces::CurveDynamics;
-use meshwright_engine::analysis::{Case, Curve, Statistics};
+use meshwright_engine::analysis::{Case, Curve, FaceLoad, Statistics};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -10,7 +10,7 @@ use super::each;
 use super::forces::CurveDynamicsDocument;
 use super::spectrum::SpectrumDocument;
 use super::stress::{PeakStressDocument, StressDocument};
-use crate::wire::units::{or_null, to_mpa, to_um};
+use crate::wire::units::{or_null, to_mm, to_mpa, to_um};
 
 /// The curves at one output torque. All lists, those of the spectrum and of the dynamics aside, run over the same positions.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
@@ -46,6 +46,9 @@ pub struct CurveDocument {
     /// torque 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stress: Option<StressDocument>,
+    /// The load along the common face; absent for plane methods and at the torque 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub face: Option<FaceDocument>,
     /// Statistics over the span.
     pub statistics: StatisticsDocument,
     /// The order spectrum; absent for a partial span.
@@ -91,6 +94,7 @@ impl CurveDocument {
                 })
                 .collect(),
             stress: curve.stresses.as_ref().map(StressDocument::of),
+            face: curve.face.as_ref().map(FaceDocument::of),
             statistics: StatisticsDocument {
                 partial: !case.covers_whole_periods(),
                 transmission_error_um: StatisticsValues::of(
@@ -109,6 +113,34 @@ impl CurveDocument {
                 .map(|spectrum| SpectrumDocument::of(case, spectrum)),
             decomposition: curve.decomposition.as_ref().map(DecompositionDocument::of),
             dynamics: dynamics.map(CurveDynamicsDocument::of),
+        }
+    }
+}
+
+/// The load along the common face.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[schema(as = Face, title = "Load along the face")]
+pub struct FaceDocument {
+    /// The middles of equal strips of the common face, in mm from its middle; +z is the side from which the driving gear is seen to turn
+    /// counter-clockwise.
+    pub z_mm: Vec<f64>,
+    /// The load on each strip for its width, along the transverse line of action, in N/mm: one row, the mean over the positions, or a row a
+    /// position where the submission asks for them.
+    pub load_n_per_mm: Vec<Vec<f64>>,
+    /// K_Hbeta: of ten equal strips of the common face the load of the largest over their mean, the mean over the positions of each.
+    pub face_load_factor: f64,
+    /// Where the load stands in the mean at each position, in mm from the middle of the common face.
+    pub load_centroid_mm: Vec<f64>,
+}
+
+impl FaceDocument {
+    fn of(face: &FaceLoad) -> Self {
+        let row = |row: &Vec<f64>| each(row, |load| load * 1e-3);
+        Self {
+            z_mm: each(&face.heights, to_mm),
+            load_n_per_mm: face.load.iter().map(row).collect(),
+            face_load_factor: face.face_load_factor,
+            load_centroid_mm: each(&face.load_centroid, to_mm),
         }
     }
 }

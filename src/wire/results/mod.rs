@@ -16,7 +16,9 @@ use meshwright_engine::analysis::forces::Forces;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-pub use curve::{CurveDocument, LoadShareDocument, StatisticsDocument, StatisticsValues};
+pub use curve::{
+    CurveDocument, FaceDocument, LoadShareDocument, StatisticsDocument, StatisticsValues,
+};
 pub use decomposition::{
     BlankFitDocument, BlankHarmonicDocument, BlankSampleDocument, DecompositionDocument,
 };
@@ -64,7 +66,7 @@ impl Results {
         let dynamics = |i: usize| forces.and_then(|forces| forces.dynamics.get(i));
         Self {
             method: submission.method(),
-            pair: PairGeometry::of(&case.pair),
+            pair: PairGeometry::of(case),
             frequencies: Frequencies::of(case),
             warnings: analysis.warnings.iter().map(WarningDocument::of).collect(),
             curves: analysis

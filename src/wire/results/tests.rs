@@ -36,6 +36,7 @@ fn analysis(case: &Case) -> Analysis {
         let (delta, k) = (wave(14.118e-6, 0.4e-6), wave(2.19e8, 2.4e7));
         let load = case.pair.load(torque);
         Curve {
+            face: None,
             output_torque: torque,
             load,
             mesh_stiffness_secant: delta.iter().map(|delta| load / delta).collect(),

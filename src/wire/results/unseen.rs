@@ -6,13 +6,18 @@ use meshwright_engine::gear::{SpurGear, TipEdge};
 
 /// What the method of `case` leaves out, and what `forces` do that are asked for beside the curves.
 pub(super) fn does_not_see(case: &Case, forces: Option<&ForcesRequest>) -> Vec<&'static str> {
-    const ALWAYS: [&str; 3] = [
+    const ALWAYS: [&str; 2] = [
         "friction between the flanks",
-        "anything that varies across the face width: misalignment, lead crowning, helix; the model is plane",
         "shafts, bearings and housing: both hubs are rigid and their axes fixed",
     ];
+    const PLANE: &str = "anything that varies across the face width: misalignment, lead crowning, helix; the model is plane";
+    let plane = case.faces.is_none().then_some(PLANE);
     let own: Vec<&str> = match case.method {
         Method::Flexible => vec![],
+        Method::ThreeDimensional => vec![
+            "that a flank yields more near a sharp tip edge than a half space does: within a tenth of a millimeter of it",
+            "how far shafts and bearings bend under the load: misalignment is what the submission says",
+        ],
         Method::Decomposition => vec![
             "sidebands of the holes about the mesh orders in the transmission error: each blank's rotation is fitted by its mean and one harmonic",
             "what the holes change in the load sharing between pairs",
@@ -28,9 +33,11 @@ pub(super) fn does_not_see(case: &Case, forces: Option<&ForcesRequest>) -> Vec<&
     } else {
         "inertia and damping: the analysis is quasi-static"
     };
-    [inertia]
+    let [friction, shafts] = ALWAYS;
+    [inertia, friction]
         .into_iter()
-        .chain(ALWAYS)
+        .chain(plane)
+        .chain([shafts])
         .chain(forces_do_not_see(forces))
         .chain(real_teeth_do_not_see(case))
         .chain(own)
@@ -74,7 +81,7 @@ fn real_teeth_do_not_see(case: &Case) -> Vec<&'static str> {
     if any(|gear| !gear.deviations().are_teeth_alike()) {
         unseen.push("that a tooth which stands out is thicker, and stiffer, by what it stands out: every tooth yields as drawn");
     }
-    if any(|gear| gear.data().blank.web.is_some()) {
+    if case.faces.is_none() && any(|gear| gear.data().blank.web.is_some()) {
         unseen.push("that force flows around the edges of a web: every region is in plane stress with its own thickness");
     }
     let by_formula = case.method == Method::LoadDistribution;

@@ -7,7 +7,7 @@ use super::document::{Document, OUTPUT_TORQUE};
 use crate::wire::declare::Errors;
 use crate::wire::forces::{DynamicsQuestion, ForceTableQuestion, SpeedRange};
 use crate::wire::problem::{Code, FieldError};
-use crate::wire::resolution::ResolutionDocument;
+use crate::wire::resolution::{ContactSolverDocument, ResolutionDocument};
 use crate::wire::units::{Side, plain, rounded_inward};
 
 /// The most positions times torques of one submission.
@@ -23,6 +23,28 @@ impl Document {
         for (i, &torque) in self.output_torques_n_m.iter().enumerate() {
             let pointer = format!("/{}/{i}", Self::output_torques_n_m.name);
             refuse_large_torque(pair, torque, pointer, errors);
+        }
+    }
+
+    /// Refuses what three dimensions do not tell.
+    pub(super) fn refuse_plane_questions(&self, errors: &Errors) {
+        let asked = [
+            (self.force_table.is_some(), Self::force_table.name),
+            (self.dynamics.is_some(), Self::dynamics.name),
+        ];
+        for (_, name) in asked.into_iter().filter(|(asked, _)| *asked) {
+            let pointer = format!("/{name}");
+            let detail = format!("{pointer} is told by the plane methods alone so far.");
+            errors.push(FieldError::new(pointer, Code::NotInThreeDimensions, detail));
+        }
+        let solver = matches!(
+            self.resolution.contact_solver,
+            ContactSolverDocument::AugmentedLagrangian(_)
+        );
+        if solver {
+            let pointer = format!("/resolution/{}", ResolutionDocument::contact_solver.name);
+            let detail = format!("{pointer}: three dimensions are solved by the active set alone.");
+            errors.push(FieldError::new(pointer, Code::NotInThreeDimensions, detail));
         }
     }
 

@@ -2,8 +2,10 @@
 
 use meshwright_engine::analysis::Method;
 
+use super::FaceRows;
+
 use crate::wire::declare::{
-    List, Number, Text, absent, document, flag, list, nested, number, text, word,
+    List, Number, Text, absent, document, flag, list, nested, number, text, word, words,
 };
 use crate::wire::forces::{DynamicsQuestion, ForceTableQuestion};
 use crate::wire::pair::PairDocument;
@@ -15,6 +17,13 @@ pub(in crate::wire) const MOST_TORQUES: usize = 60;
 
 /// The most tags of a job or a study, and the most characters of one.
 pub(in crate::wire) const MOST_TAGS: (usize, usize) = (16, 64);
+
+words! {
+    FaceRows {
+        Mean = "mean": "the mean over the positions",
+        Positions = "positions": "every position",
+    }
+}
 
 document! {
     /// What is asked: a gear pair, torques, and how to compute. Unknown fields are refused.
@@ -38,6 +47,8 @@ document! {
         /// Whether the flexible method also tells the largest von Mises stress at the tensile root fillets and at the edges of the holes,
         /// position by position, and where it is.
         pub(super) stress: bool = flag("Stress", false),
+        /// The rows in which three_dimensional tells the load along the face.
+        pub(super) face_load: FaceRows = word("Load along the face").or(FaceRows::Mean),
         /// Whether results have a table of the force between the gears over mesh position and approach, for run-ups and other programs. It is
         /// computed over the true period, and its positions times its loads count as positions of the submission.
         pub(super) force_table: Option<ForceTableQuestion> = absent(nested("ForceTableRequest"), "no table"),

@@ -4,7 +4,8 @@ use std::borrow::Cow;
 
 use meshwright_engine::analysis::forces::{ForcesRequest, with_table};
 use meshwright_engine::analysis::spectrum::RotationSpeed;
-use meshwright_engine::analysis::{Case, Method};
+use meshwright_engine::analysis::{Case, Faces, Method};
+use meshwright_engine::assembly::FaceResolution;
 
 mod checks;
 mod document;
@@ -21,7 +22,7 @@ use super::declare::{
 };
 use super::forces::DynamicsQuestion;
 use super::pair::PairDocument;
-use super::problem::{FieldError, Problem};
+use super::problem::{Code, FieldError, Problem};
 use super::resolution::ResolutionDocument;
 use super::size::{MOST_VALUES, refuse_many_values};
 use crate::hash::sha256_hex;
@@ -32,6 +33,15 @@ pub const SOLVER_VERSION: &str = concat!("meshwright ", env!("CARGO_PKG_VERSION"
 /// The version of the document of a submission: one more with every field that it gains, in whichever part. A process that reads only
 /// earlier ones leaves the job to others instead of refusing what it does not know.
 pub const DOCUMENT_VERSION: i64 = 2;
+
+/// The rows in which the load along the face is told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum FaceRows {
+    /// Their mean.
+    Mean,
+    /// One a position.
+    Positions,
+}
 
 /// What is asked: a gear pair, torques, and how to compute.
 ///
@@ -88,7 +98,18 @@ pub(super) enum Purpose {
 impl Document {
     /// The submission, if all that it says goes together.
     fn checked(mut self, purpose: Purpose, errors: &Errors) -> Option<Submission> {
-        let pair = self.pair.to_pair(errors)?;
+        let solid = if self.method == Method::ThreeDimensional {
+            self.refuse_plane_questions(errors);
+            Some(self.pair.to_solid_pair(errors)?)
+        } else {
+            self.pair
+                .refuse_three_dimensions(self.method.word(), errors);
+            None
+        };
+        let pair = match &solid {
+            Some(solid) => solid.section().clone(),
+            None => self.pair.to_pair(errors)?,
+        };
         self.check_torques(&pair, errors);
         self.check_interface(&pair, errors);
         self.check_span(&pair, errors);
@@ -98,8 +119,18 @@ impl Document {
         self.fill_in_table();
         self.check_forces(&pair, errors);
         self.check_size(purpose, &pair, errors);
+        let faces = solid.map(|pair| Faces {
+            pair,
+            resolution: FaceResolution {
+                face_order: self.resolution.face_order as usize,
+                ..FaceResolution::STANDARD
+            },
+            slices: self.resolution.face_slices as usize,
+            at_each_position: self.face_load == FaceRows::Positions,
+        });
         let case = Case {
             pair,
+            faces,
             method: self.method,
             output_torques: self.output_torques_n_m.clone(),
             resolution: self.resolution.data(),
@@ -190,6 +221,21 @@ impl Submission {
     /// What the engine is asked.
     pub fn case(&self) -> &Case {
         &self.case
+    }
+
+    /// Refuses a pair along its faces where only plane ones are told, as `what` says.
+    ///
+    /// # Errors
+    ///
+    /// `not_in_three_dimensions`.
+    pub fn refuse_faces(&self, what: &str) -> Result<(), Problem> {
+        match self.case.faces {
+            None => Ok(()),
+            Some(_) => {
+                let detail = format!("{what} of plane methods alone so far.");
+                Err(Problem::new(Code::NotInThreeDimensions, detail))
+            }
+        }
     }
 
     /// What the engine is asked beside the curves.

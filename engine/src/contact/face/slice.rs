@@ -7,11 +7,11 @@ use crate::contact::half_plane::{hertz, logarithm_factor};
 use crate::contact::placement::Placement;
 use crate::gear::{ContactLine, Member};
 
-/// The load for each length of a contact line, over that of the mean, for which cells are laid.
+/// The load for each length of a contact line, over that of the mean, under which an edge is looked for beside it.
 const HEAVIER: f64 = 2.5;
 
 /// No slice is shorter than so many half-widths of its contact: a line that short is none.
-const SHORTEST: f64 = 1.5;
+const SHORTEST: f64 = 2.0;
 
 /// One slice.
 pub(super) struct Slice {
@@ -34,10 +34,15 @@ pub(super) struct Slice {
 }
 
 /// The slices of all lines of `model` at the position `eta` on which sections are in `phases`; with the springs that they have under `load`, or
-/// Hertz's alone.
+/// Hertz's alone, and so many times as long as usual.
 ///
 /// Slices of one line are equally long, so that they move with it.
-pub(super) fn lay(model: &FaceModel, eta: f64, phases: [f64; 2], load: Option<f64>) -> Vec<Slice> {
+pub(super) fn lay(
+    model: &FaceModel,
+    eta: f64,
+    phases: [f64; 2],
+    (load, longer): (Option<f64>, f64),
+) -> Vec<Slice> {
     let lines = model.pair.lines(eta, phases);
     let total: f64 = lines
         .iter()
@@ -45,7 +50,7 @@ pub(super) fn lay(model: &FaceModel, eta: f64, phases: [f64; 2], load: Option<f6
         .sum();
     // For each length along a contact line.
     let density = load.map(|load| HEAVIER * load / total);
-    let layer = Layer::new(model, density);
+    let layer = Layer::new(model, density, longer);
     lines
         .iter()
         .flat_map(|line| layer.line(eta, line))
@@ -58,10 +63,11 @@ struct Layer<'a> {
     cosine: f64,
     factor: f64,
     density: Option<f64>,
+    longer: f64,
 }
 
 impl<'a> Layer<'a> {
-    fn new(model: &'a FaceModel, density: Option<f64>) -> Self {
+    fn new(model: &'a FaceModel, density: Option<f64>, longer: f64) -> Self {
         let factors = Member::BOTH.map(|member| {
             let modulus = model.long.gear(member).material().youngs_modulus;
             logarithm_factor(modulus, 1.0)
@@ -71,6 +77,7 @@ impl<'a> Layer<'a> {
             cosine: model.pair.base_helix_angle().cos(),
             factor: factors[0] + factors[1],
             density,
+            longer,
         }
     }
 
@@ -82,7 +89,7 @@ impl<'a> Layer<'a> {
             let s = 0.5 * pair.section().line_of_action();
             hertz(density, 0.5 * s / self.cosine, self.factor, 1.0).0
         });
-        let shortest = regular.max(SHORTEST * half_width * self.cosine);
+        let shortest = self.longer * regular.max(SHORTEST * half_width * self.cosine);
         let count = ((to - from) / shortest - 1e-9).ceil().max(1.0);
         let length = (to - from) / count;
         let straight = pair.advance() == 0.0;
@@ -119,9 +126,12 @@ impl<'a> Layer<'a> {
             one * other / (one + other)
         };
         let (spring, section_gap) = match self.density {
-            Some(density) if self.is_crowded(facing, density, radius) => {
-                Spring::patch(&view, facing, (along, self.cosine, self.factor), density)
-            }
+            Some(density) if self.is_crowded(facing, density, radius) => Spring::patch(
+                &view,
+                facing,
+                (along, self.cosine, self.factor),
+                density / HEAVIER,
+            ),
             _ => (
                 Spring::hertz(along, radius, self.factor, self.density.unwrap_or(1.0)),
                 hollow.touch * weights[1],

@@ -3,6 +3,7 @@
 mod chance;
 mod refusals;
 mod schema;
+mod three_dimensions;
 
 use serde_json::{Value, json};
 
@@ -69,9 +70,10 @@ fn the_least_submission_is_echoed_with_every_default() {
                 "tooth_count": 50, "module_mm": 2.0, "pressure_angle_deg": 20.0, "profile_shift": 0.0,
                 "addendum_mm": 2.0, "tip_diameter_mm": null, "dedendum_mm": 2.5, "rack_tip_radius_mm": 0.76,
                 "tooth_thickness_deviation_um": 0.0, "tip_rounding_mm": null, "tip_chamfer_mm": null,
-                "face_width_mm": 20.0, "tip_relief": null, "profile_modifications": [], "tooth_deviations": null,
+                "face_width_mm": 20.0, "tip_relief": null, "profile_modifications": [], "lead_modifications": [],
+                "tooth_deviations": null,
                 "material": { "youngs_modulus_gpa": 210.0, "poisson_ratio": 0.3, "density_kg_m3": 7850.0 },
-                "blank": { "bore_radius_mm": 15.0, "holes": null, "web": null }
+                "blank": { "bore_radius_mm": 15.0, "holes": null, "web": null, "hub": null }
             })
         );
     }
@@ -81,7 +83,7 @@ fn the_least_submission_is_echoed_with_every_default() {
             "positions_per_mesh_period": 40, "span_mesh_periods": 1, "grid": "standard", "blank_positions": 16,
             "interface_radius_mm": null, "contact_solver": "active_set", "stiffness": "tangent",
             "load_distribution": { "tooth": "weber_banaschek", "body": "sainsot", "plane_state": "stress" },
-            "error_estimate": false
+            "error_estimate": false, "face_order": 8, "face_slices": 40
         })
     );
     assert_eq!(

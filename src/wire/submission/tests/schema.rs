@@ -126,7 +126,7 @@ fn a_submission_with_other_fields_or_words_has_another_version() {
         (DOCUMENT_VERSION, sha256_hex(told.join("\n")).as_str()),
         (
             2,
-            "510a03cdb02fd8df367fa19b806aad4b04ef65e763b99cd956ca07a8d597e1b2"
+            "a546c7887d804959bad91609688ea5579c14f32f131d25da34a0723ad170c691"
         ),
         "{told:#?}"
     );

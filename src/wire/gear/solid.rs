@@ -1,0 +1,188 @@
+//! The gear along its axis: its helix, where its web stands, and its hub.
+
+use meshwright_engine::gear::{
+    BlankRegion, GearData, GearError, Helix, LeadModification, SolidGear, SolidGearError, SpurGear,
+};
+
+use super::GearDocument;
+use super::blank::{BlankDocument, HubDocument, WebDocument};
+use super::lead::LeadModificationDocument;
+use crate::wire::problem::{Code, FieldError};
+use crate::wire::units::{plain, to_mm};
+
+impl GearDocument {
+    /// The transverse section of the gear that winds by `helix`.
+    pub(super) fn section(&self, helix: Helix) -> Result<SpurGear, GearError> {
+        let data = self.data();
+        if helix.angle == 0.0 {
+            return SpurGear::new(data);
+        }
+        let on_solid = GearData {
+            blank: BlankRegion::solid(data.blank.bore_radius),
+            ..data.clone()
+        };
+        match SolidGear::new(data, helix, 0.0, None) {
+            Ok(gear) => Ok(gear.section().clone()),
+            Err(SolidGearError::Section(error)) => Err(error),
+            // What is wrong with its blank along the axis is told elsewhere.
+            Err(_) => match SolidGear::new(on_solid, helix, 0.0, None) {
+                Err(SolidGearError::Section(error)) => Err(error),
+                Ok(gear) => Ok(gear.section().clone()),
+                Err(_) => SpurGear::new(self.data()),
+            },
+        }
+    }
+
+    /// The same gear with its tip said by the addendum: a tip diameter stands on the reference circle of the transverse section.
+    fn tip_by_addendum(&self, helix: Helix) -> Self {
+        let mut gear = self.clone();
+        if let Some(diameter) = gear.tip_diameter_mm.take() {
+            let reference = self.module_mm * f64::from(self.tooth_count) / helix.angle.cos();
+            let shift = self.profile_shift * self.module_mm;
+            gear.addendum_mm = Some((diameter - reference) / 2.0 - shift);
+        }
+        gear
+    }
+
+    /// The gear along its axis, if it can be made.
+    ///
+    /// # Errors
+    ///
+    /// Every field that has to change.
+    pub(in crate::wire) fn to_solid(
+        &self,
+        pointer: &str,
+        helix: Helix,
+    ) -> Result<SolidGear, Vec<FieldError>> {
+        let drawn = if helix.angle == 0.0 {
+            self.clone()
+        } else {
+            self.tip_by_addendum(helix)
+        };
+        drawn.to_gear(pointer, helix)?;
+        let made = SolidGear::new(
+            drawn.data(),
+            helix,
+            self.blank.web_offset(),
+            self.blank.hub_data(),
+        );
+        made.map_err(|error| vec![solid_fault(pointer, &error)])
+    }
+
+    /// Its lead modifications as the engine is told.
+    pub(in crate::wire) fn leads(&self) -> Vec<LeadModification> {
+        let leads = self.lead_modifications.iter();
+        leads.map(LeadModificationDocument::data).collect()
+    }
+
+    /// What it has at `pointer` that the plane does not know, each with what the plane takes in its place.
+    pub(in crate::wire) fn beyond_the_plane(&self, pointer: &str) -> Vec<(String, Option<f64>)> {
+        let web = self.blank.web.as_ref().filter(|web| web.offset_mm != 0.0);
+        let slopes = self.tooth_deviations.as_ref();
+        let slopes = slopes.and_then(|deviations| deviations.lead_slope_um.as_ref());
+        let slopes = slopes.filter(|slopes| slopes.iter().any(|slope| *slope != 0.0));
+        let found = [
+            (!self.lead_modifications.is_empty())
+                .then(|| (Self::lead_modifications.name.to_owned(), None)),
+            slopes.map(|_| ("tooth_deviations/lead_slope_um".to_owned(), None)),
+            web.map(|_| {
+                let place = format!("blank/web/{}", WebDocument::offset_mm.name);
+                (place, Some(0.0))
+            }),
+            self.blank
+                .hub
+                .as_ref()
+                .map(|_| (format!("blank/{}", BlankDocument::hub.name), None)),
+        ];
+        let found = found.into_iter().flatten();
+        found
+            .map(|(place, nearest)| (format!("{pointer}/{place}"), nearest))
+            .collect()
+    }
+}
+
+/// What is wrong with a gear along its axis.
+fn solid_fault(pointer: &str, error: &SolidGearError) -> FieldError {
+    let mm = |value: f64| plain(to_mm(value));
+    let hub = |field: &str| format!("{pointer}/blank/hub/{field}");
+    match *error {
+        // These were looked for before, with everything that would help.
+        SolidGearError::Section(ref error) => {
+            FieldError::new(pointer, Code::OutOfRange, error.to_string())
+        }
+        SolidGearError::HelixAngle { largest, .. } => {
+            let detail = format!(
+                "Teeth that wind by more than {} deg are not computed.",
+                plain(largest.to_degrees())
+            );
+            FieldError::new("/pair/helix_angle_deg", Code::OutOfRange, detail)
+                .nearest(largest.to_degrees())
+        }
+        SolidGearError::WebBeyondFace { beyond, nearest } => {
+            let detail = format!("The web stands {} mm out of the face.", mm(beyond));
+            let pointer = format!("{pointer}/blank/web/{}", WebDocument::offset_mm.name);
+            FieldError::new(pointer, Code::WebBeyondFace, detail).nearest(to_mm(nearest))
+        }
+        SolidGearError::HubNarrowerThanWeb { width, nearest } => {
+            let detail = format!(
+                "The hub is {} mm wide, narrower than the web on it; at least {} mm hold the web.",
+                mm(width),
+                mm(nearest)
+            );
+            FieldError::new(hub(HubDocument::width_mm.name), Code::HubDoesNotFit, detail)
+                .nearest(to_mm(nearest))
+        }
+        SolidGearError::HubOutside {
+            outer_radius,
+            least,
+            largest,
+        } => {
+            let nearest = if outer_radius >= largest {
+                least + 0.99 * (largest - least)
+            } else {
+                least + 0.01 * (largest - least)
+            };
+            let detail = format!(
+                "The hub ends at {} mm; it has to end between the bore at {} mm and {} mm.",
+                mm(outer_radius),
+                mm(least),
+                mm(largest)
+            );
+            let pointer = hub(HubDocument::outer_radius_mm.name);
+            FieldError::new(pointer, Code::HubDoesNotFit, detail).nearest(to_mm(nearest))
+        }
+        SolidGearError::HubBesideFace { offset, nearest } => {
+            let detail = format!(
+                "At the offset {} mm the hub and the face reach past each other; {} mm would do.",
+                mm(offset),
+                mm(nearest)
+            );
+            FieldError::new(
+                hub(HubDocument::offset_mm.name),
+                Code::HubDoesNotFit,
+                detail,
+            )
+            .nearest(to_mm(nearest))
+        }
+        SolidGearError::HoleAcrossEdge {
+            hole,
+            from,
+            to,
+            inner_radius,
+            outer_radius,
+        } => {
+            let detail = format!(
+                "Hole {hole} reaches from {} mm to {} mm; it has to lie between {} mm and {} mm.",
+                mm(from),
+                mm(to),
+                mm(inner_radius),
+                mm(outer_radius)
+            );
+            FieldError::new(
+                format!("{pointer}/blank/holes"),
+                Code::HoleAcrossEdge,
+                detail,
+            )
+        }
+    }
+}
