@@ -2,8 +2,8 @@
 
 use std::hint::black_box;
 
-use criterion::measurement::WallTime;
-use criterion::{BatchSize, Bencher, BenchmarkGroup, Criterion, criterion_group, criterion_main};
+use criterion::{BatchSize, Bencher, Criterion, criterion_group, criterion_main};
+use meshwright_benches::group;
 use meshwright_engine::analysis::forces::{
     DynamicsRequest, ForceTableRequest, dynamics, force_table,
 };
@@ -15,10 +15,6 @@ use meshwright_engine::gear::{GearPair, Member, SpurGear};
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
-
-/// As in the program.
-#[global_allocator]
-static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 #[path = "../tests/cases/mod.rs"]
 mod cases;
@@ -91,17 +87,8 @@ fn with_moved_holes(case: &Case, change: f64) -> Case {
     }
 }
 
-fn group<'a>(criterion: &'a mut Criterion, name: &str) -> BenchmarkGroup<'a, WallTime> {
-    let mut group = criterion.benchmark_group(name);
-    group
-        .sample_size(10)
-        .warm_up_time(std::time::Duration::from_millis(500))
-        .measurement_time(std::time::Duration::from_secs(3));
-    group
-}
-
 fn cold(criterion: &mut Criterion) {
-    let mut group = group(criterion, "cold");
+    let mut group = group(criterion, "cold", 3);
     for (case, pair) in pairs() {
         for (method, name) in METHODS {
             let case = by(&case, method);
@@ -114,7 +101,7 @@ fn cold(criterion: &mut Criterion) {
 }
 
 fn teeth_known(criterion: &mut Criterion) {
-    let mut group = group(criterion, "teeth known");
+    let mut group = group(criterion, "teeth known", 3);
     for (case, pair) in pairs() {
         for (method, name) in METHODS.into_iter().take(3) {
             let case = by(&case, method);
@@ -146,7 +133,7 @@ fn move_holes(bencher: &mut Bencher<'_>, case: &Case) {
 
 /// What a designer does who drags a hole or turns up the torque: everything is known but what changes.
 fn changes(criterion: &mut Criterion) {
-    let mut group = group(criterion, "change");
+    let mut group = group(criterion, "change", 3);
     for (case, pair) in pairs().into_iter().take(3) {
         for (method, name) in METHODS.into_iter().take(3) {
             let case = by(&case, method);
@@ -214,7 +201,7 @@ fn study(criterion: &mut Criterion) {
         Some((8, 30e-3, 8.385e-3)),
         Some((8, 27e-3, 8.385e-3)),
     ];
-    let mut group = group(criterion, "study");
+    let mut group = group(criterion, "study", 3);
     for (method, name) in METHODS.into_iter().take(3) {
         group.bench_function(
             format!("section 5, six designs at two torques, {name}"),
@@ -232,7 +219,7 @@ fn study(criterion: &mut Criterion) {
 }
 
 fn resolution(criterion: &mut Criterion) {
-    let mut group = group(criterion, "resolution");
+    let mut group = group(criterion, "resolution", 3);
     for (level, name) in [
         (GridLevel::Coarse, "coarse"),
         (GridLevel::Standard, "standard"),
@@ -270,7 +257,7 @@ fn forces(criterion: &mut Criterion) {
         inertias: [None; 2],
         sweeps: [true, true],
     };
-    let mut group = group(criterion, "forces");
+    let mut group = group(criterion, "forces", 3);
     group.bench_function("case 2, table of twelve loads", |bencher| {
         bencher.iter(|| black_box(table()));
     });

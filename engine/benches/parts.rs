@@ -4,8 +4,8 @@
 use std::hint::black_box;
 use std::sync::Arc;
 
-use criterion::measurement::WallTime;
-use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main};
+use criterion::{Criterion, criterion_group, criterion_main};
+use meshwright_benches::group;
 use meshwright_engine::analysis::{Case, pair_model};
 use meshwright_engine::assembly::blank::blank_grid;
 use meshwright_engine::assembly::interface::{
@@ -25,22 +25,9 @@ use meshwright_engine::ring::teeth::TeethRing;
 use meshwright_engine::ring::tooth::ToothSubstructure;
 use meshwright_engine::run::Run;
 
-/// As in the program.
-#[global_allocator]
-static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
-
 #[path = "../tests/cases/mod.rs"]
 mod cases;
 use cases::test_case;
-
-fn group<'a>(criterion: &'a mut Criterion, name: &str) -> BenchmarkGroup<'a, WallTime> {
-    let mut group = criterion.benchmark_group(name);
-    group
-        .sample_size(10)
-        .warm_up_time(std::time::Duration::from_millis(300))
-        .measurement_time(std::time::Duration::from_secs(2));
-    group
-}
 
 fn gears(criterion: &mut Criterion) {
     for number in [2, 3] {
@@ -51,7 +38,7 @@ fn gears(criterion: &mut Criterion) {
         let orders = harmonics(gear, radius, level);
         let (material, width) = (gear.material(), gear.face_width());
         let run = Run::unattended();
-        let mut group = group(criterion, &format!("case {number}, driven gear"));
+        let mut group = group(criterion, &format!("case {number}, driven gear"), 2);
 
         let grid = ToothGrid::new(gear, radius, level).expect("a grid");
         group.bench_function("tooth: grid", |bencher| {
@@ -115,7 +102,7 @@ fn whole_blank(criterion: &mut Criterion) {
     let case = test_case(2);
     let material = case.pair.driven().material();
     let lay = || BlankGrid::of_region(&region, width, radius, 50, 4.0, GridLevel::Standard);
-    let mut group = group(criterion, "four unequal holes");
+    let mut group = group(criterion, "four unequal holes", 2);
     group.bench_function("blank: grid", |bencher| bencher.iter(|| black_box(lay())));
     let grid = lay().expect("a grid");
     let orders = Harmonics { largest: 51 };
@@ -141,7 +128,7 @@ fn positions(criterion: &mut Criterion) {
         let case = test_case(number);
         let load = case.pair.load(case.output_torques[0]);
         let model = pair_model(&case, &Library::default(), &Run::unattended()).expect("a model");
-        let mut group = group(criterion, &format!("case {number}, one position"));
+        let mut group = group(criterion, &format!("case {number}, one position"), 2);
         for (eta, pairs) in [(0.05, "one pair"), (0.5, "two pairs")] {
             group.bench_function(format!("{pairs}: detection"), |bencher| {
                 bencher.iter(|| black_box(facings(&case, eta)));

@@ -195,7 +195,7 @@ impl<'a> Standing<'a> {
         let foot = probe.foot - r_b * turn;
         let slope = self.slopes[mate];
         let missing = other.removed(s) - slope * (s - self.forms[mate]);
-        let inclination = other.removed_slope(s) - slope;
+        let inclination = other.inclination(s) - slope;
 
         let on_mate = turned(
             self.turns[mate],

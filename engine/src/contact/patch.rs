@@ -438,23 +438,24 @@ const SLIVER: f64 = 1e-3;
 /// How often cells are halved towards a kink, where pressure grows with the logarithm of the distance from it.
 const AT_KINK: u32 = 2;
 
-/// How often towards a tip corner, where it grows with a power.
-const AT_TIP: u32 = 4;
+/// How often towards a corner that digs in, the tip's or a broken edge's, where it grows with a power.
+const AT_CORNER: u32 = 4;
 
-/// The ends of cells of about `width` over a stretch of the flank of `facing`. A kink ends one among narrower cells; it cuts the cell in which it
-/// lies, so that nothing steps as cells move over it.
+/// The ends of cells of about `width` over a stretch of the flank of `facing`. A kink ends one and stands among narrower cells, at distances from it
+/// that do not hang on the other ends: nothing steps as cells move over it.
 fn ending_at_kinks([from, to]: [f64; 2], width: f64, facing: &Facing) -> Vec<f64> {
     let Facing { range, kinks, .. } = facing;
     let count = ((to - from) / width).round().max(1.0) as usize;
     let width = (to - from) / count as f64;
-    let at_tip = |end: f64, limit: f64, what: RangeEnd| {
-        let tip = matches!(what, RangeEnd::Tip | RangeEnd::MateTip);
-        if tip && end == limit { AT_TIP } else { 0 }
-    };
-    // Each with how often the cells beside it are halved.
-    let mut ends: Vec<(f64, u32)> = (0..=count).map(|i| (from + i as f64 * width, 0)).collect();
-    ends[0].1 = at_tip(from, range.from, range.ends[0]);
-    ends[count] = (to, at_tip(to, range.to, range.ends[1]));
+    let mut ends: Vec<f64> = (0..=count).map(|i| from + i as f64 * width).collect();
+    ends[count] = to;
+
+    // What cells become narrower towards, and how often they are halved.
+    let is_tip = |end: RangeEnd| matches!(end, RangeEnd::Tip | RangeEnd::MateTip);
+    let mut towards: Vec<(f64, u32)> = Vec::new();
+    if from == range.from && is_tip(range.ends[0]) {
+        towards.push((from, AT_CORNER));
+    }
     let mut last = None;
     let first = kinks.partition_point(|kink| *kink <= from);
     for kink in kinks[first..].iter().take_while(|kink| **kink < to) {
@@ -462,37 +463,43 @@ fn ending_at_kinks([from, to]: [f64; 2], width: f64, facing: &Facing) -> Vec<f64
         // Kinks denser than cells lie inside of them.
         if last != Some(before) && before < count {
             last = Some(before);
-            ends.push((*kink, AT_KINK));
+            let digs_in = |hollow: &Hollow| {
+                hollow.arc == *kink && hollow.openings.iter().all(|angle| *angle > 0.0)
+            };
+            let corner = facing.hollows.iter().any(digs_in);
+            towards.push((*kink, if corner { AT_CORNER } else { AT_KINK }));
         }
     }
-    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // Ends that a kink meets are one.
+    if to == range.to && is_tip(range.ends[1]) {
+        towards.push((to, AT_CORNER));
+    }
+    for (i, &(place, times)) in towards.iter().enumerate() {
+        // Half the way to the next is room for each.
+        let low = i
+            .checked_sub(1)
+            .map_or(from, |i| f64::midpoint(towards[i].0, place));
+        let high = towards
+            .get(i + 1)
+            .map_or(to, |next| f64::midpoint(place, next.0));
+        let parts = (0..=times).map(|i| width * 0.5_f64.powi(i as i32));
+        let about = parts.flat_map(|part| [place - part, place + part]);
+        ends.extend(about.filter(|end| low < *end && *end < high));
+        ends.push(place);
+    }
+    ends.sort_by(f64::total_cmp);
+    // Ends that meet are one; a kink is kept before others.
+    let is_kink = |end: f64| towards.iter().any(|(place, _)| *place == end);
     ends.dedup_by(|after, before| {
-        let one = after.0 - before.0 < SLIVER * width;
-        if one {
-            before.1 = before.1.max(after.1);
+        let one = *after - *before < SLIVER * width;
+        if one && is_kink(*after) {
+            *before = *after;
         }
         one
     });
     if let Some(end) = ends.last_mut() {
-        end.0 = to;
+        *end = to;
     }
-    let mut graded = Vec::with_capacity(ends.len());
-    for pair in ends.windows(2) {
-        let [(low, before), (high, after)] = [pair[0], pair[1]];
-        let parts = |times: u32| (1..=times).map(|i| (high - low) * 0.5_f64.powi(i as i32));
-        graded.push(low);
-        // Where kinks are as dense as cells none stands out.
-        if before > after {
-            let mut beyond: Vec<f64> = parts(before).map(|part| low + part).collect();
-            beyond.reverse();
-            graded.extend(beyond);
-        } else if after > before {
-            graded.extend(parts(after).map(|part| high - part));
-        }
-    }
-    graded.push(to);
-    graded
+    ends
 }
 
 /// Adds cells that grow away from the `chains` on all their open sides, until they meet.

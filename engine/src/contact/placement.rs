@@ -150,6 +150,15 @@ impl<'a> Placement<'a> {
         })
     }
 
+    /// By how much the normal of `member` is inclined at the roll length `s`.
+    fn inclination(&self, member: Member, s: f64) -> f64 {
+        let drawn = self.pair.gear(member).inclination(s);
+        self.made.map_or(drawn, |(deviations, teeth)| {
+            let gear = deviations.of_gear(member);
+            drawn - gear.slope(teeth[member.index()])
+        })
+    }
+
     /// The place on the flank of `member` at roll length `s`.
     pub(super) fn place(&self, member: Member, s: f64) -> FlankPlace {
         let gear = self.pair.gear(member);
@@ -160,7 +169,7 @@ impl<'a> Placement<'a> {
         let e_t = quarter_turned(e_r);
         FlankPlace {
             point: self.centers[member.index()] + r_b * e_r + s * e_t,
-            normal: inclined(e_r, e_t, s, r_b, slope),
+            normal: inclined(e_r, e_t, s, r_b, self.inclination(member, s)),
             // An arc grows by s/r_b along a roll length.
             way: (1.0 + slope) * e_r - slope * r_b / s.max(1e-9 * r_b) * e_t,
             radial: e_r,
@@ -187,7 +196,7 @@ impl<'a> Placement<'a> {
         Some(Sight {
             roll_length: s,
             gap: s - foot + depth,
-            normal: inclined(e_r, e_t, s, r_b, slope),
+            normal: inclined(e_r, e_t, s, r_b, self.inclination(member, s)),
             radial: e_r,
             slope,
         })

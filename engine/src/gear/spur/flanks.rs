@@ -4,6 +4,9 @@ use super::SpurGear;
 use crate::gear::modification::{Modification, Relief};
 use crate::gear::{TipEdge, ToothDeviations};
 
+/// A kink is rounded so far to either side, over the module.
+const ROUNDED: f64 = 0.005;
+
 impl SpurGear {
     /// The first tip relief, if there is any.
     pub fn tip_relief(&self) -> Option<&Relief> {
@@ -37,10 +40,24 @@ impl SpurGear {
             .modifications
             .iter()
             .map(|each| each.slope(&self.flank, s));
-        let edge = self
-            .broken_edge
-            .map_or(0.0, |edge| edge.depth_and_slope(&self.flank, s).1);
-        modified.sum::<f64>() + edge
+        modified.sum::<f64>() + self.edge_slope(s)
+    }
+
+    /// By how much the normal of the flank is inclined at the roll length `s`, as [`SpurGear::removed_slope`]: a kink of a modification is rounded
+    /// over a length far below any contact's. Flanks that are pressed together bend over it; a normal that jumped would open a step in their gap.
+    pub fn inclination(&self, s: f64) -> f64 {
+        let half = ROUNDED * self.data.rack.module;
+        let modified = if self.modifications.is_empty() {
+            0.0
+        } else {
+            (self.modified(s + half) - self.modified(s - half)) / (2.0 * half)
+        };
+        modified + self.edge_slope(s)
+    }
+
+    fn edge_slope(&self, s: f64) -> f64 {
+        self.broken_edge
+            .map_or(0.0, |edge| edge.depth_and_slope(&self.flank, s).1)
     }
 
     /// The roll lengths, rising, at which the flank has a kink: the starts of reliefs, the entries of tables, and where a rounding begins,
