@@ -52,7 +52,7 @@ pub(super) fn found(folder: &Path) -> anyhow::Result<Vec<Benchmark>> {
     let mut found = Vec::new();
     let none = || {
         format!(
-            "{} holds no benchmarks: cargo bench --workspace --bench jobs --bench parts makes them",
+            "{} holds no benchmarks: cargo bench -p meshwright-benches makes them",
             folder.display()
         )
     };
