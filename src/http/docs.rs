@@ -147,7 +147,10 @@ pub fn openapi() -> Value {
 
 /// Gives pages of a list a name that a person would: utoipa names a generic type and its parameter, `Page_Job`.
 fn name_lists(value: &mut Value) {
-    const LISTS: [(&str, &str); 2] = [("Page_Job", "JobList"), ("Page_StudyState", "StudyList")];
+    const LISTS: [(&str, &str); 2] = [
+        ("Page_Job", "JobList"),
+        ("Page_SubmittedStudy", "StudyList"),
+    ];
     match value {
         Value::String(text) => {
             for (name, list) in LISTS {

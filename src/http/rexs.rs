@@ -40,7 +40,7 @@ pub(super) struct ModelParameters {
 
 /// What a model comes to.
 #[derive(Serialize, ToSchema)]
-#[schema(title = "Model")]
+#[schema(as = RexsModel, title = "Model")]
 pub(super) struct ModelView {
     /// A submission for each cylindrical stage that is a pair of spur gears, every default filled in.
     #[schema(value_type = Vec<Submission>)]
@@ -55,7 +55,7 @@ pub(super) struct ModelView {
 
 /// An attribute of a model that was not read.
 #[derive(Serialize, ToSchema)]
-#[schema(title = "NotRead")]
+#[schema(as = NotRead, title = "NotRead")]
 pub(super) struct NotReadView {
     /// The component.
     component: String,
@@ -65,7 +65,7 @@ pub(super) struct NotReadView {
 
 /// Why a stage of a model cannot be taken.
 #[derive(Serialize, ToSchema)]
-#[schema(title = "RefusedPlace")]
+#[schema(as = RefusedPlace, title = "RefusedPlace")]
 pub(super) struct RefusedView {
     /// The component and its attribute, or the line, or the file.
     place: String,

@@ -9,7 +9,7 @@ export type Job = Schemas["Job"];
 export type Problem = Schemas["Problem"];
 /** The base may lack what every design gives. */
 export type Study = Omit<Schemas["Study"], "base"> & { base: Partial<Submission> | Record<string, unknown> };
-export type StudyState = Schemas["StudyState"];
+export type SubmittedStudy = Schemas["SubmittedStudy"];
 export type StudyResults = Schemas["StudyResults"];
 export type Validation = Schemas["Validation"];
 export type PairOutline = Schemas["PairOutline"];
@@ -89,11 +89,11 @@ export class Client {
 
   /** Submits a study and gives its table when all designs have ended. */
   async study(study: Study, report: Report = () => {}): Promise<StudyResults> {
-    let state = await this.#post<StudyState>("/v1/studies", study);
+    let state = await this.#post<SubmittedStudy>("/v1/studies", study);
     for (let pause = 100; !ENDED.includes(state.status); pause = Math.min(2 * pause, 2000)) {
       report(state.done, state.total);
       await new Promise((resolve) => setTimeout(resolve, pause));
-      state = await this.#call<StudyState>(`/v1/studies/${state.id}`);
+      state = await this.#call<SubmittedStudy>(`/v1/studies/${state.id}`);
     }
     report(state.done, state.total);
     return this.#call(`/v1/studies/${state.id}/results`);

@@ -39,7 +39,7 @@ pub(in crate::http) struct StudyEvent {
     id: String,
     /// `status` at the start of the stream and whenever the state changes, else `progress`.
     event: EventName,
-    /// JSON: of `status` a `StudyState`, of `progress` a `StudyProgress`.
+    /// JSON: of `status` a `SubmittedStudy`, of `progress` a `StudyProgress`.
     #[schema(content_media_type = "application/json")]
     data: String,
 }
@@ -52,7 +52,7 @@ pub(in crate::http) struct StudyEvent {
     get, path = "/v1/studies/{id}/events", tag = "Studies", operation_id = "watch_study",
     params(("id" = String, Path, format = "uuid", description = "The id of the study.")),
     responses(
-        (status = 200, description = "Events: `status` with a StudyState as data, and `progress` with a StudyProgress.", body = StudyEvent, content_type = "text/event-stream"),
+        (status = 200, description = "Events: `status` with a SubmittedStudy as data, and `progress` with a StudyProgress.", body = StudyEvent, content_type = "text/event-stream"),
         (status = 404, description = "There is no such study.", body = Problem, content_type = "application/problem+json"),
         (status = 429, description = "As many streams are open as one client may have.", body = Problem, content_type = "application/problem+json"),
     ),

@@ -15,7 +15,7 @@ use crate::wire::{Code, Problem, SearchState, Status, Study};
 
 /// A study: how far it has come, and where to find its table.
 #[derive(Serialize, ToSchema)]
-#[schema(as = StudyState)]
+#[schema(as = SubmittedStudy)]
 pub(in crate::http) struct StudyView {
     /// The id of the study.
     #[schema(value_type = String, format = "uuid")]

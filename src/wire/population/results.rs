@@ -51,7 +51,7 @@ pub struct PopulationResults {
 
 /// The share of gears beyond a tolerance.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, ToSchema)]
-#[schema(title = "Share beyond a tolerance")]
+#[schema(as = BeyondTolerance, title = "Share beyond a tolerance")]
 pub struct BeyondDocument {
     /// Of the driving gears, from 0 to 1.
     pub driving: Option<f64>,
@@ -61,7 +61,7 @@ pub struct BeyondDocument {
 
 /// How a quantity is spread over the members that have results. All numbers are in its unit.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-#[schema(title = "Spread of a quantity")]
+#[schema(as = QuantityResults, title = "Spread of a quantity")]
 pub struct QuantityDocument {
     /// The name of the quantity: the names of the table, joined by dots.
     pub name: &'static str,
@@ -89,7 +89,7 @@ pub struct QuantityDocument {
 
 /// Members to look at.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-#[schema(title = "Members to look at")]
+#[schema(as = Extremes, title = "Members to look at")]
 pub struct ExtremesDocument {
     /// That of the smallest value.
     pub smallest: u32,
@@ -101,7 +101,7 @@ pub struct ExtremesDocument {
 
 /// A percentile.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-#[schema(title = "Percentile")]
+#[schema(as = Percentile, title = "Percentile")]
 pub struct PercentileDocument {
     /// So many percent of the members are below it.
     pub percent: f64,
@@ -115,7 +115,7 @@ pub struct PercentileDocument {
 
 /// A histogram.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-#[schema(title = "Histogram")]
+#[schema(as = Histogram, title = "Histogram")]
 pub struct HistogramDocument {
     /// Where bars begin, and where the last one ends.
     pub edges: Vec<f64>,
@@ -125,7 +125,7 @@ pub struct HistogramDocument {
 
 /// The part of the variance that an input makes by itself.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-#[schema(title = "Influence")]
+#[schema(as = Influence, title = "Influence")]
 pub struct InfluenceDocument {
     /// The varied field, a JSON pointer into the submission.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -111,7 +111,7 @@ pub struct ResonanceDocument {
 /// Why an order resonates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
-#[schema(title = "Kind of a resonance")]
+#[schema(as = ResonanceKind, title = "Kind of a resonance")]
 pub enum ResonanceKindName {
     /// The order meets the natural frequency.
     Forced,

@@ -92,7 +92,7 @@ pub struct NamedOrderDocument {
 /// What a line of the spectrum is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
-#[schema(title = "Kind of an order")]
+#[schema(as = OrderKind, title = "Kind of an order")]
 pub enum OrderKindName {
     /// k times the mesh.
     Mesh,
