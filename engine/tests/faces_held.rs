@@ -151,8 +151,8 @@ fn one_position_of_one_pair_is_that_of_calculix() {
 
 #[test]
 fn the_helical_pair_of_the_references_yields_as_it_should() {
-    // By theoretical contact lines alone another program finds δ 6.775 um in the mean and K_Hβ 1.043, and with 10 um over the face 11.73 um and
-    // 1.85. Tip edges, which touch beside those lines, take 2 to 4 % of δ.
+    // By theoretical contact lines alone another program finds δ 6.522 µm in the mean and K_Hβ 1.042, and with 10 µm over the face 11.47 µm and
+    // 1.847, on segments of 25 teeth. Tip edges, which touch beside those lines, take 2 to 4 % of δ.
     let started = Instant::now();
     let analysis = solve(&case(
         reference_pair(20.0, [Vec::new(), Vec::new()], |_| ()),
@@ -162,7 +162,7 @@ fn the_helical_pair_of_the_references_yields_as_it_should() {
     println!("cold {:?}", started.elapsed());
     let curve = &analysis.curves[0];
     let mean = 1e6 * curve.transmission_error_statistics.mean;
-    assert!(mean > 0.93 * 6.775 && mean < 0.98 * 6.775, "{mean}");
+    assert!(mean > 0.96 * 6.522 && mean < 0.99 * 6.522, "{mean}");
     let slope = vec![LeadModification::Slope { amount: 10e-6 }];
     let tilted = solve(&case(
         reference_pair(20.0, [slope, Vec::new()], |_| ()),
@@ -171,7 +171,7 @@ fn the_helical_pair_of_the_references_yields_as_it_should() {
     ));
     let face = tilted.curves[0].face.as_ref().expect("under load");
     let mean = 1e6 * tilted.curves[0].transmission_error_statistics.mean;
-    assert!(mean > 0.92 * 11.73 && mean < 11.73, "{mean}");
+    assert!(mean > 0.96 * 11.47 && mean < 11.47, "{mean}");
     assert!(face.face_load_factor > 1.7 && face.face_load_factor < 1.95);
     assert!(face.load_centroid.iter().all(|z| *z < 0.0));
     let relieved = |data: &mut GearData| {

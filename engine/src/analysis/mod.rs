@@ -95,7 +95,7 @@ fn analyze_at(
             Method::Flexible => flexible::solve(setup),
             Method::Decomposition => decomposition::solve(setup),
             Method::ProjectedDecomposition => projected::solve(setup),
-            Method::ThreeDimensional => three_dimensional::solve(case, level, run),
+            Method::ThreeDimensional => three_dimensional::solve(case, level, parts, run),
             Method::LoadDistribution => load_distribution::solve(case, run),
         };
         match answer {

@@ -10,7 +10,7 @@ use super::curve_parts::CurveParts;
 use super::evidence::Evidence;
 use super::warning::{warn_of_corner, warn_of_tips, warnings};
 use super::{Analysis, AnalysisError, Case};
-use crate::assembly::{FaceResolution, FaceYield};
+use crate::assembly::{FaceResolution, FaceYield, FaceYieldSpec, Parts};
 use crate::contact::MeshContact;
 use crate::contact::face::{FaceContact, FaceModel, FlankYield};
 use crate::gear::Member;
@@ -21,15 +21,23 @@ use crate::run::Run;
 /// The strips over which the face load factor is taken.
 const STRIPS: usize = 10;
 
+/// A tip corner is told of from this part of the load: one of many slices touches nearly always.
+const TOLD: f64 = 0.005;
+
 /// Computes `case` along its faces; at another grid `level` than its own with other polynomials across them, which tell the error.
-pub(super) fn solve(case: &Case, level: GridLevel, run: &Run) -> Result<Analysis, AnalysisError> {
+pub(super) fn solve(
+    case: &Case,
+    level: GridLevel,
+    parts: &dyn Parts,
+    run: &Run,
+) -> Result<Analysis, AnalysisError> {
     let Some(faces) = &case.faces else {
         return Err(AnalysisError::Discretization {
             member: Member::Driving,
             reason: "nothing is said of its extent along the axis".to_owned(),
         });
     };
-    let (model, degrees_of_freedom) = model(case, faces, level, run)?;
+    let (model, degrees_of_freedom) = model((case, faces), level, parts, run)?;
     let positions = case.mesh_positions();
     let mut evidence = Evidence::new(degrees_of_freedom);
     let mut warnings = warnings(case);
@@ -63,7 +71,7 @@ pub(super) fn solve(case: &Case, level: GridLevel, run: &Run) -> Result<Analysis
                 .iter()
                 .map(|contact| contact.corner_shares[member.index()]);
             let largest = shares.fold(0.0, f64::max);
-            if largest > 0.0 {
+            if largest > TOLD {
                 warn_of_corner(&mut warnings, member, largest);
             }
         }
@@ -82,9 +90,9 @@ pub(super) fn solve(case: &Case, level: GridLevel, run: &Run) -> Result<Analysis
 
 /// The pair ready for contact, and its unknowns before condensation.
 fn model(
-    case: &Case,
-    faces: &Faces,
+    (case, faces): (&Case, &Faces),
     level: GridLevel,
+    parts: &dyn Parts,
     run: &Run,
 ) -> Result<(FaceModel, u64), AnalysisError> {
     let finer = if level == case.resolution.grid { 0 } else { 2 };
@@ -93,13 +101,14 @@ fn model(
         ..faces.resolution
     };
     let of = |member: Member| {
-        let made = FaceYield::of(faces.pair.gear(member), resolution, run);
+        let spec = FaceYieldSpec::new(faces.pair.gear(member), resolution);
+        let made = parts.face_yield(&spec, run);
         made.map_err(|error| error.of(member))
     };
     let (driving, driven) = rayon::join(|| of(Member::Driving), || of(Member::Driven));
     let (driving, driven) = (driving?, driven?);
     let degrees_of_freedom = driving.degrees_of_freedom() + driven.degrees_of_freedom();
-    let yields: [Arc<dyn FlankYield>; 2] = [Arc::new(driving), Arc::new(driven)];
+    let yields: [Arc<dyn FlankYield>; 2] = [driving, driven];
     let model = FaceModel::new(faces.pair.clone(), yields, faces.slices, FARTHEST_COUPLED);
     Ok((model, degrees_of_freedom))
 }

@@ -435,6 +435,12 @@ fn indentation(gears: &GearPair, hollow: &Hollow, load: f64) -> (f64, f64) {
 /// No cell is narrower than this part of the others.
 const SLIVER: f64 = 1e-3;
 
+/// Nor narrower than this part of its distance from a kink.
+const NARROW: f64 = 0.2;
+
+/// So many widths about a kink have no other ends than those laid about it.
+const BESIDE: f64 = 1.3;
+
 /// How often cells are halved towards a kink, where pressure grows with the logarithm of the distance from it.
 const AT_KINK: u32 = 2;
 
@@ -447,8 +453,6 @@ fn ending_at_kinks([from, to]: [f64; 2], width: f64, facing: &Facing) -> Vec<f64
     let Facing { range, kinks, .. } = facing;
     let count = ((to - from) / width).round().max(1.0) as usize;
     let width = (to - from) / count as f64;
-    let mut ends: Vec<f64> = (0..=count).map(|i| from + i as f64 * width).collect();
-    ends[count] = to;
 
     // What cells become narrower towards, and how often they are halved.
     let is_tip = |end: RangeEnd| matches!(end, RangeEnd::Tip | RangeEnd::MateTip);
@@ -473,6 +477,15 @@ fn ending_at_kinks([from, to]: [f64; 2], width: f64, facing: &Facing) -> Vec<f64
     if to == range.to && is_tip(range.ends[1]) {
         towards.push((to, AT_CORNER));
     }
+    let nearest = |end: f64| {
+        let distances = towards.iter().map(|(place, _)| (end - place).abs());
+        distances.fold(f64::INFINITY, f64::min)
+    };
+    let evenly = (1..count).map(|i| from + i as f64 * width);
+    let mut ends: Vec<f64> = evenly
+        .filter(|end| nearest(*end) > BESIDE * width)
+        .collect();
+    ends.extend([from, to]);
     for (i, &(place, times)) in towards.iter().enumerate() {
         // Half the way to the next is room for each.
         let low = i
@@ -487,10 +500,11 @@ fn ending_at_kinks([from, to]: [f64; 2], width: f64, facing: &Facing) -> Vec<f64
         ends.push(place);
     }
     ends.sort_by(f64::total_cmp);
-    // Ends that meet are one; a kink is kept before others.
+    // A cell far narrower than those beside it would carry what pressure it likes. A kink is kept before other ends.
     let is_kink = |end: f64| towards.iter().any(|(place, _)| *place == end);
     ends.dedup_by(|after, before| {
-        let one = *after - *before < SLIVER * width;
+        let away = nearest(*before).min(nearest(*after)).min(width);
+        let one = *after - *before < (NARROW * away).max(SLIVER * width);
         if one && is_kink(*after) {
             *before = *after;
         }

@@ -529,8 +529,9 @@ mod tests {
 
     #[test]
     fn by_contact_lines_alone_the_pair_is_that_of_another_program() {
-        // 40/40 teeth, 20 degrees, 100 N m: δ 6.775 µm in the mean with K_Hβ 1.043, and 11.726 µm with 1.852 where the face opens by 10 µm; by lines
-        // that end with the path of contact, on segments of nine teeth.
+        // 40/40 teeth, 20 degrees, 100 N m, by lines that end with the path of contact: δ 6.522 µm in the mean with K_Hβ 1.042, and 11.471 µm with
+        // 1.847 where the face opens by 10 µm, on a segment of 25 teeth with polynomials to degree 6 (0.2 % below degree 8). On nine teeth, whose free
+        // sides yield too, it finds 6.763 µm.
         let gear = |beta: f64| {
             let mut data = paper_gear(40);
             data.rack.tip_radius = 0.684e-3;
@@ -543,7 +544,7 @@ mod tests {
             let made = FaceYield::of(gear, FaceResolution::STANDARD, &Run::unattended());
             Arc::new(made.expect("can be condensed")) as Arc<dyn FlankYield>
         });
-        for (amount, mean, factor) in [(0.0, 6.775e-6, 1.043), (10e-6, 11.726e-6, 1.852)] {
+        for (amount, mean, factor) in [(0.0, 6.522e-6, 1.042), (10e-6, 11.471e-6, 1.847)] {
             let leads = [vec![LeadModification::Slope { amount }], Vec::new()];
             let a = 2.0 * gears[0].section().reference_radius();
             let pair = SolidPair::new(gears.clone(), leads, a, Alignment::default());
@@ -572,8 +573,8 @@ mod tests {
             let heaviest = strips.iter().copied().fold(0.0, f64::max);
             let found_factor = 10.0 * heaviest / strips.iter().sum::<f64>();
             println!("{found} {found_factor}");
-            assert!((found / mean - 1.0).abs() < 0.05, "{found}");
-            assert!((found_factor / factor - 1.0).abs() < 0.04, "{found_factor}");
+            assert!((found / mean - 1.0).abs() < 0.01, "{found}");
+            assert!((found_factor / factor - 1.0).abs() < 0.02, "{found_factor}");
         }
     }
 }
