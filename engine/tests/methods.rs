@@ -7,12 +7,15 @@ use std::sync::{Arc, Barrier};
 
 use cases::{case, gear, holed, pair, relieved, study_design, test_case};
 use meshwright_engine::analysis::{
-    Analysis, Case, ContactSolver, Curve, Method, Statistics, Warning, analyze, pair_model,
+    Analysis, Case, ContactSolver, Curve, Faces, Method, Statistics, Warning, analyze, pair_model,
 };
-use meshwright_engine::assembly::{Blanks, MakeAll, Modeling, PairSpec};
+use meshwright_engine::assembly::{Blanks, FaceResolution, MakeAll, Modeling, PairSpec};
 use meshwright_engine::contact::positions::{contacts, contacts_keeping};
 use meshwright_engine::contact::{ContactError, FlankLoad, MeshContact, PositionError, WarmStart};
-use meshwright_engine::gear::{GearData, GearPair, Material, Member, Rack, SpurGear, TipEdge};
+use meshwright_engine::gear::{
+    Alignment, GearData, GearPair, Helix, Material, Member, Rack, SolidGear, SolidPair, SpurGear,
+    TipEdge,
+};
 use meshwright_engine::library::Library;
 use meshwright_engine::ring::annulus::Imposed;
 use meshwright_engine::run::{Run, Stopped};
@@ -516,6 +519,38 @@ fn designs_by_methods() -> Vec<Case> {
         .collect()
 }
 
+/// A helical pair with holes in the web of one gear, coarsely resolved.
+fn along_its_faces() -> Case {
+    let solid = |data: GearData, beta: f64| {
+        SolidGear::new(data, Helix::right(beta), 0.0, None).expect("can be made")
+    };
+    let beta = 20_f64.to_radians();
+    let gears = [
+        solid(gear(40, 20e-3), beta),
+        solid(holed(gear(40, 20e-3), 4, 29e-3, 4e-3, 0.0), -beta),
+    ];
+    let center_distance = 2.0 * gears[0].section().reference_radius();
+    let leads = [Vec::new(), Vec::new()];
+    let solid = SolidPair::new(gears, leads, center_distance, Alignment::default());
+    let solid = solid.expect("meshes");
+    let mut case = Case {
+        method: Method::ThreeDimensional,
+        ..case(solid.section().clone(), &[100.0])
+    };
+    case.resolution.positions_per_mesh_period = 4;
+    case.resolution.span_mesh_periods = Some(1);
+    case.faces = Some(Faces {
+        pair: solid,
+        resolution: FaceResolution {
+            face_order: 4,
+            ..FaceResolution::DRAFT
+        },
+        slices: 10,
+        at_each_position: false,
+    });
+    case
+}
+
 fn solve_from(library: &Library, case: &Case) -> Analysis {
     analyze(case, library, &Run::unattended()).expect("a design of the study")
 }
@@ -541,7 +576,8 @@ fn too_little_for(cases: &[Case]) -> usize {
 
 #[test]
 fn a_library_changes_no_digit_whether_it_is_cold_warm_too_small_or_absent() {
-    let cases = designs_by_methods();
+    let mut cases = designs_by_methods();
+    cases.push(along_its_faces());
     let cold: Vec<_> = cases
         .iter()
         .map(|case| solve_from(&Library::default(), case))
