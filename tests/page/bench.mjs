@@ -241,7 +241,7 @@ export async function benchSteps(service) {
     }
     for (const member of ["driving", "driven"]) {
       const pointer = `/pair/${member}/profile_modifications`;
-      const list = page.locator(`#form fieldset.list`, { has: page.locator("legend", { hasText: /modifications/i }) }).nth(member === "driving" ? 0 : 1);
+      const list = page.locator(`#form fieldset.list`, { has: page.locator("legend", { hasText: /profile modifications/i }) }).nth(member === "driving" ? 0 : 1);
       await list.evaluate((element) => { for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true; });
       await list.locator(":scope > button").click();
       await settle(`${pointer} added`);
