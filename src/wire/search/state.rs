@@ -9,7 +9,7 @@ use crate::wire::results::ErrorEstimateDocument;
 
 /// How far a search has come, as of its last generation that has ended.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-#[schema(as = SearchState, title = "Search")]
+#[schema(as = SearchState, title = "Search progress")]
 pub struct SearchState {
     /// Designs that have been looked at.
     pub evaluations: u64,
