@@ -73,6 +73,10 @@ impl FlankYield for Manufactured {
             self.compliance * own * near
         })
     }
+
+    fn repeats_after(&self) -> usize {
+        1
+    }
 }
 
 #[derive(Clone)]

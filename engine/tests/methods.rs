@@ -14,7 +14,7 @@ use meshwright_engine::contact::positions::{contacts, contacts_keeping};
 use meshwright_engine::contact::{ContactError, FlankLoad, MeshContact, PositionError, WarmStart};
 use meshwright_engine::gear::{
     Alignment, GearData, GearPair, Helix, Material, Member, Rack, SolidGear, SolidPair, SpurGear,
-    TipEdge,
+    TipEdge, Web,
 };
 use meshwright_engine::library::Library;
 use meshwright_engine::ring::annulus::Imposed;
@@ -549,6 +549,119 @@ fn along_its_faces() -> Case {
         at_each_position: false,
     });
     case
+}
+
+/// The same by a few positions of its true period of ten mesh periods, with holes at `radius` that matter, or without any.
+fn along_its_faces_in_turn(hole_circle: Option<f64>) -> Case {
+    let mut case = along_its_faces();
+    let faces = case.faces.as_mut().expect("along its faces");
+    let solid = |beta: f64, holes: Option<f64>| {
+        let mut data = gear(40, 20e-3);
+        data.blank.web = Some(Web {
+            inner_radius: 20e-3,
+            outer_radius: 35e-3,
+            thickness: 8e-3,
+        });
+        let data = match holes {
+            Some(circle) => holed(data, 4, circle, 5e-3, 0.1),
+            None => data,
+        };
+        SolidGear::new(data, Helix::right(beta), 2e-3, None).expect("can be made")
+    };
+    let beta = 20_f64.to_radians();
+    let gears = [solid(beta, None), solid(-beta, hole_circle)];
+    let center_distance = 2.0 * gears[0].section().reference_radius();
+    let leads = [Vec::new(), Vec::new()];
+    faces.pair =
+        SolidPair::new(gears, leads, center_distance, Alignment::default()).expect("meshes");
+    case.pair = faces.pair.section().clone();
+    case.resolution.span_mesh_periods = Some(10);
+    case
+}
+
+#[test]
+fn along_faces_the_projection_is_the_whole_solution_without_holes_and_near_it_with_them() {
+    for holes in [None, Some(28e-3)] {
+        let case = along_its_faces_in_turn(holes);
+        let library = Library::default();
+        let by = |method| {
+            let case = Case {
+                method,
+                ..case.clone()
+            };
+            solve_from(&library, &case)
+        };
+        let whole = by(Method::ThreeDimensional);
+        let projected = by(Method::ThreeDimensionalProjected);
+        let found = differences(&projected.curves[0], &whole.curves[0]);
+        let largest = |of: fn(&Curve) -> &Vec<f64>| {
+            let [one, other] = [&projected, &whole].map(|by| of(&by.curves[0]));
+            let each = one.iter().zip(other);
+            each.map(|(one, other)| (one - other).abs())
+                .fold(0.0, f64::max)
+        };
+        let delta = largest(|curve| &curve.transmission_error);
+        let stiffness = largest(|curve| &curve.mesh_stiffness_tangent);
+        let statistics = &whole.curves[0].transmission_error_statistics;
+        let mean = whole.curves[0].mesh_stiffness_tangent_statistics.mean;
+        println!("{found:?} {delta:e} {statistics:?} {:e}", stiffness / mean);
+        println!("{:?} {:?}", projected.evidence, whole.evidence);
+        let error = projected.evidence.projection_error.expect("it is told");
+        if holes.is_none() {
+            assert!(
+                delta < 1e-12 && stiffness < 1e-6 * mean,
+                "{delta:e} {stiffness:e}"
+            );
+            assert_eq!(error, 0.0);
+        } else {
+            let swing = statistics.peak_to_peak;
+            assert!(swing > 0.3e-6, "holes that matter");
+            assert!(
+                delta < 0.01 * swing && stiffness < 2e-3 * mean,
+                "{delta:e} {stiffness:e}"
+            );
+            assert!(
+                error < 1.5 * delta && error > 0.3 * delta,
+                "{error:e} of {delta:e}"
+            );
+        }
+        // One mesh period instead of ten.
+        let iterations = |by: &Analysis| by.evidence.contact_iterations;
+        assert!(5 * iterations(&projected) < iterations(&whole));
+        let face = |by: &Analysis| by.curves[0].face.clone().expect("along the faces");
+        let (one, other) = (face(&projected), face(&whole));
+        assert_eq!(one.load_centroid.len(), other.load_centroid.len());
+        assert_eq!(one.heights, other.heights);
+        assert!((one.face_load_factor / other.face_load_factor - 1.0).abs() < 1e-3);
+    }
+}
+
+#[test]
+fn along_faces_a_moved_hole_costs_one_web() {
+    let library = Library::default();
+    let uses = |name: &str| {
+        let usage = library
+            .usage()
+            .into_iter()
+            .find(|(shelf, _)| *shelf == name);
+        usage
+            .map(|(_, usage)| (usage.misses, usage.hits))
+            .expect("a shelf")
+    };
+    let solve = |circle: f64| {
+        let mut case = along_its_faces_in_turn(Some(circle));
+        case.method = Method::ThreeDimensionalProjected;
+        solve_from(&library, &case)
+    };
+    let one = solve(28e-3);
+    assert_eq!((uses("faces"), uses("yields")), ((2, 0), (2, 0)));
+    let other = solve(28.5e-3);
+    // Of teeth, rims and plain webs nothing is made anew, of the gear without holes nothing at all.
+    assert_eq!((uses("faces"), uses("yields")), ((2, 1), (3, 1)));
+    assert_ne!(
+        one.curves[0].transmission_error,
+        other.curves[0].transmission_error
+    );
 }
 
 fn solve_from(library: &Library, case: &Case) -> Analysis {

@@ -443,6 +443,7 @@ fn rough_cost(submission: &Submission) -> u64 {
     let (fixed, per_position) = match submission.case().method {
         Method::LoadDistribution => (200, 5),
         Method::ThreeDimensional => (4_000_000, 5_000),
+        Method::ThreeDimensionalProjected => (4_000_000, 50),
         _ => (20_000, 50),
     };
     submission

@@ -23,6 +23,7 @@ words! {
         Decomposition = "decomposition": "rigid blanks plus fitted blank rotations (section 3 of the paper)",
         ProjectedDecomposition = "projected_decomposition": "the contact of blanks that are alike all around, plus the exact first-order term of what the holes change around them",
         ThreeDimensional = "three_dimensional": "both whole gears flexible along their faces too: helical gears, thin webs, uneven leads, misalignment",
+        ThreeDimensionalProjected = "three_dimensional_projected": "along their faces, the contact of blanks that are alike all around, plus the first-order term of what the holes change around them",
         LoadDistribution = "load_distribution": "closed-form compliances on the theoretical lines of contact (eqs. 4 and 5); does not see holes",
     }
 
@@ -65,10 +66,10 @@ document! {
         /// 0.2 % of the mean STE, 2 % of peak-to-peak and rms, 0.3 % of the mean stiffness and 4 % of the first three mesh harmonics;
         /// standard within 0.03, 0.5, 0.1 and 1 %. error_estimate tells it for your pair.
         grid: GridLevel = word("Grid").or(GridLevel::Standard),
-        /// The degree of the polynomials across the face by which three_dimensional resolves teeth and rim: 8 within half a percent of
+        /// The degree of the polynomials across the face by which three dimensions resolve teeth and rim: 8 within half a percent of
         /// oblique loads, 6 for first looks within one.
         pub(super) face_order: u32 = number("Order across the face", "1", 4.0, 12.0).or(8.0),
-        /// The number of slices into which three_dimensional cuts the common face, and of strips in which it tells the load along it.
+        /// The number of slices into which three dimensions cut the common face, and of strips in which they tell the load along it.
         pub(super) face_slices: u32 = number("Slices of the face", "1", 10.0, 200.0).or(40.0),
         /// The number of positions over one hole period at which the decomposition samples a holed blank.
         blank_positions: u32 = number("Positions in a hole period", "1", 8.0, 64.0).or(16.0),

@@ -20,6 +20,18 @@ pub enum Method {
     LoadDistribution,
     /// Both whole gears flexible in three dimensions, contact along the faces.
     ThreeDimensional,
+    /// The same of blanks that are alike all around, plus the first-order term of what holes change around them.
+    ThreeDimensionalProjected,
+}
+
+impl Method {
+    /// Whether it sees the gears along their faces, and not only a section of them.
+    pub fn sees_faces(self) -> bool {
+        matches!(
+            self,
+            Self::ThreeDimensional | Self::ThreeDimensionalProjected
+        )
+    }
 }
 
 /// How the tangent stiffness is obtained.

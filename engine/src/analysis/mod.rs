@@ -1,7 +1,7 @@
 //! From a pair to its curves: the methods, their results and spectra.
 //!
 //! Read in this order: [`case`] (what is asked), `setup` (what the methods work with), `flexible`, `rigid_blank`,
-//! `decomposition`, `projected`, `three_dimensional` and `load_distribution` (the methods), `light` (torque 0, alike for all), [`stress`] (at roots and holes) and [`fields`] (everywhere), `curve_parts` and [`curve`], [`evidence`], [`warning`],
+//! `decomposition`, `projected`, `three_dimensional` and `load_distribution` (the methods), `first_order` (what holes change, in the plane and along faces), `light` (torque 0, alike for all), [`stress`] (at roots and holes) and [`fields`] (everywhere), `curve_parts` and [`curve`], [`evidence`], [`warning`],
 //! [`error`] and [`spectrum`] (what comes out), `estimate` (what it costs); [`forces`] (tables of force, and motion at speed).
 
 pub mod case;
@@ -12,6 +12,7 @@ pub mod error;
 mod estimate;
 pub mod evidence;
 pub mod fields;
+mod first_order;
 mod flexible;
 pub mod forces;
 mod light;
@@ -95,7 +96,9 @@ fn analyze_at(
             Method::Flexible => flexible::solve(setup),
             Method::Decomposition => decomposition::solve(setup),
             Method::ProjectedDecomposition => projected::solve(setup),
-            Method::ThreeDimensional => three_dimensional::solve(case, level, parts, run),
+            Method::ThreeDimensional | Method::ThreeDimensionalProjected => {
+                three_dimensional::solve(case, level, parts, run)
+            }
             Method::LoadDistribution => load_distribution::solve(case, run),
         };
         match answer {
@@ -146,6 +149,9 @@ fn expected_positions(case: &Case) -> u64 {
         Method::Flexible | Method::ThreeDimensional => torques * solves * case.positions() as u64,
         Method::Decomposition => decomposition::expected_positions(case),
         Method::ProjectedDecomposition => projected::expected_positions(case),
+        Method::ThreeDimensionalProjected => {
+            torques * (solves * repeating + first_order::expected_checks(case))
+        }
         Method::LoadDistribution => torques * repeating,
     }
 }

@@ -6,6 +6,7 @@ use super::case::{Case, StiffnessRule};
 use super::curve::{Curve, DecompositionParts};
 use super::curve_parts::CurveParts;
 use super::evidence::Evidence;
+use super::first_order::{OnRound, WithHoles, checked_places, expected_checks, with_holes};
 use super::flexible::{self, Solved};
 use super::rigid_blank::RigidBlank;
 use super::setup::Setup;
@@ -16,14 +17,6 @@ use crate::contact::positions::contacts;
 use crate::contact::{ContactCells, ContactSolution, MeshContact, PairLoads, PairModel};
 use crate::gear::{Member, teeth_on};
 
-/// Where the projection is held to exact solutions: fractions of the mesh period, and mesh periods for each of them, at most.
-///
-/// The term is exact while the same cells touch. What it leaves out is where holes let a pair touch earlier or later: at the fractions
-/// at which the stiffness of round blanks changes most, in some periods and not in others. On the paper's cases, and on a polymer gear
-/// with five large holes, these hold from 0.7 to all of the largest difference; positions at which the term itself is largest hold
-/// nothing of it.
-const CHECKED: [usize; 2] = [4, 6];
-
 /// Contact solutions that the projected decomposition of `case` needs.
 pub(super) fn expected_positions(case: &Case) -> u64 {
     let solves = match case.resolution.stiffness {
@@ -31,13 +24,7 @@ pub(super) fn expected_positions(case: &Case) -> u64 {
         StiffnessRule::TorqueStep { .. } => 3,
     };
     let repeating = case.repeating_positions().len() as u64;
-    let fractions = case.resolution.positions_per_mesh_period as usize;
-    let checked = if case.holed().is_empty() {
-        0
-    } else {
-        fractions.min(CHECKED[0]) * (case.span() as usize).min(CHECKED[1])
-    };
-    case.output_torques.len() as u64 * ((solves + 1) * repeating + checked as u64)
+    case.output_torques.len() as u64 * ((solves + 1) * repeating + expected_checks(case))
 }
 
 /// The models of a pair whose holed blanks are expanded about round ones.
@@ -51,8 +38,7 @@ struct Expansion<'a> {
     round: PairModel,
 }
 
-/// δ = δ_0 + qᵀ ΔH p and 1/k = 1/k_0 + qᵀ ΔH q with ΔH = H − H_0: the exact first-order term of the holes, sidebands
-/// included, with the contact forces p and their derivative q = dp/dF of a blank that is alike all around.
+/// The exact first-order term of the holes, sidebands included ([`super::first_order`]).
 ///
 /// H_0 is the mean of H over the teeth: the contact that it has repeats each mesh period and is solved over one. About the
 /// rigid blank (H_0 of wh) the same term is exact too, but what it leaves out grows with the square of the blank's whole
@@ -115,25 +101,28 @@ impl Expansion<'_> {
             kept: loads,
             stiffness,
         } = flexible::solved(setup, &self.round, load, &period, keep)?;
-        // What round blanks yield is the same under every tooth.
-        let before: Vec<(f64, f64)> = loads
+        let round: Vec<OnRound> = contacts
             .iter()
-            .map(|pairs| yielded(&self.round, &self.holed, pairs, 0))
+            .zip(&stiffness)
+            .zip(&loads)
+            .map(|((contact, &stiffness), pairs)| OnRound {
+                transmission_error: contact.transmission_error,
+                stiffness,
+                // It is the same under every tooth.
+                yielded: yielded(&self.round, &self.holed, pairs, 0),
+            })
             .collect();
-        let per_period = case.resolution.positions_per_mesh_period as usize;
-        let (mut transmission_error, mut tangent) = (Vec::new(), Vec::new());
-        for i in 0..case.positions() {
-            let (at, turns) = (i % period.len(), (i / per_period) as i64);
-            let after = yielded(&self.whole, &self.holed, &loads[at], turns);
-            let (delta, compliance) = (after.0 - before[at].0, after.1 - before[at].1);
-            transmission_error.push(contacts[at].transmission_error + delta);
-            tangent.push(1.0 / (1.0 / stiffness[at] + compliance));
-        }
-        let error = self.error(load, &stiffness, &transmission_error)?;
+        let WithHoles {
+            transmission_error,
+            stiffness,
+        } = with_holes(case, &round, |at, periods| {
+            yielded(&self.whole, &self.holed, &loads[at], periods)
+        });
+        let error = self.error(load, &round, &transmission_error)?;
         let of_rigid_blank = rigid.iter().map(|contact| contact.transmission_error);
         let parts = CurveParts {
             transmission_error,
-            stiffness: tangent,
+            stiffness,
             decomposition: Some(DecompositionParts {
                 rigid_blank_transmission_error: case.repeated(of_rigid_blank),
                 blanks: Vec::new(),
@@ -147,35 +136,16 @@ impl Expansion<'_> {
         })
     }
 
-    /// The largest difference between the projected `transmission_error` and the exact one at the positions of [`CHECKED`], with the
-    /// `stiffness` of round blanks at the repeating positions.
+    /// The largest difference between the projected `transmission_error` and the exact one at the positions that are checked, of what is
+    /// known on `round` blanks.
     fn error(
         &self,
         load: f64,
-        stiffness: &[f64],
+        round: &[OnRound],
         transmission_error: &[f64],
     ) -> Result<f64, AnalysisError> {
         let Setup { case, run, .. } = self.rigid.setup;
-        if self.holed.is_empty() {
-            return Ok(0.0);
-        }
-        let per_period = case.resolution.positions_per_mesh_period as usize;
-        let (span, count) = (case.span() as usize, stiffness.len());
-        let change = |i: usize| {
-            let after = stiffness[(i + 1) % count] / stiffness[i];
-            let before = stiffness[(i + count - 1) % count] / stiffness[i];
-            after.ln().abs().max(before.ln().abs())
-        };
-        let mut fractions: Vec<usize> = (0..per_period).collect();
-        fractions.sort_by(|&a, &b| change(b).total_cmp(&change(a)));
-        fractions.truncate(CHECKED[0]);
-        let periods = span.min(CHECKED[1]);
-        let places: Vec<usize> = fractions
-            .into_iter()
-            .flat_map(|fraction| {
-                (0..periods).map(move |j| j * span / periods * per_period + fraction)
-            })
-            .collect();
+        let places = checked_places(case, round);
         let positions = case.mesh_positions();
         let positions: Vec<f64> = places.iter().map(|&place| positions[place]).collect();
         let made = self.whole.made(self.rigid.setup.deviations);
@@ -200,7 +170,7 @@ fn round_average(whole: &PairModel, holed: &[Member]) -> PairModel {
 }
 
 /// qᵀ X p and qᵀ X q of `members` for the loads of `pairs` in the mesh period `period`: what their blanks yield.
-fn yielded(model: &PairModel, members: &[Member], pairs: &[PairLoads], period: i64) -> (f64, f64) {
+fn yielded(model: &PairModel, members: &[Member], pairs: &[PairLoads], period: i64) -> [f64; 2] {
     let (mut forces, mut derivatives) = (0.0, 0.0);
     for &member in members {
         let g = member.index();
@@ -220,7 +190,7 @@ fn yielded(model: &PairModel, members: &[Member], pairs: &[PairLoads], period: i
             }
         }
     }
-    (forces, derivatives)
+    [forces, derivatives]
 }
 
 #[cfg(test)]
@@ -307,7 +277,7 @@ mod tests {
                 .contact(0, &mut WarmStart::default(), loads)
                 .expect("a contact");
             let delta =
-                yielded(&whole, &members, &loads, 0).0 - yielded(&round, &members, &loads, 0).0;
+                yielded(&whole, &members, &loads, 0)[0] - yielded(&round, &members, &loads, 0)[0];
             let difference = (at(&above) - at(&below)) / (2.0 * step);
             assert!(
                 (delta - difference).abs() < 1e-5 * difference.abs().max(1e-7),

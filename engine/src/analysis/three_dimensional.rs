@@ -1,14 +1,16 @@
-//! The method that sees the faces: both whole gears in three dimensions, contact along moving lines at every position.
+//! The methods that see the faces: both whole gears in three dimensions, contact along moving lines; at every position, or over one mesh
+//! period with what holes change added at first order.
 
 use std::sync::Arc;
 
 use faer::Mat;
 
-use super::case::{Faces, StiffnessRule};
+use super::case::{Faces, Method, StiffnessRule};
 use super::curve::FaceLoad;
 use super::curve_parts::CurveParts;
 use super::evidence::Evidence;
-use super::warning::{warn_of_corner, warn_of_tips, warnings};
+use super::first_order::{OnRound, checked_places, with_holes};
+use super::warning::{warn_of_corner, warn_of_projection, warn_of_tips, warnings};
 use super::{Analysis, AnalysisError, Case};
 use crate::assembly::{FaceResolution, FaceYield, FaceYieldSpec, Parts};
 use crate::contact::MeshContact;
@@ -37,49 +39,38 @@ pub(super) fn solve(
             reason: "nothing is said of its extent along the axis".to_owned(),
         });
     };
-    let (model, degrees_of_freedom) = model((case, faces), level, parts, run)?;
-    let positions = case.mesh_positions();
+    let yields = yields(faces, case.resolution.grid != level, parts, run)?;
+    let degrees_of_freedom = yields.iter().map(|of| of.degrees_of_freedom()).sum();
     let mut evidence = Evidence::new(degrees_of_freedom);
     let mut warnings = warnings(case);
     let mut curves = Vec::with_capacity(case.output_torques.len());
+    let pair = OfFaces::new((case, faces), &yields, run);
     for &output_torque in &case.output_torques {
         let load = case.pair.load(output_torque);
-        let contacts = model.contacts(load, &positions, run)?;
-        let stiffness = match case.resolution.stiffness {
-            StiffnessRule::Tangent => contacts
-                .iter()
-                .map(|contact| contact.mesh.stiffness)
-                .collect(),
-            StiffnessRule::TorqueStep { fraction } => {
-                let at = |factor: f64| model.contacts(load * factor, &positions, run);
-                let (low, high) = (at(1.0 - fraction)?, at(1.0 + fraction)?);
-                let rises = low
-                    .iter()
-                    .zip(&high)
-                    .map(|(low, high)| high.mesh.transmission_error - low.mesh.transmission_error);
-                rises.map(|rise| 2.0 * fraction * load / rise).collect()
-            }
+        let solved = match case.method {
+            Method::ThreeDimensionalProjected => pair.projected(load)?,
+            _ => pair.whole(load)?,
         };
-        let meshes: Vec<MeshContact> = contacts
-            .iter()
-            .map(|contact| contact.mesh.clone())
-            .collect();
-        evidence.gather(&meshes, load);
-        warn_of_tips(&mut warnings, &meshes);
+        evidence.gather(&solved.meshes(), load);
+        warn_of_tips(&mut warnings, &solved.meshes());
         for member in Member::BOTH {
-            let shares = contacts
-                .iter()
-                .map(|contact| contact.corner_shares[member.index()]);
+            let shares = solved.contacts.iter();
+            let shares = shares.map(|contact| contact.corner_shares[member.index()]);
             let largest = shares.fold(0.0, f64::max);
             if largest > TOLD {
                 warn_of_corner(&mut warnings, member, largest);
             }
         }
-        let parts = CurveParts {
-            face: Some(face_load(faces, &contacts)),
-            ..CurveParts::of_contacts(case, &meshes, stiffness)
-        };
-        curves.push(parts.into_curve(case, output_torque));
+        let error = solved.error;
+        let curve = solved
+            .into_parts(case, faces)
+            .into_curve(case, output_torque);
+        if let Some(error) = error {
+            let known = evidence.projection_error.unwrap_or(0.0);
+            evidence.projection_error = Some(error.max(known));
+            warn_of_projection(&mut warnings, error, &curve.transmission_error_statistics);
+        }
+        curves.push(curve);
     }
     Ok(Analysis {
         curves,
@@ -88,16 +79,156 @@ pub(super) fn solve(
     })
 }
 
-/// The pair ready for contact, and its unknowns before condensation.
-fn model(
-    (case, faces): (&Case, &Faces),
-    level: GridLevel,
+/// The models of a pair along its faces.
+struct OfFaces<'a> {
+    case: &'a Case,
+    run: &'a Run,
+    /// Both gears as drawn.
+    whole: FaceModel,
+    /// Both gears, alike all around.
+    round: FaceModel,
+    /// Those that are not.
+    uneven: Vec<Member>,
+}
+
+/// What was found under one load.
+struct Solved {
+    /// At every position, or at the repeating ones.
+    contacts: Vec<FaceContact>,
+    /// At every position.
+    transmission_error: Vec<f64>,
+    stiffness: Vec<f64>,
+    /// The largest difference to an exact solution, of those that were looked at.
+    error: Option<f64>,
+}
+
+impl<'a> OfFaces<'a> {
+    fn new((case, faces): (&'a Case, &Faces), yields: &[Arc<FaceYield>; 2], run: &'a Run) -> Self {
+        let model = |of: &dyn Fn(&Arc<FaceYield>) -> Arc<FaceYield>| {
+            let yields = yields
+                .each_ref()
+                .map(|each| of(each) as Arc<dyn FlankYield>);
+            FaceModel::new(faces.pair.clone(), yields, faces.slices, FARTHEST_COUPLED)
+        };
+        let uneven = |member: &Member| yields[member.index()].repeats_after() > 1;
+        Self {
+            case,
+            run,
+            whole: model(&Arc::clone),
+            round: model(&|of| Arc::new(of.round_average())),
+            uneven: Member::BOTH.into_iter().filter(uneven).collect(),
+        }
+    }
+
+    /// By a contact of the whole gears at every position.
+    fn whole(&self, load: f64) -> Result<Solved, AnalysisError> {
+        let positions = self.case.mesh_positions();
+        let (contacts, stiffness) = self.contacts(&self.whole, load, &positions)?;
+        let each = contacts.iter();
+        Ok(Solved {
+            transmission_error: each.map(|each| each.mesh.transmission_error).collect(),
+            contacts,
+            stiffness,
+            error: None,
+        })
+    }
+
+    /// By the contacts of gears that are alike all around, and what holes change of them at first order.
+    fn projected(&self, load: f64) -> Result<Solved, AnalysisError> {
+        let case = self.case;
+        let positions = case.repeating_positions();
+        let (contacts, stiffness) = self.contacts(&self.round, load, &positions)?;
+        let loads: Vec<_> = contacts.iter().map(|each| self.round.loads(each)).collect();
+        // Where the positions of a whole span repeat only after it, they have their own pairs.
+        let per_period = case.resolution.positions_per_mesh_period as usize;
+        let own = |at: usize| (at / per_period) as i64;
+        let yielded = |model: &FaceModel, at: usize, periods: i64| {
+            let of = self.uneven.iter();
+            of.map(|&member| model.yielded(member, &loads[at], periods))
+                .fold([0.0; 2], |sum, of| [sum[0] + of[0], sum[1] + of[1]])
+        };
+        let round: Vec<OnRound> = (0..contacts.len())
+            .map(|at| OnRound {
+                transmission_error: contacts[at].mesh.transmission_error,
+                stiffness: stiffness[at],
+                yielded: yielded(&self.round, at, 0),
+            })
+            .collect();
+        let found = with_holes(case, &round, |at, periods| {
+            yielded(&self.whole, at, periods - own(at))
+        });
+
+        let places = checked_places(case, &round);
+        let all = case.mesh_positions();
+        let positions: Vec<f64> = places.iter().map(|&place| all[place]).collect();
+        let exact = self.whole.contacts(load, &positions, self.run)?;
+        let apart = places.iter().zip(&exact).map(|(&place, exact)| {
+            (found.transmission_error[place] - exact.mesh.transmission_error).abs()
+        });
+        Ok(Solved {
+            error: Some(apart.fold(0.0, f64::max)),
+            contacts,
+            transmission_error: found.transmission_error,
+            stiffness: found.stiffness,
+        })
+    }
+
+    /// The contacts of `model` at `positions`, and its stiffness there by the rule of the case.
+    fn contacts(
+        &self,
+        model: &FaceModel,
+        load: f64,
+        positions: &[f64],
+    ) -> Result<(Vec<FaceContact>, Vec<f64>), AnalysisError> {
+        let contacts = model.contacts(load, positions, self.run)?;
+        let stiffness = match self.case.resolution.stiffness {
+            StiffnessRule::Tangent => contacts.iter().map(|each| each.mesh.stiffness).collect(),
+            StiffnessRule::TorqueStep { fraction } => {
+                let at = |factor: f64| model.contacts(load * factor, positions, self.run);
+                let (low, high) = (at(1.0 - fraction)?, at(1.0 + fraction)?);
+                let rises = low
+                    .iter()
+                    .zip(&high)
+                    .map(|(low, high)| high.mesh.transmission_error - low.mesh.transmission_error);
+                rises.map(|rise| 2.0 * fraction * load / rise).collect()
+            }
+        };
+        Ok((contacts, stiffness))
+    }
+}
+
+impl Solved {
+    fn meshes(&self) -> Vec<MeshContact> {
+        let each = self.contacts.iter();
+        each.map(|contact| contact.mesh.clone()).collect()
+    }
+
+    fn into_parts(self, case: &Case, faces: &Faces) -> CurveParts {
+        let meshes = self.meshes();
+        let face = Some(face_load(case, faces, &self.contacts));
+        let told = if meshes.len() == case.positions() {
+            CurveParts::of_contacts(case, &meshes, Vec::new())
+        } else {
+            CurveParts::of_repeating(case, &meshes)
+        };
+        CurveParts {
+            transmission_error: self.transmission_error,
+            stiffness: self.stiffness,
+            face,
+            ..told
+        }
+    }
+}
+
+/// What the flanks of both gears yield, across their faces by polynomials of the order asked for, or somewhat `finer`.
+fn yields(
+    faces: &Faces,
+    finer: bool,
     parts: &dyn Parts,
     run: &Run,
-) -> Result<(FaceModel, u64), AnalysisError> {
-    let finer = if level == case.resolution.grid { 0 } else { 2 };
+) -> Result<[Arc<FaceYield>; 2], AnalysisError> {
     let resolution = FaceResolution {
-        face_order: faces.resolution.face_order + finer,
+        face_order: faces.resolution.face_order + if finer { 2 } else { 0 },
         ..faces.resolution
     };
     let of = |member: Member| {
@@ -106,11 +237,7 @@ fn model(
         made.map_err(|error| error.of(member))
     };
     let (driving, driven) = rayon::join(|| of(Member::Driving), || of(Member::Driven));
-    let (driving, driven) = (driving?, driven?);
-    let degrees_of_freedom = driving.degrees_of_freedom() + driven.degrees_of_freedom();
-    let yields: [Arc<dyn FlankYield>; 2] = [driving, driven];
-    let model = FaceModel::new(faces.pair.clone(), yields, faces.slices, FARTHEST_COUPLED);
-    Ok((model, degrees_of_freedom))
+    Ok([driving?, driven?])
 }
 
 impl FlankYield for FaceYield {
@@ -125,10 +252,14 @@ impl FlankYield for FaceYield {
     fn smooth(&self, teeth: &[usize]) -> Mat<f64> {
         self.smooth(teeth)
     }
+
+    fn repeats_after(&self) -> usize {
+        self.repeats_after()
+    }
 }
 
-/// The load along the face in `contacts` at equally spaced positions.
-fn face_load(faces: &Faces, contacts: &[FaceContact]) -> FaceLoad {
+/// The load along the face in `contacts` at the positions of `case`, or at those after which it repeats.
+fn face_load(case: &Case, faces: &Faces, contacts: &[FaceContact]) -> FaceLoad {
     let (width, count) = (faces.pair.common_face_width(), faces.slices);
     let strip = width / count as f64;
     let rows: Vec<Vec<f64>> = contacts
@@ -150,12 +281,12 @@ fn face_load(faces: &Faces, contacts: &[FaceContact]) -> FaceLoad {
             .map(|i| (i as f64 + 0.5) * strip - 0.5 * width)
             .collect(),
         load: if faces.at_each_position {
-            rows
+            case.repeated(rows.into_iter())
         } else {
             vec![mean_row(&rows)]
         },
         face_load_factor: largest * STRIPS as f64 / all,
-        load_centroid: contacts.iter().map(FaceContact::load_centroid).collect(),
+        load_centroid: case.repeated(contacts.iter().map(FaceContact::load_centroid)),
     }
 }
 

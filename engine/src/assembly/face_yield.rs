@@ -277,6 +277,19 @@ impl FaceYield {
         smooth
     }
 
+    /// The number of teeth after which all that they yield repeats.
+    pub fn repeats_after(&self) -> usize {
+        self.holes.as_ref().map_or(1, HoledChange::repeats_after)
+    }
+
+    /// The same with what holes change in the mean over the teeth: alike all around.
+    pub fn round_average(&self) -> Self {
+        Self {
+            holes: self.holes.as_ref().map(HoledChange::round_average),
+            ..self.clone()
+        }
+    }
+
     /// The unknowns before condensation.
     pub fn degrees_of_freedom(&self) -> u64 {
         self.plain.degrees_of_freedom

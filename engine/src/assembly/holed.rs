@@ -171,6 +171,25 @@ impl HoledChange {
         })
     }
 
+    /// The teeth after which all repeats.
+    pub(crate) fn repeats_after(&self) -> usize {
+        self.changes.len()
+    }
+
+    /// The same in the mean over the teeth, which are all alike then.
+    pub(crate) fn round_average(&self) -> Self {
+        let share = 1.0 / self.changes.len() as f64;
+        let mut mean = Mat::zeros(self.answers.nrows(), self.answers.ncols());
+        for (tooth, change) in self.changes.iter().enumerate() {
+            let back = -TAU * tooth as f64 / self.tooth_count as f64;
+            mean += turned(change, self.size, back) * share;
+        }
+        Self {
+            changes: vec![mean],
+            ..self.clone()
+        }
+    }
+
     /// What tooth `i` yields more to the functions of tooth `j`.
     pub(crate) fn between(&self, i: usize, j: usize) -> Mat<f64> {
         let (z, known) = (self.tooth_count, j % self.changes.len());

@@ -23,6 +23,7 @@ pub(crate) fn method_name(method: Method) -> &'static str {
         Method::Decomposition => "decomposition",
         Method::ProjectedDecomposition => "projected decomposition",
         Method::ThreeDimensional => "three-dimensional",
+        Method::ThreeDimensionalProjected => "three-dimensional, projected",
         Method::LoadDistribution => "load distribution",
     }
 }

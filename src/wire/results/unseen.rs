@@ -11,20 +11,24 @@ pub(super) fn does_not_see(case: &Case, forces: Option<&ForcesRequest>) -> Vec<&
         "shafts, bearings and housing: both hubs are rigid and their axes fixed",
     ];
     const PLANE: &str = "anything that varies across the face width: misalignment, lead crowning, helix; the model is plane";
+    const ALONG_FACES: [&str; 2] = [
+        "that a flank yields more near a sharp tip edge than a half space does: within a tenth of a millimeter of it",
+        "how far shafts and bearings bend under the load: misalignment is what the submission says",
+    ];
+    const BEYOND_FIRST_ORDER: &str = "what the fluctuation of the holed blanks changes in the load sharing between pairs, beyond first order";
     let plane = case.faces.is_none().then_some(PLANE);
     let own: Vec<&str> = match case.method {
         Method::Flexible => vec![],
-        Method::ThreeDimensional => vec![
-            "that a flank yields more near a sharp tip edge than a half space does: within a tenth of a millimeter of it",
-            "how far shafts and bearings bend under the load: misalignment is what the submission says",
-        ],
+        Method::ThreeDimensional => ALONG_FACES.to_vec(),
+        Method::ThreeDimensionalProjected => ALONG_FACES
+            .into_iter()
+            .chain([BEYOND_FIRST_ORDER])
+            .collect(),
         Method::Decomposition => vec![
             "sidebands of the holes about the mesh orders in the transmission error: each blank's rotation is fitted by its mean and one harmonic",
             "what the holes change in the load sharing between pairs",
         ],
-        Method::ProjectedDecomposition => vec![
-            "what the fluctuation of the holed blanks changes in the load sharing between pairs, beyond first order",
-        ],
+        Method::ProjectedDecomposition => vec![BEYOND_FIRST_ORDER],
         Method::LoadDistribution => formulas_do_not_see(case.resolution.formulas),
     };
     let runs = forces.is_some_and(|forces| forces.dynamics.is_some());

@@ -47,7 +47,7 @@ document! {
         /// Whether the flexible method also tells the largest von Mises stress at the tensile root fillets and at the edges of the holes,
         /// position by position, and where it is.
         pub(super) stress: bool = flag("Stress", false),
-        /// The rows in which three_dimensional tells the load along the face.
+        /// The rows in which three dimensions tell the load along the face.
         pub(super) face_load: FaceRows = word("Load along the face").or(FaceRows::Mean),
         /// Whether results have a table of the force between the gears over mesh position and approach, for run-ups and other programs. It is
         /// computed over the true period, and its positions times its loads count as positions of the submission.

@@ -98,7 +98,7 @@ pub(super) enum Purpose {
 impl Document {
     /// The submission, if all that it says goes together.
     fn checked(mut self, purpose: Purpose, errors: &Errors) -> Option<Submission> {
-        let solid = if self.method == Method::ThreeDimensional {
+        let solid = if self.method.sees_faces() {
             self.refuse_plane_questions(errors);
             Some(self.pair.to_solid_pair(errors)?)
         } else {

@@ -27,6 +27,8 @@ const NO_WAY: f64 = 1e-9;
 pub(super) struct Balance {
     /// Normal to the flanks, in N.
     pub(super) forces: Vec<f64>,
+    /// How they rise with the load.
+    pub(super) load_derivative: Vec<f64>,
     /// g + H N + f(N) − δ w.
     pub(super) gaps: Vec<f64>,
     /// The same without f.
@@ -93,6 +95,7 @@ impl Problem<'_> {
             if whole && worst <= NO_GAP * (delta - touch) {
                 return Ok(Balance {
                     forces: state.forces,
+                    load_derivative: solved.load_derivative,
                     gaps,
                     without_springs,
                     transmission_error: delta,

@@ -24,8 +24,8 @@ use rayon::prelude::*;
 
 use super::facing::Facing;
 use super::positions::PositionsError;
-use super::{ContactError, MeshContact, PairContact, PositionError};
-use crate::gear::{GearPair, Member, PairDeviations, SolidPair, gcd};
+use super::{ContactError, MeshContact, PairContact, PairLoads, PositionError};
+use crate::gear::{GearPair, Member, PairDeviations, SolidPair};
 use crate::run::Run;
 use balance::{Balance, balance};
 use compliance::compliance;
@@ -44,6 +44,9 @@ pub trait FlankYield: Send + Sync {
 
     /// The compliance in m/N between the functions of the `teeth`, one block of rows and columns a tooth; symmetric.
     fn smooth(&self, teeth: &[usize]) -> Mat<f64>;
+
+    /// The number of teeth after which all that they yield repeats.
+    fn repeats_after(&self) -> usize;
 }
 
 /// How many slices the whole face is cut into, unless a case says otherwise.
@@ -120,6 +123,8 @@ pub struct SliceLoad {
     pub pressure: Option<f64>,
     /// Half the width of the contact along the profile, in meters.
     pub half_width: f64,
+    /// The force N normal to the flanks, and dN/dF.
+    pub normal: [f64; 2],
 }
 
 /// The contact of the whole mesh at one position and load, along the faces.
@@ -367,13 +372,8 @@ impl FaceModel {
 
     /// The smooth compliance of the teeth of `member` in the pairs from `first` on.
     fn smooth(&self, member: Member, first: i64, count: usize) -> Arc<Mat<f64>> {
-        let gear = self.pair.section().gear(member);
-        let z = gear.tooth_count() as usize;
-        // Teeth stand alike once the holes under them do.
-        let alike = match gear.hole_repeats() {
-            0 => 1,
-            repeats => z / gcd(gear.tooth_count(), repeats) as usize,
-        };
+        let z = self.pair.section().gear(member).tooth_count() as usize;
+        let alike = self.yields[member.index()].repeats_after();
         let key = Teeth {
             gear: member.index(),
             first: self.pair.section().tooth(member, first) % alike,
@@ -394,13 +394,65 @@ impl FaceModel {
         made
     }
 
+    /// What `contact` loads the functions over the flanks of its pairs with: a column for the forces, and one for how they rise with
+    /// the load.
+    pub fn loads(&self, contact: &FaceContact) -> Vec<PairLoads> {
+        let lines = contact.slices.chunk_by(|one, next| one.pair == next.pair);
+        lines
+            .map(|line| PairLoads {
+                pair: line[0].pair,
+                loads: Member::BOTH.map(|member| self.load_of_line(member, line)),
+            })
+            .collect()
+    }
+
+    fn load_of_line(&self, member: Member, line: &[SliceLoad]) -> Mat<f64> {
+        let flank = &self.yields[member.index()];
+        let mut row = vec![0.0; flank.basis_len()];
+        let mut load = Mat::zeros(row.len(), 2);
+        for slice in line {
+            let z = self.pair.own_height(member, slice.z);
+            flank.basis(slice.roll_lengths[member.index()], z, &mut row);
+            for (column, force) in slice.normal.into_iter().enumerate() {
+                for (sum, value) in load.col_as_slice_mut(column).iter_mut().zip(&row) {
+                    *sum += force * value;
+                }
+            }
+        }
+        load
+    }
+
+    /// qᵀ R p and qᵀ R q of the smooth compliance R of `member`, where p and q are the forces of `loads` and how they rise, on the pairs so
+    /// many mesh `periods` after theirs.
+    pub fn yielded(&self, member: Member, loads: &[PairLoads], periods: i64) -> [f64; 2] {
+        let (Some(first), Some(last)) = (loads.first(), loads.last()) else {
+            return [0.0; 2];
+        };
+        let g = member.index();
+        let count = 1 + (last.pair - first.pair) as usize;
+        let smooth = self.smooth(member, first.pair + periods, count);
+        let size = self.yields[g].basis_len();
+        let mut sums = [0.0; 2];
+        for a in loads {
+            for b in loads {
+                let [row, column] = [a, b].map(|of| (of.pair - first.pair) as usize * size);
+                let block = Mat::as_ref(&smooth).submatrix(row, column, size, size);
+                let moved = a.loads[g].col(1).transpose() * (block * &b.loads[g]);
+                sums[0] += moved[0];
+                sums[1] += moved[1];
+            }
+        }
+        sums
+    }
+
     /// What `balance` says of the mesh.
     fn told(&self, slices: &[Slice], balance: &Balance, load: f64) -> FaceContact {
         let mut pairs: Vec<PairContact> = Vec::new();
         let mut peak_pressure = None::<f64>;
         let mut corner_shares = [0.0; 2];
         let mut loads = Vec::new();
-        for (slice, &force) in slices.iter().zip(&balance.forces) {
+        let forces = balance.forces.iter().zip(&balance.load_derivative);
+        for (slice, (&force, &rise)) in slices.iter().zip(forces) {
             if pairs.last().is_none_or(|pair| pair.pair != slice.pair) {
                 pairs.push(PairContact {
                     pair: slice.pair,
@@ -435,6 +487,7 @@ impl FaceModel {
                 roll_lengths: slice.roll_lengths,
                 pressure,
                 half_width: pressed.half_width,
+                normal: [force, rise],
             });
         }
         let forces = balance.forces.iter();
@@ -513,6 +566,10 @@ impl FlankYield for Rigid {
     fn smooth(&self, _: &[usize]) -> Mat<f64> {
         Mat::new()
     }
+
+    fn repeats_after(&self) -> usize {
+        1
+    }
 }
 
 /// A reach somewhat beyond `delta`.
@@ -523,9 +580,10 @@ fn beyond(delta: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::assembly::{FaceResolution, FaceYield};
+    use crate::assembly::{FaceResolution, FaceYield, FaceYieldSpec, MakeAll, Parts};
     use crate::gear::spur::tests::paper_gear;
-    use crate::gear::{Alignment, Helix, LeadModification, SolidGear};
+    use crate::gear::{Alignment, Helix, HolePattern, LeadModification, SolidGear, Web};
+    use crate::ring::teeth::FARTHEST_COUPLED;
 
     #[test]
     fn by_contact_lines_alone_the_pair_is_that_of_another_program() {
@@ -575,6 +633,105 @@ mod tests {
             println!("{found} {found_factor}");
             assert!((found / mean - 1.0).abs() < 0.01, "{found}");
             assert!((found_factor / factor - 1.0).abs() < 0.02, "{found_factor}");
+        }
+    }
+
+    /// A gear somewhere between two others.
+    struct Mixed {
+        of: [Arc<FaceYield>; 2],
+        share: f64,
+    }
+
+    impl FlankYield for Mixed {
+        fn basis_len(&self) -> usize {
+            self.of[0].basis_len()
+        }
+
+        fn basis(&self, roll_length: f64, z: f64, row: &mut [f64]) {
+            self.of[0].basis(roll_length, z, row);
+        }
+
+        fn smooth(&self, teeth: &[usize]) -> Mat<f64> {
+            let [one, other] = self.of.each_ref().map(|of| of.smooth(teeth));
+            one * (1.0 - self.share) + other * self.share
+        }
+
+        fn repeats_after(&self) -> usize {
+            self.of[1].repeats_after()
+        }
+    }
+
+    #[test]
+    fn the_projected_term_is_the_derivative_of_the_transmission_error_to_the_holes() {
+        // δ(H_0 + e ΔH) at e = ±1e-4, with springs that are not linear.
+        let beta = 0.3;
+        let gear = |beta: f64, count: u32| {
+            let mut data = paper_gear(24);
+            data.blank.bore_radius = 6e-3;
+            data.blank.web = Some(Web {
+                inner_radius: 6e-3,
+                outer_radius: 18e-3,
+                thickness: 6e-3,
+            });
+            data.blank.holes = HolePattern {
+                count,
+                circle_radius: 13e-3,
+                radius: 3e-3,
+                phase: 0.2,
+            }
+            .holes();
+            SolidGear::new(data, Helix::right(beta), -3e-3, None).expect("can be made")
+        };
+        let gears = [gear(beta, 3), gear(-beta, 4)];
+        let a = 2.0 * gears[0].section().reference_radius() + 0.1e-3;
+        let leads = [Vec::new(), Vec::new()];
+        let pair = SolidPair::new(gears, leads, a, Alignment::default()).expect("meshes");
+        let resolution = FaceResolution {
+            face_order: 4,
+            web_order: 2,
+            web_harmonics: 6,
+        };
+        let (run, load) = (Run::unattended(), pair.section().load(60.0));
+        let yields = Member::BOTH.map(|member| {
+            let spec = FaceYieldSpec::new(pair.gear(member), resolution);
+            MakeAll.face_yield(&spec, &run).expect("definite")
+        });
+        let model = |share: f64| {
+            let yields = yields.each_ref().map(|whole| {
+                let of = [Arc::new(whole.round_average()), Arc::clone(whole)];
+                Arc::new(Mixed { of, share }) as Arc<dyn FlankYield>
+            });
+            FaceModel::new(pair.clone(), yields, SLICES / 2, FARTHEST_COUPLED)
+        };
+        let (round, whole) = (model(0.0), model(1.0));
+        // As far as both reach, so that all have the same slices.
+        let phases = whole.phases_within(30e-6);
+        let step = 1e-4;
+        let (below, above) = (model(-step), model(step));
+        for eta in [0.05, 0.3, 0.55, 0.9] {
+            let at = |model: &FaceModel, period: f64| {
+                let found = model.contact_within(eta + period, load, phases);
+                found.expect("a contact")
+            };
+            let found = at(&round, 0.0);
+            let later = at(&round, 3.0);
+            let delta = |of: &FaceContact| of.mesh.transmission_error;
+            assert!((delta(&found) / delta(&later) - 1.0).abs() < 1e-9);
+            let loads = round.loads(&found);
+            for period in [0, 3] {
+                let term = |model: &FaceModel| {
+                    let of = Member::BOTH.map(|member| model.yielded(member, &loads, period)[0]);
+                    of[0] + of[1]
+                };
+                let change = term(&whole) - term(&round);
+                let difference = (delta(&at(&above, period as f64))
+                    - delta(&at(&below, period as f64)))
+                    / (2.0 * step);
+                assert!(
+                    (change - difference).abs() < 1e-5 * difference.abs().max(1e-7),
+                    "{eta} {period}: {change} {difference}"
+                );
+            }
         }
     }
 }

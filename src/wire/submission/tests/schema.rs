@@ -126,7 +126,7 @@ fn a_submission_with_other_fields_or_words_has_another_version() {
         (DOCUMENT_VERSION, sha256_hex(told.join("\n")).as_str()),
         (
             2,
-            "a546c7887d804959bad91609688ea5579c14f32f131d25da34a0723ad170c691"
+            "a046eb98c34ec0ca50389ad1677cd6f1990bc8f11ac6e0ae2f43f2d5c0a802a5"
         ),
         "{told:#?}"
     );

@@ -101,8 +101,11 @@ fn planes_refuse_what_they_do_not_know_and_three_dimensions_take_it() {
         if pointer.contains("helix") {
             changes.push(("/pair/center_distance_mm", json!(102.0)));
         }
-        let taken = parse(&with(solid(), &changes));
-        assert!(taken.is_ok(), "{pointer}: {taken:?}");
+        for method in ["three_dimensional", "three_dimensional_projected"] {
+            changes.push(("/method", json!(method)));
+            let taken = parse(&with(least(), &changes));
+            assert!(taken.is_ok(), "{method}, {pointer}: {taken:?}");
+        }
     }
 }
 
@@ -252,6 +255,59 @@ fn a_helical_pair_has_the_sections_of_the_standard() {
             .signum(),
         1.0
     );
+}
+
+#[test]
+fn the_projection_tells_what_the_whole_solution_does_and_how_far_it_is_off() {
+    let pattern = json!({ "count": 6, "circle_radius_mm": 42, "radius_mm": 6 });
+    let document = with(
+        filled_in("helical-pair"),
+        &[
+            ("/method", json!("three_dimensional_projected")),
+            ("/pair/driven/blank/holes", pattern),
+            ("/output_torques_n_m", json!([100])),
+            ("/resolution/positions_per_mesh_period", json!(8)),
+            ("/resolution/span_mesh_periods", json!(10)),
+            ("/resolution/face_order", json!(4)),
+            ("/face_load", json!("positions")),
+        ],
+    );
+    let solved = |document: &Value| -> Value {
+        let submission = parse(document).expect("valid");
+        let results = solve(&submission, &Library::default(), &Run::unattended());
+        serde_json::from_str(&results.expect("solves")).expect("JSON")
+    };
+    let projected = solved(&document);
+    let whole = solved(&with(document, &[("/method", json!("three_dimensional"))]));
+    let names = |value: &Value, place: &str| -> Vec<String> {
+        let object = value.pointer(place).and_then(Value::as_object);
+        object.expect("an object").keys().cloned().collect()
+    };
+    for place in ["", "/pair", "/curves/0", "/curves/0/face"] {
+        assert_eq!(names(&projected, place), names(&whole, place), "{place}");
+    }
+    let rows = |of: &Value, name: &str| {
+        let rows = of
+            .pointer(&format!("/curves/0{name}"))
+            .and_then(Value::as_array);
+        rows.expect(name).len()
+    };
+    for name in [
+        "/transmission_error_um",
+        "/face/load_n_per_mm",
+        "/face/load_centroid_mm",
+    ] {
+        assert_eq!(
+            (rows(&projected, name), rows(&whole, name)),
+            (80, 80),
+            "{name}"
+        );
+    }
+    assert_eq!(projected["method"], "three_dimensional_projected");
+    let error = projected["evidence"]["projection_error_um"].as_f64();
+    assert!(error.expect("it is told") < 0.1, "{error:?}");
+    let unseen = projected["evidence"]["does_not_see"].to_string();
+    assert!(unseen.contains("beyond first order"), "{unseen}");
 }
 
 #[test]
