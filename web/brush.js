@@ -21,7 +21,7 @@ export class Brush {
     const button = (name, label, work) => h("button", { type: "button", ariaLabel: label, title: label, on: { click: work } }, name);
     place.append(this.svg, h("div", { className: "buttons" },
       button("◀", "Earlier mesh periods", () => this.#move(-0.5)), button("▶", "Later mesh periods", () => this.#move(0.5)),
-      button("+", "Zoom in", () => this.#scale(0.5)), button("−", "Zoom out", () => this.#scale(2)), button("All", "Show the whole period", () => this.onRange(null)), this.words));
+      button("+", "Zoom in", () => this.#scale(0.5)), button("−", "Zoom out", () => this.#scale(2)), button("All", "All mesh periods", () => this.onRange(null)), this.words));
     this.svg.addEventListener("pointerdown", (event) => this.#draw(event));
   }
 

@@ -2,6 +2,7 @@
 
 import uPlot from "./vendor/uplot.js";
 import { h, number } from "./dom.js";
+import { cellsOf, cssOf, faceOf, scaleOf, wordsOfFace } from "./face.js";
 import { figure } from "./figure.js";
 import { LEAST_AMPLITUDE, linesOf, ordersOf, PANELS, partialSpectrum, wordsOf, wordsOfSpectrum } from "./series.js";
 
@@ -28,9 +29,12 @@ export class Charts {
   #position = 0;
   #range = null;
 
-  /** Charts in `place`. `onPosition` is told where a pointer is, `onRange` which mesh periods are shown: two numbers, or null for all. */
-  constructor(place, { onPosition, onRange }) {
-    Object.assign(this, { place, onPosition, onRange });
+  /**
+   * Charts in `place`. `onPosition` is told where a pointer is, `onRange` which mesh periods are shown: two numbers, or null for all; `onEveryPosition` that
+   * the load along the face is wanted at every position.
+   */
+  constructor(place, { onPosition, onRange, onEveryPosition }) {
+    Object.assign(this, { place, onPosition, onRange, onEveryPosition });
     for (const panel of [...PANELS, SPECTRUM]) {
       const canvas = h("div", { className: "canvas", aria: { hidden: "true" } });
       const legend = h("p", { className: "legend" });
@@ -62,7 +66,7 @@ export class Charts {
     }
     this.setPosition(this.#position);
     if (moving) return;
-    for (const panel of this.#panels.values()) panel.words.textContent = panel.figure.hidden ? "" : panel.id === "spectrum" ? wordsOfSpectrum(designs) : wordsOf(panel, designs);
+    for (const panel of this.#panels.values()) panel.words.textContent = panel.figure.hidden ? "" : panel.id === "spectrum" ? wordsOfSpectrum(designs) : panel.along ? wordsOfFace(faceOf(designs[0].results.curves[0])) : wordsOf(panel, designs);
   }
 
   /** Shows the mesh periods from one position to another alone, or all of them. */
@@ -96,6 +100,7 @@ export class Charts {
         const stems = this.#spectra().map(({ name, look, orders }) => ({ name, color: colors.series[look % 7], x: orders.map(([order]) => order), y: orders.map(([, value]) => value) }));
         return figure({ ...common, x: ORDER_TITLE, stems });
       }
+      if (panel.along) return faceFigure(faceOf(this.shown[0].results.curves[0]), { ...common, xRange: this.#range, panel });
       const lines = linesOf(panel, this.shown).map((line) => ({ ...line, color: colors.series[line.look % 7], x: closed(line), y: [...line.values, line.open ? null : line.values[0]] }));
       return figure({ ...common, x: X_TITLE, lines, xRange: this.#range });
     });
@@ -107,6 +112,7 @@ export class Charts {
 
   #draw(panel, colors) {
     if (panel.id === "spectrum") this.#spectrum(panel, colors);
+    else if (panel.along) this.#face(panel, colors);
     else this.#curves(panel, colors);
   }
 
@@ -188,6 +194,52 @@ export class Charts {
     this.zoom(range);
   }
 
+  /** The load of the live design along its face: a map over every position, or the mean. */
+  #face(panel, colors) {
+    const face = faceOf(this.shown[0].results.curves[0]);
+    panel.figure.hidden = !face;
+    if (!face) return;
+    panel.below.hidden = face.every;
+    panel.legend.replaceChildren(face.every ? scaleOf(face.most) : "mean over the positions");
+    if (!face.every) {
+      panel.plot?.destroy();
+      Object.assign(panel, { plot: null, now: null, shape: "mean" });
+      const { title, unit } = panel;
+      panel.canvas.replaceChildren(faceFigure(face, { title, y: `${title} in ${unit}`, panel }));
+      panel.below.replaceChildren("How it changes while the teeth pass is told where every position is asked for. ", h("button", { type: "button", on: { click: () => this.onEveryPosition() } }, "Show every position"));
+      return;
+    }
+    panel.span = face.span;
+    panel.face = face;
+    const range = this.#range ?? [0, face.span];
+    const data = [[...face.positions, face.positions[0] + face.span], Array(face.positions.length + 1).fill(null)];
+    const shape = `every ${face.edges[0]} ${face.edges.at(-1)}`;
+    if (panel.shape !== shape || !panel.plot) {
+      panel.canvas.replaceChildren();
+      this.#makeFace(panel, data, colors);
+      panel.shape = shape;
+    } else {
+      panel.plot.setData(data, false);
+    }
+    panel.plot.setScale("x", { min: range[0], max: Math.min(range[1], face.span) });
+  }
+
+  #makeFace(panel, data, colors) {
+    panel.plot?.destroy();
+    const common = this.#common(panel, colors, X_TITLE);
+    const [across, along] = common.axes;
+    const options = {
+      ...common, scales: { x: { time: false, auto: false }, y: { range: () => [panel.face.edges[0], panel.face.edges.at(-1)] } },
+      axes: [across, { ...along, label: "z in mm", labelFont: colors.font, labelSize: 1.25 * colors.rem, size: 2.6 * colors.rem, grid: { show: false } }].map((axis) => ({ ...axis, grid: { show: false } })),
+      series: [{}, { label: panel.title, paths: () => null, points: { show: false } }],
+      hooks: { drawClear: [(plot) => drawCells(plot, panel.face)], setCursor: [(plot) => this.#follow(plot)], setSelect: [(plot) => this.#select(plot)] },
+    };
+    panel.plot = new uPlot(options, data, panel.canvas);
+    panel.now = h("div", { className: "now on-map" });
+    panel.plot.over.append(panel.now);
+    panel.plot.over.addEventListener("dblclick", () => this.zoom(null));
+  }
+
   /** The spectra of the designs, each with its orders out of the noise; of the live one an estimate where its span is part of the true period. */
   #spectra() {
     const mesh = this.shown[0].teeth;
@@ -246,6 +298,30 @@ export class Charts {
     }
     this.setPosition(this.#position);
   }
+}
+
+/** Paints the map of the load along a face between the axes of `plot`. */
+function drawCells(plot, face) {
+  const { ctx, bbox } = plot;
+  const { min, max } = plot.scales.x;
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+  ctx.clip();
+  for (const { x, width, z, height, part } of cellsOf(face, [min, max], (max - min) / bbox.width)) {
+    const [left, right, foot, top] = [plot.valToPos(x, "x", true), plot.valToPos(x + width, "x", true), plot.valToPos(z, "y", true), plot.valToPos(z + height, "y", true)];
+    ctx.fillStyle = cssOf(part);
+    // No seams where edges lie between pixels.
+    ctx.fillRect(left, top, right - left + 0.6, foot - top + 0.6);
+  }
+  ctx.restore();
+}
+
+/** The load along a face as a drawing: the map, or the mean. */
+function faceFigure(face, { panel, xRange = null, ...common }) {
+  if (!face.every) return figure({ ...common, x: "z in mm", lines: [{ x: face.z, y: face.rows[0], color: common.colors?.series[0] }] });
+  const cells = cellsOf(face, xRange ?? [0, face.span]).map(({ z, part, ...cell }) => ({ ...cell, y: z, color: cssOf(part) }));
+  return figure({ ...common, title: `${panel.title}, up to ${number(face.most, 3)} ${panel.unit}`, x: X_TITLE, y: "z in mm", cells });
 }
 
 /** The positions of a line with the end of its span, where the first comes again. */

@@ -25,6 +25,7 @@ const COLUMNS = [
   ["STE p-p", "µm", (curve) => curve.statistics.transmission_error_um.peak_to_peak, (value) => fixed(value, 3)],
   ["k mean", "N/µm", (curve) => curve.statistics.mesh_stiffness_tangent_n_per_m.mean * 1e-6, (value) => fixed(value, 2)],
   ["k p-p", "N/µm", (curve) => curve.statistics.mesh_stiffness_tangent_n_per_m.peak_to_peak * 1e-6, (value) => fixed(value, 2)],
+  ["K_Hβ", "", (curve) => curve.face?.face_load_factor, (value) => fixed(value, 3)],
   ["H_N", "µm", (curve) => order(curve, /^H_N\d?$/), (value) => number(value, 3)],
   ["H_Z2", "µm", (curve) => order(curve, /^H_Z2?$/), (value) => number(value, 3)],
   ["Max pressure", "MPa", pressure, (value) => fixed(value, 0)],
@@ -64,7 +65,8 @@ export class Compare {
     this.designs = designs;
     const focused = document.activeElement?.id;
     const stressed = designs.some(({ results }) => results.curves.some(({ stress }) => stress));
-    const columns = COLUMNS.filter(([name]) => stressed || !STRESSES.includes(name));
+    const alongFaces = designs.some(({ results }) => results.curves.some(({ face }) => face));
+    const columns = COLUMNS.filter(([name]) => (stressed || !STRESSES.includes(name)) && (alongFaces || name !== "K_Hβ"));
     const head = h("tr", {}, h("th", { scope: "col" }, "Design"), ...columns.map(([name, unit]) => h("th", { scope: "col" }, name, h("small", {}, ` ${unit}`))), h("th", { scope: "col" }, h("span", { className: "visually-hidden" }, "Actions")));
     const colors = looks();
     const rows = designs.flatMap((design, i) => design.results.curves.map((curve, j) => this.#row(design, curve, [i, j], columns, colors)));

@@ -26,16 +26,16 @@ function range(values, room) {
 }
 
 /**
- * A figure of `lines` `{ name, color, dash, width, parted, x, y }`, where null breaks a line, of `points` `{ x, y, label, strong }`, and of `stems` `{ name, color, x, y }`, over named
+ * A figure of `cells` `{ x, y, width, height, color }`, of `lines` `{ name, color, dash, width, parted, x, y }`, where null breaks a line, of `points` `{ x, y, label, strong }`, and of `stems` `{ name, color, x, y }`, over named
  * axes. Looks come from `colors`, or from the style sheet where there are none. Its `frame` tells where a value of x is, and which value is at a place.
  */
-export function figure({ title, x, y, lines = [], points = [], stems = [], colors = null, width = 520, height = 300, heading = false, xRange = null, label = title }) {
+export function figure({ title, x, y, cells = [], lines = [], points = [], stems = [], colors = null, width = 520, height = 300, heading = false, xRange = null, label = title }) {
   const named = [...lines, ...stems].filter(({ name }) => name);
   const legend = named.length > 1 ? legendRows(named, width) : [];
   const frame = { ...FRAME, top: FRAME.top + (heading ? 18 : 0) + 15 * legend.length };
-  let [left, right] = xRange ?? range([...points.map((each) => each.x), ...lines.flatMap((line) => line.x), ...stems.flatMap((each) => each.x)], points.length ? 0.08 : 0);
-  const ys = [...points.map((each) => each.y), ...lines.flatMap((line) => line.y.filter((value, i) => value !== null && line.x[i] >= left && line.x[i] <= right)), ...stems.flatMap((each) => [0, ...each.y])];
-  let [low, high] = range(ys, 0.08);
+  let [left, right] = xRange ?? range([...points.map((each) => each.x), ...lines.flatMap((line) => line.x), ...stems.flatMap((each) => each.x), ...cells.flatMap((each) => [each.x, each.x + each.width])], points.length ? 0.08 : 0);
+  const ys = [...points.map((each) => each.y), ...lines.flatMap((line) => line.y.filter((value, i) => value !== null && line.x[i] >= left && line.x[i] <= right)), ...stems.flatMap((each) => [0, ...each.y]), ...cells.flatMap((each) => [each.y, each.y + each.height])];
+  let [low, high] = range(ys, cells.length ? 0 : 0.08);
   if (stems.length) [left, low] = [0, 0];
   const px = (value) => frame.left + ((value - left) / (right - left || 1)) * (width - frame.left - frame.right);
   const py = (value) => height - frame.bottom - ((value - low) / (high - low)) * (height - frame.top - frame.bottom);
@@ -43,6 +43,7 @@ export function figure({ title, x, y, lines = [], points = [], stems = [], color
   const line = (attributes, name) => s("line", { ...attributes, class: name, ...(colors ? { stroke: colors.grid } : {}) });
   const svg = s("svg", { viewBox: `0 0 ${width} ${height}`, width: colors ? width : undefined, height: colors ? height : undefined, class: "scatter", role: "img", "aria-label": label, xmlns: "http://www.w3.org/2000/svg" });
   if (heading) svg.append(words(title, { ...ink, x: frame.left, y: 16, "font-weight": 600, "font-size": LETTER + 2 }));
+  for (const { x: at, y: foot, width: wide, height: tall, color } of cells) svg.append(s("rect", { x: px(at).toFixed(2), y: py(foot + tall).toFixed(2), width: (px(at + wide) - px(at) + 0.3).toFixed(2), height: (py(foot) - py(foot + tall) + 0.3).toFixed(2), fill: color }));
   for (const value of ticks(left, right)) {
     svg.append(line({ x1: px(value), x2: px(value), y1: frame.top, y2: height - frame.bottom }, "grid"), words(number(value), { ...ink, x: px(value), y: height - frame.bottom + 16, "text-anchor": "middle" }));
   }

@@ -2,6 +2,7 @@
 
 import { Beginnings } from "./beginnings.js";
 import { at } from "./design.js";
+import { helix, intoPlane, intoSolid, isSolid, kindOfTeeth, needOf, teeth } from "./dimensions.js";
 import { deviations } from "./deviations.js";
 import { h, number, unit } from "./dom.js";
 import { parsed, read, stepped, write } from "./inputs.js";
@@ -17,6 +18,9 @@ const ALIKE = ["module_mm", "pressure_angle_deg"];
 const MULTIPLES = { addendum_mm: 1, dedendum_mm: 1.25, rack_tip_radius_mm: 0.38 };
 
 const MEMBERS = ["driving", "driven"];
+
+/** The angle that diameters and the center distance go with. */
+const HELIX = "/pair/helix_angle_deg";
 
 /** Fields that stand in place of each other: one that gets a value takes those of the others away. */
 const INSTEAD = {
@@ -54,6 +58,8 @@ export class Form {
       this.#section("Pair", "/pair", [
         this.#field("/pair/center_distance_mm", members.center_distance_mm, true),
         ...ALIKE.map((name) => this.#alike(name, gear)),
+        this.#teeth(),
+        ...Object.entries(members).filter(([name]) => !["center_distance_mm", ...MEMBERS].includes(name)).map(([name, schema]) => this.#field(`/pair/${name}`, schema, false)),
       ], true),
       this.#gear("driving", members.driving),
       this.#gear("driven", members.driven),
@@ -65,6 +71,7 @@ export class Form {
     );
     for (const each of this.place.querySelectorAll("details")) if (known) each.open = open.has(each.dataset.pointer);
     for (const member of MEMBERS) this.#remember(member);
+    this.#showDimensions();
     if (focused && document.activeElement?.id !== focused) document.getElementById(focused)?.focus();
   }
 
@@ -73,6 +80,12 @@ export class Form {
     for (const member of MEMBERS) this.#remember(member);
     if (this.#shape() !== this.shape) return this.render();
     for (const { show } of this.#fields.values()) show();
+    this.#showDimensions();
+  }
+
+  /** Computes the pair in three dimensions, or in the plane without what has an extent along the axis; says what went with it. */
+  compute(inSolid) {
+    this.#follow(inSolid ? intoSolid(this.design) : intoPlane(this.design), "mend");
   }
 
   /** Shows what is wrong at the fields. A section that is closed says so at its head: to open it would close the one that is worked in. */
@@ -197,6 +210,27 @@ export class Form {
     this.render();
   }
 
+  /** Straight teeth or helical ones: one step, with the method that knows them. */
+  #teeth() {
+    const id = "field-teeth";
+    const words = { straight: "straight", helical: "helical" };
+    this.kindOfTeeth = h("select", { id, on: { change: (event) => this.#follow(teeth(this.design, event.target.value), "mend") } }, ...Object.entries(words).map(([value, name]) => h("option", { value }, name)));
+    return h("div", { className: "field choice" }, h("div", { className: "row" }, h("label", { htmlFor: id, title: "Helical teeth are computed in three dimensions; the module and the pressure angle are those of the normal section then" }, "Teeth"), this.kindOfTeeth));
+  }
+
+  /** Fields that the method does not know are marked. */
+  #showDimensions() {
+    this.kindOfTeeth.value = kindOfTeeth(this.design.get(HELIX));
+    this.place.dataset.dimensions = isSolid(this.design.get("/method")) ? "3" : "2";
+  }
+
+  /** Makes changes that belong together, and says what they are. */
+  #follow({ changes, told }, by) {
+    this.design.setAll(changes, by);
+    this.#remember("driving");
+    if (told.length) this.notify(`${told.join(". ")}.`);
+  }
+
   #section(title, pointer, children, open) {
     return h("details", { className: "group section", name: this.unfolded ? "" : "section", open: open || this.unfolded, data: { pointer } }, h("summary", {}, title), h("div", { className: "fields" }, ...children));
   }
@@ -208,7 +242,9 @@ export class Form {
   #field(pointer, given, needed) {
     const kind = kindOf(this.api, given);
     const make = { object: "#object", variants: "#variants", list: "#list" }[kind.kind];
+    const need = needOf(pointer);
     const element = make === "#object" ? this.#object(pointer, kind, needed) : make === "#variants" ? this.#variants(pointer, kind, needed) : make === "#list" ? this.#list(pointer, kind) : this.#input(pointer, kind, needed);
+    if (need) element.dataset.needs = need;
     this.shape = this.#shape();
     return element;
   }
@@ -243,7 +279,7 @@ export class Form {
     if (words) input.setAttribute("aria-describedby", words.id);
     const more = words ? h("button", { type: "button", className: "about", ariaLabel: `About ${label.textContent}`, aria: { expanded: "false", controls: words.id }, on: { click: (event) => toggle(event.currentTarget, words) } }, "?") : null;
     // A value that has a default is marked as given, and goes back to it.
-    const clear = needed ? null : h("button", { type: "button", className: "clear", hidden: true, ariaLabel: `${label.textContent}: back to the default`, title: "Given; press for the default", on: { click: () => { this.design.set(pointer, undefined, "mend"); } } }, "×");
+    const clear = needed ? null : h("button", { type: "button", className: "clear", hidden: true, ariaLabel: `${label.textContent}: back to the default`, title: "Given; press for the default", on: { click: () => (pointer === HELIX ? this.#putHelix(undefined, "mend") : this.design.set(pointer, undefined, "mend")) } }, "×");
     const element = h("div", { className: `field ${kind.kind}` }, h("div", { className: "row" }, label, input, h("span", { className: "unit" }, printed), more, clear), words);
     if (!needed && "placeholder" in input) input.placeholder = schema.default !== undefined && schema.default !== null ? String(schema.default) : saidDefault(schema);
     return this.#register(pointer, element, schema, () => {
@@ -259,6 +295,11 @@ export class Form {
   #put(pointer, value, further = {}) {
     const [, member, name] = /^\/pair\/(driving|driven)\/(module_mm|pressure_angle_deg|tooth_count)$/.exec(pointer) ?? [];
     if (member) return this.#putBasic(ALIKE.includes(name) && !this.#unlocked.has(name) ? MEMBERS : [member], name, value);
+    if (pointer === HELIX) return this.#putHelix(value, "form");
+    if (pointer === "/method" && isSolid(value) && !isSolid(this.design.get("/method"))) {
+      const { changes, told } = intoSolid(this.design);
+      return this.#follow({ changes: { ...changes, [pointer]: value }, told: told.slice(1) }, "mend");
+    }
     const holder = pointer.slice(0, pointer.lastIndexOf("/") + 1);
     const others = value === undefined ? [] : (INSTEAD[pointer.slice(holder.length)] ?? []).filter((name) => this.design.get(holder + name) !== undefined);
     this.design.setAll({ [pointer]: value, ...further, ...Object.fromEntries(others.map((name) => [holder + name, undefined])) }, "form");
@@ -270,6 +311,14 @@ export class Form {
       const value = this.design.get(`/pair/${member}/${name}`);
       if (value > 0) known[name] = value;
     }
+    const angle = this.design.get(HELIX) ?? 0;
+    if (Number.isFinite(angle)) this.#last.helix = angle;
+  }
+
+  /** Another helix angle, and what goes with it. What is typed passes through what is no number. */
+  #putHelix(value, by) {
+    if (value !== undefined && !(Math.abs(value) < 60)) return this.design.set(HELIX, value, by);
+    this.#follow(helix(this.design, value ?? 0, this.#last.helix), by);
   }
 
   /** Sets what other lengths are given in multiples of, or number teeth by: those lengths go with it, and this is said. */
@@ -348,6 +397,7 @@ export class Form {
   #turn(pointer, value) {
     const [, member, name] = /^\/pair\/(driving|driven)\/(module_mm|pressure_angle_deg|tooth_count)$/.exec(pointer) ?? [];
     if (member) this.#putBasic(ALIKE.includes(name) && !this.#unlocked.has(name) ? MEMBERS : [member], name, value, "drag");
+    else if (pointer === HELIX) this.#putHelix(value, "drag");
     else this.design.set(pointer, value, "drag");
   }
 

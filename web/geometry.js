@@ -35,6 +35,11 @@ export const OF_PAIRS = [
   ["Working pressure angle", "α_w", "°", (it) => fixed(it.working_pressure_angle_deg, 4)],
   ["Contact ratio", "ε_α", "", (it) => fixed(it.contact_ratio, 4)],
   ["Length of the path of contact", "g_α", "mm", (it) => fixed(it.path_of_contact.length_mm, 4)],
+  ["Overlap ratio", "ε_β", "", (it) => fixed(it.overlap_ratio, 4)],
+  ["Total contact ratio", "ε_γ", "", (it) => fixed(it.total_contact_ratio, 4)],
+  ["Base helix angle", "β_b", "°", (it) => fixed(it.helix_angle_base_deg, 4)],
+  ["Transverse module", "m_t", "mm", (it) => fixed(it.transverse_module_mm, 4)],
+  ["Transverse pressure angle", "α_t", "°", (it) => fixed(it.transverse_pressure_angle_deg, 4)],
   ["Base pitch", "p_b", "mm", (it) => fixed(it.base_pitch_mm, 4)],
   ["Normal backlash", "j_bn", "mm", (it) => fixed(it.backlash_mm, 4)],
   ["Least normal backlash", "", "mm", (it) => fixed(it.least_backlash_mm, 4)],
@@ -46,7 +51,8 @@ export const OF_PAIRS = [
 export function rowsOf({ results, submission }) {
   const { pair } = results;
   const gears = OF_GEARS.map(([name, symbol, unit, read]) => [name, symbol, unit, ...["driving", "driven"].map((member) => read(pair[member], submission.pair[member]))]);
-  const both = OF_PAIRS.map(([name, symbol, unit, read]) => [name, symbol, unit, read(pair)]);
+  // What only helical pairs have is left out of the others.
+  const both = OF_PAIRS.map(([name, symbol, unit, read]) => [name, symbol, unit, read(pair)]).filter(([, , , value]) => value !== "–");
   return { gears, both };
 }
 

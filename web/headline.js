@@ -11,6 +11,8 @@ const largest = (values) => {
 
 /** The part of its span in which one pair of teeth carries alone, in percent. */
 function alone(curve) {
+  // Lines that cross a flank come and go by their ends: what tells then is the load along the face.
+  if (curve.face) return null;
   return (100 * curve.pairs_in_contact.filter((pairs) => pairs === 1).length) / curve.pairs_in_contact.length;
 }
 
@@ -20,14 +22,15 @@ export function largestStress({ stress }) {
   return largest(["driving", "driven"].flatMap((gear) => [...(stress[gear].root_mpa ?? []), ...(stress[gear].hole_mpa ?? [])]));
 }
 
-/** What each answer is: its name, unit, how it is read from a curve, how it is printed, and what a visitor asks of it. `less` says whether less is better. */
+/** What each answer is: its name, unit, how it is read from a curve, how it is printed, and what a visitor asks of it. `less` says whether less is better, `some` that not every method tells it. */
 export const ANSWERS = [
   { id: "p-p", name: "STE p-p", unit: "µm", less: true, of: (curve) => curve.statistics.transmission_error_um.peak_to_peak, print: (value) => fixed(value, 3), about: "Peak-to-peak transmission error: how unevenly the driven gear lags. It excites gear whine; half of it is 6 dB less. As a rule of thumb below 1 µm is quiet and above 5 µm is heard." },
   { id: "mean", name: "STE mean", unit: "µm", of: (curve) => curve.statistics.transmission_error_um.mean, print: (value) => fixed(value, 2), about: "How far the driven gear lags under load on average, along the line of action. A constant lag makes no noise." },
   { id: "k", name: "k mean", unit: "N/µm", less: false, of: (curve) => mega(curve.statistics.mesh_stiffness_tangent_n_per_m.mean), print: (value) => fixed(value, 1), about: "Mesh stiffness: how much more load bends the teeth and blanks by how much more, on average." },
+  { id: "face", name: "K_Hβ", unit: "", less: true, some: true, of: (curve) => curve.face?.face_load_factor ?? null, print: (value) => fixed(value, 3), about: "Face load factor: of ten equal strips of the face, how much more the heaviest carries than all of them on average. 1 is even; at 2 one strip carries twice its part, and its teeth live accordingly shorter." },
   { id: "h-n", name: "H_N", unit: "µm", less: true, of: (curve) => named(curve, /^H_N\d?$/), print: (value) => number(value, 3), about: "The part of the transmission error that repeats with the holes: its amplitude at as many waves in a revolution of the driven gear as there are holes. None without holes." },
   { id: "h-z", name: "H_Z2", unit: "µm", less: true, of: (curve) => named(curve, /^H_Z2?$/), print: (value) => number(value, 3), about: "The part that repeats with every tooth: its amplitude at the mesh order." },
-  { id: "share", name: "One pair alone", unit: "%", less: true, of: alone, print: (value) => fixed(value, 0), about: "Load share: for this part of the time one pair of teeth carries all the load; else two or more share it." },
+  { id: "share", name: "One pair alone", unit: "%", less: true, some: true, of: alone, print: (value) => fixed(value, 0), about: "Load share: for this part of the time one pair of teeth carries all the load; else two or more share it." },
   { id: "pressure", name: "Max pressure", unit: "MPa", less: true, of: (curve) => largest(curve.peak_contact_pressure_mpa), print: (value) => fixed(value, 0), about: "The largest contact pressure where it has a limit. A sharp tip corner that touches has none, and is left out." },
   { id: "stress", name: "Max stress", unit: "MPa", less: true, of: largestStress, print: (value) => fixed(value, 1), about: "The largest von Mises stress at the roots and holes of both gears. Computed where Stress is on, under Load and method." },
 ];
@@ -41,8 +44,9 @@ export class Headline {
       const change = h("span", { className: "change" });
       const about = h("p", { className: "about-answer", id: `about-${answer.id}`, hidden: true }, answer.about);
       const name = h("button", { type: "button", className: "name", aria: { expanded: "false", controls: about.id }, title: answer.about, on: { click: () => this.#tell(answer.id) } }, answer.name);
-      place.append(h("div", { className: "tile", id: `answer-${answer.id}` }, name, h("span", {}, value, h("small", {}, ` ${answer.unit}`)), change));
-      this.tiles.set(answer.id, { value, change, name, about });
+      const tile = h("div", { className: "tile", hidden: answer.some === true, id: `answer-${answer.id}` }, name, h("span", {}, value, h("small", {}, ` ${answer.unit}`)), change);
+      place.append(tile);
+      this.tiles.set(answer.id, { tile, value, change, name, about });
     }
     place.append(...[...this.tiles.values()].map(({ about }) => about));
   }
@@ -50,8 +54,9 @@ export class Headline {
   /** Shows the answers of `curve`, beside those of another design, if there is one: `{ name, curve }`. */
   show(curve, other = null, draft = false) {
     for (const answer of ANSWERS) {
-      const { value, change } = this.tiles.get(answer.id);
+      const { tile, value, change } = this.tiles.get(answer.id);
       const [now, before] = [answer.of(curve), other && answer.of(other.curve)];
+      if (answer.some) tile.hidden = now === null;
       value.textContent = now === null ? "–" : answer.print(now);
       value.classList.toggle("draft", draft);
       const known = typeof now === "number" && typeof before === "number";

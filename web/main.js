@@ -5,6 +5,7 @@ import { Brush } from "./brush.js";
 import { byId, debounced, fixed, h, number } from "./dom.js";
 import { Charts } from "./charts.js";
 import { Compare } from "./compare.js";
+import { isSolid, needsSolid } from "./dimensions.js";
 import { Design, fromFragment, nameOf, same, toFragment } from "./design.js";
 import { Deformation } from "./deformed.js";
 import { save } from "./download.js";
@@ -55,7 +56,7 @@ let tab = "curves";
 
 const drawing = new Drawing(byId("drawing"), design, { onTurn: (to) => turn(to) });
 const brush = new Brush(byId("brush"), (range) => charts.zoom(range));
-const charts = new Charts(byId("charts"), { onPosition: (to) => turn(to), onRange: (range) => brush.setRange(range) });
+const charts = new Charts(byId("charts"), { onPosition: (to) => turn(to), onRange: (range) => brush.setRange(range), onEveryPosition: () => design.set("/face_load", "positions", "mend") });
 const headline = new Headline(byId("headline"));
 const geometry = new Geometry(byId("geometry"), { onPrint: print, onPicture: picture });
 const compare = new Compare(byId("compare"), { onKept: changeKept, onOpen: ({ submission, results }) => open(submission, results), onMethods: compareMethods, titleOf: (pointer) => form?.titleOf(pointer) ?? pointer });
@@ -160,10 +161,14 @@ function showProblem() {
   place.hidden = !problem;
   if (!problem) return place.replaceChildren();
   const entries = errors.slice(0, 4).map((error) => h("li", {}, error.detail, " ", h("button", { type: "button", className: "mend", on: { click: () => form?.focus(error.pointer) } }, "Show the field")));
+  const codes = new Set(errors.map(({ code }) => code));
+  const turn = (inSolid, words) => h("button", { type: "button", on: { click: () => form?.compute(inSolid) } }, words);
+  const dimensions = codes.has("needs_three_dimensions") ? [h("p", {}, turn(true, "Compute it in three dimensions"), " ", turn(false, "Leave out what has an extent along the axis"))]
+    : codes.has("not_in_three_dimensions") ? [h("p", {}, turn(true, "Leave out what three dimensions do not tell"), " ", turn(false, "Compute it in the plane"))] : [];
   const back = computed && !same(computed, design.submission) ? h("button", { type: "button", on: { click: () => design.replace(computed, "open") } }, "Go back to it") : null;
   place.replaceChildren(
     h("p", {}, h("strong", {}, problem.title), ...(shown ? [". Curves and numbers are those of the last design that could be computed; nothing is exported. ", back] : [])),
-    entries.length ? h("ul", {}, ...entries) : h("p", {}, problem.detail));
+    entries.length ? h("ul", {}, ...entries) : h("p", {}, problem.detail), ...dimensions);
   byId("state").textContent = "";
 }
 
@@ -258,6 +263,7 @@ async function compareMethods() {
   const base = await current();
   if (!base) return;
   for (const method of METHODS.filter((each) => each !== base.submission.method)) {
+    if (isSolid(base.submission.method) && needsSolid(design)) return notify("Plane methods do not know what this pair has along its axis, so there is nothing to compare.", false);
     try {
       const asked = { ...base.submission, method };
       keep({ name: nameOf(asked), results: await resultsOf(asked), submission: asked, teeth: base.teeth });

@@ -14,6 +14,7 @@ export const PANELS = [
   { id: "stiffness", title: "Mesh stiffness, tangent", unit: "N/µm", of: (curve) => micro(curve.mesh_stiffness_tangent_n_per_m) },
   { id: "share", title: "Load share", unit: "%", ofLive: shares, note: "a line for each pair of teeth" },
   { id: "pressure", title: "Peak contact pressure", unit: "MPa", of: (curve) => curve.peak_contact_pressure_mpa, gaps: "No line where a sharp tip corner carries: the pressure has no limit there. More tip relief avoids it." },
+  { id: "face", title: "Load along the face", unit: "N/mm", along: "z" },
   { id: "stress", title: "Largest stress", unit: "MPa", ofLive: stresses },
 ];
 

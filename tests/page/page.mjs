@@ -6,6 +6,7 @@ import { createServer } from "node:http";
 import { benchSteps } from "./bench.mjs";
 import { answer, axe, changed, changing, designOf, drag, downloaded, end, field, holeAt, linkOf, named, open, step, tab } from "./harness.mjs";
 import { start } from "./service.mjs";
+import { solidSteps } from "./solid.mjs";
 
 const DRAGS = 200;
 const WIDTHS = [[390, 844], [1280, 800], [3840, 2160]];
@@ -274,6 +275,7 @@ await step("200 drags are followed in order", service, async (page) => {
 });
 
 await benchSteps(service);
+await solidSteps(service);
 
 const locked = await start();
 const key = locked.key("visitor");

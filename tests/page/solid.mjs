@@ -1,0 +1,135 @@
+// What has an extent along the axis: helical teeth in one step, the load along the face.
+
+import assert from "node:assert/strict";
+import { answer, axe, changing, designOf, downloaded, field, open, openDesign, seenByDeuteranopia, settled, step, tab } from "./harness.mjs";
+
+/** A small helical pair that stands askew, at few positions. */
+export const HELICAL = {
+  method: "three_dimensional",
+  face_load: "positions",
+  pair: {
+    center_distance_mm: 63.9, helix_angle_deg: 20, misalignment_um: { in_plane_um: 12 },
+    driving: { tooth_count: 24, module_mm: 2, face_width_mm: 16, blank: { bore_radius_mm: 10 } },
+    driven: { tooth_count: 36, module_mm: 2, face_width_mm: 16, blank: { bore_radius_mm: 12, web: { inner_radius_mm: 17, outer_radius_mm: 30, thickness_mm: 6, offset_mm: 2 }, holes: { count: 5, circle_radius_mm: 23.5, radius_mm: 4 }, hub: { outer_radius_mm: 17, width_mm: 18 } } },
+  },
+  output_torques_n_m: [120],
+  resolution: { positions_per_mesh_period: 8, grid: "coarse" },
+};
+
+/** The straight pair of few positions that a helical one is made of. */
+const STRAIGHT = {
+  method: "flexible",
+  pair: {
+    center_distance_mm: 60.1,
+    driving: { tooth_count: 24, module_mm: 2, face_width_mm: 16, tip_diameter_mm: 52, blank: { bore_radius_mm: 10 } },
+    driven: { tooth_count: 36, module_mm: 2, face_width_mm: 16, blank: { bore_radius_mm: 12 } },
+  },
+  output_torques_n_m: [100], force_table: {},
+  resolution: { positions_per_mesh_period: 8, grid: "coarse" },
+};
+
+/** @param service the service whose page is used */
+export async function solidSteps(service) {
+  await step("a pair becomes helical in one step, with its method, and straight again", service, async (page) => {
+    await openDesign(page, service, STRAIGHT);
+    await settled(page);
+    assert.ok(await page.locator("#answer-face").isHidden(), "the plane has no load along the face");
+    const teeth = page.locator("#field-teeth");
+    await changing(page, () => teeth.selectOption("helical"));
+    const helical = await designOf(page);
+    assert.deepEqual([helical.method, helical.pair.helix_angle_deg, helical.face_load, helical.force_table], ["three_dimensional", 15, "positions", undefined]);
+    // 2 (24 + 36)/2 (1/cos 15° - 1) more apart; a tip diameter that was given grows with its reference circle.
+    assert.ok(Math.abs(helical.pair.center_distance_mm - (60.1 + 60 * (1 / Math.cos(Math.PI / 12) - 1))) < 1e-4, String(helical.pair.center_distance_mm));
+    assert.ok(Math.abs(helical.pair.driving.tip_diameter_mm - (52 + 48 * (1 / Math.cos(Math.PI / 12) - 1))) < 1e-4);
+    assert.match(await page.locator("#notice").innerText(), /Center distance .*three dimensions.*[Ff]orce table/s);
+    assert.ok(await page.locator("#problem").isHidden());
+    const factor = await answer(page, "face");
+    assert.ok(factor > 1 && factor < 2, `K_Hβ ${factor}`);
+    // Typed like the module: what goes with the angle goes with every angle that is typed.
+    await changing(page, async () => (await field(page, "/pair/helix_angle_deg")).fill("20"));
+    assert.ok(Math.abs((await designOf(page)).pair.center_distance_mm - (60.1 + 60 * (1 / Math.cos(Math.PI / 9) - 1))) < 2e-4);
+    await changing(page, () => teeth.selectOption("straight"));
+    const back = await designOf(page);
+    assert.deepEqual([back.method, back.pair.helix_angle_deg, back.face_load], ["flexible", undefined, undefined]);
+    assert.ok(Math.abs(back.pair.center_distance_mm - 60.1) < 3e-4 && Math.abs(back.pair.driving.tip_diameter_mm - 52) < 3e-4);
+    assert.ok(await page.locator("#answer-face").isHidden());
+    await axe(page);
+  });
+
+  await step("what a plane method does not know is marked, refused at its field, and cured by one button either way", service, async (page) => {
+    await openDesign(page, service, { ...HELICAL, method: "flexible" });
+    await page.locator("#problem button", { hasText: "in three dimensions" }).waitFor();
+    for (const pointer of ["/pair/helix_angle_deg", "/pair/driven/blank/web/offset_mm"]) {
+      const input = await field(page, pointer);
+      assert.equal(await input.getAttribute("aria-invalid"), "true", pointer);
+      assert.equal(await input.evaluate((element) => getComputedStyle(element.closest(".field").querySelector("label"), "::after").content), '" 3D"');
+    }
+    await axe(page);
+    await changing(page, () => page.locator("#problem button", { hasText: "Leave out" }).click());
+    const plane = await designOf(page);
+    assert.equal(plane.method, "flexible");
+    for (const left of [plane.pair.helix_angle_deg, plane.pair.misalignment_um, plane.pair.driven.blank.hub, plane.pair.driven.blank.web.offset_mm]) assert.equal(left, undefined);
+    assert.equal(plane.pair.driven.blank.web.thickness_mm, 6, "what the plane knows stays");
+    assert.ok(await page.locator("#problem").isHidden());
+    await changing(page, () => page.locator("#undo").click());
+    await changing(page, () => page.locator("#problem button", { hasText: "in three dimensions" }).click());
+    assert.equal((await designOf(page)).method, "three_dimensional");
+    assert.ok(await page.locator("#problem").isHidden());
+    assert.ok((await answer(page, "face")) > 1);
+    // And the other way: what three dimensions do not tell.
+    await openDesign(page, service, { ...HELICAL, force_table: {} });
+    await changing(page, () => page.locator("#problem button", { hasText: "do not tell" }).click());
+    const { force_table: table, method } = await designOf(page);
+    assert.deepEqual([table, method], [undefined, "three_dimensional"]);
+  });
+
+  await step("the load along the face is a map under the cursor of the curves", service, async (page) => {
+    await openDesign(page, service, HELICAL);
+    await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+    await settled(page);
+    const map = page.locator("#chart-face");
+    await map.scrollIntoViewIfNeeded();
+    const words = await page.locator("#words-face").textContent();
+    assert.match(words, /from z = -8 to 8 mm.*N\/mm.*face load factor is 1\.\d+/s);
+    assert.match(await map.innerText(), /0\s+\d+ N\/mm/, "a scale with its unit");
+    // What is painted is what was computed: the heaviest cell has the color of the most, and cells differ.
+    const colors = await map.locator("canvas").evaluate((canvas) => {
+      const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+      const seen = new Set();
+      for (let i = 0; i < data.length; i += 4) if (data[i + 3] === 255) seen.add([data[i], data[i + 1], data[i + 2]].join());
+      return [...seen];
+    });
+    assert.ok(colors.includes("255,240,138"), "the most");
+    assert.ok(colors.length > 60, `${colors.length} colors`);
+    // The pointer over the map turns the gears, and the mark stands in map and curve alike.
+    const before = await page.locator("#position").inputValue();
+    await map.locator(".u-over").hover({ position: { x: 100, y: 60 } });
+    await page.waitForFunction((old) => document.querySelector("#position").value !== old, before);
+    const marks = await page.locator("#chart-ste .now, #chart-face .now").evaluateAll((all) => all.map((each) => new DOMMatrix(getComputedStyle(each).transform).e / each.parentElement.clientWidth));
+    assert.equal(marks.length, 2);
+    assert.ok(Math.abs(marks[0] - marks[1]) < 0.01 && marks[0] > 0.05, marks.join());
+    await axe(page);
+    // The mean alone where no position is asked for, and the way to every position.
+    await changing(page, async () => (await field(page, "/face_load")).selectOption("mean"));
+    assert.match(await page.locator("#chart-face .scatter").innerHTML(), /z in mm/);
+    await changing(page, () => page.locator("#chart-face button", { hasText: "every position" }).click());
+    assert.equal((await designOf(page)).face_load, "positions");
+    // It is exported with the curves.
+    await tab(page, "export");
+    const svg = (await downloaded(page, () => page.locator("[data-download=svg]").click())).bytes.toString();
+    assert.match(svg, /Load along the face, up to \d+ N\/mm/);
+    assert.ok(svg.includes("rgb(255 240 138)"));
+    await tab(page, "geometry");
+    assert.match(await page.locator("#geometry").innerText(), /Overlap ratio ε_β\s+0\.\d{4}/);
+  });
+
+  await step("the colors of loads are told apart by lightness alone, with deuteranopia too", service, async (page) => {
+    await openDesign(page, service, HELICAL);
+    const ramp = await page.evaluate(async () => {
+      const { rampAt } = await import(new URL("web/face.js", document.baseURI));
+      return Array.from({ length: 11 }, (_, i) => rampAt(i / 10));
+    });
+    const lightness = ramp.map((color) => seenByDeuteranopia(color)[0]);
+    for (let i = 1; i < lightness.length; i += 1) assert.ok(lightness[i] - lightness[i - 1] > 4, `${ramp[i]}: ${lightness}`);
+  });
+}

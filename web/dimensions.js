@@ -1,0 +1,85 @@
+// What has an extent along the axis: which fields need three dimensions, and the steps into the third one and back.
+
+import { number } from "./dom.js";
+
+/** The method that a pair gets with its first extent along the axis, and the one that it goes back to. */
+const SOLID = "three_dimensional";
+const PLANE = "flexible";
+/** A helix begins with so many degrees. */
+const USUAL_HELIX = 15;
+const MEMBERS = ["driving", "driven"];
+
+/** Fields that plane methods refuse, by the ends of their pointers. */
+const NEED_SOLID = /\/(helix_angle_deg|axial_offset_mm|misalignment_um|lead_modifications|hub|web\/offset_mm|lead_slope_um)$/;
+/** Fields that the methods in three dimensions refuse. */
+const NEED_PLANE = /^\/(force_table|dynamics)$/;
+
+/** Whether a method computes in three dimensions. */
+export const isSolid = (method) => String(method ?? "").startsWith(SOLID);
+
+/** Which methods know the field at `pointer`, where not all do: `solid` or `plane`. */
+export function needOf(pointer) {
+  return NEED_SOLID.test(pointer) ? "solid" : NEED_PLANE.test(pointer) ? "plane" : null;
+}
+
+/** What a pair is called that has teeth like these. */
+export const kindOfTeeth = (angle) => (angle ? "helical" : "straight");
+
+const secant = (angle) => 1 / Math.cos(((angle ?? 0) * Math.PI) / 180);
+const isGiven = (value) => value !== undefined && value !== null && value !== 0 && !(Array.isArray(value) && value.length === 0);
+
+/** The changes that another helix angle than `before` brings with it, and what is said of them: diameters of the same normal module grow, and the gears move apart. */
+export function helix(design, angle, before = design.get("/pair/helix_angle_deg")) {
+  const changes = { "/pair/helix_angle_deg": angle || undefined };
+  const told = [];
+  const wider = secant(angle) - secant(before);
+  const grows = (pointer, by, words) => {
+    const value = design.get(pointer);
+    if (typeof value !== "number" || !Number.isFinite(by) || Math.abs(by) < 1e-9) return;
+    changes[pointer] = Number((value + by).toFixed(4));
+    told.push(`${words} ${number(changes[pointer], 7)} mm`);
+  };
+  const sizes = MEMBERS.map((member) => design.get(`/pair/${member}/module_mm`) * design.get(`/pair/${member}/tooth_count`));
+  grows("/pair/center_distance_mm", 0.5 * (sizes[0] + sizes[1]) * wider, "Center distance");
+  MEMBERS.forEach((member, i) => grows(`/pair/${member}/tip_diameter_mm`, sizes[i] * wider, `Tip diameter of the ${member} gear`));
+  if (!angle || isSolid(design.get("/method"))) return { changes, told };
+  const solid = intoSolid(design);
+  return { changes: { ...changes, ...solid.changes }, told: [...told, ...solid.told] };
+}
+
+/** A pair of straight teeth gets a helix, or a helical one gets straight teeth, and its plane method back where nothing else needs the third dimension. */
+export function teeth(design, kind) {
+  if (kind === "helical") return helix(design, USUAL_HELIX);
+  const { changes, told } = helix(design, 0);
+  const others = pointersNeeding(design).filter((pointer) => pointer !== "/pair/helix_angle_deg");
+  const back = isSolid(design.get("/method")) && others.length === 0 ? intoPlane(design) : { changes: {}, told: [] };
+  return { changes: { ...back.changes, ...changes }, told: [...told, ...back.told] };
+}
+
+/** The changes that compute the pair in three dimensions. */
+export function intoSolid(design) {
+  const left = ["/force_table", "/dynamics"].filter((pointer) => isGiven(design.get(pointer)));
+  const method = design.get("/method");
+  const changes = { "/method": isSolid(method) ? method : SOLID, "/face_load": "positions", ...Object.fromEntries(left.map((pointer) => [pointer, undefined])) };
+  return { changes, told: ["Computed in three dimensions", ...(left.length ? ["Force table and run-up are told by the plane methods, and were left out"] : [])] };
+}
+
+/** The changes that compute the pair in the plane: what has an extent along the axis goes. */
+export function intoPlane(design) {
+  const left = pointersNeeding(design);
+  const straight = left.includes("/pair/helix_angle_deg") ? helix(design, 0) : { changes: {}, told: [] };
+  const { face_order: order, face_slices: slices, ...resolution } = design.get("/resolution") ?? {};
+  const finer = order === undefined && slices === undefined ? {} : { "/resolution": Object.keys(resolution).length ? resolution : undefined };
+  const changes = { ...Object.fromEntries(left.map((pointer) => [pointer, undefined])), ...straight.changes, "/method": PLANE, "/face_load": undefined, ...finer };
+  const words = left.map((pointer) => pointer.split("/").at(-1).replace(/_(mm|um|deg)$/, "").replace(/_/g, " "));
+  return { changes, told: ["Computed in the plane", ...(left.length ? [`Left out: ${[...new Set(words)].join(", ")}`] : []), ...straight.told] };
+}
+
+/** Whether the design has something that plane methods refuse. */
+export const needsSolid = (design) => pointersNeeding(design).length > 0;
+
+/** The fields of the design that plane methods refuse. */
+function pointersNeeding(design) {
+  const ofGear = (member) => ["lead_modifications", "blank/hub", "blank/web/offset_mm", "tooth_deviations/lead_slope_um"].map((name) => `/pair/${member}/${name}`);
+  return ["/pair/helix_angle_deg", "/pair/axial_offset_mm", "/pair/misalignment_um", ...MEMBERS.flatMap(ofGear)].filter((pointer) => isGiven(design.get(pointer)));
+}

@@ -1,0 +1,64 @@
+// The load along the face: as a map over mesh position and z, as a curve where only its mean is known, in words, and as a scale of colors.
+
+import { fixed, h, number } from "./dom.js";
+import { spanOf } from "./series.js";
+
+/** Colors from little to much: their lightness alone tells them apart, so that every eye and gray paper do. */
+export const RAMP = ["#0d1b4c", "#28437f", "#5b6b8a", "#8f8f7f", "#c9b458", "#fff08a"];
+
+const rgb = RAMP.map((color) => [1, 3, 5].map((i) => parseInt(color.slice(i, i + 2), 16)));
+
+/** The color of a part of the most, as three numbers up to 255. */
+export function rampAt(part) {
+  const place = Math.min(Math.max(part, 0), 1) * (RAMP.length - 1);
+  const i = Math.min(Math.floor(place), RAMP.length - 2);
+  return rgb[i].map((value, k) => Math.round(value + (place - i) * (rgb[i + 1][k] - value)));
+}
+
+export const cssOf = (part) => `rgb(${rampAt(part).join(" ")})`;
+
+/** The edges of the strips whose middles are `z`. */
+function edgesOf(z) {
+  const step = z.length > 1 ? z[1] - z[0] : 1;
+  return [...z.map((middle) => middle - step / 2), z.at(-1) + step / 2];
+}
+
+/** The load of a curve over its face; null where its method does not see faces. `rows` has a row for each position, or one, their mean. */
+export function faceOf({ face, mesh_position: positions, ...curve }) {
+  if (!face) return null;
+  const { z_mm: z, load_n_per_mm: rows } = face;
+  const most = Math.max(...rows.flat(), 1e-9);
+  return { z, rows, most, edges: edgesOf(z), every: rows.length === positions.length && rows.length > 1, positions, span: spanOf({ mesh_position: positions, ...curve }), factor: face.face_load_factor, centroid: face.load_centroid_mm, cure: face.cure ?? null };
+}
+
+/** The rectangles of the map between two mesh positions, each at least so wide: `{ x, width, z, height, part }`. */
+export function cellsOf({ rows, positions, edges, most, span }, [from, to], least = 0) {
+  const step = span / positions.length;
+  const taken = Math.max(1, Math.ceil(least / step));
+  const cells = [];
+  // A position stands for what is nearest to it; the first one for the end of the span too.
+  for (let i = 0; i <= positions.length; i += taken) {
+    const middle = positions[0] + i * step;
+    const [x, end] = [Math.max(middle - step / 2, from), Math.min(middle + (taken - 0.5) * step, to)];
+    if (end <= x) continue;
+    const row = rows[i % positions.length];
+    row.forEach((load, j) => cells.push({ x, width: end - x, z: edges[j], height: edges[j + 1] - edges[j], part: load / most }));
+  }
+  return cells;
+}
+
+/** What a listener should know of the load along the face. */
+export function wordsOfFace({ z, rows, positions, most, every, factor, centroid, edges }) {
+  const mean = z.map((_, j) => rows.reduce((sum, row) => sum + row[j], 0) / rows.length);
+  const [least, heaviest] = [Math.min(...mean), Math.max(...mean)];
+  const where = (value) => `z = ${number(z[mean.indexOf(value)], 3)} mm`;
+  const peak = every ? rows.map((row) => Math.max(...row)) : null;
+  const at = every ? ` The largest of all is ${number(most, 4)} N/mm, at position ${fixed(positions[peak.indexOf(most)], 2)}.` : "";
+  const wander = `The middle of the load lies from z = ${fixed(Math.min(...centroid), 2)} to ${fixed(Math.max(...centroid), 2)} mm.`;
+  return `Load along the face from z = ${number(edges[0])} to ${number(edges.at(-1))} mm, in N/mm, the mean over the positions: most at ${where(heaviest)}, ${number(heaviest, 4)}; least at ${where(least)}, ${number(least, 4)}.${at} ${wander} The face load factor is ${fixed(factor, 3)}.`;
+}
+
+/** The scale of the colors, from nothing to `most`. */
+export function scaleOf(most, unit = "N/mm") {
+  return h("span", { className: "entry" }, "0", h("span", { className: "ramp" }), `${number(most, 3)} ${unit}`);
+}
