@@ -103,6 +103,11 @@ impl Axis {
         (self.low..=self.high).contains(&value)
     }
 
+    /// What stands beside it, and where.
+    pub(crate) fn ticks(&self) -> &[(f64, String)] {
+        &self.ticks
+    }
+
     /// The lower end.
     pub(crate) fn low(&self) -> f64 {
         self.low

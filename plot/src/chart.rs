@@ -88,30 +88,50 @@ pub struct Chart {
     pub marks: Vec<Mark>,
 }
 
-type Context<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
+pub(crate) type Context<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
+
+/// Where the frame of a panel begins below its top, and ends above its bottom, in pixels.
+pub(crate) fn top() -> f64 {
+    f64::from(ABOVE)
+}
+
+pub(crate) fn bottom() -> f64 {
+    f64::from(BELOW)
+}
+
+/// A panel with its title, its axes and so much room to the `right`.
+pub(crate) fn framed<'a, 'b>(
+    area: &'a Area<'b>,
+    title: &str,
+    (x, y): (&Axis, &Axis),
+    right: u32,
+) -> anyhow::Result<Context<'a, 'b>> {
+    let start = f64::from(LEFT + BESIDE);
+    write(area, title, (start, 13.0), 12.0, (HPos::Left, true))?;
+    let mut context = ChartBuilder::on(area)
+        .margin_top(units(ABOVE))
+        .margin_left(units(LEFT))
+        .margin_right(units(right))
+        .x_label_area_size(units(BELOW))
+        .y_label_area_size(units(BESIDE))
+        .build_cartesian_2d(x.clone(), y.clone())?;
+    context
+        .configure_mesh()
+        .bold_line_style(GRID.stroke_width(thickness(0.75)))
+        .light_line_style(TRANSPARENT)
+        .axis_style(INK.stroke_width(thickness(0.75)))
+        .set_all_tick_mark_size(units(3))
+        .label_style(font(11.0))
+        .axis_desc_style(font(11.5))
+        .x_desc(&x.label)
+        .y_desc(&y.label)
+        .draw()?;
+    Ok(context)
+}
 
 impl Chart {
     pub(crate) fn draw(&self, area: &Area<'_>, size: (u32, u32)) -> anyhow::Result<()> {
-        let start = f64::from(LEFT + BESIDE);
-        write(area, &self.title, (start, 13.0), 12.0, (HPos::Left, true))?;
-        let mut context = ChartBuilder::on(area)
-            .margin_top(units(ABOVE))
-            .margin_left(units(LEFT))
-            .margin_right(units(RIGHT))
-            .x_label_area_size(units(BELOW))
-            .y_label_area_size(units(BESIDE))
-            .build_cartesian_2d(self.x.clone(), self.y.clone())?;
-        context
-            .configure_mesh()
-            .bold_line_style(GRID.stroke_width(thickness(0.75)))
-            .light_line_style(TRANSPARENT)
-            .axis_style(INK.stroke_width(thickness(0.75)))
-            .set_all_tick_mark_size(units(3))
-            .label_style(font(11.0))
-            .axis_desc_style(font(11.5))
-            .x_desc(&self.x.label)
-            .y_desc(&self.y.label)
-            .draw()?;
+        let mut context = framed(area, &self.title, (&self.x, &self.y), RIGHT)?;
         for mark in &self.marks {
             self.draw_mark(&mut context, mark)?;
         }

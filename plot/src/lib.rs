@@ -1,11 +1,12 @@
 //! Figures as SVG: charts of named series, order spectra, and drawings of gears.
 //!
-//! Read in this order: [`axis`], [`chart`] (curves and stems), [`drawing`] (shapes, and the true outline of a gear),
+//! Read in this order: [`axis`], [`chart`] (curves and stems), [`drawing`] (shapes, and the true outline of a gear), [`map`] (fields by color),
 //! `simplify` (what keeps the files small). Nothing here knows what the figures are about.
 
 pub mod axis;
 pub mod chart;
 pub mod drawing;
+pub mod map;
 mod simplify;
 
 use plotters::coord::Shift;
@@ -17,6 +18,7 @@ pub use plotters::style::{RGBColor, WHITE};
 
 pub use chart::{Chart, Look, Mark, Series};
 pub use drawing::{Drawing, Shape};
+pub use map::Map;
 
 /// Units of a figure per pixel: plotters rounds to whole units, and a curve wants quarters of a pixel.
 const DETAIL: u32 = 4;
@@ -47,6 +49,8 @@ pub enum Panel {
     Chart(Chart),
     /// Shapes to scale.
     Drawing(Drawing),
+    /// A field by color over axes.
+    Map(Map),
 }
 
 /// Panels in rows under one title and one legend.
@@ -90,6 +94,7 @@ impl Figure {
                 match panel {
                     Panel::Chart(chart) => chart.draw(&area, self.panel_size)?,
                     Panel::Drawing(drawing) => drawing.draw(&area, self.panel_size)?,
+                    Panel::Map(map) => map.draw(&area, self.panel_size)?,
                 }
             }
             root.present()?;
@@ -115,6 +120,11 @@ impl Figure {
                 Panel::Drawing(drawing) => {
                     for (name, color, look) in &drawing.legend {
                         add(name, *color, *look);
+                    }
+                }
+                Panel::Map(map) => {
+                    if let Some((name, color)) = map.legend() {
+                        add(name, color, Look::Patch);
                     }
                 }
             }

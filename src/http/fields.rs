@@ -5,6 +5,8 @@ use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE, HeaderValue};
 use axum::response::{IntoResponse, Response};
 use meshwright_engine::analysis::fields::Fields;
+use meshwright_engine::library::Library;
+use meshwright_engine::run::Run;
 use serde::Deserialize;
 use utoipa::IntoParams;
 
@@ -14,6 +16,7 @@ use super::conditional::{Keep, Tag};
 use super::parameters::{Parameters, invalid, job_id};
 use super::problem::{internal, of_missing_results};
 use crate::exchange::vtu;
+use crate::jobs::Job;
 use crate::wire::solve::fields;
 use crate::wire::{Code, LoadedEdges, Problem, SOLVER_VERSION, Submission, memory_of};
 
@@ -125,11 +128,11 @@ pub(super) async fn edges(
 }
 
 /// How an answer is called and what it is.
-struct File {
-    name: &'static str,
-    media_type: &'static str,
+pub(super) struct File {
+    pub(super) name: &'static str,
+    pub(super) media_type: &'static str,
     /// Whether a browser saves it rather than shows it.
-    saved: bool,
+    pub(super) saved: bool,
 }
 
 /// The fields of job `id` at `place`, as `write` writes them with their torque and mesh position.
@@ -142,51 +145,87 @@ async fn answer(
     file: File,
     write: impl FnOnce(&Fields, f64, f64) -> Result<Vec<u8>, Problem> + Send + 'static,
 ) -> Result<Response, Problem> {
-    let job = app.jobs.find(client.name(), job_id(id)?).await?;
-    let Some(hash) = &job.document else {
-        return Err(of_missing_results(job.status, job.problem.as_ref()));
+    let done = Done::find(&app, &client, id).await?;
+    let (torque, position) = place.within(&done.submission)?;
+    let form = format!("{torque}/{position}");
+    let work = move |submission: &Submission, library: &Library, run: &Run| {
+        let found = fields(submission, torque, position, library, run)?;
+        write(&found, torque, position)
     };
-    let submission = app.jobs.readable_submission(job.id).await?;
-    let submission = Submission::parse(submission.as_bytes())?;
-    let (torque, position) = place.within(&submission)?;
-    app.jobs.check_memory(&submission)?;
-    let memory = memory_of(&submission);
-    let File {
-        name,
-        media_type,
-        saved,
-    } = file;
-    let made = async {
-        let library = app.library.clone();
-        let work = move |run: &meshwright_engine::run::Run| {
-            let found = fields(&submission, torque, position, &library, run)?;
-            write(&found, torque, position)
+    done.look(&app, &client, (file, &form), request, work).await
+}
+
+/// A job that has results, whose submission is computed once more for what they do not hold.
+pub(super) struct Done {
+    job: Job,
+    hash: String,
+    pub(super) submission: Submission,
+}
+
+impl Done {
+    /// That of an id.
+    pub(super) async fn find(app: &App, client: &Client, id: &str) -> Result<Self, Problem> {
+        let job = app.jobs.find(client.name(), job_id(id)?).await?;
+        let Some(hash) = job.document.clone() else {
+            return Err(of_missing_results(job.status, job.problem.as_ref()));
         };
-        let made = app.previews.work(client.name(), None, memory, work);
-        let document = made.await?.answer;
-        let mut response = ([(CONTENT_TYPE, media_type)], document).into_response();
-        if saved {
-            let saved_as = HeaderValue::try_from(format!("attachment; filename=\"{id}-{name}\""));
-            let saved_as = saved_as.map_err(|_| internal())?;
-            response.headers_mut().insert(CONTENT_DISPOSITION, saved_as);
-        }
-        Ok::<_, Problem>(response)
-    };
-    // What this version of the solver says of the job; another one that answers under the same address may say it otherwise.
-    let form = format!("/{name}/{torque}/{position}");
-    let mut response = Tag::of(&[hash, &form, SOLVER_VERSION])
-        .answer(Keep::AskAgain, request, made)
-        .await?;
-    let headers = response.headers_mut();
-    headers.insert("solver-version", HeaderValue::from_static(SOLVER_VERSION));
-    if let Some(version) = job
-        .solver_version
-        .filter(|version| version != SOLVER_VERSION)
-        && let Ok(version) = HeaderValue::try_from(version)
-    {
-        headers.insert("results-solver-version", version);
+        let submission = app.jobs.readable_submission(job.id).await?;
+        Ok(Self {
+            submission: Submission::parse(submission.as_bytes())?,
+            job,
+            hash,
+        })
     }
-    Ok(response)
+
+    /// The `file` that `work` makes while the request waits; `form` tells it from others of the same name.
+    pub(super) async fn look(
+        self,
+        app: &App,
+        client: &Client,
+        (file, form): (File, &str),
+        request: &HeaderMap,
+        work: impl FnOnce(&Submission, &Library, &Run) -> Result<Vec<u8>, Problem> + Send + 'static,
+    ) -> Result<Response, Problem> {
+        let Self {
+            job,
+            hash,
+            submission,
+        } = self;
+        app.jobs.check_memory(&submission)?;
+        let memory = memory_of(&submission);
+        let File {
+            name,
+            media_type,
+            saved,
+        } = file;
+        let made = async {
+            let library = app.library.clone();
+            let work = move |run: &Run| work(&submission, &library, run);
+            let made = app.previews.work(client.name(), None, memory, work);
+            let document = made.await?.answer;
+            let mut response = ([(CONTENT_TYPE, media_type)], document).into_response();
+            if saved {
+                let saved_as = format!("attachment; filename=\"{}-{name}\"", job.id);
+                let saved_as = HeaderValue::try_from(saved_as).map_err(|_| internal())?;
+                response.headers_mut().insert(CONTENT_DISPOSITION, saved_as);
+            }
+            Ok::<_, Problem>(response)
+        };
+        // What this version of the solver says of the job; another one that answers under the same address may say it otherwise.
+        let mut response = Tag::of(&[&hash, name, form, SOLVER_VERSION])
+            .answer(Keep::AskAgain, request, made)
+            .await?;
+        let headers = response.headers_mut();
+        headers.insert("solver-version", HeaderValue::from_static(SOLVER_VERSION));
+        if let Some(version) = job
+            .solver_version
+            .filter(|version| version != SOLVER_VERSION)
+            && let Ok(version) = HeaderValue::try_from(version)
+        {
+            headers.insert("results-solver-version", version);
+        }
+        Ok(response)
+    }
 }
 
 impl FieldParameters {

@@ -9,6 +9,7 @@ mod aside;
 mod batch;
 mod client;
 mod conditional;
+mod contact_pattern;
 mod docs;
 mod document;
 mod door;

@@ -2,9 +2,11 @@
 
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
+use meshwright_engine::analysis::contact_pattern::{ContactPattern, PatternCurve, Pressure};
 use meshwright_engine::gear::GearPair;
+use meshwright_plot::map::Cell;
 use meshwright_plot::{
-    Axis, Chart, Drawing, Figure, Look, Mark, PALETTE, Panel, RGBColor, Series, drawing,
+    Axis, Chart, Drawing, Figure, Look, Map, Mark, PALETTE, Panel, RGBColor, Series, drawing,
 };
 use serde_json::Value;
 
@@ -99,6 +101,55 @@ pub(super) fn pair(pair: &GearPair) -> Result<String, Problem> {
         legend: Vec::new(),
     });
     svg(&title, panel, (760, 460))
+}
+
+/// The largest pressure over the period on both flanks, under each load.
+pub(super) fn contact_pattern(pattern: &ContactPattern) -> Result<String, Problem> {
+    let pressures = pattern.curves.iter().flat_map(|curve| &curve.largest);
+    let limited = pressures.flatten().flatten().filter_map(|cell| match cell {
+        Pressure::Of(pressure) => Some(*pressure),
+        Pressure::Unlimited => None,
+    });
+    let most = 1e-6 * limited.fold(0.0, f64::max);
+    let scale = Axis::linear("MPa", 0.0, if most > 0.0 { most } else { 1.0 });
+    let half = 5e2 * pattern.face_width;
+    let panel = |curve: &PatternCurve, g: usize| {
+        let rows = curve.largest[g].iter().map(|row| {
+            let cells = row.iter().map(|cell| match cell {
+                Pressure::Unlimited => Cell::Beyond,
+                Pressure::Of(0.0) => Cell::Empty,
+                Pressure::Of(pressure) => Cell::Value(1e-6 * pressure),
+            });
+            cells.collect()
+        });
+        let ends = pattern.flanks[g].ends.map(|radius| 2e3 * radius);
+        Panel::Map(Map {
+            title: format!(
+                "{} flank, {} N m",
+                ["driving", "driven"][g],
+                curve.output_torque
+            ),
+            x: (Axis::linear("z in mm", -half, half), [-half, half]),
+            y: (Axis::linear("diameter in mm", ends[0], ends[1]), ends),
+            rows: rows.collect(),
+            scale: scale.clone(),
+            beyond: "sharp tip edge, where pressure has no limit".to_owned(),
+        })
+    };
+    let panels = pattern
+        .curves
+        .iter()
+        .flat_map(|curve| [0, 1].map(|g| panel(curve, g)));
+    let figure = Figure {
+        title: "Largest contact pressure over the period".to_owned(),
+        columns: 2,
+        panel_size: (480, 300),
+        panels: panels.collect(),
+    };
+    figure.to_svg().map_err(|error| {
+        tracing::error!(%error, "a contact pattern could not be drawn");
+        internal()
+    })
 }
 
 /// A number without digits that say nothing.

@@ -25,9 +25,9 @@ use utoipa_axum::routes;
 use super::app::App;
 use super::headers::Trace;
 use super::{
-    batch, docs, door, draw, events, fields, guides, headers, health, jobs, metrics, outline,
-    packing, previews, problem, problem_pages, reference, results, rexs, studies, submit, tables,
-    web, webhooks,
+    batch, contact_pattern, docs, door, draw, events, fields, guides, headers, health, jobs,
+    metrics, outline, packing, previews, problem, problem_pages, reference, results, rexs, studies,
+    submit, tables, web, webhooks,
 };
 use crate::wire::{Code, Problem};
 
@@ -136,6 +136,8 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(rexs::write))
         .routes(routes!(fields::vtu))
         .routes(routes!(fields::edges))
+        .routes(routes!(contact_pattern::json))
+        .routes(routes!(contact_pattern::svg))
         .routes(routes!(tables::table))
         .routes(routes!(studies::results))
         .routes(routes!(studies::population))

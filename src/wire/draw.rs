@@ -5,7 +5,7 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::declare::{
-    Document as _, Errors, Node, Number, ObjectReader, Place, document, nested, number,
+    Document as _, Errors, Node, Number, ObjectReader, Place, document, flag, nested, number,
 };
 use super::gear::{DeviationsDocument, GearDocument};
 use super::problem::Problem;
@@ -23,6 +23,11 @@ document! {
         capability: f64 = CAPABILITY,
         /// What the numbers are drawn from: the same seed gives the same teeth on every machine.
         seed: u32 = SEED,
+        /// The helix angle at the reference circle, whichever the hand, of which tolerances depend by the reference diameter.
+        helix_angle_deg: f64 = number("Helix angle", "deg", -45.0, 45.0).or(0.0),
+        /// Whether the slopes of the leads are drawn too, which only methods in three dimensions take. The other deviations are the same with
+        /// them and without them.
+        lead_slopes: bool = flag("Lead slopes", false),
     }
 }
 
@@ -41,6 +46,7 @@ pub struct Draw {
     class: u32,
     capability: f64,
     seed: u64,
+    lead_slopes: bool,
 }
 
 impl DrawDocument {
@@ -49,7 +55,7 @@ impl DrawDocument {
         let made = self
             .gear
             .without_deviations()
-            .to_gear("/gear", Helix::STRAIGHT);
+            .to_gear("/gear", Helix::right(self.helix_angle_deg.to_radians()));
         let faults = made.as_ref().err().into_iter().flatten();
         faults.for_each(|fault| errors.push(fault.clone()));
         Some(Draw {
@@ -57,6 +63,7 @@ impl DrawDocument {
             class: self.iso_1328_class,
             capability: self.capability,
             seed: u64::from(self.seed),
+            lead_slopes: self.lead_slopes,
         })
     }
 }
@@ -113,7 +120,12 @@ impl Draw {
     pub fn drawn(&self) -> DrawnDeviations {
         let tolerances = Tolerances::of(&self.gear, self.class);
         let normals = Normals::new(self.seed, 0);
-        let teeth = tolerances.draw(self.gear.tooth_count(), self.capability, normals);
+        let (count, capability) = (self.gear.tooth_count(), self.capability);
+        let mut teeth = tolerances.draw(count, capability, normals);
+        if self.lead_slopes {
+            let normals = Normals::new(self.seed, 1);
+            teeth.lead_slope = tolerances.draw_lead_slopes(count, capability, normals);
+        }
         let told = |value: f64| significant(to_um(value), 10);
         DrawnDeviations {
             total_pitch_deviation_um: told(total_pitch_deviation(&teeth)),
@@ -177,6 +189,36 @@ mod tests {
         // What the gear has already is not looked at.
         let again = json!({ "gear": submission["pair"]["driven"], "iso_1328_class": 6, "seed": 3 });
         assert_eq!(answer, drawn(&again).expect("drawn"));
+    }
+
+    #[test]
+    fn lead_slopes_come_where_they_are_asked_for_and_change_no_other_number() {
+        let gear = standard_pair()["pair"]["driven"].clone();
+        let asked = |more: Value| {
+            let mut asked = json!({ "gear": gear, "iso_1328_class": 6, "seed": 3 });
+            let fields = more.as_object().expect("fields").clone();
+            asked.as_object_mut().expect("fields").extend(fields);
+            drawn(&asked).expect("drawn")
+        };
+        let without = asked(json!({}));
+        assert!(without["tooth_deviations"]["lead_slope_um"].is_null());
+        let mut with = asked(json!({ "lead_slopes": true }));
+        let slopes = with["tooth_deviations"]["lead_slope_um"].take();
+        assert_eq!(slopes.as_array().map(Vec::len), Some(50));
+        assert_eq!(with["tooth_deviations"], without["tooth_deviations"]);
+        let mut solid = standard_pair();
+        solid["method"] = json!("three_dimensional");
+        solid["pair"]["driven"]["tooth_deviations"] =
+            asked(json!({ "lead_slopes": true }))["tooth_deviations"].take();
+        assert!(Submission::parse(solid.to_string().as_bytes()).is_ok());
+        // The reference diameter of a helical gear is larger, its normal module the same.
+        let helical = asked(json!({ "helix_angle_deg": -30 }));
+        let told =
+            |answer: &Value, name: &str| answer["tolerances_um"][name].as_f64().expect("a number");
+        let d = 100.0 / 30_f64.to_radians().cos();
+        let expected = 2_f64.sqrt() * (0.001 * d + 0.8 + 5.0);
+        assert!((told(&helical, "single_pitch") - expected).abs() < 1e-8);
+        assert!(told(&helical, "helix_slope") > told(&without, "helix_slope"));
     }
 
     #[test]

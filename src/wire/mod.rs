@@ -1,7 +1,7 @@
 //! The JSON documents of the interface as types, in the units of those who read them.
 //!
 //! Read in this order: [`problem`] (what goes wrong), [`submission`] with its parts [`pair`], [`gear`] and
-//! [`resolution`], [`forces`] (what is asked), [`geometry`], [`outline`], [`edges`], [`warning`] and [`results`] (what is answered), [`solve`](mod@solve)
+//! [`resolution`], [`forces`] (what is asked), [`geometry`], [`outline`], [`edges`], [`contact_pattern`], [`warning`] and [`results`] (what is answered), [`solve`](mod@solve)
 //! (what leads from the one to the other) and [`examples`](mod@examples); [`preview`], a submission that is answered at
 //! once; [`draw`], teeth at random; then [`study`] and [`study_table`], many submissions at once, [`population`], a study of what is made, and [`search`], a study that chooses its designs itself. `declare`, `units`, `size`, `edit` and `pointer` carry
 //! them: the one declaration of each object, conversions, how much is read at all, changes in place, and places in a submission.
@@ -26,6 +26,7 @@ pub mod pair;
 pub mod resolution;
 pub mod submission;
 
+pub mod contact_pattern;
 pub mod edges;
 pub mod geometry;
 pub mod outline;
@@ -44,6 +45,7 @@ pub mod search;
 pub mod study;
 pub mod study_table;
 
+pub use contact_pattern::ContactPatternDocument;
 pub use draw::{Draw, DrawnDeviations};
 pub use edges::LoadedEdges;
 pub use examples::{Example, examples};

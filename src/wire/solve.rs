@@ -1,5 +1,6 @@
 //! From a submission to its results, or to what it would come to.
 
+use meshwright_engine::analysis::contact_pattern::ContactPattern;
 use meshwright_engine::analysis::fields::Fields;
 use meshwright_engine::analysis::forces::run_up_seconds;
 use meshwright_engine::analysis::{self, AnalysisError};
@@ -66,6 +67,29 @@ pub fn fields(
         run,
     )
     .map_err(|error| problem_of(&error))
+}
+
+/// The contact pattern of `submission` under those of its torques, none of them 0.
+///
+/// # Errors
+///
+/// As for [`solve`], and `not_found` for a method that does not see the faces.
+pub fn contact_pattern(
+    submission: &Submission,
+    output_torques_n_m: &[f64],
+    library: &Library,
+    run: &Run,
+) -> Result<ContactPattern, Problem> {
+    let case = submission.case();
+    let found = analysis::contact_pattern::contact_pattern(case, output_torques_n_m, library, run);
+    let pattern = found.map_err(|error| problem_of(&error))?;
+    pattern.ok_or_else(|| {
+        let detail = format!(
+            "The contact over the flanks is seen by the method three_dimensional; {} has one section for the whole face.",
+            submission.method()
+        );
+        Problem::new(Code::NotFound, detail)
+    })
 }
 
 /// What the engine has met, with the field that leads out of it.

@@ -157,3 +157,105 @@ async fn fields_come_as_a_grid_at_any_position_and_torque_of_the_job() {
     problem(get("?mesh_position=1e9").await, 400, "invalid_parameter").await;
     problem(get("?position=1").await, 400, "invalid_parameter").await;
 }
+
+fn helical() -> Value {
+    let mut submission: Value =
+        serde_json::from_str(include_str!("../../api/examples/helical-pair.json")).unwrap();
+    submission["resolution"] =
+        serde_json::json!({ "positions_per_mesh_period": 8, "face_order": 4, "face_slices": 20 });
+    submission["output_torques_n_m"] = serde_json::json!([200, 0, 50]);
+    submission
+}
+
+#[tokio::test]
+async fn the_contact_pattern_of_a_pair_along_its_faces_comes_as_numbers_and_as_a_picture() {
+    let bench = Bench::quick().await;
+    let path = bench.submit(&helical()).await;
+    bench.ended(&path).await;
+    let get = async |file: &str| {
+        let path = format!("{path}/results/contact-pattern.{file}");
+        bench.get(&path).send().await.unwrap()
+    };
+    let answer = get("json").await;
+    assert_eq!(answer.status(), StatusCode::OK);
+    assert_eq!(answer.headers()["cache-control"], "private, no-cache");
+    assert_eq!(
+        answer.headers()["solver-version"],
+        meshwright::wire::SOLVER_VERSION
+    );
+    let tag = answer.headers()["etag"].clone();
+    let pattern: Value = answer.json().await.unwrap();
+    let torques: Vec<f64> = pattern["curves"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|curve| curve["output_torque_n_m"].as_f64().unwrap())
+        .collect();
+    assert_eq!(torques, [200.0, 50.0], "at 0 nothing is pressed");
+    let again = bench
+        .get(&format!("{path}/results/contact-pattern.json"))
+        .header("if-none-match", &tag)
+        .send()
+        .await
+        .unwrap();
+    assert_eq!(again.status(), StatusCode::NOT_MODIFIED);
+    let one = get("json?torque=50").await;
+    assert_ne!(one.headers()["etag"], tag);
+    let one: Value = one.json().await.unwrap();
+    assert_eq!(
+        one["curves"][0], pattern["curves"][1],
+        "to the last digit, whatever was asked beside it"
+    );
+
+    let picture = get("svg").await;
+    assert_eq!(picture.headers()["content-type"], "image/svg+xml");
+    let picture = picture.text().await.unwrap();
+    for word in [
+        "driving flank, 200 N m",
+        "driven flank, 50 N m",
+        "z in mm",
+        "diameter in mm",
+        "MPa",
+    ] {
+        assert!(picture.contains(word), "{word}");
+    }
+    let one = get("svg?torque=200").await.text().await.unwrap();
+    assert!(!one.contains("50 N m") && one.len() < picture.len());
+    problem(get("json?torque=0").await, 404, "not_found").await;
+    problem(get("svg?torque=51").await, 404, "not_found").await;
+    problem(get("json?position=1").await, 400, "invalid_parameter").await;
+
+    let plane = bench.submit(&submission(115.0)).await;
+    bench.ended(&plane).await;
+    for file in ["json", "svg"] {
+        let path = format!("{plane}/results/contact-pattern.{file}");
+        let answer = bench.get(&path).send().await.unwrap();
+        let told = problem(answer, 404, "not_found").await;
+        assert!(
+            told["detail"]
+                .as_str()
+                .unwrap()
+                .contains("three_dimensional")
+        );
+    }
+}
+
+#[tokio::test]
+async fn a_contact_pattern_of_a_job_that_failed_or_is_under_way_is_told_as_its_results_are() {
+    let (bench, mut engine) = Bench::steered().await;
+    let path = bench.submit(&helical()).await;
+    let work = engine.next().await;
+    let pattern = format!("{path}/results/contact-pattern.json");
+    problem(
+        bench.get(&pattern).send().await.unwrap(),
+        404,
+        "result_not_ready",
+    )
+    .await;
+    let cancel = bench.client.post(bench.url(&format!("{path}/cancel")));
+    assert!(cancel.send().await.unwrap().status().is_success());
+    work.stopped().await;
+    bench.ended(&path).await;
+    let answer = bench.get(&pattern).send().await.unwrap();
+    assert_eq!(answer.status(), StatusCode::CONFLICT);
+}

@@ -202,6 +202,32 @@ def test_fields_are_read_back_with_the_stresses_of_the_curve(service, tmp_path):
     assert sorted({int(value) for block in grid.cell_data["gear"] for value in block}) == [0, 1]
 
 
+def test_a_contact_pattern_is_read_and_drawn(service):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    submission = service.example("helical-pair")
+    submission["resolution"] = {"positions_per_mesh_period": 8, "face_order": 4, "face_slices": 20}
+    results = service.solve(submission)
+    assert all(curve.face_load_factor > 1.0 for curve in results.curves)
+    pattern = service.contact_pattern(results.job["id"])
+    assert pattern.output_torques_n_m == [200.0, 50.0]
+    for gear in ("driving", "driven"):
+        pressure = pattern.pressure_mpa(gear)
+        assert pressure.shape == (len(pattern.diameter_mm(gear)), len(pattern.z_mm))
+        # A sharp edge that carries shows at the tip of its own flank, and at the foot of its mate's.
+        assert (pressure > 0.0).mean() > 0.5
+    # The lighter load leaves more of the face free.
+    alone = service.contact_pattern(results.job["id"], torque=50.0)
+    assert (alone.pressure_mpa("driving") > 0.0).sum() < (pattern.pressure_mpa("driving") > 0.0).sum()
+    assert np.array_equal(alone.pressure_mpa("driving"), pattern.pressure_mpa("driving", curve=1))
+    assert [line["mesh_position"] for line in pattern.lines()] == list(results.curves[0].mesh_position)
+    assert pattern.plot().get_xlabel() == "z in mm"
+    with pytest.raises(ProblemError) as refused:
+        service.contact_pattern(solved(service)[0])
+    assert refused.value.code == "not_found"
+
+
 def test_the_fmu_validates_and_gives_the_loads_of_the_table(service, tmp_path):
     import fmpy
     from fmpy.validation import validate_fmu

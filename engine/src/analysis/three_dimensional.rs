@@ -221,7 +221,7 @@ impl Solved {
 }
 
 /// What the flanks of both gears yield, across their faces by polynomials of the order asked for, or somewhat `finer`.
-fn yields(
+pub(super) fn yields(
     faces: &Faces,
     finer: bool,
     parts: &dyn Parts,

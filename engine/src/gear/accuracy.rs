@@ -36,7 +36,7 @@ impl Tolerances {
         let mm = |length: f64| 1e3 * length;
         let (d, m_n, b) = (
             mm(2.0 * gear.reference_radius()),
-            mm(gear.data().rack.module),
+            mm(gear.normal_rack().module),
             mm(gear.face_width()),
         );
         let steps = f64::from(class) - 5.0;
@@ -90,6 +90,20 @@ impl Tolerances {
                 _ => None,
             },
         }
+    }
+}
+
+impl Tolerances {
+    /// How far the leads of so many teeth slope, of independent σ = f_HβT/(3 c); one of `normals` for each.
+    pub fn draw_lead_slopes(
+        &self,
+        tooth_count: u32,
+        capability: f64,
+        normals: impl Iterator<Item = f64>,
+    ) -> Vec<f64> {
+        let sigma = self.helix_slope / (3.0 * capability);
+        let taken = normals.take(tooth_count as usize);
+        taken.map(|normal| sigma * normal).collect()
     }
 }
 

@@ -250,11 +250,11 @@ async fn table(
         });
         outline = added.await?;
     }
-    let (pointers, has_stress) = (outline.pointers().to_vec(), outline.has_stress());
+    let (pointers, told) = (outline.pointers().to_vec(), outline.told());
     let front = aside(&client, move |_| outline.front()).await?;
     let (head, foot, layout) = match form {
         Form::Csv => {
-            let csv = CsvTable::new(pointers, has_stress);
+            let csv = CsvTable::new(pointers, told);
             (csv.header(), "", Layout::Csv(csv))
         }
         Form::Ndjson => (String::new(), "", Layout::Lines),

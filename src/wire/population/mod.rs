@@ -8,6 +8,7 @@ mod results;
 #[cfg(test)]
 mod tests;
 
+use meshwright_engine::analysis::Method;
 use meshwright_engine::gear::{
     Helix, Member, Normals, SpurGear, Tolerances, ToothDeviations, total_pitch_deviation,
 };
@@ -105,11 +106,12 @@ impl Population {
             .collect()
     }
 
-    /// Gives the gears of a member their teeth; what prevents a gear is reported to `errors`.
+    /// Gives the gears of a member their teeth, with slopes of their leads for a `method` that sees the faces; what prevents a gear is reported to `errors`.
     pub(super) fn give_teeth(
         &self,
         member: u32,
         pair: &mut PairDocument,
+        method: Method,
         errors: &Errors,
     ) -> Option<()> {
         for gear in GEARS {
@@ -124,7 +126,11 @@ impl Population {
             let made = document.clone().without_deviations();
             match made.to_gear(&format!("/pair/{gear}"), helix) {
                 Ok(made) => {
-                    let teeth = self.teeth(member, gear, accuracy, &Gauge::of(&made, accuracy));
+                    let gauge = Gauge::of(&made, accuracy);
+                    let mut teeth = self.teeth(member, gear, accuracy, &gauge);
+                    if method.sees_faces() {
+                        teeth.lead_slope = self.lead_slopes(member, gear, accuracy, &gauge);
+                    }
                     document.set_deviations(DeviationsDocument::of(&teeth));
                 }
                 Err(faults) => {
@@ -148,8 +154,7 @@ impl Population {
         gauge: &Gauge,
     ) -> ToothDeviations {
         let drawn = self.drawn_for(member, gear);
-        let stream = (u64::from(gear as u8) + 1) << 32 | u64::from(drawn);
-        let normals = Normals::new(u64::from(self.points.seed), stream);
+        let normals = self.normals(1, drawn, gear);
         let first = self.varied.len() as u32 + 2 * gear as u32;
         let eccentricity =
             [first, first + 1].map(|axis| normal::quantile(self.points.at(drawn, axis)));
@@ -159,6 +164,25 @@ impl Population {
             accuracy.capability,
             teeth.chain(eccentricity),
         )
+    }
+
+    /// How the leads of that gear slope, by numbers of their own: the same teeth have them and have them not.
+    fn lead_slopes(
+        &self,
+        member: u32,
+        gear: Member,
+        accuracy: &GearAccuracy,
+        gauge: &Gauge,
+    ) -> Vec<f64> {
+        let normals = self.normals(3, self.drawn_for(member, gear), gear);
+        let tolerances = &gauge.tolerances;
+        tolerances.draw_lead_slopes(gauge.tooth_count, accuracy.capability, normals)
+    }
+
+    /// The numbers for `gear` as it is `drawn` for a member; those from another `first` stream are independent.
+    fn normals(&self, first: u64, drawn: u32, gear: Member) -> Normals {
+        let stream = (u64::from(gear as u8) + first) << 32 | u64::from(drawn);
+        Normals::new(u64::from(self.points.seed), stream)
     }
 
     /// The member for which the gear of `member` was drawn first: every gear of some batches stands in two pairs, so that what two pairs

@@ -1,18 +1,19 @@
 //! The document of a search, and what is wrong with one.
 
+use meshwright_engine::analysis::Method;
 use meshwright_search::space::Axis;
 
 use super::{Condition, Goal, MOST_EVALUATIONS, Measure, Search, Torques, Variable};
 use crate::wire::declare::{
-    Errors, Kind, Nested, Node, Number, Place, Text, absent, document, list, nested, number,
-    or_else, text, word, words,
+    Choice as _, Errors, Kind, Nested, Node, Number, Place, Text, absent, document, list, nested,
+    number, or_else, text, word, words,
 };
 use crate::wire::draw::SEED;
 use crate::wire::pointer::{NumberKind, Pointer};
 use crate::wire::population::{Population, PopulationDocument};
 use crate::wire::problem::Code;
 use crate::wire::study::MOST_DESIGNS;
-use crate::wire::study_table::{QUANTITIES, Quantity};
+use crate::wire::study_table::{Needs, QUANTITIES, Quantity};
 use crate::wire::units::plain;
 
 /// The most variables, conditions, and parts of a cost.
@@ -397,17 +398,26 @@ impl Reader<'_> {
             );
             return place.wrong(Code::MissingField, detail, None);
         }
-        let asked = |field: &str| {
-            let node = self.base.and_then(|base| base.at(&[field]));
-            node.is_some_and(|node| !matches!(node, Node::Null | Node::Bool(false)))
-        };
-        if let Some(field) = quantity.needs.filter(|field| !asked(field)) {
-            let place = place.of("quantity");
-            let detail = format!(
-                "{} is told where the submission asks for it; give /base/{field}.",
-                quantity.name
-            );
-            return place.wrong(Code::MissingField, detail, None);
+        let of_base = |field: &str| self.base.and_then(|base| base.at(&[field]));
+        let place_of_it = place.of("quantity");
+        match quantity.needs {
+            Needs::Field(field)
+                if matches!(of_base(field), None | Some(Node::Null | Node::Bool(false))) =>
+            {
+                let detail = format!(
+                    "{} is told where the submission asks for it; give /base/{field}.",
+                    quantity.name
+                );
+                return place_of_it.wrong(Code::MissingField, detail, None);
+            }
+            Needs::Faces if !of_base("method").is_some_and(sees_faces) => {
+                let detail = format!(
+                    "{} is told by the method three_dimensional; give /base/method.",
+                    quantity.name
+                );
+                return place_of_it.wrong(Code::NeedsThreeDimensions, detail, None);
+            }
+            Needs::Nothing | Needs::Field(_) | Needs::Faces => {}
         }
         Some(Measure {
             quantity,
@@ -415,6 +425,14 @@ impl Reader<'_> {
             percent,
         })
     }
+}
+
+/// Whether the method of this name sees the faces.
+fn sees_faces(name: &Node) -> bool {
+    let mut methods = Method::OPTIONS.iter();
+    methods.any(|(word, method, _)| {
+        matches!(name, Node::Text(name) if name == word) && method.sees_faces()
+    })
 }
 
 /// Refuses bounds of one quantity that no design keeps.

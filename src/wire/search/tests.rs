@@ -504,6 +504,21 @@ fn what_is_wrong_with_a_search_is_refused_with_its_place() {
             None,
         ),
         (
+            with("minimize", json!([{ "quantity": "face_load_factor" }])),
+            "/search/minimize/0/quantity",
+            Code::NeedsThreeDimensions,
+            None,
+        ),
+        (
+            with(
+                "subject_to",
+                json!([{ "quantity": "face_load_factor", "at_most": 1.2 }]),
+            ),
+            "/search/subject_to/0/quantity",
+            Code::NeedsThreeDimensions,
+            None,
+        ),
+        (
             with("minimize", json!([{ "quantity": RANGE, "percent": 95 }])),
             "/search/minimize/0/percent",
             Code::MissingField,
@@ -684,4 +699,23 @@ fn the_searches_of_the_guide_are_searches() {
         let own: Value = serde_json::from_str(example).expect("JSON");
         assert_eq!(own["search"], told);
     }
+}
+
+#[test]
+fn a_search_along_the_face_bounds_and_minimizes_how_even_the_load_is() {
+    let base = crate::wire::examples()
+        .iter()
+        .find(|example| example.name == "helical-pair");
+    let base: Value = serde_json::from_str(base.expect("ships").json).expect("JSON");
+    let study = json!({ "base": base, "search": {
+        "variables": [{ "path": "/pair/misalignment_um/in_plane_um", "low": -20, "high": 20 }],
+        "minimize": [{ "quantity": "face_load_factor", "torques": "largest" }],
+        "subject_to": [{ "quantity": "face_load_factor", "at_most": 3, "torques": "mean" }],
+        "evaluations": 8,
+    } });
+    assert_eq!(refused_of(&study), None);
+}
+
+fn refused_of(study: &Value) -> Option<Problem> {
+    Study::parse(study.to_string().as_bytes(), &Run::unattended()).err()
 }

@@ -238,8 +238,8 @@ impl Study {
         } = self.composed(row)?;
         let submission = submission.and_then(|submission| match &self.plan {
             Plan::Population(population) => {
-                Submission::of_node_with(&submission, |pair, errors| {
-                    population.give_teeth(row as u32, pair, errors)
+                Submission::of_node_with(&submission, |pair, method, errors| {
+                    population.give_teeth(row as u32, pair, method, errors)
                 })
             }
             Plan::Axes(_) | Plan::Designs(_) | Plan::Search(_) => Submission::of_node(&submission),
@@ -298,8 +298,8 @@ impl Study {
             .submission
             .and_then(|node| match (role, &population) {
                 (Role::Member(_, member), Some(population)) => {
-                    Submission::of_node_with(&node, |pair, errors| {
-                        population.give_teeth(member, pair, errors)
+                    Submission::of_node_with(&node, |pair, method, errors| {
+                        population.give_teeth(member, pair, method, errors)
                     })
                 }
                 _ => Submission::of_node(&node),

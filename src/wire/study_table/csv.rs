@@ -1,6 +1,6 @@
 //! The table as CSV: one line for each row and torque, a row without curves having one line.
 
-use super::{RowCurve, TableRow};
+use super::{RowCurve, TableRow, Told};
 use crate::wire::csv::CsvWriter;
 
 /// The columns behind the label and the changes.
@@ -29,6 +29,9 @@ const STRESSES: [&str; 8] = [
     "statistics.stress.driven.hole_mpa",
 ];
 
+/// How even the load is along the face, in the tables of studies that see it.
+const FACE_LOAD_FACTOR: &str = "face_load_factor";
+
 /// The last columns.
 const LAST: [&str; 4] = [
     "hole_order_um",
@@ -42,16 +45,13 @@ const LAST: [&str; 4] = [
 #[derive(Debug, Clone)]
 pub struct CsvTable {
     pointers: Vec<String>,
-    with_stress: bool,
+    told: Told,
 }
 
 impl CsvTable {
-    /// A table whose rows change what is at these pointers, with or without columns for stresses.
-    pub fn new(pointers: Vec<String>, with_stress: bool) -> Self {
-        Self {
-            pointers,
-            with_stress,
-        }
+    /// A table whose rows change what is at these pointers, with columns for what it has `told`.
+    pub fn new(pointers: Vec<String>, told: Told) -> Self {
+        Self { pointers, told }
     }
 
     /// The line of names.
@@ -75,8 +75,9 @@ impl CsvTable {
         {
             text.text(&name);
         }
-        let stresses = STRESSES.into_iter().filter(|_| self.with_stress);
-        for name in stresses.chain(LAST) {
+        let stresses = STRESSES.into_iter().filter(|_| self.told.stress);
+        let faces = [FACE_LOAD_FACTOR].into_iter().filter(|_| self.told.faces);
+        for name in stresses.chain(faces).chain(LAST) {
             text.text(name);
         }
         text.end_line();
@@ -115,7 +116,7 @@ impl CsvTable {
             text.number(number);
         }
         text.text(if row.pareto { "true" } else { "false" });
-        cells_of_curve(text, curve, self.with_stress);
+        cells_of_curve(text, curve, self.told);
         for part in ["code", "detail"] {
             text.value(row.problem.as_ref().and_then(|problem| problem.get(part)));
         }
@@ -123,7 +124,7 @@ impl CsvTable {
     }
 }
 
-fn cells_of_curve(text: &mut CsvWriter, curve: Option<&RowCurve>, with_stress: bool) {
+fn cells_of_curve(text: &mut CsvWriter, curve: Option<&RowCurve>, told: Told) {
     let statistics = curve.and_then(|curve| curve.statistics.as_ref());
     let ste = statistics.map(|statistics| &statistics.transmission_error_um);
     let k = statistics.map(|statistics| &statistics.mesh_stiffness_tangent_n_per_m);
@@ -133,7 +134,7 @@ fn cells_of_curve(text: &mut CsvWriter, curve: Option<&RowCurve>, with_stress: b
         text.number(values.map(|values| values.rms));
         text.number(values.map(|values| values.peak_to_peak));
     }
-    if with_stress {
+    if told.stress {
         let stress = statistics.and_then(|statistics| statistics.stress.as_ref());
         let (driving, driven) = (stress.map(|s| &s.driving), stress.map(|s| &s.driven));
         for gear in [driving, driven] {
@@ -142,6 +143,9 @@ fn cells_of_curve(text: &mut CsvWriter, curve: Option<&RowCurve>, with_stress: b
             text.number(gear.and_then(|gear| gear.root_compression_mpa));
             text.number(gear.and_then(|gear| gear.hole_mpa));
         }
+    }
+    if told.faces {
+        text.number(curve.and_then(|curve| curve.face_load_factor));
     }
     text.number(curve.and_then(|curve| curve.hole_order_um));
     text.number(curve.and_then(|curve| curve.mesh_order_um));

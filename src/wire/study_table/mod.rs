@@ -19,8 +19,8 @@ use super::warning::GearName;
 use summary::CurveSummary;
 
 pub use self::csv::CsvTable;
-pub use pareto::Outline;
-pub(in crate::wire) use quantity::{Of, QUANTITIES, Quantity};
+pub use pareto::{Outline, Told};
+pub(in crate::wire) use quantity::{Needs, Of, QUANTITIES, Quantity};
 pub use summary::Summary;
 
 /// A design and what has come of it so far.
@@ -116,6 +116,9 @@ pub struct RowCurve {
     pub hole_order_um: Option<f64>,
     /// The amplitude of the transmission error at the mesh order, H_Z2, in um; null without spectrum.
     pub mesh_order_um: Option<f64>,
+    /// K_Hbeta, the load of the heaviest of ten strips of the face over the mean; absent for methods that do not see the face, and at torque 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub face_load_factor: Option<f64>,
 }
 
 /// Makes rows of what has come of all designs, `gear` being the study's.
@@ -137,12 +140,13 @@ pub fn csv(rows: &[TableRow]) -> String {
             pointers.push(pointer.clone());
         }
     }
-    let mut statistics = rows
-        .iter()
-        .flat_map(|row| &row.curves)
-        .filter_map(|curve| curve.statistics.as_ref());
-    let with_stress = statistics.any(|statistics| statistics.stress.is_some());
-    let table = CsvTable::new(pointers, with_stress);
+    let curves = || rows.iter().flat_map(|row| &row.curves);
+    let mut statistics = curves().filter_map(|curve| curve.statistics.as_ref());
+    let told = Told {
+        stress: statistics.any(|statistics| statistics.stress.is_some()),
+        faces: curves().any(|curve| curve.face_load_factor.is_some()),
+    };
+    let table = CsvTable::new(pointers, told);
     table.header() + &table.lines(rows)
 }
 
@@ -182,6 +186,7 @@ impl RowCurve {
             hole_order_um: curve.hole_order(gear),
             mesh_order_um: curve.mesh_order(),
             output_torque_n_m: curve.output_torque_n_m,
+            face_load_factor: curve.face_load_factor,
             statistics: curve.statistics,
         }
     }

@@ -14,7 +14,16 @@ pub struct Outline {
     groups: BTreeMap<Conditions, Vec<(usize, [f64; 3])>>,
     pointers: Vec<String>,
     known: HashSet<String>,
-    has_stress: bool,
+    told: Told,
+}
+
+/// What a table tells beside what every table does.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Told {
+    /// Stresses.
+    pub stress: bool,
+    /// How even the load is along the face.
+    pub faces: bool,
 }
 
 /// Method and torques: what has to be the same for a comparison to mean something.
@@ -35,13 +44,15 @@ impl Outline {
             let group = self.groups.entry(summary.conditions()).or_default();
             group.push((self.rows, objectives));
         }
-        self.has_stress |= row.summary.as_ref().is_some_and(Summary::has_stress);
+        let summary = row.summary.as_ref();
+        self.told.stress |= summary.is_some_and(Summary::has_stress);
+        self.told.faces |= summary.is_some_and(Summary::has_faces);
         self.rows += 1;
     }
 
-    /// Whether any row tells stresses.
-    pub fn has_stress(&self) -> bool {
-        self.has_stress
+    /// What any row tells beside the rest.
+    pub fn told(&self) -> Told {
+        self.told
     }
 
     /// What the rows change, in the order in which it was met first.

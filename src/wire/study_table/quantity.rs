@@ -11,8 +11,8 @@ pub(in crate::wire) struct Quantity {
     pub(in crate::wire) name: &'static str,
     /// Where it stands.
     pub(in crate::wire) of: Of,
-    /// The field of the submission by which it is asked for; none if it is always told.
-    pub(in crate::wire) needs: Option<&'static str>,
+    /// What a submission has to have for it.
+    pub(in crate::wire) needs: Needs,
     /// What it is as good as for a design that has none: the ligament beside holes that there are not.
     pub(in crate::wire) absent: Option<f64>,
 }
@@ -25,7 +25,12 @@ impl PartialEq for Quantity {
 
 impl Quantity {
     const fn needs(self, field: &'static str) -> Self {
-        let needs = Some(field);
+        let needs = Needs::Field(field);
+        Self { needs, ..self }
+    }
+
+    const fn needs_faces(self) -> Self {
+        let needs = Needs::Faces;
         Self { needs, ..self }
     }
 
@@ -33,6 +38,17 @@ impl Quantity {
         let absent = Some(absent);
         Self { absent, ..self }
     }
+}
+
+/// What a submission has to have for a number to be told.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::wire) enum Needs {
+    /// It is always told.
+    Nothing,
+    /// The field by which it is asked for.
+    Field(&'static str),
+    /// A method that sees the faces.
+    Faces,
 }
 
 /// Where a number of a design stands.
@@ -56,7 +72,7 @@ const fn quantity(name: &'static str, of: Of) -> Quantity {
     Quantity {
         name,
         of,
-        needs: None,
+        needs: Needs::Nothing,
         absent: None,
     }
 }
@@ -127,6 +143,7 @@ pub(in crate::wire) const QUANTITIES: &[Quantity] = &[
         curve.dynamic_peak_to_peak_um
     })
     .needs("dynamics"),
+    curve("face_load_factor", |curve, _| curve.face_load_factor).needs_faces(),
 ];
 
 fn ste(curve: &CurveSummary) -> Option<&StatisticsValues> {

@@ -55,6 +55,9 @@ pub(in crate::wire) struct CurveSummary {
     /// The largest peak-to-peak value of the dynamic transmission error over the speeds of a run-up, whichever way it is run through.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) dynamic_peak_to_peak_um: Option<f64>,
+    /// K_Hbeta, where the method sees the faces.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) face_load_factor: Option<f64>,
     /// Amplitudes of the transmission error, in um, by the names of their orders.
     pub(super) orders: BTreeMap<String, f64>,
 }
@@ -105,6 +108,11 @@ impl Summary {
             peak_contact_pressure_mpa: Vec<Option<f64>>,
             spectrum: Option<Spectrum>,
             dynamics: Option<Dynamics>,
+            face: Option<Face>,
+        }
+        #[derive(Deserialize)]
+        struct Face {
+            face_load_factor: f64,
         }
         #[derive(Deserialize)]
         struct Dynamics {
@@ -158,6 +166,7 @@ impl Summary {
                     .and_then(|pressures| pressures.into_iter().reduce(f64::max)),
                 output_torque_n_m: curve.output_torque_n_m,
                 statistics: curve.statistics,
+                face_load_factor: curve.face.map(|face| face.face_load_factor),
                 orders: orders.collect(),
             }
         };
@@ -213,6 +222,12 @@ impl Summary {
             .iter()
             .filter_map(|curve| curve.statistics.as_ref());
         statistics.any(|statistics| statistics.stress.is_some())
+    }
+
+    /// Whether it tells how even the load is along the face.
+    pub(super) fn has_faces(&self) -> bool {
+        let mut factors = self.curves.iter().map(|curve| curve.face_load_factor);
+        factors.any(|factor| factor.is_some())
     }
 
     /// What designs are compared by, each the less the better; none if a number is missing.

@@ -220,6 +220,52 @@ fn the_csv_has_columns_for_stresses_where_any_row_tells_them() {
 }
 
 #[test]
+fn the_load_along_the_face_is_told_by_those_who_see_it() {
+    let mut document: Value =
+        serde_json::from_str(&document(0.9, [1.7, 2.5], 2.2e8)).expect("a document");
+    document["curves"][0]["face"] = json!({ "face_load_factor": 1.69, "z_mm": [0.0] });
+    let mut helical = state("helical", 0.9, [1.7, 2.5], 2.2e8);
+    helical.summary = Summary::of_document(&document.to_string());
+    let told = |state: &RowState, curve: usize| {
+        let quantity = QUANTITIES
+            .iter()
+            .find(|quantity| quantity.name == "face_load_factor");
+        let Of::Curve(of) = quantity.expect("it has a name").of else {
+            panic!("it depends on the torque")
+        };
+        let summary = state.summary.as_ref().expect("computed");
+        of(&summary.curves()[curve], GearName::Driven)
+    };
+    let plain = state("plain", 0.9, [1.7, 2.5], 2.2e8);
+    assert_eq!(
+        [told(&helical, 0), told(&helical, 1), told(&plain, 0)],
+        [Some(1.69), None, None]
+    );
+    // It is kept with the row.
+    let kept = serde_json::to_string(&helical.summary).expect("JSON");
+    helical.summary = serde_json::from_str(&kept).expect("the same");
+    assert_eq!(told(&helical, 0), Some(1.69));
+
+    let rows = table(GearName::Driven, vec![helical, plain.clone()]);
+    let text = csv(&rows);
+    let mut read = ::csv::Reader::from_reader(text.as_bytes());
+    let names = read.headers().expect("names").clone();
+    let place = names.iter().position(|name| name == "face_load_factor");
+    let place = place.expect("a column");
+    assert_eq!(&names[place + 1], "hole_order_um");
+    let cells: Vec<String> = read
+        .records()
+        .map(|line| line.expect("a line")[place].to_owned())
+        .collect();
+    assert_eq!(cells, ["1.69", "", "", ""]);
+    let json = serde_json::to_value(&rows).expect("JSON");
+    assert_eq!(json[0]["curves"][0]["face_load_factor"], 1.69);
+    assert!(json[1]["curves"][0].get("face_load_factor").is_none());
+    let plane = csv(&table(GearName::Driven, vec![plain]));
+    assert!(!plane.contains("face_load_factor"));
+}
+
+#[test]
 fn a_label_that_begins_a_formula_comes_out_as_text() {
     let rows = table(
         GearName::Driven,

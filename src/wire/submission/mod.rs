@@ -165,20 +165,20 @@ impl Submission {
 
     /// Reads and checks a submission that is taken apart already.
     pub(super) fn of_node(node: &Node) -> Result<Self, Problem> {
-        Self::of_node_with(node, |_, _| Some(()))
+        Self::of_node_with(node, |_, _, _| Some(()))
     }
 
     /// The same, once `finish` has made of the pair what cannot be written down beforehand. What prevents that it reports.
     pub(super) fn of_node_with(
         node: &Node,
-        finish: impl FnOnce(&mut PairDocument, &Errors) -> Option<()>,
+        finish: impl FnOnce(&mut PairDocument, Method, &Errors) -> Option<()>,
     ) -> Result<Self, Problem> {
         let errors = Errors::default();
         let document = ObjectReader::new(node, Place::root(&errors))
             .and_then(Document::read_whole)
             .filter(|_| errors.count() == 0);
         let read = document.and_then(|mut document| {
-            finish(&mut document.pair, &errors)?;
+            finish(&mut document.pair, document.method, &errors)?;
             document.checked(Purpose::Job, &errors)
         });
         match read {

@@ -1,9 +1,10 @@
 """Client of a Meshwright service: transmission error and mesh stiffness of spur gear pairs with holes."""
 
 from .client import AsyncClient, Client
+from .contact_pattern import ContactPattern
 from .look_up import LookUpTable
 from .problem import FieldError, ProblemError
 from .results import Curve, Results
 from .study import PopulationTable, StudyTable
 
-__all__ = ["AsyncClient", "Client", "Curve", "FieldError", "LookUpTable", "PopulationTable", "ProblemError", "Results", "StudyTable"]
+__all__ = ["AsyncClient", "Client", "ContactPattern", "Curve", "FieldError", "LookUpTable", "PopulationTable", "ProblemError", "Results", "StudyTable"]

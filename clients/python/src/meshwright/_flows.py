@@ -9,6 +9,7 @@ from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
+from .contact_pattern import ContactPattern
 from .look_up import LookUpTable
 from .problem import ProblemError
 from .results import Results
@@ -57,6 +58,11 @@ def fields(job_id: str, torque: float | None, mesh_position: float | None) -> Fl
     query = "&".join(f"{name}={value}" for name, value in asked.items() if value is not None)
     text: str = yield Call("GET", f"/v1/jobs/{job_id}/results/fields.vtu?{query}", as_text=True)
     return text
+
+
+def contact_pattern(job_id: str, torque: float | None) -> Flow[ContactPattern]:
+    query = "" if torque is None else f"?torque={torque}"
+    return ContactPattern((yield from get(f"/v1/jobs/{job_id}/results/contact-pattern.json{query}")))
 
 
 def preview(submission: Submission) -> Flow[Results]:

@@ -14,6 +14,7 @@ import httpx
 from . import _flows
 from ._flows import Call, Flow, Json, Report, Submission
 from ._progress import reporter
+from .contact_pattern import ContactPattern
 from .look_up import LookUpTable
 from .problem import ProblemError
 from .results import Results
@@ -112,6 +113,10 @@ class Client:
         """Displacements and stresses in both gears at a mesh position, as a VTU document for ParaView, PyVista or meshio."""
         return self._run(_flows.fields(job_id, torque, mesh_position))
 
+    def contact_pattern(self, job_id: str, torque: float | None = None) -> ContactPattern:
+        """How the flanks of a pair that was computed along its faces press each other, and the lines of contact that do."""
+        return self._run(_flows.contact_pattern(job_id, torque))
+
     def study(self, document: Mapping[str, Any], progress: bool | Report = False) -> StudyTable:
         """Submits a study and gives its table when all designs have ended."""
         return self._run(_flows.study(document, reporter(progress)))
@@ -189,6 +194,9 @@ class AsyncClient:
 
     async def fields(self, job_id: str, torque: float | None = None, mesh_position: float | None = None) -> str:
         return await self._run(_flows.fields(job_id, torque, mesh_position))
+
+    async def contact_pattern(self, job_id: str, torque: float | None = None) -> ContactPattern:
+        return await self._run(_flows.contact_pattern(job_id, torque))
 
     async def study(self, document: Mapping[str, Any], progress: bool | Report = False) -> StudyTable:
         return await self._run(_flows.study(document, reporter(progress)))

@@ -77,6 +77,12 @@ class Curve:
                 return _array(share["share"])
         return np.zeros_like(self.mesh_position)
 
+    @property
+    def face_load_factor(self) -> float | None:
+        """K_Hbeta; none for methods that do not see the face, and at the torque 0."""
+        factor = self.document.get("face", {}).get("face_load_factor")
+        return None if factor is None else float(factor)
+
     def order(self, label: str) -> float:
         """The amplitude of the transmission error, in um, at a named order such as `H_N` or `H_Z2`."""
         for line in self.document.get("spectrum", {}).get("named", []):

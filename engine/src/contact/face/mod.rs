@@ -119,8 +119,10 @@ pub struct SliceLoad {
     pub force: f64,
     /// Where it touches: roll length on the driving and on the driven gear.
     pub roll_lengths: [f64; 2],
-    /// The largest pressure in Pa; `None` at a sharp tip corner, where it has no limit.
+    /// The largest pressure in Pa; `None` at a sharp tip edge, where it has no limit, and where a line is shorter than it is wide.
     pub pressure: Option<f64>,
+    /// Whether a sharp tip edge carries.
+    pub at_sharp_edge: bool,
     /// Half the width of the contact along the profile, in meters.
     pub half_width: f64,
     /// The force N normal to the flanks, and dN/dF.
@@ -130,7 +132,7 @@ pub struct SliceLoad {
 /// The contact of the whole mesh at one position and load, along the faces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FaceContact {
-    /// Summed up pair by pair. Its largest pressure is that of the slices that have one.
+    /// Summed up pair by pair. Its largest pressure is none where a sharp tip edge carries, and that of the slices that have one elsewhere.
     pub mesh: MeshContact,
     /// The slices that carry, pair by pair, along z.
     pub slices: Vec<SliceLoad>,
@@ -151,19 +153,8 @@ impl FaceContact {
     /// The load in each of `count` equal strips of a common face of `width`, in N.
     pub fn strips(&self, width: f64, count: usize) -> Vec<f64> {
         let mut strips = vec![0.0; count];
-        let strip = width / count as f64;
         for slice in &self.slices {
-            let from = (slice.z - 0.5 * slice.length + 0.5 * width) / strip;
-            let to = from + slice.length / strip;
-            let density = slice.force / (to - from);
-            let first = (from.floor().max(0.0) as usize).min(count - 1);
-            for (i, load) in strips.iter_mut().enumerate().skip(first) {
-                let (low, high) = (i as f64, (i + 1) as f64);
-                if low >= to {
-                    break;
-                }
-                *load += density * (to.min(high) - from.max(low)).max(0.0);
-            }
+            add_to_strips(&mut strips, width, (slice.z, slice.length, slice.force));
         }
         strips
     }
@@ -449,6 +440,7 @@ impl FaceModel {
     fn told(&self, slices: &[Slice], balance: &Balance, load: f64) -> FaceContact {
         let mut pairs: Vec<PairContact> = Vec::new();
         let mut peak_pressure = None::<f64>;
+        let mut at_sharp_edge = false;
         let mut corner_shares = [0.0; 2];
         let mut loads = Vec::new();
         let forces = balance.forces.iter().zip(&balance.load_derivative);
@@ -475,6 +467,7 @@ impl FaceModel {
             if let Some(member) = pressed.tip_corner {
                 corner_shares[member.index()] += slice.weights[1] * force / load;
             }
+            at_sharp_edge |= pressed.at_sharp_edge;
             peak_pressure = match (peak_pressure, pressure) {
                 (Some(one), Some(other)) => Some(one.max(other)),
                 (one, other) => one.or(other),
@@ -486,6 +479,7 @@ impl FaceModel {
                 force: slice.weights[1] * force,
                 roll_lengths: slice.roll_lengths,
                 pressure,
+                at_sharp_edge: pressed.at_sharp_edge,
                 half_width: pressed.half_width,
                 normal: [force, rise],
             });
@@ -507,7 +501,7 @@ impl FaceModel {
                 stiffness: balance.stiffness,
                 driving_load: sum(0),
                 pairs,
-                peak_pressure,
+                peak_pressure: peak_pressure.filter(|_| !at_sharp_edge),
                 equilibrium: (sum(1) - load).abs() / load,
                 complementarity: complementarity.fold(0.0, f64::max),
                 penetration: balance.penetration(slices),
@@ -569,6 +563,22 @@ impl FlankYield for Rigid {
 
     fn repeats_after(&self) -> usize {
         1
+    }
+}
+
+/// Adds the force on a piece of a common face of `width` to the equal strips that it lies in.
+fn add_to_strips(strips: &mut [f64], width: f64, (z, length, force): (f64, f64, f64)) {
+    let strip = width / strips.len() as f64;
+    let from = (z - 0.5 * length + 0.5 * width) / strip;
+    let to = from + length / strip;
+    let density = force / (to - from);
+    let first = (from.floor().max(0.0) as usize).min(strips.len() - 1);
+    for (i, load) in strips.iter_mut().enumerate().skip(first) {
+        let (low, high) = (i as f64, (i + 1) as f64);
+        if low >= to {
+            break;
+        }
+        *load += density * (to.min(high) - from.max(low)).max(0.0);
     }
 }
 

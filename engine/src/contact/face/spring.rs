@@ -56,6 +56,8 @@ pub(super) struct Closing {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pressed {
     pub(super) pressure: Option<f64>,
+    /// Whether it reaches a sharp tip edge, where pressure has no limit.
+    pub(super) at_sharp_edge: bool,
     pub(super) half_width: f64,
     pub(super) tip_corner: Option<Member>,
     pub(super) fillet: Option<Member>,
@@ -179,6 +181,7 @@ impl Spring {
                 let (half_width, pressure) = hertz(q, *radius, self.factor, 1.0);
                 Pressed {
                     pressure: Some(pressure),
+                    at_sharp_edge: false,
                     half_width,
                     tip_corner: None,
                     fillet: None,
@@ -202,6 +205,7 @@ impl Cells {
         let Some(solution) = self.solved(q) else {
             return Pressed {
                 pressure: None,
+                at_sharp_edge: false,
                 half_width: 0.0,
                 tip_corner: None,
                 fillet: None,
@@ -231,6 +235,7 @@ impl Cells {
             .sum();
         Pressed {
             pressure: (!at_corner).then_some(largest),
+            at_sharp_edge: at_corner,
             half_width: 0.5 * width,
             tip_corner: patch.off_path.then_some(seat),
             fillet,

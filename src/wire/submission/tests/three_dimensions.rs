@@ -5,7 +5,8 @@ use meshwright_engine::run::Run;
 use serde_json::{Value, json};
 
 use super::{filled_in, least, parse, put};
-use crate::wire::{Code, solve};
+use crate::wire::solve::contact_pattern;
+use crate::wire::{Code, ContactPatternDocument, Submission, solve};
 
 /// A straight pair that three dimensions take.
 fn solid() -> Value {
@@ -354,4 +355,254 @@ fn results_tell_the_load_along_the_face() {
     assert!((number("transverse_pressure_angle_deg") - 21.1728).abs() < 1e-4);
     let unseen = results["evidence"]["does_not_see"].to_string();
     assert!(!unseen.contains("the model is plane"), "{unseen}");
+}
+
+/// A helical pair of few teeth and slices, with no web in the way of a mirror.
+fn pattern_pair(changes: &[(&str, Value)]) -> Submission {
+    let gear = |teeth: u32| {
+        json!({ "tooth_count": teeth, "module_mm": 2.0, "face_width_mm": 20.0, "blank": { "bore_radius_mm": 10.0 },
+                "tip_rounding_mm": 0.2 })
+    };
+    let document = json!({
+        "method": "three_dimensional",
+        "pair": { "center_distance_mm": 58.8, "helix_angle_deg": 20.0, "driving": gear(25), "driven": gear(30) },
+        "output_torques_n_m": [100.0],
+        "resolution": { "positions_per_mesh_period": 8, "face_order": 4, "face_slices": 20 },
+    });
+    parse(&with(document, changes)).expect("valid")
+}
+
+fn pattern(submission: &Submission) -> Value {
+    let torques = &submission.case().output_torques;
+    let found = contact_pattern(submission, torques, &Library::default(), &Run::unattended());
+    let document = ContactPatternDocument::of(&found.expect("a pattern"));
+    serde_json::from_str(&document.to_json().expect("finite")).expect("JSON")
+}
+
+fn numbers(list: &Value) -> Vec<f64> {
+    let list = list.as_array().expect("a list").iter();
+    list.map(|each| each.as_f64().unwrap_or(f64::NAN)).collect()
+}
+
+fn map(curve: &Value, gear: &str) -> Vec<Vec<f64>> {
+    let rows = curve[gear]["pressure_mpa"].as_array().expect("rows");
+    rows.iter().map(numbers).collect()
+}
+
+#[test]
+fn a_contact_pattern_tells_every_line_and_the_largest_pressure_of_all() {
+    let torques = json!([100, 30]);
+    let submission = pattern_pair(&[("/output_torques_n_m", torques)]);
+    let pattern = pattern(&submission);
+    let z = numbers(&pattern["z_mm"]);
+    assert!((z[0] + 9.75).abs() < 1e-9 && z.len() == 40);
+    let results = solve(&submission, &Library::default(), &Run::unattended()).expect("solves");
+    let results: Value = serde_json::from_str(&results).expect("JSON");
+    let curves = pattern["curves"].as_array().expect("curves");
+    assert_eq!(curves.len(), 2);
+    for (curve, solved) in curves
+        .iter()
+        .zip(results["curves"].as_array().expect("curves"))
+    {
+        assert_eq!(curve["output_torque_n_m"], solved["output_torque_n_m"]);
+        let positions = curve["positions"].as_array().expect("positions");
+        assert_eq!(positions.len(), 8);
+        let peaks = numbers(&solved["peak_contact_pressure_mpa"]);
+        let load = solved["load_n"].as_f64().expect("a load");
+        let mut largest: f64 = 0.0;
+        for (i, position) in positions.iter().enumerate() {
+            assert_eq!(position["mesh_position"], solved["mesh_position"][i]);
+            let (mut carried, mut peak) = (0.0, 0.0_f64);
+            for line in position["lines"].as_array().expect("lines") {
+                let (z, loads) = (numbers(&line["z_mm"]), numbers(&line["load_n_per_mm"]));
+                let pressures = numbers(&line["pressure_mpa"]);
+                for (gear, teeth) in [("driving", 25.0), ("driven", 30.0)] {
+                    let diameters = numbers(&line[format!("{gear}_diameter_mm")]);
+                    assert_eq!(diameters.len(), z.len());
+                    let flank = &pattern[gear];
+                    let ends = ["form_diameter_mm", "tip_diameter_mm"]
+                        .map(|name| flank[name].as_f64().expect("a diameter"));
+                    assert!(
+                        diameters
+                            .iter()
+                            .all(|d| (ends[0]..=ends[1] + 1e-9).contains(d))
+                    );
+                    assert!(ends[1] > 2.0 * teeth);
+                }
+                // Slices of one line are equally long.
+                let length = if z.len() > 1 { z[1] - z[0] } else { 0.0 };
+                carried += loads.iter().sum::<f64>() * length;
+                peak = pressures
+                    .into_iter()
+                    .filter(|p| p.is_finite())
+                    .fold(peak, f64::max);
+            }
+            assert!((carried / load - 1.0).abs() < 0.02, "{carried} {load}");
+            assert!((peak / peaks[i] - 1.0).abs() < 1e-4, "{peak} {}", peaks[i]);
+            largest = largest.max(peak);
+        }
+        let told = curve["largest_pressure_mpa"].as_f64().expect("a pressure");
+        // A slice that no middle of a strip lies in is told as a line alone.
+        assert!(
+            told <= largest * (1.0 + 1e-4) && told > 0.9 * largest,
+            "{told} {largest}"
+        );
+        for gear in ["driving", "driven"] {
+            let map = map(curve, gear);
+            assert_eq!((map.len(), map[0].len()), (32, 40));
+            let touched = map.iter().flatten().filter(|p| **p > 0.0).count();
+            // A light load does not reach all of the flank, which begins where no mate comes.
+            assert!(touched > 32 * 40 / 2, "{gear}: {touched}");
+            for strip in 0..40 {
+                let column: Vec<bool> = map.iter().map(|row| row[strip] > 0.0).collect();
+                let edges = column.windows(2).filter(|pair| pair[0] != pair[1]).count();
+                assert!(
+                    edges <= 2,
+                    "{gear}, strip {strip}: positions leave no stripes"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_pattern_of_the_other_hand_under_the_other_lead_is_the_mirror_image() {
+    for (helix, slope) in [(20.0, 12.0), (20.0, -12.0), (12.0, 6.0)] {
+        let distance = 55.0 / f64::to_radians(helix).cos() + 0.3;
+        let of = |hand: f64| {
+            let ends = [0.0, slope].map(|end| if hand > 0.0 { end } else { slope - end });
+            let lead = json!([{ "kind": "table", "z_mm": [-10, 10], "removed_um": ends }]);
+            pattern_pair(&[
+                ("/pair/helix_angle_deg", json!(hand * helix)),
+                ("/pair/center_distance_mm", json!(distance)),
+                ("/pair/driven/lead_modifications", lead),
+            ])
+        };
+        let [one, other] = [1.0, -1.0].map(|hand| pattern(&of(hand)));
+        for gear in ["driving", "driven"] {
+            let [one, other] = [&one, &other].map(|pattern| map(&pattern["curves"][0], gear));
+            let most = one.iter().flatten().copied().fold(0.0, f64::max);
+            let mut halves = [0.0; 2];
+            for (row, mirrored) in one.iter().zip(&other) {
+                for (strip, pressure) in row.iter().enumerate() {
+                    let apart = (pressure - mirrored[39 - strip]).abs();
+                    assert!(apart < 1e-3 * most, "{pressure} {apart}");
+                    halves[strip / 20] += pressure;
+                }
+            }
+            // What is taken off at the +z end leaves the load to the other.
+            assert!((halves[0] - halves[1]) * slope > 0.0, "{halves:?} {slope}");
+        }
+    }
+}
+
+#[test]
+fn the_pattern_of_a_misaligned_pair_stands_where_its_face_is_closed() {
+    for (slope, closed) in [(12.0, 0), (-12.0, 1)] {
+        let askew = json!({ "out_of_plane_um": slope });
+        let pattern = pattern(&pattern_pair(&[("/pair/misalignment_um", askew)]));
+        for gear in ["driving", "driven"] {
+            let mut halves = [0.0; 2];
+            for row in map(&pattern["curves"][0], gear) {
+                for (strip, pressure) in row.into_iter().enumerate() {
+                    halves[strip / 20] += pressure;
+                }
+            }
+            assert!(
+                halves[closed] > 1.1 * halves[1 - closed],
+                "{slope}: {halves:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_pattern_over_several_periods_tells_a_bounded_number_of_positions_and_the_largest_of_all() {
+    let slopes: Vec<f64> = (0..30)
+        .map(|tooth| if tooth == 7 { 9.0 } else { 0.0 })
+        .collect();
+    let of = |span: u32| {
+        pattern_pair(&[
+            (
+                "/pair/driven/tooth_deviations",
+                json!({ "lead_slope_um": slopes }),
+            ),
+            ("/resolution/span_mesh_periods", json!(span)),
+            ("/resolution/positions_per_mesh_period", json!(8)),
+        ])
+    };
+    let [short, long] = [1, 30].map(|span| pattern(&of(span)));
+    let positions = |pattern: &Value| pattern["curves"][0]["positions"].as_array().map(Vec::len);
+    assert_eq!((positions(&short), positions(&long)), (Some(8), Some(120)));
+    let sum = |pattern: &Value, half: usize| -> f64 {
+        let map = map(&pattern["curves"][0], "driven");
+        map.iter()
+            .flat_map(|row| &row[20 * half..20 * (half + 1)])
+            .sum()
+    };
+    // Tooth 7 comes into the mesh in the long span alone, and presses at the end that is left to it.
+    assert!(sum(&long, 0) > 1.02 * sum(&short, 0));
+}
+
+#[test]
+fn pressure_at_a_sharp_edge_is_null_in_the_pattern_and_in_the_curve() {
+    let sharp = [
+        "/pair/driving/tip_rounding_mm",
+        "/pair/driven/tip_rounding_mm",
+    ];
+    let sharp = sharp.map(|pointer| (pointer, Value::Null)).to_vec();
+    for (changes, is_sharp) in [(Vec::new(), false), (sharp, true)] {
+        let submission = pattern_pair(&changes);
+        let results = solve(&submission, &Library::default(), &Run::unattended()).expect("solves");
+        let results: Value = serde_json::from_str(&results).expect("JSON");
+        let peaks = numbers(&results["curves"][0]["peak_contact_pressure_mpa"]);
+        let pattern = pattern(&submission);
+        let curve = &pattern["curves"][0];
+        let bands = |gear: &str| -> Vec<usize> {
+            let map = map(curve, gear);
+            let has_none = |band: &usize| map[*band].iter().any(|pressure| pressure.is_nan());
+            (0..32).filter(has_none).collect()
+        };
+        assert_eq!(
+            peaks.iter().any(|peak| peak.is_nan()),
+            is_sharp,
+            "{peaks:?}"
+        );
+        for gear in ["driving", "driven"] {
+            let bands = bands(gear);
+            assert_eq!(
+                bands.contains(&31),
+                is_sharp,
+                "{gear}: at its own tip, {bands:?}"
+            );
+            let at_root = bands.iter().any(|band| *band < 16);
+            assert_eq!(
+                at_root, is_sharp,
+                "{gear}: where the edge of its mate digs, {bands:?}"
+            );
+        }
+        assert!(
+            curve["largest_pressure_mpa"]
+                .as_f64()
+                .is_some_and(|most| most > 100.0)
+        );
+    }
+}
+
+#[test]
+fn a_plane_method_has_no_pattern_and_says_which_has() {
+    let submission = parse(&least()).expect("valid");
+    let problem = contact_pattern(
+        &submission,
+        &[50.0],
+        &Library::default(),
+        &Run::unattended(),
+    );
+    let problem = problem.expect_err("no faces");
+    assert_eq!(problem.code, Code::NotFound);
+    assert!(
+        problem.detail.contains("three_dimensional"),
+        "{}",
+        problem.detail
+    );
 }

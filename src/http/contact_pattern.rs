@@ -1,0 +1,150 @@
+//! Where the flanks of a job's pair touch and how they press there, as numbers and as a picture.
+
+use axum::extract::{Path, State};
+use axum::http::HeaderMap;
+use axum::response::Response;
+use meshwright_engine::analysis::contact_pattern::ContactPattern;
+use serde::Deserialize;
+use utoipa::IntoParams;
+
+use super::app::App;
+use super::client::Client;
+use super::fields::{Done, File};
+use super::parameters::Parameters;
+use super::pictures;
+use super::problem::internal;
+use crate::wire::solve::contact_pattern;
+use crate::wire::{Code, ContactPatternDocument, Problem, Submission};
+
+/// Which curve.
+#[derive(Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub(super) struct PatternParameters {
+    /// One of the job's output torques, in N m, not 0; without it, all of them.
+    #[param(example = 100.0)]
+    torque: Option<f64>,
+}
+
+/// Get the contact pattern
+///
+/// The largest pressure over the period on both flanks of a pair that was computed along its faces, and the lines of contact at each position with
+/// the load and the pressure along them. It is computed anew from the submission, while the request waits, and bounded as previews are: the
+/// contact alone, as the gears are known from the job.
+#[utoipa::path(
+    get, path = "/v1/jobs/{id}/results/contact-pattern.json", tag = "Results", operation_id = "get_contact_pattern",
+    params(
+        ("id" = String, Path, format = "uuid", description = "The id of the job."),
+        PatternParameters,
+        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
+    ),
+    responses(
+        (status = 200, description = "The pattern.", body = ContactPatternDocument, headers(
+            ("ETag" = String, description = "Stands for this pattern, as this version of the solver computes it."),
+            ("Solver-Version" = String, description = "The version of the solver that has computed this pattern."),
+            ("Results-Solver-Version" = Option<String>, description = "The version that computed the job's results, where it is another one: its curves may differ a little from what is seen here."),
+        )),
+        (status = 304, description = "The client has this pattern."),
+        (status = 400, description = "A parameter is not understood.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such job or torque, the job has not ended, or its method does not see the faces.", body = Problem, content_type = "application/problem+json"),
+        (status = 409, description = "The job failed or was cancelled, and has no results.", body = Problem, content_type = "application/problem+json"),
+        (status = 422, description = "The pattern cannot be computed, or takes too long.", body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(super) async fn json(
+    State(app): State<App>,
+    client: Client,
+    Path(id): Path<String>,
+    Parameters(which): Parameters<PatternParameters>,
+    request: HeaderMap,
+) -> Result<Response, Problem> {
+    let write = |pattern: &ContactPattern| {
+        let document = ContactPatternDocument::of(pattern);
+        Ok(document.to_json().map_err(|_| internal())?.into_bytes())
+    };
+    let file = File {
+        name: "contact-pattern.json",
+        media_type: "application/json",
+        saved: false,
+    };
+    answer(&app, &client, &id, &which, &request, file, write).await
+}
+
+/// Get the contact pattern as a picture
+///
+/// The largest pressure over the period by color, on both flanks, over the face and the diameter: a row for each output torque.
+#[utoipa::path(
+    get, path = "/v1/jobs/{id}/results/contact-pattern.svg", tag = "Results", operation_id = "draw_contact_pattern",
+    params(
+        ("id" = String, Path, format = "uuid", description = "The id of the job."),
+        PatternParameters,
+        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
+    ),
+    responses(
+        (status = 200, description = "The picture.", body = String, content_type = "image/svg+xml", headers(
+            ("ETag" = String, description = "Stands for this picture, as this version of the solver computes it."),
+            ("Solver-Version" = String, description = "The version of the solver that has computed this pattern."),
+            ("Results-Solver-Version" = Option<String>, description = "The version that computed the job's results, where it is another one."),
+        )),
+        (status = 304, description = "The client has this picture."),
+        (status = 400, description = "A parameter is not understood.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such job or torque, the job has not ended, or its method does not see the faces.", body = Problem, content_type = "application/problem+json"),
+        (status = 409, description = "The job failed or was cancelled, and has no results.", body = Problem, content_type = "application/problem+json"),
+        (status = 422, description = "The pattern cannot be computed, or takes too long.", body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds.", body = Problem, content_type = "application/problem+json"),
+    ),
+)]
+pub(super) async fn svg(
+    State(app): State<App>,
+    client: Client,
+    Path(id): Path<String>,
+    Parameters(which): Parameters<PatternParameters>,
+    request: HeaderMap,
+) -> Result<Response, Problem> {
+    let write = |pattern: &ContactPattern| Ok(pictures::contact_pattern(pattern)?.into_bytes());
+    let file = File {
+        name: "contact-pattern.svg",
+        media_type: "image/svg+xml",
+        saved: false,
+    };
+    answer(&app, &client, &id, &which, &request, file, write).await
+}
+
+async fn answer(
+    app: &App,
+    client: &Client,
+    id: &str,
+    which: &PatternParameters,
+    request: &HeaderMap,
+    file: File,
+    write: impl FnOnce(&ContactPattern) -> Result<Vec<u8>, Problem> + Send + 'static,
+) -> Result<Response, Problem> {
+    let done = Done::find(app, client, id).await?;
+    let torques = which.of(&done.submission)?;
+    let form = which
+        .torque
+        .map_or_else(String::new, |torque| torque.to_string());
+    let work = move |submission: &Submission, library: &_, run: &_| {
+        write(&contact_pattern(submission, &torques, library, run)?)
+    };
+    done.look(app, client, (file, &form), request, work).await
+}
+
+impl PatternParameters {
+    /// The torques that are meant, if `submission` has them.
+    fn of(&self, submission: &Submission) -> Result<Vec<f64>, Problem> {
+        let all = &submission.case().output_torques;
+        let meant = |torque: &&f64| **torque != 0.0 && self.torque.is_none_or(|of| of == **torque);
+        let torques: Vec<f64> = all.iter().filter(meant).copied().collect();
+        if torques.is_empty() {
+            let all: Vec<String> = all.iter().map(f64::to_string).collect();
+            let detail = format!(
+                "There is no such torque to look at; the job's are {} N m, and at 0 nothing is pressed.",
+                all.join(", ")
+            );
+            return Err(Problem::new(Code::NotFound, detail));
+        }
+        Ok(torques)
+    }
+}
