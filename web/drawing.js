@@ -224,7 +224,7 @@ export function indexAt(curve, position) {
 }
 
 /** Those of `points` that a line needs to stay within `tolerance` of all of them. */
-function thinned(points, tolerance) {
+export function thinned(points, tolerance) {
   const [[x0, y0], [x1, y1]] = [points[0], points.at(-1)];
   const length = Math.hypot(x1 - x0, y1 - y0);
   const beside = points.map(([x, y]) => Math.abs((x - x0) * (y1 - y0) - (y - y0) * (x1 - x0)) / length);

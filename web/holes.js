@@ -115,7 +115,7 @@ export class HoleHandles {
 }
 
 /** The angles of the holes of a pattern in the frame of its gear, in radians. */
-function anglesOf(pattern) {
+export function anglesOf(pattern) {
   if (Array.isArray(pattern.at_deg)) return pattern.at_deg.map((angle) => angle * TURN);
   const count = Math.min(200, Math.max(0, Math.round(pattern.count ?? 0)));
   return Array.from({ length: count }, (_, i) => ((pattern.phase_deg ?? 0) + (360 * i) / count) * TURN);

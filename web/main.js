@@ -60,7 +60,7 @@ const charts = new Charts(byId("charts"), { onPosition: (to) => turn(to), onRang
 const headline = new Headline(byId("headline"));
 const geometry = new Geometry(byId("geometry"), { onPrint: print, onPicture: picture });
 const compare = new Compare(byId("compare"), { onKept: changeKept, onOpen: ({ submission, results }) => open(submission, results), onMethods: compareMethods, titleOf: (pointer) => form?.titleOf(pointer) ?? pointer });
-const follower = new Follower({ onResults, onOutline: (outline) => drawing.setOutline(outline), onProblem, onBusy, onProgress });
+const follower = new Follower({ onResults, onOutline, onProblem, onBusy, onProgress });
 
 const deformation = new Deformation({
   drawing, button: byId("deformed"), note: byId("deformed-note"), position: () => position,
@@ -69,6 +69,30 @@ const deformation = new Deformation({
     return live;
   },
 });
+
+/** The pair in space, once it has been asked for: its modules are fetched then. */
+let space = null;
+let outline = null;
+
+function onOutline(made, { pair }) {
+  outline = made;
+  drawing.setOutline(made);
+  space?.setPair(made, pair);
+}
+
+/** Shows the pair in space in place of its drawing, or takes it away. */
+async function showSpace(on) {
+  drawing.element.toggleAttribute("hidden", on);
+  if (!on) return space?.hide();
+  const { Space } = await import("./space.js");
+  if (!space) {
+    space = new Space(byId("drawing"), { live: current });
+    if (outline && shown) space.setPair(outline, shown.submission.pair);
+    if (shown) space.setCurve(shown.results.curves[0]);
+    space.setPosition(position);
+  }
+  if (document.querySelector('[data-view="space"]').getAttribute("aria-pressed") === "true") space.show();
+}
 
 /** The results of the design as it is, when nothing is a draft any more; null where it cannot be computed. */
 async function current() {
@@ -83,6 +107,7 @@ function turn(to) {
   position = ((to % period) + period) % period;
   if (position !== before) deformation.moved();
   drawing.setPosition(position);
+  space?.setPosition(position);
   charts.setPosition(position);
   byId("position").value = position;
   showReadout();
@@ -104,8 +129,12 @@ function onResults(results, submission, { took, since, draft }) {
   computed = submission;
   shown = { name: nameOf(submission), results, submission, teeth: submission.pair.driven.tooth_count, look: 0 };
   if (!draft) live = shown;
+  // What lies inside the gears is told by the plane methods.
+  byId("deformed").hidden = isSolid(results.method);
   byId("position").max = results.pair.period_mesh_periods;
   drawing.setCurve(results.curves[0]);
+  if (outline) space?.setPair(outline, submission.pair);
+  space?.setCurve(results.curves[0]);
   showDesigns(draft);
   showProblem();
   byId("state").textContent = `${results.curves[0].mesh_position.length} positions in ${took < 2000 ? `${fixed(took, 0)} ms` : `${fixed(took / 1000, 1)} s`}${results.curves.length > 1 ? `; answers at ${number(results.curves[0].output_torque_n_m)} N m` : ""}${draft ? ", a draft under the hand" : ""}`;
@@ -323,12 +352,17 @@ function setUpButtons() {
     against = design.kept[Number(event.target.value)];
     showDesigns();
   });
-  for (const button of document.querySelectorAll("[data-view]")) {
+  for (const button of document.querySelectorAll("button[data-view]")) {
     button.addEventListener("click", () => {
-      for (const other of document.querySelectorAll("[data-view]")) other.setAttribute("aria-pressed", String(other === button));
-      drawing.setView(button.dataset.view);
+      for (const other of document.querySelectorAll("button[data-view]")) other.setAttribute("aria-pressed", String(other === button));
+      const inSpace = button.dataset.view === "space";
+      if (!inSpace) drawing.setView(button.dataset.view);
+      showSpace(inSpace);
     });
   }
+  byId("deformed").addEventListener("click", () => {
+    if (space?.isShown) document.querySelector('button[data-view="pair"]').click();
+  });
   byId("play").addEventListener("click", (event) => play(event.currentTarget));
   addEventListener("keydown", (event) => {
     if (!(event.ctrlKey || event.metaKey) || event.altKey || event.target.closest("textarea, dialog")) return;
@@ -361,6 +395,7 @@ function setUpTheme() {
   const apply = (theme) => {
     if (theme) document.documentElement.dataset.theme = theme;
     charts.restyle();
+    space?.restyle();
     if (shown) showDesigns();
   };
   apply(localStorage.getItem(THEME));

@@ -135,7 +135,7 @@ export class Follower {
     const shape = JSON.stringify(submission.pair, (name, value) => (name === "holes" ? undefined : value));
     if (shape === this.#drawn) return;
     try {
-      this.onOutline(await post("v1/outline", submission));
+      this.onOutline(await post("v1/outline", submission), submission);
       this.#drawn = shape;
     } catch (error) {
       // The preview of the same submission tells why.

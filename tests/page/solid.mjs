@@ -1,7 +1,7 @@
 // What has an extent along the axis: helical teeth in one step, the load along the face.
 
 import assert from "node:assert/strict";
-import { answer, axe, changing, designOf, downloaded, field, open, openDesign, seenByDeuteranopia, settled, step, tab } from "./harness.mjs";
+import { answer, axe, changing, designOf, downloaded, drag, field, openDesign, seenByDeuteranopia, settled, step, tab } from "./harness.mjs";
 
 /** A small helical pair that stands askew, at few positions. */
 export const HELICAL = {
@@ -122,6 +122,121 @@ export async function solidSteps(service) {
     await tab(page, "geometry");
     assert.match(await page.locator("#geometry").innerText(), /Overlap ratio ε_β\s+0\.\d{4}/);
   });
+
+  await step("the pair is turned in space by mouse, keys and buttons, and its lines of contact carry what was computed", service, async (page) => {
+    const fetched = [];
+    page.on("request", (request) => fetched.push(new URL(request.url()).pathname));
+    await openDesign(page, service, HELICAL);
+    await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+    await settled(page);
+    assert.ok(!fetched.includes("/web/space.js") && !fetched.includes("/web/raster.js"), "it costs nothing before it is asked for");
+    await page.locator("[data-view=space]").focus();
+    await page.keyboard.press("Enter");
+    const canvas = page.locator("canvas.space");
+    const painted = () => canvas.getAttribute("data-painted");
+    const next = async (work) => {
+      const before = await painted();
+      await work();
+      await page.waitForFunction((old) => document.querySelector("canvas.space").dataset.painted !== old, before);
+      await page.waitForFunction(() => /^fine/.test(document.querySelector("canvas.space").dataset.painted ?? ""));
+      return painted();
+    };
+    await page.waitForFunction(() => /^fine/.test(document.querySelector("canvas.space")?.dataset.painted ?? ""));
+    assert.ok(await page.locator("#drawing svg.gears").isHidden());
+    // Both gears are there, the driving one on the left.
+    const parts = await canvas.evaluate((element) => {
+      const { width, height } = element;
+      const { data } = element.getContext("2d").getImageData(0, 0, width, height);
+      const seen = { blue: [], brown: [] };
+      for (let i = 0; i < data.length; i += 4) if (data[i + 3] === 255 && data[i] + data[i + 1] + data[i + 2] > 200) {
+        if (data[i + 2] > data[i] + 8) seen.blue.push((i / 4) % width);
+        else if (data[i] > data[i + 2] + 4) seen.brown.push((i / 4) % width);
+      }
+      const mean = (list) => list.reduce((sum, value) => sum + value, 0) / list.length / width;
+      return [seen.blue.length / (width * height), seen.brown.length / (width * height), mean(seen.blue), mean(seen.brown)];
+    });
+    assert.ok(parts[0] > 0.02 && parts[1] > 0.04 && parts[2] < parts[3], parts.join());
+    // Hand, keys and buttons.
+    await canvas.scrollIntoViewIfNeeded();
+    const box = await canvas.boundingBox();
+    assert.match(await next(() => drag(page, [box.x + 100, box.y + 60], [box.x + 140, box.y + 80], 4)), / -12\.0 34\.0 /);
+    await canvas.focus();
+    assert.match(await next(() => page.keyboard.press("ArrowLeft")), / -17\.0 34\.0 /);
+    assert.match(await next(() => page.locator(".in-space [aria-label='Zoom in']").click()), / 1\.30$/);
+    await canvas.focus();
+    assert.match(await next(() => page.keyboard.press("0")), / -32\.0 24\.0 1\.00$/);
+    await axe(page);
+    // The cursor of curves and drawing moves it, and a listener is told what is seen.
+    assert.match(await next(() => page.locator("#position").fill("0.5")), / 0\.500 /);
+    await page.waitForFunction(() => /position 0\.50 .*Colors are the load on each line/.test(document.querySelector("#space-words").textContent));
+    const words = await page.locator("#space-words").textContent();
+    assert.match(words, /24 and 36 teeth, helical teeth of 20°, the driving gear right-handed/);
+    // What the page finds for its lines is what the service computed: which pairs touch, and where along the face.
+    const [drawn, told] = await page.evaluate(async (submission) => {
+      const of = (name) => import(new URL(`web/${name}.js`, document.baseURI));
+      const [{ solved, json, post }, { alongAxis, contactLines }] = await Promise.all([of("api"), of("solid")]);
+      const outline = await post("v1/outline", submission);
+      const job = await solved(submission);
+      const { curves } = await json(`v1/jobs/${job.id}/results/contact-pattern.json`);
+      const { lines } = curves[0].positions.find(({ mesh_position: at }) => Math.abs(at - 0.5) < 1e-9);
+      const found = contactLines(outline, alongAxis(submission.pair, outline), 0.5);
+      return [found.map(({ pair, points }) => [pair, points[0].z, points.at(-1).z, Math.hypot(...points[0].at)]), lines.map(({ pair_offset: pair, z_mm: z, driving_diameter_mm: d }) => [pair, z[0], z.at(-1), d[0] / 2])];
+    }, HELICAL);
+    assert.ok(drawn.length >= 2);
+    for (const [pair, from, to, radius] of drawn) {
+      const other = told.find(([each]) => each === pair);
+      // Under load a line reaches up to a module beyond its theoretical ends.
+      if (to - from > 2) assert.ok(other && Math.abs(other[1] - from) < 1.5 && Math.abs(other[2] - to) < 1.5 && Math.abs(other[3] - radius) < 0.3, JSON.stringify([drawn, told]));
+    }
+    // Away with it: the drawing is back, and nothing is painted any more.
+    await page.locator("button[data-view=pair]").click();
+    assert.ok(await page.locator("#drawing svg.gears").isVisible());
+    const before = await painted();
+    await page.locator("#position").fill("0.2");
+    await page.waitForTimeout(400);
+    assert.equal(await painted(), before);
+  });
+
+  await step("what is seen in space has the mass that was computed, with web, hub and holes", service, async (page) => {
+    await openDesign(page, service, HELICAL);
+    const ratios = await page.evaluate(async (submission) => {
+      const of = (name) => import(new URL(`web/${name}.js`, document.baseURI));
+      const [{ post }, { alongAxis, surfaceOf }] = await Promise.all([of("api"), of("solid")]);
+      const [outline, { pair }] = await Promise.all([post("v1/outline", submission), post("v1/validate", submission)]);
+      const along = alongAxis(submission.pair, outline);
+      return ["driving", "driven"].map((member) => {
+        const { points: p, triangles: t } = surfaceOf(outline[member], submission.pair[member], along.twists[member], along.mid);
+        let six = 0;
+        for (let i = 0; i < t.length; i += 3) {
+          const [a, b, c] = [3 * t[i], 3 * t[i + 1], 3 * t[i + 2]];
+          six += p[a] * (p[b + 1] * p[c + 2] - p[b + 2] * p[c + 1]) + p[a + 1] * (p[b + 2] * p[c] - p[b] * p[c + 2]) + p[a + 2] * (p[b] * p[c + 1] - p[b + 1] * p[c]);
+        }
+        return pair[member].mass_kg / ((six / 6) * 1e-9);
+      });
+    }, HELICAL);
+    for (const density of ratios) assert.ok(Math.abs(density / 7850 - 1) < 0.01, `steel of ${ratios.join(" and ")} kg/m3`);
+  });
+
+  await step("one finger turns the pair, and two zoom", service, async (page, context) => {
+    await openDesign(page, service, HELICAL);
+    await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+    await page.locator("[data-view=space]").click();
+    await page.waitForFunction(() => /^fine/.test(document.querySelector("canvas.space")?.dataset.painted ?? ""));
+    await page.locator("canvas.space").scrollIntoViewIfNeeded();
+    const { x, y } = await page.locator("canvas.space").boundingBox();
+    const fingers = await context.newCDPSession(page);
+    const touch = (type, ...points) => fingers.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([dx, dy], id) => ({ x: x + dx, y: y + dy, id })) });
+    await touch("touchStart", [60, 60]);
+    await touch("touchMove", [80, 60]);
+    await touch("touchMove", [100, 60]);
+    await touch("touchEnd");
+    await page.waitForFunction(() => / -12\.0 24\.0 1\.00$/.test(document.querySelector("canvas.space").dataset.painted));
+    await touch("touchStart", [60, 60], [120, 60]);
+    await touch("touchMove", [50, 60], [130, 60]);
+    await touch("touchMove", [30, 60], [150, 60]);
+    await touch("touchEnd");
+    await page.waitForFunction(() => / 2\.00$/.test(document.querySelector("canvas.space").dataset.painted));
+  }, { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
 
   await step("the colors of loads are told apart by lightness alone, with deuteranopia too", service, async (page) => {
     await openDesign(page, service, HELICAL);
