@@ -58,6 +58,25 @@ export function wordsOfFace({ z, rows, positions, most, every, factor, centroid,
   return `Load along the face from z = ${number(edges[0])} to ${number(edges.at(-1))} mm, in N/mm, the mean over the positions: most at ${where(heaviest)}, ${number(heaviest, 4)}; least at ${where(least)}, ${number(least, 4)}.${at} ${wander} The face load factor is ${fixed(factor, 3)}.`;
 }
 
+/** What a slope and a crowning of the driving leads would make of the load, in words; null where nothing is told or won. */
+export function wordsOfCure({ cure, face_load_factor: factor } = {}) {
+  if (!cure || !(cure.face_load_factor < 0.995 * factor)) return null;
+  const parts = [["a slope", cure.lead_slope_um], ["a crowning", cure.crowning_um]].filter(([, amount]) => Math.abs(amount) >= 0.05);
+  return `K_Hβ would be ${fixed(cure.face_load_factor, 2)} with ${parts.map(([name, amount]) => `${name} of ${fixed(amount, 1)} µm`).join(" and ")} more on the leads of the driving gear.`;
+}
+
+/** `modifications` of a lead with what a cure adds: to the slope and the crowning that are there, or as new ones. */
+export function cured(modifications, { lead_slope_um: slope, crowning_um: crowning }) {
+  const leads = (modifications ?? []).map((each) => ({ ...each }));
+  for (const [kind, more] of [["slope", slope], ["crowning", crowning]]) {
+    const there = leads.find((each) => each.kind === kind);
+    const amount = Number(((there?.amount_um ?? 0) + more).toFixed(2));
+    if (there) there.amount_um = amount;
+    else if (amount !== 0) leads.push({ kind, amount_um: amount });
+  }
+  return leads.filter(({ kind, amount_um: amount }) => !["slope", "crowning"].includes(kind) || amount !== 0);
+}
+
 /** The scale of the colors, from nothing to `most`. */
 export function scaleOf(most, unit = "N/mm") {
   return h("span", { className: "entry" }, "0", h("span", { className: "ramp" }), `${number(most, 3)} ${unit}`);

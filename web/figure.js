@@ -26,7 +26,7 @@ function range(values, room) {
 }
 
 /**
- * A figure of `cells` `{ x, y, width, height, color }`, of `lines` `{ name, color, dash, width, parted, x, y }`, where null breaks a line, of `points` `{ x, y, label, strong }`, and of `stems` `{ name, color, x, y }`, over named
+ * A figure of `cells` `{ x, y, width, height, color }`, of `lines` `{ name, color, dash, width, parted, x, y }`, where null breaks a line, of `points` `{ x, y, label, strong, open }`, where `open` is what a press of one does, and of `stems` `{ name, color, x, y }`, over named
  * axes. Looks come from `colors`, or from the style sheet where there are none. Its `frame` tells where a value of x is, and which value is at a place.
  */
 export function figure({ title, x, y, cells = [], lines = [], points = [], stems = [], colors = null, width = 520, height = 300, heading = false, xRange = null, label = title }) {
@@ -41,7 +41,7 @@ export function figure({ title, x, y, cells = [], lines = [], points = [], stems
   const py = (value) => height - frame.bottom - ((value - low) / (high - low)) * (height - frame.top - frame.bottom);
   const ink = colors ? { fill: colors.ink, "font-family": FONT, "font-size": LETTER } : {};
   const line = (attributes, name) => s("line", { ...attributes, class: name, ...(colors ? { stroke: colors.grid } : {}) });
-  const svg = s("svg", { viewBox: `0 0 ${width} ${height}`, width: colors ? width : undefined, height: colors ? height : undefined, class: "scatter", role: "img", "aria-label": label, xmlns: "http://www.w3.org/2000/svg" });
+  const svg = s("svg", { viewBox: `0 0 ${width} ${height}`, width: colors ? width : undefined, height: colors ? height : undefined, class: "scatter", role: points.some(({ open }) => open) ? "group" : "img", "aria-label": label, xmlns: "http://www.w3.org/2000/svg" });
   if (heading) svg.append(words(title, { ...ink, x: frame.left, y: 16, "font-weight": 600, "font-size": LETTER + 2 }));
   for (const { x: at, y: foot, width: wide, height: tall, color } of cells) svg.append(s("rect", { x: px(at).toFixed(2), y: py(foot + tall).toFixed(2), width: (px(at + wide) - px(at) + 0.3).toFixed(2), height: (py(foot) - py(foot + tall) + 0.3).toFixed(2), fill: color }));
   for (const value of ticks(left, right)) {
@@ -62,10 +62,21 @@ export function figure({ title, x, y, cells = [], lines = [], points = [], stems
     if (place < left || place > right) return;
     svg.append(s("line", { x1: px(place) + 2 * k, x2: px(place) + 2 * k, y1: py(0), y2: py(each.y[i]), stroke: each.color, "stroke-width": 1.5 }));
   }));
-  for (const point of points) {
+  // Those that stand out are over the others.
+  for (const point of [...points].sort((a, b) => Number(a.strong ?? false) - Number(b.strong ?? false))) {
     const dot = s("circle", { cx: px(point.x), cy: py(point.y), r: point.strong ? 5 : 3.2, class: point.strong ? "dot strong" : "dot" });
-    dot.append(Object.assign(s("title"), { textContent: `${point.label}: ${number(point.x)}, ${number(point.y)}` }));
+    const told = `${point.label}: ${number(point.x)}, ${number(point.y)}`;
+    dot.append(Object.assign(s("title"), { textContent: told }));
     svg.append(dot);
+    if (point.open) {
+      for (const [name, value] of Object.entries({ role: "button", tabindex: 0, "aria-label": `Open ${told}`, class: `${dot.getAttribute("class")} opens`, r: point.strong ? 7 : 5.5 })) dot.setAttribute(name, value);
+      dot.addEventListener("click", point.open);
+      dot.addEventListener("keydown", (event) => {
+        if (!["Enter", " "].includes(event.key)) return;
+        event.preventDefault();
+        point.open();
+      });
+    }
     if (point.strong) {
       const atEnd = px(point.x) > width * 0.75;
       svg.append(words(point.label, { x: px(point.x) + (atEnd ? -8 : 8), y: py(point.y) - 7, "text-anchor": atEnd ? "end" : "start", class: "name" }));

@@ -11,6 +11,7 @@ import { Deformation } from "./deformed.js";
 import { save } from "./download.js";
 import { Drawing, indexAt } from "./drawing.js";
 import { exporting } from "./export.js";
+import { cured, wordsOfCure } from "./face.js";
 import { fileOf, pictureOf } from "./figure.js";
 import { Form } from "./form.js";
 import { Geometry } from "./geometry.js";
@@ -139,9 +140,20 @@ function onResults(results, submission, { took, since, draft }) {
   showProblem();
   byId("state").textContent = `${results.curves[0].mesh_position.length} positions in ${took < 2000 ? `${fixed(took, 0)} ms` : `${fixed(took / 1000, 1)} s`}${results.curves.length > 1 ? `; answers at ${number(results.curves[0].output_torque_n_m)} N m` : ""}${draft ? ", a draft under the hand" : ""}`;
   showWarnings(results.warnings);
+  if (!draft) showCure(results.curves[0]);
   turn(position);
   // For those who measure: the curve of a change is on the screen.
   requestAnimationFrame(() => document.dispatchEvent(new CustomEvent("drawn", { detail: { submission, draft, milliseconds: performance.now() - since } })));
+}
+
+/** Which lead would even the load along the face, and the button that gives it to the design. */
+function showCure({ face }) {
+  const place = byId("cure");
+  const words = face && wordsOfCure(face);
+  place.hidden = !words;
+  if (!words) return place.replaceChildren();
+  const leads = "/pair/driving/lead_modifications";
+  place.replaceChildren(words, " ", h("button", { type: "button", on: { click: () => design.set(leads, cured(design.get(leads), face.cure), "mend") } }, "Apply"));
 }
 
 function showWarnings(warnings) {

@@ -4,6 +4,8 @@ import { follow, hasEnded, json, post, ProblemError, request } from "./api.js";
 import { at, nameOf } from "./design.js";
 import { h, fixed, number } from "./dom.js";
 import { figure } from "./figure.js";
+import { preview } from "./preview.js";
+import { DASHES } from "./series.js";
 
 /** How a search stands is fetched so often at most, in milliseconds. */
 const PAUSE = 500;
@@ -12,6 +14,7 @@ const PAUSE = 500;
 const QUANTITIES = {
   "transmission_error_um.peak_to_peak": ["STE peak-to-peak", "µm", 1],
   "transmission_error_um.mean": ["STE mean", "µm", 1],
+  face_load_factor: ["K_Hβ", "1", 1],
   mesh_order_um: ["H_Z2", "µm", 1],
   hole_order_um: ["H_N", "µm", 1],
   peak_contact_pressure_mpa: ["contact pressure", "MPa", 1],
@@ -40,6 +43,9 @@ export function search(place, design, form, onOpen) {
   const cancel = h("button", { type: "button", hidden: true }, "Cancel");
   const state = h("p", { className: "note", role: "status", id: "search-state" });
   const out = h("div", { className: "out", id: "search-out" });
+  /** The design that the search began with and the best one, drawn beside each other; which row that is. */
+  const beside = h("div", { className: "beside", id: "search-beside" });
+  let drawn = null;
   place.replaceChildren(
     h("p", { className: "note" }, "Each generation of designs is chosen by what came of those before; it begins with this design. ", h("a", { href: "guides/find-a-design" }, "Find a design")),
     ...variables.map((each) => each.element),
@@ -57,6 +63,8 @@ export function search(place, design, form, onOpen) {
   async function start() {
     run.disabled = true;
     out.replaceChildren();
+    beside.replaceChildren();
+    drawn = null;
     try {
       const question = asked();
       await watch(await post("v1/studies", question), question);
@@ -98,10 +106,12 @@ export function search(place, design, form, onOpen) {
     if (!best) return out.replaceChildren();
     const rows = Object.entries(best.values).map(([path, value]) => h("tr", {}, h("th", { scope: "row" }, form.titleOf(path)), h("td", {}, number(at(design.submission, path) ?? null, 5)), h("td", {}, number(value, 5))));
     const table = h("table", {}, h("thead", {}, h("tr", {}, ...["Field", "This design", "Best so far"].map((words) => h("th", { scope: "col" }, words)))), h("tbody", {}, ...rows));
-    const use = (row, words) => h("button", { type: "button", on: { click: async () => onOpen(await json(`${address}/designs/${row}`), null) } }, words);
+    const open = async (row) => onOpen(await json(`${address}/designs/${row}`), null);
+    const use = (row, words) => h("button", { type: "button", on: { click: () => open(row) } }, words);
+    drawBeside(address, best.row, question.base);
     const reached = generations.map((each, i) => [i + 1, each.best]).filter(([, value]) => value !== null);
     const pictures = front.length > 1
-      ? [figure({ points: front.map(({ goals: [x, y], row }) => ({ x: x * parts[0][2], y: y * parts[1][2], label: `row ${row}`, strong: row === best.row })), x: `${parts[0][0]} in ${parts[0][1]}`, y: `${parts[1][0]} in ${parts[1][1]}`, title: "The front: no design found is better in both; the large point is the best compromise" }), frontOf(front, parts, use)]
+      ? [figure({ points: front.map(({ goals: [x, y], row }) => ({ x: x * parts[0][2], y: y * parts[1][2], label: `design ${row}`, strong: row === best.row, open: () => open(row) })), x: `${parts[0][0]} in ${parts[0][1]}`, y: `${parts[1][0]} in ${parts[1][1]}`, title: "The front: no design found is better in both; the large point is the best compromise. Press a point to open its design" }), frontOf(front, parts, use)]
       : reached.length > 1 ? [figure({ lines: [{ x: reached.map(([i]) => i), y: reached.map(([, value]) => value * parts[0][2]) }], x: "generation", y: `${parts[0][0]} in ${parts[0][1]}`, title: "The best so far, generation by generation" })] : [];
     const fine = confirmed && (confirmed.error_estimate
       ? `By the flexible method on the fine grid: ${told(confirmed.goals, parts)}; another grid level changes the peak-to-peak value by ${fixed(confirmed.error_estimate.transmission_error_peak_to_peak_um, 4)} µm.`
@@ -110,7 +120,30 @@ export function search(place, design, form, onOpen) {
       h("p", {}, h("strong", {}, told(best.goals, parts)), conditions.length ? `, with ${told(best.conditions, conditions)}` : "", best.feasible ? "" : ". No design so far keeps the condition; this one comes nearest to it"),
       h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Best design of the search" }, table),
       h("div", { className: "buttons" }, use(best.row, "Use this design")),
-      ...(fine ? [h("p", {}, fine)] : []), ...pictures);
+      ...(fine ? [h("p", {}, fine)] : []), beside, ...pictures);
+  }
+
+  /** Draws the design of a row beside the one that the search began with, and their curves where a preview takes them. */
+  async function drawBeside(address, row, base) {
+    if (drawn === `${address} ${row}`) return;
+    const asked = (drawn = `${address} ${row}`);
+    try {
+      const best = await json(`${address}/designs/${row}`);
+      const both = [["This design", base], ["Best so far", best]];
+      const pictures = await Promise.all(both.map(async ([name, submission]) => {
+        const text = await (await request("v1/outline", { method: "POST", body: submission, headers: { accept: "image/svg+xml" } })).text();
+        return h("figure", {}, h("img", { src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}`, alt: `${name}: ${nameOf(submission)}` }), h("figcaption", {}, name));
+      }));
+      if (asked !== drawn) return;
+      beside.replaceChildren(...pictures);
+      const curves = await Promise.all(both.map(async ([name, submission]) => ({ name, curve: (await preview(submission)).curves[0] })));
+      if (asked !== drawn) return;
+      const lines = curves.map(({ name, curve }, i) => ({ name, x: curve.mesh_position, y: curve.transmission_error_um, color: `var(--series-${i + 1})`, dash: DASHES[i] }));
+      beside.append(h("figure", {}, figure({ lines, x: "mesh position in mesh periods", y: "transmission error in µm", title: "Transmission error of this design and of the best so far" }), h("figcaption", {}, "Their transmission error")));
+    } catch (error) {
+      // A search goes on without its pictures.
+      if (!(error instanceof ProblemError)) throw error;
+    }
   }
 
   /** The designs of a front, each to be used. */

@@ -179,6 +179,40 @@ await step("a search finds a design, shows how it came to it, and opens it", ser
   assert.equal((await designOf(page)).pair.driving.tip_relief.amount_um, found);
 });
 
+await step("a search for two goals ends with a front, whose points open their designs by keys and by a click, beside the design it began with", service, async (page) => {
+  await open(page, service);
+  await tab(page, "study");
+  await page.locator("#search summary").click();
+  await page.locator("#variable-0").selectOption(`${HOLES}/radius_mm`);
+  await page.locator("#variable-1").selectOption("");
+  for (const [name, value] of [["low", "4"], ["high", "7"], ["step", ""]]) await page.locator(`#variable-0-${name}`).fill(value);
+  await page.locator("#search-goal").selectOption("transmission_error_um.peak_to_peak");
+  await page.locator("#search-goal-2").selectOption("mass_kg.driven");
+  await page.locator("#search-evaluations").fill("16");
+  await page.locator("#search-run").click();
+  await page.waitForFunction(() => /designs looked at, successful/.test(document.querySelector("#search-state").innerText), null, { timeout: 120_000 });
+  // Larger holes weigh less and are louder: every radius is a compromise.
+  const points = page.locator("#search-out [role=button]");
+  assert.ok((await points.count()) >= 3, `${await points.count()} points`);
+  assert.match(await page.locator("#search-out .scatter[role=group]").innerHTML(), /STE peak-to-peak in µm[\s\S]*mass of the driven gear in kg/);
+  await page.waitForFunction(() => [...document.querySelectorAll("#search-beside img")].filter((each) => each.naturalWidth > 100).length === 2 && document.querySelector("#search-beside .scatter"));
+  const [base, best] = await page.locator("#search-beside img").evaluateAll((all) => all.map((each) => [each.alt, each.src]));
+  assert.notEqual(base[1], best[1], "both are drawn, and differ");
+  assert.match(base[0], /10×r7\.5@34/);
+  await axe(page);
+  const wanted = await points.evaluateAll((all) => all.map((each) => each.getAttribute("aria-label")));
+  assert.match(wanted[0], /^Open design \d+: [\d.]+, [\d.]+$/);
+  const radii = [];
+  for (const press of [() => points.first().press("Enter"), () => points.last().click()]) {
+    await changing(page, press);
+    radii.push((await designOf(page)).pair.driven.blank.holes.radius_mm);
+  }
+  assert.notEqual(radii[0], radii[1]);
+  // The point says what the design that it opens has.
+  const label = wanted.at(-1).split(": ")[1].split(", ").map(Number);
+  assert.ok(Math.abs(label[0] - (await answer(page, "p-p"))) < 0.002 + 0.01 * label[0], `${label} ${await answer(page, "p-p")}`);
+});
+
 await step("a population shows how good the pairs will be that are made, and opens one of them", service, async (page) => {
   await open(page, service);
   await tab(page, "population");
