@@ -1,0 +1,247 @@
+//! `meshwright study`: a study from a file, computed here and now.
+
+mod compute;
+mod folder;
+mod picture;
+mod tables;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use meshwright::wire::study_table::{csv, table};
+use meshwright::wire::{
+    Code, PopulationResults, PopulationSample, Problem, RowState, SearchState, Searching, Status,
+    Study as StudyDocument, StudyResults,
+};
+use meshwright_engine::run::Run;
+
+use self::compute::{compute, search};
+use self::folder::ResultFolder;
+use self::picture::picture;
+use self::tables::{search_table, short_table, spread_table};
+use super::solve::{EXIT_PROBLEM, read, told};
+
+/// Compute a study: many variants of one submission, and their table.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Study {
+    /// The study; - reads standard input.
+    study: PathBuf,
+    /// Where to write table.json, table.csv and picture.svg, of a population population.json, of a search search.json with how it went and best.json with the
+    /// submission of the best design, and, unless the study keeps statistics only, each result; the folder is made if it is absent. Without it, only a
+    /// short table is printed.
+    #[arg(long, short, value_name = "DIR")]
+    output: Option<PathBuf>,
+}
+
+impl Study {
+    /// Runs the command.
+    ///
+    /// # Errors
+    ///
+    /// If a file cannot be read or written. A study that is refused, or none of whose designs can be computed, is exit
+    /// code 2.
+    pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
+        let document = read(&self.study)?;
+        let study = match StudyDocument::parse(&document, &Run::unattended()) {
+            Ok(study) => study,
+            Err(problem) => {
+                eprint!("{}", told(&problem));
+                return Ok(ExitCode::from(EXIT_PROBLEM));
+            }
+        };
+        let folder = self.output.as_deref().map(ResultFolder::make).transpose()?;
+
+        let started = Instant::now();
+        let (rows, search) = match Searching::new(study.clone()) {
+            Some(search) => {
+                let (rows, state) = self::search(&study, search, folder.as_ref(), started)?;
+                (rows, Some(state))
+            }
+            None => (compute(&study, folder.as_ref())?, None),
+        };
+        let elapsed = started.elapsed();
+
+        let best = search.as_ref().and_then(|search| {
+            let row = rows.get(usize::try_from(search.best.as_ref()?.row).ok()?)?;
+            study.submission_searched(&row.label, &row.changes)
+        });
+        let population = population(&study, &rows);
+        let results = results(&study, rows, search.as_ref());
+        if let Some(folder) = &folder {
+            folder.write_json("table.json", &results)?;
+            folder.write("table.csv", &csv(&results.rows))?;
+            if let Some(population) = &population {
+                folder.write_json("population.json", population)?;
+            }
+            if let Some(search) = &search {
+                folder.write_json("search.json", search)?;
+            }
+            if let Some(best) = &best {
+                folder.write("best.json", &format!("{best}\n"))?;
+            }
+            if let Some(picture) = picture(&study, &results, population.as_ref(), search.as_ref()) {
+                folder.write("picture.svg", &picture.to_svg()?)?;
+            }
+        }
+        match (&search, &population) {
+            (Some(search), _) => print!("{}", search_table(&study, search, elapsed)),
+            (None, Some(population)) => print!("{}", spread_table(population, elapsed)),
+            (None, None) => print!("{}", short_table(&results, elapsed)),
+        }
+        let Some(problem) = &results.problem else {
+            return Ok(ExitCode::SUCCESS);
+        };
+        // The table of a search ends with it.
+        if search.is_none() {
+            eprintln!("{}", problem["detail"].as_str().unwrap_or_default());
+        }
+        Ok(ExitCode::from(EXIT_PROBLEM))
+    }
+}
+
+/// What the members of a population come to; none where the designs are none.
+fn population(study: &StudyDocument, rows: &[RowState]) -> Option<PopulationResults> {
+    let mut sample = PopulationSample::new(study, 0..StudyDocument::MOST_TORQUES)?;
+    for (member, row) in (0..).zip(rows) {
+        sample.add(member, row);
+    }
+    let failed = rows.iter().all(|row| row.status == Status::Failed);
+    Some(sample.results(None, ended(failed)))
+}
+
+fn ended(failed: bool) -> Status {
+    if failed {
+        Status::Failed
+    } else {
+        Status::Successful
+    }
+}
+
+fn results(
+    study: &StudyDocument,
+    states: Vec<RowState>,
+    search: Option<&SearchState>,
+) -> StudyResults {
+    let rows = table(study.gear(), states);
+    let failed = rows.iter().all(|row| row.status == Status::Failed);
+    let problem = failed.then(|| {
+        let searched = search.and_then(SearchState::why_nothing);
+        let detail = searched.unwrap_or_else(|| {
+            format!(
+                "None of the {} designs could be computed; each row of the table has its problem.",
+                rows.len()
+            )
+        });
+        serde_json::to_value(Problem::new(Code::NoDesignComputed, detail))
+            .expect("a problem is strings")
+    });
+    StudyResults {
+        id: None,
+        status: ended(failed),
+        done: rows.len() as u64,
+        total: rows.len() as u64,
+        gear: study.gear(),
+        problem,
+        rows,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::time::Duration;
+
+    use serde_json::{Value, json};
+
+    use super::*;
+
+    fn study() -> StudyDocument {
+        let mut study: Value =
+            serde_json::from_str(meshwright::wire::examples::STUDY_SECTION_5).unwrap();
+        // The formulas do not see holes, but they are quick.
+        study["base"]["method"] = json!("load_distribution");
+        let designs = study["designs"].as_array_mut().unwrap();
+        designs.push(json!({ "label": "8R34 again", "changes": designs[1]["changes"] }));
+        designs.push(json!({ "label": "14R34", "changes": {
+            "/pair/driven/blank/holes": { "count": 14, "circle_radius_mm": 45 } } }));
+        StudyDocument::parse(study.to_string().as_bytes(), &Run::unattended()).unwrap()
+    }
+
+    #[test]
+    fn a_study_leaves_its_table_and_every_result() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out");
+        let results = results(
+            &study(),
+            compute(&study(), Some(&ResultFolder::make(&path).unwrap())).unwrap(),
+            None,
+        );
+        let labels: Vec<&str> = results.rows.iter().map(|row| &*row.label).collect();
+        assert_eq!(
+            labels,
+            [
+                "standard",
+                "8R34",
+                "10R34",
+                "6R30",
+                "8R30",
+                "8R27",
+                "8R34 again",
+                "14R34"
+            ]
+        );
+        assert_eq!(results.rows[1].curves, results.rows[6].curves);
+        assert_eq!(results.rows[7].status, Status::Failed);
+        assert_eq!(
+            results.rows[7].problem.as_ref().unwrap()["code"],
+            "holes_breach_rim"
+        );
+        let files = fs::read_dir(path.join("results")).unwrap().count();
+        assert_eq!(files, 7);
+        assert!(path.join("results/00002-8R34.json").exists());
+
+        assert_eq!(population(&study(), &[]), None);
+        let drawn = picture(&study(), &results, None, None).expect("seven designs");
+        let svg = drawn.to_svg().expect("can be drawn");
+        assert!(svg.contains("mass of both gears in kg"), "{svg}");
+        assert!(svg.contains("that no other beats"), "{svg}");
+        let text = short_table(&results, Duration::from_secs(2));
+        assert!(
+            text.contains("7 of 8 designs computed in 2.00 s, 3.5 a second."),
+            "{text}"
+        );
+        assert!(text.contains("14R34: "), "{text}");
+    }
+
+    #[test]
+    fn a_population_leaves_what_its_members_come_to() {
+        let mut document: Value =
+            serde_json::from_str(meshwright::wire::examples::STUDY_SECTION_5).unwrap();
+        document["base"]["method"] = json!("load_distribution");
+        document.as_object_mut().unwrap().remove("designs");
+        document.as_object_mut().unwrap().remove("constant_mass");
+        document["population"] = json!({ "size": 80, "vary": [
+            { "path": "/pair/center_distance_mm", "kind": "uniform", "low": 100.45, "high": 100.55 }
+        ] });
+        let study =
+            StudyDocument::parse(document.to_string().as_bytes(), &Run::unattended()).unwrap();
+        let rows = compute(&study, None).unwrap();
+        let found = population(&study, &rows).expect("a population");
+        assert_eq!((found.size, found.done, found.failed), (80, 80, 0));
+        let drawn = picture(&study, &results(&study, rows, None), Some(&found), None);
+        let svg = drawn.expect("two torques").to_svg().expect("can be drawn");
+        assert!(svg.contains("p95"), "{svg}");
+        let text = spread_table(&found, Duration::from_secs(2));
+        assert!(
+            text.contains("80 of 80 members computed in 2.00 s, 40.0 a second."),
+            "{text}"
+        );
+        assert!(
+            text.contains(
+                "% of the variance of the peak-to-peak value come from /pair/center_distance_mm."
+            ),
+            "{text}"
+        );
+    }
+}

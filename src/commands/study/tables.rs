@@ -1,0 +1,265 @@
+//! What is printed of a study.
+
+use std::time::Duration;
+
+use meshwright::wire::study_table::TableRow;
+use meshwright::wire::warning::GearName;
+use meshwright::wire::{PopulationResults, SearchState, Study as StudyDocument, StudyResults};
+
+/// A printed table has so many designs at most; of more, only the best are printed.
+const MOST_PRINTED: usize = 40;
+
+/// Some numbers as they are shown.
+pub(super) fn numbers(values: &[Option<f64>]) -> String {
+    let told = values
+        .iter()
+        .map(|value| value.map_or_else(|| "?".to_owned(), |value| format!("{value:.4}")));
+    told.collect::<Vec<_>>().join(", ")
+}
+
+/// What a search found: the best design, of two goals the front, and what the best one comes to by the flexible method on the fine grid.
+pub(super) fn search_table(
+    study: &StudyDocument,
+    search: &SearchState,
+    elapsed: Duration,
+) -> String {
+    let mut text = String::new();
+    let names = study.goals().join(", ");
+    let conditions = study.conditions().join(", ");
+    let mut say = |line: String| {
+        text.push_str(line.trim_end());
+        text.push('\n');
+    };
+    match &search.best {
+        None => say(search
+            .why_nothing()
+            .unwrap_or_else(|| "No design could be had.".to_owned())),
+        Some(best) => {
+            say(format!(
+                "best: row {}, {names}: {}",
+                best.row,
+                numbers(&best.goals)
+            ));
+            if !best.feasible {
+                say(
+                    "  It does not keep every condition; no design that was looked at does."
+                        .to_owned(),
+                );
+            }
+            for (path, value) in &best.values {
+                say(format!("  {path} = {value}"));
+            }
+            if !best.conditions.is_empty() {
+                say(format!("  {conditions}: {}", numbers(&best.conditions)));
+            }
+        }
+    }
+    if search.front.len() > 1 {
+        say(format!("front of {} designs, {names}:", search.front.len()));
+        for design in &search.front {
+            let values = design.values.values().map(ToString::to_string);
+            let values = values.collect::<Vec<_>>().join(", ");
+            say(format!("  {}  at {values}", numbers(&design.goals)));
+        }
+    }
+    if let Some(confirmed) = &search.confirmed {
+        let goals = numbers(&confirmed.goals);
+        match &confirmed.error_estimate {
+            Some(estimate) => say(format!(
+                "by the flexible method on the fine grid: {goals}; another grid level changes the peak-to-peak value by {:.4} um, the mean by {:.4} um",
+                estimate.transmission_error_peak_to_peak_um, estimate.transmission_error_mean_um
+            )),
+            None => {
+                let problem = confirmed.problem.as_ref();
+                let detail = problem.and_then(|problem| problem["detail"].as_str());
+                say(format!("not confirmed: {}", detail.unwrap_or_default()));
+            }
+        }
+    }
+    for refusal in &search.refusals {
+        say(format!(
+            "{} designs refused, {}; the first: {}",
+            refusal.count, refusal.code, refusal.detail
+        ));
+    }
+    say(format!(
+        "{} designs in {} generations, {:.2} s.",
+        search.evaluations,
+        search.generations.len(),
+        elapsed.as_secs_f64()
+    ));
+    text
+}
+
+/// A line for each quantity of a population and each torque, and what makes the peak-to-peak values vary.
+pub(super) fn spread_table(results: &PopulationResults, elapsed: Duration) -> String {
+    const SHOWN: [&str; 4] = [
+        "transmission_error_um.peak_to_peak",
+        "transmission_error_um.mean",
+        "mesh_stiffness_tangent_n_per_m.mean",
+        "mesh_order_um",
+    ];
+    let mut text = format!(
+        "{:38} {:>8} {:>10} {:>10} {:>10} {:>10} {:>10}  {}\n",
+        "quantity", "torque", "mean", "std", "p5", "p50", "p95", "95 % limits of p95"
+    );
+    let told = |value: f64| {
+        if value.abs() < 1e5 {
+            format!("{value:.3}")
+        } else {
+            format!("{value:.3e}")
+        }
+    };
+    let limit = |value: Option<f64>| value.map_or_else(|| "?".to_owned(), told);
+    let shown = || {
+        let all = results.quantities.iter();
+        all.filter(|quantity| SHOWN.contains(&quantity.name))
+    };
+    for quantity in shown() {
+        let percentile = |percent: f64| {
+            let mut all = quantity.percentiles.iter();
+            all.find(|percentile| percentile.percent == percent)
+        };
+        let value =
+            |percent| percentile(percent).map_or_else(String::new, |found| told(found.value));
+        let limits = percentile(95.0).map_or_else(String::new, |found| {
+            format!("{} to {}", limit(found.low), limit(found.high))
+        });
+        let torque = quantity.output_torque_n_m.map(|torque| torque.to_string());
+        text.push_str(&format!(
+            "{:38} {:>8} {:>10} {:>10} {:>10} {:>10} {:>10}  {limits}\n",
+            quantity.name,
+            torque.unwrap_or_default(),
+            told(quantity.mean),
+            told(quantity.standard_deviation),
+            value(5.0),
+            value(50.0),
+            value(95.0),
+        ));
+    }
+    for quantity in shown().filter(|quantity| quantity.name == SHOWN[0]) {
+        let torque = quantity.output_torque_n_m.unwrap_or_default();
+        for influence in &quantity.influences {
+            let input = match (&influence.path, influence.accuracy) {
+                (Some(path), _) => path.clone(),
+                (None, Some(GearName::Driving)) => "the teeth of the driving gear".to_owned(),
+                (None, _) => "the teeth of the driven gear".to_owned(),
+            };
+            text.push_str(&format!(
+                "At {torque} N m {:.0} % of the variance of the peak-to-peak value come from {input}.\n",
+                100.0 * influence.share
+            ));
+        }
+    }
+    let seconds = elapsed.as_secs_f64();
+    text.push_str(&format!(
+        "{} of {} members computed in {seconds:.2} s, {:.1} a second.\n",
+        results.done - results.failed,
+        results.size,
+        (results.done - results.failed) as f64 / seconds.max(1e-9),
+    ));
+    text
+}
+
+/// A line for each design and torque, or for the best designs of a large study, and what could not be computed.
+pub(super) fn short_table(results: &StudyResults, elapsed: Duration) -> String {
+    let computed: Vec<&TableRow> = results
+        .rows
+        .iter()
+        .filter(|row| !row.curves.is_empty())
+        .collect();
+    let all = computed.len() <= MOST_PRINTED;
+    let shown: Vec<&TableRow> = computed
+        .iter()
+        .copied()
+        .filter(|row| all || row.pareto)
+        .take(MOST_PRINTED)
+        .collect();
+    let width = shown
+        .iter()
+        .map(|row| row.label.chars().count())
+        .max()
+        .unwrap_or(0)
+        .clamp(6, 60);
+    let mut text = format!(
+        "{:width$}  {:>8} {:>8} {:>8} {:>8} {:>8} {:>10} {:>8} {:>8}  best\n{:width$}  {:>8} {:>8} {:>8} {:>8} {:>8} {:>10} {:>8} {:>8}\n",
+        "design",
+        "mass",
+        "torque",
+        "STE",
+        "rms",
+        "p-p",
+        "stiffness",
+        "H_N",
+        "H_Z2",
+        "",
+        "kg",
+        "N m",
+        "um",
+        "um",
+        "um",
+        "N/m",
+        "um",
+        "um",
+    );
+    let number = |value: Option<f64>, decimals: usize| {
+        value.map_or_else(|| "-".to_owned(), |value| format!("{value:.decimals$}"))
+    };
+    for row in &shown {
+        for (i, curve) in row.curves.iter().enumerate() {
+            let (label, mass, mark) = if i == 0 {
+                (
+                    &*row.label,
+                    number(row.mass_kg, 4),
+                    if row.pareto { "*" } else { "" },
+                )
+            } else {
+                ("", String::new(), "")
+            };
+            let ste = curve.statistics.as_ref().map(|s| &s.transmission_error_um);
+            let k = curve
+                .statistics
+                .as_ref()
+                .map(|s| &s.mesh_stiffness_tangent_n_per_m);
+            let line = format!(
+                "{label:width$}  {mass:>8} {:>8} {:>8} {:>8} {:>8} {:>10} {:>8} {:>8}  {mark}",
+                curve.output_torque_n_m,
+                number(ste.map(|s| s.mean), 3),
+                number(ste.map(|s| s.rms), 3),
+                number(ste.map(|s| s.peak_to_peak), 3),
+                k.map_or_else(|| "-".to_owned(), |k| format!("{:.3e}", k.mean)),
+                number(curve.hole_order_um, 4),
+                number(curve.mesh_order_um, 4),
+            );
+            text.push_str(line.trim_end());
+            text.push('\n');
+        }
+    }
+    if !all {
+        text.push_str(&format!(
+            "{} of {} designs are shown: those that no other one beats in mass, peak-to-peak and stiffness at once.\n",
+            shown.len(),
+            computed.len()
+        ));
+    }
+    let failed: Vec<&TableRow> = results
+        .rows
+        .iter()
+        .filter(|row| row.problem.is_some())
+        .collect();
+    for row in failed.iter().take(MOST_PRINTED) {
+        let detail = row
+            .problem
+            .as_ref()
+            .and_then(|problem| problem["detail"].as_str());
+        text.push_str(&format!("{}: {}\n", row.label, detail.unwrap_or_default()));
+    }
+    let seconds = elapsed.as_secs_f64();
+    text.push_str(&format!(
+        "{} of {} designs computed in {seconds:.2} s, {:.1} a second.\n",
+        computed.len(),
+        results.total,
+        computed.len() as f64 / seconds.max(1e-9),
+    ));
+    text
+}
