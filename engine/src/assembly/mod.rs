@@ -2,6 +2,7 @@
 //!
 //! In reading order: [`interface`] (the circle on which teeth and blank meet), [`teeth`] (all teeth of a gear down to it),
 //! [`blank`] (what carries them), [`gear`] (both joined), [`pair`] (two gears and the rules of their contact);
+//! along faces [`face_yield`] (what carries the teeth and what holes change: `carrier`, `holed`; how it becomes polynomials: `flank_fit`, `half_space`);
 //! beside them [`cut`] (a gear parted at that circle again) and [`inside`] (what goes on in a gear whose flanks are loaded).
 //!
 //! Each part is a pure function of its *spec*, a value that says all that the part depends on. Equal specs are equal parts;
@@ -11,7 +12,9 @@ pub mod blank;
 mod carrier;
 pub mod cut;
 pub mod face_yield;
+mod flank_fit;
 pub mod gear;
+mod half_space;
 mod holed;
 pub mod inside;
 pub mod interface;
