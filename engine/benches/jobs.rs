@@ -7,18 +7,22 @@ use meshwright_benches::group;
 use meshwright_engine::analysis::forces::{
     DynamicsRequest, ForceTableRequest, dynamics, force_table,
 };
-use meshwright_engine::analysis::{Case, Method, analyze, pair_model};
+use meshwright_engine::analysis::{Case, Faces, Method, analyze, pair_model};
+use meshwright_engine::assembly::FaceResolution;
 use meshwright_engine::assembly::interface::default_interface_radius;
 use meshwright_engine::assembly::{Parts, TeethSpec};
 use meshwright_engine::contact::WarmStart;
-use meshwright_engine::gear::{GearPair, Member, SpurGear};
+use meshwright_engine::contact::face::SLICES;
+use meshwright_engine::gear::{
+    Alignment, GearPair, Helix, Member, SolidGear, SolidPair, SpurGear, Web,
+};
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
 #[path = "../tests/cases/mod.rs"]
 mod cases;
-use cases::{case, standard_pair, study_design, test_case};
+use cases::{case, gear, holed, standard_pair, study_design, test_case};
 
 const METHODS: [(Method, &str); 4] = [
     (Method::Flexible, "flexible"),
@@ -264,16 +268,91 @@ fn forces(criterion: &mut Criterion) {
     let table = table();
     group.bench_function("case 2, 400 speeds to 20,000 rpm, up and down", |bencher| {
         bencher.iter(|| {
-            black_box(dynamics(
-                &case.pair,
-                &analysis.curves[0],
-                &table,
-                &speeds,
-                &run,
-            ))
-            .expect("nobody stops it")
+            black_box(dynamics(&case, &analysis.curves[0], &table, &speeds, &run))
+                .expect("nobody stops it")
         });
     });
+    group.finish();
+}
+
+/// A pair along its faces: 40/40 teeth of normal module 2 mm at 20 degrees, 20 mm wide, with this web in the driven one, and six holes at this radius.
+fn helical(web: bool, hole_circle: Option<f64>) -> Case {
+    let solid = |beta: f64, web: bool| {
+        let mut data = gear(40, 20e-3);
+        data.blank.web = web.then_some(Web {
+            inner_radius: 26e-3,
+            outer_radius: 36e-3,
+            thickness: 6e-3,
+        });
+        let data = match hole_circle.filter(|_| web) {
+            Some(radius) => holed(data, 6, radius, 3.5e-3, 0.0),
+            None => data,
+        };
+        SolidGear::new(data, Helix::right(beta), 0.0, None).expect("can be made")
+    };
+    let beta = 20_f64.to_radians();
+    let gears = [solid(beta, false), solid(-beta, web)];
+    let center_distance = 2.0 * gears[0].section().reference_radius();
+    let leads = [Vec::new(), Vec::new()];
+    let pair = SolidPair::new(gears, leads, center_distance, Alignment::default());
+    let pair = pair.expect("meshes");
+    let mut case = case(pair.section().clone(), &[100.0]);
+    case.method = Method::ThreeDimensional;
+    case.faces = Some(Faces {
+        pair,
+        resolution: FaceResolution::STANDARD,
+        slices: SLICES,
+        at_each_position: false,
+    });
+    case
+}
+
+/// Pairs along their faces: cold, with parts known, and with a hole moved.
+fn faces(criterion: &mut Criterion) {
+    let mut group = group(criterion, "faces", 3);
+    let mut solid = helical(false, None);
+    solid.resolution.positions_per_mesh_period = 32;
+    solid.output_torques = vec![20.0, 60.0, 100.0, 150.0, 200.0];
+    let holes = |radius: f64, method: Method| {
+        let mut case = by(&helical(true, Some(radius)), method);
+        case.resolution.positions_per_mesh_period = 16;
+        case
+    };
+    let cases = [
+        (solid, "40/40 teeth, 32 positions, 5 torques"),
+        (
+            holes(31e-3, Method::ThreeDimensional),
+            "six holes in a web, 20 mesh periods of 16 positions",
+        ),
+        (
+            holes(31e-3, Method::ThreeDimensionalProjected),
+            "six holes in a web, 20 mesh periods of 16 positions, projected",
+        ),
+    ];
+    for (case, name) in &cases {
+        group.bench_function(format!("{name}, cold"), |bencher| {
+            bencher.iter(|| solve_cold(case));
+        });
+        let library = Library::default();
+        solve(case, &library);
+        group.bench_function(format!("{name}, parts known"), |bencher| {
+            bencher.iter(|| solve(case, &library));
+        });
+    }
+    for (case, name) in &cases[1..] {
+        let moved = holes(31.2e-3, case.method);
+        group.bench_function(format!("{name}, holes moved"), |bencher| {
+            bencher.iter_batched_ref(
+                || {
+                    let library = Library::default();
+                    solve(case, &library);
+                    library
+                },
+                |library| solve(&moved, library),
+                BatchSize::PerIteration,
+            );
+        });
+    }
     group.finish();
 }
 
@@ -284,6 +363,7 @@ criterion_group!(
     changes,
     study,
     resolution,
-    forces
+    forces,
+    faces
 );
 criterion_main!(benches);
