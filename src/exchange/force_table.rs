@@ -63,6 +63,16 @@ impl MeshForces {
             of_gear("driving", "base_radius_mm")? * 1e-3,
             of_gear("driven", "base_radius_mm")? * 1e-3,
         ];
+        let compliance = |row: &Value| -> Option<Vec<f64>> {
+            let stiffness = numbers(row)?.into_iter();
+            Some(
+                stiffness
+                    .map(|k| if k > 0.0 { 1.0 / k } else { 0.0 })
+                    .collect(),
+            )
+        };
+        let stiffness = table.get("mesh_stiffness_tangent_n_per_m")?.as_array()?;
+        let compliance: Vec<Vec<f64>> = stiffness.iter().map(compliance).collect::<Option<_>>()?;
         let base_pitch = pair.get("base_pitch_mm")?.as_f64()? * 1e-3;
         Some(Self {
             table: ForceTable::new(
@@ -70,7 +80,8 @@ impl MeshForces {
                 ladder,
                 rows("transmission_error_um")?,
                 rows("other_flank_transmission_error_um")?,
-            ),
+            )
+            .with_compliance(compliance),
             base_radii,
             tooth_count: (TAU * base_radii[0] / base_pitch).round(),
             method: results.get("method")?.as_str()?.to_owned(),
@@ -300,7 +311,11 @@ pub(super) mod tests {
 
     /// Two positions a period, δ = F/k with k = 1e8 and 2e8 N/m, 100 um of backlash.
     pub(in crate::exchange) fn results() -> Value {
-        let loads = [0.0, 1000.0 / 9.0, 4000.0 / 9.0, 1000.0];
+        let loads = Ladder {
+            count: 4,
+            largest: 1000.0,
+        };
+        let loads = loads.loads();
         let rows = |sign: f64, from: f64| -> Vec<[f64; 2]> {
             loads
                 .iter()
@@ -313,7 +328,8 @@ pub(super) mod tests {
                       "driving": { "base_radius_mm": 40.0 }, "driven": { "base_radius_mm": 50.0 } },
             "force_table": {
                 "mesh_position": [0.0, 0.5], "load_n": loads,
-                "transmission_error_um": rows(1.0, 0.0), "backlash_um": [100.0, 100.0],
+                "transmission_error_um": rows(1.0, 0.0),
+                "mesh_stiffness_tangent_n_per_m": [[0.0, 0.0], [1e8, 2e8], [1e8, 2e8], [1e8, 2e8]], "backlash_um": [100.0, 100.0],
                 "other_flank_transmission_error_um": rows(-1.0, -100.0) },
         })
     }

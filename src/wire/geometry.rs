@@ -1,9 +1,7 @@
 //! The pair as its drawing makes it: what follows from the submission without any load.
 
-use std::f64::consts::PI;
-
 use meshwright_engine::analysis::Case;
-use meshwright_engine::gear::{GearPair, Member, SolidGear, SolidPair};
+use meshwright_engine::gear::{GearPair, Member, SolidPair};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -205,12 +203,16 @@ impl PathOfContact {
 impl GearGeometry {
     fn of_case(case: &Case, member: Member) -> Self {
         let gear = Self::of(&case.pair, member);
-        let solid = case.faces.as_ref().map(|faces| faces.pair.gear(member));
-        let [mass, inertia] = solid.map_or([0.0, 0.0], added_by_hub);
-        Self {
-            mass_kg: gear.mass_kg + mass,
-            polar_inertia_kg_m2: gear.polar_inertia_kg_m2 + inertia,
-            ..gear
+        match &case.faces {
+            None => gear,
+            Some(faces) => {
+                let solid = faces.pair.gear(member);
+                Self {
+                    mass_kg: solid.mass(),
+                    polar_inertia_kg_m2: solid.polar_inertia(),
+                    ..gear
+                }
+            }
         }
     }
 
@@ -261,33 +263,10 @@ impl Frequencies {
     }
 }
 
-/// The mass and the polar inertia that a hub of its own width has more than its section, in which what lies around the bore is as wide as the face,
-/// or as thick as the web.
-fn added_by_hub(gear: &SolidGear) -> [f64; 2] {
-    let Some(hub) = gear.hub() else {
-        return [0.0, 0.0];
-    };
-    let (section, blank) = (gear.section(), &gear.section().data().blank);
-    let density = section.material().density;
-    let ring = |from: f64, to: f64, width: f64| {
-        let to = to.max(from);
-        [
-            density * PI * (to.powi(2) - from.powi(2)) * width,
-            0.5 * density * PI * (to.powi(4) - from.powi(4)) * width,
-        ]
-    };
-    let web = blank.web.map_or(hub.outer_radius, |web| web.inner_radius);
-    let thickness = blank.web.map_or(0.0, |web| web.thickness);
-    let within = web.min(hub.outer_radius);
-    let [inner, outer] = [
-        ring(blank.bore_radius, within, hub.width - gear.face_width()),
-        ring(within, hub.outer_radius, hub.width - thickness),
-    ];
-    [inner[0] + outer[0], inner[1] + outer[1]]
-}
-
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
     use crate::wire::{Submission, examples};
 

@@ -149,8 +149,8 @@ async fn a_run_up_comes_back_with_its_table_and_in_the_forms_of_other_programs()
     let path = bench.submit(&submission).await;
     let job = bench.ended(&path).await;
     assert_eq!(job["status"], "successful", "{job}");
-    // 200 positions of one torque and of twelve loads, all of them done.
-    assert_eq!(job["positions_total"], 200 * 13, "{job}");
+    // 200 positions of one torque, twice as many of twelve loads, all of them done.
+    assert_eq!(job["positions_total"], 200 + 400 * 12, "{job}");
     let results = bench.get(&format!("{path}/results")).send().await.unwrap();
     let results: Value = results.json().await.unwrap();
 
@@ -166,8 +166,11 @@ async fn a_run_up_comes_back_with_its_table_and_in_the_forms_of_other_programs()
         "twice the largest torque"
     );
     let rows = table["transmission_error_um"].as_array().unwrap();
-    assert_eq!((rows.len(), numbers(&rows[0]).len()), (12, 200));
-    assert_eq!(numbers(&table["mesh_position"]).len(), 200);
+    assert_eq!((rows.len(), numbers(&rows[0]).len()), (12, 400));
+    assert_eq!(numbers(&table["mesh_position"]).len(), 400);
+    let stiffness = table["mesh_stiffness_tangent_n_per_m"].as_array().unwrap();
+    assert_eq!((stiffness.len(), numbers(&stiffness[11]).len()), (12, 400));
+    assert!(numbers(&stiffness[0]).iter().all(|k| *k == 0.0));
     let backlash = results["pair"]["backlash_mm"].as_f64().unwrap() * 1e3;
     assert!(
         numbers(&table["backlash_um"])
@@ -238,7 +241,7 @@ async fn a_run_up_comes_back_with_its_table_and_in_the_forms_of_other_programs()
     let csv = get("force-table.csv").await.text().await.unwrap();
     assert_eq!(
         csv.lines().filter(|line| !line.starts_with('#')).count(),
-        1 + 2 * 12 * 200
+        1 + 2 * 12 * 400
     );
     assert!(
         get("force-table.txt")

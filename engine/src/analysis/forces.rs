@@ -2,7 +2,7 @@
 
 use super::curve::Curve;
 use super::estimate::usual_stiffness;
-use super::{Analysis, AnalysisError, Case, OrderKind, StiffnessRule, analyze, expected};
+use super::{Analysis, AnalysisError, Case, Faces, OrderKind, StiffnessRule, analyze, expected};
 use crate::assembly::Parts;
 use crate::dynamics::table::between_closed;
 use crate::dynamics::{ForceTable, Ladder, Resonance, RunUp, RunUpData};
@@ -14,6 +14,10 @@ const MESH_HARMONICS: u32 = 5;
 
 /// Orders that are told at speed, at most, and the least part of the largest static line that one of a sideband or a revolution has.
 const TOLD: (usize, f64) = (12, 0.01);
+
+/// How many times as many positions a table has as the curves: pairs that begin and cease to carry make kinks, and two of them in
+/// neighboring cells are one too many.
+pub const MORE_POSITIONS: u32 = 2;
 
 /// The force table that is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,44 +80,59 @@ pub fn analyze_with_forces(
         curves.map(move |curve| (dynamics, curve))
     });
     let dynamics = curves
-        .map(|(request, curve)| dynamics(&case.pair, curve, &table, request, run))
+        .map(|(request, curve)| dynamics(case, curve, &table, request, run))
         .collect::<Result<_, _>>()?;
     Ok((analysis, Forces { table, dynamics }))
 }
 
 /// Contact solutions that the table needs.
 fn table_positions(case: &Case, request: ForceTableRequest) -> u64 {
-    let loads = request.ladder(case).loads();
-    let of = |pair: GearPair| expected(&rows_case(case, pair, &loads));
-    let drawn = case.pair.as_drawn();
-    let again = if drawn == case.pair { 0 } else { of(drawn) };
-    of(case.pair.clone()) + again
+    let loaded = rows_case(case, &request.ladder(case).loads());
+    let other = of_other_flank(&loaded);
+    let again = if other == loaded { 0 } else { expected(&other) };
+    expected(&loaded) + again
 }
 
 /// `case` with the loads of a table beside its torques: what both cost together.
 pub fn with_table(case: &Case, request: ForceTableRequest) -> Case {
     let mut both = case.clone();
-    let rows = rows_case(case, case.pair.clone(), &request.ladder(case).loads());
-    both.output_torques.extend(rows.output_torques);
+    let rows = rows_case(case, &request.ladder(case).loads());
+    for _ in 0..MORE_POSITIONS {
+        both.output_torques.extend(&rows.output_torques);
+    }
     both
 }
 
 /// The case whose curves are the rows of the table.
-fn rows_case(case: &Case, pair: GearPair, loads: &[f64]) -> Case {
+fn rows_case(case: &Case, loads: &[f64]) -> Case {
     let mut rows = Case {
         output_torques: loads
             .iter()
-            .map(|load| load * pair.driven().base_radius())
+            .map(|load| load * case.pair.driven().base_radius())
             .collect(),
-        pair,
         stress: false,
         driving_speed: None,
         ..case.clone()
     };
+    rows.resolution.positions_per_mesh_period *= MORE_POSITIONS;
     rows.resolution.span_mesh_periods = None;
     rows.resolution.error_estimate = false;
     rows.resolution.stiffness = StiffnessRule::Tangent;
     rows
+}
+
+/// The case whose rows are those of the other flanks of `rows`, passed the other way round: the drawing, and along faces the drawing seen
+/// from its other side.
+fn of_other_flank(rows: &Case) -> Case {
+    let faces = rows.faces.clone().map(|faces| Faces {
+        pair: faces.pair.as_drawn().turned_over(),
+        ..faces
+    });
+    Case {
+        pair: rows.pair.as_drawn(),
+        faces,
+        ..rows.clone()
+    }
 }
 
 /// F(θ, δ) of `case` over its true period, by its method.
@@ -131,25 +150,35 @@ pub fn force_table(
     run: &Run,
 ) -> Result<ForceTable, AnalysisError> {
     let ladder = request.ladder(case);
-    let rows_of = |pair: GearPair| -> Result<Vec<Vec<f64>>, AnalysisError> {
-        let analysis = analyze(&rows_case(case, pair, &ladder.loads()), parts, run)?;
-        let curves = analysis.curves.into_iter();
-        Ok(curves.map(|curve| curve.transmission_error).collect())
+    let loaded = rows_case(case, &ladder.loads());
+    let other = of_other_flank(&loaded);
+    let rows_of = |case: &Case| -> Result<(Vec<_>, Vec<_>), AnalysisError> {
+        let curves = analyze(case, parts, run)?.curves.into_iter();
+        let compliance = |curve: &Curve| -> Vec<f64> {
+            let stiffness = curve.mesh_stiffness_tangent.iter();
+            // Without load there is none, and nobody looks at it.
+            stiffness
+                .map(|k| if *k > 0.0 { 1.0 / k } else { 0.0 })
+                .collect()
+        };
+        let rows = curves.map(|curve| (curve.transmission_error.clone(), compliance(&curve)));
+        Ok(rows.unzip())
     };
-    let rows = rows_of(case.pair.clone())?;
-    let drawn = if case.pair.as_drawn() == case.pair {
-        rows.clone()
+    let (rows, compliance) = rows_of(&loaded)?;
+    let other = if other == loaded {
+        of_mirror(&loaded, &rows)
     } else {
-        rows_of(case.pair.as_drawn())?
+        of_mirror(&loaded, &rows_of(&other)?.0)
     };
-    let other = other_flank(case, &drawn, rows[0].len());
-    Ok(ForceTable::new(case.pair.period(), ladder, rows, other))
+    let table = ForceTable::new(case.pair.period(), ladder, rows, other);
+    Ok(table.with_compliance(compliance))
 }
 
-/// δ of the other flank at `count` positions, from the rows of the loaded flank as `drawn`.
-fn other_flank(case: &Case, drawn: &[Vec<f64>], count: usize) -> Vec<Vec<f64>> {
+/// δ of the other flank at the positions of the table that is made of `case`, from the `rows` of its mirror image.
+fn of_mirror(case: &Case, rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let pair = &case.pair;
-    let steps = f64::from(case.resolution.positions_per_mesh_period);
+    let per_period = f64::from(case.resolution.positions_per_mesh_period);
+    let count = pair.period() as usize * case.resolution.positions_per_mesh_period as usize;
     // The other flank of a tooth passes the pitch point later, by the thickness of the tooth.
     let gear = pair.gear(Member::Driving);
     let half_angle =
@@ -158,10 +187,10 @@ fn other_flank(case: &Case, drawn: &[Vec<f64>], count: usize) -> Vec<Vec<f64>> {
     let backlash = pair.backlash();
     let mirrored = |row: &Vec<f64>| -> Vec<f64> {
         (0..count)
-            .map(|i| -backlash - between_closed(row, later * steps - i as f64))
+            .map(|i| -backlash - between_closed(row, later * per_period - i as f64))
             .collect()
     };
-    drawn.iter().map(mirrored).collect()
+    rows.iter().map(mirrored).collect()
 }
 
 /// The run-up that is asked for.
@@ -193,11 +222,15 @@ pub struct CurveDynamics {
 }
 
 /// The mass m_e on the line of action: 1/m_e = r_b1²/J_1 + r_b2²/J_2.
-pub fn equivalent_mass(pair: &GearPair, inertias: [Option<f64>; 2]) -> f64 {
+pub fn equivalent_mass(case: &Case, inertias: [Option<f64>; 2]) -> f64 {
     let of = |member: Member| {
-        let gear = pair.gear(member);
-        let inertia = inertias[member.index()].unwrap_or_else(|| gear.polar_inertia());
-        gear.base_radius().powi(2) / inertia
+        let section = case.pair.gear(member);
+        let own = || match &case.faces {
+            Some(faces) => faces.pair.gear(member).polar_inertia(),
+            None => section.polar_inertia(),
+        };
+        let inertia = inertias[member.index()].unwrap_or_else(own);
+        section.base_radius().powi(2) / inertia
     };
     1.0 / (of(Member::Driving) + of(Member::Driven))
 }
@@ -209,7 +242,7 @@ pub fn run_up_seconds(case: &Case, request: &DynamicsRequest) -> f64 {
         speeds: request.speeds.clone(),
         tooth_count: pair.driving().tooth_count(),
         load: 0.0,
-        mass: equivalent_mass(pair, request.inertias),
+        mass: equivalent_mass(case, request.inertias),
         damping_ratio: request.damping_ratio,
         stiffness: usual_stiffness(pair),
         orders: Vec::new(),
@@ -218,24 +251,25 @@ pub fn run_up_seconds(case: &Case, request: &DynamicsRequest) -> f64 {
     case.output_torques.len() as f64 * data.seconds(pair.period())
 }
 
-/// What the mesh of `table` does at speed under the load of `curve`, which spans whole periods and whose load is not 0.
+/// What the mesh of `table`, which is that of `case`, does at speed under the load of `curve`, which spans whole periods and whose load is not 0.
 ///
 /// # Errors
 ///
 /// [`AnalysisError::Stopped`] if `run` was told to stop.
 pub fn dynamics(
-    pair: &GearPair,
+    case: &Case,
     curve: &Curve,
     table: &ForceTable,
     request: &DynamicsRequest,
     run: &Run,
 ) -> Result<CurveDynamics, AnalysisError> {
+    let pair = &case.pair;
     let (labels, orders) = told(pair, curve).into_iter().unzip();
     let data = RunUpData {
         speeds: request.speeds.clone(),
         tooth_count: pair.driving().tooth_count(),
         load: curve.load,
-        mass: equivalent_mass(pair, request.inertias),
+        mass: equivalent_mass(case, request.inertias),
         damping_ratio: request.damping_ratio,
         stiffness: curve.mesh_stiffness_tangent_statistics.mean,
         orders,

@@ -1,7 +1,7 @@
 //! The force between two gears over position and approach, and the energy behind it.
 
 /// How loads rise from one row of a table to the next: as this power, so that rows are dense where a line contact is soft.
-const RISE: i32 = 2;
+const RISE: f64 = 1.5;
 
 /// The least rise of δ from row to row in m, less than an atom.
 const APART: f64 = 1e-14;
@@ -20,7 +20,7 @@ impl Ladder {
     pub fn loads(&self) -> Vec<f64> {
         let last = (self.count - 1) as f64;
         (0..self.count)
-            .map(|j| self.largest * (j as f64 / last).powi(RISE))
+            .map(|j| self.largest * (j as f64 / last).powf(RISE))
             .collect()
     }
 }
@@ -40,6 +40,8 @@ pub struct ForceTable {
     loaded: Vec<Vec<f64>>,
     /// δ at minus the loads.
     other: Vec<Vec<f64>>,
+    /// dδ/dF of the loaded flank, a row each load, where it is known; that of the load 0, which is infinite, is not looked at.
+    compliance: Option<Vec<Vec<f64>>>,
 }
 
 /// What the gears exert at a position and an approach.
@@ -71,7 +73,21 @@ impl ForceTable {
             loads: ladder.loads(),
             loaded,
             other,
+            compliance: None,
         }
+    }
+
+    /// The same whose loaded flank has this dδ/dF in m/N, a row each load. That of the load 0 is not looked at.
+    pub fn with_compliance(self, compliance: Vec<Vec<f64>>) -> Self {
+        Self {
+            compliance: Some(compliance),
+            ..self
+        }
+    }
+
+    /// dδ/dF of the loaded flank in m/N, a row each load, where it is known; that of the load 0 means nothing.
+    pub fn compliance(&self) -> Option<&[Vec<f64>]> {
+        self.compliance.as_deref()
     }
 
     /// Mesh periods after which it repeats.
@@ -192,40 +208,191 @@ impl ForceTable {
         }
     }
 
-    /// The table with `by_position` times as many positions and `by_load` times as many loads, of four at least: on cubics through its
-    /// own, and on the lesser of two branches where pairs of teeth begin or cease to carry.
+    /// The table with `by_position` times as many positions and `by_load` times as many loads, of four at least. Along a row: on cubics through
+    /// its own, and on the lesser of two branches where pairs of teeth begin or cease to carry. From row to row: so that compliances are met where
+    /// they are known ([`Stretch`]), and as along a row where they are not.
     pub fn refined(&self, by_position: usize, by_load: usize) -> Self {
         let ladder = Ladder {
             count: (self.ladder.count - 1) * by_load + 1,
             ..self.ladder
         };
         // The other flanks have their kinks upside down.
-        let refine = |rows: &[Vec<f64>], sign: f64| -> Vec<Vec<f64>> {
-            let along: Vec<Vec<f64>> = rows
-                .iter()
-                .map(|row| {
-                    let row: Vec<f64> = row.iter().map(|delta| sign * delta).collect();
-                    (0..row.len() * by_position)
-                        .map(|i| sign * between_closed(&row, i as f64 / by_position as f64))
-                        .collect()
-                })
-                .collect();
-            (0..ladder.count)
-                .map(|j| {
-                    let at = j as f64 / by_load as f64;
-                    (0..along[0].len())
-                        .map(|i| between_open(along.len(), |j| sign * along[j][i], at) * sign)
-                        .collect()
+        let along_loads = |rows: &[Vec<f64>], sign: f64| -> Vec<Vec<f64>> {
+            let loads = ladder.loads().into_iter().enumerate();
+            loads
+                .map(|(j, load)| {
+                    let part = (j % by_load) as f64 / by_load as f64;
+                    let place = (j / by_load, part);
+                    let at =
+                        |i: usize| between_open(&self.loads, |j| sign * rows[j][i], place, load);
+                    (0..self.positions()).map(|i| sign * at(i)).collect()
                 })
                 .collect()
+        };
+        let along_positions = |rows: Vec<Vec<f64>>, sign: f64| -> Vec<Vec<f64>> {
+            let rows = rows.into_iter().map(|row| {
+                let row: Vec<f64> = row.iter().map(|delta| sign * delta).collect();
+                (0..row.len() * by_position)
+                    .map(|i| sign * between_closed(&row, i as f64 / by_position as f64))
+                    .collect()
+            });
+            rows.collect()
+        };
+        let loaded = match &self.compliance {
+            Some(compliance) => self.met(compliance, &ladder.loads(), by_load),
+            None => along_loads(&self.loaded, 1.0),
         };
         Self::new(
             self.period,
             ladder,
-            refine(&self.loaded, 1.0),
-            refine(&self.other, -1.0),
+            along_positions(loaded, 1.0),
+            along_positions(along_loads(&self.other, -1.0), -1.0),
         )
     }
+
+    /// δ at its positions under `loads`, of which every `by_load`-th is its own.
+    fn met(&self, compliance: &[Vec<f64>], loads: &[f64], by_load: usize) -> Vec<Vec<f64>> {
+        let mut rows = vec![vec![0.0; self.positions()]; loads.len()];
+        for i in 0..self.positions() {
+            let at = |rows: &[Vec<f64>]| rows.iter().map(|row| row[i]).collect::<Vec<f64>>();
+            let stretches = Stretch::all(&self.loads, &at(&self.loaded), &at(compliance));
+            for (j, &load) in loads.iter().enumerate() {
+                let stretch = &stretches[(j / by_load).min(stretches.len() - 1)];
+                rows[j][i] = if j % by_load == 0 {
+                    self.loaded[j / by_load][i]
+                } else {
+                    stretch.delta(load)
+                };
+            }
+        }
+        rows
+    }
+}
+
+/// From this ratio on of how fast its compliance falls to how fast those beside it do, a stretch has a kink.
+const KINKED: f64 = 1.5;
+
+/// The least power of the load as which δ rises from nothing.
+const LEAST_POWER: f64 = 0.1;
+
+/// δ over the load, from one row of a table to the next, where compliances are known at both.
+///
+/// A line contact stiffens with the logarithm of its load, c = c_0 − κ ln F, and all at once where one more pair of teeth comes to carry.
+#[derive(Debug)]
+struct Stretch {
+    /// Where it begins, and where it ends: the load, δ and dδ/dF.
+    ends: [[f64; 3]; 2],
+    course: Course,
+}
+
+/// How δ goes over a stretch.
+#[derive(Debug)]
+enum Course {
+    /// From no load, as a power of it: 1 of a spring, a little less of a line contact, less of one that spreads along the face.
+    FromNothing { power: f64 },
+    /// A + B x + C x ln x + D x² with x = F over the load at which it begins.
+    Smooth { b: f64, c: f64, d: f64 },
+    /// From both ends to `place`, the compliance falling by `fall` ln F on either side of it.
+    Kinked { place: f64, fall: f64 },
+}
+
+impl Stretch {
+    /// Those between `loads`, the first of which is 0, with these δ and these compliances.
+    fn all(loads: &[f64], deltas: &[f64], compliances: &[f64]) -> Vec<Self> {
+        let ends: Vec<[[f64; 3]; 2]> = (1..loads.len())
+            .map(|j| [j - 1, j].map(|j| [loads[j], deltas[j], compliances[j]]))
+            .collect();
+        // κ of each.
+        let falls: Vec<f64> = ends.iter().map(Self::fall).collect();
+        ends.iter()
+            .enumerate()
+            .map(|(j, &ends)| {
+                let beside = falls[j.saturating_sub(1)..(j + 2).min(falls.len())].iter();
+                let fall = beside.copied().fold(f64::INFINITY, f64::min).max(0.0);
+                let course = if j == 0 {
+                    Course::from_nothing(&ends)
+                } else if falls[j] > KINKED * fall {
+                    Course::kinked(&ends, fall).unwrap_or_else(|| Course::smooth(&ends))
+                } else {
+                    Course::smooth(&ends)
+                };
+                Self { ends, course }
+            })
+            .collect()
+    }
+
+    /// How far the compliance falls with the logarithm of the load.
+    fn fall(&[[from, delta, compliance], [to, next, less]]: &[[f64; 3]; 2]) -> f64 {
+        if from == 0.0 {
+            (next - delta) / to - less
+        } else {
+            (compliance - less) / (to / from).ln()
+        }
+    }
+
+    /// δ under `load`.
+    fn delta(&self, load: f64) -> f64 {
+        let [[from, delta, _], [to, next, _]] = self.ends;
+        match self.course {
+            Course::FromNothing { power } => delta + (next - delta) * (load / to).powf(power),
+            Course::Smooth { b, c, d } => {
+                let x = load / from;
+                delta + b * (x - 1.0) + c * x * x.ln() + d * (x * x - 1.0)
+            }
+            Course::Kinked { place, fall } if load <= place => {
+                delta + risen(&self.ends[0], fall, load)
+            }
+            Course::Kinked { fall, .. } => next + risen(&self.ends[1], fall, load),
+        }
+    }
+}
+
+impl Course {
+    /// So that δ and dδ/dF are met at its end.
+    fn from_nothing(&[[_, delta, _], [to, next, compliance]]: &[[f64; 3]; 2]) -> Self {
+        let power = compliance * to / (next - delta);
+        // Rounding apart, δ rises, and no faster than in proportion.
+        Self::FromNothing {
+            power: power.clamp(LEAST_POWER, 1.0),
+        }
+    }
+
+    /// So that δ and dδ/dF are met at both ends.
+    fn smooth(&[[from, delta, compliance], [to, next, less]]: &[[f64; 3]; 2]) -> Self {
+        let (ratio, rise) = (to / from, next - delta);
+        // Slopes over x: B + C + 2 D at its beginning.
+        let (first, last) = (compliance * from, less * from);
+        let (width, logarithm) = (ratio - 1.0, ratio.ln());
+        // C ln r + 2 D (r − 1) = last − first, and C (r ln r − (r − 1)) + D (r − 1)² = rise − first (r − 1).
+        let (p, q) = (last - first, rise - first * width);
+        let along = ratio * logarithm - width;
+        let determinant = logarithm * width * width - 2.0 * width * along;
+        let c = (p * width * width - 2.0 * width * q) / determinant;
+        let d = (logarithm * q - along * p) / determinant;
+        Self::Smooth {
+            b: first - c - 2.0 * d,
+            c,
+            d,
+        }
+    }
+
+    /// So that δ is continuous where the courses from both ends, whose compliances fall by `fall` ln F, change; nothing if they do not meet.
+    fn kinked(ends: &[[f64; 3]; 2], fall: f64) -> Option<Self> {
+        let &[from, to] = ends;
+        // The course from the beginning, less that from the end, which rises up to the kink by less and less.
+        let apart = |load: f64| from[1] + risen(&from, fall, load) - to[1] - risen(&to, fall, load);
+        let [low, high] = [from[0], to[0]];
+        let meets = apart(low) < 0.0 && apart(high) > 0.0;
+        meets.then(|| {
+            let place = crate::root_finding::bisect(low, high, |load| apart(load) < 0.0);
+            Self::Kinked { place, fall }
+        })
+    }
+}
+
+/// By how much δ is more under `load` than at one `end` from which the compliance falls by `fall` ln F.
+fn risen(&[at, _, compliance]: &[f64; 3], fall: f64, load: f64) -> f64 {
+    compliance * (load - at) - fall * (load * (load / at).ln() - (load - at))
 }
 
 /// Puts each row beyond the one before.
@@ -271,21 +438,29 @@ pub(crate) fn between_closed(row: &[f64], place: f64) -> f64 {
     }
 }
 
-/// What stands at `place` of `count` values, four or more.
-fn between_open(count: usize, value: impl Fn(usize) -> f64, place: f64) -> f64 {
-    let first = (place.floor() as usize).min(count - 2);
-    let part = place - first as f64;
+/// What stands under a load `part` of the way on from row `first` of the `values` under `loads`, four or more.
+fn between_open(
+    loads: &[f64],
+    value: impl Fn(usize) -> f64,
+    (first, part): (usize, f64),
+    load: f64,
+) -> f64 {
     if part == 0.0 {
         return value(first);
     }
+    // The cubic over the load: what is in proportion stays so.
     let through = || {
-        let begin = first.saturating_sub(1).min(count - 4);
-        lagrange(
-            [0, 1, 2, 3].map(|k| value(begin + k)),
-            place - begin as f64 - 1.0,
-        )
+        let begin = first.saturating_sub(1).min(loads.len() - 4);
+        let nodes = begin..begin + 4;
+        let weight = |k: usize| -> f64 {
+            let others = nodes.clone().filter(|other| *other != k);
+            others
+                .map(|other| (load - loads[other]) / (loads[k] - loads[other]))
+                .product()
+        };
+        nodes.clone().map(|k| value(k) * weight(k)).sum()
     };
-    if first < 2 || first + 3 >= count {
+    if first < 2 || first + 3 >= loads.len() {
         return through();
     }
     let about = [0, 1, 2, 3, 4, 5].map(|k| value(first + k - 2));
@@ -348,7 +523,15 @@ pub(super) mod tests {
                 })
                 .collect()
         };
-        ForceTable::new(1, ladder, rows(1.0, 0.0), rows(-1.0, -3.0))
+        let compliance = ladder.loads().into_iter().map(|load| {
+            let at = |i: usize| {
+                let waved = of(1.0, eta(i)) - of(0.0, eta(i));
+                0.9 * load.powf(-0.1) * waved
+            };
+            (0..positions).map(at).collect()
+        });
+        let table = ForceTable::new(1, ladder, rows(1.0, 0.0), rows(-1.0, -3.0));
+        table.with_compliance(compliance.collect())
     }
 
     #[test]
@@ -454,10 +637,61 @@ pub(super) mod tests {
             }
         }
         let true_one = wavy(192, 33);
-        for (found, expected) in fine.rows().iter().zip(true_one.rows()) {
+        let near = |found: &[Vec<f64>], expected: &[Vec<f64>], most: f64| {
             for (found, expected) in found.iter().zip(expected) {
-                assert!((found - expected).abs() < 2e-3, "{found} {expected}");
+                for (found, expected) in found.iter().zip(expected) {
+                    assert!((found - expected).abs() < most, "{found} {expected}");
+                }
             }
+        };
+        near(fine.rows(), true_one.rows(), 2e-3);
+        // Without compliances nothing says how soft the first stretch begins.
+        let [found, expected] = [&fine, &true_one].map(ForceTable::rows_of_other_flank);
+        near(found, expected, 1e-2);
+    }
+
+    #[test]
+    fn a_kink_is_found_of_what_stands_beside_it() {
+        // A line contact, to which another comes at a load between two of the table.
+        let ladder = Ladder {
+            count: 12,
+            largest: 1000.0,
+        };
+        let at = |load: f64, kink: f64| {
+            let logarithm = if load > 0.0 {
+                (load / 1000.0).ln()
+            } else {
+                0.0
+            };
+            let one = load * (1.0 - 0.05 * (logarithm - 1.0));
+            let parallel = (load - kink).max(0.0);
+            (
+                one - 0.35 * parallel,
+                1.0 - 0.05 * logarithm - if load > kink { 0.35 } else { 0.0 },
+            )
+        };
+        for kink in [60.0, 300.0, 333.0, 480.0, 700.0, 930.0] {
+            let row = |load: f64| vec![at(load, kink).0; 8];
+            let rows = |sign: f64| {
+                ladder
+                    .loads()
+                    .into_iter()
+                    .map(|load| row(load).iter().map(|d| sign * d).collect())
+                    .collect()
+            };
+            let table = ForceTable::new(1, ladder, rows(1.0), rows(-1.0));
+            let compliance = ladder
+                .loads()
+                .into_iter()
+                .map(|load| vec![at(load, kink).1; 8]);
+            let table = table.with_compliance(compliance.collect()).refined(1, 16);
+            let missed = table.loads().iter().zip(table.rows()).map(|(load, row)| {
+                (table.load(0.2, at(*load, kink).0) - load)
+                    .abs()
+                    .max((row[0] - at(*load, kink).0).abs())
+            });
+            let missed = missed.fold(0.0, f64::max);
+            assert!(missed < 1e-3 * 1000.0, "{kink}: {missed}");
         }
     }
 }

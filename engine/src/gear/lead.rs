@@ -105,6 +105,34 @@ impl LeadModification {
         }
     }
 
+    /// The same on a face of `width` that is seen from its other side.
+    pub(super) fn turned_over(&self, width: f64) -> Self {
+        match self {
+            Self::Crowning { .. } => self.clone(),
+            Self::Slope { amount } => Self::Table {
+                places: vec![-0.5 * width, 0.5 * width],
+                removed: vec![*amount, 0.0],
+            },
+            Self::EndRelief {
+                amount,
+                length,
+                ends,
+            } => Self::EndRelief {
+                amount: *amount,
+                length: *length,
+                ends: match ends {
+                    FaceEnds::Both => FaceEnds::Both,
+                    FaceEnds::Minus => FaceEnds::Plus,
+                    FaceEnds::Plus => FaceEnds::Minus,
+                },
+            },
+            Self::Table { places, removed } => Self::Table {
+                places: places.iter().rev().map(|z| 0.0 - z).collect(),
+                removed: removed.iter().rev().copied().collect(),
+            },
+        }
+    }
+
     /// What is removed at `z` of a face of `width`.
     pub fn removed(&self, z: f64, width: f64) -> f64 {
         match self {

@@ -1,6 +1,8 @@
 //! Mass and inertia of a gear, from its true profile.
 
-use super::{Moments, SpurGear, Vector};
+use std::f64::consts::PI;
+
+use super::{Moments, SolidGear, SpurGear, Vector};
 use crate::quadrature::gauss_legendre_panels;
 
 impl SpurGear {
@@ -67,6 +69,43 @@ impl SpurGear {
         }
         let halves = 2.0 * f64::from(self.tooth_count());
         (halves * area / 2.0, halves * moment / 4.0)
+    }
+}
+
+impl SolidGear {
+    /// The mass in kg.
+    pub fn mass(&self) -> f64 {
+        self.section().mass() + self.added_by_hub()[0]
+    }
+
+    /// The polar moment of inertia about the axis in kg m².
+    pub fn polar_inertia(&self) -> f64 {
+        self.section().polar_inertia() + self.added_by_hub()[1]
+    }
+
+    /// The mass and the polar inertia that a hub of its own width has more than the section, in which what lies around the bore is as wide as
+    /// the face, or as thick as the web.
+    fn added_by_hub(&self) -> [f64; 2] {
+        let Some(hub) = self.hub() else {
+            return [0.0, 0.0];
+        };
+        let (section, blank) = (self.section(), &self.section().data().blank);
+        let density = section.material().density;
+        let ring = |from: f64, to: f64, width: f64| {
+            let to = to.max(from);
+            [
+                density * PI * (to.powi(2) - from.powi(2)) * width,
+                0.5 * density * PI * (to.powi(4) - from.powi(4)) * width,
+            ]
+        };
+        let web = blank.web.map_or(hub.outer_radius, |web| web.inner_radius);
+        let thickness = blank.web.map_or(0.0, |web| web.thickness);
+        let within = web.min(hub.outer_radius);
+        let [inner, outer] = [
+            ring(blank.bore_radius, within, hub.width - self.face_width()),
+            ring(within, hub.outer_radius, hub.width - thickness),
+        ];
+        [inner[0] + outer[0], inner[1] + outer[1]]
     }
 }
 

@@ -244,6 +244,27 @@ impl SolidGear {
         self.hub
     }
 
+    /// The same gear with teeth that all are as drawn.
+    pub fn as_drawn(&self) -> Self {
+        Self {
+            section: self.section.as_drawn(),
+            ..self.clone()
+        }
+    }
+
+    /// The same gear seen from its other side, holes left where they are: what stood at z stands at −z.
+    pub(super) fn turned_over(&self) -> Self {
+        let hub = self.hub.map(|hub| Hub {
+            offset: 0.0 - hub.offset,
+            ..hub
+        });
+        Self {
+            web_offset: 0.0 - self.web_offset,
+            hub,
+            ..self.clone()
+        }
+    }
+
     /// The same gear without holes.
     pub fn without_holes(&self) -> Self {
         Self {

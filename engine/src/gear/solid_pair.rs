@@ -124,6 +124,54 @@ impl SolidPair {
         })
     }
 
+    /// The same pair whose teeth are all as drawn.
+    pub fn as_drawn(&self) -> Self {
+        Self {
+            gears: self.gears.each_ref().map(SolidGear::as_drawn),
+            section: self.section.as_drawn(),
+            ..self.clone()
+        }
+    }
+
+    /// The pair whose loaded flanks touch as the other flanks of this one do: turned over about the line of centers, at positions that go the
+    /// other way round. Holes stay where they are under the flanks.
+    pub fn turned_over(&self) -> Self {
+        let Alignment {
+            axial_offset,
+            in_plane,
+            out_of_plane,
+        } = self.alignment;
+        let mut leads = Member::BOTH.map(|member| {
+            let width = self.gear(member).face_width();
+            let leads = self.leads(member).iter();
+            leads
+                .map(|lead| lead.turned_over(width))
+                .collect::<Vec<_>>()
+        });
+        // The axes open from −z on; seen from the other side they have opened there already.
+        let alpha = self.section.working_pressure_angle();
+        let opened = in_plane * alpha.sin() - out_of_plane * alpha.cos();
+        if opened != 0.0 {
+            let half = 0.5 * self.gears[0].face_width();
+            leads[0].push(LeadModification::Table {
+                places: vec![-half, half],
+                removed: vec![opened; 2],
+            });
+        }
+        let [low, high] = self.common;
+        Self {
+            gears: self.gears.each_ref().map(SolidGear::turned_over),
+            section: self.section.clone(),
+            leads,
+            alignment: Alignment {
+                axial_offset: 0.0 - axial_offset,
+                in_plane: 0.0 - in_plane,
+                out_of_plane,
+            },
+            common: [0.0 - high, 0.0 - low],
+        }
+    }
+
     /// The transverse section: a pair of spur gears.
     pub fn section(&self) -> &GearPair {
         &self.section
@@ -254,6 +302,7 @@ impl SolidPair {
 mod tests {
     use super::*;
     use crate::gear::Helix;
+    use crate::gear::lead::FaceEnds;
     use crate::gear::spur::tests::paper_gear;
 
     fn pair(beta: f64, width: f64, alignment: Alignment) -> Result<SolidPair, SolidPairError> {
@@ -345,6 +394,51 @@ mod tests {
         let a = 2.0 * gears[0].section().reference_radius();
         let refused = SolidPair::new(gears, [Vec::new(), Vec::new()], a, Alignment::default());
         assert!(matches!(refused, Err(SolidPairError::HelixMismatch { .. })));
+    }
+
+    #[test]
+    fn turned_over_the_other_flanks_are_as_far_apart_as_they_were() {
+        let leads = vec![
+            LeadModification::Slope { amount: 7e-6 },
+            LeadModification::EndRelief {
+                amount: 5e-6,
+                length: 4e-3,
+                ends: FaceEnds::Plus,
+            },
+            LeadModification::Table {
+                places: vec![-6e-3, 1e-3, 5e-3],
+                removed: vec![1e-6, 0.0, 3e-6],
+            },
+            LeadModification::Crowning { amount: 2e-6 },
+        ];
+        let alignment = Alignment {
+            axial_offset: 3e-3,
+            in_plane: 10e-6,
+            out_of_plane: 20e-6,
+        };
+        let plain = pair(0.2, 18e-3, alignment).expect("meshes");
+        let with = SolidPair {
+            leads: [leads.clone(), leads],
+            ..plain
+        };
+        // On the other flanks what opens across the plane of the axes closes.
+        let of_other = SolidPair {
+            alignment: Alignment {
+                out_of_plane: -alignment.out_of_plane,
+                ..alignment
+            },
+            ..with.clone()
+        };
+        let turned = with.turned_over();
+        for z in [-7e-3, -3e-3, 0.0, 2e-3, 6.5e-3] {
+            let gap = |pair: &SolidPair, z| pair.lead_gap(&PairDeviations::NONE, [0, 0], z);
+            assert!((gap(&turned, -z) - gap(&of_other, z)).abs() < 1e-18);
+        }
+        // Twice turned it is what it was, but for how its leads are said.
+        let back = turned.turned_over();
+        assert_eq!((back.gears, back.common), (with.gears.clone(), with.common));
+        let even = pair(0.2, 20e-3, Alignment::default()).expect("meshes");
+        assert_eq!(even.turned_over(), even);
     }
 
     #[test]

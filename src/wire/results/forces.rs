@@ -18,6 +18,8 @@ pub struct ForceTableDocument {
     pub load_n: Vec<f64>,
     /// The approach under each load, in um: one row a load, one number a position. Positive where the driven gear lags.
     pub transmission_error_um: Vec<Vec<f64>>,
+    /// The stiffness dF/d(approach) under each load, in N/m: one row a load, that of the load 0 being 0. With it tables need fewer loads.
+    pub mesh_stiffness_tangent_n_per_m: Vec<Vec<f64>>,
     /// The backlash along the line of action at each position, in um: no force acts while the approach is less than that of load 0 by up to
     /// this much.
     pub backlash_um: Vec<f64>,
@@ -28,7 +30,16 @@ pub struct ForceTableDocument {
 impl ForceTableDocument {
     pub(super) fn of(table: &ForceTable) -> Self {
         let rows = |rows: &[Vec<f64>]| rows.iter().map(|row| each(row, to_um)).collect();
+        let stiff = |compliance: f64| {
+            if compliance > 0.0 {
+                1.0 / compliance
+            } else {
+                0.0
+            }
+        };
+        let stiffness = table.compliance().unwrap_or_default().iter();
         Self {
+            mesh_stiffness_tangent_n_per_m: stiffness.map(|row| each(row, stiff)).collect(),
             mesh_position: table.mesh_positions(),
             load_n: table.loads().to_vec(),
             transmission_error_um: rows(table.rows()),

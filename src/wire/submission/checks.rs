@@ -26,17 +26,8 @@ impl Document {
         }
     }
 
-    /// Refuses what three dimensions do not tell.
-    pub(super) fn refuse_plane_questions(&self, errors: &Errors) {
-        let asked = [
-            (self.force_table.is_some(), Self::force_table.name),
-            (self.dynamics.is_some(), Self::dynamics.name),
-        ];
-        for (_, name) in asked.into_iter().filter(|(asked, _)| *asked) {
-            let pointer = format!("/{name}");
-            let detail = format!("{pointer} is told by the plane methods alone so far.");
-            errors.push(FieldError::new(pointer, Code::NotInThreeDimensions, detail));
-        }
+    /// Refuses what three dimensions have no choice of.
+    pub(super) fn refuse_plane_choices(&self, errors: &Errors) {
         let solver = matches!(
             self.resolution.contact_solver,
             ContactSolverDocument::AugmentedLagrangian(_)

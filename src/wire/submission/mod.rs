@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use meshwright_engine::analysis::forces::{ForcesRequest, with_table};
+use meshwright_engine::analysis::forces::{ForcesRequest, MORE_POSITIONS, with_table};
 use meshwright_engine::analysis::spectrum::RotationSpeed;
 use meshwright_engine::analysis::{Case, Faces, Method};
 use meshwright_engine::assembly::FaceResolution;
@@ -99,7 +99,7 @@ impl Document {
     /// The submission, if all that it says goes together.
     fn checked(mut self, purpose: Purpose, errors: &Errors) -> Option<Submission> {
         let solid = if self.method.sees_faces() {
-            self.refuse_plane_questions(errors);
+            self.refuse_plane_choices(errors);
             Some(self.pair.to_solid_pair(errors)?)
         } else {
             self.pair
@@ -272,7 +272,8 @@ impl Submission {
     pub fn positions_total(&self) -> u64 {
         let per_period = u64::from(self.case.resolution.positions_per_mesh_period);
         let of_table = self.forces.as_ref().map_or(0, |forces| {
-            u64::from(forces.table.loads) * u64::from(self.case.pair.period()) * per_period
+            let positions = u64::from(self.case.pair.period() * MORE_POSITIONS) * per_period;
+            u64::from(forces.table.loads) * positions
         });
         self.case.positions() as u64 * self.case.output_torques.len() as u64 + of_table
     }

@@ -250,8 +250,8 @@ fn a_run_up_brings_the_usual_table_and_both_count() {
         parse(&echo).expect("valid").canonical_json(),
         submission.canonical_json()
     );
-    // Twelve loads at 40 positions of 5 mesh periods.
-    assert_eq!(submission.positions_total(), alone + 12 * 200);
+    // Twelve loads at twice 40 positions of 5 mesh periods.
+    assert_eq!(submission.positions_total(), alone + 12 * 400);
     let request = submission.forces().expect("asked for");
     let speeds = &request.dynamics.as_ref().expect("asked for").speeds;
     assert_eq!((speeds.len(), speeds[0]), (400, 0.0));

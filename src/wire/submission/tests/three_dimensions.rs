@@ -123,21 +123,13 @@ fn what_is_said_to_be_nothing_is_nothing() {
 
 #[test]
 fn what_three_dimensions_do_not_tell_is_refused_with_its_place() {
-    for (pointer, value, told_at) in [
-        ("/force_table", json!({}), "/force_table"),
-        (
-            "/resolution",
-            json!({ "contact_solver": "augmented_lagrangian" }),
-            "/resolution/contact_solver",
-        ),
-    ] {
-        let problem = parse(&with(solid(), &[(pointer, value)])).expect_err(pointer);
-        let error = &problem.errors[0];
-        assert_eq!(
-            (error.pointer.as_str(), error.code),
-            (told_at, Code::NotInThreeDimensions)
-        );
-    }
+    let solver = json!({ "contact_solver": "augmented_lagrangian" });
+    let problem = parse(&with(solid(), &[("/resolution", solver)])).expect_err("a plane choice");
+    let error = &problem.errors[0];
+    assert_eq!(
+        (error.pointer.as_str(), error.code),
+        ("/resolution/contact_solver", Code::NotInThreeDimensions)
+    );
 }
 
 #[test]
@@ -256,6 +248,55 @@ fn a_helical_pair_has_the_sections_of_the_standard() {
             .signum(),
         1.0
     );
+}
+
+#[test]
+fn forces_and_run_ups_are_told_along_faces_too() {
+    let dynamics = json!({ "driving_speed_rpm": { "from": 0, "to": 30_000, "count": 5 } });
+    let document = with(
+        filled_in("helical-pair"),
+        &[
+            ("/output_torques_n_m", json!([100])),
+            ("/resolution/positions_per_mesh_period", json!(8)),
+            ("/resolution/face_order", json!(4)),
+            ("/force_table", json!({ "loads": 6 })),
+            ("/dynamics", dynamics),
+        ],
+    );
+    for method in ["three_dimensional", "three_dimensional_projected"] {
+        let document = with(document.clone(), &[("/method", json!(method))]);
+        let submission = parse(&document).expect("valid");
+        assert_eq!(submission.positions_total(), 8 + 16 * 6);
+        let (case, forces) = (submission.case(), submission.forces());
+        let (run, library) = (Run::unattended(), Library::default());
+        let results = solve(&submission, &library, &run).expect("solves");
+        let results: Value = serde_json::from_str(&results).expect("JSON");
+        let table = &results["force_table"];
+        let rows = table["transmission_error_um"].as_array().expect("rows");
+        let row = |j: usize| rows[j].as_array().expect("a row");
+        assert_eq!((rows.len(), row(0).len()), (6, 16));
+        let stiffness = table["mesh_stiffness_tangent_n_per_m"].as_array();
+        assert_eq!(stiffness.map(Vec::len), Some(6));
+        assert!((0..16).all(|i| row(5)[i].as_f64() > row(4)[i].as_f64()));
+        let dynamics = &results["curves"][0]["dynamics"];
+        assert_eq!(
+            dynamics["up"]["dynamic_load_factor"]
+                .as_array()
+                .map(Vec::len),
+            Some(5)
+        );
+        // The hub turns with its gear.
+        let [j_1, j_2] = ["driving", "driven"].map(|gear| {
+            results["pair"][gear]["polar_inertia_kg_m2"]
+                .as_f64()
+                .expect("a number")
+        });
+        let [r_1, r_2] = [case.pair.driving(), case.pair.driven()].map(|gear| gear.base_radius());
+        let mass = 1.0 / (r_1 * r_1 / j_1 + r_2 * r_2 / j_2);
+        let told = dynamics["equivalent_mass_kg"].as_f64().expect("a number");
+        assert!((told / mass - 1.0).abs() < 1e-8, "{told} {mass}");
+        assert!(forces.is_some());
+    }
 }
 
 #[test]
