@@ -210,6 +210,8 @@ def test_a_contact_pattern_is_read_and_drawn(service):
     submission["resolution"] = {"positions_per_mesh_period": 8, "face_order": 4, "face_slices": 20}
     results = service.solve(submission)
     assert all(curve.face_load_factor > 1.0 for curve in results.curves)
+    for curve in results.curves:
+        assert 1.0 <= curve.lead_cure["face_load_factor"] < curve.face_load_factor
     pattern = service.contact_pattern(results.job["id"])
     assert pattern.output_torques_n_m == [200.0, 50.0]
     for gear in ("driving", "driven"):

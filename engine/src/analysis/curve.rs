@@ -4,6 +4,7 @@ use super::evidence::Evidence;
 use super::spectrum::Spectrum;
 use super::stress::GearStresses;
 use super::warning::Warning;
+use crate::contact::face::even::EvenLead;
 use crate::gear::Member;
 
 /// Mean, rms of the fluctuation and peak-to-peak over one span.
@@ -98,6 +99,28 @@ pub struct DecompositionParts {
     pub blanks: Vec<BlankFit>,
 }
 
+/// What would even the load along the face: a further modification of the driving leads. Lengths are in meters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LeadCure {
+    /// What is taken off at the end at +z, linear from nothing at that at −z.
+    pub slope: f64,
+    /// What is taken off at both ends, a parabola.
+    pub crowning: f64,
+    /// K_Hβ with it.
+    pub face_load_factor: f64,
+}
+
+impl LeadCure {
+    /// What `lead` makes of a face load factor.
+    pub(super) fn of(lead: EvenLead, face_load_factor: f64) -> Self {
+        Self {
+            slope: lead.slope,
+            crowning: lead.crowning,
+            face_load_factor: (lead.lowered * face_load_factor).max(1.0),
+        }
+    }
+}
+
 /// The load along the common face. Lengths are in meters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FaceLoad {
@@ -107,6 +130,8 @@ pub struct FaceLoad {
     pub load: Vec<Vec<f64>>,
     /// K_Hβ: the largest of ten equal strips over their mean, the mean over the positions of each.
     pub face_load_factor: f64,
+    /// The lead that would make K_Hβ least, if it was found.
+    pub cure: Option<LeadCure>,
     /// Where the load stands in the mean, at each position.
     pub load_centroid: Vec<f64>,
 }

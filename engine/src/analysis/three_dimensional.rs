@@ -6,7 +6,7 @@ use std::sync::Arc;
 use faer::Mat;
 
 use super::case::{Faces, Method, StiffnessRule};
-use super::curve::FaceLoad;
+use super::curve::{FaceLoad, LeadCure};
 use super::curve_parts::CurveParts;
 use super::evidence::Evidence;
 use super::first_order::{OnRound, checked_places, with_holes};
@@ -14,17 +14,18 @@ use super::warning::{warn_of_corner, warn_of_projection, warn_of_tips, warnings}
 use super::{Analysis, AnalysisError, Case};
 use crate::assembly::{FaceResolution, FaceYield, FaceYieldSpec, Parts};
 use crate::contact::MeshContact;
+use crate::contact::face::even::{EvenLead, STRIPS, face_load_factor};
 use crate::contact::face::{FaceContact, FaceModel, FlankYield};
 use crate::gear::Member;
 use crate::grid::GridLevel;
 use crate::ring::teeth::FARTHEST_COUPLED;
 use crate::run::Run;
 
-/// The strips over which the face load factor is taken.
-const STRIPS: usize = 10;
-
 /// A tip corner is told of from this part of the load: one of many slices touches nearly always.
 const TOLD: f64 = 0.005;
+
+/// The positions at which leads are tried that would even the load: as many as a mesh period has at least.
+const TRIED: usize = 8;
 
 /// Computes `case` along its faces; at another grid `level` than its own with other polynomials across them, which tell the error.
 pub(super) fn solve(
@@ -62,9 +63,16 @@ pub(super) fn solve(
             }
         }
         let error = solved.error;
-        let curve = solved
-            .into_parts(case, faces)
-            .into_curve(case, output_torque);
+        let even = if level == case.resolution.grid {
+            pair.even_lead(load, &solved)?
+        } else {
+            None
+        };
+        let mut parts = solved.into_parts(case, faces);
+        if let Some(face) = &mut parts.face {
+            face.cure = even.map(|lead| LeadCure::of(lead, face.face_load_factor));
+        }
+        let curve = parts.into_curve(case, output_torque);
         if let Some(error) = error {
             let known = evidence.projection_error.unwrap_or(0.0);
             evidence.projection_error = Some(error.max(known));
@@ -173,6 +181,24 @@ impl<'a> OfFaces<'a> {
         })
     }
 
+    /// The lead that evens the load on the pair that was `solved` for.
+    fn even_lead(&self, load: f64, solved: &Solved) -> Result<Option<EvenLead>, AnalysisError> {
+        let model = match self.case.method {
+            Method::ThreeDimensionalProjected => &self.round,
+            _ => &self.whole,
+        };
+        let deltas = solved.contacts.iter();
+        let deltas = deltas.map(|contact| contact.mesh.transmission_error);
+        let farthest = deltas.fold(f64::NEG_INFINITY, f64::max);
+        // Each stands at another fraction of the mesh period, and they are spread over all periods.
+        let per_period = self.case.resolution.positions_per_mesh_period as usize;
+        let periods = solved.contacts.len() / per_period;
+        let all = self.case.mesh_positions();
+        let place = |i: usize| i * periods / TRIED * per_period + i * per_period / TRIED;
+        let positions: Vec<f64> = (0..TRIED).map(|i| all[place(i)]).collect();
+        Ok(model.even_lead(load, &positions, farthest, self.run)?)
+    }
+
     /// The contacts of `model` at `positions`, and its stiffness there by the rule of the case.
     fn contacts(
         &self,
@@ -273,9 +299,6 @@ fn face_load(case: &Case, faces: &Faces, contacts: &[FaceContact]) -> FaceLoad {
         .iter()
         .map(|contact| contact.strips(width, STRIPS))
         .collect();
-    let strips = mean_row(&strips);
-    let largest = strips.iter().copied().fold(0.0, f64::max);
-    let all: f64 = strips.iter().sum();
     FaceLoad {
         heights: (0..count)
             .map(|i| (i as f64 + 0.5) * strip - 0.5 * width)
@@ -285,7 +308,8 @@ fn face_load(case: &Case, faces: &Faces, contacts: &[FaceContact]) -> FaceLoad {
         } else {
             vec![mean_row(&rows)]
         },
-        face_load_factor: largest * STRIPS as f64 / all,
+        face_load_factor: face_load_factor(&mean_row(&strips)),
+        cure: None,
         load_centroid: case.repeated(contacts.iter().map(FaceContact::load_centroid)),
     }
 }

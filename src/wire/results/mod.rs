@@ -17,7 +17,8 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 pub use curve::{
-    CurveDocument, FaceDocument, LoadShareDocument, StatisticsDocument, StatisticsValues,
+    CurveDocument, FaceDocument, LeadCureDocument, LoadShareDocument, StatisticsDocument,
+    StatisticsValues,
 };
 pub use decomposition::{
     BlankFitDocument, BlankHarmonicDocument, BlankSampleDocument, DecompositionDocument,

@@ -83,6 +83,12 @@ class Curve:
         factor = self.document.get("face", {}).get("face_load_factor")
         return None if factor is None else float(factor)
 
+    @property
+    def lead_cure(self) -> dict[str, float] | None:
+        """The slope and crowning of the driving leads that would make K_Hbeta least, and what it would be; none where there is no face."""
+        cure: dict[str, float] | None = self.document.get("face", {}).get("cure")
+        return cure
+
     def order(self, label: str) -> float:
         """The amplitude of the transmission error, in um, at a named order such as `H_N` or `H_Z2`."""
         for line in self.document.get("spectrum", {}).get("named", []):

@@ -14,6 +14,7 @@
 
 mod balance;
 mod compliance;
+pub mod even;
 mod slice;
 pub mod spring;
 

@@ -647,3 +647,102 @@ fn a_plane_method_has_no_pattern_and_says_which_has() {
         problem.detail
     );
 }
+
+/// K_Hbeta of each curve, and what would lower it.
+fn cures(submission: &Submission) -> Vec<(f64, [f64; 3])> {
+    let results = solve(submission, &Library::default(), &Run::unattended()).expect("solves");
+    let results: Value = serde_json::from_str(&results).expect("JSON");
+    let curves = results["curves"].as_array().expect("curves").iter();
+    curves
+        .map(|curve| {
+            let face = &curve["face"];
+            let of_cure = ["lead_slope_um", "crowning_um", "face_load_factor"]
+                .map(|name| face["cure"][name].as_f64().expect("a number"));
+            (
+                face["face_load_factor"].as_f64().expect("a factor"),
+                of_cure,
+            )
+        })
+        .collect()
+}
+
+/// A pattern pair with this on its driving leads.
+fn with_leads<'a>(changes: &[(&'a str, Value)], leads: Vec<Value>) -> Vec<(&'a str, Value)> {
+    let mut changes = changes.to_vec();
+    changes.push(("/pair/driving/lead_modifications", json!(leads)));
+    changes
+}
+
+#[test]
+fn the_lead_that_is_told_lowers_the_face_load_factor_to_what_is_told() {
+    let askew = |out_of_plane: f64| {
+        (
+            "/pair/misalignment_um",
+            json!({ "in_plane_um": 3, "out_of_plane_um": out_of_plane }),
+        )
+    };
+    let web = json!({ "bore_radius_mm": 8, "web": { "inner_radius_mm": 12, "outer_radius_mm": 25, "thickness_mm": 5, "offset_mm": -7 } });
+    let torque = |torques: Value| ("/output_torques_n_m", torques);
+    let hand = ("/pair/helix_angle_deg", json!(-20));
+    let holes = json!({ "count": 5, "circle_radius_mm": 17, "radius_mm": 3 });
+    let crowned = vec![json!({ "kind": "crowning", "amount_um": 12 })];
+    let several = vec![
+        torque(json!([60])),
+        askew(10.0),
+        ("/pair/driven/blank/holes", holes),
+        ("/resolution/positions_per_mesh_period", json!(8)),
+    ];
+    let cases: Vec<(Changes<'_>, Vec<Value>)> = vec![
+        (vec![torque(json!([100, 25])), askew(12.0)], Vec::new()),
+        (vec![askew(-12.0), hand.clone()], Vec::new()),
+        (vec![askew(25.0)], crowned.clone()),
+        (vec![("/pair/driven/blank", web), hand], Vec::new()),
+        (several, Vec::new()),
+        (vec![torque(json!([100]))], crowned),
+    ];
+    for (changes, leads) in cases {
+        let submission = pattern_pair(&with_leads(&changes, leads.clone()));
+        let torques = submission.case().output_torques.clone();
+        for ((before, [slope, crowning, told]), torque) in
+            cures(&submission).into_iter().zip(torques)
+        {
+            let applied = |slope: f64, crowning: f64| {
+                let mut leads = leads.clone();
+                leads.push(json!({ "kind": "slope", "amount_um": slope }));
+                leads.push(json!({ "kind": "crowning", "amount_um": crowning }));
+                let mut changes = with_leads(&changes, leads);
+                changes.push(("/output_torques_n_m", json!([torque])));
+                cures(&pattern_pair(&changes))[0]
+            };
+            let (after, [_, _, further]) = applied(slope, crowning);
+            println!("{torque}: {before} {after} {told} by {slope} {crowning}, then {further}");
+            assert!((after / told - 1.0).abs() < 0.02, "{after}, told {told}");
+            assert!(told < 1.12 && after < before, "{before} {after}");
+            assert!(further > 0.98 * after, "nothing is left to gain: {further}");
+            for (more, crowned) in [(3.0, 0.0), (-3.0, 0.0)] {
+                let (beside, _) = applied(slope + more, crowning + crowned);
+                assert!(beside > 0.99 * after, "{more} {crowned}: {beside} {after}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_lead_slope_cures_the_misalignment_of_the_same_gap() {
+    // out_of_plane_um opens by cos(alpha_wt) of it along the line of action, over the same face.
+    for amount in [15.0, -15.0] {
+        let askew = json!({ "out_of_plane_um": amount });
+        let submission = pattern_pair(&[("/pair/misalignment_um", askew)]);
+        let [straight, skew] = [pattern_pair(&[]), submission].map(|pair| {
+            let alpha = pair.case().pair.working_pressure_angle();
+            (cures(&pair)[0], alpha)
+        });
+        let ((_, [own, _, least]), _) = straight;
+        let ((_, [slope, _, told]), alpha) = skew;
+        assert!(
+            (slope - own + amount * alpha.cos()).abs() < 0.5,
+            "{slope} {own}"
+        );
+        assert!((told / least - 1.0).abs() < 0.01, "{told} {least}");
+    }
+}
