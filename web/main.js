@@ -188,7 +188,7 @@ function onProgress(job) {
   if (!job) return;
   byId("progress").value = job.progress_percent ?? 0;
   byId("stop").onclick = job.cancel;
-  byId("state").textContent = `Too many positions to follow the hand: a job computes them, ${job.progress_percent ?? 0} %${shown ? ". Until then the curves are of the design before" : ""}`;
+  byId("state").textContent = `Too much to follow the hand: a job computes it, ${job.progress_percent ?? 0} %${shown ? ". Until then the curves are of the design before" : ""}`;
 }
 
 /** The last good curve stays; what is wrong stands above it and at its field. */

@@ -1,6 +1,7 @@
 // Results while the design changes: one request at a time, always the newest design next.
 
 import { hasEnded, json, post, ProblemError, request, solved } from "./api.js";
+import { isSolid } from "./dimensions.js";
 
 /** In a mesh period, where a design does not say it. */
 export const USUAL_POSITIONS = 40;
@@ -10,6 +11,10 @@ const LEAST_POSITIONS = 10;
 /** A hand that rests for so long, in milliseconds, gets all positions; one that rests for longer a job, where a preview has too many. */
 const REST = 150;
 const LONG_REST = 700;
+/** What takes longer by the estimate of the service, in seconds, is computed by a job at once, which says how far it is. */
+const LONG = 4;
+/** Under a hand pairs are projected along their faces: what a hole changes there costs one web. */
+const UNDER_A_HAND = "three_dimensional_projected";
 /** A page that is not seen has no frames; it goes on after so many milliseconds. */
 const UNSEEN = 50;
 /** So many designs are not computed again when they come back. */
@@ -148,7 +153,9 @@ export class Follower {
     const begun = performance.now();
     const draft = asked !== submission;
     try {
-      const results = (!draft && this.#known.get(JSON.stringify(submission))) || (await preview(asked, signal));
+      const known = this.#known.get(JSON.stringify(submission));
+      if (!draft && !known && (await isLong(submission, signal))) return "too large";
+      const results = (!draft && known) || (await preview(asked, signal));
       this.#show(results, submission, { took: performance.now() - begun, since, draft });
       return "shown";
     } catch (error) {
@@ -156,6 +163,8 @@ export class Follower {
       if (!(error instanceof ProblemError)) throw error;
       if (isTooLarge(error)) return "too large";
       if (error.problem.code === "preview_superseded") return "left";
+      // What cannot be projected may be computed as it is asked for.
+      if (asked.method !== submission.method) return this.#results({ submission, asked: { ...asked, method: submission.method }, since, signal });
       this.onProblem(error.problem, submission);
       return "refused";
     }
@@ -177,8 +186,21 @@ function draftOf(submission, period) {
   const parts = [1, 2, 4].filter((part) => all % part === 0 && all / part >= LEAST_POSITIONS);
   const part = parts.find((each) => (all / each) * periods <= DRAFT_POSITIONS) ?? parts.at(-1) ?? 1;
   const { force_table: table, dynamics, ...asked } = submission;
-  if (part === 1 && grid === "coarse" && !table && !dynamics) return null;
+  if (isSolid(submission.method)) asked.method = UNDER_A_HAND;
+  if (asked.method === submission.method && part === 1 && grid === "coarse" && !table && !dynamics) return null;
   return { ...asked, resolution: { ...submission.resolution, positions_per_mesh_period: all / part, grid: "coarse" } };
+}
+
+/** Whether the service says that a pair in three dimensions takes long. */
+async function isLong(submission, signal) {
+  if (!isSolid(submission.method)) return false;
+  try {
+    return (await post("v1/validate", submission, { signal })).estimate.seconds > LONG;
+  } catch (error) {
+    // The preview of the same submission tells why.
+    if (!(error instanceof ProblemError)) throw error;
+    return false;
+  }
 }
 
 /** The next frame, or a while where nobody looks and none comes. */

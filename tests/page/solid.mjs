@@ -238,6 +238,42 @@ export async function solidSteps(service) {
     await page.waitForFunction(() => / 2\.00$/.test(document.querySelector("canvas.space").dataset.painted));
   }, { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
 
+  await step("a pair along its face follows the hand by projection, and is computed by a job when it rests", service, async (page) => {
+    const asked = [];
+    page.on("request", (request) => { if (/v1\/(preview|jobs)$/.test(request.url()) && request.method() === "POST") asked.push([request.url().split("/").pop(), JSON.parse(request.postData())]); });
+    const fine = structuredClone(HELICAL);
+    fine.resolution = { positions_per_mesh_period: 8, span_mesh_periods: 4 };
+    await openDesign(page, service, fine);
+    await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–" && !document.body.classList.contains("busy"));
+    const solid = asked.filter(([, { method }]) => method !== "flexible");
+    assert.deepEqual(solid.map(([kind]) => kind), ["jobs"], "no preview that takes longer than a hand waits");
+    const before = await answer(page, "p-p");
+    asked.length = 0;
+    const label = page.locator('label[for="field-/pair/driven/blank/holes/radius_mm"]');
+    await field(page, "/pair/driven/blank/holes/radius_mm");
+    await label.scrollIntoViewIfNeeded();
+    const { x, y } = await label.boundingBox();
+    await page.evaluate(() => {
+      window.drawn = [];
+      document.addEventListener("drawn", ({ detail }) => window.drawn.push([detail.draft, detail.submission.pair.driven.blank.holes.radius_mm]));
+    });
+    await page.mouse.move(x + 8, y + 8);
+    await page.mouse.down();
+    await page.mouse.move(x - 12, y + 8, { steps: 4 });
+    await page.waitForFunction(() => window.drawn.some(([draft]) => draft));
+    await page.mouse.up();
+    await settled(page);
+    await page.waitForFunction(() => window.drawn.at(-1)[0] === false);
+    const drafts = asked.filter(([kind]) => kind === "preview");
+    assert.ok(drafts.length >= 1 && drafts.every(([, { method }]) => method === "three_dimensional_projected"), JSON.stringify(asked.map(([kind, { method }]) => [kind, method])));
+    const [kind, last] = asked.at(-1);
+    const design = await designOf(page);
+    assert.deepEqual([kind, last.method], ["jobs", "three_dimensional"]);
+    assert.ok(design.pair.driven.blank.holes.radius_mm < 4);
+    assert.deepEqual(last, design, "what is shown is the design itself");
+    assert.notEqual(await answer(page, "p-p"), before);
+  });
+
   await step("the colors of loads are told apart by lightness alone, with deuteranopia too", service, async (page) => {
     await openDesign(page, service, HELICAL);
     const ramp = await page.evaluate(async () => {
