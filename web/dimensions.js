@@ -11,16 +11,14 @@ const MEMBERS = ["driving", "driven"];
 
 /** Fields that plane methods refuse, by the ends of their pointers. */
 const NEED_SOLID = /\/(helix_angle_deg|axial_offset_mm|misalignment_um|lead_modifications|hub|web\/offset_mm|lead_slope_um)$/;
-/** Fields that the methods in three dimensions refuse. */
-const NEED_PLANE = /^\/(force_table|dynamics)$/;
+/** What the methods in three dimensions have no choice of. */
+const CHOSEN_IN_PLANE = "contact_solver";
 
 /** Whether a method computes in three dimensions. */
 export const isSolid = (method) => String(method ?? "").startsWith(SOLID);
 
-/** Which methods know the field at `pointer`, where not all do: `solid` or `plane`. */
-export function needOf(pointer) {
-  return NEED_SOLID.test(pointer) ? "solid" : NEED_PLANE.test(pointer) ? "plane" : null;
-}
+/** Whether plane methods refuse the field at `pointer`. */
+export const needsThird = (pointer) => NEED_SOLID.test(pointer);
 
 /** What a pair is called that has teeth like these. */
 export const kindOfTeeth = (angle) => (angle ? "helical" : "straight");
@@ -58,10 +56,11 @@ export function teeth(design, kind) {
 
 /** The changes that compute the pair in three dimensions. */
 export function intoSolid(design) {
-  const left = ["/force_table", "/dynamics"].filter((pointer) => isGiven(design.get(pointer)));
+  const { [CHOSEN_IN_PLANE]: solver, ...resolution } = design.get("/resolution") ?? {};
+  const left = solver === undefined || solver === "active_set" ? {} : { "/resolution": resolution };
   const method = design.get("/method");
-  const changes = { "/method": isSolid(method) ? method : SOLID, "/face_load": "positions", ...Object.fromEntries(left.map((pointer) => [pointer, undefined])) };
-  return { changes, told: ["Computed in three dimensions", ...(left.length ? ["Force table and run-up are told by the plane methods, and were left out"] : [])] };
+  const changes = { "/method": isSolid(method) ? method : SOLID, "/face_load": "positions", ...left };
+  return { changes, told: ["Computed in three dimensions", ...(left["/resolution"] ? ["The contact is solved by the active set"] : [])] };
 }
 
 /** The changes that compute the pair in the plane: what has an extent along the axis goes. */

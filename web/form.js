@@ -2,7 +2,7 @@
 
 import { Beginnings } from "./beginnings.js";
 import { at } from "./design.js";
-import { helix, intoPlane, intoSolid, isSolid, kindOfTeeth, needOf, teeth } from "./dimensions.js";
+import { helix, intoPlane, intoSolid, isSolid, kindOfTeeth, needsThird, teeth } from "./dimensions.js";
 import { deviations } from "./deviations.js";
 import { h, number, unit } from "./dom.js";
 import { parsed, read, stepped, write } from "./inputs.js";
@@ -242,9 +242,8 @@ export class Form {
   #field(pointer, given, needed) {
     const kind = kindOf(this.api, given);
     const make = { object: "#object", variants: "#variants", list: "#list" }[kind.kind];
-    const need = needOf(pointer);
     const element = make === "#object" ? this.#object(pointer, kind, needed) : make === "#variants" ? this.#variants(pointer, kind, needed) : make === "#list" ? this.#list(pointer, kind) : this.#input(pointer, kind, needed);
-    if (need) element.dataset.needs = need;
+    if (needsThird(pointer)) element.classList.add("needs-third");
     this.shape = this.#shape();
     return element;
   }

@@ -205,7 +205,7 @@ function showProblem() {
   const codes = new Set(errors.map(({ code }) => code));
   const turn = (inSolid, words) => h("button", { type: "button", on: { click: () => form?.compute(inSolid) } }, words);
   const dimensions = codes.has("needs_three_dimensions") ? [h("p", {}, turn(true, "Compute it in three dimensions"), " ", turn(false, "Leave out what has an extent along the axis"))]
-    : codes.has("not_in_three_dimensions") ? [h("p", {}, turn(true, "Leave out what three dimensions do not tell"), " ", turn(false, "Compute it in the plane"))] : [];
+    : codes.has("not_in_three_dimensions") ? [h("p", {}, turn(true, "Leave out what three dimensions do not know"), " ", turn(false, "Compute it in the plane"))] : [];
   const back = computed && !same(computed, design.submission) ? h("button", { type: "button", on: { click: () => design.replace(computed, "open") } }, "Go back to it") : null;
   place.replaceChildren(
     h("p", {}, h("strong", {}, problem.title), ...(shown ? [". Curves and numbers are those of the last design that could be computed; nothing is exported. ", back] : [])),

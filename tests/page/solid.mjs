@@ -16,6 +16,9 @@ export const HELICAL = {
   resolution: { positions_per_mesh_period: 8, grid: "coarse" },
 };
 
+/** A way to solve the contact that three dimensions do not have. */
+const SOLVER = { augmented_lagrangian: {} };
+
 /** The straight pair of few positions that a helical one is made of. */
 const STRAIGHT = {
   method: "flexible",
@@ -24,8 +27,8 @@ const STRAIGHT = {
     driving: { tooth_count: 24, module_mm: 2, face_width_mm: 16, tip_diameter_mm: 52, blank: { bore_radius_mm: 10 } },
     driven: { tooth_count: 36, module_mm: 2, face_width_mm: 16, blank: { bore_radius_mm: 12 } },
   },
-  output_torques_n_m: [100], force_table: {},
-  resolution: { positions_per_mesh_period: 8, grid: "coarse" },
+  output_torques_n_m: [100],
+  resolution: { positions_per_mesh_period: 8, grid: "coarse", contact_solver: SOLVER },
 };
 
 /** @param service the service whose page is used */
@@ -37,11 +40,11 @@ export async function solidSteps(service) {
     const teeth = page.locator("#field-teeth");
     await changing(page, () => teeth.selectOption("helical"));
     const helical = await designOf(page);
-    assert.deepEqual([helical.method, helical.pair.helix_angle_deg, helical.face_load, helical.force_table], ["three_dimensional", 15, "positions", undefined]);
+    assert.deepEqual([helical.method, helical.pair.helix_angle_deg, helical.face_load, helical.resolution], ["three_dimensional", 15, "positions", { positions_per_mesh_period: 8, grid: "coarse" }]);
     // 2 (24 + 36)/2 (1/cos 15° - 1) more apart; a tip diameter that was given grows with its reference circle.
     assert.ok(Math.abs(helical.pair.center_distance_mm - (60.1 + 60 * (1 / Math.cos(Math.PI / 12) - 1))) < 1e-4, String(helical.pair.center_distance_mm));
     assert.ok(Math.abs(helical.pair.driving.tip_diameter_mm - (52 + 48 * (1 / Math.cos(Math.PI / 12) - 1))) < 1e-4);
-    assert.match(await page.locator("#notice").innerText(), /Center distance .*three dimensions.*[Ff]orce table/s);
+    assert.match(await page.locator("#notice").innerText(), /Center distance .*three dimensions.*active set/s);
     assert.ok(await page.locator("#problem").isHidden());
     const factor = await answer(page, "face");
     assert.ok(factor > 1 && factor < 2, `K_Hβ ${factor}`);
@@ -77,10 +80,10 @@ export async function solidSteps(service) {
     assert.ok(await page.locator("#problem").isHidden());
     assert.ok((await answer(page, "face")) > 1);
     // And the other way: what three dimensions do not tell.
-    await openDesign(page, service, { ...HELICAL, force_table: {} });
-    await changing(page, () => page.locator("#problem button", { hasText: "do not tell" }).click());
-    const { force_table: table, method } = await designOf(page);
-    assert.deepEqual([table, method], [undefined, "three_dimensional"]);
+    await openDesign(page, service, { ...HELICAL, resolution: { ...HELICAL.resolution, contact_solver: SOLVER } });
+    await changing(page, () => page.locator("#problem button", { hasText: "do not know" }).click());
+    const { resolution, method } = await designOf(page);
+    assert.deepEqual([resolution, method], [HELICAL.resolution, "three_dimensional"]);
   });
 
   await step("the load along the face is a map under the cursor of the curves", service, async (page) => {
@@ -272,6 +275,29 @@ export async function solidSteps(service) {
     assert.ok(design.pair.driven.blank.holes.radius_mm < 4);
     assert.deepEqual(last, design, "what is shown is the design itself");
     assert.notEqual(await answer(page, "p-p"), before);
+  });
+
+  await step("the lead that evens the load is told, and given to the design by one press", service, async (page) => {
+    const askew = structuredClone(HELICAL);
+    askew.pair.driving.lead_modifications = [{ kind: "crowning", amount_um: 2 }];
+    await openDesign(page, service, askew);
+    await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+    await settled(page);
+    const before = await answer(page, "face");
+    const told = await page.locator("#cure").innerText();
+    const [, promised] = /K_Hβ would be (\d\.\d+) with a slope of -?\d+\.\d µm/.exec(told);
+    await axe(page);
+    await changing(page, () => page.locator("#cure button").click());
+    const now = await answer(page, "face");
+    assert.ok(now < before - 0.1 && Math.abs(now / promised - 1) < 0.03, `${before} to ${now}: ${told}`);
+    const leads = (await designOf(page)).pair.driving.lead_modifications;
+    assert.ok(leads.filter(({ kind }) => kind === "crowning").length <= 1, "the crowning that is there is changed, not doubled");
+    assert.ok(leads.some(({ kind }) => kind === "slope"));
+    // What has been cured needs no cure, and it can be taken back.
+    await page.locator("#cure").waitFor({ state: "hidden" });
+    await changing(page, () => page.locator("#undo").click());
+    assert.equal(await answer(page, "face"), before);
+    assert.ok(await page.locator("#cure").isVisible());
   });
 
   await step("the colors of loads are told apart by lightness alone, with deuteranopia too", service, async (page) => {
