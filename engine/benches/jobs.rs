@@ -303,6 +303,7 @@ fn helical(web: bool, hole_circle: Option<f64>) -> Case {
         resolution: FaceResolution::STANDARD,
         slices: SLICES,
         at_each_position: false,
+        cure: false,
     });
     case
 }

@@ -67,6 +67,7 @@ fn case(pair: SolidPair, output_torques: &[f64], positions: u32) -> Case {
             resolution: FaceResolution::STANDARD,
             slices: SLICES,
             at_each_position: false,
+            cure: false,
         }),
         method: Method::ThreeDimensional,
         output_torques: output_torques.to_vec(),

@@ -143,6 +143,7 @@ fn along_faces(beta: f64) -> Case {
         },
         slices: 40,
         at_each_position: false,
+        cure: false,
     });
     case
 }

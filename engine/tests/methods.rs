@@ -547,6 +547,7 @@ fn along_its_faces() -> Case {
         },
         slices: 10,
         at_each_position: false,
+        cure: false,
     });
     case
 }
@@ -688,6 +689,7 @@ fn with_tip_edges(edge: TipEdge, method: Method) -> Vec<f64> {
             },
             slices: 10,
             at_each_position: false,
+            cure: false,
         });
     }
     solve_from(&Library::default(), &case)

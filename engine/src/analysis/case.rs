@@ -80,6 +80,8 @@ pub struct Faces {
     pub slices: usize,
     /// Whether the load along the face is told at every position, and not only in the mean.
     pub at_each_position: bool,
+    /// Whether the lead is looked for that would even the load along the face.
+    pub cure: bool,
 }
 
 /// A pair under load, and how to compute it.

@@ -118,6 +118,9 @@ fn rows_case(case: &Case, loads: &[f64]) -> Case {
     rows.resolution.span_mesh_periods = None;
     rows.resolution.error_estimate = false;
     rows.resolution.stiffness = StiffnessRule::Tangent;
+    if let Some(faces) = &mut rows.faces {
+        faces.cure = false;
+    }
     rows
 }
 

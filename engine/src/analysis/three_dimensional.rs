@@ -63,7 +63,7 @@ pub(super) fn solve(
             }
         }
         let error = solved.error;
-        let even = if level == case.resolution.grid {
+        let even = if faces.cure && level == case.resolution.grid {
             pair.even_lead(load, &solved)?
         } else {
             None

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use serde_json::Value;
 
 use super::gear::{GENERATED_SHIFT, ROOT, ReliefNames, TIP};
+use super::import::HELIX_ANGLE;
 use super::own;
 use super::unit::{DEG, KG_PER_DM3, MM, MPA, N_M, NONE, PER_MINUTE, mm_of_um};
 use crate::wire::geometry::{GearGeometry, PairGeometry};
@@ -31,6 +32,8 @@ struct Ids {
     body: usize,
     /// The modifications of both flanks, which are the same.
     modifications: Vec<usize>,
+    /// Those of their leads that the standard has words for.
+    leads: Vec<usize>,
 }
 
 const UNIT: usize = 1;
@@ -60,14 +63,22 @@ pub fn export(submission: &Submission, results: Option<&Value>, date: &str) -> S
     );
     components.number("radial_contact_ratio", NONE.name, geometry.contact_ratio);
     components.word(own::METHOD, submission.method());
+    if let Some(offset) = number_of(pair, "axial_offset_mm").filter(|offset| *offset != 0.0) {
+        components.number(own::AXIAL_OFFSET, MM.name, offset);
+    }
+    if !pair["misalignment_um"].is_null() {
+        components.word(own::MISALIGNMENT, &pair["misalignment_um"].to_string());
+    }
     components.close();
     relations.add("assembly", None, &[("assembly", UNIT), ("part", STAGE)]);
     let mut next = STAGE + 1;
+    let helix = number(pair, "helix_angle_deg");
     let ids =
         [("driving", &geometry.driving), ("driven", &geometry.driven)].map(|(member, geometry)| {
             let gear = Gear {
                 document: &pair[member],
                 geometry,
+                helix_angle_deg: if member == "driving" { helix } else { -helix },
             };
             let ids = gear.ids(&mut next);
             gear.write(
@@ -160,6 +171,8 @@ fn load_cases(document: &Value, results: Option<&Value>, ids: &[Ids; 2]) -> Stri
 struct Gear<'a> {
     document: &'a Value,
     geometry: &'a GearGeometry,
+    /// Positive if it is right-handed.
+    helix_angle_deg: f64,
 }
 
 impl Gear<'_> {
@@ -178,6 +191,11 @@ impl Gear<'_> {
             material: id(),
             body: id(),
             modifications: self.modifications().iter().map(|_| id()).collect(),
+            leads: self
+                .leads()
+                .filter(|lead| is_known(lead))
+                .map(|_| id())
+                .collect(),
         }
     }
 
@@ -189,7 +207,8 @@ impl Gear<'_> {
     fn generated_shift(&self) -> f64 {
         let angle = self.number("pressure_angle_deg").to_radians();
         let thicker = mm_of_um(self.number("tooth_thickness_deviation_um"));
-        self.number("profile_shift") + thicker / (2.0 * self.number("module_mm") * angle.tan())
+        let normal = thicker * self.helix_angle_deg.to_radians().cos();
+        self.number("profile_shift") + normal / (2.0 * self.number("module_mm") * angle.tan())
     }
 
     fn write(&self, ids: &Ids, drives: bool, speed: Option<f64>, out: &mut Xml) {
@@ -199,7 +218,7 @@ impl Gear<'_> {
         out.open(ids.gear, "cylindrical_gear");
         out.number("number_of_teeth", NONE.name, self.number("tooth_count"));
         out.number("normal_module", MM.name, module);
-        out.number("helix_angle_reference_diameter", DEG.name, 0.0);
+        out.number(HELIX_ANGLE, DEG.name, self.helix_angle_deg);
         out.number("face_width", MM.name, self.number("face_width_mm"));
         let tip = number_of(self.document, "tip_diameter_mm");
         out.number(
@@ -249,6 +268,14 @@ impl Gear<'_> {
             let tables = self.tables();
             if !tables.is_empty() {
                 out.word(own::TABLES, &Value::Array(tables).to_string());
+            }
+            let leads: Vec<Value> = self
+                .leads()
+                .filter(|lead| !is_known(lead))
+                .cloned()
+                .collect();
+            if !leads.is_empty() {
+                out.word(own::LEADS, &Value::Array(leads).to_string());
             }
             out.close();
         }
@@ -315,11 +342,37 @@ impl Gear<'_> {
                 MM.name,
                 number(&blank["web"], "inner_radius_mm"),
             );
+            let offset = number_of(&blank["web"], "offset_mm");
+            if let Some(offset) = offset.filter(|offset| *offset != 0.0) {
+                out.number(own::WEB_OFFSET, MM.name, offset);
+            }
+        }
+        if !blank["hub"].is_null() {
+            out.word(own::HUB, &blank["hub"].to_string());
         }
         out.close();
         for (id, modification) in ids.modifications.iter().zip(self.modifications()) {
             self.write_modification(*id, modification, out);
         }
+        let leads = self.leads().filter(|lead| is_known(lead));
+        for (id, lead) in ids.leads.iter().zip(leads) {
+            let amount = mm_of_um(number(lead, "amount_um"));
+            if kind(lead) == "slope" {
+                out.open(*id, "helix_slope");
+                out.number("helix_slope", MM.name, amount);
+            } else {
+                out.open(*id, "helix_crowning");
+                out.number("helix_crowning_amount_datum_face", MM.name, amount);
+                out.number("helix_crowning_amount_non_datum_face", MM.name, amount);
+            }
+            out.close();
+        }
+    }
+
+    /// What is taken off the leads.
+    fn leads(&self) -> impl Iterator<Item = &Value> {
+        let listed = self.document["lead_modifications"].as_array();
+        listed.into_iter().flatten()
     }
 
     /// What is taken off the flanks in ways that the standard knows, in the order of the submission.
@@ -419,7 +472,7 @@ impl Gear<'_> {
                 ("manufacturing_settings", ids.settings),
             ];
             out.add("manufacturing_step", Some(1), &step);
-            for modification in &ids.modifications {
+            for modification in ids.modifications.iter().chain(&ids.leads) {
                 out.add(
                     "reference",
                     None,
@@ -433,6 +486,11 @@ impl Gear<'_> {
 /// The kind of a modification; the short form of a tip relief has no word for it.
 fn kind(modification: &Value) -> &str {
     modification["kind"].as_str().unwrap_or(TIP.kind)
+}
+
+/// Whether the standard has words for a modification of a lead.
+fn is_known(lead: &Value) -> bool {
+    ["crowning", "slope"].contains(&kind(lead))
 }
 
 fn component_of(kind: &str) -> &'static str {

@@ -32,6 +32,8 @@ pub(super) struct Gear<'a> {
     tooth_count: f64,
     profile_shift: f64,
     pressure_angle_deg: f64,
+    /// The cosine of the helix angle at the reference circle.
+    cosine: f64,
 }
 
 impl<'a> Gear<'a> {
@@ -40,6 +42,7 @@ impl<'a> Gear<'a> {
         reading: &'a Reading<'a>,
         gear: &'a Component,
         data: Option<&'a Component>,
+        helix_angle_deg: f64,
     ) -> Option<Self> {
         let model = reading.model;
         let side = |role: &str| {
@@ -94,8 +97,8 @@ impl<'a> Gear<'a> {
             tooth_count,
             profile_shift: 0.0,
             pressure_angle_deg: 20.0,
+            cosine: helix_angle_deg.to_radians().cos(),
         };
-        found.refuse_helix();
         let of_tool = found
             .tool
             .and_then(|tool| reading.number(tool, "normal_pressure_angle", DEG));
@@ -109,23 +112,6 @@ impl<'a> Gear<'a> {
             shift.unwrap_or_else(|| found.assumed("addendum_modification_coefficient", "0", 0.0));
         found.refuse_other_rack();
         Some(found)
-    }
-
-    /// A helix makes the contact line run across the face; nothing here computes that.
-    fn refuse_helix(&self) {
-        let name = "helix_angle_reference_diameter";
-        match self.reading.number(self.gear, name, DEG) {
-            Some(angle) if angle.abs() > 1e-9 => {
-                let detail = format!(
-                    "It is {angle} deg; 0 is what can be computed. The model is plane: helical teeth touch along lines that run across the face, which it does not see."
-                );
-                self.reading.wrong(self.gear.place_of(name), detail);
-            }
-            Some(_) => {}
-            None => {
-                self.assumed(name, "0, spur teeth", 0.0);
-            }
-        }
     }
 
     /// A rack of another module and angle can generate the same flanks, but its numbers mean another root then.
@@ -233,6 +219,10 @@ impl<'a> Gear<'a> {
             put("tip_relief", relief, None);
         }
         put("profile_modifications", Value::Array(modifications), None);
+        let leads = self.leads()?;
+        if !leads.is_empty() {
+            put("lead_modifications", Value::Array(leads), None);
+        }
         if let Some(deviations) = reading.json(self.gear, own::DEVIATIONS) {
             put("tooth_deviations", deviations, of_gear(own::DEVIATIONS));
         }
@@ -242,7 +232,7 @@ impl<'a> Gear<'a> {
     }
 
     fn reference_radius(&self) -> f64 {
-        self.module * self.tooth_count / 2.0
+        self.module * self.tooth_count / (2.0 * self.cosine)
     }
 
     /// From where addendum and dedendum count.
@@ -358,7 +348,7 @@ impl<'a> Gear<'a> {
         let mut shifts = self.settings.iter().rev();
         let (shift, settings) = shifts.find_map(|settings| self.generated_shift(settings))?;
         let off = (shift - self.profile_shift) * self.module;
-        let thicker = 2.0 * off * self.pressure_angle_deg.to_radians().tan();
+        let thicker = 2.0 * off * self.pressure_angle_deg.to_radians().tan() / self.cosine;
         // Of a difference of two numbers near each other fewer digits are left.
         Some((um_of_mm(significant(thicker, 10)), settings))
     }
@@ -420,6 +410,15 @@ impl<'a> Gear<'a> {
         }
         if let Some(web) = self.web(radius, self.shifted_radius() - dedendum) {
             blank["web"] = web;
+            if let Some(offset) = self
+                .body
+                .and_then(|body| reading.number(body, own::WEB_OFFSET, MM))
+            {
+                blank["web"]["offset_mm"] = json!(offset);
+            }
+        }
+        if let Some(hub) = self.body.and_then(|body| reading.json(body, own::HUB)) {
+            blank["hub"] = hub;
         }
         Some(blank)
     }
@@ -512,6 +511,72 @@ impl<'a> Gear<'a> {
             None => {}
         }
         Some(modifications)
+    }
+
+    /// The modifications of the leads of the loaded flanks.
+    fn leads(&self) -> Option<Vec<Value>> {
+        let of_each = self.loaded.iter().map(|flank| self.leads_of(flank));
+        let mut of_each = of_each.collect::<Option<Vec<_>>>()?.into_iter();
+        let first = of_each.next().unwrap_or_default();
+        if of_each.any(|other| other != first) {
+            let detail = "The leads of its flanks are modified differently, and no loaded_tooth_flank of a cylindrical_stage_gear_data says which is loaded.";
+            self.reading.wrong(self.gear.place(), detail);
+            return None;
+        }
+        Some(first)
+    }
+
+    fn leads_of(&self, flank: &'a Component) -> Option<Vec<Value>> {
+        let reading = self.reading;
+        let parts = reading
+            .model
+            .related("reference", ("origin", flank), "referenced");
+        let mut leads = Vec::new();
+        for part in &parts {
+            match part.kind.as_str() {
+                "helix_crowning" => leads.push(self.helix_crowning(part)?),
+                "helix_slope" => {
+                    let amount = um_of_mm(needed(reading, part, "helix_slope", MM)?);
+                    reading.remark(format!(
+                        "Assumed: a positive helix_slope of {} takes material off at the +z end of the face, towards which the driving gear is seen to turn counter-clockwise.",
+                        part.place()
+                    ));
+                    leads.push(json!({ "kind": "slope", "amount_um": amount }));
+                }
+                _ => {}
+            }
+        }
+        match reading.json(flank, own::LEADS) {
+            Some(Value::Array(others)) => leads.extend(others),
+            Some(_) => {
+                let detail = "A list of lead modifications is expected, as a submission has them.";
+                reading.wrong(flank.place_of(own::LEADS), detail);
+            }
+            None => {}
+        }
+        Some(leads)
+    }
+
+    fn helix_crowning(&self, crowning: &'a Component) -> Option<Value> {
+        let reading = self.reading;
+        let names = [
+            "helix_crowning_amount_datum_face",
+            "helix_crowning_amount_non_datum_face",
+        ];
+        let [one, other] = names.map(|name| reading.number(crowning, name, MM));
+        let Some(amount) = one.or(other) else {
+            let detail = format!("It has neither {} nor {}.", names[0], names[1]);
+            reading.wrong(crowning.place(), detail);
+            return None;
+        };
+        if let Some(other) = other.filter(|other| (other - amount).abs() > 1e-4) {
+            let detail = format!(
+                "It takes off {amount} mm at the datum face and {other} mm at the other; a crowning has the same at both here. A helix_slope beside it says the rest."
+            );
+            reading.wrong(crowning.place(), detail);
+            return None;
+        }
+        Some(json!({ "kind": "crowning", "amount_um": um_of_mm(amount) }))
     }
 
     fn relief(&self, relief: &'a Component, names: &ReliefNames) -> Option<Value> {

@@ -9,7 +9,7 @@ use super::fault::{Fault, Refused};
 use super::file::{Component, Model};
 use super::gear::Gear;
 use super::own;
-use super::unit::{MM, Unit};
+use super::unit::{DEG, MM, Unit};
 
 /// What a model leaves open, and the caller says.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -209,31 +209,92 @@ impl<'a> Reading<'a> {
             ),
             None => {}
         }
+        let helix = self.helix(&stage)?;
         let gear = |i: usize| {
             let pointer = ["/pair/driving", "/pair/driven"][i];
             let bores = &self.choices.bore_radii;
             let bore = bores.get(i).or(bores.first()).copied();
-            Gear::of(self, stage.gears[i], stage.gear_data[i])
+            Gear::of(self, stage.gears[i], stage.gear_data[i], helix)
                 .and_then(|gear| gear.document(pointer, bore))
         };
         let (driving, driven) = (gear(0), gear(1));
         let torques = self.torques(&stage);
-        let method = match &self.choices.method {
-            Some(method) => method.clone(),
-            None => self
-                .word(stage.component, own::METHOD)
-                .unwrap_or("flexible")
-                .to_owned(),
+        let mut pair =
+            json!({ "center_distance_mm": distance?, "driving": driving?, "driven": driven? });
+        if helix != 0.0 {
+            pair["helix_angle_deg"] = json!(helix);
+            self.from(
+                "/pair/helix_angle_deg".to_owned(),
+                stage.gears[0],
+                HELIX_ANGLE,
+            );
+        }
+        if let Some(offset) = self.number(stage.component, own::AXIAL_OFFSET, MM) {
+            pair["axial_offset_mm"] = json!(offset);
+        }
+        if let Some(askew) = self.json(stage.component, own::MISALIGNMENT) {
+            pair["misalignment_um"] = askew;
+        }
+        let own_method = self.word(stage.component, own::METHOD);
+        let method = match (&self.choices.method, own_method) {
+            (Some(method), _) => method.clone(),
+            (None, Some(method)) => method.to_owned(),
+            (None, None) if needs_faces(&pair) => {
+                let place = stage.component.place();
+                self.remark(format!(
+                    "Assumed: {place} is computed by three_dimensional, which sees its helix and its leads."
+                ));
+                "three_dimensional".to_owned()
+            }
+            (None, None) => "flexible".to_owned(),
         };
         let mut submission = json!({
             "method": method,
-            "pair": { "center_distance_mm": distance?, "driving": driving?, "driven": driven? },
+            "pair": pair,
             "output_torques_n_m": torques?,
         });
         if let Some(speed) = self.driving_speed(&stage) {
             submission["driving_speed_rpm"] = json!(speed);
         }
         Some(submission)
+    }
+
+    /// The helix angle of the driving gear in degrees, positive if it is right-handed; the driven one has the other hand.
+    fn helix(&self, stage: &Stage<'a>) -> Option<f64> {
+        let [driving, driven] = stage.gears;
+        let said = stage.gears.map(|gear| self.number(gear, HELIX_ANGLE, DEG));
+        let angle = match said {
+            [None, None] => {
+                for gear in stage.gears {
+                    self.assumed(gear, HELIX_ANGLE, "0, spur teeth");
+                }
+                0.0
+            }
+            [Some(angle), None] => {
+                self.assumed(driven, HELIX_ANGLE, "that of its mate with the other hand");
+                angle
+            }
+            [None, Some(angle)] => {
+                self.assumed(driving, HELIX_ANGLE, "that of its mate with the other hand");
+                -angle
+            }
+            [Some(angle), Some(other)] if (angle + other).abs() <= 1e-9 => angle,
+            [Some(angle), Some(other)] => {
+                let detail = format!(
+                    "It is {angle} deg, that of its mate {other} deg; on parallel axes they are as large as each other and of opposite sign, the right hand positive."
+                );
+                self.wrong(driving.place_of(HELIX_ANGLE), detail);
+                return None;
+            }
+        };
+        if angle != 0.0 {
+            self.remark(format!(
+                "Assumed: a positive {HELIX_ANGLE} is a right hand: {} is {}-handed.",
+                driving.place(),
+                if angle > 0.0 { "right" } else { "left" }
+            ));
+        }
+        Some(angle)
     }
 
     /// The one stage that is meant, and its gears in the order of the power.
@@ -345,6 +406,33 @@ impl<'a> Reading<'a> {
             }
         }
     }
+}
+
+/// The helix angle of a gear.
+pub(super) const HELIX_ANGLE: &str = "helix_angle_reference_diameter";
+
+/// Whether a plane method would refuse `pair`.
+fn needs_faces(pair: &Value) -> bool {
+    let said = |value: &Value| match value {
+        Value::Null => false,
+        Value::Array(list) => !list.is_empty(),
+        Value::Number(number) => number.as_f64() != Some(0.0),
+        _ => true,
+    };
+    let of_pair = ["helix_angle_deg", "axial_offset_mm", "misalignment_um"];
+    let of_gear = [
+        "/lead_modifications",
+        "/tooth_deviations/lead_slope_um",
+        "/blank/hub",
+        "/blank/web/offset_mm",
+    ];
+    of_pair.iter().any(|name| said(&pair[*name]))
+        || ["driving", "driven"].iter().any(|gear| {
+            let mut of_gear = of_gear
+                .iter()
+                .filter_map(|place| pair[*gear].pointer(place));
+            of_gear.any(said)
+        })
 }
 
 /// The ids of the cylindrical stages of a model, each of which may have a pair.

@@ -1,4 +1,4 @@
-//! REXS, the gearbox exchange format of the FVA: a pair of spur gears out of a model, and a pair with its curves as a model.
+//! REXS, the gearbox exchange format of the FVA: a pair of cylindrical gears out of a model, and a pair with its curves as a model.
 //!
 //! A model is a list of components with attributes, relations between components, and load cases. Read in this order: `file` (the
 //! XML as such), `unit` (what its numbers are in), `fault` (what is wrong with a model), `import` with `gear` and `load`, and `export`.
@@ -40,6 +40,16 @@ mod own {
     pub(super) const TIP_ROUNDING: &str = "custom_meshwright_tip_rounding";
     /// Of a flank: profile tables, the JSON of a submission.
     pub(super) const TABLES: &str = "custom_meshwright_profile_tables";
+    /// Of a flank: end reliefs and tables of its lead, the JSON of a submission.
+    pub(super) const LEADS: &str = "custom_meshwright_lead_modifications";
+    /// Of the stage: where the mid plane of the driven face stands from that of the driving one.
+    pub(super) const AXIAL_OFFSET: &str = "custom_meshwright_axial_offset";
+    /// Of the stage: how the axes stand askew, the JSON of a submission.
+    pub(super) const MISALIGNMENT: &str = "custom_meshwright_misalignment";
+    /// Of a gear body: where the mid plane of the web stands from that of the face.
+    pub(super) const WEB_OFFSET: &str = "custom_meshwright_web_offset";
+    /// Of a gear body: a hub of another width, the JSON of a submission.
+    pub(super) const HUB: &str = "custom_meshwright_hub";
     /// Of a gear body: where the web begins.
     pub(super) const WEB_INNER_RADIUS: &str = "custom_meshwright_web_inner_radius";
     /// Of the stage in a load case: where in the mesh each entry of the characteristic stands, in mesh periods.

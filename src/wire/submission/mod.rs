@@ -127,6 +127,7 @@ impl Document {
             },
             slices: self.resolution.face_slices as usize,
             at_each_position: self.face_load == FaceRows::Positions,
+            cure: true,
         });
         let case = Case {
             pair,
