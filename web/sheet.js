@@ -87,7 +87,7 @@ export function sheetOf({ live, drawing, charts }) {
 
   const top = Math.max(y, told) + 24;
   const [w, h] = [(WIDTH - 2 * MARGIN) / 2, (HEIGHT - top - 40) / 2];
-  const figures = inLight(() => charts.figures({ width: 520, height: Math.round((520 * h) / w), ids: ["ste", "stiffness", "pressure", "spectrum"] }));
+  const figures = inLight(() => charts.figures({ width: 520, height: Math.round((520 * h) / w), ids: ["ste", curve.face ? "face" : "stiffness", "pressure", "spectrum"] }));
   figures.forEach((figure, i) => {
     for (const [attribute, value] of Object.entries({ x: MARGIN + (i % 2) * w, y: top + Math.floor(i / 2) * h, width: w - 8, height: h - 6 })) figure.setAttribute(attribute, value);
     page.append(figure);
