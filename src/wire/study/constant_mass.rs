@@ -1,4 +1,4 @@
-//! Holes of one gear that remove the same share of the blank, however many they are.
+//! Holes of one gear that remove the same share of the blank, however many and of whichever shape they are.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use meshwright_engine::gear::Member;
 use serde_json::{Map, Value, json};
 
 use crate::wire::declare::{Choice, Declared, Node, Number, document, number, word, words};
-use crate::wire::gear::{BlankDocument, GearDocument, PatternDocument};
+use crate::wire::gear::{BlankDocument, GearDocument, PatternDocument, SlotDocument};
 use crate::wire::units::significant;
 
 words! {
@@ -17,8 +17,8 @@ words! {
 }
 
 document! {
-    /// Sets the hole radius of each design so that its holes remove the same share of the blank. A design without holes is left alone.
-    /// The radius stands among the changes of the design's row.
+    /// Sets the holes of each design so that they remove the same share of the blank: round ones get a radius, slots a width of twice that radius, alike in
+    /// all patterns. A design without holes is left alone. What is set stands among the changes of the design's row.
     pub(super) struct ConstantMass as "ConstantMass", "Constant mass" {
         /// The gear with the holes.
         pub(super) gear: Member = word("Gear"),
@@ -32,68 +32,109 @@ fn hole_radius() -> Declared<Number> {
     PatternDocument::radius_mm.map(|optional| optional.spec)
 }
 
+/// The size of a pattern's holes, where it stands in the pattern.
+const RADIUS: [&str; 1] = [PatternDocument::radius_mm.name];
+const WIDTH: [&str; 2] = [PatternDocument::slot.name, SlotDocument::width_mm.name];
+
+/// A pattern of holes whose size is to be set.
+struct Pattern {
+    /// Its place in a list of patterns; none where it stands alone.
+    item: Option<String>,
+    count: f64,
+    /// Of slots the length of one between the centers of its ends, in mm, along the circle of the holes.
+    arc: Option<f64>,
+}
+
 impl ConstantMass {
-    /// Whether `pointer` names a radius that it sets: that of the pattern, or of each pattern of a list.
+    /// Whether `pointer` names a size that it sets: that of the pattern, or of each pattern of a list.
     pub(super) fn sets(&self, pointer: &str) -> bool {
-        let within = pointer.strip_prefix(&*self.holes_pointer());
-        let Some(rest) = within.and_then(|rest| rest.strip_suffix(hole_radius().name)) else {
+        let Some(rest) = pointer.strip_prefix(&*self.holes_pointer()) else {
             return false;
         };
-        let item = rest
-            .strip_suffix('/')
-            .and_then(|rest| rest.strip_prefix('/'));
-        rest == "/" || item.is_some_and(|item| item.bytes().all(|byte| byte.is_ascii_digit()))
+        let sizes = [&RADIUS[..], &WIDTH].map(|size| format!("/{}", size.join("/")));
+        let items = sizes.iter().filter_map(|size| rest.strip_suffix(&**size));
+        items.into_iter().any(|item| {
+            let number = item.strip_prefix('/');
+            item.is_empty()
+                || number.is_some_and(|item| item.bytes().all(|byte| byte.is_ascii_digit()))
+        })
     }
 
     fn holes_pointer(&self) -> String {
         format!("/pair/{}/blank/holes", self.gear.word())
     }
 
-    /// Gives the holes of `submission` their radius, and notes it among the changes; the patterns of a list get the same. What cannot
-    /// be read is left to the check of the submission.
+    /// Gives the holes of `submission` their radius r, and slots the width 2 r, and notes it among the changes; the patterns of a list get the
+    /// same. What cannot be read is left to the check of the submission.
     ///
-    /// N π r² = percent · π (((r_a + r_f)/2)² − r_bore²), DESIGN section 4.
+    /// Σ N (π r² + 2 r R φ) = percent · π (((r_a + r_f)/2)² − r_bore²), DESIGN section 4; R φ is the length of a slot between the centers of its ends.
     pub(super) fn apply(&self, submission: &mut Node, changes: &mut Map<String, Value>) {
         let gear = ["pair", self.gear.word()];
         let holes = ["pair", self.gear.word(), "blank", "holes"];
         let Some(blank_area) = submission.at(&gear).and_then(blank_area) else {
             return;
         };
-        let counts: Option<Vec<(String, f64)>> = match submission.at(&holes) {
+        let patterns: Option<Vec<Pattern>> = match submission.at(&holes) {
             Some(pattern @ Node::Object(_)) => {
-                count_of(pattern).map(|count| vec![(String::new(), count)])
+                Pattern::of(pattern, None).map(|pattern| vec![pattern])
             }
             Some(Node::List(patterns)) => {
                 let numbered = patterns.iter().enumerate();
-                let count =
-                    |(i, pattern): (usize, &Node)| Some((i.to_string(), count_of(pattern)?));
-                numbered.map(count).collect()
+                let each = numbered.map(|(i, pattern)| Pattern::of(pattern, Some(i.to_string())));
+                each.collect()
             }
             _ => None,
         };
-        let Some(counts) = counts.filter(|counts| !counts.is_empty()) else {
+        let Some(patterns) = patterns.filter(|patterns| !patterns.is_empty()) else {
             return;
         };
-        let count: f64 = counts.iter().map(|(_, count)| count).sum();
         // If the bore leaves no blank, any radius will do for the check to come to that.
         let radius = if blank_area > 0.0 {
-            significant(
-                (self.mass_removed_percent / 100.0 * blank_area / (PI * count)).sqrt(),
-                12,
-            )
+            let wanted = self.mass_removed_percent / 100.0 * blank_area;
+            let round: f64 = PI * patterns.iter().map(|pattern| pattern.count).sum::<f64>();
+            let arcs = patterns
+                .iter()
+                .map(|pattern| pattern.count * pattern.arc.unwrap_or(0.0));
+            let arcs: f64 = arcs.sum();
+            significant(wanted / (arcs + (arcs.powi(2) + round * wanted).sqrt()), 12)
         } else {
             hole_radius().spec.bounds.0
         };
-        let name = hole_radius().name;
-        for (item, _) in &counts {
+        for pattern in &patterns {
             let mut place = holes.to_vec();
-            place.extend((!item.is_empty()).then_some(&**item));
-            place.push(name);
+            place.extend(pattern.item.as_deref());
+            let size = if pattern.arc.is_some() {
+                place.extend(WIDTH);
+                2.0 * radius
+            } else {
+                place.extend(RADIUS);
+                radius
+            };
             if blank_area > 0.0 {
-                changes.insert(format!("/{}", place.join("/")), json!(radius));
+                changes.insert(format!("/{}", place.join("/")), json!(size));
             }
-            submission.put(&place, Node::Number(radius));
+            submission.put(&place, Node::Number(size));
         }
+    }
+}
+
+impl Pattern {
+    /// The pattern that `node` tells, if it can be read.
+    fn of(node: &Node, item: Option<String>) -> Option<Self> {
+        let slot = node.at(&[PatternDocument::slot.name]);
+        let arc = match slot.filter(|slot| **slot != Node::Null) {
+            None => None,
+            Some(slot) => {
+                let angle = slot.number_at(&[SlotDocument::angle_deg.name])?;
+                let circle = node.number_at(&[PatternDocument::circle_radius_mm.name])?;
+                Some(circle * angle.to_radians())
+            }
+        };
+        Some(Self {
+            item,
+            count: count_of(node)?,
+            arc,
+        })
     }
 }
 

@@ -537,3 +537,40 @@ fn a_constant_mass_gives_every_pattern_of_a_list_the_same_radius() {
         (Code::OutOfRange, vec!["/axes/0/path".to_owned()])
     );
 }
+
+#[test]
+fn a_constant_mass_gives_slots_a_width_beside_round_holes_of_the_same_half_width() {
+    let mut document = axes(json!([
+        { "path": "/pair/driven/blank/holes/1/slot/angle_deg", "values": [0, 20, 40] }
+    ]));
+    document["base"]["pair"]["driven"]["blank"]["holes"] = json!([
+        { "count": 6, "circle_radius_mm": 24.0 },
+        { "count": 4, "circle_radius_mm": 38.0, "slot": { "angle_deg": 10 } }
+    ]);
+    document["constant_mass"] = json!({ "gear": "driven", "mass_removed_percent": 12 });
+    for design in designs(&parse(&document).unwrap()) {
+        let driven = design.submission.as_ref().unwrap().case().pair.driven();
+        // The engine has the area of a slot from its outline.
+        let removed = driven.removed_fraction();
+        assert!((removed - 0.12).abs() < 1e-10, "{removed}");
+        let set = |pointer: &str| design.changes[pointer].as_f64().unwrap();
+        let radius = set("/pair/driven/blank/holes/0/radius_mm");
+        let width = set("/pair/driven/blank/holes/1/slot/width_mm");
+        assert_eq!(width, 2.0 * radius);
+    }
+    // Alone, as an object.
+    document["base"]["pair"]["driven"]["blank"]["holes"] =
+        json!({ "count": 5, "circle_radius_mm": 34.0, "slot": { "angle_deg": 25 } });
+    document["axes"] = json!([{ "path": "/pair/driven/blank/holes/count", "values": [3, 5] }]);
+    for design in designs(&parse(&document).unwrap()) {
+        let driven = design.submission.as_ref().unwrap().case().pair.driven();
+        assert!((driven.removed_fraction() - 0.12).abs() < 1e-10);
+    }
+    document["axes"] = json!([
+        { "path": "/pair/driven/blank/holes/slot/width_mm", "values": [3, 4] }
+    ]);
+    assert_eq!(
+        refused(&document),
+        (Code::OutOfRange, vec!["/axes/0/path".to_owned()])
+    );
+}
