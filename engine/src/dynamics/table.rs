@@ -210,7 +210,7 @@ impl ForceTable {
 
     /// The table with `by_position` times as many positions and `by_load` times as many loads, of four at least. Along a row: on cubics through
     /// its own, and on the lesser of two branches where pairs of teeth begin or cease to carry. From row to row: so that compliances are met where
-    /// they are known ([`Stretch`]), and as along a row where they are not.
+    /// they are known, and as along a row where they are not.
     pub fn refined(&self, by_position: usize, by_load: usize) -> Self {
         let ladder = Ladder {
             count: (self.ladder.count - 1) * by_load + 1,
