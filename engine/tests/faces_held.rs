@@ -1,49 +1,27 @@
 //! Whole gears along their faces, held against what others computed and against the plane.
 
+mod cases;
+
 use std::sync::Arc;
 use std::time::Instant;
 
-use meshwright_engine::analysis::{
-    Analysis, BodyFormula, Case, Faces, Formulas, Method, PlaneState, Resolution, StiffnessRule,
-    ToothFormula, analyze,
-};
+use cases::{along_faces, gear, helical};
+use meshwright_engine::analysis::{Analysis, Case, Method, analyze};
 use meshwright_engine::assembly::{FaceResolution, FaceYield};
-use meshwright_engine::contact::ContactSolver;
 use meshwright_engine::contact::face::{FaceModel, FlankYield, SLICES};
 use meshwright_engine::gear::{
-    Alignment, BlankRegion, GearData, Helix, LeadModification, Material, Member, ModificationData,
-    Rack, ReliefData, ReliefShape, ReliefStart, SolidGear, SolidPair, TipEdge, ToothDeviations,
+    Alignment, GearData, LeadModification, Member, ModificationData, ReliefData, ReliefShape,
+    ReliefStart, SolidGear, SolidPair,
 };
-use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
 /// The gear of the references: 40 teeth, normal module 2 mm, 20 mm wide, its rim held at a radius of 28 mm.
 fn reference_gear(beta: f64, change: impl Fn(&mut GearData)) -> SolidGear {
-    let mut data = GearData {
-        tooth_count: 40,
-        rack: Rack {
-            module: 2e-3,
-            pressure_angle: 20_f64.to_radians(),
-            addendum: 2e-3,
-            dedendum: 2.5e-3,
-            tip_radius: 0.684e-3,
-        },
-        profile_shift: 0.0,
-        thickness_deviation: 0.0,
-        tip_edge: TipEdge::Sharp,
-        face_width: 20e-3,
-        modifications: Vec::new(),
-        deviations: ToothDeviations::default(),
-        material: Material {
-            youngs_modulus: 210e9,
-            poisson_ratio: 0.3,
-            density: 7850.0,
-        },
-        blank: BlankRegion::solid(28e-3),
-    };
+    let mut data = gear(40, 28e-3);
+    data.rack.tip_radius = 0.684e-3;
     change(&mut data);
-    SolidGear::new(data, Helix::right(beta.to_radians()), 0.0, None).expect("can be made")
+    helical(data, beta.to_radians(), 0.0)
 }
 
 fn reference_pair(
@@ -60,35 +38,9 @@ fn reference_pair(
 }
 
 fn case(pair: SolidPair, output_torques: &[f64], positions: u32) -> Case {
-    Case {
-        pair: pair.section().clone(),
-        faces: Some(Faces {
-            pair,
-            resolution: FaceResolution::STANDARD,
-            slices: SLICES,
-            at_each_position: false,
-            cure: false,
-        }),
-        method: Method::ThreeDimensional,
-        output_torques: output_torques.to_vec(),
-        resolution: Resolution {
-            positions_per_mesh_period: positions,
-            span_mesh_periods: None,
-            grid: GridLevel::Standard,
-            contact_solver: ContactSolver::ActiveSet,
-            stiffness: StiffnessRule::Tangent,
-            blank_positions: 16,
-            interface_radii: [None; 2],
-            formulas: Formulas {
-                tooth: ToothFormula::WeberBanaschek,
-                body: BodyFormula::Sainsot,
-                plane_state: PlaneState::Stress,
-            },
-            error_estimate: false,
-        },
-        stress: false,
-        driving_speed: None,
-    }
+    let mut case = along_faces(pair, (FaceResolution::STANDARD, SLICES), output_torques);
+    case.resolution.positions_per_mesh_period = positions;
+    case
 }
 
 fn solve(case: &Case) -> Analysis {

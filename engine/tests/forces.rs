@@ -5,7 +5,7 @@ mod cases;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use cases::{case, gear, holed, pair, relieved, standard_pair, test_case};
+use cases::{case, gear, helical, holed, pair, relieved, standard_pair, test_case};
 use meshwright_engine::analysis::forces::{
     CurveDynamics, DynamicsRequest, ForceTableRequest, dynamics, equivalent_mass, force_table,
 };
@@ -112,13 +112,7 @@ fn along_faces(beta: f64) -> Case {
             outer_radius: 17e-3,
             thickness: 6e-3,
         });
-        SolidGear::new(
-            data,
-            Helix::right(beta),
-            if web { -5e-3 } else { 0.0 },
-            None,
-        )
-        .expect("can be made")
+        helical(data, beta, if web { -5e-3 } else { 0.0 })
     };
     let gears = [solid(beta, false), solid(-beta, true)];
     let leads = [
@@ -132,20 +126,12 @@ fn along_faces(beta: f64) -> Case {
     };
     let center_distance = 2.0 * gears[0].section().reference_radius() + 0.2e-3;
     let pair = SolidPair::new(gears, leads, center_distance, alignment).expect("meshes");
-    let mut case = case(pair.section().clone(), &[40.0]);
-    case.method = Method::ThreeDimensional;
-    case.faces = Some(Faces {
-        pair,
-        resolution: FaceResolution {
-            face_order: 4,
-            web_order: 2,
-            ..FaceResolution::DRAFT
-        },
-        slices: 40,
-        at_each_position: false,
-        cure: false,
-    });
-    case
+    let resolution = FaceResolution {
+        face_order: 4,
+        web_order: 2,
+        ..FaceResolution::DRAFT
+    };
+    cases::along_faces(pair, (resolution, 40), &[40.0])
 }
 
 /// Its contact, asked position by position.

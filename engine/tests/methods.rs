@@ -5,16 +5,15 @@ mod cases;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Barrier};
 
-use cases::{case, gear, holed, pair, relieved, study_design, test_case};
+use cases::{along_faces, case, gear, helical, holed, pair, relieved, study_design, test_case};
 use meshwright_engine::analysis::{
-    Analysis, Case, ContactSolver, Curve, Faces, Method, Statistics, Warning, analyze, pair_model,
+    Analysis, Case, ContactSolver, Curve, Method, Statistics, Warning, analyze, pair_model,
 };
 use meshwright_engine::assembly::{Blanks, FaceResolution, MakeAll, Modeling, PairSpec};
 use meshwright_engine::contact::positions::{contacts, contacts_keeping};
 use meshwright_engine::contact::{ContactError, FlankLoad, MeshContact, PositionError, WarmStart};
 use meshwright_engine::gear::{
-    Alignment, GearData, GearPair, Helix, Material, Member, Rack, SolidGear, SolidPair, SpurGear,
-    TipEdge, Web,
+    Alignment, GearData, GearPair, Material, Member, Rack, SolidPair, SpurGear, TipEdge, Web,
 };
 use meshwright_engine::library::Library;
 use meshwright_engine::ring::annulus::Imposed;
@@ -521,36 +520,28 @@ fn designs_by_methods() -> Vec<Case> {
 
 /// A helical pair with holes in the web of one gear, coarsely resolved.
 fn along_its_faces() -> Case {
-    let solid = |data: GearData, beta: f64| {
-        SolidGear::new(data, Helix::right(beta), 0.0, None).expect("can be made")
-    };
     let beta = 20_f64.to_radians();
     let gears = [
-        solid(gear(40, 20e-3), beta),
-        solid(holed(gear(40, 20e-3), 4, 29e-3, 4e-3, 0.0), -beta),
+        helical(gear(40, 20e-3), beta, 0.0),
+        helical(holed(gear(40, 20e-3), 4, 29e-3, 4e-3, 0.0), -beta, 0.0),
     ];
     let center_distance = 2.0 * gears[0].section().reference_radius();
     let leads = [Vec::new(), Vec::new()];
     let solid = SolidPair::new(gears, leads, center_distance, Alignment::default());
-    let solid = solid.expect("meshes");
-    let mut case = Case {
-        method: Method::ThreeDimensional,
-        ..case(solid.section().clone(), &[100.0])
-    };
+    let mut case = along_faces(solid.expect("meshes"), COARSE, &[100.0]);
     case.resolution.positions_per_mesh_period = 4;
     case.resolution.span_mesh_periods = Some(1);
-    case.faces = Some(Faces {
-        pair: solid,
-        resolution: FaceResolution {
-            face_order: 4,
-            ..FaceResolution::DRAFT
-        },
-        slices: 10,
-        at_each_position: false,
-        cure: false,
-    });
     case
 }
+
+/// Polynomials and slices that are quick.
+const COARSE: (FaceResolution, usize) = (
+    FaceResolution {
+        face_order: 4,
+        ..FaceResolution::DRAFT
+    },
+    10,
+);
 
 /// The same by a few positions of its true period of ten mesh periods, with holes at `radius` that matter, or without any.
 fn along_its_faces_in_turn(hole_circle: Option<f64>) -> Case {
@@ -567,7 +558,7 @@ fn along_its_faces_in_turn(hole_circle: Option<f64>) -> Case {
             Some(circle) => holed(data, 4, circle, 5e-3, 0.1),
             None => data,
         };
-        SolidGear::new(data, Helix::right(beta), 2e-3, None).expect("can be made")
+        helical(data, beta, 2e-3)
     };
     let beta = 20_f64.to_radians();
     let gears = [solid(beta, None), solid(-beta, hole_circle)];
@@ -669,29 +660,17 @@ fn along_faces_a_moved_hole_costs_one_web() {
 fn with_tip_edges(edge: TipEdge, method: Method) -> Vec<f64> {
     let mut data = gear(24, 8e-3);
     data.tip_edge = edge;
-    let straight =
-        || SolidGear::new(data.clone(), Helix::STRAIGHT, 0.0, None).expect("can be made");
-    let gears = [straight(), straight()];
+    let gears = [0, 1].map(|_| helical(data.clone(), 0.0, 0.0));
     let center_distance = 2.0 * gears[0].section().reference_radius() + 0.2e-3;
     let leads = [Vec::new(), Vec::new()];
     let pair = SolidPair::new(gears, leads, center_distance, Alignment::default()).expect("meshes");
-    let mut case = Case {
-        method,
-        ..case(pair.section().clone(), &[60.0])
+    let mut case = if method.sees_faces() {
+        along_faces(pair, COARSE, &[60.0])
+    } else {
+        case(pair.section().clone(), &[60.0])
     };
+    case.method = method;
     case.resolution.positions_per_mesh_period = 24;
-    if method.sees_faces() {
-        case.faces = Some(Faces {
-            pair,
-            resolution: FaceResolution {
-                face_order: 4,
-                ..FaceResolution::DRAFT
-            },
-            slices: 10,
-            at_each_position: false,
-            cure: false,
-        });
-    }
     solve_from(&Library::default(), &case)
         .curves
         .remove(0)

@@ -274,9 +274,9 @@ fn out_of_range(found: &FormulaRange, [value, least, greatest]: [String; 3]) -> 
 fn outside_plane(member: Member, web: f64, rim: f64) -> String {
     let [[web_plane, web_none], [rim_plane, rim_none]] = [PLANE_WEB, PLANE_RIM];
     let advice = if web < web_none || rim < rim_none {
-        "no plane model will do, take a three-dimensional one"
+        "no plane will do; the three-dimensional method (three_dimensional) does"
     } else {
-        "compare two such gears by these numbers, and do not trust one"
+        "compare two such gears by these numbers, and ask the method three_dimensional for the numbers themselves"
     };
     format!(
         "The web of the {member} gear is {} times as thick as its face is wide, its rim {} modules: {advice}. A plane stands for webs from {web_plane} times the face width and rims from {rim_plane} modules on.",

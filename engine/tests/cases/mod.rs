@@ -3,13 +3,15 @@
 #![allow(dead_code, reason = "each test and benchmark uses some of these")]
 
 use meshwright_engine::analysis::{
-    BodyFormula, Case, ContactSolver, Formulas, Method, PlaneState, Resolution, StiffnessRule,
-    ToothFormula,
+    BodyFormula, Case, ContactSolver, Faces, Formulas, Method, PlaneState, Resolution,
+    StiffnessRule, ToothFormula,
 };
+use meshwright_engine::assembly::FaceResolution;
 use meshwright_engine::contact::{MeshContact, PairModel, PositionError, WarmStart};
 use meshwright_engine::gear::{
-    BlankRegion, GearData, GearPair, HolePattern, Material, ModificationData, PairDeviations, Rack,
-    ReliefData, ReliefShape, ReliefStart, SpurGear, TipEdge, ToothDeviations,
+    BlankRegion, GearData, GearPair, Helix, HolePattern, Material, ModificationData,
+    PairDeviations, Rack, ReliefData, ReliefShape, ReliefStart, SolidGear, SolidPair, SpurGear,
+    TipEdge, ToothDeviations,
 };
 use meshwright_engine::grid::GridLevel;
 
@@ -163,6 +165,31 @@ pub(crate) fn case(pair: GearPair, output_torques: &[f64]) -> Case {
         },
         stress: false,
         driving_speed: None,
+    }
+}
+
+/// The gear of a drawing whose teeth stand at an angle, positive right-handed, with its web so far from the middle of its face.
+pub(crate) fn helical(data: GearData, beta: f64, web_offset: f64) -> SolidGear {
+    SolidGear::new(data, Helix::right(beta), web_offset, None)
+        .expect("the drawing of a test can be made")
+}
+
+/// The pair along its faces.
+pub(crate) fn along_faces(
+    pair: SolidPair,
+    (resolution, slices): (FaceResolution, usize),
+    output_torques: &[f64],
+) -> Case {
+    Case {
+        method: Method::ThreeDimensional,
+        faces: Some(Faces {
+            pair: pair.clone(),
+            resolution,
+            slices,
+            at_each_position: false,
+            cure: false,
+        }),
+        ..case(pair.section().clone(), output_torques)
     }
 }
 
