@@ -547,7 +547,29 @@ fn widen(chains: &mut Vec<Vec<f64>>, facing: &Facing, width: f64, times: usize) 
             _ => joined.push(ends.collect()),
         }
     }
+    for chain in &mut joined {
+        leave_no_slivers(chain, kinks);
+    }
     *chains = joined;
+}
+
+/// Takes away ends that leave a cell far narrower than those beside it, as where a kink stands just before or beyond the stretch: it would carry what
+/// pressure it likes. Kinks stay.
+fn leave_no_slivers(ends: &mut Vec<f64>, kinks: &[f64]) {
+    let is_kink = |end: f64| kinks.contains(&end);
+    let mut i = 1;
+    while i + 2 < ends.len() {
+        let [before, cell, beyond] = [i, i + 1, i + 2].map(|i| ends[i] - ends[i - 1]);
+        if cell >= NARROW * before.min(beyond) {
+            i += 1;
+        } else if !is_kink(ends[i]) {
+            ends.remove(i);
+        } else if !is_kink(ends[i + 1]) {
+            ends.remove(i + 1);
+        } else {
+            i += 1;
+        }
+    }
 }
 
 /// The ends of the cells beyond `end` towards `limit`; at `kinks` they begin anew as narrow as at first.
@@ -600,8 +622,8 @@ fn contact_width(indentation: f64, radius: f64, angle: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::contact::placement::Placement;
-    use crate::gear::SpurGear;
     use crate::gear::spur::tests::paper_gear;
+    use crate::gear::{ModificationData, ReliefData, ReliefShape, ReliefStart, SpurGear};
 
     fn pair() -> GearPair {
         let gear = SpurGear::new(paper_gear(50)).expect("the standard gear");
@@ -620,6 +642,40 @@ mod tests {
             moved: 0,
         };
         Patch::new(&view, &facing, 2447.61, count, extent)
+    }
+
+    #[test]
+    fn no_cell_is_a_sliver_as_a_kink_passes_the_end_of_a_stretch() {
+        let mut data = paper_gear(50);
+        data.modifications = vec![ModificationData::TipRelief(ReliefData {
+            amount: 8e-6,
+            shape: ReliefShape::Linear,
+            start: ReliefStart::RadialLength(1e-3),
+        })];
+        let gear = || SpurGear::new(data.clone()).expect("the relieved gear");
+        let pair = GearPair::new(gear(), gear(), 100.5e-3).expect("meshes");
+        for i in 0..2000 {
+            let phase = -0.8 + 8e-4 * f64::from(i);
+            let Some(facing) = Facing::drawn(&pair, phase) else {
+                continue;
+            };
+            let view = View {
+                placement: Placement::drawn(&pair, phase),
+                seat: facing.seat,
+            };
+            let extent = Extent {
+                hollows: facing.hollows.len(),
+                widened: 1,
+                moved: 0,
+            };
+            let patch = Patch::new(&view, &facing, 2447.61, 8, extent);
+            // Those at the ends of the flanks apart.
+            let widths: Vec<f64> = patch.cells.iter().map(|cell| cell.width).collect();
+            for near in widths.windows(3) {
+                let narrow = near[1] / near[0].min(near[2]);
+                assert!(narrow >= 0.19, "{phase}: {near:?}");
+            }
+        }
     }
 
     #[test]
