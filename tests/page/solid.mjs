@@ -245,7 +245,7 @@ export async function solidSteps(service) {
     const asked = [];
     page.on("request", (request) => { if (/v1\/(preview|jobs)$/.test(request.url()) && request.method() === "POST") asked.push([request.url().split("/").pop(), JSON.parse(request.postData())]); });
     const fine = structuredClone(HELICAL);
-    fine.resolution = { positions_per_mesh_period: 8, span_mesh_periods: 4 };
+    fine.resolution = { positions_per_mesh_period: 8, span_mesh_periods: 4, face_order: 12 };
     await openDesign(page, service, fine);
     await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–" && !document.body.classList.contains("busy"));
     const solid = asked.filter(([, { method }]) => method !== "flexible");
