@@ -73,6 +73,10 @@ fn recorder() -> &'static PrometheusHandle {
             "meshwright_storage_writable",
             "1 if something can be stored, 0 if not."
         );
+        metrics::describe_counter!(
+            "meshwright_commits_total",
+            "Transactions that were written, by whether their commit waited for the disk."
+        );
         metrics::describe_gauge!(
             "meshwright_database_bytes",
             "Size of the database, its journal aside."

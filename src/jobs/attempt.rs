@@ -19,9 +19,9 @@ use tracing::{error, info, warn};
 use uuid::Uuid;
 
 use super::budget::Budget;
-use super::job::Job;
-use super::live::{Entered, Running};
-use super::store::{Claim, End, Lease, Packed, Results, Started, StoreError};
+use super::job::{Job, Progress};
+use super::live::Entered;
+use super::store::{Came, Claim, End, Ended, Lease, Packed, Started, StoreError};
 use super::worker::{Shop, Solve};
 use crate::spans::{self, Span};
 use crate::wire::{Code, Kept, Problem, SOLVER_VERSION, Submission, Summary, memory_of};
@@ -49,14 +49,14 @@ struct Done {
     outcome: Outcome,
 }
 
+/// Attempts that go on, by their places among those that were begun together.
+type Held = BTreeMap<usize, Attempt>;
+
 /// What the engine's threads tell: the attempt by its place, what it came to, and what it took.
 type Told = (usize, Outcome, SignedDuration);
 
 /// After so long it is looked up whether the claims still hold. What is computed by then is not worth the look.
 const LOOK_AFTER: Duration = Duration::from_millis(50);
-
-/// So many outcomes are written in one commit at most.
-const WRITTEN_AT_ONCE: usize = 64;
 
 impl Attempt {
     fn of(shop: &Shop, job: Job) -> Self {
@@ -79,7 +79,7 @@ impl Shop {
     pub(super) async fn compute(&self, started: Vec<Started>, threads: &ThreadPool) {
         let mut work = Vec::with_capacity(started.len());
         // Those whose rows are theirs, as far as is known. What the engine still gives of others is not asked for.
-        let mut held = BTreeMap::new();
+        let mut held = Held::new();
         for (place, Started { job, submission }) in started.into_iter().enumerate() {
             let attempt = Attempt::of(self, job);
             work.push((
@@ -92,7 +92,10 @@ impl Shop {
             held.insert(place, attempt);
         }
         let mut outcomes = self.launch(work, threads);
-        let mut told: Vec<Told> = Vec::new();
+        let mut told: Vec<Told> = Vec::with_capacity(held.len());
+        // What is to be written, at that time at the latest.
+        let mut done = Vec::with_capacity(held.len());
+        let mut written = pin!(sleep(Duration::ZERO));
         // The place of the one that is being computed, and since when.
         let mut current = 0;
         let mut begin = self.jobs.clock.steady();
@@ -105,24 +108,32 @@ impl Shop {
 
         loop {
             tokio::select! {
-                count = outcomes.recv_many(&mut told, WRITTEN_AT_ONCE) => {
+                count = outcomes.recv_many(&mut told, usize::MAX) => {
                     if count == 0 {
                         break;
                     }
                     current += count;
                     begin = self.jobs.clock.steady();
                     deadline.as_mut().reset(Instant::now() + self.pace.time_limit);
-                    let done = told.drain(..).filter_map(|(place, outcome, elapsed)| {
+                    if done.is_empty() {
+                        written.as_mut().reset(Instant::now() + self.pace.gather);
+                    }
+                    done.extend(told.drain(..).filter_map(|(place, outcome, elapsed)| {
                         let attempt = held.remove(&place)?;
                         let end = End { at: self.jobs.clock.now(), elapsed };
                         Some(Done { attempt, end, outcome })
-                    });
-                    self.settle_all(done.collect()).await;
+                    }));
+                    if held.is_empty() {
+                        self.settle(std::mem::take(&mut done)).await;
+                    }
+                }
+                () = &mut written, if !done.is_empty() => {
+                    self.settle(std::mem::take(&mut done)).await;
                 }
                 () = &mut deadline, if held.contains_key(&current) => {
                     if let Some(attempt) = held.remove(&current) {
-                        let done = self.beyond_limit(attempt, begin);
-                        self.settle(done).await;
+                        done.push(self.beyond_limit(attempt, begin));
+                        self.settle(std::mem::take(&mut done)).await;
                     }
                 }
                 () = self.jobs.stop().cancelled(), if !held.is_empty() => {
@@ -134,37 +145,27 @@ impl Shop {
                 // A cancel that came after the claim and before the entry found nothing to stop; it shows in the row.
                 () = &mut look, if !looked => {
                     looked = true;
-                    for place in held.keys().copied().collect::<Vec<_>>() {
-                        if !self.holds(held[&place].claim).await && let Some(attempt) = held.remove(&place) {
-                            attempt.entered.running.stop();
-                        }
-                    }
+                    let holds = self.hold(&held).await;
+                    give_up(&mut held, &holds);
                 }
                 _ = heartbeat.tick(), if !held.is_empty() => {
-                    for place in held.keys().copied().collect::<Vec<_>>() {
-                        let attempt = &held[&place];
-                        let holds = self.report(attempt.claim, &attempt.entered.running, &mut reported).await;
-                        if !holds && let Some(attempt) = held.remove(&place) {
-                            attempt.entered.running.stop();
-                        }
-                    }
+                    let holds = self.report(&held, &mut reported).await;
+                    give_up(&mut held, &holds);
                 }
             }
         }
         // The engine has ended without a word of these.
-        for attempt in held.into_values() {
-            let elapsed = begin.duration_until(self.jobs.clock.steady());
-            let end = End {
-                at: self.jobs.clock.now(),
-                elapsed,
-            };
-            let outcome = Err(internal_problem());
-            self.settle(Done {
-                attempt,
-                end,
-                outcome,
-            })
-            .await;
+        let end = End {
+            at: self.jobs.clock.now(),
+            elapsed: begin.duration_until(self.jobs.clock.steady()),
+        };
+        done.extend(held.into_values().map(|attempt| Done {
+            attempt,
+            end,
+            outcome: Err(internal_problem()),
+        }));
+        if !done.is_empty() {
+            self.settle(done).await;
         }
     }
 
@@ -218,25 +219,37 @@ impl Shop {
         receiver
     }
 
-    /// Writes down what came of attempts: their results in one commit.
-    async fn settle_all(&self, done: Vec<Done>) {
-        let (results, others): (Vec<Done>, Vec<Done>) =
-            done.into_iter().partition(|done| done.outcome.is_ok());
-        if !results.is_empty() {
-            let written = self.written(|| self.write_results(&results)).await;
-            for (i, done) in results.iter().enumerate() {
-                self.tell(done, written.as_ref().map(|held| held[i]));
-            }
+    /// Writes down what came of attempts in one commit, and tells of it.
+    async fn settle(&self, done: Vec<Done>) {
+        let problems: Vec<String> = done
+            .iter()
+            .map(|done| {
+                done.outcome
+                    .as_ref()
+                    .err()
+                    .map_or_else(String::new, Problem::to_json)
+            })
+            .collect();
+        let ends: Vec<Ended<'_>> = done
+            .iter()
+            .zip(&problems)
+            .map(|(done, problem)| Ended {
+                claim: done.attempt.claim,
+                end: done.end,
+                came: match &done.outcome {
+                    Ok(solved) => Came::Results {
+                        document: &solved.document,
+                        summary: solved.summary.as_deref(),
+                    },
+                    Err(_) => Came::Problem(problem),
+                },
+            })
+            .collect();
+        let store = &self.jobs.store;
+        let written = self.written(|| store.end_all(&ends, SOLVER_VERSION)).await;
+        for (i, done) in done.iter().enumerate() {
+            self.tell(done, written.as_ref().map(|held| held[i]));
         }
-        for done in others {
-            self.settle(done).await;
-        }
-    }
-
-    /// The same of one that has no results.
-    async fn settle(&self, done: Done) {
-        let written = self.written(|| self.write_fault(&done)).await;
-        self.tell(&done, written.as_ref().copied());
     }
 
     /// Has something written. While nothing can be stored it waits: what was computed is not given up for the disk's sake, nor is the job.
@@ -254,33 +267,6 @@ impl Shop {
                     patience = patience.saturating_mul(2);
                 }
                 written => return written,
-            }
-        }
-    }
-
-    async fn write_results(&self, done: &[Done]) -> Result<Vec<bool>, StoreError> {
-        let results: Vec<Results<'_>> = done
-            .iter()
-            .filter_map(|done| {
-                let solved = done.outcome.as_ref().ok()?;
-                Some(Results {
-                    claim: done.attempt.claim,
-                    end: done.end,
-                    document: &solved.document,
-                    summary: solved.summary.as_deref(),
-                })
-            })
-            .collect();
-        self.jobs.store.succeed_all(&results, SOLVER_VERSION).await
-    }
-
-    async fn write_fault(&self, done: &Done) -> Result<bool, StoreError> {
-        match &done.outcome {
-            Ok(_) => Ok(false),
-            Err(problem) => {
-                let problem = problem.to_json();
-                let store = &self.jobs.store;
-                store.fail(done.attempt.claim, done.end, &problem).await
             }
         }
     }
@@ -319,36 +305,44 @@ impl Shop {
         self.jobs.live.changed(claim.id);
     }
 
-    /// Whether the row says that the claim still holds.
-    async fn holds(&self, claim: Claim) -> bool {
-        match self.answered(self.jobs.store.holds(claim)).await {
-            Ok(held) => held,
+    /// For each attempt, whether its row says that its claim still holds.
+    async fn hold(&self, held: &Held) -> Vec<bool> {
+        let claims: Vec<Claim> = held.values().map(|attempt| attempt.claim).collect();
+        match self.answered(self.jobs.store.hold(&claims)).await {
+            Ok(holds) => holds,
             Err(error) => {
-                warn!(job = %claim.id, error = %error, "a claim cannot be looked up");
-                true
+                warn!(error = %error, "claims cannot be looked up");
+                vec![true; claims.len()]
             }
         }
     }
 
-    /// Reports progress and renews the lease. False if the claim holds no more.
+    /// Reports progress and renews leases. For each attempt, false if its claim holds no more.
     ///
-    /// Where other processes take over what has not been reported for a lease, `reported` is when it last was, and an
-    /// attempt that cannot report for so long is over: it would be computed twice.
-    async fn report(&self, claim: Claim, running: &Running, reported: &mut Instant) -> bool {
+    /// Where other processes take over what has not been reported for a lease, `reported` is when it last was, and
+    /// attempts that cannot report for so long are over: they would be computed twice.
+    async fn report(&self, held: &Held, reported: &mut Instant) -> Vec<bool> {
         let store = &self.jobs.store;
-        let report = store.report(claim, running.progress(), self.lease());
+        let reports: Vec<(Claim, Progress)> = held
+            .values()
+            .map(|attempt| (attempt.claim, attempt.entered.running.progress()))
+            .collect();
+        let report = store.report_all(&reports, self.lease());
         match self.answered(report).await {
-            Ok(held) => {
+            Ok(holds) => {
                 *reported = Instant::now();
-                held
+                holds
             }
             Err(error) => {
-                warn!(job = %claim.id, error = %error, "progress cannot be written");
+                warn!(error = %error, "progress cannot be written");
                 let over = store.is_shared() && reported.elapsed() > self.pace.lease;
                 if over {
-                    warn!(job = %claim.id, "the attempt is given up: its lease is over");
+                    warn!(
+                        attempts = held.len(),
+                        "attempts are given up: their lease is over"
+                    );
                 }
-                !over
+                vec![!over; reports.len()]
             }
         }
     }
@@ -380,6 +374,18 @@ impl Shop {
             lasts: SignedDuration::try_from(self.pace.lease).unwrap_or(SignedDuration::MAX),
         }
     }
+}
+
+/// Stops the attempts whose claims hold no more.
+fn give_up(held: &mut Held, holds: &[bool]) {
+    let mut holds = holds.iter();
+    held.retain(|_, attempt| {
+        let holds = holds.next().copied().unwrap_or(true);
+        if !holds {
+            attempt.entered.running.stop();
+        }
+        holds
+    });
 }
 
 /// Computes a job: reads it, solves it when there is memory for its client, and packs what it leaves.

@@ -62,13 +62,15 @@ async fn next(store: &Store, listener: &mut Option<Listener>) -> Result<Told, St
 fn pass_on(told: Told, live: &Live) {
     match told {
         Told::Work => live.work.notify_one(),
-        Told::Job(id, status) => {
-            if status == Status::Dismissed
-                && let Some(running) = live.running(id)
-            {
-                running.stop();
+        Told::Jobs(status, ids) => {
+            for id in ids {
+                if status == Status::Dismissed
+                    && let Some(running) = live.running(id)
+                {
+                    running.stop();
+                }
+                live.changed(id);
             }
-            live.changed(id);
         }
         Told::Message => live.mail.notify_one(),
         Told::Study(id) => live.changed(id),

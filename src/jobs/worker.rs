@@ -31,6 +31,8 @@ pub struct Pace {
     pub time_limit: Duration,
     /// A job that has lost so many workers fails.
     pub attempts_limit: u32,
+    /// What came of one job waits so long at most for the others that were claimed with it, to be written with them in one commit.
+    pub gather: Duration,
 }
 
 impl Pace {
@@ -46,6 +48,7 @@ impl Pace {
             heartbeat: (lease / 5).min(Duration::from_secs(2)),
             time_limit,
             attempts_limit: 3,
+            gather: Duration::from_millis(50),
         }
     }
 }
@@ -305,5 +308,107 @@ impl Shop {
             self.jobs.live.work.notify_one();
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc;
+
+    use metrics_exporter_prometheus::PrometheusBuilder;
+    use serde_json::json;
+    use tokio_util::sync::CancellationToken;
+
+    use super::super::clock::Clock;
+    use super::super::queue::{Member, Rules};
+    use super::super::store::{Place, Store};
+    use super::*;
+    use crate::wire::Status;
+
+    const RULES: Rules = Rules {
+        queue_limit: 100,
+        client_queue_limit: 100,
+        client_design_limit: 100,
+        job_memory_mb: 1000,
+        memory_mb: 1000,
+    };
+
+    /// A small job; each torque is another one.
+    fn small(torque: f64) -> Submission {
+        let gear = json!({ "tooth_count": 50, "module_mm": 2.0, "face_width_mm": 20.0, "blank": { "bore_radius_mm": 15.0 } });
+        let document = json!({
+            "method": "load_distribution",
+            "pair": { "center_distance_mm": 100.5, "driving": gear, "driven": gear },
+            "output_torques_n_m": [torque],
+        });
+        Submission::parse(document.to_string().as_bytes()).unwrap()
+    }
+
+    #[tokio::test]
+    async fn jobs_that_are_claimed_together_end_in_one_commit_each_with_what_came_of_it() {
+        let recorder = PrometheusBuilder::new().build_recorder();
+        let numbers = recorder.handle();
+        let _recorder = metrics::set_default_local_recorder(&recorder);
+        let commits = || {
+            let line = "meshwright_commits_total{waits=\"yes\"} ";
+            let told = numbers.render();
+            let count = told.lines().find_map(|told| told.strip_prefix(line));
+            count.map_or(0, |count| count.parse::<u32>().unwrap())
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let place = Place::File(folder.path().join("jobs.db"));
+        let store = Store::open(&place).await.unwrap();
+        let stop = CancellationToken::new();
+        let jobs = Jobs::new(store, RULES, Clock::system(), stop.clone());
+        let member = Member::usual("portal");
+        let mut ids = Vec::new();
+        for torque in 1..=12_u8 {
+            let submitted = jobs.submit(&member, &small(torque.into()), None).await;
+            ids.push(submitted.unwrap().job.id);
+        }
+
+        // The first one waits for the test, the fourth panics, the fifth cannot be computed.
+        let (go, wait) = mpsc::channel::<()>();
+        let wait = std::sync::Mutex::new(wait);
+        let solve: Solve =
+            Arc::new(
+                move |submission, _| match submission.case().output_torques[0] {
+                    1.0 => {
+                        wait.lock().unwrap().recv().unwrap();
+                        Ok("{}".to_owned())
+                    }
+                    4.0 => panic!("as the test ordered"),
+                    5.0 => Err(Problem::new(Code::NotConverged, "as the test ordered")),
+                    torque => Ok(format!("{{\"torque\":{torque}}}")),
+                },
+            );
+        let pace = Pace {
+            gather: Duration::from_secs(3600),
+            ..Pace::with_time_limit(Duration::from_secs(3600))
+        };
+        let workers = Workers::beside(jobs.clone(), solve, 1, pace).await;
+        let mut workers = workers.unwrap();
+        let mut news = jobs.news(ids[11]);
+        while jobs.find("portal", ids[11]).await.unwrap().status != Status::Running {
+            news.changed_state().await;
+        }
+        jobs.cancel("portal", ids[7]).await.unwrap();
+        let before = commits();
+        go.send(()).unwrap();
+        for id in &ids {
+            let ended = jobs
+                .wait("portal", *id, Duration::from_secs(60))
+                .await
+                .unwrap();
+            let status = match ids.iter().position(|other| other == id).unwrap() + 1 {
+                4 | 5 => Status::Failed,
+                8 => Status::Dismissed,
+                _ => Status::Successful,
+            };
+            assert_eq!((ended.status, ended.attempt), (status, 1));
+        }
+        assert_eq!(commits() - before, 1);
+        stop.cancel();
+        workers.ended().await;
     }
 }

@@ -55,6 +55,63 @@ fn check_table(table: &Value, total: usize) {
 }
 
 #[tokio::test]
+async fn small_designs_share_their_commits_and_those_of_a_process_that_is_killed_are_each_done_once()
+ {
+    let folder = tempfile::tempdir().unwrap();
+    let database = stores::place(&folder).await;
+    let client = meshwright::client().build().unwrap();
+    let first = Process::start_with(&database, &["--workers", "1"]);
+    let small = |torques: std::ops::Range<u32>| {
+        let mut study = patterns("load_distribution", &[], &[], &[]);
+        let torques: Vec<Value> = torques.map(|torque| json!([torque])).collect();
+        study["axes"] = json!([{ "path": "/output_torques_n_m", "values": torques }]);
+        study
+    };
+
+    let before = commits(&first, &client).await;
+    let path = first.submit(&client, &small(1..201)).await;
+    first.done(&client, &path, 200).await;
+    let commits = commits(&first, &client).await - before;
+    // Each by itself, they take four hundred; claimed and ended together, some ten where nothing else keeps the machine busy.
+    assert!(commits < 100, "{commits} commits for 200 designs");
+
+    let path = first.submit(&client, &small(300..700)).await;
+    first.done(&client, &path, 10).await;
+    first.kill();
+    stores::pass_a_lease(&database).await;
+    let second = Process::start_with(&database, &["--workers", "1"]);
+    let study = second.done(&client, &path, 400).await;
+    assert_eq!(
+        (&study["successful"], &study["failed"]),
+        (&json!(400), &json!(0))
+    );
+    let left = "select count(*) from jobs where status <> 'successful' or same_as is not null";
+    assert_eq!(stores::number(&database, left).await, 0);
+    let documents = "select count(*) from documents";
+    assert_eq!(
+        stores::number(&database, documents).await,
+        600,
+        "each has its own results, once"
+    );
+}
+
+/// How many transactions a process has written.
+async fn commits(process: &Process, client: &reqwest::Client) -> u64 {
+    let numbers = client
+        .get(format!("{}/metrics", process.base))
+        .send()
+        .await
+        .unwrap();
+    let numbers = numbers.text().await.unwrap();
+    let counts = numbers
+        .lines()
+        .filter(|line| line.starts_with("meshwright_commits_total{"));
+    counts
+        .map(|line| line.rsplit(' ').next().unwrap().parse::<u64>().unwrap())
+        .sum()
+}
+
+#[tokio::test]
 async fn a_study_killed_half_way_is_finished_by_the_next_process_with_every_design() {
     let folder = tempfile::tempdir().unwrap();
     let database = stores::place(&folder).await;

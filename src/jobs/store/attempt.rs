@@ -3,14 +3,16 @@
 use std::collections::BTreeMap;
 
 use jiff::{SignedDuration, Timestamp};
+use serde_json::{Value, json};
 use uuid::Uuid;
 
-use super::documents::{Packed, forget_document};
-use super::endings::{tell_end, tell_ends};
+use super::documents::{Packed, forget_document, insert_documents};
+use super::endings::tell_ends;
 use super::rows::job_columns;
-use super::statement::{query, query_as};
+use super::statement::{list, query_as};
 use super::{Store, StoreError, column, dialect, micros, shares};
 use crate::jobs::job::{Job, Progress};
+use crate::wire::Status;
 
 /// A word for one attempt at one job: only the latest claim may report or finish.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,155 +39,137 @@ pub(in crate::jobs) struct End {
     pub(in crate::jobs) elapsed: SignedDuration,
 }
 
-/// The results of an attempt.
+/// What came of an attempt.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::jobs) struct Results<'a> {
-    pub(in crate::jobs) claim: Claim,
-    pub(in crate::jobs) end: End,
-    pub(in crate::jobs) document: &'a Packed,
-    /// What the tables of studies show of it.
-    pub(in crate::jobs) summary: Option<&'a str>,
+pub(in crate::jobs) enum Came<'a> {
+    /// Results, and what the tables of studies show of them.
+    Results {
+        document: &'a Packed,
+        summary: Option<&'a str>,
+    },
+    /// The problem document, JSON.
+    Problem(&'a str),
 }
 
-impl End {
-    fn columns(self) -> (i64, i64) {
-        (self.at.as_microsecond(), micros(self.elapsed).max(0))
+/// An attempt that is over.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::jobs) struct Ended<'a> {
+    pub(in crate::jobs) claim: Claim,
+    pub(in crate::jobs) end: End,
+    pub(in crate::jobs) came: Came<'a>,
+}
+
+impl Ended<'_> {
+    /// What a statement reads of it.
+    fn row(&self) -> Value {
+        let (status, results, problem) = match self.came {
+            Came::Results { document, .. } => (Status::Successful, Some(document.hash()), None),
+            Came::Problem(problem) => (Status::Failed, None, Some(problem)),
+        };
+        json!({
+            "job": self.claim.id,
+            "claimed": self.claim.attempt,
+            "at": self.end.at.as_microsecond(),
+            "took": micros(self.end.elapsed).max(0),
+            "word": status.as_str(),
+            "results": results,
+            "fault": problem,
+        })
     }
+}
+
+/// For each claim whether it is among those that hold, which are ids with attempts.
+fn are_among(claims: &[Claim], held: &[(String, i64)]) -> Vec<bool> {
+    let held: BTreeMap<&str, i64> = held
+        .iter()
+        .map(|(id, attempt)| (id.as_str(), *attempt))
+        .collect();
+    let holds = |claim: &Claim| held.get(claim.id.to_string().as_str()) == Some(&claim.attempt);
+    claims.iter().map(holds).collect()
 }
 
 impl Store {
-    /// Whether a claim holds: the job runs, and nobody has claimed it since.
-    pub(in crate::jobs) async fn holds(&self, claim: Claim) -> Result<bool, StoreError> {
-        let found =
-            query("select 1 from jobs where id = $1 and attempt = $2 and status = 'running'")
-                .bind(claim.id.to_string())
-                .bind(claim.attempt)
-                .exists(&self.readers)
-                .await?;
-        Ok(found)
+    /// For each claim whether it holds: the job runs, and nobody has claimed it since.
+    pub(in crate::jobs) async fn hold(&self, claims: &[Claim]) -> Result<Vec<bool>, StoreError> {
+        let ids: Vec<Uuid> = claims.iter().map(|claim| claim.id).collect();
+        let states: Vec<(String, i64, String)> = query_as(dialect::states())
+            .bind(list(&ids))
+            .fetch_all(&self.readers)
+            .await?;
+        let running = states
+            .into_iter()
+            .filter(|(.., status)| status == Status::Running.as_str());
+        let held: Vec<(String, i64)> = running.map(|(id, attempt, _)| (id, attempt)).collect();
+        Ok(are_among(claims, &held))
     }
 
-    /// Running -> running: how far the job has come, and a longer lease. False if the claim holds no more.
-    pub(in crate::jobs) async fn report(
+    /// Running -> running for several jobs: how far each has come, and a longer lease. For each, false if its claim holds no more.
+    pub(in crate::jobs) async fn report_all(
         &self,
-        claim: Claim,
-        progress: Progress,
+        reports: &[(Claim, Progress)],
         lease: Lease,
-    ) -> Result<bool, StoreError> {
+    ) -> Result<Vec<bool>, StoreError> {
+        let rows: Vec<_> = reports
+            .iter()
+            .map(|(claim, progress)| {
+                json!({
+                    "job": claim.id, "claimed": claim.attempt, "solved": column(progress.done), "total": column(progress.total),
+                })
+            })
+            .collect();
         let mut write = self.begin_relaxed().await?;
-        let updated = query(dialect::report())
-            .bind(claim.id.to_string())
-            .bind(claim.attempt)
-            .bind(column(progress.done))
-            .bind(column(progress.total))
+        let held: Vec<(String, i64)> = query_as(dialect::report())
+            .bind(list(&rows))
             .bind(lease.steady.as_microsecond())
             .bind(micros(lease.lasts))
-            .execute(&mut *write)
+            .fetch_all(&mut *write)
             .await?;
         write.commit().await?;
-        Ok(updated == 1)
+        let claims: Vec<Claim> = reports.iter().map(|(claim, _)| *claim).collect();
+        Ok(are_among(&claims, &held))
     }
 
-    /// Running -> successful for several jobs in one commit, each with its results document and what the tables of studies show of it.
-    /// For each, false if its claim holds no more; then nothing of it is kept.
-    pub(in crate::jobs) async fn succeed_all(
+    /// Running -> successful or failed for several jobs in one commit, each with its results document and what the tables of studies show
+    /// of it, or with its problem document. For each, false if its claim holds no more; then nothing of it is kept.
+    pub(in crate::jobs) async fn end_all(
         &self,
-        results: &[Results<'_>],
+        ends: &[Ended<'_>],
         solver_version: &str,
     ) -> Result<Vec<bool>, StoreError> {
         let mut write = self.begin().await?;
         // Whoever keeps equal documents, or dismisses these jobs, takes them in the same order.
-        let by_hash: BTreeMap<&str, &Results<'_>> = results
-            .iter()
-            .map(|result| (result.document.hash(), result))
-            .collect();
-        for (hash, result) in by_hash {
-            result.document.insert(&mut write).await?;
-            if let Some(summary) = result.summary {
-                query(
-                    "insert into summaries (document, body) values ($1, $2) on conflict (document) do nothing",
-                )
-                .bind(hash)
-                .bind(summary)
-                .execute(&mut *write)
-                .await?;
-            }
-        }
-        if results.len() > 1 {
-            let ids: Vec<String> = results
-                .iter()
-                .map(|result| result.claim.id.to_string())
-                .collect();
-            query(dialect::lock_jobs())
-                .bind(ids.join(","))
-                .execute(&mut *write)
-                .await?;
-        }
-        let mut ended = Vec::new();
-        let mut held = Vec::with_capacity(results.len());
-        for result in results {
-            let (at, elapsed) = result.end.columns();
-            let job: Option<Job> = query_as(concat!(
-                "update jobs
-                 set status = 'successful', finished_at = max($3, started_at), elapsed = $4, lease_until = null,
-                     document = $5, solver_version = $6, positions_done = positions_total
-                 where id = $1 and attempt = $2 and status = 'running'
-                 returning ",
-                job_columns!()
-            ))
-            .bind(result.claim.id.to_string())
-            .bind(result.claim.attempt)
-            .bind(at)
-            .bind(elapsed)
-            .bind(result.document.hash())
+        let documents = ends.iter().filter_map(|ended| match ended.came {
+            Came::Results { document, summary } => Some((document, summary)),
+            Came::Problem(_) => None,
+        });
+        insert_documents(&mut write, documents).await?;
+        let rows: Vec<_> = ends.iter().map(Ended::row).collect();
+        let jobs: Vec<Job> = query_as(dialect::end())
+            .bind(list(&rows))
             .bind(solver_version)
-            .fetch_optional(&mut *write)
+            .fetch_all(&mut *write)
             .await?;
-            held.push(job.is_some());
-            ended.extend(job.map(|job| (job, result.end.at)));
-        }
-        if ended.is_empty() {
+        if jobs.is_empty() {
             write.rollback().await?;
-            return Ok(held);
+            return Ok(vec![false; ends.len()]);
         }
-        for (result, _) in results.iter().zip(&held).filter(|(_, held)| !**held) {
-            forget_document(&mut write, result.document.hash()).await?;
+        let mut jobs: BTreeMap<Uuid, Job> = jobs.into_iter().map(|job| (job.id, job)).collect();
+        let mut held = Vec::with_capacity(ends.len());
+        let mut ended = Vec::with_capacity(jobs.len());
+        for end in ends {
+            let job = jobs.remove(&end.claim.id);
+            held.push(job.is_some());
+            match (job, end.came) {
+                (Some(job), _) => ended.push((job, end.end.at)),
+                (None, Came::Results { document, .. }) => {
+                    forget_document(&mut write, document.hash()).await?;
+                }
+                (None, Came::Problem(_)) => {}
+            }
         }
         tell_ends(&mut write, &ended).await?;
         write.commit().await?;
         Ok(held)
-    }
-
-    /// Running -> failed, with the problem document. False if the claim holds no more.
-    pub(in crate::jobs) async fn fail(
-        &self,
-        claim: Claim,
-        end: End,
-        problem: &str,
-    ) -> Result<bool, StoreError> {
-        let (at, elapsed) = end.columns();
-        let mut write = self.begin().await?;
-        let job: Option<Job> = query_as(
-            concat!(
-            "update jobs
-             set status = 'failed', finished_at = max($3, started_at), elapsed = $4, lease_until = null, problem = $5
-             where id = $1 and attempt = $2 and status = 'running'
-             returning ",
-            job_columns!()
-        ),
-        )
-        .bind(claim.id.to_string())
-        .bind(claim.attempt)
-        .bind(at)
-        .bind(elapsed)
-        .bind(problem)
-        .fetch_optional(&mut *write)
-        .await?;
-        if let Some(job) = &job {
-            tell_end(&mut write, job, end.at).await?;
-        }
-        write.commit().await?;
-        Ok(job.is_some())
     }
 
     /// Running -> accepted, because the worker shuts down: this claim does not count as an attempt.

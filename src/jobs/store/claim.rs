@@ -9,9 +9,9 @@ use super::attempt::Lease;
 use super::endings::tell_end;
 use super::rows::{from_row, job_columns};
 use super::shares::{self, Lane};
-use super::statement::{Connection, query, query_as, query_scalar};
+use super::statement::{Connection, list, query, query_as, query_scalar};
 use super::submit::{Known, find_known};
-use super::{Store, StoreError, dialect, micros};
+use super::{Store, StoreError, column, dialect, micros};
 use crate::jobs::job::Job;
 use crate::wire::Kept;
 
@@ -86,7 +86,7 @@ impl Store {
             Suspects::None => {
                 take_turn(&mut write, begin, reader, &mut claimed, &mut turn).await?;
             }
-            Suspects::Next(id) => claimed.started.push(begin.start(&mut write, &id).await?),
+            Suspects::Next(id) => claimed.started = begin.start(&mut write, &[id]).await?,
             Suspects::Wait => {}
         }
         turn.settle(&mut write).await?;
@@ -167,36 +167,48 @@ async fn take_turn(
     turn: &mut Turn,
 ) -> Result<(), sqlx::Error> {
     for lane in shares::lanes(connection).await? {
-        let mut charge = 0;
-        let mut is_empty = false;
-        while claimed.given.len() < MOST_GIVEN && claimed.started.len() < MOST_STARTED {
-            let next: Option<(String, String, i64, String)> = query_as(dialect::next_waiting())
-                .bind(&lane.client)
-                .bind(&lane.lane)
-                .bind(reader.documents)
-                .fetch_optional(&mut *connection)
-                .await?;
-            let Some((id, input_hash, cost, keep)) = next else {
-                is_empty = true;
-                break;
-            };
-            // A word that is not known keeps everything.
-            let keep = Kept::named(&keep).unwrap_or(Kept::Results);
-            let known = find_known(connection, &lane.client, &input_hash, keep, reader.solver);
-            if let Some(known) = known.await? {
-                let job = give(connection, &id, &known, begin.now, reader.solver).await?;
-                tell_end(connection, &job, begin.now).await?;
-                claimed.given.push(job);
-                continue;
+        let mut look = Look {
+            lane: &lane,
+            behind: i64::MIN,
+            inputs: BTreeSet::new(),
+        };
+        let (mut chosen, mut charge) = (Vec::new(), 0);
+        let mut many = 1;
+        let is_empty = 'lane: loop {
+            let waiting = look.next(connection, many, reader).await?;
+            let is_last = waiting.len() < many;
+            for (next, known) in waiting {
+                if let Some(known) = known {
+                    let job = give(connection, &next.id, &known, begin.now, reader.solver).await?;
+                    tell_end(connection, &job, begin.now).await?;
+                    claimed.given.push(job);
+                    // Where one was computed before, others are.
+                    many = MOST_GIVEN - claimed.given.len();
+                    if many == 0 {
+                        break 'lane false;
+                    }
+                } else if !chosen.is_empty() && charge + next.cost > reader.at_once {
+                    break 'lane false;
+                } else if look.inputs.insert(next.input_hash) {
+                    charge += next.cost;
+                    chosen.push(next.id);
+                    // As many more as there is room for if they are like this one.
+                    let room = (reader.at_once - charge) / next.cost.max(1);
+                    many = usize::try_from(room)
+                        .unwrap_or_default()
+                        .clamp(1, MOST_STARTED);
+                }
             }
-            if !claimed.started.is_empty() && charge + cost > reader.at_once {
-                break;
+            if is_last {
+                break true;
             }
-            claimed.started.push(begin.start(connection, &id).await?);
-            charge += cost;
-            if charge >= reader.at_once {
-                break;
+            many = many.min(MOST_STARTED - chosen.len());
+            if many == 0 || charge >= reader.at_once && !chosen.is_empty() {
+                break false;
             }
+        };
+        if !chosen.is_empty() {
+            claimed.started = begin.start(connection, &chosen).await?;
         }
         if is_empty {
             turn.empty.push(lane.clone());
@@ -209,6 +221,70 @@ async fn take_turn(
         }
     }
     Ok(())
+}
+
+/// A job that waits.
+struct Waiting {
+    id: String,
+    input_hash: String,
+    cost: i64,
+}
+
+/// A look at what waits in a lane, from the front to the back.
+struct Look<'a> {
+    lane: &'a Lane,
+    /// The place of the last one that was seen.
+    behind: i64,
+    /// The inputs of those that are to be begun: equal work is done once.
+    inputs: BTreeSet<String>,
+}
+
+impl Look<'_> {
+    /// At most so many jobs, and for each what is known of an equal one.
+    async fn next(
+        &mut self,
+        connection: &mut Connection,
+        many: usize,
+        reader: Reader<'_>,
+    ) -> Result<Vec<(Waiting, Option<Known>)>, sqlx::Error> {
+        let client = &self.lane.client;
+        let rows: Vec<(String, i64, String, i64, String)> = query_as(dialect::next_waiting())
+            .bind(client)
+            .bind(&self.lane.lane)
+            .bind(reader.documents)
+            .bind(self.behind)
+            .bind(column(many as u64))
+            .fetch_all(&mut *connection)
+            .await?;
+        let Some(last) = rows.last() else {
+            return Ok(Vec::new());
+        };
+        self.behind = last.1;
+        let inputs: Vec<&str> = rows.iter().map(|row| row.2.as_str()).collect();
+        let computed: Vec<String> = query_scalar(dialect::known_among())
+            .bind(client)
+            .bind(reader.solver)
+            .bind(list(&inputs))
+            .fetch_all(&mut *connection)
+            .await?;
+        let mut waiting = Vec::with_capacity(rows.len());
+        for (id, _, input_hash, cost, keep) in rows {
+            // A word that is not known keeps everything.
+            let keep = Kept::named(&keep).unwrap_or(Kept::Results);
+            let known = if computed.contains(&input_hash) {
+                find_known(connection, client, &input_hash, keep, reader.solver).await?
+            } else {
+                None
+            };
+            let next = Waiting {
+                id,
+                input_hash,
+                cost,
+            };
+            waiting.push((next, known));
+        }
+        Ok(waiting)
+    }
 }
 
 /// A lane whose jobs all wait for an equal one keeps its turn.
@@ -263,15 +339,21 @@ struct Begin<'a> {
 }
 
 impl Begin<'_> {
-    /// Accepted -> running.
-    async fn start(self, connection: &mut Connection, id: &str) -> Result<Started, sqlx::Error> {
-        query_as(dialect::start())
-            .bind(id)
+    /// Accepted -> running, in their order.
+    async fn start(
+        self,
+        connection: &mut Connection,
+        ids: &[String],
+    ) -> Result<Vec<Started>, sqlx::Error> {
+        let mut started: Vec<Started> = query_as(dialect::start())
+            .bind(list(ids))
             .bind(self.now.as_microsecond())
             .bind(self.lease.steady.as_microsecond())
             .bind(micros(self.lease.lasts))
             .bind(self.process)
-            .fetch_one(connection)
-            .await
+            .fetch_all(connection)
+            .await?;
+        started.sort_by_key(|started| started.job.sequence);
+        Ok(started)
     }
 }

@@ -1,13 +1,15 @@
 //! Results documents: packed, and named by the hash of their text.
 
+use std::collections::BTreeMap;
 use std::io::{Read, Write};
 
 use bytes::Bytes;
 use flate2::Compression;
 use flate2::read::GzDecoder;
 use flate2::write::GzEncoder;
+use serde_json::json;
 
-use super::statement::{Connection, query, query_as};
+use super::statement::{Connection, list, query, query_as};
 use super::{Store, StoreError, dialect};
 use crate::hash::sha256_hex;
 
@@ -56,18 +58,51 @@ impl Packed {
     pub(super) fn hash(&self) -> &str {
         &self.hash
     }
+}
 
-    /// Keeps the document, unless it is kept already. One of which only the name was kept becomes whole.
-    pub(super) async fn insert(&self, connection: &mut Connection) -> Result<(), sqlx::Error> {
-        query(dialect::insert_document())
-            .bind(&self.hash)
-            .bind(&*self.body)
-            .bind(super::column(self.size))
-            .bind(i64::from(self.whole))
+/// Keeps documents, unless they are kept already, each with what the tables of studies show of it. One of which only the name was kept
+/// becomes whole.
+pub(super) async fn insert_documents(
+    connection: &mut Connection,
+    documents: impl Iterator<Item = (&Packed, Option<&str>)>,
+) -> Result<(), sqlx::Error> {
+    // Equal ones once, and in one order for all who write several.
+    let mut by_hash: BTreeMap<&str, (&Packed, Option<&str>)> = BTreeMap::new();
+    for (document, summary) in documents {
+        let kept = by_hash
+            .entry(document.hash())
+            .or_insert((document, summary));
+        if document.whole && !kept.0.whole {
+            kept.0 = document;
+        }
+    }
+    let mut bodies = Vec::new();
+    let mut rows = Vec::with_capacity(by_hash.len());
+    let mut summaries = Vec::new();
+    for (hash, (document, summary)) in by_hash {
+        // The databases count bytes from one.
+        let (starts, takes) = (bodies.len() + 1, document.body.len());
+        bodies.extend_from_slice(&document.body);
+        rows.push(json!({
+            "hash": hash, "starts": starts, "takes": takes, "size": document.size, "whole": i64::from(document.whole),
+        }));
+        summaries.extend(summary.map(|summary| json!({ "hash": hash, "body": summary })));
+    }
+    if rows.is_empty() {
+        return Ok(());
+    }
+    query(dialect::insert_documents())
+        .bind(list(&rows))
+        .bind(&*bodies)
+        .execute(&mut *connection)
+        .await?;
+    if !summaries.is_empty() {
+        query(dialect::insert_summaries())
+            .bind(list(&summaries))
             .execute(connection)
             .await?;
-        Ok(())
     }
+    Ok(())
 }
 
 /// A document as it is kept.

@@ -64,7 +64,7 @@ pub use outbox::EventKind;
 pub use place::Place;
 pub use retention::{Removed, Space};
 
-pub(super) use attempt::{Claim, End, Lease, Results};
+pub(super) use attempt::{Came, Claim, End, Ended, Lease};
 pub(super) use claim::{Claimed, Reader, Started};
 pub(super) use documents::Packed;
 pub(super) use end::Lost;

@@ -11,12 +11,12 @@ use crate::wire::Status;
 const CHANNEL: &str = "meshwright";
 
 /// Something that a process has done, this one perhaps.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub(in crate::jobs) enum Told {
     /// A job waits.
     Work,
-    /// The state of a job has changed.
-    Job(Uuid, Status),
+    /// The state of jobs has changed.
+    Jobs(Status, Vec<Uuid>),
     /// A study has changed.
     Study(Uuid),
     /// A message to a webhook waits.
@@ -54,10 +54,12 @@ fn told(words: &str) -> Told {
     let mut words = words.split(' ');
     let told = match words.next() {
         Some("work") => Some(Told::Work),
-        Some("job") => {
+        // One at a time is how the version before told it.
+        Some("jobs" | "job") => {
             let status = words.next().and_then(Status::of_word);
-            let id = words.next().and_then(|id| id.parse().ok());
-            id.zip(status).map(|(id, status)| Told::Job(id, status))
+            let ids: Option<Vec<Uuid>> = words.by_ref().map(|id| id.parse().ok()).collect();
+            let ids = ids.filter(|ids| !ids.is_empty());
+            status.zip(ids).map(|(status, ids)| Told::Jobs(status, ids))
         }
         Some("message") => Some(Told::Message),
         Some("study") => words.next().and_then(|id| id.parse().ok()).map(Told::Study),
@@ -77,8 +79,13 @@ mod tests {
             ("work".to_owned(), Told::Work),
             (
                 format!("job dismissed {id}"),
-                Told::Job(id, Status::Dismissed),
+                Told::Jobs(Status::Dismissed, vec![id]),
             ),
+            (
+                format!("jobs failed {id} {id}"),
+                Told::Jobs(Status::Failed, vec![id, id]),
+            ),
+            (format!("jobs failed {id} x"), Told::Missed),
             ("message".to_owned(), Told::Message),
             (format!("study {id}"), Told::Study(id)),
             ("job dismissed".to_owned(), Told::Missed),

@@ -244,6 +244,9 @@ async fn open_server(address: &str, migrate: Migrate) -> Result<(Pool, Pool), Op
     let options = PgConnectOptions::from_str(address)
         .map_err(|error| OpenError::Address(Box::new(error)))?
         .application_name("meshwright")
+        // Tables grow from nothing to hundreds of thousands of rows while a connection keeps the plans that it has made: what was
+        // cheap to read through then is not later. Every statement that matters has its index.
+        .options([("enable_seqscan", "off"), ("jit", "off")])
         // A process that vanishes in the middle of a transaction, with its network or frozen, holds what it has locked no
         // longer than this.
         .options([

@@ -265,6 +265,11 @@ value_of! {
     &[u8] => |value| Self::Bytes(value.to_owned()),
 }
 
+/// A list as a parameter.
+pub(crate) fn list<T: serde::Serialize>(items: &[T]) -> String {
+    serde_json::to_string(items).expect("what is listed is plain data")
+}
+
 /// A statement with its parameters.
 pub(crate) struct Statement<T> {
     text: Text,

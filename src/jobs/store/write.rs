@@ -61,6 +61,8 @@ pub(crate) struct Write {
     health: Arc<Health>,
     /// What is said behind the commit.
     after: Option<Text>,
+    /// Whether the commit waits for no disk.
+    relaxed: bool,
     ended: bool,
 }
 
@@ -201,6 +203,7 @@ async fn begin_with(
     Ok(Write {
         connection,
         health: Arc::clone(health),
+        relaxed: after.is_some(),
         after,
         ended: false,
     })
@@ -213,6 +216,8 @@ impl Write {
         let committed = committed.map_err(StoreError::from);
         self.health.found(committed.as_ref());
         committed?;
+        let waits = if self.relaxed { "no" } else { "yes" };
+        metrics::counter!("meshwright_commits_total", "waits" => waits).increment(1);
         self.end().await
     }
 

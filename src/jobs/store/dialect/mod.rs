@@ -1,6 +1,6 @@
 //! The statements that the two databases do not say in the same words, and what only one of them has.
 //!
-//! Everything else in this folder is one text for both. [`sqlite`] and [`postgres`] have the same names in the same order;
+//! Lists are parameters as JSON, so that one statement does for many jobs. Everything else in this folder is one text for both. [`sqlite`] and [`postgres`] have the same names in the same order;
 //! what one of them has no need of is `None`.
 
 /// A job that is successful at once; how the next place in the order of arrival is found differs.
@@ -27,6 +27,24 @@ macro_rules! insert_waiting {
             $next,
             ", $2, $3, $4, $5, $6, 'accepted', $7, $8, $9, $10, $11)
              returning ",
+            $crate::jobs::store::rows::job_columns!()
+        )
+    };
+}
+
+/// What has come of jobs that run; how a list is read differs.
+macro_rules! end_jobs {
+    ($before:literal, $list:literal) => {
+        concat!(
+            $before,
+            "update jobs
+             set status = ended.word, finished_at = max(ended.at, started_at), elapsed = ended.took, lease_until = null,
+                 document = ended.results, problem = ended.fault,
+                 solver_version = case ended.word when 'successful' then $2 end,
+                 positions_done = case ended.word when 'successful' then positions_total else positions_done end
+             from ",
+            $list,
+            " returning ",
             $crate::jobs::store::rows::job_columns!()
         )
     };
@@ -102,16 +120,20 @@ pairs! {
     running_here = RUNNING_HERE;
     /// The next job that is to be run alone. $1: the latest version of documents that is read.
     next_suspect = NEXT_SUSPECT;
-    /// The job of a lane whose turn it is, unless an equal one is running. $1: client, $2: lane, $3: the latest version of
-    /// documents that is read.
+    /// The jobs of a lane whose turn it is, in their order, but for those of which an equal one is running. $1: client, $2: lane, $3: the
+    /// latest version of documents that is read, $4: behind this place in the order of arrival, $5: how many.
     next_waiting = NEXT_WAITING;
     /// What a client has had computed. $1: client, $2: input hash, $3: solver version, $4: 1 if the whole results have to be kept.
     known = KNOWN;
-    /// Accepted -> running. $1: id, $2: now, $3: the steady clock, $4: how long the lease lasts, $5: the process.
+    /// Which inputs a client may have had computed. $1: client, $2: solver version, $3: a list of input hashes.
+    known_among = KNOWN_AMONG;
+    /// Accepted -> running. $1: a list of ids, $2: now, $3: the steady clock, $4: how long the lease lasts, $5: the process.
     start = START;
-    /// Keeps others from changing some jobs until the end of the transaction, in one order. $1: their ids, joined by commas.
-    lock_jobs = LOCK_JOBS;
-    /// Running -> running. $1: id, $2: attempt, $3 and $4: positions, $5: the steady clock, $6: how long the lease lasts.
+    /// Where jobs stand: id, attempt, status. $1: a list of ids.
+    states = STATES;
+    /// Running -> successful or failed. $1: a list of what has come of each, $2: the solver's version.
+    end = END;
+    /// Running -> running. $1: a list of how far each has come, $2: the steady clock, $3: how long the lease lasts.
     report = REPORT;
     /// The jobs that run: id, process, and whether the lease is over (1), and since another one (2). $1: the steady clock, $2:
     /// how long a lease lasts.
@@ -124,8 +146,10 @@ pairs! {
     count_designs = COUNT_DESIGNS;
     /// A study. $1 to $10: see `insert_study`.
     insert_study = INSERT_STUDY;
-    /// Keeps a document, unless it is kept already. $1: hash, $2: body, $3: size, $4: 1 if the body is the whole of it.
-    insert_document = INSERT_DOCUMENT;
+    /// Keeps documents, unless they are kept already. $1: a list of them, $2: their bodies, one behind the other.
+    insert_documents = INSERT_DOCUMENTS;
+    /// Keeps what the tables of studies show of documents. $1: a list.
+    insert_summaries = INSERT_SUMMARIES;
     /// From here to its end, no other transaction begins or ceases to need the document $1.
     lock_document = LOCK_DOCUMENT;
     /// Accepted or running -> dismissed. $1: study, $2: now, $3: accepted or running, $4: how many.

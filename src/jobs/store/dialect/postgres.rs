@@ -51,13 +51,14 @@ pub(in crate::jobs::store) const NEXT_SUSPECT: Words = Some(
      order by sequence limit 1 for update of waiting skip locked",
 );
 
+// The offset has each equal one looked up by its input; joined, all that run and ran lately would be read.
 pub(in crate::jobs::store) const NEXT_WAITING: Words = Some(
-    "select id, input_hash, cost, keep from jobs as waiting
-     where status = 'accepted' and client = $1 and coalesce(study, '') = $2 and document_version <= $3
+    "select id, sequence, input_hash, cost, keep from jobs as waiting
+     where status = 'accepted' and client = $1 and coalesce(study, '') = $2 and document_version <= $3 and sequence > $4
        and not exists (select 1 from jobs as equal
                        where equal.status = 'running' and equal.client = waiting.client
-                         and equal.input_hash = waiting.input_hash)
-     order by sequence limit 1 for update of waiting skip locked",
+                         and equal.input_hash = waiting.input_hash offset 0)
+     order by sequence limit $5 for update of waiting skip locked",
 );
 
 // Nobody removes what is about to be pointed to.
@@ -67,23 +68,44 @@ pub(in crate::jobs::store) const KNOWN: Words = Some(
      order by j.same_as is not null, j.sequence limit 1 for key share",
 );
 
+pub(in crate::jobs::store) const KNOWN_AMONG: Words = Some(
+    "select distinct input_hash from jobs
+     where client = $1 and solver_version = $2 and status = 'successful'
+       and input_hash = any(array(select json_array_elements_text(cast($3 as json))))",
+);
+
+// They are locked since they were found waiting. Were that said again, the server might read through all that wait.
 pub(in crate::jobs::store) const START: Words = Some(concat!(
     "update jobs
      set status = 'running', attempt = attempt + 1, started_at = max($2, submitted_at),
          lease_until = steady_now($3) + $4, owner = $5, positions_done = 0
-     where id = $1 and status = 'accepted'
+     where id = any(array(select json_array_elements_text(cast($1 as json))))
      returning ",
     job_columns!(),
     ", (select body from submissions where job = jobs.id) as submission"
 ));
 
-pub(in crate::jobs::store) const LOCK_JOBS: Words = Some(
-    "select 1 from jobs where id = any(string_to_array($1, ',')) order by sequence for update",
+pub(in crate::jobs::store) const STATES: Words = Some(
+    "select id, attempt, status from jobs where id = any(array(select json_array_elements_text(cast($1 as json))))",
 );
 
+// They are locked in one order, and looked at as they are then.
+pub(in crate::jobs::store) const END: Words = Some(end_jobs!(
+    "with listed as (
+       select job, claimed, at, took, word, results, fault from json_to_recordset(cast($1 as json))
+         as listed(job text, claimed bigint, at bigint, took bigint, word text, results text, fault text)),
+     held as materialized (
+       select id as held_job, attempt as held_attempt, status as held_status from jobs
+       where id = any(array(select job from listed)) order by sequence for update) ",
+    "listed as ended join held on held_job = ended.job and held_attempt = ended.claimed and held_status = 'running'
+     where id = held_job"
+));
+
 pub(in crate::jobs::store) const REPORT: Words = Some(
-    "update jobs set positions_done = $3, positions_total = $4, lease_until = steady_now($5) + $6
-     where id = $1 and attempt = $2 and status = 'running'",
+    "update jobs set positions_done = reported.solved, positions_total = reported.total, lease_until = steady_now($2) + $3
+     from json_to_recordset(cast($1 as json)) as reported(job text, claimed bigint, solved bigint, total bigint)
+     where id = reported.job and attempt = reported.claimed and status = 'running'
+     returning id, attempt",
 );
 
 pub(in crate::jobs::store) const RUNNING: Words = Some(
@@ -106,10 +128,19 @@ pub(in crate::jobs::store) const INSERT_STUDY: Words =
     Some(insert_study!("nextval('studies_arrived')"));
 
 // One that is kept is locked, so that it is not removed before a job points to it.
-pub(in crate::jobs::store) const INSERT_DOCUMENT: Words = Some(
-    "insert into documents (hash, encoding, body, size, whole) values ($1, 'gzip', $2, $3, $4)
+pub(in crate::jobs::store) const INSERT_DOCUMENTS: Words = Some(
+    "insert into documents (hash, encoding, body, size, whole)
+     select hash, 'gzip', substr($2, starts, takes), size, whole
+     from json_to_recordset(cast($1 as json)) as given(hash text, starts int, takes int, size bigint, whole bigint)
+     order by hash collate \"C\"
      on conflict (hash) do update set size = excluded.size, whole = greatest(documents.whole, excluded.whole),
        body = case when documents.whole < excluded.whole then excluded.body else documents.body end",
+);
+
+pub(in crate::jobs::store) const INSERT_SUMMARIES: Words = Some(
+    "insert into summaries (document, body)
+     select hash, body from json_to_recordset(cast($1 as json)) as given(hash text, body text) order by hash collate \"C\"
+     on conflict (document) do nothing",
 );
 
 pub(in crate::jobs::store) const LOCK_DOCUMENT: Words =

@@ -34,12 +34,12 @@ pub(in crate::jobs::store) const NEXT_SUSPECT: Words = Some(
 );
 
 pub(in crate::jobs::store) const NEXT_WAITING: Words = Some(
-    "select id, input_hash, cost, keep from jobs as waiting
-     where status = 'accepted' and client = $1 and coalesce(study, '') = $2 and document_version <= $3
+    "select id, sequence, input_hash, cost, keep from jobs as waiting
+     where status = 'accepted' and client = $1 and coalesce(study, '') = $2 and document_version <= $3 and sequence > $4
        and not exists (select 1 from jobs as equal indexed by jobs_running
                        where equal.status = 'running' and equal.client = waiting.client
                          and equal.input_hash = waiting.input_hash)
-     order by sequence limit 1",
+     order by sequence limit $5",
 );
 
 // The one that was computed comes before those that were given its results.
@@ -50,21 +50,38 @@ pub(in crate::jobs::store) const KNOWN: Words = Some(
      order by same_as is not null, sequence limit 1",
 );
 
+pub(in crate::jobs::store) const KNOWN_AMONG: Words = Some(
+    "select distinct input_hash from jobs
+     where client = $1 and solver_version = $2 and status = 'successful' and input_hash in (select value from json_each($3))",
+);
+
 pub(in crate::jobs::store) const START: Words = Some(concat!(
     "update jobs
      set status = 'running', attempt = attempt + 1, started_at = max($2, submitted_at), lease_until = $3 + $4,
          positions_done = 0
-     where id = $1 and status = 'accepted'
+     where id in (select value from json_each($1)) and status = 'accepted'
      returning ",
     job_columns!(),
     ", (select body from submissions where job = jobs.id) as submission"
 ));
 
-pub(in crate::jobs::store) const LOCK_JOBS: Words = None;
+pub(in crate::jobs::store) const STATES: Words =
+    Some("select id, attempt, status from jobs where id in (select value from json_each($1))");
+
+pub(in crate::jobs::store) const END: Words = Some(end_jobs!(
+    "",
+    "(select value ->> 'job' as job, value ->> 'claimed' as claimed, value ->> 'at' as at, value ->> 'took' as took,
+             value ->> 'word' as word, value ->> 'results' as results, value ->> 'fault' as fault
+      from json_each($1)) as ended
+     where id = ended.job and attempt = ended.claimed and status = 'running'"
+));
 
 pub(in crate::jobs::store) const REPORT: Words = Some(
-    "update jobs set positions_done = $3, positions_total = $4, lease_until = $5 + $6
-     where id = $1 and attempt = $2 and status = 'running'",
+    "update jobs set positions_done = reported.solved, positions_total = reported.total, lease_until = $2 + $3
+     from (select value ->> 'job' as job, value ->> 'claimed' as claimed, value ->> 'solved' as solved, value ->> 'total' as total
+           from json_each($1)) as reported
+     where id = reported.job and attempt = reported.claimed and status = 'running'
+     returning id, attempt",
 );
 
 // One process: there is nobody else to have lost.
@@ -87,9 +104,16 @@ pub(in crate::jobs::store) const INSERT_STUDY: Words = Some(insert_study!(
     "(select coalesce(max(sequence), 0) + 1 from studies)"
 ));
 
-pub(in crate::jobs::store) const INSERT_DOCUMENT: Words = Some(
-    "insert into documents (hash, encoding, body, size, whole) values ($1, 'gzip', $2, $3, $4)
+pub(in crate::jobs::store) const INSERT_DOCUMENTS: Words = Some(
+    "insert into documents (hash, encoding, body, size, whole)
+     select value ->> 'hash', 'gzip', coalesce(substr($2, value ->> 'starts', value ->> 'takes'), x''), value ->> 'size', value ->> 'whole'
+     from json_each($1) where true
      on conflict (hash) do update set body = excluded.body, whole = 1 where documents.whole < excluded.whole",
+);
+
+pub(in crate::jobs::store) const INSERT_SUMMARIES: Words = Some(
+    "insert into summaries (document, body) select value ->> 'hash', value ->> 'body' from json_each($1) where true
+     on conflict (document) do nothing",
 );
 
 pub(in crate::jobs::store) const LOCK_DOCUMENT: Words = None;

@@ -15,10 +15,10 @@ use uuid::Uuid;
 
 use super::statement::{Pool, query, query_as, query_scalar};
 use super::{
-    Claim, End, Lease, Lost, NewJob, Outcome, Packed, Place, QueueBounds, Reader, Results, Store,
-    StoreError,
+    Came, Claim, End, Ended, Lease, Lost, NewJob, Outcome, Packed, Place, QueueBounds, Reader,
+    Store, StoreError,
 };
-use crate::jobs::job::Job;
+use crate::jobs::job::{Job, Progress};
 use crate::wire::Kept;
 
 const VERSION: &str = "1.0";
@@ -38,14 +38,36 @@ impl Store {
         summary: Option<&str>,
         solver_version: &str,
     ) -> Result<bool, StoreError> {
-        let results = Results {
-            claim,
-            end,
-            document,
-            summary,
-        };
-        let held = self.succeed_all(&[results], solver_version).await?;
-        Ok(held[0])
+        let came = Came::Results { document, summary };
+        let ended = Ended { claim, end, came };
+        Ok(self.end_all(&[ended], solver_version).await?[0])
+    }
+
+    /// Running -> failed, for one job.
+    pub(super) async fn fail(
+        &self,
+        claim: Claim,
+        end: End,
+        problem: &str,
+    ) -> Result<bool, StoreError> {
+        let came = Came::Problem(problem);
+        let ended = Ended { claim, end, came };
+        Ok(self.end_all(&[ended], VERSION).await?[0])
+    }
+
+    /// How far one job has come.
+    pub(super) async fn report(
+        &self,
+        claim: Claim,
+        progress: Progress,
+        lease: Lease,
+    ) -> Result<bool, StoreError> {
+        Ok(self.report_all(&[(claim, progress)], lease).await?[0])
+    }
+
+    /// Whether one claim holds.
+    pub(super) async fn holds(&self, claim: Claim) -> Result<bool, StoreError> {
+        Ok(self.hold(&[claim]).await?[0])
     }
 }
 

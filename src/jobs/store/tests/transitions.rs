@@ -3,7 +3,6 @@
 use uuid::Uuid;
 
 use super::*;
-use crate::jobs::job::Progress;
 use crate::jobs::store::{Cursor, Filter};
 use crate::wire::Status;
 

@@ -272,37 +272,135 @@ async fn small_jobs_of_one_lane_are_claimed_together_and_charged_together() {
 }
 
 #[tokio::test]
-async fn results_that_are_written_together_stand_or_fall_each_by_its_own_claim() {
+async fn what_is_written_together_stands_or_falls_each_by_its_own_claim() {
     let (store, _folder) = store().await;
-    let inputs = ["a", "b", "c"];
-    for input in inputs {
-        queued(&store, 1, input).await;
-    }
+    let inputs = ["a", "b", "c", "d", "e"];
+    let id = study_of(&store, &inputs).await;
     let several = Reader {
         at_once: 9000,
         ..READER
     };
     let claimed = store.claim(at(2), lease(2), several).await.unwrap();
-    let claims: Vec<Claim> = claimed.started.iter().map(|it| of(&it.job)).collect();
-    assert_eq!(claims.len(), 3);
+    let mut claims: Vec<Claim> = claimed.started.iter().map(|it| of(&it.job)).collect();
+    assert_eq!(claims.len(), 5);
+    // One is cancelled; one has lost its lease and is run again; one could not be computed.
     let cancelled = store.cancel(CLIENT, claims[1].id, at(3)).await.unwrap();
     assert!(cancelled.is_some());
+    assert!(store.release(claims[2]).await.unwrap());
+    let again = claim(&store, 3).await;
+    assert_eq!(again.id, claims[2].id);
     let documents = inputs.map(Packed::of);
-    let results: Vec<Results<'_>> = claims
+    let mut ends: Vec<Ended<'_>> = claims
         .iter()
         .zip(&documents)
-        .map(|(claim, document)| Results {
+        .map(|(claim, document)| Ended {
             claim: *claim,
             end: end(4),
-            document,
-            summary: None,
+            came: Came::Results {
+                document,
+                summary: Some("{}"),
+            },
         })
         .collect();
-    let held = store.succeed_all(&results, VERSION).await.unwrap();
-    assert_eq!(held, [true, false, true]);
-    assert_eq!(find(&store, claims[1].id).await.status, Status::Dismissed);
-    assert!(store.document(documents[1].hash()).await.unwrap().is_none());
-    assert!(store.document(documents[2].hash()).await.unwrap().is_some());
+    ends[3].came = Came::Problem(r#"{"code":"time_limit"}"#);
+    let held = store.end_all(&ends, VERSION).await.unwrap();
+    assert_eq!(held, [true, false, false, true, true]);
+    let study = store.find_study(CLIENT, id).await.unwrap().unwrap();
+    assert_eq!(
+        (
+            study.running,
+            study.successful,
+            study.failed,
+            study.dismissed
+        ),
+        (1, 2, 1, 1)
+    );
+    for (i, kept) in [true, false, false, false, true].into_iter().enumerate() {
+        let document = store.document(documents[i].hash()).await.unwrap();
+        assert_eq!(document.is_some(), kept, "{}", inputs[i]);
+    }
+    let failed = find(&store, claims[3].id).await;
+    assert_eq!(failed.problem.unwrap()["code"], "time_limit");
+    assert_eq!((failed.document, failed.solver_version), (None, None));
+
+    // Said twice it changes nothing; the last one has its own end, and the study with it.
+    assert_eq!(store.end_all(&ends, VERSION).await.unwrap(), [false; 5]);
+    assert!(store.document(documents[0].hash()).await.unwrap().is_some());
+    claims[2] = again;
+    assert_eq!(
+        store.hold(&claims).await.unwrap(),
+        [false, false, true, false, false]
+    );
+    let last = store.succeed(again, end(5), &documents[2], None, VERSION);
+    assert!(last.await.unwrap());
+    let study = store.find_study(CLIENT, id).await.unwrap().unwrap();
+    assert_eq!((study.running, study.successful), (0, 3));
+    assert_eq!(study.finished_at(), Some(at(5)));
+}
+
+#[tokio::test]
+async fn of_equal_designs_and_computed_ones_in_one_lane_only_new_work_is_begun() {
+    let (store, _folder) = store().await;
+    // Two that look at a known input must not be answered at their submission, but at their claim.
+    let known = queued(&store, 1, "known").await;
+    let held = claim(&store, 1).await;
+    let id = study_of(&store, &["new", "known", "new", "other", "known", "last"]).await;
+    let text = Packed::of("{}");
+    let ended = store.succeed(held, end(2), &text, None, VERSION);
+    assert!(ended.await.unwrap());
+    let several = Reader {
+        at_once: 2500,
+        ..READER
+    };
+    let claimed = store.claim(at(3), lease(3), several).await.unwrap();
+    let started: Vec<&str> = claimed
+        .started
+        .iter()
+        .map(|it| it.job.tags[0].as_str())
+        .collect();
+    assert_eq!(started, ["new", "other"], "in their order, equal ones once");
+    let given: Vec<_> = claimed.given.iter().map(|job| job.same_as).collect();
+    assert_eq!(given, [Some(known.id); 2]);
+    let next = store.claim(at(4), lease(4), several).await.unwrap();
+    let started: Vec<&str> = next
+        .started
+        .iter()
+        .map(|it| it.job.tags[0].as_str())
+        .collect();
+    assert_eq!(started, ["last"], "the equal one waits");
+    let study = store.find_study(CLIENT, id).await.unwrap().unwrap();
+    assert_eq!((study.accepted, study.running, study.successful), (1, 3, 2));
+    for it in claimed.started.iter().chain(&next.started) {
+        let text = Packed::of(&it.job.tags[0]);
+        let ended = store.succeed(of(&it.job), end(5), &text, None, VERSION);
+        assert!(ended.await.unwrap());
+    }
+    let last = store.claim(at(6), lease(6), several).await.unwrap();
+    assert_eq!((last.started.len(), last.given.len()), (0, 1));
+    assert_eq!(last.given[0].same_as, Some(claimed.started[0].job.id));
+}
+
+#[tokio::test]
+async fn what_costs_much_is_claimed_by_itself_also_behind_small_jobs() {
+    let (store, _folder) = store().await;
+    for (input, cost) in [("a", 100), ("b", 100), ("long", 90_000), ("c", 100)] {
+        let job = NewJob {
+            cost,
+            ..new(1, input)
+        };
+        submit(&store, job).await;
+    }
+    let several = Reader {
+        at_once: 20_000,
+        ..READER
+    };
+    let mut turns = Vec::new();
+    for _ in 0..3 {
+        let claimed = store.claim(at(2), lease(2), several).await.unwrap();
+        let tags = claimed.started.iter().map(|it| it.job.tags[0].clone());
+        turns.push(tags.collect::<Vec<_>>().join(" "));
+    }
+    assert_eq!(turns, ["a b", "long", "c"]);
 }
 
 #[tokio::test]

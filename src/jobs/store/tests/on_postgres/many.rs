@@ -461,13 +461,13 @@ async fn what_one_process_does_another_one_hears() {
     let job = queued(&speaker, 1, "a").await;
     assert_eq!(heard().await, Told::Work);
     let claim = claim(&speaker, 2).await;
-    assert_eq!(heard().await, Told::Job(job.id, Status::Running));
+    assert_eq!(heard().await, Told::Jobs(Status::Running, vec![job.id]));
     speaker
         .cancel(CLIENT, job.id, at(3))
         .await
         .unwrap()
         .unwrap();
-    assert_eq!(heard().await, Told::Job(job.id, Status::Dismissed));
+    assert_eq!(heard().await, Told::Jobs(Status::Dismissed, vec![job.id]));
     assert!(!speaker.holds(claim).await.unwrap());
 }
 
