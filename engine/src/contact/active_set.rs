@@ -18,6 +18,9 @@ const NEWTON_STEP_LIMIT: u32 = 30;
 /// Single exchanges allowed for each candidate point: far more than a walk that adds each point once and drops it again.
 const EXCHANGES_PER_POINT: usize = 20;
 
+/// Newton steps whose ends may leap; after them single points are wrong.
+const LEAPS: u32 = 4;
+
 /// What counts as no gap, relative to delta that the load alone could cause.
 ///
 /// Rounding in H p leaves some 1e-15 of it.
@@ -72,11 +75,13 @@ fn first_set(
 /// Moves all wrong points at once, until there are none or the limit is reached.
 fn newton(trial: &mut Trial<'_>, first_set: Vec<usize>) -> Result<(), ContactError> {
     trial.hold(first_set)?;
-    for _ in 1..NEWTON_STEP_LIMIT {
+    for step in 1..NEWTON_STEP_LIMIT {
         if trial.is_contact() {
             break;
         }
-        trial.hold(trial.corrected_set())?;
+        let leapt = (step <= LEAPS).then(|| trial.leapt_set());
+        let set = leapt.filter(|set| !set.is_empty() && *set != trial.set);
+        trial.hold(set.unwrap_or_else(|| trial.corrected_set()))?;
     }
     Ok(())
 }
@@ -250,6 +255,68 @@ impl<'a> Trial<'a> {
             .collect()
     }
 
+    /// The corrected set, with the ends of each row of touching points where they would be were it the contact of a parabola.
+    fn leapt_set(&self) -> Vec<usize> {
+        let points = self.active.len();
+        let mut touching: Vec<bool> = (0..points).map(|point| self.should_touch(point)).collect();
+        let mut to = 0;
+        while let Some(skipped) = self.active[to..].iter().position(|active| *active) {
+            let from = to + skipped;
+            let row = self.active[from..].iter().take_while(|active| **active);
+            to = from + row.count();
+            self.leap(to - from, |k| (to - 1).checked_add_signed(k), &mut touching);
+            self.leap(to - from, |k| from.checked_add_signed(-k), &mut touching);
+        }
+        (0..points).filter(|&point| touching[point]).collect()
+    }
+
+    /// Lets one end of a row of so many touching points leap; `point(k)` is the one k outward from the last of the row.
+    ///
+    /// Held over a half width b where it would be a, the contact of a parabola presses as (a² + b² − 2 x²)/√(b² − x²): it pulls beyond the x_0 at
+    /// which that changes sign, and if b is too small bodies penetrate deepest there. Newton's own end would halve the way to a, or leap too far.
+    fn leap(&self, count: usize, point: impl Fn(isize) -> Option<usize>, touching: &mut [bool]) {
+        let inside = |k: isize| k > -(count as isize);
+        let known = |k: isize| point(k).filter(|&point| point < self.active.len());
+        let wrong = |k: &isize| {
+            known(*k).is_some_and(|point| self.should_touch(point) != self.active[point])
+        };
+        let pulling = (0..)
+            .map(|k: isize| -k)
+            .take_while(|k| inside(*k) && wrong(k))
+            .count() as isize;
+        let entering = |k: &isize| wrong(k) && known(*k).is_some_and(|point| !self.active[point]);
+        let penetrating = (1..).take_while(entering).count() as isize;
+        let middle = 0.5 * (count - 1) as f64;
+        let square = |k: f64| (k + middle).powi(2);
+        let half_square = 0.25 * (count as f64).powi(2);
+        let turn = if pulling > 0 {
+            let pressed = |k: isize| {
+                let force = known(k).map_or(0.0, |point| self.forces[point]);
+                force * (half_square - square(k as f64)).sqrt()
+            };
+            let (last, next) = (-pulling as f64, 1.0 - pulling as f64);
+            let part = 1.0 / (1.0 - pressed(1 - pulling) / pressed(-pulling));
+            square(last) + part * (square(next) - square(last))
+        } else {
+            let gap = |k: isize| known(k).map_or(0.0, |point| self.gaps[point]);
+            let deepest = (1..=penetrating).min_by(|&one, &other| gap(one).total_cmp(&gap(other)));
+            let Some(deepest) = deepest else { return };
+            let [before, here, after] = [-1, 0, 1].map(|beside| gap(deepest + beside));
+            square(deepest as f64 + 0.5 * (before - after) / (before - 2.0 * here + after))
+        };
+        let reach = (2.0 * turn - half_square).sqrt();
+        // Nothing where the row is no such contact.
+        if !(inside(-pulling) && reach.is_finite()) {
+            return;
+        }
+        let last = (reach - middle).ceil() as isize - 1;
+        for k in (1 - count as isize).max(last.min(-pulling))..=penetrating {
+            if let Some(point) = known(k).filter(|_| k > last || k > -pulling) {
+                touching[point] = k <= last;
+            }
+        }
+    }
+
     /// Whether nobody pulls and nobody penetrates: the Signorini conditions hold.
     fn is_contact(&self) -> bool {
         (0..self.active.len()).all(|point| self.should_touch(point) == self.active[point])
@@ -347,6 +414,42 @@ mod tests {
         assert_close(both.transmission_error, (1500.0 + gap / h_2) / stiffness);
         assert_close(both.forces[1], (both.transmission_error - gap) / h_2);
         assert_close(both.load_derivative[0], h_1.recip() / stiffness);
+    }
+
+    #[test]
+    fn a_parabola_is_found_in_few_steps_from_any_set() {
+        // Cells of width 1 on a half plane: what one opens at another falls with the logarithm of their distance, whose integral is x ln|x| − x.
+        let points = 80;
+        let opened = |x: f64| {
+            let integral = |x: f64| x * x.abs().ln() - x;
+            10.0 - (integral(x + 0.5) - integral(x - 0.5))
+        };
+        let compliance = Mat::from_fn(points, points, |i, j| 1e-9 * opened(i as f64 - j as f64));
+        let gaps: Vec<f64> = (0..points)
+            .map(|i| 1e-8 * (i as f64 - 37.3).powi(2))
+            .collect();
+        let problem =
+            ContactProblem::new(compliance, gaps, vec![1.0; points]).expect("a sound problem");
+        let exact = solve_active_set(&problem, 5000.0, None).expect("a sound problem");
+        let touching: Vec<usize> = (0..points).filter(|&point| exact.active[point]).collect();
+        let (from, to) = (touching[0], touching[touching.len() - 1]);
+        assert!(touching.len() > 30 && to - from + 1 == touching.len());
+        assert!(exact.iterations <= 4, "{}", exact.iterations);
+        for wider in -12..=12_isize {
+            for moved in [-5, 0, 3] {
+                let ends = [from as isize + moved - wider, to as isize + moved + wider];
+                let warm: Vec<bool> = (0..points as isize)
+                    .map(|point| (ends[0]..=ends[1]).contains(&point))
+                    .collect();
+                let found = solve_active_set(&problem, 5000.0, Some(&warm)).expect("a solution");
+                assert_eq!(found.forces, exact.forces);
+                assert!(
+                    found.iterations <= 5,
+                    "{wider}, {moved}: {}",
+                    found.iterations
+                );
+            }
+        }
     }
 
     #[test]

@@ -21,6 +21,9 @@ use super::{
 };
 use crate::gear::{Member, teeth_on};
 
+/// The least part of its way that a pair yields by itself, and not together with the others.
+const OWN: f64 = 0.1;
+
 /// Updates of the multipliers after which the augmented Lagrangian gives up.
 const MULTIPLIER_UPDATES: u32 = 2000;
 
@@ -81,11 +84,39 @@ impl Laid {
         })
     }
 
-    /// The δ at which the first of its cells touches.
-    fn touch(&self) -> f64 {
-        let touches = self.gaps.iter().zip(&self.arms);
-        let touches = touches.map(|(gap, arms)| gap / arms[1]);
-        touches.fold(f64::INFINITY, f64::min)
+    /// The first of its cells to touch, and the δ at which it does.
+    fn first(&self) -> (usize, f64) {
+        let touches = self.gaps.iter().zip(&self.arms).enumerate();
+        let touches = touches.map(|(cell, (gap, arms))| (cell, gap / arms[1]));
+        touches.fold((0, f64::INFINITY), |first, next| {
+            if next.1 < first.1 { next } else { first }
+        })
+    }
+
+    /// How deep beyond the `touch` of the cell `first` the contact under `forces` ends on either side: the square of a pressure falls to zero
+    /// there about evenly with the depth.
+    fn closed(&self, first: usize, touch: f64, forces: &[f64]) -> [f64; 2] {
+        let cells = &self.cells().patch.cells;
+        let depth = |cell: usize| self.gaps[cell] / self.arms[cell][1] - touch;
+        let square = |cell: usize| (forces[cell] / cells[cell].width).powi(2);
+        let end = |last: Option<usize>, inward: isize| {
+            let Some(last) = last else { return 0.0 };
+            let beside = |by: isize| {
+                last.checked_add_signed(by)
+                    .filter(|&cell| cell < forces.len())
+            };
+            let outside = beside(-inward).map_or(f64::INFINITY, depth);
+            let before = beside(inward).filter(|&cell| square(cell) > square(last));
+            let more = before.map_or(0.0, |before| {
+                (depth(last) - depth(before)) * square(last) / (square(before) - square(last))
+            });
+            (depth(last) + more.max(0.0)).min(outside)
+        };
+        let presses = |cell: &usize| forces[*cell] > 0.0;
+        [
+            end((0..=first).find(presses), 1),
+            end((first..forces.len()).rev().find(presses), -1),
+        ]
     }
 
     /// Its cells.
@@ -506,8 +537,8 @@ impl<'a> ContactCells<'a> {
 
     /// The cells that are likely to touch, judged by a contact of about the same pairs.
     ///
-    /// Each pair is taken for a spring from where it touches, as stiff as it was; under what it so carries, it touches wherever its gap
-    /// is no deeper than such a force closed before.
+    /// All pairs move by what the load yields beside it; from there each is taken for a spring as stiff as it was, and under what it so
+    /// carries it touches wherever its gap is no deeper than such a force closed before.
     fn touching(&self, warm: &WarmStart, load: f64) -> Option<Vec<bool>> {
         let known: Vec<&WarmPair> = self
             .laid
@@ -520,22 +551,28 @@ impl<'a> ContactCells<'a> {
         let mean = |of: fn(&WarmPair) -> f64| {
             known.iter().map(|pair| of(pair)).sum::<f64>() / known.len() as f64
         };
-        let usual = [mean(|pair| pair.stiffness), mean(|pair| pair.closed)];
-        let springs: Vec<(f64, [f64; 2])> = self
+        let usual = (
+            mean(|pair| pair.stiffness),
+            [mean(|pair| pair.closed[0]), mean(|pair| pair.closed[1])],
+        );
+        let springs: Vec<((usize, f64), (f64, [f64; 2]))> = self
             .laid
             .iter()
             .map(|laid| {
                 let known = warm.pairs.iter().find(|pair| pair.pair == laid.pair);
-                let known = known.map(|pair| [pair.stiffness, pair.closed]);
-                (laid.touch(), known.unwrap_or(usual))
+                let known = known.map(|pair| (pair.stiffness, pair.closed));
+                (laid.first(), known.unwrap_or(usual))
             })
             .collect();
-        let mut rising: Vec<&(f64, [f64; 2])> = springs.iter().collect();
+        let mut rising: Vec<(f64, f64)> = springs
+            .iter()
+            .map(|&((_, touch), (spring, _))| (touch, spring))
+            .collect();
         rising.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // δ at which the springs that it reaches carry the load.
+        // δ, less what all move, at which the springs that it reaches carry the load.
         let (mut stiffness, mut moment, mut delta) = (0.0, 0.0, f64::INFINITY);
-        for (touch, [spring, _]) in rising {
-            if *touch >= delta {
+        for (touch, spring) in rising {
+            if touch >= delta {
                 break;
             }
             stiffness += spring;
@@ -543,10 +580,12 @@ impl<'a> ContactCells<'a> {
             delta = (load + moment) / stiffness;
         }
         let touching = self.laid.iter().zip(&springs).flat_map(|(laid, spring)| {
-            let &(touch, [stiffness, closed]) = spring;
-            let depth = closed * stiffness * (delta - touch);
-            let cells = laid.gaps.iter().zip(&laid.arms);
-            cells.map(move |(gap, arms)| gap / arms[1] - touch <= depth)
+            let &((first, touch), (stiffness, closed)) = spring;
+            let force = stiffness * (delta - touch);
+            let cells = laid.gaps.iter().zip(&laid.arms).enumerate();
+            cells.map(move |(cell, (gap, arms))| {
+                gap / arms[1] - touch <= force * closed[usize::from(cell > first)]
+            })
         });
         Some(touching.collect())
     }
@@ -568,32 +607,44 @@ impl<'a> ContactCells<'a> {
         wanting.collect()
     }
 
-    pub(super) fn warm_start(&self, solution: &ContactSolution) -> WarmStart {
+    /// What a force in the middle of one pair yields in the middle of the next, in the mean.
+    fn between(&self, problem: &ContactProblem) -> Option<f64> {
+        let middles = self
+            .ranges()
+            .map(|(_, range)| usize::midpoint(range.start, range.end));
+        let middles: Vec<usize> = middles.collect();
+        let pairs = middles.windows(2);
+        let count = pairs.len();
+        let yields = pairs.map(|pair| problem.compliance()[(pair[0], pair[1])]);
+        (count > 0).then(|| yields.sum::<f64>() / count as f64)
+    }
+
+    /// What this contact under `load` tells of others near it, of which the `last` was one.
+    pub(super) fn warm_start(
+        &self,
+        problem: &ContactProblem,
+        solution: &ContactSolution,
+        load: f64,
+        last: &WarmStart,
+    ) -> WarmStart {
         let delta = solution.transmission_error;
+        let between = self.between(problem).unwrap_or(last.between);
+        // What all pairs move together, whoever of them carries.
+        let shared = between * load;
         let pairs = self.ranges().filter_map(|(laid, range)| {
-            let active = &solution.active[range.clone()];
-            let carried = laid.arms.iter().zip(&solution.forces[range]);
+            let forces = &solution.forces[range];
+            let carried = laid.arms.iter().zip(forces);
             let force: f64 = carried.map(|(arms, force)| arms[1] * force).sum();
-            let touch = laid.touch();
-            let depths = laid.gaps.iter().zip(&laid.arms);
-            let depths = depths.map(|(gap, arms)| gap / arms[1] - touch);
-            let deepest = depths.clone().zip(active).filter(|(_, active)| **active);
-            let deepest = deepest.fold(0.0, |deepest: f64, (depth, _)| deepest.max(depth));
-            let next = depths.filter(|depth| *depth > deepest);
-            let next = next.fold(f64::INFINITY, f64::min);
-            let closed = if next.is_finite() {
-                f64::midpoint(deepest, next)
-            } else {
-                deepest
-            };
+            let (first, touch) = laid.first();
             (force > 0.0).then(|| WarmPair {
                 pair: laid.pair,
-                stiffness: force / (delta - touch),
-                closed: closed / force,
+                stiffness: force / (delta - touch - shared).max(OWN * (delta - touch)),
+                closed: laid.closed(first, touch, forces).map(|depth| depth / force),
             })
         });
         WarmStart {
             transmission_error: Some(delta),
+            between,
             pairs: pairs.collect(),
         }
     }

@@ -61,6 +61,8 @@ pub struct PairModel {
 pub struct WarmStart {
     /// The transmission error; `None` at a cold start.
     pub(super) transmission_error: Option<f64>,
+    /// What a force on one pair yields at the next, in m/N.
+    pub(super) between: f64,
     /// The pairs that carried.
     pub(super) pairs: Vec<WarmPair>,
 }
@@ -69,10 +71,10 @@ pub struct WarmStart {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WarmPair {
     pub(super) pair: i64,
-    /// Its force by how far δ went on from its touch.
+    /// Its force by how far δ went on from its touch, less what all pairs moved together.
     pub(super) stiffness: f64,
-    /// By how much it closed its gap, beyond the touch, for each unit of force.
-    pub(super) closed: f64,
+    /// By how much it closed its gap at either end, beyond the touch, for each unit of force.
+    pub(super) closed: [f64; 2],
 }
 
 /// Why a position has no solution.

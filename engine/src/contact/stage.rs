@@ -138,7 +138,7 @@ impl<'a> Stage<'a> {
             let found = self.look(&cells, &solution);
             let wider = cells.wanting_room(&solution, &found);
             if wider.is_empty() {
-                *warm = cells.warm_start(&solution);
+                *warm = cells.warm_start(&problem, &solution, self.load, warm);
                 return Ok(answer(&cells, problem, solution, found));
             }
             for (pair, beside) in wider {

@@ -237,7 +237,16 @@ impl Modification {
     /// What is removed at the roll length `s` of `flank`, in meters.
     pub(super) fn depth(&self, flank: &Involute, s: f64) -> f64 {
         match self {
-            Self::Tip(relief) | Self::Root(relief) => relief.depth(flank.radius(s)),
+            Self::Tip(relief) | Self::Root(relief) => {
+                // Most of a flank is not relieved, and its radius need not be known.
+                let square = s * s + flank.base_radius() * flank.base_radius();
+                let beyond = square - relief.start_radius * relief.start_radius;
+                if beyond * (relief.end_radius - relief.start_radius) <= 0.0 {
+                    0.0
+                } else {
+                    relief.depth(flank.radius(s))
+                }
+            }
             Self::Crowning {
                 amount,
                 middle,
