@@ -555,15 +555,12 @@ impl<'a> ContactCells<'a> {
             mean(|pair| pair.stiffness),
             [mean(|pair| pair.closed[0]), mean(|pair| pair.closed[1])],
         );
-        let springs: Vec<((usize, f64), (f64, [f64; 2]))> = self
-            .laid
-            .iter()
-            .map(|laid| {
-                let known = warm.pairs.iter().find(|pair| pair.pair == laid.pair);
-                let known = known.map(|pair| (pair.stiffness, pair.closed));
-                (laid.first(), known.unwrap_or(usual))
-            })
-            .collect();
+        let spring = |laid: &Laid| {
+            let known = warm.pairs.iter().find(|pair| pair.pair == laid.pair);
+            let known = known.map(|pair| (pair.stiffness, pair.closed));
+            (laid.first(), known.unwrap_or(usual))
+        };
+        let springs: Vec<_> = self.laid.iter().map(spring).collect();
         let mut rising: Vec<(f64, f64)> = springs
             .iter()
             .map(|&((_, touch), (spring, _))| (touch, spring))

@@ -1,7 +1,10 @@
 //! How two flanks push each other where they meet, and how that changes as gears turn and teeth deviate.
 
-use super::placement::{self, FlankPlace, Sight, inclined, quarter_turned};
+use super::placement::{self, FlankPlace, Sight, inclined, quarter_turned, unit};
 use crate::gear::{GearPair, Member, PairDeviations, Vector};
+
+/// The square of an angle below which a few terms tell its sine and cosine.
+const SMALL_TURN: f64 = 1e-4;
 
 /// What contact needs of a point at which two flanks face each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +30,7 @@ impl Push {
     pub(super) fn new(seat: Member, on_seat: Vector, on_mate: Vector) -> Self {
         Self {
             seat,
-            normal: (on_mate - on_seat).normalize(),
+            normal: unit(on_mate - on_seat),
         }
     }
 
@@ -57,10 +60,16 @@ impl Push {
         turn: f64,
         centers: [Vector; 2],
     ) -> Meeting {
-        let closing = self.arms(pair, point, centers)[self.seat.other().index()];
+        let axes = placement::axes(pair);
+        let arms = self.arms(pair, point, axes);
+        let closing = if centers == axes {
+            arms
+        } else {
+            self.arms(pair, point, centers)
+        };
         Meeting {
-            gap: turn * closing,
-            arms: self.arms(pair, point, placement::axes(pair)),
+            gap: turn * closing[self.seat.other().index()],
+            arms,
         }
     }
 }
@@ -114,6 +123,20 @@ impl Probe {
     }
 }
 
+/// Cosine and sine of the turn by an `arc` on a circle of the `radius`.
+fn turn(arc: f64, radius: f64) -> [f64; 2] {
+    let angle = arc / radius;
+    let square = angle * angle;
+    if square < SMALL_TURN {
+        // To the last digit.
+        let cosine = 1.0 - square * (0.5 - square * (1.0 / 24.0 - square / 720.0));
+        let sine = angle * (1.0 - square * (1.0 / 6.0 - square * (1.0 / 120.0)));
+        return [cosine, sine];
+    }
+    let (sine, cosine) = angle.sin_cos();
+    [cosine, sine]
+}
+
 fn turned([cosine, sine]: [f64; 2], v: Vector) -> Vector {
     Vector::new(cosine * v.x - sine * v.y, sine * v.x + cosine * v.y)
 }
@@ -140,11 +163,8 @@ impl<'a> Standing<'a> {
         Self {
             pair,
             seat,
-            turns: Member::BOTH.map(|member| {
-                let g = member.index();
-                let (sine, cosine) = (lengths[g] / pair.gear(member).base_radius()).sin_cos();
-                [cosine, sine]
-            }),
+            turns: Member::BOTH
+                .map(|member| turn(lengths[member.index()], pair.gear(member).base_radius())),
             centers: placement::centers(pair, deviations, n, body),
             slopes: Member::BOTH
                 .map(|member| deviations.of_gear(member).slope(teeth[member.index()])),
@@ -152,13 +172,12 @@ impl<'a> Standing<'a> {
         }
     }
 
-    /// The same with the tooth of `member` standing out more: turned by the length `turn` on its base circle, and inclined by `slope`.
-    pub(super) fn deviating(&self, member: Member, turn: f64, slope: f64) -> Self {
+    /// The same with the tooth of `member` standing out more: turned by the length `arc` on its base circle, and inclined by `slope`.
+    pub(super) fn deviating(&self, member: Member, arc: f64, slope: f64) -> Self {
         let mut other = *self;
-        let (g, r_b) = (member.index(), self.pair.gear(member).base_radius());
-        let (sine, cosine) = (turn / r_b).sin_cos();
+        let g = member.index();
         let so_far = Vector::new(self.turns[g][0], self.turns[g][1]);
-        let turned = turned([cosine, sine], so_far);
+        let turned = turned(turn(arc, self.pair.gear(member).base_radius()), so_far);
         other.turns[g] = [turned.x, turned.y];
         other.slopes[g] += slope;
         other
@@ -173,9 +192,7 @@ impl<'a> Standing<'a> {
         let slope = self.slopes[seat];
         if slope != 0.0 {
             let (s, r_b) = (probe.roll_lengths[0], gear.base_radius());
-            let angle = slope * (s - self.forms[seat]) / r_b;
-            let (sine, cosine) = angle.sin_cos();
-            place = turned([cosine, sine], place);
+            place = turned(turn(slope * (s - self.forms[seat]), r_b), place);
             normal -= slope * r_b / s.max(1e-9 * r_b) * probe.radial;
         }
         let point = self.centers[seat] + turned(self.turns[seat], place);
@@ -204,5 +221,21 @@ impl<'a> Standing<'a> {
         let on_seat = turned(self.turns[seat], normal);
         let push = Push::new(self.seat, on_seat, on_mate);
         push.meeting(self.pair, point, s - foot + missing, self.centers)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_small_turn_is_the_sine_and_cosine_of_its_angle() {
+        for i in -400..=400 {
+            let angle = 5e-5 * f64::from(i);
+            let (sine, cosine) = angle.sin_cos();
+            let found = turn(angle * 0.05, 0.05);
+            // A rounding each.
+            assert!((found[0] - cosine).abs() < 3e-16 && (found[1] - sine).abs() < 1e-17);
+        }
     }
 }

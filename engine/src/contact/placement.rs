@@ -58,7 +58,12 @@ pub(super) fn inclined(radial: Vector, across: Vector, s: f64, r_b: f64, slope: 
         return across;
     }
     // dP/ds = −e' e_t + (1 + e') s/r_b e_r.
-    ((1.0 + slope) * s / r_b * across + slope * radial).normalize()
+    unit((1.0 + slope) * s / r_b * across + slope * radial)
+}
+
+/// `v` over its length.
+pub(super) fn unit(v: Vector) -> Vector {
+    v * v.norm().recip()
 }
 
 /// `v`, turned by a quarter counter-clockwise.
