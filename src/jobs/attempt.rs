@@ -75,8 +75,10 @@ impl Attempt {
 }
 
 impl Shop {
-    /// Has claimed jobs computed, one after the other, and watches over them: heartbeat, time limit, shutdown.
-    pub(super) async fn compute(&self, started: Vec<Started>, threads: &ThreadPool) {
+    /// Has claimed jobs computed, one after the other, and watches over them: heartbeat, time limit, shutdown. Gives back how often a
+    /// worker had been told of jobs when the last of these had ended, and nobody knew yet.
+    pub(super) async fn compute(&self, started: Vec<Started>, threads: &ThreadPool) -> u64 {
+        let mut rung = self.jobs.live.rung();
         let mut work = Vec::with_capacity(started.len());
         // Those whose rows are theirs, as far as is known. What the engine still gives of others is not asked for.
         let mut held = Held::new();
@@ -124,16 +126,16 @@ impl Shop {
                         Some(Done { attempt, end, outcome })
                     }));
                     if held.is_empty() {
-                        self.settle(std::mem::take(&mut done)).await;
+                        rung = self.settle(std::mem::take(&mut done)).await;
                     }
                 }
                 () = &mut written, if !done.is_empty() => {
-                    self.settle(std::mem::take(&mut done)).await;
+                    rung = self.settle(std::mem::take(&mut done)).await;
                 }
                 () = &mut deadline, if held.contains_key(&current) => {
                     if let Some(attempt) = held.remove(&current) {
                         done.push(self.beyond_limit(attempt, begin));
-                        self.settle(std::mem::take(&mut done)).await;
+                        rung = self.settle(std::mem::take(&mut done)).await;
                     }
                 }
                 () = self.jobs.stop().cancelled(), if !held.is_empty() => {
@@ -147,10 +149,12 @@ impl Shop {
                     looked = true;
                     let holds = self.hold(&held).await;
                     give_up(&mut held, &holds);
+                    rung = self.jobs.live.rung();
                 }
                 _ = heartbeat.tick(), if !held.is_empty() => {
                     let holds = self.report(&held, &mut reported).await;
                     give_up(&mut held, &holds);
+                    rung = self.jobs.live.rung();
                 }
             }
         }
@@ -165,8 +169,9 @@ impl Shop {
             outcome: Err(internal_problem()),
         }));
         if !done.is_empty() {
-            self.settle(done).await;
+            rung = self.settle(done).await;
         }
+        rung
     }
 
     /// Stops an attempt that has taken too long.
@@ -219,8 +224,8 @@ impl Shop {
         receiver
     }
 
-    /// Writes down what came of attempts in one commit, and tells of it.
-    async fn settle(&self, done: Vec<Done>) {
+    /// Writes down what came of attempts in one commit, and tells of it. Gives back how often a worker had been told of jobs before.
+    async fn settle(&self, done: Vec<Done>) -> u64 {
         let problems: Vec<String> = done
             .iter()
             .map(|done| {
@@ -247,9 +252,11 @@ impl Shop {
             .collect();
         let store = &self.jobs.store;
         let written = self.written(|| store.end_all(&ends, SOLVER_VERSION)).await;
+        let rung = self.jobs.live.rung();
         for (i, done) in done.iter().enumerate() {
             self.tell(done, written.as_ref().map(|held| held[i]));
         }
+        rung
     }
 
     /// Has something written. While nothing can be stored it waits: what was computed is not given up for the disk's sake, nor is the job.

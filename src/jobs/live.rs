@@ -1,7 +1,7 @@
 //! What of a job lives in memory only: the progress and the stop of the running ones, and news for those who wait.
 
 use std::collections::HashMap;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use meshwright_engine::run::Run;
@@ -21,6 +21,8 @@ pub(super) struct Live {
     changes: broadcast::Sender<Uuid>,
     /// Rung when a job begins to wait. A worker that finds one rings again, so that one ring wakes as many as needed.
     pub(super) work: Notify,
+    /// How often that was.
+    rung: AtomicU64,
     /// Rung when a message to a webhook begins to wait.
     pub(super) mail: Notify,
 }
@@ -67,6 +69,7 @@ impl Live {
             running: Mutex::default(),
             changes: broadcast::channel(1024).0,
             work: Notify::new(),
+            rung: AtomicU64::new(0),
             mail: Notify::new(),
         }
     }
@@ -108,10 +111,21 @@ impl Live {
         }
     }
 
+    /// Tells a worker that a job may wait.
+    pub(super) fn ring(&self) {
+        self.rung.fetch_add(1, Ordering::SeqCst);
+        self.work.notify_one();
+    }
+
+    /// How often that was told.
+    pub(super) fn rung(&self) -> u64 {
+        self.rung.load(Ordering::SeqCst)
+    }
+
     /// Tells everybody to look, because something may have happened.
     pub(super) fn look(&self) {
         self.changed(ANYTHING);
-        self.work.notify_one();
+        self.ring();
     }
 
     pub(super) fn changes(&self) -> broadcast::Receiver<Uuid> {

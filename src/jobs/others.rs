@@ -61,7 +61,7 @@ async fn next(store: &Store, listener: &mut Option<Listener>) -> Result<Told, St
 
 fn pass_on(told: Told, live: &Live) {
     match told {
-        Told::Work => live.work.notify_one(),
+        Told::Work => live.ring(),
         Told::Jobs(status, ids) => {
             for id in ids {
                 if status == Status::Dismissed

@@ -481,7 +481,7 @@ async fn write_submissions(
         // A client that has gone no longer listens; its job stands all the same.
         match store.submit(&jobs, bounds(&rules, &clock)).await {
             Ok(outcomes) => {
-                live.work.notify_one();
+                live.ring();
                 for (answer, outcome) in answers.into_iter().zip(outcomes) {
                     if matches!(outcome, Outcome::Known(_)) {
                         live.mail.notify_one();

@@ -155,7 +155,7 @@ impl Jobs {
                 };
                 // Whether it has been written shows the next look.
                 self.write(owner, record.expanded, &rows, step).await?;
-                self.live.work.notify_one();
+                self.live.ring();
                 self.live.changed(owner.study);
                 continue;
             }

@@ -106,7 +106,7 @@ impl Jobs {
         let (id, repeated) = match outcome {
             StudyOutcome::Taken => {
                 info!(study = %new.id, client = new.client, designs = new.total, "study taken");
-                self.live.work.notify_one();
+                self.live.ring();
                 // It may have ended with its beginning.
                 self.live.changed(new.id);
                 if rows.len() < study.total() {
@@ -228,7 +228,7 @@ impl Jobs {
                 continue;
             }
             expanded += rows.len();
-            self.live.work.notify_one();
+            self.live.ring();
             self.live.changed(owner.study);
         }
         Ok(())

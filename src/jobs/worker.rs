@@ -186,8 +186,13 @@ impl Shop {
     async fn work(&self, threads: &ThreadPool) {
         let stop = self.jobs.stop();
         while !stop.is_cancelled() {
+            let rung = self.jobs.live.rung();
             match self.claim().await {
-                Ok(Claimed { started, given }) => {
+                Ok(Claimed {
+                    started,
+                    given,
+                    drained,
+                }) => {
                     let found = !started.is_empty() || !given.is_empty();
                     for job in given {
                         info!(job = %job.id, "job given the results of an equal one");
@@ -195,15 +200,19 @@ impl Shop {
                     }
                     if !started.is_empty() {
                         // Where one job waited there may be another for the next worker.
-                        self.jobs.live.work.notify_one();
+                        if !drained {
+                            self.jobs.live.work.notify_one();
+                        }
                         for Started { job, .. } in &started {
                             self.jobs.live.changed_job(job);
                         }
-                        self.compute(started, threads).await;
-                        // What had to wait for this one may begin, be it for a worker of its own.
-                        self.jobs.live.work.notify_one();
+                        let rung_since = self.compute(started, threads).await;
+                        // What had to wait for this one may begin, be it for a worker of its own. What came since then finds it ended.
+                        if !drained || rung_since != rung {
+                            self.jobs.live.work.notify_one();
+                        }
                     }
-                    if !found {
+                    if !found || drained {
                         tokio::select! {
                             () = self.jobs.live.work.notified() => {}
                             () = stop.cancelled() => {}
@@ -305,7 +314,7 @@ impl Shop {
         for id in recovered {
             warn!(job = %id, "recovered a job that had lost its worker");
             self.jobs.live.changed(id);
-            self.jobs.live.work.notify_one();
+            self.jobs.live.ring();
         }
         Ok(())
     }
@@ -315,11 +324,13 @@ impl Shop {
 mod tests {
     use std::sync::mpsc;
 
-    use metrics_exporter_prometheus::PrometheusBuilder;
+    use metrics::LocalRecorderGuard;
+    use metrics_exporter_prometheus::{PrometheusBuilder, PrometheusHandle};
     use serde_json::json;
     use tokio_util::sync::CancellationToken;
 
     use super::super::clock::Clock;
+    use super::super::job::Job;
     use super::super::queue::{Member, Rules};
     use super::super::store::{Place, Store};
     use super::*;
@@ -344,27 +355,64 @@ mod tests {
         Submission::parse(document.to_string().as_bytes()).unwrap()
     }
 
+    /// A queue on a file, and how many transactions have been written that waited for the disk, and how many that did not.
+    struct Desk {
+        jobs: Jobs,
+        numbers: PrometheusHandle,
+        stop: CancellationToken,
+        _recorder: LocalRecorderGuard<'static>,
+        _folder: tempfile::TempDir,
+    }
+
+    impl Desk {
+        async fn new() -> Self {
+            let recorder = Box::leak(Box::new(PrometheusBuilder::new().build_recorder()));
+            let folder = tempfile::tempdir().unwrap();
+            let place = Place::File(folder.path().join("jobs.db"));
+            let store = Store::open(&place).await.unwrap();
+            let stop = CancellationToken::new();
+            Self {
+                jobs: Jobs::new(store, RULES, Clock::system(), stop.clone()),
+                numbers: recorder.handle(),
+                stop,
+                _recorder: metrics::set_default_local_recorder(recorder),
+                _folder: folder,
+            }
+        }
+
+        async fn submit(&self, torque: f64) -> Uuid {
+            let member = Member::usual("portal");
+            let submitted = self.jobs.submit(&member, &small(torque), None).await;
+            submitted.unwrap().job.id
+        }
+
+        fn commits(&self, waits: &str) -> u32 {
+            let line = format!("meshwright_commits_total{{waits=\"{waits}\"}} ");
+            let told = self.numbers.render();
+            let count = told.lines().find_map(|told| told.strip_prefix(&line));
+            count.map_or(0, |count| count.parse().unwrap())
+        }
+
+        /// Comes when a job runs.
+        async fn runs(&self, id: Uuid) {
+            let mut news = self.jobs.news(id);
+            while self.jobs.find("portal", id).await.unwrap().status != Status::Running {
+                news.changed_state().await;
+            }
+        }
+
+        async fn ended(&self, id: Uuid) -> Job {
+            let ended = self.jobs.wait("portal", id, Duration::from_secs(60));
+            ended.await.unwrap()
+        }
+    }
+
     #[tokio::test]
     async fn jobs_that_are_claimed_together_end_in_one_commit_each_with_what_came_of_it() {
-        let recorder = PrometheusBuilder::new().build_recorder();
-        let numbers = recorder.handle();
-        let _recorder = metrics::set_default_local_recorder(&recorder);
-        let commits = || {
-            let line = "meshwright_commits_total{waits=\"yes\"} ";
-            let told = numbers.render();
-            let count = told.lines().find_map(|told| told.strip_prefix(line));
-            count.map_or(0, |count| count.parse::<u32>().unwrap())
-        };
-        let folder = tempfile::tempdir().unwrap();
-        let place = Place::File(folder.path().join("jobs.db"));
-        let store = Store::open(&place).await.unwrap();
-        let stop = CancellationToken::new();
-        let jobs = Jobs::new(store, RULES, Clock::system(), stop.clone());
-        let member = Member::usual("portal");
+        let desk = Desk::new().await;
         let mut ids = Vec::new();
         for torque in 1..=12_u8 {
-            let submitted = jobs.submit(&member, &small(torque.into()), None).await;
-            ids.push(submitted.unwrap().job.id);
+            ids.push(desk.submit(torque.into()).await);
         }
 
         // The first one waits for the test, the fourth panics, the fifth cannot be computed.
@@ -386,20 +434,14 @@ mod tests {
             gather: Duration::from_secs(3600),
             ..Pace::with_time_limit(Duration::from_secs(3600))
         };
-        let workers = Workers::beside(jobs.clone(), solve, 1, pace).await;
+        let workers = Workers::beside(desk.jobs.clone(), solve, 1, pace).await;
         let mut workers = workers.unwrap();
-        let mut news = jobs.news(ids[11]);
-        while jobs.find("portal", ids[11]).await.unwrap().status != Status::Running {
-            news.changed_state().await;
-        }
-        jobs.cancel("portal", ids[7]).await.unwrap();
-        let before = commits();
+        desk.runs(ids[11]).await;
+        desk.jobs.cancel("portal", ids[7]).await.unwrap();
+        let before = desk.commits("yes");
         go.send(()).unwrap();
         for id in &ids {
-            let ended = jobs
-                .wait("portal", *id, Duration::from_secs(60))
-                .await
-                .unwrap();
+            let ended = desk.ended(*id).await;
             let status = match ids.iter().position(|other| other == id).unwrap() + 1 {
                 4 | 5 => Status::Failed,
                 8 => Status::Dismissed,
@@ -407,8 +449,85 @@ mod tests {
             };
             assert_eq!((ended.status, ended.attempt), (status, 1));
         }
-        assert_eq!(commits() - before, 1);
-        stop.cancel();
+        assert_eq!(desk.commits("yes") - before, 1);
+        desk.stop.cancel();
+        workers.ended().await;
+    }
+
+    /// An equal job comes while the last one that waited is computed, which is cancelled or comes to its end.
+    async fn equal_job_beside(is_cancelled: bool) -> (Job, Job) {
+        let desk = Desk::new().await;
+        let first = desk.submit(1.0).await;
+        let (go, wait) = mpsc::channel::<()>();
+        let wait = std::sync::Mutex::new(wait);
+        let solve: Solve = Arc::new(move |_, _| {
+            wait.lock().unwrap().recv().unwrap();
+            Ok("{}".to_owned())
+        });
+        let pace = Pace::with_time_limit(Duration::from_secs(3600));
+        let workers = Workers::beside(desk.jobs.clone(), solve, 2, pace).await;
+        let mut workers = workers.unwrap();
+        desk.runs(first).await;
+        let before = desk.commits("no");
+        let equal = desk.submit(1.0).await;
+        // The other worker has looked, and left it: nobody rings again until the first one has ended.
+        while desk.commits("no") == before {
+            tokio::time::sleep(Duration::from_millis(1)).await;
+        }
+        if is_cancelled {
+            desk.jobs.cancel("portal", first).await.unwrap();
+            go.send(()).unwrap();
+        }
+        go.send(()).unwrap();
+        let ended = (desk.ended(first).await, desk.ended(equal).await);
+        desk.stop.cancel();
+        workers.ended().await;
+        ended
+    }
+
+    #[tokio::test]
+    async fn an_equal_job_that_came_while_the_last_one_was_computed_is_given_its_results() {
+        let (first, equal) = equal_job_beside(false).await;
+        assert_eq!(
+            (equal.status, equal.same_as),
+            (Status::Successful, Some(first.id))
+        );
+    }
+
+    #[tokio::test]
+    async fn an_equal_job_that_came_while_the_last_one_was_cancelled_is_computed() {
+        let (first, equal) = equal_job_beside(true).await;
+        assert_eq!(
+            (first.status, equal.status),
+            (Status::Dismissed, Status::Successful)
+        );
+        assert_eq!(equal.same_as, None);
+    }
+
+    #[tokio::test]
+    async fn for_one_job_after_the_other_there_are_few_looks_beside_their_claims() {
+        let desk = Desk::new().await;
+        let solve: Solve = Arc::new(|submission, _| {
+            Ok(format!(
+                "{{\"torque\":{}}}",
+                submission.case().output_torques[0]
+            ))
+        });
+        let pace = Pace::with_time_limit(Duration::from_secs(3600));
+        let workers = Workers::beside(desk.jobs.clone(), solve, 2, pace).await;
+        let mut workers = workers.unwrap();
+        // Both workers look once when they begin.
+        while desk.commits("no") < 2 {
+            tokio::time::sleep(Duration::from_millis(1)).await;
+        }
+        for torque in 1..=20_u8 {
+            let id = desk.submit(torque.into()).await;
+            assert_eq!(desk.ended(id).await.status, Status::Successful);
+        }
+        // Who hears of an end before its worker goes on, and sends another job, makes it look once more.
+        assert!((2 + 20..=2 + 2 * 20).contains(&desk.commits("no")));
+        assert_eq!(desk.commits("yes"), 2 * 20, "the submission, the end");
+        desk.stop.cancel();
         workers.ended().await;
     }
 }

@@ -39,6 +39,8 @@ pub(in crate::jobs) struct Claimed {
     pub(in crate::jobs) started: Vec<Started>,
     /// Jobs that were next, but have been given the results of an equal one.
     pub(in crate::jobs) given: Vec<Job>,
+    /// Whether nothing waits any more, not even for another job.
+    pub(in crate::jobs) drained: bool,
 }
 
 /// What a worker can do.
@@ -82,14 +84,18 @@ impl Store {
             lease,
             process: &process,
         };
-        match suspects(&mut write, &process, reader).await? {
+        let suspects = suspects(&mut write, &process, reader).await?;
+        match &suspects {
             Suspects::None => {
                 take_turn(&mut write, begin, reader, &mut claimed, &mut turn).await?;
             }
-            Suspects::Next(id) => claimed.started = begin.start(&mut write, &[id]).await?,
+            Suspects::Next(id) => {
+                claimed.started = begin.start(&mut write, std::slice::from_ref(id)).await?;
+            }
             Suspects::Wait => {}
         }
-        turn.settle(&mut write).await?;
+        let is_turn = matches!(suspects, Suspects::None);
+        claimed.drained = turn.settle(&mut write).await? && is_turn;
         write.commit().await?;
         Ok(claimed)
     }
@@ -110,12 +116,15 @@ async fn suspects(
     process: &str,
     reader: Reader<'_>,
 ) -> Result<Suspects, sqlx::Error> {
-    let (running, alone): (i64, i64) = query_as(dialect::running_here())
+    let (running, alone, waiting): (i64, i64, i64) = query_as(dialect::running_here())
         .bind(process)
         .fetch_one(&mut *connection)
         .await?;
     if alone > 0 {
         return Ok(Suspects::Wait);
+    }
+    if waiting == 0 {
+        return Ok(Suspects::None);
     }
     let next: Option<String> = query_scalar(dialect::next_suspect())
         .bind(reader.documents)
@@ -131,13 +140,18 @@ async fn suspects(
 /// What a claim means for the shares. Written behind the jobs, as every transition does (see `dialect::postgres`).
 #[derive(Default)]
 struct Turn {
+    /// How many lanes had work to do, as it seemed.
+    lanes: usize,
+    /// Those of them that had none.
     empty: Vec<Lane>,
-    charged: Option<(Lane, i64)>,
+    /// The lane of the jobs that are begun, what they cost, and whether there were no more.
+    charged: Option<(Lane, i64, bool)>,
 }
 
 impl Turn {
-    async fn settle(self, connection: &mut Connection) -> Result<(), sqlx::Error> {
-        let charged = self.charged.iter().map(|(lane, _)| lane);
+    /// Writes it down. True if nothing waits any more.
+    async fn settle(self, connection: &mut Connection) -> Result<bool, sqlx::Error> {
+        let charged = self.charged.iter().map(|(lane, ..)| lane);
         let clients: BTreeSet<&String> = self
             .empty
             .iter()
@@ -145,13 +159,14 @@ impl Turn {
             .map(|lane| &lane.client)
             .collect();
         shares::lock(connection, clients).await?;
+        let mut rests = 0;
         for lane in &self.empty {
-            rest_if_empty(connection, lane).await?;
+            rests += usize::from(rest_if_empty(connection, lane).await?);
         }
-        if let Some((lane, cost)) = &self.charged {
-            lane.charge(connection, *cost).await?;
+        if let Some((lane, cost, is_empty)) = &self.charged {
+            rests += usize::from(lane.charge(connection, *cost, *is_empty).await?);
         }
-        Ok(())
+        Ok(rests == self.lanes)
     }
 }
 
@@ -166,14 +181,17 @@ async fn take_turn(
     claimed: &mut Claimed,
     turn: &mut Turn,
 ) -> Result<(), sqlx::Error> {
-    for lane in shares::lanes(connection).await? {
+    let lanes = shares::lanes(connection).await?;
+    turn.lanes = lanes.len();
+    for lane in lanes {
         let mut look = Look {
             lane: &lane,
             behind: i64::MIN,
             inputs: BTreeSet::new(),
         };
         let (mut chosen, mut charge) = (Vec::new(), 0);
-        let mut many = 1;
+        // One more tells whether there is one.
+        let mut many = 2;
         let is_empty = 'lane: loop {
             let waiting = look.next(connection, many, reader).await?;
             let is_last = waiting.len() < many;
@@ -210,11 +228,10 @@ async fn take_turn(
         if !chosen.is_empty() {
             claimed.started = begin.start(connection, &chosen).await?;
         }
-        if is_empty {
-            turn.empty.push(lane.clone());
-        }
         if !claimed.started.is_empty() {
-            turn.charged = Some((lane, charge));
+            turn.charged = Some((lane, charge, is_empty));
+        } else if is_empty {
+            turn.empty.push(lane);
         }
         if !claimed.started.is_empty() || !claimed.given.is_empty() {
             break;
@@ -248,30 +265,21 @@ impl Look<'_> {
         reader: Reader<'_>,
     ) -> Result<Vec<(Waiting, Option<Known>)>, sqlx::Error> {
         let client = &self.lane.client;
-        let rows: Vec<(String, i64, String, i64, String)> = query_as(dialect::next_waiting())
+        let rows: Vec<(String, i64, String, i64, String, i64)> = query_as(dialect::next_waiting())
             .bind(client)
             .bind(&self.lane.lane)
             .bind(reader.documents)
             .bind(self.behind)
             .bind(column(many as u64))
-            .fetch_all(&mut *connection)
-            .await?;
-        let Some(last) = rows.last() else {
-            return Ok(Vec::new());
-        };
-        self.behind = last.1;
-        let inputs: Vec<&str> = rows.iter().map(|row| row.2.as_str()).collect();
-        let computed: Vec<String> = query_scalar(dialect::known_among())
-            .bind(client)
             .bind(reader.solver)
-            .bind(list(&inputs))
             .fetch_all(&mut *connection)
             .await?;
         let mut waiting = Vec::with_capacity(rows.len());
-        for (id, _, input_hash, cost, keep) in rows {
+        for (id, sequence, input_hash, cost, keep, computed) in rows {
+            self.behind = sequence;
             // A word that is not known keeps everything.
             let keep = Kept::named(&keep).unwrap_or(Kept::Results);
-            let known = if computed.contains(&input_hash) {
+            let known = if computed != 0 {
                 find_known(connection, client, &input_hash, keep, reader.solver).await?
             } else {
                 None
@@ -287,8 +295,8 @@ impl Look<'_> {
     }
 }
 
-/// A lane whose jobs all wait for an equal one keeps its turn.
-async fn rest_if_empty(connection: &mut Connection, lane: &Lane) -> Result<(), sqlx::Error> {
+/// A lane whose jobs all wait for an equal one keeps its turn. True if it rests.
+async fn rest_if_empty(connection: &mut Connection, lane: &Lane) -> Result<bool, sqlx::Error> {
     let waits = query(
         "select 1 from jobs where status = 'accepted' and client = $1 and coalesce(study, '') = $2 limit 1",
     )
@@ -299,7 +307,7 @@ async fn rest_if_empty(connection: &mut Connection, lane: &Lane) -> Result<(), s
     if !waits {
         lane.rest(connection).await?;
     }
-    Ok(())
+    Ok(!waits)
 }
 
 /// Accepted -> successful, with the results of an equal job.

@@ -53,16 +53,10 @@ pub(super) async fn activate(
     study: Option<Uuid>,
 ) -> Result<(), sqlx::Error> {
     query(
-        "insert into shares (client, lane, due, active) values ($1, '*', (select due from served), 1)
-         on conflict (client, lane) do update
-           set active = 1, due = case shares.active when 1 then shares.due else max(shares.due, excluded.due) end",
-    )
-    .bind(client)
-    .execute(&mut *connection)
-    .await?;
-    query(
         "insert into shares (client, lane, due, active)
-         values ($1, $2, (select served from shares where client = $1 and lane = '*'), 1)
+           select $1, '*', (select due from served), 1
+           union all select $1, $2, coalesce((select served from shares where client = $1 and lane = '*'), 0), 1
+           where true
          on conflict (client, lane) do update
            set active = 1, due = case shares.active when 1 then shares.due else max(shares.due, excluded.due) end",
     )
@@ -96,35 +90,50 @@ pub(super) async fn lanes(connection: &mut Connection) -> Result<Vec<Lane>, sqlx
 }
 
 impl Lane {
-    /// Charges it with a job that is begun.
+    /// Charges it with jobs that are begun, and takes it out of the turn if they were `all` of its jobs. True if it rests.
     pub(super) async fn charge(
         &self,
         connection: &mut Connection,
         cost: i64,
-    ) -> Result<(), sqlx::Error> {
+        all: bool,
+    ) -> Result<bool, sqlx::Error> {
         let cost = cost.max(1);
         let of_lane = if self.lane == ALONE {
             (cost / WEIGHT_ALONE).max(1)
         } else {
             cost
         };
-        query("update shares set due = due + $3 where client = $1 and lane = $2")
-            .bind(&self.client)
-            .bind(&self.lane)
-            .bind(of_lane)
-            .execute(&mut *connection)
-            .await?;
-        query("update shares set due = due + $2, served = max(served, $3) where client = $1 and lane = '*'")
-            .bind(&self.client)
-            .bind(cost)
-            .bind(self.lane_due)
-            .execute(&mut *connection)
-            .await?;
+        // One that only waits for an equal one keeps the lane its turn.
+        let rows: Vec<(String, i64)> = query_as(
+            "update shares
+             set due = due + case lane when '*' then $3 else $4 end,
+                 served = case lane when '*' then max(served, $5) else served end,
+                 active = case
+                   when $6 = 0 then active
+                   when exists (select 1 from jobs where status = 'accepted' and jobs.client = $1 and coalesce(study, '') = $2) then active
+                   when lane = '*' and exists (select 1 from shares as others where others.client = $1
+                                                 and others.lane not in ('*', $2) and others.active = 1) then active
+                   else 0 end
+             where client = $1 and lane in ('*', $2)
+             returning lane, active",
+        )
+        .bind(&self.client)
+        .bind(&self.lane)
+        .bind(cost)
+        .bind(of_lane)
+        .bind(self.lane_due)
+        .bind(i64::from(all))
+        .fetch_all(&mut *connection)
+        .await?;
         query("update served set due = max(due, $1)")
             .bind(self.client_due)
-            .execute(connection)
+            .execute(&mut *connection)
             .await?;
-        Ok(())
+        let rests = rows.contains(&(self.lane.clone(), 0));
+        if rests && self.lane != ALONE {
+            forget(connection, &self.client).await?;
+        }
+        Ok(rests)
     }
 
     /// Takes it out of the turn, because nothing waits in it.
@@ -151,7 +160,11 @@ pub(super) async fn rest(
     .bind(client)
     .execute(&mut *connection)
     .await?;
-    // A lane that others have caught up with begins anew where they are, remembered or not.
+    forget(connection, client).await
+}
+
+/// A lane that others have caught up with begins anew where they are, remembered or not.
+async fn forget(connection: &mut Connection, client: &str) -> Result<(), sqlx::Error> {
     query(
         "delete from shares where client = $1 and lane not in ('*', '') and active = 0
            and due <= (select served from shares where client = $1 and lane = '*')",

@@ -78,10 +78,12 @@ impl Store {
     ) -> Result<Vec<Outcome>, StoreError> {
         let mut write = self.begin().await?;
         query(dialect::lock_queue()).execute(&mut *write).await?;
-        query("delete from idempotency_keys where created_at < $1")
-            .bind(bounds.forget_keys_before.as_microsecond())
-            .execute(&mut *write)
-            .await?;
+        if batch.iter().any(|job| job.idempotency_key.is_some()) {
+            query("delete from idempotency_keys where created_at < $1")
+                .bind(bounds.forget_keys_before.as_microsecond())
+                .execute(&mut *write)
+                .await?;
+        }
         let mut room = Room::new(bounds.queue_limit);
         let mut outcomes = Vec::with_capacity(batch.len());
         let mut lanes = BTreeSet::new();

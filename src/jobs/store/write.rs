@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use tokio::sync::{Notify, watch};
-use tracing::{error, info, warn};
+use tracing::{error, info};
 
 use super::ground::Ground;
 use super::statement::{Connection, Pool, Text, query};
@@ -59,8 +59,8 @@ fn cause(error: &StoreError) -> String {
 pub(crate) struct Write {
     connection: Connection,
     health: Arc<Health>,
-    /// What is said behind the commit.
-    after: Option<Text>,
+    /// What is said for that.
+    commit: Text,
     /// Whether the commit waits for no disk.
     relaxed: bool,
     ended: bool,
@@ -75,7 +75,7 @@ impl Store {
             &self.health,
             self.ground.as_ref(),
             dialect::begin_relaxed(),
-            Some(dialect::after_relaxed()),
+            Some(dialect::commit_relaxed()),
         );
         let begun = begun.await;
         if let Err(error) = &begun {
@@ -189,7 +189,7 @@ async fn begin_with(
     health: &Arc<Health>,
     ground: Option<&Ground>,
     words: Text,
-    after: Option<Text>,
+    relaxed: Option<Text>,
 ) -> Result<Write, StoreError> {
     if let Some(ground) = ground {
         ground.check_name().map_err(sqlx::Error::Io)?;
@@ -203,8 +203,8 @@ async fn begin_with(
     Ok(Write {
         connection,
         health: Arc::clone(health),
-        relaxed: after.is_some(),
-        after,
+        relaxed: relaxed.is_some(),
+        commit: relaxed.unwrap_or_else(|| "commit".into()),
         ended: false,
     })
 }
@@ -212,24 +212,12 @@ async fn begin_with(
 impl Write {
     /// Makes the changes last.
     pub(crate) async fn commit(mut self) -> Result<(), StoreError> {
-        let committed = self.connection.say("commit").await;
+        let committed = self.connection.say(self.commit.clone()).await;
         let committed = committed.map_err(StoreError::from);
         self.health.found(committed.as_ref());
         committed?;
         let waits = if self.relaxed { "no" } else { "yes" };
         metrics::counter!("meshwright_commits_total", "waits" => waits).increment(1);
-        self.end().await
-    }
-
-    /// A connection that does not wait for the disk is for one transaction.
-    async fn end(&mut self) -> Result<(), StoreError> {
-        if let Some(words) = self.after.take()
-            && let Err(error) = self.connection.say(words).await
-        {
-            // What was committed stands; the connection goes.
-            warn!(%error, "a connection is given up");
-            return Ok(());
-        }
         self.ended = true;
         Ok(())
     }
@@ -237,7 +225,9 @@ impl Write {
     /// Takes the changes back.
     pub(crate) async fn rollback(mut self) -> Result<(), StoreError> {
         self.connection.say("rollback").await?;
-        self.end().await
+        // One that does not wait for the disk goes.
+        self.ended = !self.relaxed;
+        Ok(())
     }
 }
 

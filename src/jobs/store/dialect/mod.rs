@@ -102,8 +102,8 @@ pairs! {
     begin = BEGIN;
     /// Begins a transaction whose commit does not wait for the disk.
     begin_relaxed = BEGIN_RELAXED;
-    /// What is said behind such a one.
-    after_relaxed = AFTER_RELAXED;
+    /// Ends such a one.
+    commit_relaxed = COMMIT_RELAXED;
     /// Writes something, to find out whether that works.
     probe = PROBE;
     /// From here to its end, no other transaction measures a job against the bounds of the queue.
@@ -116,17 +116,16 @@ pairs! {
     lock_turn = LOCK_TURN;
     /// From here to its end, no other transaction changes the shares of the client $1.
     lock_shares = LOCK_SHARES;
-    /// Counts of jobs that run, and of those of them that are to run alone. $1: the process.
+    /// Counts of jobs that run, and of those of them that are to run alone, and 1 if one that is to run alone waits. $1: the process.
     running_here = RUNNING_HERE;
     /// The next job that is to be run alone. $1: the latest version of documents that is read.
     next_suspect = NEXT_SUSPECT;
     /// The jobs of a lane whose turn it is, in their order, but for those of which an equal one is running. $1: client, $2: lane, $3: the
-    /// latest version of documents that is read, $4: behind this place in the order of arrival, $5: how many.
+    /// latest version of documents that is read, $4: behind this place in the order of arrival, $5: how many,
+    /// $6: solver version, for whether an equal one may have been computed.
     next_waiting = NEXT_WAITING;
     /// What a client has had computed. $1: client, $2: input hash, $3: solver version, $4: 1 if the whole results have to be kept.
     known = KNOWN;
-    /// Which inputs a client may have had computed. $1: client, $2: solver version, $3: a list of input hashes.
-    known_among = KNOWN_AMONG;
     /// Accepted -> running. $1: a list of ids, $2: now, $3: the steady clock, $4: how long the lease lasts, $5: the process.
     start = START;
     /// Where jobs stand: id, attempt, status. $1: a list of ids.

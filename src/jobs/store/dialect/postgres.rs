@@ -13,7 +13,7 @@ pub(in crate::jobs::store) const BEGIN: Words = Some("begin");
 pub(in crate::jobs::store) const BEGIN_RELAXED: Words =
     Some("begin; set local synchronous_commit = off");
 
-pub(in crate::jobs::store) const AFTER_RELAXED: Words = None;
+pub(in crate::jobs::store) const COMMIT_RELAXED: Words = Some("commit");
 
 pub(in crate::jobs::store) const PROBE: Words = Some(
     // Who has locked the jobs keeps everybody from submitting.
@@ -39,7 +39,9 @@ pub(in crate::jobs::store) const LOCK_SHARES: Words =
     Some("select 1 from shares where client = $1 and lane = '*' for update");
 
 pub(in crate::jobs::store) const RUNNING_HERE: Words = Some(
-    "select count(*), cast(coalesce(sum(suspect), 0) as bigint) from jobs where status = 'running' and owner = $1",
+    "select count(*), cast(coalesce(sum(suspect), 0) as bigint),
+            (select count(*) from (select 1 from jobs where suspect = 1 and status = 'accepted' limit 1) as one)
+     from jobs where status = 'running' and owner = $1",
 );
 
 pub(in crate::jobs::store) const NEXT_SUSPECT: Words = Some(
@@ -51,9 +53,13 @@ pub(in crate::jobs::store) const NEXT_SUSPECT: Words = Some(
      order by sequence limit 1 for update of waiting skip locked",
 );
 
-// The offset has each equal one looked up by its input; joined, all that run and ran lately would be read.
+// The offsets have each equal one looked up by its input; joined, all that run, ran lately or have ended would be read.
 pub(in crate::jobs::store) const NEXT_WAITING: Words = Some(
-    "select id, sequence, input_hash, cost, keep from jobs as waiting
+    "select id, sequence, input_hash, cost, keep,
+            cast(cast(exists (select 1 from jobs as equal
+                              where equal.status = 'successful' and equal.client = waiting.client
+                                and equal.input_hash = waiting.input_hash and equal.solver_version = $6 offset 0) as int) as bigint)
+     from jobs as waiting
      where status = 'accepted' and client = $1 and coalesce(study, '') = $2 and document_version <= $3 and sequence > $4
        and not exists (select 1 from jobs as equal
                        where equal.status = 'running' and equal.client = waiting.client
@@ -66,12 +72,6 @@ pub(in crate::jobs::store) const KNOWN: Words = Some(
     "select j.id, j.document, j.positions_total from jobs j join documents d on d.hash = j.document
      where j.client = $1 and j.input_hash = $2 and j.solver_version = $3 and j.status = 'successful' and d.whole >= $4
      order by j.same_as is not null, j.sequence limit 1 for key share",
-);
-
-pub(in crate::jobs::store) const KNOWN_AMONG: Words = Some(
-    "select distinct input_hash from jobs
-     where client = $1 and solver_version = $2 and status = 'successful'
-       and input_hash = any(array(select json_array_elements_text(cast($3 as json))))",
 );
 
 // They are locked since they were found waiting. Were that said again, the server might read through all that wait.

@@ -11,7 +11,7 @@ pub(in crate::jobs::store) const BEGIN: Words = Some("begin immediate");
 pub(in crate::jobs::store) const BEGIN_RELAXED: Words =
     Some("pragma synchronous = normal; begin immediate");
 
-pub(in crate::jobs::store) const AFTER_RELAXED: Words = Some("pragma synchronous = full");
+pub(in crate::jobs::store) const COMMIT_RELAXED: Words = Some("commit; pragma synchronous = full");
 
 pub(in crate::jobs::store) const PROBE: Words = Some("update served set due = due");
 
@@ -26,7 +26,9 @@ pub(in crate::jobs::store) const LOCK_TURN: Words = None;
 pub(in crate::jobs::store) const LOCK_SHARES: Words = None;
 
 pub(in crate::jobs::store) const RUNNING_HERE: Words = Some(
-    "select count(*), coalesce(sum(suspect), 0) from jobs indexed by jobs_running where status = 'running'",
+    "select count(*), coalesce(sum(suspect), 0),
+            (select count(*) from (select 1 from jobs where suspect = 1 and status = 'accepted' limit 1))
+     from jobs indexed by jobs_running where status = 'running'",
 );
 
 pub(in crate::jobs::store) const NEXT_SUSPECT: Words = Some(
@@ -34,7 +36,11 @@ pub(in crate::jobs::store) const NEXT_SUSPECT: Words = Some(
 );
 
 pub(in crate::jobs::store) const NEXT_WAITING: Words = Some(
-    "select id, sequence, input_hash, cost, keep from jobs as waiting
+    "select id, sequence, input_hash, cost, keep,
+            exists (select 1 from jobs as equal
+                    where equal.status = 'successful' and equal.client = waiting.client
+                      and equal.input_hash = waiting.input_hash and equal.solver_version = $6)
+     from jobs as waiting
      where status = 'accepted' and client = $1 and coalesce(study, '') = $2 and document_version <= $3 and sequence > $4
        and not exists (select 1 from jobs as equal indexed by jobs_running
                        where equal.status = 'running' and equal.client = waiting.client
@@ -48,11 +54,6 @@ pub(in crate::jobs::store) const KNOWN: Words = Some(
      where client = $1 and input_hash = $2 and solver_version = $3 and status = 'successful'
        and (select whole from documents where hash = document) >= $4
      order by same_as is not null, sequence limit 1",
-);
-
-pub(in crate::jobs::store) const KNOWN_AMONG: Words = Some(
-    "select distinct input_hash from jobs
-     where client = $1 and solver_version = $2 and status = 'successful' and input_hash in (select value from json_each($3))",
 );
 
 pub(in crate::jobs::store) const START: Words = Some(concat!(
