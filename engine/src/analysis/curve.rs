@@ -169,7 +169,7 @@ pub struct Curve {
     pub decomposition: Option<DecompositionParts>,
     /// The load along the common face, by the method that sees it, under load.
     pub face: Option<FaceLoad>,
-    /// The largest stresses in the driving and in the driven gear, where they were asked for, by the flexible method, under load.
+    /// The largest stresses in the driving and in the driven gear, where they were asked for, by a whole contact at each position, under load.
     pub stresses: Option<[GearStresses; 2]>,
 }
 

@@ -102,6 +102,14 @@ pub fn estimate(case: &Case) -> Estimate {
 /// position. Measured as [`SECONDS`].
 const FACE_SECONDS: [f64; 3] = [0.55, 1.0, 35e-6];
 
+/// Seconds of one core for the rows that lead to the roots of one gear at the order 8, and for the answer of one of its teeth at a position;
+/// and bytes of such rows while they are made. Measured as [`SECONDS`].
+const ROOT_SECONDS: [f64; 2] = [2.5, 0.25e-3];
+const ROOT_MEMORY: f64 = 140e6;
+
+/// Teeth whose roots answer at a position, about.
+const TEETH_ANSWERING: f64 = 20.0;
+
 /// Positions in whose time the lead is found that would even the load under one torque.
 const EVENING: u64 = 16;
 
@@ -133,6 +141,13 @@ fn of_faces(case: &Case, faces: &Faces, alone: Estimate) -> Estimate {
             let unknowns = 3.0 * functions * SECTION_NODES * f64::from(teeth[0] + teeth[1]);
             estimate.degrees_of_freedom = unknowns as u64;
         }
+    }
+    if case.stress && case.method == Method::ThreeDimensional {
+        let growth = (faces.resolution.face_order + 1) as f64 / 9.0;
+        let [per_gear, per_answer] = ROOT_SECONDS;
+        let answers = 2.0 * TEETH_ANSWERING * estimate.positions as f64;
+        estimate.seconds += 2.0 * per_gear * growth.powf(2.5) + per_answer * growth * answers;
+        estimate.memory += (2.0 * ROOT_MEMORY * growth.powi(2)) as u64;
     }
     // Two pairs or more carry along all of the face.
     let slices = faces.slices as f64 * (1.0 + faces.pair.total_contact_ratio());

@@ -15,7 +15,7 @@ use crate::grid::{BlankGrid, Grid};
 use crate::run::Run;
 
 /// How far from a loaded tooth, in teeth, the roots are looked at: a rim bends between the ends of a slot or the spokes under it.
-const REACH: usize = 8;
+pub(super) const REACH: usize = 8;
 
 /// The largest stress along some edges, and where.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,6 +24,8 @@ pub struct PeakStress {
     pub stress: f64,
     /// The polar angle of the place from the centerline of tooth 0 in radians, from 0 to 2π, in the frame of the gear.
     pub angle: f64,
+    /// Its height from the middle of the face of its gear, in meters; `None` in the plane.
+    pub z: Option<f64>,
 }
 
 /// The largest stresses of one gear at each position of a curve.
@@ -35,7 +37,7 @@ pub struct GearStresses {
     pub root_tension: Vec<PeakStress>,
     /// The smallest one: the largest compression, which is negative.
     pub root_compression: Vec<PeakStress>,
-    /// The largest stress along the edges of the holes; empty without holes.
+    /// The largest stress along the edges of the holes; empty without holes, and along faces.
     pub holes: Vec<PeakStress>,
 }
 
@@ -149,15 +151,15 @@ impl LoadedPair<'_> {
             let loads = cells.flank_loads(member, &solution.forces);
             let answer = loaded.under(&loads);
             let roots = gear.roots(&loads, &answer);
-            let all = || roots.iter().map(|root| (root.stress, root.angle));
+            let all = || roots.iter().map(|root| root.peak);
             let loaded_sides = roots.iter().filter(|root| root.in_mesh);
             let sectors = gear.sector_angles.iter().enumerate();
             let holes = sectors.flat_map(|(sector, &turn)| {
                 let along = answer.in_blank(sector).into_iter().zip(&gear.edges);
-                along.map(move |(stress, angle)| (stress.abs(), turn + angle))
+                along.map(move |(stress, angle)| in_plane(stress.abs(), turn + angle))
             });
             GearPeaks {
-                root: largest(loaded_sides.map(|root| (root.stress, root.angle))),
+                root: largest(loaded_sides.map(|root| root.peak)),
                 tension: largest(all()),
                 compression: smallest(all()),
                 hole: (!gear.edges.is_empty()).then(|| largest(holes)),
@@ -168,8 +170,7 @@ impl LoadedPair<'_> {
 
 /// The stress along a fillet at one of its nodes.
 struct RootStress {
-    stress: f64,
-    angle: f64,
+    peak: PeakStress,
     /// Whether it is beside the loaded flank of a loaded tooth or of its neighbor.
     in_mesh: bool,
 }
@@ -189,8 +190,7 @@ impl StressedGear {
             along
                 .enumerate()
                 .map(move |(i, (stress, angle))| RootStress {
-                    stress,
-                    angle: turn + angle,
+                    peak: in_plane(stress, turn + angle),
                     in_mesh: i < self.beside_loaded && away(tooth) <= 1,
                 })
         };
@@ -210,23 +210,33 @@ impl GearStresses {
     }
 }
 
+/// The `stress` at the polar `angle`, of the plane.
+fn in_plane(stress: f64, angle: f64) -> PeakStress {
+    PeakStress {
+        stress,
+        angle,
+        z: None,
+    }
+}
+
 /// The polar angles of `nodes`.
 fn angles(grid: &Grid, nodes: &[u32]) -> Vec<f64> {
     let places = nodes.iter().map(|node| grid.nodes[*node as usize]);
     places.map(|place| place.y.atan2(place.x)).collect()
 }
 
-/// The first of the largest of `stresses` with their angles.
-fn largest(stresses: impl Iterator<Item = (f64, f64)>) -> PeakStress {
+/// The first of the largest of `stresses`.
+pub(super) fn largest(stresses: impl Iterator<Item = PeakStress>) -> PeakStress {
     let none = PeakStress {
         stress: 0.0,
         angle: 0.0,
+        z: None,
     };
-    stresses.fold(none, |most, (stress, angle)| {
-        if stress > most.stress {
+    stresses.fold(none, |most, peak| {
+        if peak.stress > most.stress {
             PeakStress {
-                stress,
-                angle: angle.rem_euclid(TAU),
+                angle: peak.angle.rem_euclid(TAU),
+                ..peak
             }
         } else {
             most
@@ -234,11 +244,11 @@ fn largest(stresses: impl Iterator<Item = (f64, f64)>) -> PeakStress {
     })
 }
 
-/// The first of the smallest of `stresses` with their angles.
-fn smallest(stresses: impl Iterator<Item = (f64, f64)>) -> PeakStress {
-    let most = largest(stresses.map(|(stress, angle)| (-stress, angle)));
-    PeakStress {
-        stress: -most.stress,
-        ..most
-    }
+/// The first of the smallest of `stresses`.
+pub(super) fn smallest(stresses: impl Iterator<Item = PeakStress>) -> PeakStress {
+    let opposite = |peak: PeakStress| PeakStress {
+        stress: -peak.stress,
+        ..peak
+    };
+    opposite(largest(stresses.map(opposite)))
 }

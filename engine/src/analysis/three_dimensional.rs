@@ -9,6 +9,7 @@ use super::case::{Faces, Method, StiffnessRule};
 use super::curve::{FaceLoad, LeadCure};
 use super::curve_parts::CurveParts;
 use super::evidence::Evidence;
+use super::face_stress::FaceStressModel;
 use super::first_order::{OnRound, checked_places, with_holes};
 use super::warning::{warn_of_corner, warn_of_projection, warn_of_tips, warnings};
 use super::{Analysis, AnalysisError, Case};
@@ -46,6 +47,11 @@ pub(super) fn solve(
     let mut warnings = warnings(case);
     let mut curves = Vec::with_capacity(case.output_torques.len());
     let pair = OfFaces::new((case, faces), &yields, run);
+    // Of the run that is told, by the method that has a contact at every position.
+    let told =
+        case.stress && level == case.resolution.grid && case.method == Method::ThreeDimensional;
+    let stress = told.then(|| FaceStressModel::new(faces, &yields, parts, run));
+    let stress = stress.transpose()?;
     for &output_torque in &case.output_torques {
         let load = case.pair.load(output_torque);
         let solved = match case.method {
@@ -62,6 +68,10 @@ pub(super) fn solve(
                 warn_of_corner(&mut warnings, member, largest);
             }
         }
+        let stresses = stress
+            .as_ref()
+            .map(|model| model.under(&solved.contacts, run));
+        let stresses = stresses.transpose()?;
         let error = solved.error;
         let even = if faces.cure && level == case.resolution.grid {
             pair.even_lead(load, &solved)?
@@ -69,6 +79,7 @@ pub(super) fn solve(
             None
         };
         let mut parts = solved.into_parts(case, faces);
+        parts.stresses = stresses;
         if let Some(face) = &mut parts.face {
             face.cure = even.map(|lead| LeadCure::of(lead, face.face_load_factor));
         }

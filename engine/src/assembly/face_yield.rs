@@ -58,6 +58,8 @@ pub struct PlainFace {
     squares: [f64; 2],
     /// What tooth d yields to tooth 0, d = 0 … [`FARTHEST_COUPLED`].
     blocks: Vec<Mat<f64>>,
+    /// The stiffness of each order of the interface circle.
+    carriers: Vec<Mat<c64>>,
     web: Option<SeenWeb>,
     degrees_of_freedom: u64,
 }
@@ -91,13 +93,18 @@ impl FaceYieldSpec {
         }
     }
 
+    /// The parts of the gear.
+    pub fn stack(&self) -> Stack {
+        Stack::new(&self.gear, self.resolution)
+    }
+
     /// Makes it of `parts`.
     ///
     /// # Errors
     ///
     /// As [`FaceYield::of`].
     pub fn make<P: Parts + ?Sized>(&self, parts: &P, run: &Run) -> Result<FaceYield, PartError> {
-        let stack = Stack::new(&self.gear, self.resolution);
+        let stack = self.stack();
         let plain = parts.plain_face(&stack, run)?;
         let section = self.gear.section();
         let holes = match &plain.web {
@@ -147,6 +154,7 @@ impl PlainFace {
         Ok(Self {
             squares: flank.squares,
             blocks: blocks(&tooth, &classes, &flank),
+            carriers: carrier.stiffness,
             web,
             degrees_of_freedom: (own * tooth.sector.size * tooth.sector.count) as u64,
         })
@@ -155,7 +163,22 @@ impl PlainFace {
     /// The number of entries, for the books of a cache.
     pub fn entries(&self) -> usize {
         let blocks: usize = self.blocks.iter().map(entries).sum();
-        blocks + self.web.as_ref().map_or(0, SeenWeb::entries)
+        let carriers: usize = self
+            .carriers
+            .iter()
+            .map(|of| 2 * of.nrows() * of.ncols())
+            .sum();
+        blocks + carriers + self.web.as_ref().map_or(0, SeenWeb::entries)
+    }
+
+    /// The stiffness of each order of the interface circle, without holes.
+    pub(crate) fn carriers(&self) -> &[Mat<c64>] {
+        &self.carriers
+    }
+
+    /// The web as the teeth see it, where it has holes.
+    pub(crate) fn web(&self) -> Option<&SeenWeb> {
+        self.web.as_ref()
     }
 }
 
@@ -183,12 +206,13 @@ impl FaceYield {
         let axial = Stack::new(gear, resolution).face;
         let section = gear.section().without_blank().with_plain_flanks();
         let grid = ToothGrid::of_prism(&section, inner_radius, GridLevel::Standard)?;
-        let compliance = flank_compliance_alone(gear, &grid, &axial)?;
+        let (compliance, _) = flank_compliance_alone(gear, &grid, &axial, &[])?;
         let flank = FlankFit::new(gear, &axial, &grid.flank_roll_lengths);
         let degrees_of_freedom = 3 * axial.len() * (grid.grid.nodes.len() - grid.arc_nodes.len());
         let plain = PlainFace {
             squares: flank.squares,
             blocks: vec![flank.own(&compliance)],
+            carriers: Vec::new(),
             web: None,
             degrees_of_freedom: degrees_of_freedom as u64,
         };
@@ -264,6 +288,11 @@ impl FaceYield {
             symmetrize(&mut smooth);
         }
         smooth
+    }
+
+    /// What holes change, if there are any.
+    pub(super) fn holes(&self) -> Option<&HoledChange> {
+        self.holes.as_ref()
     }
 
     /// The number of teeth after which all that they yield repeats.

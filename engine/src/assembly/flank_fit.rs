@@ -12,7 +12,7 @@ use crate::quadrature::legendre;
 /// The degree up the flank of what a tooth yields under its own load, less the half space.
 pub(super) const OWN_DEGREE: usize = 8;
 /// The degree up the flank of what it yields under the loads of others.
-const OTHER_DEGREE: usize = 5;
+pub(super) const OTHER_DEGREE: usize = 5;
 /// How many nodes of the flank apart loads and displacements must be to tell the smooth part from the grid's own error.
 const NODES_APART: usize = 3;
 /// Singular values below this share of the largest say nothing.

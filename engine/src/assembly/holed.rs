@@ -35,6 +35,8 @@ pub(crate) struct SeenWeb {
     compliance: Mat<f64>,
     /// q: the answer of the circle to the functions on the flank of tooth 0.
     answers: Mat<f64>,
+    /// How the circle follows the interface circle, of the orders 0 ….
+    follows: Vec<Mat<c64>>,
 }
 
 /// What holes change of the yield of flanks.
@@ -63,7 +65,6 @@ impl SeenWeb {
         // Of tooth 0, on the orders of both signs.
         let share = 1.0 / tooth_count as f64;
         let mut compliance = Mat::<c64>::zeros(unknowns, unknowns);
-        let mut answers = Mat::<c64>::zeros(unknowns, 0);
         for class in classes {
             let inner = class.circle.nrows() / class.orders.len().max(1);
             let follows: Vec<Mat<c64>> = class
@@ -74,16 +75,6 @@ impl SeenWeb {
                 })
                 .collect();
             for (a, &n) in class.orders.iter().enumerate() {
-                let rows = class.circle.subrows(a * inner, inner);
-                let answer = onto(&(&follows[a] * rows));
-                answers.resize_with(unknowns, answer.nrows(), |_, _| c64::new(0.0, 0.0));
-                for j in 0..answer.nrows() {
-                    for i in 0..size {
-                        let value = answer[(j, i)] * share;
-                        answers[(place(n) + i, j)] = value;
-                        answers[(place(-n) + i, j)] = value.conj();
-                    }
-                }
                 for (b, &m) in class.orders.iter().enumerate() {
                     let between = class
                         .compliance
@@ -107,14 +98,60 @@ impl SeenWeb {
                 }
             }
         }
-        Self {
+        let (plain, follows) = web
+            .of
+            .into_iter()
+            .map(|port| (port.plain, port.follows))
+            .unzip();
+        let mut seen = Self {
             compliance: form_on_real(&compliance, largest, size, 1.0),
-            answers: rows_on_real(&answers, largest, size),
-            plain: web.of.into_iter().map(|port| port.plain).collect(),
+            answers: Mat::zeros(0, 0),
+            plain,
+            follows,
             largest,
             size,
             tooth_count,
+        };
+        let circles = classes
+            .iter()
+            .map(|class| (class.orders.as_slice(), &class.circle));
+        seen.answers = seen.answers_to(circles, onto);
+        seen
+    }
+
+    /// The largest order in which holes are seen.
+    pub(crate) fn largest(&self) -> usize {
+        self.largest
+    }
+
+    /// The answer of the web's outer circle to what `circles` say of the interface circle: orders of each class, and what these answer to
+    /// functions on tooth 0. `onto` makes rows for other functions of columns for these.
+    pub(crate) fn answers_to<'a>(
+        &self,
+        circles: impl Iterator<Item = (&'a [i64], &'a Mat<c64>)>,
+        onto: &dyn Fn(&Mat<c64>) -> Mat<c64>,
+    ) -> Mat<f64> {
+        let &Self { largest, size, .. } = self;
+        let place = |order: i64| (order + largest as i64) as usize * size;
+        let share = 1.0 / self.tooth_count as f64;
+        let unknowns = (2 * largest + 1) * size;
+        let mut answers = Mat::<c64>::zeros(unknowns, 0);
+        for (orders, circle) in circles {
+            let inner = circle.nrows() / orders.len().max(1);
+            for (a, &n) in orders.iter().enumerate() {
+                let follows = conjugate_below_zero(&self.follows[n.unsigned_abs() as usize], n);
+                let answer = onto(&(follows * circle.subrows(a * inner, inner)));
+                answers.resize_with(unknowns, answer.nrows(), |_, _| c64::new(0.0, 0.0));
+                for j in 0..answer.nrows() {
+                    for i in 0..size {
+                        let value = answer[(j, i)] * share;
+                        answers[(place(n) + i, j)] = value;
+                        answers[(place(-n) + i, j)] = value.conj();
+                    }
+                }
+            }
         }
+        rows_on_real(&answers, largest, size)
     }
 
     /// The number of entries, for the books of a cache.
@@ -124,7 +161,12 @@ impl SeenWeb {
             .iter()
             .map(|of| 2 * of.nrows() * of.ncols())
             .sum();
-        plain + entries(&self.compliance) + entries(&self.answers)
+        let follows: usize = self
+            .follows
+            .iter()
+            .map(|of| 2 * of.nrows() * of.ncols())
+            .sum();
+        plain + follows + entries(&self.compliance) + entries(&self.answers)
     }
 }
 
@@ -196,6 +238,26 @@ impl HoledChange {
         let seen = (i + z - (j - known)) % z;
         let turned = turned(&self.answers, self.size, TAU * seen as f64 / z as f64);
         turned.transpose() * &self.changes[known]
+    }
+
+    /// The forces on the web's outer circle by which holes act like a change of the web, under loads on the functions of some teeth, each
+    /// with its number.
+    pub(crate) fn forces(&self, loads: &[(usize, &[f64])]) -> Vec<f64> {
+        let mut sum = Mat::zeros(self.answers.nrows(), 1);
+        for (tooth, load) in loads {
+            let known = tooth % self.changes.len();
+            let load = Mat::from_fn(load.len(), 1, |i, _| load[i]);
+            let ahead = TAU * (tooth - known) as f64 / self.tooth_count as f64;
+            sum += turned(&(&self.changes[known] * load), self.size, ahead);
+        }
+        sum.col_as_slice(0).to_vec()
+    }
+
+    /// Forces on the web's outer circle as tooth `tooth` sees them.
+    pub(crate) fn seen_from(&self, tooth: usize, forces: &[f64]) -> Vec<f64> {
+        let forces = Mat::from_fn(forces.len(), 1, |i, _| forces[i]);
+        let back = -TAU * tooth as f64 / self.tooth_count as f64;
+        turned(&forces, self.size, back).col_as_slice(0).to_vec()
     }
 
     /// The number of entries, for the books of a cache.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::carrier::Stack;
+use super::face_roots::FaceRoots;
 use super::face_yield::{FaceYield, FaceYieldSpec, PlainFace};
 use super::{BlankSpec, Gear, PairSpec, Teeth, TeethSpec, WantedGear, make_gears};
 use crate::contact::compliances::Compliances;
@@ -64,6 +65,16 @@ pub trait Parts: Sync {
     /// [`PartError`].
     fn face_yield(&self, spec: &FaceYieldSpec, run: &Run) -> Result<Arc<FaceYield>, PartError> {
         spec.make(self, run).map(Arc::new)
+    }
+
+    /// How the roots of a solid gear are stressed, of which `spec` says all but the holes.
+    ///
+    /// # Errors
+    ///
+    /// [`PartError`].
+    fn face_roots(&self, spec: &Stack, run: &Run) -> Result<Arc<FaceRoots>, PartError> {
+        let plain = self.plain_face(spec, run)?;
+        FaceRoots::new(spec, &plain, run).map(Arc::new)
     }
 
     /// What is known of the flanks of `spec`: a place for it, if nothing is.

@@ -12,6 +12,7 @@
 //! and M, C, D the integrals of products of the functions ([`super::axial`]). Straight bodies are those of τ = 0. The unknowns are
 //! the components along e_r, e_t and the axis at each node, for each function along the axis: node by node, component by component.
 
+use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, Mat, Par};
 use nalgebra::SMatrix;
@@ -59,6 +60,18 @@ pub struct CondensedPrism {
     pub held: Mat<f64>,
 }
 
+/// All unknowns of some nodes of a prism: node by node, component by component, a row for each function along the axis.
+#[derive(Debug, Clone)]
+pub struct NodeRows {
+    /// By the kept unknowns.
+    pub by_kept: Mat<f64>,
+    /// By forces on the points that were asked for, with what is kept held, in m/N.
+    pub by_points: Mat<f64>,
+}
+
+/// Unknowns that go through the factor together, about.
+const ROWS_AT_ONCE: usize = 64;
+
 /// The matrices of one element: K_00, K_01 and K_11 on polar components at its nodes.
 struct SectionMatrices {
     plain: SectionMatrix,
@@ -85,6 +98,23 @@ impl Prism<'_> {
         fixed: &[u32],
         points: &[(u32, [f64; COMPONENTS])],
     ) -> Result<CondensedPrism, FemError> {
+        let (condensed, _) = self.condense_with(part, kept, fixed, points, &[])?;
+        Ok(condensed)
+    }
+
+    /// The same, and all unknowns of the nodes `told`.
+    ///
+    /// # Errors
+    ///
+    /// As [`Prism::condense`].
+    pub fn condense_with(
+        &self,
+        part: &'static str,
+        kept: &[u32],
+        fixed: &[u32],
+        points: &[(u32, [f64; COMPONENTS])],
+        told: &[u32],
+    ) -> Result<(CondensedPrism, NodeRows), FemError> {
         let numbering = Numbering::new(self.grid.nodes.len(), kept, fixed);
         let (size, functions) = (self.unknowns_of_node(), self.axial.len());
         let mut matrix = BlockMatrix::new(size, &self.grid.elements, &numbering);
@@ -136,11 +166,42 @@ impl Prism<'_> {
         );
         super::dense::mirror_lower(&mut held);
         let on_kept = &trailing * columns.subrows(interior, trailing.nrows());
-        Ok(CondensedPrism {
+
+        let mut rows = NodeRows {
+            by_kept: Mat::zeros(told.len() * size, trailing.nrows()),
+            by_points: Mat::zeros(told.len() * size, inside.ncols()),
+        };
+        let at_once = (ROWS_AT_ONCE / size).max(1);
+        for (part, nodes) in told.chunks(at_once).enumerate() {
+            let mut units = Mat::<f64>::zeros(size * numbering.count, nodes.len() * size);
+            for (i, node) in nodes.iter().enumerate() {
+                let Some(node) = numbering.place(*node) else {
+                    continue;
+                };
+                for c in 0..size {
+                    units[(places[node * size + c] as usize, i * size + c)] = 1.0;
+                }
+            }
+            factor.half_solve_in_place(&mut units);
+            let (first, count) = (part * at_once * size, nodes.len() * size);
+            let by_kept = &trailing * units.subrows(interior, trailing.nrows());
+            let mut to = rows.by_kept.subrows_mut(first, count);
+            to.copy_from(by_kept.transpose());
+            matmul(
+                rows.by_points.subrows_mut(first, count),
+                Accum::Replace,
+                units.subrows(0, interior).transpose(),
+                inside,
+                1.0,
+                Par::Seq,
+            );
+        }
+        let condensed = CondensedPrism {
             stiffness,
             rows: on_kept.transpose().to_owned(),
             held,
-        })
+        };
+        Ok((condensed, rows))
     }
 
     /// The energy ½ uᵀ K u of the displacements `u` of all nodes, node by node.

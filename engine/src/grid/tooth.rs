@@ -59,6 +59,19 @@ impl ToothGrid {
         Self::of_sizes(gear, interface_radius, &Sizes::OF_PRISM, level)
     }
 
+    /// The same with fillets that tell the stress along them.
+    ///
+    /// # Errors
+    ///
+    /// As [`ToothGrid::new`].
+    pub fn of_stressed_prism(
+        gear: &SpurGear,
+        interface_radius: f64,
+        level: GridLevel,
+    ) -> Result<Self, GridError> {
+        Self::of_sizes(gear, interface_radius, &Sizes::OF_STRESSED_PRISM, level)
+    }
+
     fn of_sizes(
         gear: &SpurGear,
         interface_radius: f64,

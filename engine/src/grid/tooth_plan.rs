@@ -101,6 +101,15 @@ impl Sizes {
         below_fillet: 0.25,
         least: [8, 4, 2, 4],
     };
+
+    /// Sizes of such a section whose fillets tell the stress along them, to 1.5 %. What bends the tooth needs layers across it more than the
+    /// fillet needs small elements.
+    pub(super) const OF_STRESSED_PRISM: Self = Self {
+        on_fillet: SIZE_ON_FILLET,
+        below_fillet: SIZE_BELOW_FILLET,
+        least: [8, 8, 4, 4],
+        ..Self::OF_PRISM
+    };
 }
 
 /// The boundary of the sector as points on the doubled lattice, all of the half with the loaded flank.

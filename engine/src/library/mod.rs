@@ -10,8 +10,9 @@ use std::sync::Arc;
 pub use shelf::ShelfUsage;
 
 use crate::assembly::{
-    AssemblyError, BlankSpec, ContactsSpec, FaceYield, FaceYieldSpec, FlanksSpec, Gear, GearSpec,
-    PairSpec, PartError, Parts, PlainFace, Stack, Teeth, TeethSpec, WantedGear, make_gears,
+    AssemblyError, BlankSpec, ContactsSpec, FaceRoots, FaceYield, FaceYieldSpec, FlanksSpec, Gear,
+    GearSpec, PairSpec, PartError, Parts, PlainFace, Stack, Teeth, TeethSpec, WantedGear,
+    make_gears,
 };
 use crate::contact::compliances::Compliances;
 use crate::contact::drawn::DrawnFlanks;
@@ -35,6 +36,7 @@ struct Shelves {
     contacts: Shelf<ContactsSpec, Vec<MeshContact>>,
     faces: Shelf<Stack, PlainFace>,
     yields: Shelf<FaceYieldSpec, FaceYield>,
+    roots: Shelf<Stack, FaceRoots>,
 }
 
 impl Default for Library {
@@ -52,17 +54,18 @@ impl Library {
             blanks: Shelf::new(bytes / 8, bytes_of_blank),
             gears: Shelf::new(bytes / 8, bytes_of_gear),
             flanks: Shelf::new(bytes / 8, |_, flanks| flanks.bytes()),
-            compliances: Shelf::new(bytes / 8, |_, compliances| compliances.bytes()),
-            contacts: Shelf::new(bytes / 8, |spec, contacts| {
+            compliances: Shelf::new(bytes / 16, |_, compliances| compliances.bytes()),
+            contacts: Shelf::new(bytes / 16, |spec, contacts| {
                 bytes_of_contacts(spec, contacts)
             }),
             faces: Shelf::new(bytes / 16, |_, face| size_of::<f64>() * face.entries()),
             yields: Shelf::new(bytes / 16, |_, face| size_of::<f64>() * face.entries()),
+            roots: Shelf::new(bytes / 8, |_, roots| size_of::<f64>() * roots.entries()),
         }))
     }
 
     /// How each of its shelves is used, by what stands on it.
-    pub fn usage(&self) -> [(&'static str, ShelfUsage); 8] {
+    pub fn usage(&self) -> [(&'static str, ShelfUsage); 9] {
         let Shelves {
             teeth,
             blanks,
@@ -72,6 +75,7 @@ impl Library {
             contacts,
             faces,
             yields,
+            roots,
         } = &*self.0;
         [
             ("teeth", teeth.usage()),
@@ -82,6 +86,7 @@ impl Library {
             ("contacts", contacts.usage()),
             ("faces", faces.usage()),
             ("yields", yields.usage()),
+            ("roots", roots.usage()),
         ]
     }
 }
@@ -136,6 +141,17 @@ impl Parts for Library {
             return Ok(known);
         }
         let made = spec.make(self, run).map(Arc::new)?;
+        shelf.keep(spec, &made);
+        Ok(made)
+    }
+
+    fn face_roots(&self, spec: &Stack, run: &Run) -> Result<Arc<FaceRoots>, PartError> {
+        let shelf = &self.0.roots;
+        if let Some(known) = shelf.find(spec) {
+            return Ok(known);
+        }
+        let plain = self.plain_face(spec, run)?;
+        let made = FaceRoots::new(spec, &plain, run).map(Arc::new)?;
         shelf.keep(spec, &made);
         Ok(made)
     }
@@ -236,13 +252,20 @@ mod tests {
             let kept = library.face_yield(&spec, &run).expect("definite");
             let alone = MakeAll.face_yield(&spec, &run).expect("definite");
             assert_eq!(kept.smooth(&[0, 1, 23]), alone.smooth(&[0, 1, 23]));
+            let roots = [&library as &dyn Parts, &MakeAll].map(|parts| {
+                let roots = parts.face_roots(&spec.stack(), &run).expect("definite");
+                let loads = [roots.forces(3, [(9e-3, 2e-3, 100.0)].into_iter())];
+                roots.under(Some(&kept), &loads).stresses(4)
+            });
+            assert_eq!(roots[0], roots[1]);
         }
         let uses = library.usage();
         let used = |name| {
             let shelf = uses.iter().find(|(shelf, _)| *shelf == name);
             shelf.map(|(_, usage)| (usage.misses, usage.hits))
         };
-        assert_eq!(used("faces"), Some((1, 1)));
+        assert_eq!(used("faces"), Some((1, 2)));
         assert_eq!(used("yields"), Some((2, 1)));
+        assert_eq!(used("roots"), Some((1, 2)));
     }
 }

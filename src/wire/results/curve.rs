@@ -43,8 +43,8 @@ pub struct CurveDocument {
     pub peak_contact_pressure_mpa: Vec<Option<f64>>,
     /// The share of the load on each pair that ever carries any, by rising offset.
     pub load_shares: Vec<LoadShareDocument>,
-    /// The largest stresses; absent unless the submission asks for them, for other methods than the flexible one, and at the
-    /// torque 0.
+    /// The largest stresses; absent unless the submission asks for them, for other methods than `flexible` and `three_dimensional`, and
+    /// at the torque 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stress: Option<StressDocument>,
     /// The load along the common face; absent for plane methods and at the torque 0.

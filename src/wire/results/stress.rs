@@ -4,9 +4,10 @@ use meshwright_engine::analysis::stress::{GearStresses, PeakStress};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::wire::units::to_mpa;
+use crate::wire::units::{to_mm, to_mpa};
 
-/// The largest stresses of both gears at each position. Angles are polar ones from the centerline of tooth 0, from 0 to 360 degrees.
+/// The largest stresses of both gears at each position. Angles are polar ones from the centerline of tooth 0, where it stands in the middle of
+/// the face, from 0 to 360 degrees; heights are those from the middle of the gear's own face, and absent in the plane.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 #[schema(as = Stress, title = "Stress")]
 pub struct StressDocument {
@@ -24,15 +25,24 @@ pub struct GearStressDocument {
     pub root_mpa: Vec<f64>,
     /// Where that is, in degrees.
     pub root_angle_deg: Vec<f64>,
+    /// How high that is, in mm; absent in the plane.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub root_z_mm: Vec<f64>,
     /// The largest first principal stress along the root fillets on both sides of all teeth in reach of the load, in MPa.
     pub root_tension_mpa: Vec<f64>,
     /// Where that is, in degrees.
     pub root_tension_angle_deg: Vec<f64>,
+    /// How high that is, in mm; absent in the plane.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub root_tension_z_mm: Vec<f64>,
     /// The smallest one, in MPa: the largest compression, which is negative.
     pub root_compression_mpa: Vec<f64>,
     /// Where that is, in degrees.
     pub root_compression_angle_deg: Vec<f64>,
-    /// The largest von Mises stress along the edges of the holes, in MPa; absent without holes.
+    /// How high that is, in mm; absent in the plane.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub root_compression_z_mm: Vec<f64>,
+    /// The largest von Mises stress along the edges of the holes, in MPa; absent without holes, and in three dimensions.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub hole_mpa: Vec<f64>,
     /// Where that is, in degrees; absent without holes.
@@ -73,13 +83,22 @@ impl StressDocument {
             |peaks: &[PeakStress]| peaks.iter().map(|peak| to_mpa(peak.stress)).collect();
         let angles =
             |peaks: &[PeakStress]| peaks.iter().map(|peak| peak.angle.to_degrees()).collect();
+        let heights = |peaks: &[PeakStress]| {
+            peaks
+                .iter()
+                .filter_map(|peak| Some(to_mm(peak.z?)))
+                .collect()
+        };
         let of = |gear: &GearStresses| GearStressDocument {
             root_mpa: stresses(&gear.root),
             root_angle_deg: angles(&gear.root),
+            root_z_mm: heights(&gear.root),
             root_tension_mpa: stresses(&gear.root_tension),
             root_tension_angle_deg: angles(&gear.root_tension),
+            root_tension_z_mm: heights(&gear.root_tension),
             root_compression_mpa: stresses(&gear.root_compression),
             root_compression_angle_deg: angles(&gear.root_compression),
+            root_compression_z_mm: heights(&gear.root_compression),
             hole_mpa: stresses(&gear.holes),
             hole_angle_deg: angles(&gear.holes),
         };

@@ -115,6 +115,7 @@ fn peaks(stresses: &[f64]) -> Vec<PeakStress> {
     let peak = |&stress: &f64| PeakStress {
         stress,
         angle: TAU / 2.0,
+        z: Some(-2e-3),
     };
     stresses.iter().map(peak).collect()
 }

@@ -69,7 +69,12 @@ fn stress_not_told(case: &Case) -> Option<&'static str> {
         Method::Flexible => Some(
             "stress under the contact itself, and concentrated where regions of unlike thickness meet: stress tells roots and hole edges",
         ),
-        _ => Some("stress: it was asked for, and only the flexible method tells it"),
+        Method::ThreeDimensional => {
+            Some("stress under the contact itself, and at the edges of holes: stress tells roots")
+        }
+        _ => Some(
+            "stress: it was asked for, and only the methods flexible and three_dimensional tell it",
+        ),
     }
 }
 

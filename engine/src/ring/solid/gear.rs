@@ -40,53 +40,150 @@ pub fn answers(
     run: &Run,
 ) -> Result<Vec<ClassAnswers>, FemError> {
     let sector = &tooth.sector;
-    let largest = carriers.len() - 1;
     (0..=sector.count / 2)
         .into_par_iter()
         .map(|class| {
             run.check()?;
-            let orders = sector.orders(class, largest);
-            let sides = sector.size * sector.side_nodes;
-            let mut stiffness = sector.class_stiffness(class, &orders);
-            for (k, &order) in orders.iter().enumerate() {
-                let share = faer::Scale(c64::new(1.0 / sector.count as f64, 0.0));
-                let share = of_order(carriers, order) * share;
-                add_block(&mut stiffness, sides + k * sector.size, &share);
-            }
-            let unknowns = stiffness.nrows();
-            let factor = Cholesky::new(stiffness).ok_or(FemError::NotPositiveDefinite {
-                part: "the ring of teeth",
-                unknowns,
-            })?;
+            let ring = ClassOfRing::new(sector, carriers, class)?;
             let mut half = sector
-                .on_class(&tooth.rows, class, &orders)
+                .on_class(&tooth.rows, class, &ring.orders)
                 .adjoint()
                 .to_owned();
-            factor.half_solve_in_place(half.as_mut());
+            ring.factor.half_solve_in_place(half.as_mut());
             let flank = half.adjoint() * &half;
-            let kept: Vec<usize> = orders
-                .iter()
-                .enumerate()
-                .filter(|(_, n)| wanted.is_some_and(|most| n.unsigned_abs() as usize <= most))
-                .map(|(k, _)| k)
-                .collect();
-            let size = sector.size;
-            let mut unit = Mat::<c64>::zeros(unknowns, kept.len() * size);
-            for (place, k) in kept.iter().enumerate() {
-                for c in 0..size {
-                    unit[(sides + k * size + c, place * size + c)] = c64::new(1.0, 0.0);
-                }
-            }
-            factor.half_solve_in_place(unit.as_mut());
+            let (orders, mut unit) = ring.units(sector, wanted);
+            ring.factor.half_solve_in_place(unit.as_mut());
             Ok(ClassAnswers {
                 class,
-                orders: kept.iter().map(|k| orders[*k]).collect(),
+                orders,
                 circle: unit.adjoint() * &half,
                 compliance: unit.adjoint() * &unit,
                 flank,
             })
         })
         .collect()
+}
+
+/// One class of a ring of teeth on what carries them.
+struct ClassOfRing {
+    /// The orders of the class on the interface circle.
+    orders: Vec<i64>,
+    /// Its stiffness on the unknowns of the class.
+    factor: Cholesky<c64>,
+    unknowns: usize,
+}
+
+impl ClassOfRing {
+    fn new(sector: &SolidSector, carriers: &[Mat<c64>], class: usize) -> Result<Self, FemError> {
+        let orders = sector.orders(class, carriers.len() - 1);
+        let sides = sector.size * sector.side_nodes;
+        let mut stiffness = sector.class_stiffness(class, &orders);
+        for (k, &order) in orders.iter().enumerate() {
+            let share = faer::Scale(c64::new(1.0 / sector.count as f64, 0.0));
+            let share = of_order(carriers, order) * share;
+            add_block(&mut stiffness, sides + k * sector.size, &share);
+        }
+        let unknowns = stiffness.nrows();
+        let factor = Cholesky::new(stiffness).ok_or(FemError::NotPositiveDefinite {
+            part: "the ring of teeth",
+            unknowns,
+        })?;
+        Ok(Self {
+            orders,
+            factor,
+            unknowns,
+        })
+    }
+
+    /// Unit forces on the orders up to `wanted` of the interface circle, and these orders.
+    fn units(&self, sector: &SolidSector, wanted: Option<usize>) -> (Vec<i64>, Mat<c64>) {
+        let (size, sides) = (sector.size, sector.size * sector.side_nodes);
+        let kept: Vec<usize> = self
+            .orders
+            .iter()
+            .enumerate()
+            .filter(|(_, n)| wanted.is_some_and(|most| n.unsigned_abs() as usize <= most))
+            .map(|(k, _)| k)
+            .collect();
+        let mut unit = Mat::<c64>::zeros(self.unknowns, kept.len() * size);
+        for (place, k) in kept.iter().enumerate() {
+            for c in 0..size {
+                unit[(sides + k * size + c, place * size + c)] = c64::new(1.0, 0.0);
+            }
+        }
+        (kept.iter().map(|k| self.orders[*k]).collect(), unit)
+    }
+}
+
+/// How the interfaces of all teeth move in one class.
+#[derive(Debug)]
+pub struct ClassMotion {
+    /// The class k.
+    pub class: usize,
+    /// Its orders on the interface circle.
+    pub orders: Vec<i64>,
+    /// The unknowns of the class under forces on the flank of tooth 0, a column for each.
+    pub by_flank: Mat<c64>,
+    /// Those of the orders that were wanted.
+    pub wanted: Vec<i64>,
+    /// The unknowns under forces on these, order by order.
+    pub by_circle: Mat<c64>,
+}
+
+/// How the interfaces of a ring of teeth on `carriers` move, class by class, under forces on the flank of tooth 0 and on the orders up to
+/// `wanted` of the interface circle.
+///
+/// # Errors
+///
+/// As [`answers`].
+pub fn motions(
+    tooth: &SolidTooth,
+    carriers: &[Mat<c64>],
+    wanted: Option<usize>,
+    run: &Run,
+) -> Result<Vec<ClassMotion>, FemError> {
+    let sector = &tooth.sector;
+    (0..=sector.count / 2)
+        .into_par_iter()
+        .map(|class| {
+            run.check()?;
+            let ring = ClassOfRing::new(sector, carriers, class)?;
+            let mut by_flank = sector
+                .on_class(&tooth.rows, class, &ring.orders)
+                .adjoint()
+                .to_owned();
+            ring.factor.solve_in_place(by_flank.as_mut());
+            let (wanted, mut by_circle) = ring.units(sector, wanted);
+            ring.factor.solve_in_place(by_circle.as_mut());
+            Ok(ClassMotion {
+                class,
+                orders: ring.orders,
+                by_flank,
+                wanted,
+                by_circle,
+            })
+        })
+        .collect()
+}
+
+/// How the interfaces of the teeth at each of `distances` counter-clockwise of tooth 0 move, of what each class does: its number, its orders
+/// and its unknowns.
+pub fn interfaces<'a>(
+    sector: &SolidSector,
+    classes: impl Iterator<Item = (usize, &'a [i64], &'a Mat<c64>)>,
+    distances: &[usize],
+) -> Vec<Mat<f64>> {
+    let mut sums = vec![Mat::zeros(0, 0); distances.len()];
+    for (class, orders, motion) in classes {
+        let moved = sector.off_class(motion, class, orders);
+        for (sum, distance) in sums.iter_mut().zip(distances) {
+            if sum.nrows() == 0 {
+                *sum = Mat::zeros(moved.nrows(), moved.ncols());
+            }
+            add_class(sum, (class, &moved), sector.count, *distance);
+        }
+    }
+    sums
 }
 
 /// The sum over all classes of `of` turned by their share of `distance` teeth, over Z: the block between the tooth `distance`
@@ -96,19 +193,30 @@ pub fn between_teeth<'a>(
     tooth_count: usize,
     distance: usize,
 ) -> Mat<f64> {
-    let mut sum: Option<Mat<f64>> = None;
+    let mut sum = Mat::zeros(0, 0);
     for (class, of) in classes {
-        let own_conjugate = (2 * class).is_multiple_of(tooth_count);
-        let weight = if own_conjugate { 1.0 } else { 2.0 } / tooth_count as f64;
-        let place = (class * distance) % tooth_count;
-        let angle = std::f64::consts::TAU * place as f64 / tooth_count as f64;
-        let turn = SolidSector::turn(1, angle) * weight;
-        let sum = sum.get_or_insert_with(|| Mat::zeros(of.nrows(), of.ncols()));
-        for j in 0..of.ncols() {
-            for i in 0..of.nrows() {
-                sum[(i, j)] += (turn * of[(i, j)]).re;
-            }
+        if sum.nrows() == 0 {
+            sum = Mat::zeros(of.nrows(), of.ncols());
+        }
+        add_class(&mut sum, (class, of), tooth_count, distance);
+    }
+    sum
+}
+
+fn add_class(
+    sum: &mut Mat<f64>,
+    (class, of): (usize, &Mat<c64>),
+    tooth_count: usize,
+    distance: usize,
+) {
+    let own_conjugate = (2 * class).is_multiple_of(tooth_count);
+    let weight = if own_conjugate { 1.0 } else { 2.0 } / tooth_count as f64;
+    let place = (class * distance) % tooth_count;
+    let angle = std::f64::consts::TAU * place as f64 / tooth_count as f64;
+    let turn = SolidSector::turn(1, angle) * weight;
+    for j in 0..of.ncols() {
+        for (sum, of) in sum.col_as_slice_mut(j).iter_mut().zip(of.col_as_slice(j)) {
+            *sum += (turn * *of).re;
         }
     }
-    sum.unwrap_or_else(|| Mat::zeros(0, 0))
 }

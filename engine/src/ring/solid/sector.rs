@@ -71,6 +71,40 @@ impl SolidSector {
         on_class
     }
 
+    /// How the interface moves where the unknowns of the class are `motion`, a column for each of several.
+    pub fn off_class(&self, motion: &Mat<c64>, class: usize, orders: &[i64]) -> Mat<c64> {
+        let (size, sides) = (self.size, self.size * self.side_nodes);
+        let angle = std::f64::consts::TAU * (class % self.count) as f64 / self.count as f64;
+        let across = Self::turn(1, angle);
+        let nodes: usize = self.arcs.iter().map(Vec::len).sum();
+        let mut off = Mat::<c64>::zeros(2 * sides + nodes * size, motion.ncols());
+        for j in 0..motion.ncols() {
+            let (from, to) = (motion.col_as_slice(j), off.col_as_slice_mut(j));
+            for i in 0..sides {
+                to[i] = from[i];
+                to[sides + i] = across * from[i];
+            }
+        }
+        let mut first = 2 * sides;
+        for (arc, angles) in self.arcs.iter().enumerate() {
+            let of_arc = sides + arc * orders.len() * size;
+            for &angle in angles {
+                for (k, &order) in orders.iter().enumerate() {
+                    let turn = Self::turn(order, angle);
+                    for j in 0..motion.ncols() {
+                        let from = &motion.col_as_slice(j)[of_arc + k * size..][..size];
+                        let to = &mut off.col_as_slice_mut(j)[first..first + size];
+                        for (to, from) in to.iter_mut().zip(from) {
+                            *to += turn * *from;
+                        }
+                    }
+                }
+                first += size;
+            }
+        }
+        off
+    }
+
     /// The Hermitian stiffness of one sector on the unknowns of the class.
     pub fn class_stiffness(&self, class: usize, orders: &[i64]) -> Mat<c64> {
         let half = self.on_class(&self.stiffness, class, orders);

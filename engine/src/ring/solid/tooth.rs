@@ -5,7 +5,7 @@ use faer::Mat;
 use super::sector::SolidSector;
 use crate::fem::FemError;
 use crate::fem::axial::AxialBasis;
-use crate::fem::prism::{COMPONENTS, Prism};
+use crate::fem::prism::{COMPONENTS, NodeRows, Prism};
 use crate::gear::{SolidGear, radial, tangential};
 use crate::grid::ToothGrid;
 
@@ -33,6 +33,21 @@ impl SolidTooth {
     ///
     /// [`FemError`] if the grid is degenerate.
     pub fn new(gear: &SolidGear, grid: &ToothGrid, axial: &AxialBasis) -> Result<Self, FemError> {
+        let (tooth, _) = Self::with_nodes(gear, grid, axial, &[])?;
+        Ok(tooth)
+    }
+
+    /// The same, and how the nodes `told` move, by the interface and by the flank.
+    ///
+    /// # Errors
+    ///
+    /// As [`SolidTooth::new`].
+    pub fn with_nodes(
+        gear: &SolidGear,
+        grid: &ToothGrid,
+        axial: &AxialBasis,
+        told: &[u32],
+    ) -> Result<(Self, NodeRows), FemError> {
         let section = gear.section();
         let (right, left) = &grid.side_nodes;
         let kept: Vec<u32> = [right, left, &grid.arc_nodes]
@@ -47,8 +62,8 @@ impl SolidTooth {
             axial,
         };
         let points = flank_normals(gear, grid);
-        let condensed = prism.condense("the tooth", &kept, &[], &points)?;
-        Ok(Self {
+        let (condensed, rows) = prism.condense_with("the tooth", &kept, &[], &points, told)?;
+        let tooth = Self {
             sector: SolidSector {
                 count: section.tooth_count() as usize,
                 size: prism.unknowns_of_node(),
@@ -60,11 +75,12 @@ impl SolidTooth {
             held: condensed.held,
             roll_lengths: grid.flank_roll_lengths.clone(),
             grid_nodes: grid.grid.nodes.len(),
-        })
+        };
+        Ok((tooth, rows))
     }
 }
 
-/// The compliance of the loaded flank of `grid` with the sides of the sector free and its arc held.
+/// The compliance of the loaded flank of `grid` with the sides of the sector free and its arc held, and how the nodes `told` move.
 ///
 /// # Errors
 ///
@@ -73,7 +89,8 @@ pub fn flank_compliance_alone(
     gear: &SolidGear,
     grid: &ToothGrid,
     axial: &AxialBasis,
-) -> Result<Mat<f64>, FemError> {
+    told: &[u32],
+) -> Result<(Mat<f64>, NodeRows), FemError> {
     let prism = Prism {
         grid: &grid.grid,
         material: gear.section().material(),
@@ -81,9 +98,9 @@ pub fn flank_compliance_alone(
         axial,
     };
     let points = flank_normals(gear, grid);
-    Ok(prism
-        .condense("the tooth", &[], &grid.arc_nodes, &points)?
-        .held)
+    let (condensed, rows) =
+        prism.condense_with("the tooth", &[], &grid.arc_nodes, &points, told)?;
+    Ok((condensed.held, rows))
 }
 
 /// The nodes of the loaded flank with their outward normals in polar components: (n cos β_b, −τ r_b cos β_b), n that of the section.

@@ -1,0 +1,114 @@
+//! The largest stresses at the roots of the teeth along their faces, position by position.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::AnalysisError;
+use super::case::Faces;
+use super::stress::{GearStresses, PeakStress, REACH, largest, smallest};
+use crate::assembly::face_roots::SurfaceStress;
+use crate::assembly::{FaceRoots, FaceYield, FaceYieldSpec, Parts};
+use crate::contact::face::FaceContact;
+use crate::gear::{Member, SolidPair};
+use crate::run::Run;
+
+/// Both gears of a pair, to be asked for the stresses at their roots under a contact.
+pub(super) struct FaceStressModel<'a> {
+    pair: &'a SolidPair,
+    yields: &'a [Arc<FaceYield>; 2],
+    roots: [Arc<FaceRoots>; 2],
+}
+
+impl<'a> FaceStressModel<'a> {
+    /// That of the pair of `faces`, which yields as `yields` say by the `specs`.
+    pub(super) fn new(
+        faces: &'a Faces,
+        yields: &'a [Arc<FaceYield>; 2],
+        parts: &dyn Parts,
+        run: &Run,
+    ) -> Result<Self, AnalysisError> {
+        let of = |member: Member| {
+            let spec = FaceYieldSpec::new(faces.pair.gear(member), faces.resolution);
+            let made = parts.face_roots(&spec.stack(), run);
+            made.map_err(|error| error.of(member))
+        };
+        let (driving, driven) = rayon::join(|| of(Member::Driving), || of(Member::Driven));
+        Ok(Self {
+            pair: &faces.pair,
+            yields,
+            roots: [driving?, driven?],
+        })
+    }
+
+    /// The largest stresses of both gears under each of `contacts`.
+    pub(super) fn under(
+        &self,
+        contacts: &[FaceContact],
+        run: &Run,
+    ) -> Result<[GearStresses; 2], AnalysisError> {
+        let peaks: Vec<[[PeakStress; 3]; 2]> = contacts
+            .par_iter()
+            .map(|contact| {
+                run.check()?;
+                Ok(Member::BOTH.map(|member| self.peaks(member, contact)))
+            })
+            .collect::<Result<_, AnalysisError>>()?;
+        let of = |gear: usize, kind: usize| peaks.iter().map(|both| both[gear][kind]).collect();
+        Ok([0, 1].map(|gear| GearStresses {
+            root: of(gear, 0),
+            root_tension: of(gear, 1),
+            root_compression: of(gear, 2),
+            holes: Vec::new(),
+        }))
+    }
+
+    /// The largest stress of von Mises at tensile roots, and the largest and the smallest principal stress at all.
+    fn peaks(&self, member: Member, contact: &FaceContact) -> [PeakStress; 3] {
+        let g = member.index();
+        let (roots, section) = (&self.roots[g], self.pair.section());
+        let lines = contact
+            .slices
+            .chunk_by(|one, next| one.pair == next.pair)
+            .map(|line| {
+                let pressing = line.iter().map(|slice| {
+                    let z = self.pair.own_height(member, slice.z);
+                    (slice.roll_lengths[g], z, slice.normal[0])
+                });
+                roots.forces(section.tooth(member, line[0].pair), pressing)
+            });
+        let loads: Vec<_> = lines.collect();
+        let answer = roots.under(Some(&self.yields[g]), &loads);
+        let z = roots.tooth_count();
+        let away = |tooth: usize| {
+            let apart = loads.iter().map(|load| load.tooth().abs_diff(tooth));
+            apart.map(|d| d.min(z - d)).min().unwrap_or(z)
+        };
+        let at = |tooth: usize, of: &SurfaceStress, stress: f64| PeakStress {
+            stress,
+            angle: TAU * tooth as f64 / z as f64 + of.angle,
+            z: Some(of.z),
+        };
+        let (mut in_mesh, mut tension, mut compression) = (Vec::new(), Vec::new(), Vec::new());
+        for tooth in (0..z).filter(|tooth| away(*tooth) <= REACH) {
+            let stresses = answer.stresses(tooth);
+            let beside = stresses.iter().filter(|of| {
+                // Where it is stretched more than pressed.
+                of.beside_loaded && away(tooth) <= 1 && of.principal[0] > -of.principal[1]
+            });
+            in_mesh.push(largest(beside.map(|of| at(tooth, of, of.von_mises()))));
+            tension.push(largest(
+                stresses.iter().map(|of| at(tooth, of, of.principal[0])),
+            ));
+            compression.push(smallest(
+                stresses.iter().map(|of| at(tooth, of, of.principal[1])),
+            ));
+        }
+        [
+            largest(in_mesh.into_iter()),
+            largest(tension.into_iter()),
+            smallest(compression.into_iter()),
+        ]
+    }
+}

@@ -1,0 +1,854 @@
+//! How the roots of the teeth of a solid gear are stressed under loads on its flanks.
+//!
+//! A fillet is a free surface, on which what stretches it says all: with the surface a function of its length in the section and of z, the
+//! strains along it are those of the displacements of its own nodes, and the stresses those of a sheet. So rows lead from the forces on the
+//! flanks to the displacements of the fillets, as in the plane ([`super::inside`]), and no other node is asked.
+
+use faer::Mat;
+use nalgebra::{Matrix2, Vector3};
+
+use super::carrier::Stack;
+use super::flank_fit::{FlankFit, OTHER_DEGREE, OWN_DEGREE, smoothed_rows, up_the_flank};
+use super::{FaceResolution, FaceYield, PartError, PlainFace};
+use crate::fem::axial::AxialBasis;
+use crate::fem::dense::entries;
+use crate::fem::prism::COMPONENTS;
+use crate::gear::{Involute, SolidGear, Vector, radial, tangential};
+use crate::grid::{Grid, GridLevel, ToothGrid};
+use crate::ring::solid::gear::{interfaces, motions};
+use crate::ring::solid::tooth::{SolidTooth, flank_compliance_alone};
+use crate::run::Run;
+
+/// How far from a loaded tooth, in teeth, the roots are stressed by it.
+const REACH: usize = 10;
+
+/// Heights across the face at which stresses are told, for each degree of its functions.
+const HEIGHTS_PER_DEGREE: usize = 4;
+
+/// Places on a fillet that are nearer to a contact are stressed by that rather than by the bending of the tooth, and are left out: in the section, in
+/// modules; and along the face, as a part of its width over the degree of its functions, which blur what is nearer.
+const UNDER_CONTACT: f64 = 0.6;
+const BLURRED: f64 = 1.0;
+
+/// The roots of the teeth of a gear, by the loads on its flanks.
+#[derive(Debug)]
+pub struct FaceRoots {
+    axial: AxialBasis,
+    surface: Surface,
+    flank: Involute,
+    tooth_count: usize,
+    roll_lengths: Vec<f64>,
+    squares: [f64; 2],
+    /// The displacements of the fillets of a tooth by the forces on the nodes of its own flank.
+    own: Mat<f64>,
+    /// Those of the tooth d places counter-clockwise of a loaded one, for d from −reach to reach, by forces on the lower functions on its flank;
+    /// that of d = 0 is empty.
+    others: Vec<Mat<f64>>,
+    /// Those of tooth 0 by forces on the outer circle of a web with holes, a column for each displacement.
+    by_web: Option<Mat<f64>>,
+    degrees_of_freedom: u64,
+}
+
+/// What presses the flank of one tooth, on its nodes and on the functions over it.
+#[derive(Debug, Clone)]
+pub struct FlankForces {
+    tooth: usize,
+    nodal: Vec<f64>,
+    smooth: Vec<f64>,
+    /// Where it acts near the foot of the flank: in the section, and how high.
+    at_foot: Vec<(Vector, f64)>,
+}
+
+/// How the roots answer to loads.
+pub struct RootAnswer<'a> {
+    roots: &'a FaceRoots,
+    yields: Option<&'a FaceYield>,
+    loads: &'a [FlankForces],
+    on_web: Option<Vec<f64>>,
+}
+
+/// The stresses on a fillet at one place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfaceStress {
+    /// The larger and the smaller principal stress in the surface, in Pa; the third is none.
+    pub principal: [f64; 2],
+    /// The polar angle of the place from the centerline of its tooth at z = 0.
+    pub angle: f64,
+    /// Its height from the middle of the face.
+    pub z: f64,
+    /// Whether it is beside the loaded flank.
+    pub beside_loaded: bool,
+}
+
+impl FaceRoots {
+    /// The roots of the gear of `stack`, whose teeth and rim yield as `plain` says.
+    ///
+    /// # Errors
+    ///
+    /// [`PartError`].
+    pub fn new(stack: &Stack, plain: &PlainFace, run: &Run) -> Result<Self, PartError> {
+        let gear = &stack.gear;
+        let section = gear.section().without_blank();
+        let grid =
+            ToothGrid::of_stressed_prism(&section, stack.interface_radius, GridLevel::Standard)?;
+        run.check()?;
+        let surface = Surface::new(gear, &grid, &stack.face);
+        let (tooth, rows) = SolidTooth::with_nodes(gear, &grid, &stack.face, &surface.nodes)?;
+        run.check()?;
+        let seen = plain.web().map(|web| web.largest());
+        let classes = motions(&tooth, plain.carriers(), seen, run)?;
+        let (sector, z, m) = (&tooth.sector, tooth.sector.count, stack.face.len());
+
+        let by_flank = classes
+            .iter()
+            .map(|class| (class.class, class.orders.as_slice(), &class.by_flank));
+        let own = interfaces(sector, by_flank, &[0]);
+        let own = rows.by_points + &rows.by_kept * &own[0];
+
+        let smoothing = FlankFit::new(gear, &stack.face, &tooth.roll_lengths).smoothing();
+        let lower: Vec<_> = classes
+            .iter()
+            .map(|class| {
+                let onto = smoothed_rows(&smoothing, &class.by_flank.transpose().to_owned(), m);
+                let lower = onto.subrows(0, (OTHER_DEGREE + 1) * m);
+                lower.transpose().to_owned()
+            })
+            .collect();
+        let of_classes = classes
+            .iter()
+            .zip(&lower)
+            .map(|(class, lower)| (class.class, class.orders.as_slice(), lower));
+        let reach = REACH.min((z - 1) / 2);
+        let distances: Vec<usize> = (0..=2 * reach).map(|d| (d + z - reach) % z).collect();
+        run.check()?;
+        let others = interfaces(sector, of_classes, &distances)
+            .into_iter()
+            .enumerate()
+            .map(|(d, moved)| match d == reach {
+                true => Mat::zeros(0, 0),
+                false => &rows.by_kept * moved,
+            })
+            .collect();
+
+        let by_web = plain.web().map(|web| {
+            let circles: Vec<_> = classes
+                .iter()
+                .filter(|class| !class.wanted.is_empty())
+                .map(|class| {
+                    let on_class = sector.on_class(&rows.by_kept, class.class, &class.orders);
+                    (on_class * &class.by_circle).adjoint().to_owned()
+                })
+                .collect();
+            let orders = classes.iter().map(|class| class.wanted.as_slice());
+            let orders = orders.filter(|wanted| !wanted.is_empty());
+            let transposed = |answers: &Mat<faer::c64>| answers.transpose().to_owned();
+            web.answers_to(orders.zip(&circles), &transposed)
+        });
+        let nodes = tooth.grid_nodes - sector.side_nodes - 1;
+        Ok(Self {
+            axial: stack.face.clone(),
+            surface,
+            flank: *section.flank(),
+            tooth_count: z,
+            squares: squares(&tooth.roll_lengths),
+            roll_lengths: tooth.roll_lengths,
+            own,
+            others,
+            by_web,
+            degrees_of_freedom: (nodes * tooth.sector.size * z) as u64,
+        })
+    }
+
+    /// The root of one tooth alone: that of [`FaceYield::of_sector`].
+    ///
+    /// # Errors
+    ///
+    /// As [`FaceRoots::new`].
+    pub fn of_sector(
+        gear: &SolidGear,
+        inner_radius: f64,
+        resolution: FaceResolution,
+    ) -> Result<Self, PartError> {
+        let axial = Stack::new(gear, resolution).face;
+        let section = gear.section().without_blank().with_plain_flanks();
+        let grid = ToothGrid::of_stressed_prism(&section, inner_radius, GridLevel::Standard)?;
+        let surface = Surface::new(gear, &grid, &axial);
+        let (_, rows) = flank_compliance_alone(gear, &grid, &axial, &surface.nodes)?;
+        let nodes = grid.grid.nodes.len() - grid.arc_nodes.len();
+        Ok(Self {
+            surface,
+            flank: *section.flank(),
+            tooth_count: 1,
+            squares: squares(&grid.flank_roll_lengths),
+            roll_lengths: grid.flank_roll_lengths,
+            own: rows.by_points,
+            others: vec![Mat::zeros(0, 0)],
+            by_web: None,
+            degrees_of_freedom: (COMPONENTS * axial.len() * nodes) as u64,
+            axial,
+        })
+    }
+
+    /// What presses the flank of `tooth` where forces normal to it act: roll lengths, heights from the middle of the gear's own face, and forces.
+    pub fn forces(
+        &self,
+        tooth: usize,
+        pressing: impl Iterator<Item = (f64, f64, f64)>,
+    ) -> FlankForces {
+        let m = self.axial.len();
+        let mut forces = FlankForces {
+            tooth,
+            nodal: vec![0.0; m * self.roll_lengths.len()],
+            smooth: vec![0.0; m * (OWN_DEGREE + 1)],
+            at_foot: Vec::new(),
+        };
+        let ends = [
+            self.roll_lengths[0],
+            self.roll_lengths[self.roll_lengths.len() - 1],
+        ];
+        for (roll_length, z, force) in pressing {
+            let s = roll_length.clamp(ends[0], ends[1]);
+            let place = self.flank.point(s);
+            if self
+                .surface
+                .is_near((place, z), (self.flank.point(ends[0]), z))
+            {
+                forces.at_foot.push((place, z));
+            }
+            let across = self.axial.values(z);
+            let add = |to: &mut [f64], first: usize, share: f64| {
+                for (to, across) in to[first * m..].iter_mut().zip(&across) {
+                    *to += force * share * across;
+                }
+            };
+            let after = self.roll_lengths.partition_point(|roll| *roll <= s);
+            let first = 2 * ((after.max(1) - 1) / 2).min(self.roll_lengths.len() / 2 - 1);
+            let shares = lagrange(&self.roll_lengths[first..first + 3], s);
+            for (i, share) in shares.into_iter().enumerate() {
+                add(&mut forces.nodal, first + i, share);
+            }
+            let (up, _) = up_the_flank(self.squares, s, OWN_DEGREE);
+            for (a, up) in up.into_iter().enumerate() {
+                add(&mut forces.smooth, a, up);
+            }
+        }
+        forces
+    }
+
+    /// The roots under `loads`; `yields` are those of the same gear, and say what holes change.
+    pub fn under<'a>(
+        &'a self,
+        yields: Option<&'a FaceYield>,
+        loads: &'a [FlankForces],
+    ) -> RootAnswer<'a> {
+        let holes = yields.and_then(FaceYield::holes);
+        let on_web = holes.map(|holes| {
+            let loads = loads.iter();
+            let smooth: Vec<_> = loads.map(|load| (load.tooth, &load.smooth[..])).collect();
+            holes.forces(&smooth)
+        });
+        RootAnswer {
+            roots: self,
+            yields,
+            loads,
+            on_web,
+        }
+    }
+
+    /// The number of teeth of the gear.
+    pub fn tooth_count(&self) -> usize {
+        self.tooth_count
+    }
+
+    /// The unknowns before condensation.
+    pub fn degrees_of_freedom(&self) -> u64 {
+        self.degrees_of_freedom
+    }
+
+    /// The number of entries, for the books of a cache.
+    pub fn entries(&self) -> usize {
+        let others: usize = self.others.iter().map(entries).sum();
+        entries(&self.own) + others + self.by_web.as_ref().map_or(0, entries)
+    }
+}
+
+impl RootAnswer<'_> {
+    /// The stresses on the fillets of tooth `tooth`, on both sides and all across the face, but for places under a contact.
+    pub fn stresses(&self, tooth: usize) -> Vec<SurfaceStress> {
+        let surface = &self.roots.surface;
+        let own = self.loads.iter().find(|load| load.tooth == tooth);
+        let at_foot = own.map_or(&[][..], |load| &load.at_foot);
+        let mut stresses = surface.stresses(&self.roots.axial, &self.displacements(tooth));
+        if !at_foot.is_empty() {
+            let mut place = surface.places.iter().cycle();
+            stresses.retain(|of| {
+                let at = place.next().map_or_else(Vector::zeros, |place| *place);
+                let mut near = at_foot.iter();
+                !near.any(|load| surface.is_near(*load, (at, of.z)))
+            });
+        }
+        stresses
+    }
+
+    /// The displacements of the nodes of the fillets of `tooth`: node by node, component by component, function by function.
+    fn displacements(&self, tooth: usize) -> Vec<f64> {
+        let roots = self.roots;
+        let (z, reach) = (roots.tooth_count, roots.others.len() / 2);
+        let mut moved = vec![0.0; roots.own.nrows()];
+        // Forces press into the tooth, and rows are of forces outward.
+        let mut add = |rows: &Mat<f64>, by: &[f64]| {
+            for (j, by) in by.iter().enumerate().take(rows.ncols()) {
+                for (moved, row) in moved.iter_mut().zip(rows.col_as_slice(j)) {
+                    *moved -= row * by;
+                }
+            }
+        };
+        for load in self.loads {
+            let ahead = (tooth + reach + z - load.tooth % z) % z;
+            if load.tooth == tooth {
+                add(&roots.own, &load.nodal);
+            } else if let Some(rows) = roots.others.get(ahead) {
+                add(rows, &load.smooth);
+            }
+        }
+        let holes = self.yields.and_then(FaceYield::holes);
+        let on_web = self.on_web.as_ref().zip(holes).zip(roots.by_web.as_ref());
+        if let Some(((forces, holes), by_web)) = on_web {
+            let seen = holes.seen_from(tooth, forces);
+            for (j, moved) in moved.iter_mut().enumerate() {
+                let column = by_web.col_as_slice(j);
+                *moved -= column.iter().zip(&seen).map(|(a, f)| a * f).sum::<f64>();
+            }
+        }
+        moved
+    }
+}
+
+/// The squares of the first and of the last of `roll_lengths`.
+fn squares(roll_lengths: &[f64]) -> [f64; 2] {
+    [roll_lengths[0], roll_lengths[roll_lengths.len() - 1]].map(|s| s * s)
+}
+
+/// The shares of three `places` in what is at `s` between them.
+fn lagrange(places: &[f64], s: f64) -> [f64; 3] {
+    let of = |i: usize| {
+        let others = (0..3).filter(|j| *j != i);
+        others
+            .map(|j| (s - places[j]) / (places[i] - places[j]))
+            .product()
+    };
+    [of(0), of(1), of(2)]
+}
+
+/// The free surface over some edges of a section that turns.
+#[derive(Debug)]
+struct Surface {
+    twist: f64,
+    youngs_modulus: f64,
+    poisson_ratio: f64,
+    /// The nodes of the edges: first those beside the loaded flank.
+    nodes: Vec<u32>,
+    beside_loaded: usize,
+    /// Where each of them stands in the section.
+    places: Vec<Vector>,
+    /// The sides of elements that meet at each.
+    sides: Vec<Vec<Side>>,
+    /// Heights, with the values of the functions across the face and their slopes.
+    heights: Vec<(f64, Vec<f64>, Vec<f64>)>,
+    /// How near to a contact is under it, in the section and along the face.
+    near: [f64; 2],
+}
+
+/// One side of an element, at one of its nodes.
+#[derive(Debug, Clone, Copy)]
+struct Side {
+    /// The part that it has in the node's strains.
+    share: f64,
+    /// Its nodes, as they stand in the surface.
+    nodes: [usize; 3],
+    /// The derivatives of their shape functions there.
+    slopes: [f64; 3],
+}
+
+impl Surface {
+    fn new(gear: &SolidGear, grid: &ToothGrid, axial: &AxialBasis) -> Self {
+        let material = gear.section().material();
+        let edges = [&grid.fillet_nodes, &grid.back_fillet_nodes];
+        let nodes = edges.map(Vec::as_slice).concat();
+        let mut sides = vec![Vec::new(); nodes.len()];
+        let mut first = 0;
+        for edge in edges {
+            add_sides(&mut sides[first..first + edge.len()], first);
+            first += edge.len();
+        }
+        Self {
+            twist: gear.twist(),
+            youngs_modulus: material.youngs_modulus,
+            poisson_ratio: material.poisson_ratio,
+            beside_loaded: grid.fillet_nodes.len(),
+            places: places(&grid.grid, &nodes),
+            nodes,
+            sides,
+            heights: heights(axial),
+            near: [
+                UNDER_CONTACT * gear.section().data().rack.module,
+                BLURRED * gear.face_width() / (axial.len() - 1) as f64,
+            ],
+        }
+    }
+
+    /// Whether two places are so near to each other that a contact at one of them is felt at the other for itself.
+    fn is_near(&self, (one, z): (Vector, f64), (other, y): (Vector, f64)) -> bool {
+        let [flat, high] = self.near;
+        (z - y).abs() < high && (one - other).norm() < flat
+    }
+
+    /// The stresses at each node and height of the surface whose nodes move by `moved`, in polar components.
+    fn stresses(&self, axial: &AxialBasis, moved: &[f64]) -> Vec<SurfaceStress> {
+        let m = axial.len();
+        let frames: Vec<[Vector; 2]> = self
+            .places
+            .iter()
+            .map(|place| {
+                let angle = place.y.atan2(place.x);
+                [radial(angle), tangential(angle)]
+            })
+            .collect();
+        let mut stresses = Vec::with_capacity(self.nodes.len() * self.heights.len());
+        for (z, values, slopes) in &self.heights {
+            // In the axes of the section, at this height.
+            let of = |node: usize, functions: &[f64]| {
+                let [r, t, w] = std::array::from_fn(|c| {
+                    let first = (node * COMPONENTS + c) * m;
+                    let shares = moved[first..first + m].iter().zip(functions);
+                    shares.map(|(u, f)| u * f).sum::<f64>()
+                });
+                let flat = r * frames[node][0] + t * frames[node][1];
+                Vector3::new(flat.x, flat.y, w)
+            };
+            let at: Vec<_> = (0..self.nodes.len()).map(|i| of(i, values)).collect();
+            for (i, place) in self.places.iter().enumerate() {
+                let rise = of(i, slopes);
+                let mut strain = Matrix2::zeros();
+                for side in &self.sides[i] {
+                    strain += side.share * self.strain(i, side, (&at, rise));
+                }
+                stresses.push(SurfaceStress {
+                    principal: self.principal(&strain),
+                    angle: place.y.atan2(place.x) + self.twist * z,
+                    z: *z,
+                    beside_loaded: i < self.beside_loaded,
+                });
+            }
+        }
+        stresses
+    }
+
+    /// The strains in the surface at node `i` as `side` sees them, along orthonormal directions: `at` are the displacements of all nodes, and
+    /// `rise` that of this one by z, in the axes of the section.
+    fn strain(
+        &self,
+        i: usize,
+        side: &Side,
+        (at, rise): (&[Vector3<f64>], Vector3<f64>),
+    ) -> Matrix2<f64> {
+        let of_side = || side.nodes.into_iter().zip(side.slopes);
+        let tangent: Vector = of_side().map(|(k, slope)| slope * self.places[k]).sum();
+        let along: Vector3<f64> = of_side().map(|(k, slope)| slope * at[k]).sum();
+        // The section turns with z, and its axes with it.
+        let turned = |x: f64, y: f64| self.twist * Vector3::new(-y, x, 0.0);
+        let a = [
+            Vector3::new(tangent.x, tangent.y, 0.0),
+            turned(self.places[i].x, self.places[i].y) + Vector3::z(),
+        ];
+        let u = [along, rise + turned(at[i].x, at[i].y)];
+        let covariant = Matrix2::from_fn(|j, k| 0.5 * (a[j].dot(&u[k]) + a[k].dot(&u[j])));
+        // a_1 = l_11 e_1, a_2 = l_21 e_1 + l_22 e_2.
+        let l_11 = a[0].norm();
+        let l_21 = a[1].dot(&a[0]) / l_11;
+        let l_22 = (a[1].norm_squared() - l_21 * l_21).sqrt();
+        let back = Matrix2::new(1.0 / l_11, 0.0, -l_21 / (l_11 * l_22), 1.0 / l_22);
+        back * covariant * back.transpose()
+    }
+
+    /// The principal stresses of a sheet that is strained so.
+    fn principal(&self, strain: &Matrix2<f64>) -> [f64; 2] {
+        let (e, nu) = (self.youngs_modulus, self.poisson_ratio);
+        let mean = e / (1.0 - nu) * (strain.m11 + strain.m22) / 2.0;
+        let radius = e / (1.0 + nu) * f64::hypot((strain.m11 - strain.m22) / 2.0, strain.m12);
+        [mean + radius, mean - radius]
+    }
+}
+
+impl FlankForces {
+    /// The loaded tooth.
+    pub fn tooth(&self) -> usize {
+        self.tooth
+    }
+}
+
+impl SurfaceStress {
+    /// The stress of von Mises.
+    pub fn von_mises(&self) -> f64 {
+        let [one, other] = self.principal;
+        (one * one - one * other + other * other).sqrt()
+    }
+}
+
+/// The places of `nodes`.
+fn places(grid: &Grid, nodes: &[u32]) -> Vec<Vector> {
+    nodes
+        .iter()
+        .map(|node| grid.nodes[*node as usize])
+        .collect()
+}
+
+/// The sides of the elements along an open edge, corners and midsides in turn, at each of its nodes; the first stands at `first`.
+fn add_sides(sides: &mut [Vec<Side>], first: usize) {
+    let last = sides.len() - 1;
+    // The derivatives of the three shape functions at −1, 0 and 1.
+    let slopes = [[-1.5, 2.0, -0.5], [-0.5, 0.0, 0.5], [0.5, -2.0, 1.5]];
+    for start in (0..last).step_by(2) {
+        for (k, slopes) in slopes.into_iter().enumerate() {
+            let place = start + k;
+            let alone = place % 2 == 1 || place == 0 || place == last;
+            sides[place].push(Side {
+                share: if alone { 1.0 } else { 0.5 },
+                nodes: [0, 1, 2].map(|k| first + start + k),
+                slopes,
+            });
+        }
+    }
+}
+
+/// Heights across the face, both ends among them and where its pieces join not, with the functions and their slopes.
+fn heights(axial: &AxialBasis) -> Vec<(f64, Vec<f64>, Vec<f64>)> {
+    let pieces = axial.breaks().windows(2);
+    let per_piece = HEIGHTS_PER_DEGREE * (axial.len() - 1) / pieces.len();
+    let inner = pieces.flat_map(|ends| {
+        let step = (ends[1] - ends[0]) / per_piece as f64;
+        (0..per_piece).map(move |i| ends[0] + (i as f64 + 0.5) * step)
+    });
+    let [low, high] = axial.heights();
+    [low]
+        .into_iter()
+        .chain(inner)
+        .chain([high])
+        .map(|z| (z, axial.values(z), axial.slopes(z)))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assembly::{FaceYieldSpec, MakeAll, Parts as _};
+    use crate::fem::prescribed::{Load, displacements};
+    use crate::fem::recovery::{Functional, edge_stresses};
+    use crate::gear::spur::tests::paper_gear;
+    use crate::gear::{Helix, HolePattern, Material, Web};
+    use crate::grid::BlankGrid;
+    use crate::ring::blank::BlankSubstructure;
+    use crate::ring::cyclic::Harmonics;
+    use crate::ring::motion::InterfaceMotion;
+    use crate::ring::teeth::TeethRing;
+    use crate::ring::teeth_recovery::TeethRecovery;
+    use crate::ring::tooth::{ToothSubstructure, modal_loads};
+    use nalgebra::Matrix3;
+
+    const STEEL: Material = Material {
+        youngs_modulus: 210e9,
+        poisson_ratio: 0.3,
+        density: 7850.0,
+    };
+
+    fn of_order(face_order: usize) -> FaceResolution {
+        FaceResolution {
+            face_order,
+            web_order: 3,
+            web_harmonics: 8,
+        }
+    }
+
+    fn gear(beta: f64, face_width: f64) -> SolidGear {
+        let mut data = paper_gear(30);
+        data.blank.bore_radius = 8e-3;
+        data.face_width = face_width;
+        SolidGear::new(data, Helix::right(beta), 0.0, None).expect("can be made")
+    }
+
+    /// An even load of 1 N per meter on a line along the flank of tooth 0.
+    fn even(roots: &FaceRoots, s: f64) -> [FlankForces; 1] {
+        let rule = roots.axial.rule(16).into_iter();
+        [roots.forces(0, rule.map(|(z, w)| (s, z, w)))]
+    }
+
+    /// The principal stresses of a straight tooth at the nodes of its fillets, nearest to the middle of its face.
+    fn in_the_middle(answer: &RootAnswer<'_>, tooth: usize) -> Vec<[f64; 2]> {
+        let stresses = answer.stresses(tooth);
+        let middle = stresses.iter().map(|of| of.z.abs()).fold(1.0, f64::min);
+        let found = stresses.iter().filter(|of| of.z == middle);
+        found.map(|of| of.principal).collect()
+    }
+
+    /// Asserts that principal stresses along the edges are those in the plane: the largest and the smallest to a part `most` of the largest of
+    /// all, and all of them to a percent, because a node of a grid does not know of itself that its surface is free.
+    fn assert_alike(found: &[[f64; 2]], plane: &[f64], most: f64) {
+        assert_eq!(found.len(), plane.len());
+        let largest = plane.iter().map(|s| s.abs()).fold(0.0, f64::max);
+        for (i, (found, plane)) in found.iter().zip(plane).enumerate() {
+            let off = (found[usize::from(*plane < 0.0)] - plane).abs() / largest;
+            assert!(off < 0.011, "{i}: {found:?} {plane}");
+        }
+        let ends = |values: &mut dyn Iterator<Item = f64>| {
+            values.fold([0.0_f64; 2], |[low, high], s| [low.min(s), high.max(s)])
+        };
+        let found = ends(&mut found.iter().flatten().copied());
+        let plane = ends(&mut plane.iter().copied());
+        for (found, plane) in found.iter().zip(plane) {
+            assert!((found - plane).abs() < most * largest, "{found} {plane}");
+        }
+    }
+
+    fn along_edges(grid: &ToothGrid, material: &Material) -> Vec<Functional> {
+        let sides = [&grid.fillet_nodes, &grid.back_fillet_nodes].into_iter();
+        sides
+            .flat_map(|side| edge_stresses(&grid.grid, material, side, false))
+            .collect()
+    }
+
+    #[test]
+    fn a_uniform_strain_is_found_in_every_surface_however_it_turns() {
+        let strain = Matrix3::new(3.0, 0.7, -0.4, 0.7, -1.0, 0.9, -0.4, 0.9, 2.0) * 1e-4;
+        for beta in [0.0, 0.35, -0.5] {
+            let gear = gear(beta, 10e-3);
+            let axial = AxialBasis::new(&gear.face_heights(), 10);
+            let section = gear.section().without_blank();
+            let inner = section.root_radius() - 4e-3;
+            let grid = ToothGrid::of_stressed_prism(&section, inner, GridLevel::Coarse);
+            let surface = Surface::new(&gear, &grid.expect("a usable grid"), &axial);
+            let m = axial.len();
+            let mut moved = vec![0.0; surface.nodes.len() * COMPONENTS * m];
+            for (i, place) in surface.places.iter().enumerate() {
+                for (z, w) in axial.rule(30) {
+                    let angle = place.y.atan2(place.x) + gear.twist() * z;
+                    let at = place.norm() * radial(angle);
+                    let u = strain * Vector3::new(at.x, at.y, z);
+                    let flat = Vector::new(u.x, u.y);
+                    let polar = [flat.dot(&radial(angle)), flat.dot(&tangential(angle)), u.z];
+                    for (p, f) in axial.values(z).into_iter().enumerate() {
+                        for (c, u) in polar.into_iter().enumerate() {
+                            moved[(i * COMPONENTS + c) * m + p] += w * f * u;
+                        }
+                    }
+                }
+            }
+            let places = surface.heights.len() * surface.nodes.len();
+            let stresses = surface.stresses(&axial, &moved);
+            assert_eq!(stresses.len(), places);
+            for (k, found) in stresses.iter().enumerate() {
+                let i = k % surface.nodes.len();
+                // Directions along the edge and along the axis, where the section has turned to.
+                let side = surface.sides[i][0];
+                let of_side = side.nodes.iter().zip(side.slopes);
+                let edge: Vector = of_side.map(|(n, s)| s * surface.places[*n]).sum();
+                let turn = gear.twist() * found.z;
+                let (sin, cos) = turn.sin_cos();
+                let turned =
+                    |v: Vector| Vector3::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y, 0.0);
+                let place = surface.places[i];
+                let spiral = gear.twist() * turned(Vector::new(-place.y, place.x)) + Vector3::z();
+                let e_1 = turned(edge).normalize();
+                let e_2 = (spiral - spiral.dot(&e_1) * e_1).normalize();
+                let seen = |a: &Vector3<f64>, b: &Vector3<f64>| a.dot(&(strain * b));
+                let (a, b, c) = (seen(&e_1, &e_1), seen(&e_2, &e_2), seen(&e_1, &e_2));
+                // Hooke's law of a sheet, direction by direction.
+                let along = |one: f64, other: f64| 210e9 / 0.91 * (one + 0.3 * other);
+                let (xx, yy, xy) = (along(a, b), along(b, a), 210e9 / 1.3 * c);
+                let [one, other] = found.principal;
+                // Where two sides meet they do so at an angle.
+                let slack = match surface.sides[i].len() {
+                    1 => 1e-7,
+                    _ => 0.1,
+                };
+                let off = (one + other - xx - yy).abs();
+                assert!(off < slack * 60e6, "{one} {other} {off} {i}");
+                let off = (one * other - xx * yy + xy * xy).abs();
+                assert!(off < slack * 60e6_f64.powi(2), "{one} {other} {off} {i}");
+                let mises = 0.5 * ((xx - yy).powi(2) + xx * xx + yy * yy) + 3.0 * xy * xy;
+                let off = (found.von_mises().powi(2) - mises).abs();
+                assert!(off < slack * 60e6_f64.powi(2), "{one} {other} {off} {i}");
+            }
+        }
+    }
+
+    #[test]
+    fn narrow_and_wide_straight_teeth_are_stressed_as_in_the_plane() {
+        let nu = STEEL.poisson_ratio;
+        let plane_strain = Material {
+            youngs_modulus: STEEL.youngs_modulus / (1.0 - nu * nu),
+            poisson_ratio: nu / (1.0 - nu),
+            ..STEEL
+        };
+        for (width, order, material, most) in
+            [(0.05e-3, 2, &STEEL, 2e-3), (60e-3, 8, &plane_strain, 2e-3)]
+        {
+            let gear = gear(0.0, width);
+            let section = gear.section();
+            let inner = section.root_radius() - 4e-3;
+            let roots = FaceRoots::of_sector(&gear, inner, of_order(order)).expect("sound");
+            let loads = even(&roots, roots.roll_lengths[7]);
+            let found = in_the_middle(&roots.under(None, &loads), 0);
+
+            let plain = section.without_blank();
+            let grid = ToothGrid::of_stressed_prism(&plain, inner, GridLevel::Standard);
+            let grid = grid.expect("a usable grid");
+            let s = grid.flank_roll_lengths[7];
+            let load = Load {
+                moves: vec![Vector::zeros(); grid.arc_nodes.len()],
+                forces: vec![(grid.flank_nodes[7], -section.flank().normal(s))],
+            };
+            let plate = (material, 1.0);
+            let moved = displacements("a tooth", &grid.grid, plate, &grid.arc_nodes, &[load]);
+            let moved = &moved.expect("sound")[0];
+            let plane = along_edges(&grid, material).into_iter();
+            let plane: Vec<f64> = plane.map(|of| of.value(moved)).collect();
+            assert_alike(&found, &plane, most);
+        }
+    }
+
+    #[test]
+    fn the_teeth_of_a_narrow_gear_are_stressed_as_in_the_plane() {
+        let run = Run::unattended();
+        let pattern = HolePattern {
+            count: 5,
+            circle_radius: 16e-3,
+            radius: 4e-3,
+            phase: 0.1,
+        };
+        for holes in [false, true] {
+            let mut data = paper_gear(30);
+            data.blank.bore_radius = 8e-3;
+            data.face_width = 0.05e-3;
+            if holes {
+                data.blank.holes = pattern.holes();
+            }
+            let gear = SolidGear::new(data, Helix::STRAIGHT, 0.0, None).expect("can be made");
+            let section = gear.section();
+            let spec = FaceYieldSpec::new(&gear, of_order(2));
+            let stack = spec.stack();
+            let roots = MakeAll.face_roots(&stack, &run).expect("sound");
+            let yields = MakeAll.face_yield(&spec, &run).expect("sound");
+
+            // The same grid in the plane.
+            let radius = stack.interface_radius;
+            let plain = section.without_blank();
+            let grid = ToothGrid::of_stressed_prism(&plain, radius, GridLevel::Standard);
+            let grid = grid.expect("a usable grid");
+            let probes = along_edges(&grid, &STEEL);
+            let (tooth, rows) =
+                ToothSubstructure::with_recovery(section, &grid, &probes).expect("sound");
+            let harmonics = Harmonics { largest: 90 };
+            let ring = TeethRing::new(&tooth, harmonics, &run).expect("sound");
+            let inside = TeethRecovery::new(&tooth, &rows, harmonics, &run).expect("sound");
+            let holes = holes.then_some(&pattern);
+            let level = GridLevel::Fine;
+            let blank = BlankGrid::new(section.bore_radius(), radius, holes, 30, 8.0, level);
+            let plate = (&STEEL, section.face_width());
+            let blank = BlankSubstructure::new(
+                &blank.expect("a usable grid"),
+                radius,
+                plate.0,
+                plate.1,
+                harmonics,
+                &run,
+            )
+            .expect("sound");
+            let angle = section.hole_angle();
+            let motion = InterfaceMotion::new(&ring, &blank, angle, None, &run).expect("sound");
+            for node in [9, 15] {
+                let loads = even(&roots, roots.roll_lengths[node]);
+                let answer = roots.under(Some(&yields), &loads);
+                let mut forces = vec![0.0; 2 * grid.flank_nodes.len()];
+                forces[2 * node] = -section.face_width();
+                let loads = [(0, modal_loads(&tooth.modes, &forces))];
+                let motion = motion.under(&loads);
+                for tooth in [0, 1, 3, 29] {
+                    let own = if tooth == 0 { &forces[..] } else { &[] };
+                    let plane = inside.values(tooth, own, &loads, &motion);
+                    assert_alike(&in_the_middle(&answer, tooth), &plane, 5e-3);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn places_under_a_contact_are_left_out_on_the_tooth_that_it_presses() {
+        let gear = gear(0.3, 10e-3);
+        let run = Run::unattended();
+        let stack = FaceYieldSpec::new(&gear, of_order(4)).stack();
+        let roots = MakeAll.face_roots(&stack, &run).expect("sound");
+        let foot = roots.roll_lengths[0];
+        let loads = [roots.forces(0, [(foot, 4e-3, 10.0)].into_iter())];
+        let answer = roots.under(None, &loads);
+        let (own, neighbor) = (answer.stresses(0), answer.stresses(1));
+        assert_eq!(
+            neighbor.len(),
+            roots.surface.nodes.len() * roots.surface.heights.len()
+        );
+        assert!(own.len() < neighbor.len() && own.len() > neighbor.len() * 3 / 4);
+        let (twist, foot) = (gear.twist(), roots.flank.point(foot));
+        let at_foot = |of: &&SurfaceStress| {
+            of.beside_loaded && (of.angle - twist * of.z - foot.y.atan2(foot.x)).abs() < 1e-9
+        };
+        let told: Vec<f64> = own.iter().filter(at_foot).map(|of| of.z).collect();
+        assert!(
+            told.iter().all(|z| *z < 1.6e-3) && !told.is_empty(),
+            "{told:?}"
+        );
+        assert!(neighbor.iter().filter(at_foot).any(|of| of.z > 4e-3));
+    }
+
+    #[test]
+    fn a_gear_and_its_image_in_the_plane_of_its_face_are_stressed_alike() {
+        let of = |beta: f64, sign: f64| {
+            let mut data = paper_gear(30);
+            data.blank.bore_radius = 8e-3;
+            data.blank.web = Some(Web {
+                inner_radius: 8e-3,
+                outer_radius: 22e-3,
+                thickness: 5e-3,
+            });
+            data.blank.holes = HolePattern {
+                count: 5,
+                circle_radius: 15e-3,
+                radius: 3e-3,
+                phase: 0.1,
+            }
+            .holes();
+            let gear = SolidGear::new(data, Helix::right(sign * beta), sign * 4e-3, None);
+            let spec = FaceYieldSpec::new(&gear.expect("can be made"), of_order(4));
+            let run = Run::unattended();
+            let roots = MakeAll.face_roots(&spec.stack(), &run).expect("sound");
+            let yields = MakeAll.face_yield(&spec, &run).expect("sound");
+            let s = roots.roll_lengths[9];
+            let loads = [(7, 3e-3), (8, -6e-3)]
+                .map(|(tooth, z)| roots.forces(tooth, [(s, sign * z, 100.0)].into_iter()));
+            let answer = roots.under(Some(&yields), &loads);
+            [6, 7, 8, 12].map(|tooth| answer.stresses(tooth))
+        };
+        let (right, left) = (of(0.3, 1.0), of(0.3, -1.0));
+        for (right, left) in right.iter().zip(&left) {
+            let largest = right.iter().map(|of| of.principal[0]).fold(0.0, f64::max);
+            for of in right {
+                let image = left.iter().find(|image| {
+                    (image.z + of.z).abs() < 1e-9 && (image.angle - of.angle).abs() < 1e-9
+                });
+                let image = image.expect("the image of a place is a place");
+                for i in [0, 1] {
+                    let off = (of.principal[i] - image.principal[i]).abs();
+                    assert!(off < 1e-5 * largest, "{of:?} {image:?}");
+                }
+            }
+        }
+    }
+}
