@@ -4,12 +4,13 @@
 use std::collections::BTreeSet;
 
 use jiff::{SignedDuration, Timestamp};
+use serde_json::json;
 use uuid::Uuid;
 
 use super::documents::forget_document;
 use super::endings::note_study;
-use super::statement::{Connection, query, query_as, query_scalar};
-use super::submit::{QueueBounds, insert_known, insert_waiting, words};
+use super::statement::{Connection, list, query, query_as, query_scalar};
+use super::submit::{QueueBounds, insert_known, insert_submissions, insert_waiting, words};
 use super::{NewJob, Store, StoreError, column, dialect, micros, shares};
 use crate::wire::Status;
 use crate::wire::warning::GearName;
@@ -413,36 +414,48 @@ async fn append(
     rows: &[NewRow],
     bounds: QueueBounds<'_>,
 ) -> Result<bool, sqlx::Error> {
+    let jobs: Vec<&NewJob> = rows
+        .iter()
+        .filter_map(|row| row.job.as_ref().ok())
+        .collect();
+    let inputs: Vec<&str> = jobs.iter().map(|new| new.input_hash.as_str()).collect();
+    let computed: Vec<String> = query_scalar(dialect::known_among())
+        .bind(client)
+        .bind(bounds.solver_version)
+        .bind(list(&inputs))
+        .fetch_all(&mut *connection)
+        .await?;
+    let computed: BTreeSet<&str> = computed.iter().map(String::as_str).collect();
     let mut waits = false;
-    let mut unbuildable = 0_i64;
-    for (position, row) in (expanded..).zip(rows) {
-        let (job, problem) = match &row.job {
-            Ok(new) => {
-                let known = insert_known(connection, new, bounds.solver_version).await?;
-                if known.is_none() {
-                    insert_waiting(connection, new).await?;
-                    waits = true;
-                }
-                (Some(new.id.to_string()), None)
-            }
-            Err(problem) => {
-                unbuildable += 1;
-                (None, Some(problem))
-            }
-        };
-        query(
-            "insert into study_rows (study, position, label, changes, job, problem) values ($1, $2, $3, $4, $5, $6)
-             on conflict do nothing",
-        )
+    for new in &jobs {
+        let is_known = computed.contains(new.input_hash.as_str())
+            && insert_known(connection, new, bounds.solver_version)
+                .await?
+                .is_some();
+        if !is_known {
+            insert_waiting(connection, new).await?;
+            waits = true;
+        }
+    }
+    insert_submissions(connection, &jobs).await?;
+    let unbuildable = rows.len() - jobs.len();
+    let of_study: Vec<_> = (expanded..)
+        .zip(rows)
+        .map(|(position, row)| {
+            json!({
+                "position": column(position),
+                "label": row.label,
+                "changes": row.changes,
+                "job": row.job.as_ref().ok().map(|new| new.id),
+                "problem": row.job.as_ref().err(),
+            })
+        })
+        .collect();
+    query(dialect::insert_study_rows())
+        .bind(list(&of_study))
         .bind(study.to_string())
-        .bind(column(position))
-        .bind(&row.label)
-        .bind(&row.changes)
-        .bind(job)
-        .bind(problem)
         .execute(&mut *connection)
         .await?;
-    }
     let id = study.to_string();
     let updated = query(
         "update studies set expanded = $2, unbuildable = unbuildable + $3, version = version + 1
@@ -450,7 +463,7 @@ async fn append(
     )
     .bind(&id)
     .bind(column(expanded + rows.len() as u64))
-    .bind(unbuildable)
+    .bind(column(unbuildable as u64))
     .bind(column(expanded))
     .execute(&mut *connection)
     .await?;

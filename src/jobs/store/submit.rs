@@ -3,11 +3,12 @@
 use std::collections::{BTreeSet, HashMap};
 
 use jiff::Timestamp;
+use serde_json::json;
 use uuid::Uuid;
 
 use super::endings::tell_end;
 use super::rows::job_columns;
-use super::statement::{Connection, query, query_as};
+use super::statement::{Connection, list, query, query_as};
 use super::{Store, StoreError, column, dialect, shares};
 use crate::hash::sha256_hex;
 use crate::jobs::job::Job;
@@ -173,6 +174,7 @@ async fn submit_one(
         Outcome::Queued(insert_waiting(connection, new).await?)
     };
 
+    insert_submissions(connection, &[new]).await?;
     if let Some(key) = &new.idempotency_key {
         query("insert into idempotency_keys (client, key, body_hash, job, created_at) values ($1, $2, $3, $4, $5)")
             .bind(&new.client)
@@ -249,7 +251,7 @@ pub(super) async fn find_known(
     }))
 }
 
-/// A job that is successful at once, if the client has had the same input computed by this version.
+/// A job that is successful at once and has no submission yet, if the client has had the same input computed by this version.
 pub(super) async fn insert_known(
     connection: &mut Connection,
     new: &NewJob,
@@ -283,11 +285,11 @@ pub(super) async fn insert_known(
         .bind(new.document_version)
         .fetch_one(&mut *connection)
         .await?;
-    insert_beside(connection, new, job.sequence).await?;
+    insert_tags(connection, new, job.sequence).await?;
     Ok(Some(job))
 }
 
-/// A job that waits. Its lane is to be activated behind it.
+/// A job that waits and has no submission yet. Its lane is to be activated behind it.
 pub(super) async fn insert_waiting(
     connection: &mut Connection,
     new: &NewJob,
@@ -306,22 +308,33 @@ pub(super) async fn insert_waiting(
         .bind(new.document_version)
         .fetch_one(&mut *connection)
         .await?;
-    insert_beside(connection, new, job.sequence).await?;
+    insert_tags(connection, new, job.sequence).await?;
     Ok(job)
 }
 
-/// What of a job stands in other tables: its submission and its tags.
-async fn insert_beside(
+/// The submissions of new jobs.
+pub(super) async fn insert_submissions(
+    connection: &mut Connection,
+    jobs: &[&NewJob],
+) -> Result<(), sqlx::Error> {
+    let rows: Vec<_> = jobs
+        .iter()
+        .map(|new| json!({ "job": new.id, "body": new.submission }))
+        .collect();
+    query(dialect::insert_submissions())
+        .bind(list(&rows))
+        .execute(connection)
+        .await?;
+    Ok(())
+}
+
+/// The tags of a new job.
+async fn insert_tags(
     connection: &mut Connection,
     new: &NewJob,
     sequence: i64,
 ) -> Result<(), sqlx::Error> {
     let id = new.id.to_string();
-    query("insert into submissions (job, body) values ($1, $2)")
-        .bind(&id)
-        .bind(&new.submission)
-        .execute(&mut *connection)
-        .await?;
     for tag in &new.tags {
         // A tag may stand twice in a submission.
         query(

@@ -126,6 +126,12 @@ pairs! {
     next_waiting = NEXT_WAITING;
     /// What a client has had computed. $1: client, $2: input hash, $3: solver version, $4: 1 if the whole results have to be kept.
     known = KNOWN;
+    /// Which inputs a client may have had computed. $1: client, $2: solver version, $3: a list of input hashes.
+    known_among = KNOWN_AMONG;
+    /// The submissions of new jobs. $1: a list.
+    insert_submissions = INSERT_SUBMISSIONS;
+    /// Rows of a study. $1: a list, $2: the study.
+    insert_study_rows = INSERT_STUDY_ROWS;
     /// Accepted -> running. $1: a list of ids, $2: now, $3: the steady clock, $4: how long the lease lasts, $5: the process.
     start = START;
     /// Where jobs stand: id, attempt, status. $1: a list of ids.

@@ -74,6 +74,24 @@ pub(in crate::jobs::store) const KNOWN: Words = Some(
      order by j.same_as is not null, j.sequence limit 1 for key share",
 );
 
+pub(in crate::jobs::store) const KNOWN_AMONG: Words = Some(
+    "select distinct input_hash from jobs
+     where client = $1 and solver_version = $2 and status = 'successful'
+       and input_hash = any(array(select json_array_elements_text(cast($3 as json))))",
+);
+
+pub(in crate::jobs::store) const INSERT_SUBMISSIONS: Words = Some(
+    "insert into submissions (job, body)
+     select job, body from json_to_recordset(cast($1 as json)) as given(job text, body text)",
+);
+
+pub(in crate::jobs::store) const INSERT_STUDY_ROWS: Words = Some(
+    "insert into study_rows (study, position, label, changes, job, problem)
+     select $2, position, label, changes, job, problem from json_to_recordset(cast($1 as json))
+       as given(position bigint, label text, changes text, job text, problem text)
+     on conflict do nothing",
+);
+
 // They are locked since they were found waiting. Were that said again, the server might read through all that wait.
 pub(in crate::jobs::store) const START: Words = Some(concat!(
     "update jobs

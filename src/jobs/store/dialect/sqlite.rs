@@ -56,6 +56,22 @@ pub(in crate::jobs::store) const KNOWN: Words = Some(
      order by same_as is not null, sequence limit 1",
 );
 
+pub(in crate::jobs::store) const KNOWN_AMONG: Words = Some(
+    "select distinct input_hash from jobs
+     where client = $1 and solver_version = $2 and status = 'successful' and input_hash in (select value from json_each($3))",
+);
+
+pub(in crate::jobs::store) const INSERT_SUBMISSIONS: Words = Some(
+    "insert into submissions (job, body) select value ->> 'job', value ->> 'body' from json_each($1)",
+);
+
+pub(in crate::jobs::store) const INSERT_STUDY_ROWS: Words = Some(
+    "insert into study_rows (study, position, label, changes, job, problem)
+     select $2, value ->> 'position', value ->> 'label', value ->> 'changes', value ->> 'job', value ->> 'problem'
+     from json_each($1) where true
+     on conflict do nothing",
+);
+
 pub(in crate::jobs::store) const START: Words = Some(concat!(
     "update jobs
      set status = 'running', attempt = attempt + 1, started_at = max($2, submitted_at), lease_until = $3 + $4,
