@@ -14,7 +14,8 @@ export function save(name, type, content) {
 
 const COLUMNS = ["mesh_position", "driving_angle_deg", "driven_angle_deg", "transmission_error_um", "mesh_stiffness_tangent_n_per_m", "mesh_stiffness_secant_n_per_m", "driving_torque_n_m", "pairs_in_contact", "peak_contact_pressure_mpa"];
 
-const STRESSES = ["driving", "driven"].flatMap((gear) => ["root_mpa", "root_angle_deg", "root_tension_mpa", "root_tension_angle_deg", "root_compression_mpa", "root_compression_angle_deg", "hole_mpa", "hole_angle_deg"].map((name) => `stress.${gear}.${name}`));
+const PLACES = ["root", "root_tension", "root_compression", "hole"];
+const STRESSES = ["driving", "driven"].flatMap((gear) => PLACES.flatMap((place) => ["mpa", "angle_deg", "z_mm"].map((unit) => `stress.${gear}.${place}_${unit}`)));
 
 /** Lines of values as CSV; texts with commas in quotes, and none that a spreadsheet takes for a formula. */
 export function csvOf(lines) {
@@ -29,12 +30,14 @@ export function csvOf(lines) {
 /** Every curve of the results as one table: a line for each torque and position. */
 export function csv(results) {
   const offsets = [...new Set(results.curves.flatMap((curve) => curve.load_shares.map(({ pair_offset: offset }) => offset)))].sort((a, b) => a - b);
-  const stressed = results.curves.some(({ stress }) => stress) ? STRESSES : [];
+  const within = (curve, name) => name.split(".").reduce((value, part) => value?.[part], curve);
+  // Heights are told along faces alone.
+  const stressed = results.curves.some(({ stress }) => stress) ? STRESSES.filter((name) => !name.endsWith("_z_mm") || results.curves.some((curve) => within(curve, name))) : [];
   const lines = [["output_torque_n_m", ...COLUMNS, ...stressed, ...offsets.map((offset) => `load_share.${offset}`)]];
   for (const curve of results.curves) {
     const share = (offset) => curve.load_shares.find((each) => each.pair_offset === offset)?.share;
     curve.mesh_position.forEach((_, i) => {
-      lines.push([curve.output_torque_n_m, ...COLUMNS.map((name) => curve[name]?.[i]), ...stressed.map((name) => name.split(".").reduce((within, part) => within?.[part], curve)?.[i]), ...offsets.map((offset) => share(offset)?.[i] ?? 0)]);
+      lines.push([curve.output_torque_n_m, ...COLUMNS.map((name) => curve[name]?.[i]), ...stressed.map((name) => within(curve, name)?.[i]), ...offsets.map((offset) => share(offset)?.[i] ?? 0)]);
     });
   }
   return csvOf(lines);

@@ -726,7 +726,10 @@ fn too_little_for(cases: &[Case]) -> usize {
 #[test]
 fn a_library_changes_no_digit_whether_it_is_cold_warm_too_small_or_absent() {
     let mut cases = designs_by_methods();
-    cases.push(along_its_faces());
+    cases.push(Case {
+        stress: true,
+        ..along_its_faces()
+    });
     let cold: Vec<_> = cases
         .iter()
         .map(|case| solve_from(&Library::default(), case))

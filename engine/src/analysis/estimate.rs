@@ -105,7 +105,7 @@ const FACE_SECONDS: [f64; 3] = [0.55, 1.0, 35e-6];
 /// Seconds of one core for the rows that lead to the roots of one gear at the order 8, and for the answer of one of its teeth at a position;
 /// and bytes of such rows while they are made. Measured as [`SECONDS`].
 const ROOT_SECONDS: [f64; 2] = [2.5, 0.25e-3];
-const ROOT_MEMORY: f64 = 140e6;
+const ROOT_MEMORY: f64 = 290e6;
 
 /// Teeth whose roots answer at a position, about.
 const TEETH_ANSWERING: f64 = 20.0;
