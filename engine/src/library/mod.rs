@@ -50,17 +50,17 @@ impl Library {
     /// A library that keeps at most `bytes` of parts, of each kind the least recently used leaving first.
     pub fn with_capacity(bytes: usize) -> Self {
         Self(Arc::new(Shelves {
-            teeth: Shelf::new(bytes / 4, bytes_of_teeth),
+            teeth: Shelf::new(3 * (bytes / 16), bytes_of_teeth),
             blanks: Shelf::new(bytes / 8, bytes_of_blank),
             gears: Shelf::new(bytes / 8, bytes_of_gear),
             flanks: Shelf::new(bytes / 8, |_, flanks| flanks.bytes()),
-            compliances: Shelf::new(bytes / 16, |_, compliances| compliances.bytes()),
-            contacts: Shelf::new(bytes / 16, |spec, contacts| {
+            compliances: Shelf::new(bytes / 8, |_, compliances| compliances.bytes()),
+            contacts: Shelf::new(bytes / 8, |spec, contacts| {
                 bytes_of_contacts(spec, contacts)
             }),
             faces: Shelf::new(bytes / 16, |_, face| size_of::<f64>() * face.entries()),
             yields: Shelf::new(bytes / 16, |_, face| size_of::<f64>() * face.entries()),
-            roots: Shelf::new(bytes / 8, |_, roots| size_of::<f64>() * roots.entries()),
+            roots: Shelf::new(bytes / 16, |_, roots| size_of::<f64>() * roots.entries()),
         }))
     }
 
