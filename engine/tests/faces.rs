@@ -1,6 +1,10 @@
 //! Contact along faces: what holds whatever yields under the teeth. The yield here is given by a closed form.
 
+mod cases;
+
 use std::sync::Arc;
+
+use cases::drawn;
 
 use faer::Mat;
 use meshwright_engine::contact::face::{FaceContact, FaceModel, FlankYield, SLICES};
@@ -188,17 +192,6 @@ fn crowned() -> [Vec<LeadModification>; 2] {
         vec![LeadModification::Crowning { amount: 8e-6 }],
         vec![LeadModification::Slope { amount: 5e-6 }, relief],
     ]
-}
-
-/// Numbers in [0, 1) that look drawn.
-fn drawn(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
-    move || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    }
 }
 
 #[test]

@@ -5,15 +5,16 @@ mod cases;
 use std::sync::Arc;
 use std::time::Instant;
 
-use cases::{along_faces, gear, helical};
+use cases::{along_faces, drawn, gear, helical};
 use meshwright_engine::analysis::{Analysis, Case, Method, analyze};
 use meshwright_engine::assembly::{FaceResolution, FaceYield};
-use meshwright_engine::contact::face::{FaceModel, FlankYield, SLICES};
+use meshwright_engine::contact::face::{FaceContact, FaceModel, FlankYield, SLICES};
 use meshwright_engine::gear::{
     Alignment, GearData, LeadModification, Member, ModificationData, ReliefData, ReliefShape,
     ReliefStart, SolidGear, SolidPair,
 };
 use meshwright_engine::library::Library;
+use meshwright_engine::ring::teeth::FARTHEST_COUPLED;
 use meshwright_engine::run::Run;
 
 /// The gear of the references: 40 teeth, normal module 2 mm, 20 mm wide, its rim held at a radius of 28 mm.
@@ -70,6 +71,66 @@ fn solve(case: &Case) -> Analysis {
     }
     println!("{:?}", analysis.evidence);
     analysis
+}
+
+/// Contacts of a narrow pair whose axes lie askew, or of its image in the plane of its face.
+fn askew(seed: u64, image: bool, positions: &[f64]) -> Vec<FaceContact> {
+    let mut draw = drawn(seed);
+    let mut between = |low: f64, high: f64| low + (high - low) * draw();
+    let sign = if image { -1.0 } else { 1.0 };
+    let beta = match seed % 3 {
+        0 => 0.0,
+        1 => between(4.0, 12.0),
+        _ => -between(12.0, 25.0),
+    };
+    let gears = [1.0, -1.0].map(|hand| {
+        let mut data = gear(between(20.0, 50.0) as u32, 8e-3);
+        data.face_width = between(5e-3, 10e-3);
+        helical(data, sign * hand * beta.to_radians(), 0.0)
+    });
+    let yields = gears.each_ref().map(|gear| {
+        let resolution = FaceResolution {
+            face_order: 4,
+            ..FaceResolution::DRAFT
+        };
+        let made = FaceYield::of(gear, resolution, &Run::unattended());
+        Arc::new(made.expect("can be condensed")) as Arc<dyn FlankYield>
+    });
+    let [one, other] = gears
+        .each_ref()
+        .map(|gear| gear.section().reference_radius());
+    let alignment = Alignment {
+        axial_offset: 0.0,
+        in_plane: sign * between(-20e-6, 20e-6),
+        out_of_plane: sign * between(-20e-6, 20e-6),
+    };
+    let leads = [Vec::new(), Vec::new()];
+    let pair = SolidPair::new(gears, leads, one + other + 0.1e-3, alignment).expect("meshes");
+    let load = pair.common_face_width() * between(50e3, 300e3);
+    let model = FaceModel::new(pair, yields, SLICES, FARTHEST_COUPLED);
+    let solved = model.contacts(load, positions, &Run::unattended());
+    solved.expect("a balance at every position")
+}
+
+#[test]
+fn narrow_pairs_on_crooked_axes_are_their_images_at_every_position() {
+    // Teeth come into mesh by a tip at one end of the face, where lines are short and much loaded.
+    let positions: Vec<f64> = (0..32).map(|i| f64::from(i) / 32.0).collect();
+    for seed in 1..=12 {
+        let [one, image] = [false, true].map(|image| askew(seed, image, &positions));
+        let apart: Vec<f64> = one
+            .iter()
+            .zip(&image)
+            .map(|(one, image)| one.mesh.transmission_error - image.mesh.transmission_error)
+            .collect();
+        // A misalignment counts from one end of the face, and so the image's from the other: by as much at every position.
+        let shift = apart.iter().sum::<f64>() / 32.0;
+        let most = apart
+            .iter()
+            .map(|apart| (apart - shift).abs())
+            .fold(0.0, f64::max);
+        assert!(most < 1e-12, "seed {seed}: {most:e}");
+    }
 }
 
 #[test]

@@ -92,11 +92,12 @@ fn a_helical_tooth_yields_under_oblique_lines_as_in_calculix() {
     };
 
     let results = &reference("3d/tooth-oblique-loads.json")["results"];
-    // Where bands touch the ends of the flank the reference vouches for one percent, and our half space knows no edge.
+    // The reference vouches for one percent at a point and half of one in the mean. Our half space knows no edge, which is felt where
+    // bands touch the tip.
     for (name, ends, mean) in [
-        ("centre", 0.006, 0.003),
-        ("to tip", 0.025, 0.007),
-        ("to root", 0.033, 0.01),
+        ("centre", 0.005, 0.0025),
+        ("to tip", 0.016, 0.0035),
+        ("to root", 0.0055, 0.003),
     ] {
         let line = &results[name];
         let middle = line["line_s_at_z0_mm"].as_f64().expect("a number") * 1e-3;
@@ -157,7 +158,11 @@ fn a_helical_tooth_yields_under_oblique_lines_as_in_calculix() {
             let arc = flank.arc_length(roll * 1e-3);
             let (low, high) = (flank.arc_length(from), flank.arc_length(to));
             let inside = arc > low + 3.0 * HALF_BAND && arc < high - 3.0 * HALF_BAND;
-            let allowed = if inside { 0.006 } else { ends };
+            let allowed = match inside {
+                true if z.abs() > 8e-3 => 0.0075,
+                true => 0.0055,
+                false => ends,
+            };
             assert!(apart.abs() < allowed, "{name}, z {z}: {apart}");
             (sum, count) = (sum + apart, count + 1.0);
         }

@@ -7,16 +7,12 @@ use super::half_space::HalfSpace;
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::symmetrize;
 use crate::gear::SolidGear;
-use crate::quadrature::legendre;
+use crate::quadrature::{gauss_legendre, legendre};
 
 /// The degree up the flank of what a tooth yields under its own load, less the half space.
-pub(super) const OWN_DEGREE: usize = 8;
+pub(super) const OWN_DEGREE: usize = 6;
 /// The degree up the flank of what it yields under the loads of others.
 pub(super) const OTHER_DEGREE: usize = 5;
-/// How many nodes of the flank apart loads and displacements must be to tell the smooth part from the grid's own error.
-const NODES_APART: usize = 3;
-/// Singular values below this share of the largest say nothing.
-const FIT_TOLERANCE: f64 = 1e-9;
 
 /// The Legendre polynomials in the square of the roll length, over the flank, and their derivatives by the roll length.
 pub(super) fn up_the_flank(
@@ -32,7 +28,15 @@ pub(super) fn up_the_flank(
     (values, slopes)
 }
 
-/// How values at the nodes of a flank become polynomials over it.
+/// The same values, each over its square's mean along the flank: what the nearest polynomials are found by.
+pub(super) fn projecting(squares: [f64; 2], roll_length: f64, degree: usize) -> Vec<f64> {
+    let (values, _) = up_the_flank(squares, roll_length, degree);
+    let each = values.into_iter().enumerate();
+    each.map(|(a, value)| (2 * a + 1) as f64 * value).collect()
+}
+
+/// How values at the nodes of a flank become polynomials over it: the nearest to what the grid has between its nodes, in the mean along
+/// the flank. Loads go the same way, so that what the grid makes of loads that stand on single nodes does not count.
 pub(super) struct FlankFit<'a> {
     gear: &'a SolidGear,
     pub(super) axial: &'a AxialBasis,
@@ -41,6 +45,7 @@ pub(super) struct FlankFit<'a> {
 }
 
 impl<'a> FlankFit<'a> {
+    /// On a flank with nodes at the ends and in the middle of each of its elements.
     pub(super) fn new(gear: &'a SolidGear, axial: &'a AxialBasis, roll_lengths: &'a [f64]) -> Self {
         let last = roll_lengths[roll_lengths.len() - 1];
         Self {
@@ -54,73 +59,51 @@ impl<'a> FlankFit<'a> {
     /// The polynomials of [`OTHER_DEGREE`] nearest to values at the nodes: a row for each of all the polynomials, the higher ones
     /// empty.
     pub(super) fn smoothing(&self) -> Mat<f64> {
-        let nodes = self.roll_lengths;
-        let values = Mat::from_fn(nodes.len(), OTHER_DEGREE + 1, |i, a| {
-            up_the_flank(self.squares, nodes[i], OTHER_DEGREE).0[a]
-        });
-        let inverse = pseudo_inverse(&values);
-        Mat::from_fn(OWN_DEGREE + 1, nodes.len(), |a, i| {
+        let nearest = self.nearest();
+        Mat::from_fn(nearest.nrows(), nearest.ncols(), |a, i| {
             if a <= OTHER_DEGREE {
-                inverse[(a, i)]
+                nearest[(a, i)]
             } else {
                 0.0
             }
         })
     }
 
-    /// The polynomials nearest to the compliance `g` of one flank under its own loads, node by node, less the half space: from
-    /// nodes that stand [`NODES_APART`].
+    /// The polynomials nearest to the compliance `g` of one flank under its own loads, node by node, less the half space.
     pub(super) fn own(&self, g: &Mat<f64>) -> Mat<f64> {
-        let (nodes, m, degrees) = (self.roll_lengths.len(), self.axial.len(), OWN_DEGREE + 1);
-        let apart: Vec<(usize, usize)> = (0..nodes)
-            .flat_map(|i| (0..nodes).map(move |j| (i, j)))
-            .filter(|(i, j)| i.abs_diff(*j) >= NODES_APART)
-            .collect();
-        let polynomials: Vec<Vec<f64>> = self
-            .roll_lengths
-            .iter()
-            .map(|s| up_the_flank(self.squares, *s, OWN_DEGREE).0)
-            .collect();
-        let products = Mat::from_fn(apart.len(), degrees * degrees, |row, ab| {
-            let (i, j) = apart[row];
-            polynomials[i][ab / degrees] * polynomials[j][ab % degrees]
-        });
-        let space = HalfSpace::new(self.gear, self.axial, self.least_distance());
-        let mut smooth = Mat::<f64>::zeros(apart.len(), m * m);
-        for (row, &(i, j)) in apart.iter().enumerate() {
-            // Exchanged nodes exchange the functions.
-            if i < j {
-                continue;
-            }
-            let kernel = space.between(self.roll_lengths[i], self.roll_lengths[j]);
-            let other = apart.partition_point(|pair| *pair < (j, i));
-            for p in 0..m {
-                for q in 0..m {
-                    smooth[(row, p * m + q)] = g[(i * m + p, j * m + q)] - kernel[(p, q)];
-                    smooth[(other, p * m + q)] = g[(j * m + p, i * m + q)] - kernel[(q, p)];
-                }
-            }
-        }
-        let shares = pseudo_inverse(&products) * smooth;
-        let mut own = Mat::from_fn(degrees * m, degrees * m, |i, j| {
-            shares[((i / m) * degrees + j / m, (i % m) * m + j % m)]
-        });
+        let space = HalfSpace::new(self.gear, self.axial);
+        let whole = smoothed(&self.nearest(), g, self.axial.len());
+        let mut own = whole - space.over_flank(self.squares, OWN_DEGREE);
         symmetrize(&mut own);
         own
     }
 
-    /// The least length along the flank between nodes that stand [`NODES_APART`].
-    fn least_distance(&self) -> f64 {
-        let flank = self.gear.section().flank();
-        let arcs: Vec<f64> = self
-            .roll_lengths
-            .iter()
-            .map(|s| flank.arc_length(*s))
-            .collect();
-        let steps = arcs.windows(NODES_APART + 1);
-        steps
-            .map(|arcs| arcs[NODES_APART] - arcs[0])
-            .fold(f64::INFINITY, f64::min)
+    /// The polynomials nearest to values at the nodes, a row each: the mean along the flank of each with what a node's value is between the
+    /// nodes, a parabola over an element.
+    fn nearest(&self) -> Mat<f64> {
+        let mut nearest = Mat::zeros(OWN_DEGREE + 1, self.roll_lengths.len());
+        let [from, to] = self.squares;
+        let rule = gauss_legendre(OWN_DEGREE / 2 + 2);
+        for (i, nodes) in self.roll_lengths.windows(3).enumerate().step_by(2) {
+            // Arcs of an involute go with the square of the roll length.
+            let [a, b, c] = [0, 1, 2].map(|i| (nodes[i].powi(2) - from) / (to - from));
+            for (x, w) in &rule {
+                let at = f64::midpoint(a, c) + 0.5 * (c - a) * x;
+                let shapes = [
+                    (at - b) * (at - c) / ((a - b) * (a - c)),
+                    (at - a) * (at - c) / ((b - a) * (b - c)),
+                    (at - a) * (at - b) / ((c - a) * (c - b)),
+                ];
+                let roll_length = (from + at * (to - from)).sqrt();
+                let values = projecting(self.squares, roll_length, OWN_DEGREE);
+                for (row, value) in values.into_iter().enumerate() {
+                    for (node, shape) in shapes.into_iter().enumerate() {
+                        nearest[(row, i + node)] += 0.5 * (c - a) * w * value * shape;
+                    }
+                }
+            }
+        }
+        nearest
     }
 }
 
@@ -149,17 +132,4 @@ where
         }
     }
     rows
-}
-
-/// The least-squares inverse of a tall matrix.
-fn pseudo_inverse(a: &Mat<f64>) -> Mat<f64> {
-    let Ok(svd) = a.thin_svd() else {
-        return Mat::zeros(a.ncols(), a.nrows());
-    };
-    let (u, v, s) = (svd.U(), svd.V(), svd.S().column_vector());
-    let kept = (0..s.nrows())
-        .take_while(|&i| s[i] > FIT_TOLERANCE * s[0])
-        .count();
-    let scaled = Mat::from_fn(v.nrows(), kept, |i, j| v[(i, j)] / s[j]);
-    scaled * u.subcols(0, kept).transpose()
 }

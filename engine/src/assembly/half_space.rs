@@ -4,39 +4,41 @@ use std::f64::consts::PI;
 
 use faer::Mat;
 
+use super::flank_fit::projecting;
 use crate::fem::axial::AxialBasis;
 use crate::gear::{Material, SolidGear};
+use crate::quadrature::{gauss_legendre, legendre};
 
-/// The half space's compliance between lines along the flank: (1 − ν²)/(π E) ∫∫ f_p f_q / distance.
+/// Points between two distances along the axis over which asinh of them, in the distance of the lines, changes by [`STRETCH`] at most.
+const POINTS: usize = 16;
+const STRETCH: f64 = 3.0;
+
+/// The half space's compliance between lines along the flank, (1 − ν²)/(π E) ∫∫ f_p f_q / distance.
 pub(super) struct HalfSpace {
-    points: Vec<(f64, Vec<f64>)>,
+    /// ∫ f_p(z) f_q(z − Δ) dz over Δ.
+    products: Vec<Products>,
     scale: f64,
     twist: f64,
     base_radius: f64,
     along: f64,
 }
 
+/// ∫ f_p(z) f_q(z − Δ) dz between two distances Δ, where it is a polynomial: so much of each Legendre polynomial.
+struct Products {
+    ends: [f64; 2],
+    shares: Vec<Mat<f64>>,
+}
+
 impl HalfSpace {
-    pub(super) fn new(gear: &SolidGear, axial: &AxialBasis, least_distance: f64) -> Self {
+    pub(super) fn new(gear: &SolidGear, axial: &AxialBasis) -> Self {
         let section = gear.section();
         let Material {
             youngs_modulus: e,
             poisson_ratio: nu,
             ..
         } = *section.material();
-        let breaks = axial.breaks();
-        let longest = breaks
-            .windows(2)
-            .map(|ends| ends[1] - ends[0])
-            .fold(0.0, f64::max);
-        // Three points to the shortest distance of two lines resolve what is between them.
-        let count = (3.0 * longest / least_distance).ceil() as usize + 12;
-        let points = axial.rule(count).into_iter().map(|(z, w)| {
-            let weighted = axial.values(z).into_iter().map(|f| w * f).collect();
-            (z, weighted)
-        });
         Self {
-            points: points.collect(),
+            products: Products::all(axial),
             scale: (1.0 - nu * nu) / (PI * e),
             twist: gear.twist(),
             base_radius: section.base_radius(),
@@ -44,29 +46,215 @@ impl HalfSpace {
         }
     }
 
-    /// Between the displacement at roll length `s` and the load at `loaded`.
-    pub(super) fn between(&self, s: f64, loaded: f64) -> Mat<f64> {
-        let m = self.points[0].1.len();
+    /// Between the displacement at roll length `s` and the load at `loaded`, another one.
+    ///
+    /// The distance squared, (level − slope Δ)² + (along Δ)², is (κ (Δ − Δ_0))² + e², and Δ = Δ_0 + e/κ sinh v makes dΔ/distance = dv/κ.
+    fn between(&self, s: f64, loaded: f64) -> Mat<f64> {
         let level = (s * s - loaded * loaded) / (2.0 * self.base_radius);
         let slope = self.twist * f64::midpoint(s, loaded);
+        let kappa = slope.hypot(self.along);
+        let nearest = level * slope / (kappa * kappa);
+        let reach = (level * self.along / kappa).abs() / kappa;
+        let rule = gauss_legendre(POINTS);
+        let m = self.products[0].shares[0].nrows();
         let mut sum = Mat::zeros(m, m);
-        let mut line = vec![0.0; m];
-        for (z, f) in &self.points {
-            line.fill(0.0);
-            for (z_loaded, g) in &self.points {
-                let apart = z - z_loaded;
-                let (across, along) = (level - slope * apart, self.along * apart);
-                let near = self.scale / (across * across + along * along).sqrt();
-                for (sum, g) in line.iter_mut().zip(g) {
-                    *sum += near * g;
+        for Products { ends, shares } in &self.products {
+            let [from, to] = ends.map(|end| ((end - nearest) / reach).asinh());
+            let stretches = ((to - from) / STRETCH).ceil();
+            let half = 0.5 * (to - from) / stretches;
+            let mut integrals = vec![0.0; shares.len()];
+            for stretch in 0..stretches as usize {
+                for (x, w) in &rule {
+                    let v = from + half * ((2 * stretch + 1) as f64 + x);
+                    let apart = nearest + reach * v.sinh();
+                    let t = (2.0 * apart - ends[0] - ends[1]) / (ends[1] - ends[0]);
+                    let values = legendre_values(t, shares.len() - 1);
+                    for (integral, value) in integrals.iter_mut().zip(values) {
+                        *integral += half * w / kappa * value;
+                    }
                 }
             }
-            for (q, line) in line.iter().enumerate() {
-                for (p, f) in f.iter().enumerate() {
-                    sum[(p, q)] += f * line;
-                }
+            for (share, integral) in shares.iter().zip(integrals) {
+                sum += share * faer::Scale(self.scale * integral);
             }
         }
         sum
+    }
+
+    /// Its nearest of products of the polynomials [`up_the_flank`] and functions along the axis, over the flank between the squares of two roll
+    /// lengths.
+    ///
+    /// Its logarithm of the distance d of two lines becomes smooth by d = L u³.
+    pub(super) fn over_flank(&self, squares: [f64; 2], degree: usize) -> Mat<f64> {
+        let length = (squares[1] - squares[0]) / (2.0 * self.base_radius);
+        let m = self.products[0].shares[0].nrows();
+        let count = degree + 1;
+        let mut whole = Mat::<f64>::zeros(count * m, count * m);
+        let (distances, middles) = (gauss_legendre(count + 9), gauss_legendre(count + 4));
+        for (x, w) in &distances {
+            let u = 0.5 * (1.0 + x);
+            let apart = length * u.powi(3);
+            let weight = 1.5 * w * length * u * u;
+            for (y, v) in &middles {
+                let half = 0.5 * (length - apart);
+                let arcs = [0.5, -0.5].map(|side| 0.5 * length + half * y + side * apart);
+                let [s, loaded] =
+                    arcs.map(|arc| (squares[0] + 2.0 * self.base_radius * arc).sqrt());
+                let near = self.between(s, loaded);
+                let [at, of] = [s, loaded].map(|s| projecting(squares, s, degree));
+                for a in 0..count {
+                    for b in 0..count {
+                        let share = weight * v * half * at[a] * of[b] / (length * length);
+                        for q in 0..m {
+                            for p in 0..m {
+                                let moved = share * near[(p, q)];
+                                whole[(a * m + p, b * m + q)] += moved;
+                                // Exchanged lines exchange the functions.
+                                whole[(b * m + q, a * m + p)] += moved;
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        whole
+    }
+}
+
+impl Products {
+    /// Those of `axial` at all distances at which its functions overlap.
+    fn all(axial: &AxialBasis) -> Vec<Self> {
+        let breaks = axial.breaks();
+        let apart = breaks
+            .iter()
+            .flat_map(|one| breaks.iter().map(move |other| one - other));
+        let mut kinks: Vec<f64> = apart.collect();
+        kinks.sort_by(f64::total_cmp);
+        let [from, to] = axial.heights();
+        let no_length = 1e-9 * (to - from);
+        kinks.dedup_by(|one, other| (*one - *other).abs() < no_length);
+        kinks
+            .windows(2)
+            .map(|ends| Self::between(axial, [ends[0], ends[1]]))
+            .collect()
+    }
+
+    fn between(axial: &AxialBasis, ends: [f64; 2]) -> Self {
+        let (m, degree) = (axial.len(), 2 * axial.degree() + 1);
+        let mut shares = vec![Mat::zeros(m, m); degree + 1];
+        let half = 0.5 * (ends[1] - ends[0]);
+        for (t, w) in gauss_legendre(degree + 1) {
+            let product = product(axial, ends[0] + half * (1.0 + t));
+            for (k, value) in legendre_values(t, degree).into_iter().enumerate() {
+                let share = (k as f64 + 0.5) * w * value;
+                shares[k] += &product * faer::Scale(share);
+            }
+        }
+        Self { ends, shares }
+    }
+}
+
+/// The Legendre polynomials up to `degree` at `t`.
+fn legendre_values(t: f64, degree: usize) -> Vec<f64> {
+    let (mut values, mut slopes) = (vec![0.0; degree + 1], vec![0.0; degree + 1]);
+    legendre(t, &mut values, &mut slopes);
+    values
+}
+
+/// ∫ f_p(z) f_q(z − `apart`) dz.
+fn product(axial: &AxialBasis, apart: f64) -> Mat<f64> {
+    let [from, to] = axial.heights();
+    let [low, high] = [from.max(from + apart), to.min(to + apart)];
+    let breaks = axial.breaks().iter();
+    let mut cuts: Vec<f64> = breaks.flat_map(|z| [*z, z + apart]).collect();
+    cuts.retain(|z| (low..=high).contains(z));
+    cuts.sort_by(f64::total_cmp);
+    let rule = gauss_legendre(axial.degree() + 1);
+    let mut sum = Mat::zeros(axial.len(), axial.len());
+    for ends in cuts.windows(2) {
+        let half = 0.5 * (ends[1] - ends[0]);
+        for (x, w) in &rule {
+            let z = ends[0] + half * (1.0 + x);
+            let (f, g) = (axial.values(z), axial.values(z - apart));
+            for (q, g) in g.iter().enumerate() {
+                for (p, f) in f.iter().enumerate() {
+                    sum[(p, q)] += half * w * f * g;
+                }
+            }
+        }
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gear::Helix;
+    use crate::gear::spur::tests::paper_gear;
+
+    fn gear(beta: f64) -> SolidGear {
+        let mut data = paper_gear(30);
+        data.blank.bore_radius = 10e-3;
+        SolidGear::new(data, Helix::right(beta), 0.0, None).expect("can be made")
+    }
+
+    #[test]
+    fn lines_yield_to_each_other_by_their_distances() {
+        // Summed over so many points that those of two lines are near each other nowhere.
+        let gear = gear(0.4);
+        for axial in [
+            AxialBasis::new(&[-10e-3, 10e-3], 8),
+            AxialBasis::new(&[-10e-3, -3e-3, 2e-3, 10e-3], 4),
+        ] {
+            let space = HalfSpace::new(&gear, &axial);
+            for [s, loaded] in [[9e-3, 8.4e-3], [7e-3, 10e-3], [10e-3, 7e-3]] {
+                let level = (s * s - loaded * loaded) / (2.0 * space.base_radius);
+                let slope = space.twist * f64::midpoint(s, loaded);
+                let rule: Vec<(f64, Vec<f64>)> = axial
+                    .rule(500)
+                    .into_iter()
+                    .map(|(z, w)| (z, axial.values(z).iter().map(|f| w * f).collect()))
+                    .collect();
+                let mut sum = Mat::<f64>::zeros(axial.len(), axial.len());
+                for (z, f) in &rule {
+                    for (y, g) in &rule {
+                        let across = level - slope * (z - y);
+                        let distance = across.hypot(space.along * (z - y));
+                        for (q, g) in g.iter().enumerate() {
+                            for (p, f) in f.iter().enumerate() {
+                                sum[(p, q)] += space.scale * f * g / distance;
+                            }
+                        }
+                    }
+                }
+                let apart = (space.between(s, loaded) - &sum).norm_max();
+                assert!(apart < 1e-5 * sum.norm_max(), "{s} {loaded}: {apart:e} of {:e}, {}", sum.norm_max(), axial.len());
+            }
+        }
+    }
+
+    #[test]
+    fn a_flank_under_an_even_pressure_sinks_in_the_mean_as_a_rectangle() {
+        // ∫∫ 1/distance over two points of a rectangle, in closed form.
+        let gear = gear(0.0);
+        let section = gear.section();
+        let squares = [section.form_roll_length(), section.tip_roll_length()].map(|s| s * s);
+        let axial = AxialBasis::new(&[-10e-3, 10e-3], 8);
+        let space = HalfSpace::new(&gear, &axial);
+        let (a, b) = (
+            (squares[1] - squares[0]) / (2.0 * section.base_radius()),
+            20e-3_f64,
+        );
+        let logarithms = 3.0 * a * b * (a * (b / a).asinh() + b * (a / b).asinh());
+        let whole = 2.0 / 3.0 * (logarithms + a.powi(3) + b.powi(3) - a.hypot(b).powi(3));
+        let expected = space.scale * whole / (a * a * b);
+        let found = space.over_flank(squares, 6);
+        assert!(
+            (found[(0, 0)] / expected - 1.0).abs() < 1e-6,
+            "{} {expected}",
+            found[(0, 0)]
+        );
+        let mutual = (&found - found.transpose()).norm_max();
+        assert!(mutual < 1e-12 * found.norm_max(), "{mutual:e}");
     }
 }

@@ -61,6 +61,11 @@ impl AxialBasis {
         false
     }
 
+    /// The degree of its pieces.
+    pub fn degree(&self) -> usize {
+        self.degree
+    }
+
     /// Where it begins and ends.
     pub fn heights(&self) -> [f64; 2] {
         [self.breaks[0], self.breaks[self.breaks.len() - 1]]

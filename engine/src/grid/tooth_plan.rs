@@ -53,6 +53,9 @@ const LARGEST_CORE: f64 = 0.8;
 /// and even. The sharpest corner is the same from 0.2 to 0.45.
 const DEEP_RIM: f64 = 0.3;
 
+/// The size of the first layer across the tooth under a flank that carries polynomials, in modules: the highest of them reach no deeper.
+const FIRST_OF_PRISM: f64 = 0.2;
+
 /// How large the elements of a tooth are at the standard level, in modules, and how many there are at least.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sizes {
@@ -67,6 +70,8 @@ pub(super) struct Sizes {
     across: f64,
     /// How many such layers there are at least.
     least_across: f64,
+    /// Of the first layer across the tooth at its neck; infinite where all are equal there.
+    first_at_neck: f64,
     /// Along the fillet and the root land.
     on_fillet: f64,
     /// Of the first layer below the fillet.
@@ -84,6 +89,7 @@ impl Sizes {
         first_across: SIZE_AT_TIP,
         across: SIZE_ACROSS,
         least_across: 16.0,
+        first_at_neck: f64::INFINITY,
         on_fillet: SIZE_ON_FILLET,
         below_fillet: SIZE_BELOW_FILLET,
         least: [8, 8, 4, 6],
@@ -94,12 +100,13 @@ impl Sizes {
         at_tip: f64::INFINITY,
         at_edge: f64::INFINITY,
         on_flank: 0.17,
-        first_across: f64::INFINITY,
+        first_across: FIRST_OF_PRISM,
         across: 0.25,
         least_across: 0.0,
+        first_at_neck: FIRST_OF_PRISM,
         on_fillet: 0.5,
         below_fillet: 0.25,
-        least: [8, 4, 2, 4],
+        least: [8, 6, 4, 4],
     };
 
     /// Sizes of such a section whose fillets tell the stress along them, to 1.5 %. What bends the tooth needs layers across it more than the
@@ -123,9 +130,9 @@ pub(super) struct Plan<'a> {
     roll_lengths: Vec<f64>,
     /// The radius and the half angle at which the side ends: those of the tip land, or somewhat below it.
     tip: (f64, f64),
-    /// The fractions across the tooth, from the unloaded flank, at the tip.
+    /// The fractions across the tooth, from the unloaded flank, at its neck and at the tip.
+    across_neck: Vec<f64>,
     across_tip: Vec<f64>,
-    across_count: usize,
     /// From the dividing point to the side of the sector.
     root: Vec<Vector>,
     /// The polar angles on the interface circle under the core, from the centerline, and under the fillet.
@@ -231,6 +238,17 @@ impl<'a> Plan<'a> {
         };
         let across_count = across.count_at(across_least, level);
         let across_tip = reversed(&across.divide(across_count));
+        let across_neck = if of.first_at_neck.is_finite() {
+            let neck = Grading {
+                length: 2.0 * side[0].0.y,
+                first: of.first_at_neck * m,
+                largest: f64::INFINITY,
+                ..across
+            };
+            reversed(&neck.divide(across_count))
+        } else {
+            uniform(across_count)
+        };
 
         let (root, depth) = Self::rim(gear, &curve, division, interface_radius, (of, level));
         let corner = side[0].0;
@@ -259,8 +277,8 @@ impl<'a> Plan<'a> {
             below_form,
             roll_lengths,
             tip,
+            across_neck,
             across_tip,
-            across_count,
             root,
             core_angle,
             fillet_angles,
@@ -325,8 +343,8 @@ impl<'a> Plan<'a> {
             .map(|w| r_a * radial(psi_a * (2.0 * w - 1.0)))
             .collect();
         let tip_edge = builder.curve(lower[last], upper[last], &tip);
-        let across_root = uniform(self.across_count);
-        let neck = builder.straight(lower[0], upper[0], &across_root);
+        let across_neck = &self.across_neck;
+        let neck = builder.straight(lower[0], upper[0], across_neck);
         self.fill_tooth(
             &mut builder,
             &lower,
@@ -334,14 +352,14 @@ impl<'a> Plan<'a> {
             &upper,
             &neck,
             &tip,
-            &across_root,
+            across_neck,
         );
 
         // The interface circle.
         let arc = |angles: Vec<f64>| -> Vec<(Vector, f64)> {
             angles.into_iter().map(|a| (r_w * radial(a), a)).collect()
         };
-        let core = arc(across_root
+        let core = arc(across_neck
             .iter()
             .map(|w| self.core_angle * (2.0 * w - 1.0))
             .collect());
@@ -422,7 +440,7 @@ impl<'a> Plan<'a> {
         upper: &[u32],
         neck: &[u32],
         tip: &[Vector],
-        across_root: &[f64],
+        across_neck: &[f64],
     ) {
         let whole = self.side.last().map_or(1.0, |(_, length)| *length);
         let tip_x = tip[0].x;
@@ -432,7 +450,7 @@ impl<'a> Plan<'a> {
             // Somewhat faster than linear near the tip, where the sizes along the flank grow fast.
             let blend = from_tip * ((1.0 + BLEND) - BLEND * from_tip);
             let w = (1.0 - blend) * (tip[j].y / tip[tip.len() - 1].y + 1.0) / 2.0
-                + blend * across_root[j];
+                + blend * across_neck[j];
             let bulge = (tip[j].x - tip_x) * length / whole;
             Vector::new(point.x + bulge, point.y * (2.0 * w - 1.0))
         });

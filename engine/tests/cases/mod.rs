@@ -207,3 +207,14 @@ pub(crate) fn study_design(holes: Option<(u32, f64, f64)>, output_torques: &[f64
     });
     case(pair(solid, driven, 100.5e-3), output_torques)
 }
+
+/// Numbers in [0, 1) that look drawn.
+pub(crate) fn drawn(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    }
+}

@@ -64,8 +64,7 @@ struct Strips {
 
 impl FaceModel {
     /// The slope and the crowning of the driving leads that make the heaviest strip of the face lightest under `load` in the mean over
-    /// `positions`, of which δ is at most `farthest`. They do not make a flank hollow that is not. None where the contacts have no balance, as on
-    /// faces so narrow that their slices are no lines.
+    /// `positions`, of which δ is at most `farthest`. They do not make a flank hollow that is not. None where the contacts have no balance.
     ///
     /// # Errors
     ///
@@ -77,7 +76,11 @@ impl FaceModel {
         farthest: f64,
         run: &Run,
     ) -> Result<Option<EvenLead>, Stopped> {
-        let phases = self.phases_within(beyond(farthest));
+        let first = positions.first().and_then(|eta| self.least_touch(*eta));
+        let Some(touch) = first else {
+            return Ok(None);
+        };
+        let phases = self.phases_within(beyond(farthest, touch));
         let stands: Option<Vec<Stand>> = positions
             .par_iter()
             .map(|&eta| self.stand(eta, load, phases))
@@ -138,7 +141,7 @@ impl FaceModel {
     }
 
     fn stand(&self, eta: f64, load: f64, phases: [f64; 2]) -> Option<Stand> {
-        let slices = slice::lay(self, eta, phases, (Some(load), 1.0));
+        let slices = slice::lay(self, eta, phases, Some(load));
         let width = self.pair.gear(Member::Driving).face_width();
         let opened = |lead: &LeadModification| -> Vec<f64> {
             let removed = slices.iter().map(|slice| {

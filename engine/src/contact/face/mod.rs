@@ -25,7 +25,7 @@ use rayon::prelude::*;
 
 use super::facing::Facing;
 use super::positions::PositionsError;
-use super::{ContactError, MeshContact, PairContact, PairLoads, PositionError};
+use super::{MeshContact, PairContact, PairLoads, PositionError};
 use crate::gear::{GearPair, Member, PairDeviations, SolidPair};
 use crate::run::Run;
 use balance::{Balance, balance};
@@ -53,11 +53,8 @@ pub trait FlankYield: Send + Sync {
 /// How many slices the whole face is cut into, unless a case says otherwise.
 pub const SLICES: usize = 40;
 
-/// By how much the reach within which pairs are looked for is more than δ.
-const REACH: f64 = 1.3;
-
-/// Slices are made longer up to so many times, where they are too short for their contacts.
-const LONGEST: f64 = 32.0;
+/// How far beyond δ pairs are looked for, as a part of how far the flanks are pressed.
+const BEYOND: f64 = 0.3;
 
 /// Matrices of smooth yields that are kept.
 const MOST_KEPT: usize = 256;
@@ -204,8 +201,10 @@ impl FaceModel {
         let Some(&first) = positions.first() else {
             return Ok(Vec::new());
         };
+        let touch = self.least_touch(first);
+        let touch = touch.ok_or_else(|| at(PositionError::NoContact, first))?;
         let mut reach = self
-            .first_reach(first, load)
+            .first_reach(first, load, touch)
             .map_err(|error| at(error, first))?;
         let mut told = false;
         loop {
@@ -225,7 +224,7 @@ impl FaceModel {
                 let contacts = solved.into_iter().filter_map(Reached::contact);
                 return Ok(contacts.collect());
             }
-            reach = beyond(farthest);
+            reach = beyond(farthest, touch);
         }
     }
 
@@ -246,20 +245,19 @@ impl FaceModel {
         }
     }
 
-    /// How far flanks are to be looked for under `load`: a little more than δ at the position `eta`.
-    fn first_reach(&self, eta: f64, load: f64) -> Result<f64, PositionError> {
+    /// How far flanks are to be looked for under `load`: a little more than δ at the position `eta`, where the first of them `touch`.
+    fn first_reach(&self, eta: f64, load: f64, touch: f64) -> Result<f64, PositionError> {
         let moduli = Member::BOTH.map(|member| self.long.gear(member).material().youngs_modulus);
         // Solid gears yield by about half of this.
         let stiffness = 0.05 * moduli[0].min(moduli[1]) * self.pair.common_face_width();
-        let touch = self.least_touch(eta).ok_or(PositionError::NoContact)?;
         let mut reach = touch + load / stiffness;
         loop {
             let contact = self.contact_within(eta, load, self.phases_within(reach))?;
             let delta = contact.mesh.transmission_error;
             if delta <= reach {
-                return Ok(beyond(delta));
+                return Ok(beyond(delta, touch));
             }
-            reach = beyond(delta);
+            reach = beyond(delta, touch);
         }
     }
 
@@ -274,12 +272,7 @@ impl FaceModel {
     /// The slices of the theoretical contact lines at the position `eta`.
     fn slices_on_path(&self, eta: f64) -> Vec<Slice> {
         let (s_a, s_e) = self.pair.section().path_of_contact();
-        slice::lay(
-            self,
-            eta,
-            [s_a, s_e].map(|s| self.pair.phase_at(s)),
-            (None, 1.0),
-        )
+        slice::lay(self, eta, [s_a, s_e].map(|s| self.pair.phase_at(s)), None)
     }
 
     /// How far leads, deviations and the axes may bring flanks nearer to each other than their sections are.
@@ -331,19 +324,7 @@ impl FaceModel {
         load: f64,
         phases: [f64; 2],
     ) -> Result<FaceContact, PositionError> {
-        let mut length = 1.0;
-        loop {
-            let slices = slice::lay(self, eta, phases, (Some(load), length));
-            match self.balanced(&slices, load) {
-                // On faces so narrow that their contacts are as wide as slices are long, slices are no lines.
-                Err(PositionError::Contact(ContactError::NotPositiveDefinite { .. }))
-                    if length < LONGEST =>
-                {
-                    length *= 2.0;
-                }
-                contact => return contact,
-            }
-        }
+        self.balanced(&slice::lay(self, eta, phases, Some(load)), load)
     }
 
     /// The contact on `slices` under `load`.
@@ -583,9 +564,9 @@ fn add_to_strips(strips: &mut [f64], width: f64, (z, length, force): (f64, f64, 
     }
 }
 
-/// A reach somewhat beyond `delta`.
-fn beyond(delta: f64) -> f64 {
-    delta + (REACH - 1.0) * delta.abs()
+/// A reach somewhat beyond `delta` of flanks that `touch` before.
+fn beyond(delta: f64, touch: f64) -> f64 {
+    delta + BEYOND * (delta - touch).abs()
 }
 
 #[cfg(test)]

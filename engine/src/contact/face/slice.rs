@@ -34,15 +34,10 @@ pub(super) struct Slice {
 }
 
 /// The slices of all lines of `model` at the position `eta` on which sections are in `phases`; with the springs that they have under `load`, or
-/// Hertz's alone, and so many times as long as usual.
+/// Hertz's alone.
 ///
 /// Slices of one line are equally long, so that they move with it.
-pub(super) fn lay(
-    model: &FaceModel,
-    eta: f64,
-    phases: [f64; 2],
-    (load, longer): (Option<f64>, f64),
-) -> Vec<Slice> {
+pub(super) fn lay(model: &FaceModel, eta: f64, phases: [f64; 2], load: Option<f64>) -> Vec<Slice> {
     let lines = model.pair.lines(eta, phases);
     let total: f64 = lines
         .iter()
@@ -50,7 +45,7 @@ pub(super) fn lay(
         .sum();
     // For each length along a contact line.
     let density = load.map(|load| HEAVIER * load / total);
-    let layer = Layer::new(model, density, longer);
+    let layer = Layer::new(model, density);
     lines
         .iter()
         .flat_map(|line| layer.line(eta, line))
@@ -63,11 +58,10 @@ struct Layer<'a> {
     cosine: f64,
     factor: f64,
     density: Option<f64>,
-    longer: f64,
 }
 
 impl<'a> Layer<'a> {
-    fn new(model: &'a FaceModel, density: Option<f64>, longer: f64) -> Self {
+    fn new(model: &'a FaceModel, density: Option<f64>) -> Self {
         let factors = Member::BOTH.map(|member| {
             let modulus = model.long.gear(member).material().youngs_modulus;
             logarithm_factor(modulus, 1.0)
@@ -77,7 +71,6 @@ impl<'a> Layer<'a> {
             cosine: model.pair.base_helix_angle().cos(),
             factor: factors[0] + factors[1],
             density,
-            longer,
         }
     }
 
@@ -89,7 +82,7 @@ impl<'a> Layer<'a> {
             let s = 0.5 * pair.section().line_of_action();
             hertz(density, 0.5 * s / self.cosine, self.factor, 1.0).0
         });
-        let shortest = self.longer * regular.max(SHORTEST * half_width * self.cosine);
+        let shortest = regular.max(SHORTEST * half_width * self.cosine);
         let count = ((to - from) / shortest - 1e-9).ceil().max(1.0);
         let length = (to - from) / count;
         let straight = pair.advance() == 0.0;
