@@ -63,17 +63,21 @@ export class Beginnings {
     const gear = this.#gear(pointer);
     if (!gear) return undefined;
     const { root, bore, module } = circlesOf(gear);
+    const { web, holes } = gear.blank ?? {};
     if (name === "holes") {
-      const circle = rounded((root + bore) / 2);
-      return { count: 6, circle_radius_mm: circle, radius_mm: rounded(Math.min(0.27 * (root - bore), 0.3 * circle), 2), phase_deg: 0 };
+      // Within the web, where there is one: no hole crosses its edges.
+      const [inner, outer] = web ? [web.inner_radius_mm, web.outer_radius_mm] : [bore, root];
+      const circle = rounded((outer + inner) / 2);
+      return { count: 6, circle_radius_mm: circle, radius_mm: rounded(Math.min((web ? 0.4 : 0.27) * (outer - inner), 0.27 * (root - bore), 0.3 * circle), 2), phase_deg: 0 };
     }
+    const [low, high] = reachOf(holes);
     if (name === "tip_relief") return { amount_um: 10, shape: "linear", start: { radial_length_mm: rounded(0.5 * module, 2) } };
-    if (name === "hub") return { outer_radius_mm: rounded(bore + 0.2 * (root - bore)), width_mm: gear.face_width_mm };
+    const hub = Math.min(bore + 0.2 * (root - bore), (bore + low) / 2);
+    if (name === "hub") return { outer_radius_mm: rounded(Math.min(hub, web?.inner_radius_mm ?? hub)), width_mm: gear.face_width_mm };
     if (name !== "web") return undefined;
-    // Half the face, under a rim that a plane model stands for where there is room for it.
-    const inner = bore + 0.2 * (root - bore);
-    const outer = Math.max(root - 3.6 * module, bore + 0.6 * (root - bore));
-    return { inner_radius_mm: rounded(inner), outer_radius_mm: rounded(outer), thickness_mm: rounded(gear.face_width_mm / 2) };
+    // Half the face, around the holes, under a rim that a plane model stands for where there is room for it.
+    const outer = Math.max(root - 3.6 * module, bore + 0.6 * (root - bore), high ? (high + root) / 2 : 0);
+    return { inner_radius_mm: rounded(hub), outer_radius_mm: rounded(outer), thickness_mm: rounded(gear.face_width_mm / 2) };
   }
 
   /** The usual table, or one of fewer loads where the true period is so long that more would be too many positions. */
@@ -134,9 +138,8 @@ export class Beginnings {
     const bounds = (member) => {
       const gear = this.design.get(`/pair/${member}`);
       const { root, module } = circlesOf(gear);
-      const patterns = [gear.blank?.holes ?? []].flat();
-      const reach = Math.max(0, ...patterns.map((pattern) => pattern.circle_radius_mm + (pattern.radius_mm ?? pattern.slot?.width_mm / 2)));
-      return { holed: patterns.length > 0, low: reach, high: root, usual: Math.max(root - module, (root + reach) / 2) };
+      const [, reach] = reachOf(gear.blank?.holes);
+      return { holed: reach > 0, low: reach, high: root, usual: Math.max(root - module, (root + reach) / 2) };
     };
     const each = { driving: bounds("driving"), driven: bounds("driven") };
     const holed = Object.values(each).filter((gear) => gear.holed);
@@ -166,6 +169,12 @@ function circlesOf(gear) {
   const { module_mm: module, tooth_count: teeth, profile_shift: shift = 0 } = gear;
   const root = module * (teeth / 2 + (shift ?? 0)) - (gear.dedendum_mm ?? 1.25 * module);
   return { module, root, bore: gear.blank?.bore_radius_mm ?? root / 3 };
+}
+
+/** Between which radii the holes of a blank lie, in mm. */
+function reachOf(holes) {
+  const patterns = [holes ?? []].flat().map(({ circle_radius_mm: circle, radius_mm: radius, slot }) => [circle, radius ?? slot?.width_mm / 2]);
+  return [Math.min(...patterns.map(([circle, half]) => circle - half)), Math.max(0, ...patterns.map(([circle, half]) => circle + half))];
 }
 
 /** The involute of a gear: roll lengths of its form circle and its tip, and one measure of a place on it as another. */

@@ -47,12 +47,12 @@ export function designsCsv(designs) {
   return csvOf(lines);
 }
 
-/** The comparison in `place`. `titleOf` says what the field at a pointer is called. */
+/** The comparison in `place`. `named` says what the field at a pointer is called, and of which gear it is. */
 export class Compare {
   #key = "";
 
-  constructor(place, { onKept, onOpen, onMethods, titleOf }) {
-    Object.assign(this, { onKept, onOpen, titleOf });
+  constructor(place, { onKept, onOpen, onMethods, named }) {
+    Object.assign(this, { onKept, onOpen, named });
     this.table = h("div", { className: "scroll", id: "table", tabIndex: 0, role: "region", ariaLabel: "Statistics" });
     this.fields = h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Fields in which the designs differ" });
     const button = (name, id, work) => h("button", { type: "button", id, on: { click: work } }, name);
@@ -104,9 +104,9 @@ export class Compare {
     if (key === this.#key) return;
     this.#key = key;
     if (designs.length < 2) return this.fields.replaceChildren(h("p", { className: "note" }, "Keep to compare puts the design beside what you change next: its curves, its numbers, and the fields in which both differ."));
-    const shown = (value) => (value === undefined ? "default" : Array.isArray(value) ? (value.length > 4 ? `${value.length} numbers` : value.join(", ")) : String(value));
+    const shown = (value) => (value === undefined ? "not given" : Array.isArray(value) ? (value.length > 4 ? `${value.length} numbers` : value.join(", ")) : String(value));
     const head = h("tr", {}, h("th", { scope: "col" }, "Differs in"), ...designs.map(({ name }) => h("th", { scope: "col" }, name)));
-    const body = rows.map(({ pointer, values }) => h("tr", {}, h("th", { scope: "row" }, this.titleOf(pointer), h("small", {}, ` ${parts(pointer).slice(0, -1).filter((part) => part !== "pair").join(" ").replace(/_/g, " ")}`)), ...values.map((value) => h("td", {}, shown(value)))));
+    const body = rows.map(({ pointer, values }) => h("tr", {}, h("th", { scope: "row" }, this.named(pointer)), ...values.map((value) => h("td", {}, shown(value)))));
     this.fields.replaceChildren(rows.length ? h("table", {}, h("caption", {}, "Differences"), h("thead", {}, head), h("tbody", {}, ...body)) : h("p", { className: "note" }, "These designs are the same in every field."));
   }
 }

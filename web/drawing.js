@@ -130,7 +130,7 @@ export class Drawing {
       s("path", { d: `M${driving.center_mm.join(" ")}L${driven.center_mm.join(" ")}`, class: "centers" }),
       ...line.points.map((point) => s("circle", { cx: point.at_mm[0], cy: point.at_mm[1], r: size / 16, class: "mark" })),
       ...line.points.map((point) => text(point.name, [point.at_mm[0] + size * 0.12, point.at_mm[1] + size * 0.03], size / 4.5, "letter")),
-      text(`a = ${number(driven.center_mm[0], 7)} mm`, [driving.circles.pitch_mm, -0.94 * Math.min(driving.circles.tip_mm, driven.circles.tip_mm)], driven.center_mm[0] / 28, "dimension"),
+      text(`a = ${number(driven.center_mm[0], 7)} mm`, [driving.circles.pitch_mm, -0.94 * Math.min(driving.circles.tip_mm, driven.circles.tip_mm)], driven.center_mm[0] / 20, "dimension"),
     );
   }
 

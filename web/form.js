@@ -6,7 +6,7 @@ import { helix, intoPlane, intoSolid, isSolid, kindOfTeeth, needsThird, teeth } 
 import { deviations } from "./deviations.js";
 import { h, number, unit } from "./dom.js";
 import { parsed, read, stepped, write } from "./inputs.js";
-import { help, kindOf, resolve, saidDefault } from "./schema.js";
+import { help, kindOf, resolve, saidDefault, schemaAt } from "./schema.js";
 
 /** Fields that a designer looks for first; they stand above the others of their object. */
 const FIRST = ["holes", "tip_relief", "tooth_count", "profile_shift"];
@@ -109,18 +109,37 @@ export class Form {
 
   /** What the field at a pointer is called. */
   titleOf(pointer) {
-    const field = this.#fields.get(pointer.replace(/\/\d+$/, ""));
-    return field?.schema.title ?? pointer.split("/").pop().replace(/_/g, " ");
+    const place = pointer.replace(/\/\d+$/, "");
+    return (this.#fields.get(place)?.schema ?? schemaAt(this.api, place))?.title ?? place.split("/").pop().replace(/_/g, " ");
+  }
+
+  /** What the field at a pointer is called, and of which gear it is. */
+  named(pointer) {
+    const member = /^\/pair\/(driving|driven)\//.exec(pointer)?.[1];
+    const words = this.titleOf(pointer) + (/\/(\d+)\//.test(pointer) ? ` (${Number(/\/(\d+)\//.exec(pointer)[1]) + 1})` : "");
+    return member && !this.#isAlike(pointer) ? `${words}, ${member} gear` : words;
+  }
+
+  /** What the service says of fields by their pointers, in the words of the form. */
+  inWords(detail) {
+    return detail.replace(/\/(?:pair|population|resolution|output_torques_n_m|force_table|dynamics|face_load)[\w/]*/g, (pointer) => `“${this.named(pointer)}”`).replace(/\b(three_dimensional_projected|three_dimensional|projected_decomposition|load_distribution)\b/g, (method) => method.replace(/_/g, " "));
   }
 
   /** The numbers, words and flags of the form: `{ pointer, title, value, kind }`, with the gear that they belong to. */
   fields() {
-    return [...this.#fields.values()].filter(({ kind }) => kind && ["number", "choice", "flag"].includes(kind.kind)).map(({ pointer, schema, kind }) => {
+    // What both gears have alike cannot be changed by one field.
+    return [...this.#fields.values()].filter(({ kind, pointer }) => kind && ["number", "choice", "flag"].includes(kind.kind) && !this.#isAlike(pointer)).map(({ pointer, schema, kind }) => {
       const place = /^\/pair\/(driving|driven)/.exec(pointer)?.[1];
-      const inner = pointer.split("/").slice(place ? 3 : 1, -1).filter((part) => !["pair", "blank"].includes(part)).join(" ").replace(/_/g, " ");
+      const inner = pointer.split("/").slice(place ? 3 : 1, -1).filter((part) => !["pair", "blank"].includes(part)).map((part) => (/^\d+$/.test(part) ? Number(part) + 1 : part)).join(" ").replace(/_/g, " ");
       const printed = unit(schema["x-unit"]);
       return { pointer, kind, value: this.design.get(pointer) ?? schema.default, title: `${place ? `${place}: ` : ""}${inner ? `${inner}, ` : ""}${schema.title}${printed ? ` (${printed})` : ""}` };
     });
+  }
+
+  /** Whether the field at a pointer stands for both gears. */
+  #isAlike(pointer) {
+    const name = pointer.split("/").pop();
+    return ALIKE.includes(name) && !this.#unlocked.has(name);
   }
 
   /** Brings the field of a pointer into view. */
@@ -155,7 +174,7 @@ export class Form {
       : h("button", { type: "button", className: "mend", on: { click: () => this.design.set(error.pointer, error.nearest, "mend") } }, `Use ${number(error.nearest, 8)} ${unit(schema["x-unit"] ?? schema.items?.["x-unit"])}`.trim());
     element.classList.add("wrong");
     const id = `error-${pointer}-${element.querySelectorAll(":scope > .field-error").length}`;
-    element.append(h("p", { className: "field-error", id }, error.detail, " ", mend));
+    element.append(h("p", { className: "field-error", id }, this.inWords(error.detail), " ", mend));
     const input = element.querySelector(":scope > .row > input, :scope > .row > select, :scope > .row > textarea");
     input?.setAttribute("aria-invalid", "true");
     input?.setAttribute("aria-describedby", [input.getAttribute("aria-describedby") ?? described, id].filter(Boolean).join(" "));
@@ -276,15 +295,21 @@ export class Form {
     const printed = unit(schema["x-unit"] ?? kind.items?.schema?.["x-unit"]);
     const words = said ? h("p", { className: "help", id: `help-${pointer}`, hidden: true }, said, bounds(kind)) : null;
     if (words) input.setAttribute("aria-describedby", words.id);
-    const more = words ? h("button", { type: "button", className: "about", ariaLabel: `About ${label.textContent}`, aria: { expanded: "false", controls: words.id }, on: { click: (event) => toggle(event.currentTarget, words) } }, "?") : null;
-    // A value that has a default is marked as given, and goes back to it.
-    const clear = needed ? null : h("button", { type: "button", className: "clear", hidden: true, ariaLabel: `${label.textContent}: back to the default`, title: "Given; press for the default", on: { click: () => (pointer === HELIX ? this.#putHelix(undefined, "mend") : this.design.set(pointer, undefined, "mend")) } }, "×");
+    const more = words ? h("button", { type: "button", className: "about", tabIndex: -1, title: "What this is; in the field, the key ?", ariaLabel: `About ${label.textContent}`, aria: { expanded: "false", controls: words.id }, on: { click: (event) => toggle(event.currentTarget, words) } }, "?") : null;
+    // A value that has a default is marked as given, and goes back to it: by a button, or by the choice that it is.
+    const clear = needed || ["flag", "choice"].includes(kind.kind) ? null : h("button", { type: "button", className: "clear", hidden: true, ariaLabel: `${label.textContent}: back to the default`, title: "Given; press for the default", on: { click: () => (pointer === HELIX ? this.#putHelix(undefined, "mend") : this.design.set(pointer, undefined, "mend")) } }, "×");
     const element = h("div", { className: `field ${kind.kind}` }, h("div", { className: "row" }, label, input, h("span", { className: "unit" }, printed), more, clear), words);
-    if (!needed && "placeholder" in input) input.placeholder = schema.default !== undefined && schema.default !== null ? String(schema.default) : saidDefault(schema);
+    // Tab goes from number to number; their words are a key away, where no text is typed.
+    if (more && !["text", "texts", "json"].includes(kind.kind)) input.addEventListener("keydown", (event) => { if (event.key === "?") { event.preventDefault(); more.click(); } });
     return this.#register(pointer, element, schema, () => {
+      if (!needed && "placeholder" in input) {
+        const modules = schema["x-default-modules"] * this.design.get(`${pointer.slice(0, pointer.lastIndexOf("/"))}/module_mm`);
+        input.placeholder = schema.default !== undefined && schema.default !== null ? String(schema.default) : modules > 0 ? number(modules, 5) : saidDefault(schema);
+        input.title = input.placeholder === "0" ? "" : saidDefault(schema);
+      }
       const value = this.design.get(pointer);
       if (document.activeElement !== input || this.design.by !== "form") write(input, kind, value);
-      const given = clear !== null && value !== undefined && value !== null && value !== schema.default;
+      const given = !needed && value !== undefined && value !== null && value !== schema.default;
       element.classList.toggle("given", given);
       if (clear) clear.hidden = !given;
     }, kind, words?.id ?? null);
@@ -425,7 +450,8 @@ export class Form {
   }
 
   #object(pointer, kind, needed) {
-    const { properties = {}, required = [], title } = kind.schema;
+    const { properties = {}, required = [] } = kind.schema;
+    const title = kind.schema.title.replace(/ request$/, "");
     const there = at(this.design.submission, pointer) ?? null;
     const open = needed || !kind.optional || there !== null;
     const fields = open ? Object.entries(properties).map(([name, schema]) => this.#field(`${pointer}/${name}`, schema, required.includes(name))) : [];
@@ -458,14 +484,14 @@ export class Form {
   #variants(pointer, kind) {
     const value = this.design.get(pointer);
     const index = value === undefined || value === null ? -1 : kind.variants.findIndex((variant) => fits(variant, value));
-    const none = kind.optional || kind.schema.default !== undefined ? [h("option", { value: "" }, "default")] : [];
-    const options = kind.variants.map((variant, i) => h("option", { value: i }, variant.title ?? `variant ${i + 1}`));
+    const none = kind.optional || kind.schema.default !== undefined ? [h("option", { value: "" }, pointer.endsWith("/holes") ? "none" : "default")] : [];
+    const options = kind.variants.map((variant, i) => h("option", { value: i }, (variant.title ?? `variant ${i + 1}`).replace(/^Holes$/, "one pattern").replace(/ of holes$| modification$/, "")));
     const id = `field-${pointer}`;
     const choose = (place) => (place === "" ? undefined : this.beginnings.variant(pointer, kindOf(this.api, kind.variants[place])));
     const select = h("select", { id, on: { change: (event) => this.design.set(pointer, choose(event.target.value), "mend") } }, ...none, ...options);
     const chosen = kind.variants[index];
     const inner = chosen ? kindOf(this.api, chosen) : null;
-    const fields = inner?.kind === "object" ? Object.entries(inner.schema.properties).map(([name, schema]) => this.#field(`${pointer}/${name}`, schema, (inner.schema.required ?? []).includes(name))) : inner?.kind === "list" ? [this.#list(pointer, inner)] : [];
+    const fields = inner?.kind === "object" ? Object.entries(inner.schema.properties).filter(([, { enum: words }]) => words?.length !== 1).map(([name, schema]) => this.#field(`${pointer}/${name}`, schema, (inner.schema.required ?? []).includes(name))) : inner?.kind === "list" ? [this.#list(pointer, inner)] : [];
     const element = h("div", { className: "field variants" }, h("div", { className: "row" }, h("label", { htmlFor: id, title: help(kind.schema) }, kind.schema.title), select, h("span", { className: "unit" })), ...fields);
     return this.#register(pointer, element, kind.schema, () => {
       select.value = index < 0 ? "" : String(index);

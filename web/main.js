@@ -31,6 +31,8 @@ const FIRST_EXAMPLE = "test-case-2";
 const NEW_PAIR = "new pair";
 const METHODS = ["flexible", "decomposition", "projected_decomposition", "load_distribution"];
 const THEME = "meshwright-theme";
+/** What is wrong while somebody types is told so many milliseconds after the last key. */
+const HALF_TYPED = 500;
 /** So long a notice is shown, in milliseconds. */
 const NOTICE = 12_000;
 /** A mesh period takes so long when the gears turn by themselves, in milliseconds. */
@@ -60,7 +62,7 @@ const brush = new Brush(byId("brush"), (range) => charts.zoom(range));
 const charts = new Charts(byId("charts"), { onPosition: (to) => turn(to), onRange: (range) => brush.setRange(range), onEveryPosition: () => design.set("/face_load", "positions", "mend") });
 const headline = new Headline(byId("headline"));
 const geometry = new Geometry(byId("geometry"), { onPrint: print, onPicture: picture });
-const compare = new Compare(byId("compare"), { onKept: changeKept, onOpen: ({ submission, results }) => open(submission, results), onMethods: compareMethods, titleOf: (pointer) => form?.titleOf(pointer) ?? pointer });
+const compare = new Compare(byId("compare"), { onKept: changeKept, onOpen: ({ submission, results }) => open(submission, results), onMethods: compareMethods, named: (pointer) => form?.named(pointer) ?? pointer });
 const follower = new Follower({ onResults, onOutline, onProblem, onBusy, onProgress });
 
 const deformation = new Deformation({
@@ -138,7 +140,7 @@ function onResults(results, submission, { took, since, draft }) {
   space?.setCurve(results.curves[0]);
   showDesigns(draft);
   showProblem();
-  byId("state").textContent = `${results.curves[0].mesh_position.length} positions in ${took < 2000 ? `${fixed(took, 0)} ms` : `${fixed(took / 1000, 1)} s`}${results.curves.length > 1 ? `; answers at ${number(results.curves[0].output_torque_n_m)} N m` : ""}${draft ? ", a draft under the hand" : ""}`;
+  byId("state").textContent = `${results.curves[0].mesh_position.length} positions ${took === null ? "as computed before" : took < 2000 ? `in ${fixed(took, 0)} ms` : `in ${fixed(took / 1000, 1)} s`}${results.curves.length > 1 ? `; answers at ${number(results.curves[0].output_torque_n_m)} N m` : ""}${draft ? ", a draft under the hand" : ""}`;
   showWarnings(results.warnings);
   if (!draft) showCure(results.curves[0]);
   turn(position);
@@ -161,7 +163,8 @@ function showWarnings(warnings) {
   button.hidden = warnings.length === 0;
   button.textContent = `${warnings.length} ${warnings.length === 1 ? "warning" : "warnings"}`;
   const guide = (path) => (path ? [" ", h("a", { href: path.replace(/^\//, "") }, "The guide says why")] : []);
-  byId("warnings").replaceChildren(...warnings.map(({ detail, guide: path }) => h("li", {}, detail, ...guide(path))));
+  const solid = (code) => (code === "web_outside_plane_model" ? [" ", h("button", { type: "button", on: { click: () => form?.compute(true) } }, "Compute it in three dimensions")] : []);
+  byId("warnings").replaceChildren(...warnings.map(({ code, detail, guide: path }) => h("li", {}, form?.inWords(detail) ?? detail, ...guide(path), ...solid(code))));
   if (!warnings.length) showWarned(false);
 }
 
@@ -172,7 +175,11 @@ function showWarned(open) {
 
 function onProblem(found, submission) {
   problem = { ...found, submission };
-  showProblem();
+  document.body.classList.toggle("stale", Boolean(shown));
+  // What is half typed is no mistake: it is told once the hand rests, unless something else has come.
+  clearTimeout(onProblem.timer);
+  if (design.by !== "form") return showProblem();
+  onProblem.timer = setTimeout(() => { if (problem?.submission === submission) showProblem(); }, HALF_TYPED);
 }
 
 function onBusy(busy) {
@@ -188,8 +195,13 @@ function onProgress(job) {
   if (!job) return;
   byId("progress").value = job.progress_percent ?? 0;
   byId("stop").onclick = job.cancel;
-  byId("state").textContent = `Too much to follow the hand: a job computes it, ${job.progress_percent ?? 0} %${shown ? ". Until then the curves are of the design before" : ""}`;
+  const { progress_percent: done = 0, elapsed } = job;
+  const left = done > 2 ? `, about ${timeOf((elapsed * (100 - done)) / done)} more` : "";
+  byId("state").textContent = `A job computes it: ${done} %${left}.${shown ? " Until then all is of the design before." : ""}`;
 }
+
+/** A time in milliseconds as somebody who waits wants it. */
+const timeOf = (milliseconds) => (milliseconds < 90_000 ? `${Math.max(1, Math.round(milliseconds / 1000))} s` : `${Math.round(milliseconds / 60_000)} min`);
 
 /** The last good curve stays; what is wrong stands above it and at its field. */
 function showProblem() {
@@ -201,7 +213,7 @@ function showProblem() {
   drawing.refreshHoles(errors.map(({ pointer }) => pointer));
   place.hidden = !problem;
   if (!problem) return place.replaceChildren();
-  const entries = errors.slice(0, 4).map((error) => h("li", {}, error.detail, " ", h("button", { type: "button", className: "mend", on: { click: () => form?.focus(error.pointer) } }, "Show the field")));
+  const entries = errors.slice(0, 4).map((error) => h("li", {}, form?.inWords(error.detail) ?? error.detail, " ", h("button", { type: "button", className: "mend", on: { click: () => form?.focus(error.pointer) } }, "Show the field")));
   const codes = new Set(errors.map(({ code }) => code));
   const turn = (inSolid, words) => h("button", { type: "button", on: { click: () => form?.compute(inSolid) } }, words);
   const dimensions = codes.has("needs_three_dimensions") ? [h("p", {}, turn(true, "Compute it in three dimensions"), " ", turn(false, "Leave out what has an extent along the axis"))]
@@ -463,6 +475,8 @@ function setUpTabs() {
     }
     panels[tab]?.leave?.();
     tab = chosen.getAttribute("aria-controls");
+    // Tables want the room that curves leave to the drawing.
+    document.body.classList.toggle("tabled", !["curves", "run-up"].includes(tab));
     panels[tab]?.refresh?.();
   };
   for (const each of tabs) {
@@ -538,6 +552,7 @@ async function begin() {
   const runUp = new RunUp(byId("run-up"), {
     designs: () => (live ? [live, ...design.kept] : []),
     ask: () => form.begin("/dynamics"),
+    asked: () => Boolean(design.get("/dynamics")) && !problem,
     focus: () => form.focus("/dynamics/driving_speed_rpm"),
     stage: { turn: (by) => turn(position + by), move: (factorAt) => drawing.setMotion(factorAt), rest: () => drawing.setMotion(null) },
   });

@@ -4,6 +4,7 @@ import { follow, hasEnded, json, post, ProblemError, request } from "./api.js";
 import { at, nameOf } from "./design.js";
 import { h, s, fixed, number } from "./dom.js";
 import { figure } from "./figure.js";
+import { outdated } from "./outdated.js";
 
 /** What has come so far is fetched so often at most while members are computed, in milliseconds. */
 const PAUSE = 1000;
@@ -28,7 +29,7 @@ const FIRST = [["/pair/center_distance_mm", 0.02], ["/pair/driving/tip_relief/am
 /** The population of `design` in `place`; `form` knows the fields, `onOpen` opens a member as a design. */
 export function population(place, design, form, onOpen) {
   const size = h("input", { type: "number", id: "population-size", value: 200, min: 2, max: 100000, step: 1 });
-  const torques = h("input", { type: "text", id: "population-torques", spellcheck: false });
+  const torques = h("input", { type: "text", id: "population-torques", spellcheck: false, on: { input: () => { torques.dataset.typed = "yes"; } } });
   const classes = ["driving", "driven"].map((gear) => h("select", { id: `population-${gear}` }, h("option", { value: "" }, "as designed"), ...CLASSES.map((each) => h("option", { value: each, selected: each === 6 }, `class ${each}`))));
   const laws = FIRST.map((_, i) => law(i, design, form));
   const run = h("button", { type: "submit", className: "primary" }, "Draw them");
@@ -38,20 +39,21 @@ export function population(place, design, form, onOpen) {
   const torque = h("select", { id: "population-torque", on: { change: () => last && draw() } });
   const picker = h("div", { className: "line", hidden: true }, h("label", { htmlFor: quantity.id }, "Look at"), quantity, h("label", { htmlFor: torque.id }, "at"), torque, h("span", { className: "unit" }, "N m"));
   const out = h("div", { className: "out" });
+  const of = outdated(design);
   place.replaceChildren(
-    h("p", { className: "note" }, "Every member has teeth of its own, drawn within the class of ISO 1328-1, and fields that vary by a law. ", h("a", { href: "guides/how-good-will-they-be" }, "How good will they be?")),
+    h("p", { className: "note" }, "Every member has teeth of its own, drawn within the class of ISO 1328-1 in place of those that the design may give, and fields that vary by a law. ", h("a", { href: "guides/how-good-will-they-be" }, "How good will they be?")),
     h("form", { on: { submit: (event) => { event.preventDefault(); start(); } } },
       h("div", { className: "line" }, h("label", { htmlFor: size.id }, "Members"), size, ...classes.flatMap((each, i) => [h("label", { htmlFor: each.id }, `teeth of the ${["driving", "driven"][i]} gear`), each])),
       ...laws.map((each) => each.element),
       h("div", { className: "line" }, h("label", { htmlFor: torques.id }, "Torques"), torques, h("span", { className: "unit" }, "N m")),
       h("div", { className: "line" }, run, cancel)),
-    state, picker, out);
+    state, of.element, picker, out);
   let last = null;
 
   const suggest = () => {
     laws.forEach((each) => each.refresh());
     const own = design.get("/output_torques_n_m") ?? [100];
-    if (!torques.value) torques.value = (own.length > 1 ? own : [0.4, 0.7, 1, 1.4].map((part) => Number((part * own[0]).toPrecision(3)))).join(", ");
+    if (!torques.dataset.typed || !torques.value) torques.value = (own.length > 1 ? own : [0.4, 0.7, 1, 1.4].map((part) => Number((part * own[0]).toPrecision(3)))).join(", ");
   };
 
   function asked() {
@@ -61,13 +63,18 @@ export function population(place, design, form, onOpen) {
     // The span of the drawing is not that of teeth that all differ.
     delete base.resolution.span_mesh_periods;
     const accuracy = {};
-    classes.forEach((each, i) => { if (each.value) accuracy[["driving", "driven"][i]] = { iso_1328_class: Number(each.value) }; });
+    ["driving", "driven"].forEach((member, i) => {
+      if (!classes[i].value) return;
+      accuracy[member] = { iso_1328_class: Number(classes[i].value) };
+      delete base.pair[member].tooth_deviations;
+    });
     const vary = laws.flatMap((each) => each.read());
     return { base, keep: "statistics", name: `${nameOf(design.submission)} as made`, population: { size: Number(size.value), vary, accuracy: Object.keys(accuracy).length ? accuracy : null } };
   }
 
   async function start() {
     run.disabled = true;
+    of.renew();
     out.replaceChildren();
     try {
       await watch(await post("v1/studies", asked()));
@@ -132,7 +139,7 @@ export function population(place, design, form, onOpen) {
   /** What makes the variance, as bars with their limits. */
   function influencesOf({ influences }) {
     if (!influences.length) return h("p", { className: "note" }, "Nothing varies so far.");
-    const name = ({ path, accuracy }) => (path ? form.titleOf(path) : `teeth of the ${accuracy} gear`);
+    const name = ({ path, accuracy }) => (path ? form.named(path) : `teeth of the ${accuracy} gear`);
     const rows = influences.map((each) => {
       const [low, high] = [each.low ?? each.share, each.high ?? each.share];
       const bar = s("svg", { viewBox: "0 0 200 14", width: 200, height: 14, "aria-hidden": "true" },

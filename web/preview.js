@@ -116,7 +116,7 @@ export class Follower {
     let job = null;
     const told = (event, data) => {
       if (event === "status") job = data;
-      this.onProgress({ ...job, ...data, cancel: () => this.#interrupt?.abort() });
+      this.onProgress({ ...job, ...data, elapsed: performance.now() - begun, cancel: () => this.#interrupt?.abort() });
     };
     try {
       await rest(signal, LONG_REST);
@@ -156,7 +156,7 @@ export class Follower {
       const known = this.#known.get(JSON.stringify(submission));
       if (!draft && !known && (await isLong(submission, signal))) return "too large";
       const results = (!draft && known) || (await preview(asked, signal));
-      this.#show(results, submission, { took: performance.now() - begun, since, draft });
+      this.#show(results, submission, { took: results === known ? null : performance.now() - begun, since, draft });
       return "shown";
     } catch (error) {
       if (error.name === "AbortError") return "left";

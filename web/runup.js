@@ -31,9 +31,9 @@ export class RunUp {
   #motion = null;
   #cursors = [];
 
-  /** The run-up in `place`. `ask` puts one into the design, `focus` shows its fields, `designs` gives what is shown, the live one first, and `stage` turns the drawing. */
-  constructor(place, { ask, focus, designs, stage }) {
-    Object.assign(this, { place, designs, stage, tones: new Tones() });
+  /** The run-up in `place`. `ask` puts one into the design, `asked` says whether it has one, `focus` shows its fields, `designs` gives what is shown, the live one first, and `stage` turns the drawing. */
+  constructor(place, { ask, asked, focus, designs, stage }) {
+    Object.assign(this, { place, asked, designs, stage, tones: new Tones() });
     const button = (name, id, work) => h("button", { type: "button", id, on: { click: work } }, name);
     const select = (id, options) => h("select", { id, on: { change: () => this.refresh() } }, ...Object.entries(options).map(([value, words]) => h("option", { value }, words)));
     this.quantity = select("run-up-quantity", Object.fromEntries(Object.entries(QUANTITIES).map(([name, [words, unit]]) => [name, unit === "1" ? words : `${words} in ${unit}`])));
@@ -56,8 +56,9 @@ export class RunUp {
       this.readout, h("div", { className: "buttons wrap" }, this.turning, this.hear),
       h("p", { className: "note" }, "What is heard is the excitation: the orders of the dynamic transmission error as pure tones. It is not the noise of a gearbox, which its housing makes."),
       this.ridges, this.waterfall, this.resonances);
-    this.none = h("div", { hidden: true }, h("p", {}, "This design has no run-up yet: the motion of the gears over speed, on one torsional degree of freedom with backlash."), button("Run it up", "run-up-ask", ask));
-    place.replaceChildren(h("p", { className: "note" }, "Solid running up, dashed running down; thick where the flanks part. ", h("a", { href: "guides/will-it-rattle-or-whine" }, "Will it rattle or whine?")), this.none, this.body);
+    this.none = h("div", { hidden: true }, h("p", {}, "This design has no run-up yet: the motion of the gears over speed, on one torsional degree of freedom with backlash."), button("Run it up", "run-up-ask", () => { ask(); this.refresh(); }));
+    this.coming = h("p", { hidden: true, role: "status" }, "The run-up is being computed: the forces at every position first, then the motion at every speed. Above stands how far it is.");
+    place.replaceChildren(h("p", { className: "note" }, "Solid running up, dashed running down; thick where the flanks part. ", h("a", { href: "guides/will-it-rattle-or-whine" }, "Will it rattle or whine?")), this.none, this.coming, this.body);
     this.later = debounced(REST, () => this.#move());
     let width = 0;
     new ResizeObserver(() => {
@@ -73,7 +74,8 @@ export class RunUp {
     const [live] = designs;
     const there = Boolean(live?.results.curves[0].dynamics);
     this.body.hidden = !there;
-    this.none.hidden = !live || there;
+    this.coming.hidden = !live || there || !this.asked();
+    this.none.hidden = !live || there || !this.coming.hidden;
     if (!there) return this.leave();
     if (this.place.hidden) return undefined;
     this.live = live;

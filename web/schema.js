@@ -50,6 +50,17 @@ export function kindOf(api, given) {
   return { kind: "json", schema, optional };
 }
 
+/** The schema of the field at a pointer of a submission, whether a design has it or not; null where there is none. */
+export function schemaAt(api, pointer) {
+  const step = (given, part) => {
+    const { kind, schema, variants = [], items } = kindOf(api, given);
+    if (/^\d+$/.test(part)) return kind === "variants" ? variants.map((each) => step(each, part)).find(Boolean) : items?.schema;
+    return schema.properties?.[part] ?? variants.map((each) => step(each, part)).find(Boolean);
+  };
+  const found = pointer.split("/").slice(1).reduce((schema, part) => schema && step(schema, part), { $ref: "#/components/schemas/Submission" });
+  return found ? kindOf(api, found).schema : null;
+}
+
 /** The words of a description without the unit and the default, which stand elsewhere. */
 export function help(schema) {
   return (schema.description ?? "").replace(/ ?Unit: [^.]*\.(?= |$)/, "").replace(/`/g, "").trim();

@@ -4,6 +4,7 @@ import { follow, hasEnded, json, post, ProblemError, request } from "./api.js";
 import { at, nameOf } from "./design.js";
 import { h, fixed, number } from "./dom.js";
 import { figure } from "./figure.js";
+import { outdated } from "./outdated.js";
 import { preview } from "./preview.js";
 import { DASHES } from "./series.js";
 
@@ -46,13 +47,14 @@ export function search(place, design, form, onOpen) {
   /** The design that the search began with and the best one, drawn beside each other; which row that is. */
   const beside = h("div", { className: "beside", id: "search-beside" });
   let drawn = null;
+  const of = outdated(design);
   place.replaceChildren(
     h("p", { className: "note" }, "Each generation of designs is chosen by what came of those before; it begins with this design. ", h("a", { href: "guides/find-a-design" }, "Find a design")),
     ...variables.map((each) => each.element),
     h("div", { className: "line" }, h("label", { htmlFor: goals[0].id }, "for the least"), goals[0], h("label", { htmlFor: goals[1].id }, "and"), goals[1]),
     h("div", { className: "line" }, h("label", { htmlFor: bounded.id }, "with"), bounded, side, bound),
     h("div", { className: "line" }, h("label", { htmlFor: evaluations.id }, "Designs"), evaluations, run, cancel),
-    state, out);
+    state, of.element, out);
 
   function asked() {
     const minimize = goals.map(({ value }) => value).filter(Boolean).map((quantity) => ({ quantity }));
@@ -62,6 +64,7 @@ export function search(place, design, form, onOpen) {
 
   async function start() {
     run.disabled = true;
+    of.renew();
     out.replaceChildren();
     beside.replaceChildren();
     drawn = null;
@@ -104,8 +107,9 @@ export function search(place, design, form, onOpen) {
     const told = (values, names) => names.map(([words, unit, factor], i) => `${words} ${values?.[i] === null || values?.[i] === undefined ? "?" : number(values[i] * factor, 4)} ${unit}`).join(", ");
     const { best, front, confirmed, generations } = found;
     if (!best) return out.replaceChildren();
-    const rows = Object.entries(best.values).map(([path, value]) => h("tr", {}, h("th", { scope: "row" }, form.titleOf(path)), h("td", {}, number(at(design.submission, path) ?? null, 5)), h("td", {}, number(value, 5))));
-    const table = h("table", {}, h("thead", {}, h("tr", {}, ...["Field", "This design", "Best so far"].map((words) => h("th", { scope: "col" }, words)))), h("tbody", {}, ...rows));
+    const rows = Object.entries(best.values).map(([path, value]) => h("tr", {}, h("th", { scope: "row" }, form.named(path)), h("td", {}, number(at(question.base, path) ?? null, 5)), h("td", {}, number(value, 5))));
+    const table = h("table", {}, h("thead", {}, h("tr", {}, ...["Field", "Begun with", "Best so far"].map((words) => h("th", { scope: "col" }, words)))), h("tbody", {}, ...rows));
+    const atEnd = question.search.variables.filter(({ path, low, high }) => [low, high].includes(best.values[path])).map(({ path }) => form.named(path));
     const open = async (row) => onOpen(await json(`${address}/designs/${row}`), null);
     const use = (row, words) => h("button", { type: "button", on: { click: () => open(row) } }, words);
     drawBeside(address, best.row, question.base);
@@ -119,6 +123,7 @@ export function search(place, design, form, onOpen) {
     out.replaceChildren(
       h("p", {}, h("strong", {}, told(best.goals, parts)), conditions.length ? `, with ${told(best.conditions, conditions)}` : "", best.feasible ? "" : ". No design so far keeps the condition; this one comes nearest to it"),
       h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Best design of the search" }, table),
+      ...(atEnd.length && parts.length === 1 ? [h("p", { className: "note" }, `At an end of its range: ${atEnd.join("; ")}. A wider one may find better.`)] : []),
       h("div", { className: "buttons" }, use(best.row, "Use this design")),
       ...(fine ? [h("p", {}, fine)] : []), beside, ...pictures);
   }
@@ -129,7 +134,7 @@ export function search(place, design, form, onOpen) {
     const asked = (drawn = `${address} ${row}`);
     try {
       const best = await json(`${address}/designs/${row}`);
-      const both = [["This design", base], ["Best so far", best]];
+      const both = [["Begun with", base], ["Best so far", best]];
       const pictures = await Promise.all(both.map(async ([name, submission]) => {
         const text = await (await request("v1/outline", { method: "POST", body: submission, headers: { accept: "image/svg+xml" } })).text();
         return h("figure", {}, h("img", { src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}`, alt: `${name}: ${nameOf(submission)}` }), h("figcaption", {}, name));
@@ -139,7 +144,7 @@ export function search(place, design, form, onOpen) {
       const curves = await Promise.all(both.map(async ([name, submission]) => ({ name, curve: (await preview(submission)).curves[0] })));
       if (asked !== drawn) return;
       const lines = curves.map(({ name, curve }, i) => ({ name, x: curve.mesh_position, y: curve.transmission_error_um, color: `var(--series-${i + 1})`, dash: DASHES[i] }));
-      beside.append(h("figure", {}, figure({ lines, x: "mesh position in mesh periods", y: "transmission error in µm", title: "Transmission error of this design and of the best so far" }), h("figcaption", {}, "Their transmission error")));
+      beside.append(h("figure", {}, figure({ lines, x: "mesh position in mesh periods", y: "transmission error in µm", title: "Transmission error of the design that the search began with and of the best so far" }), h("figcaption", {}, "Their transmission error")));
     } catch (error) {
       // A search goes on without its pictures.
       if (!(error instanceof ProblemError)) throw error;

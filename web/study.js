@@ -6,6 +6,7 @@ import { h, fixed, number } from "./dom.js";
 import { at, nameOf, withValue } from "./design.js";
 import { save } from "./download.js";
 import { figure } from "./figure.js";
+import { outdated } from "./outdated.js";
 import { search } from "./search.js";
 
 /** A table is fetched so often at most while a study runs, in milliseconds. */
@@ -28,7 +29,7 @@ const FIRST = ["/pair/driven/blank/holes/count", "/pair/driven/blank/holes/circl
 
 /** The blanks' parts that a design may lack and an axis may change all the same. */
 const PART = /^(\/pair\/\w+\/blank\/(?:holes|web))\//;
-const WEBS = ["driving", "driven"].flatMap((gear) => [["thickness_mm", "Web thickness"], ["inner_radius_mm", "Web inner radius"], ["outer_radius_mm", "Web outer radius"]].map(([name, words]) => ({ pointer: `/pair/${gear}/blank/web/${name}`, title: `${gear}: web, ${words.toLowerCase()} (mm)` })));
+const WEBS = ["driving", "driven"].flatMap((gear) => ["thickness_mm", "inner_radius_mm", "outer_radius_mm"].map((name) => `/pair/${gear}/blank/web/${name}`));
 
 const COUNT = { "/pair/driven/blank/holes/count": "6, 8, 10" };
 
@@ -46,17 +47,19 @@ export function study(place, design, form, onOpen) {
   const out = h("div", { className: "out" });
   const state = h("p", { className: "note", role: "status" });
   const searched = h("div", {});
+  const of = outdated(design);
   const formOf = h("form", { on: { submit: (event) => { event.preventDefault(); start(); } } },
     ...axes.map((each) => each.element),
     h("div", { className: "line" }, constant, h("label", { htmlFor: "study-mass" }, "Same mass: holes remove"), removed, h("span", { className: "unit" }, "% of the"), gear, h("span", {}, "blank, by their radius")),
     h("div", { className: "line" }, run, cancel));
-  place.replaceChildren(h("p", { className: "note" }, "Every combination of these values is computed from the design; values are separated by commas. “Best” is a design that no other beats: none is at least as good in mass, peak-to-peak and mean stiffness, and better in one."), formOf, state, picker, picture, out, h("details", { id: "search" }, h("summary", {}, "Let a search choose the values"), searched));
+  place.replaceChildren(h("p", { className: "note" }, "Every combination of these values is computed from the design; values are separated by commas. “Best” is a design that no other beats: none is at least as good in mass, peak-to-peak and mean stiffness, and better in one."), formOf, state, of.element, picker, picture, out, h("details", { id: "search" }, h("summary", {}, "Let a search choose the values"), searched));
   axes[0].choose(FIRST[0]);
   const seeker = search(searched, design, form, onOpen);
   let last = null;
 
   async function start() {
     run.disabled = true;
+    of.renew();
     picture.replaceChildren();
     out.replaceChildren();
     try {
@@ -109,27 +112,33 @@ export function study(place, design, form, onOpen) {
 
   function draw({ rows }) {
     const [[x, xUnit, readX], [y, yUnit, readY]] = [across, up].map((select) => QUANTITIES[select.value]);
-    const points = rows.filter((row) => row.curves?.length && row.curves[0].statistics).map((row) => ({ x: readX(row), y: readY(row), label: row.label, strong: row.pareto })).filter((point) => Number.isFinite(point.x) && Number.isFinite(point.y));
+    const points = rows.filter((row) => row.curves?.length && row.curves[0].statistics).map((row) => ({ x: readX(row), y: readY(row), label: nameOfRow(row), strong: row.pareto })).filter((point) => Number.isFinite(point.x) && Number.isFinite(point.y));
     picker.hidden = points.length < 2;
     const title = `Designs by ${x} and ${y}; large points are the best`;
     picture.replaceChildren(...(points.length > 1 ? [figure({ points, x: `${x} in ${xUnit}`, y: `${y} in ${yUnit}`, title })] : []));
   }
 
   function tableOf(rows) {
-    const names = ["Design", "Best", "Mass kg", "Removed %", "Ligament mm", "Torque N m", "STE p-p µm", "k mean N/µm", "H_N µm", "H_Z2 µm", ""];
+    const names = ["Design", "Best", "Mass of both kg", "Removed %", "Ligament mm", "Torque N m", "STE p-p µm", "k mean N/µm", "H_N µm", "H_Z2 µm", ""];
     const head = h("tr", {}, ...names.map((name) => h("th", { scope: "col" }, name || h("span", { className: "visually-hidden" }, "Actions"))));
     return h("table", {}, h("thead", {}, head), h("tbody", {}, ...rows.flatMap(rowsOf)));
   }
 
   function rowsOf(row) {
-    const lead = [h("th", { scope: "row" }, row.label), h("td", {}, row.pareto ? h("strong", { title: "No other design is at least as good in mass, peak-to-peak and stiffness, and better in one" }, "yes") : "")];
+    const lead = [h("th", { scope: "row" }, nameOfRow(row)), h("td", {}, row.pareto ? h("strong", { title: "No other design is at least as good in mass, peak-to-peak and stiffness, and better in one" }, "yes") : "")];
     if (!row.curves?.length) return [h("tr", {}, ...lead, h("td", { colSpan: 9 }, row.problem ? (row.problem.errors?.[0]?.detail ?? row.problem.detail) : row.status))];
-    const open = h("button", { type: "button", on: { click: () => openRow(row) }, ariaLabel: `Open ${row.label}` }, "Open");
+    const open = h("button", { type: "button", on: { click: () => openRow(row) }, ariaLabel: `Open ${nameOfRow(row)}` }, "Open");
     return row.curves.map((curve, i) => {
       const statistics = curve.statistics;
-      const cells = [fixed(row.mass_kg, 3), fixed(row.mass_removed_percent, 1), fixed(row.least_ligament_mm, 2), number(curve.output_torque_n_m), fixed(statistics?.transmission_error_um.peak_to_peak, 3), fixed(statistics && statistics.mesh_stiffness_tangent_n_per_m.mean * 1e-6, 2), number(curve.hole_order_um, 3), number(curve.mesh_order_um, 3)];
-      return h("tr", { className: row.pareto ? "strong" : "" }, ...(i ? [h("th", { scope: "row" }, row.label), h("td")] : lead), ...cells.map((cell) => h("td", {}, cell)), h("td", {}, i ? "" : open));
+      const cells = [fixed(row.pair_mass_kg, 3), fixed(row.mass_removed_percent, 1), fixed(row.least_ligament_mm, 2), number(curve.output_torque_n_m), fixed(statistics?.transmission_error_um.peak_to_peak, 3), fixed(statistics && statistics.mesh_stiffness_tangent_n_per_m.mean * 1e-6, 2), number(curve.hole_order_um, 3), number(curve.mesh_order_um, 3)];
+      return h("tr", { className: row.pareto ? "strong" : "" }, ...(i ? [h("th", { scope: "row" }, nameOfRow(row)), h("td")] : lead), ...cells.map((cell) => h("td", {}, cell)), h("td", {}, i ? "" : open));
     });
+  }
+
+  /** What a row changes, in the words of the form. */
+  function nameOfRow({ label, changes }) {
+    const words = Object.entries(changes).map(([pointer, value]) => `${form.named(pointer)} ${typeof value === "number" ? number(value, 5) : Array.isArray(value) ? value.join(", ") : String(value).replace(/_/g, " ")}`);
+    return words.join("; ") || label;
   }
 
   async function openRow(row) {
@@ -171,9 +180,16 @@ function axis(index, design, form) {
   function refresh() {
     const chosen = field.value;
     const fields = form.fields().filter(({ pointer }) => pointer !== "/tags");
-    const listed = [...FIRST.map((pointer) => fields.find((each) => each.pointer === pointer) ?? { pointer, title: form.titleOf(pointer).replace(/^./, (letter) => `driven: ${letter}`) }), ...fields.filter(({ pointer }) => !FIRST.includes(pointer)), ...WEBS.filter(({ pointer }) => !fields.some((each) => each.pointer === pointer))];
+    // Several patterns have fields of their own, and none of one pattern.
+    const first = FIRST.filter((pointer) => !(pointer.includes("/holes/") && Array.isArray(design.get("/pair/driven/blank/holes"))));
+    const known = (pointer) => fields.find((each) => each.pointer === pointer) ?? { pointer, title: form.named(pointer) };
+    const listed = [...first.map(known), ...fields.filter(({ pointer }) => !FIRST.includes(pointer)), ...WEBS.filter((pointer) => !fields.some((each) => each.pointer === pointer)).map(known)];
     field.replaceChildren(h("option", { value: "" }, "none"), ...listed.map(({ pointer, title }) => h("option", { value: pointer }, title)), h("option", { value: "/output_torques_n_m" }, "Output torque (N m)"));
     field.value = chosen;
+    if (field.value === chosen) return;
+    // The field that was chosen is not there any more.
+    field.value = "";
+    values.value = "";
   }
 
   const choose = (path) => {

@@ -3,6 +3,7 @@
 import { ProblemError } from "./api.js";
 import { h, fixed, number } from "./dom.js";
 import { figure } from "./figure.js";
+import { outdated } from "./outdated.js";
 import { resultsOf } from "./preview.js";
 
 const MOST_TORQUES = 24;
@@ -13,22 +14,25 @@ export function sweep(place, design, limits, positionsOf) {
   const to = h("input", { type: "number", id: "sweep-to", step: "any", min: 0 });
   const run = h("button", { type: "submit", className: "primary" }, "Sweep");
   const out = h("div", { className: "out", ariaLive: "polite" });
+  const of = outdated(design, ["/output_torques_n_m"]);
+  for (const input of [from, to]) input.addEventListener("input", () => { input.dataset.typed = "yes"; });
   const form = h("form", { className: "line", on: { submit: (event) => { event.preventDefault(); start(); } } },
     h("label", { htmlFor: "sweep-from" }, "Torque from"), from, h("span", { className: "unit" }, "N m"),
     h("label", { htmlFor: "sweep-to" }, "to"), to, h("span", { className: "unit" }, "N m"), run);
-  place.replaceChildren(h("p", { className: "note" }, "At which torque is the transmission error flattest? A tip relief suits one torque; this shows which."), form, out);
+  place.replaceChildren(h("p", { className: "note" }, "At which torque is the transmission error flattest? A tip relief suits one torque; this shows which."), form, of.element, out);
 
+  /** From a tenth of the design's torque to twice as much, until somebody types other ones. */
   const suggest = () => {
     const torque = design.get("/output_torques_n_m/0") ?? 100;
-    if (!from.value) from.value = number(torque / 10, 2);
-    if (!to.value) to.value = number(torque * 2, 2);
+    if (!from.dataset.typed || !from.value) from.value = number(torque / 10, 2);
+    if (!to.dataset.typed || !to.value) to.value = number(torque * 2, 2);
   };
 
   async function start() {
-    suggest();
     const [low, high] = [Number(from.value), Number(to.value)];
     if (!(low > 0 && high > low)) return out.replaceChildren(h("p", { className: "field-error" }, "The torques have to be positive, the second larger than the first."));
     run.disabled = true;
+    of.renew();
     out.replaceChildren(h("p", { className: "note" }, "Computing"));
     try {
       out.replaceChildren(...shown(await pointsOf(low, high)));
@@ -45,9 +49,10 @@ export function sweep(place, design, limits, positionsOf) {
     const torques = Array.from({ length: MOST_TORQUES }, (_, i) => Number((low + ((high - low) * i) / (MOST_TORQUES - 1)).toPrecision(6)));
     const each = Math.max(1, Math.floor(limits.previews.positions / Math.max(1, positionsOf())));
     const points = [];
+    const { submission } = design;
     for (let i = 0; i < torques.length; i += each) {
       if (points.length) out.replaceChildren(h("p", { className: "note" }, `${points.length} of ${torques.length} torques`));
-      const results = await resultsOf({ ...design.submission, output_torques_n_m: torques.slice(i, i + each) });
+      const results = await resultsOf({ ...submission, output_torques_n_m: torques.slice(i, i + each) });
       for (const curve of results.curves) points.push({ x: curve.output_torque_n_m, y: curve.statistics.transmission_error_um.peak_to_peak, label: `${number(curve.output_torque_n_m)} N m` });
     }
     return points;
@@ -64,5 +69,5 @@ export function sweep(place, design, limits, positionsOf) {
   }
 
   suggest();
-  return { suggest };
+  return { refresh: suggest };
 }

@@ -245,6 +245,26 @@ export async function benchSteps(service) {
     }
   });
 
+  await step("holes that are asked for lie within the web, and a web around the holes", service, async (page) => {
+    await open(page, service);
+    await page.locator("#start").selectOption("new pair");
+    await settled(page);
+    const blank = "/pair/driven/blank";
+    const ask = {
+      web: async () => (await field(page, `${blank}/web`)).check(),
+      holes: async () => (await field(page, `${blank}/holes`)).selectOption({ label: "one pattern" }),
+    };
+    for (const order of [["web", "holes"], ["holes", "web"]]) {
+      for (const part of order) {
+        await changing(page, ask[part]);
+        assert.ok(await page.locator("#problem").isHidden(), `${part} after ${order[0]}`);
+      }
+      const { web, holes } = (await designOf(page)).pair.driven.blank;
+      assert.ok(web.inner_radius_mm < holes.circle_radius_mm - holes.radius_mm && holes.circle_radius_mm + holes.radius_mm < web.outer_radius_mm, JSON.stringify({ web, holes }));
+      for (let i = 0; i < 2; i += 1) await changing(page, () => page.locator("#undo").click());
+    }
+  });
+
   await step("a force table and a run-up begin with what a long period leaves room for", service, async (page) => {
     // The driven gear's teeth differ: 48 mesh periods, of which 12 loads would be too many positions.
     const uneven = { pitch_single_um: Array.from({ length: 48 }, (_, i) => (i % 2 ? 1 : -1) * (i % 5)) };
@@ -606,7 +626,7 @@ export async function benchSteps(service) {
     assert.equal(await page.locator("#study tbody tr").count(), 4);
     // Less web is less mass.
     await page.locator("#study-up").selectOption("mass");
-    assert.match(await page.locator("#study tbody").innerText(), /thickness_mm=9/);
+    assert.match(await page.locator("#study tbody").innerText(), /Thickness of the web, driving gear 9/);
     const masses = await page.locator("#study .scatter circle").evaluateAll((dots) => new Set(dots.map((dot) => dot.getAttribute("cy"))).size);
     assert.equal(masses, 4);
   });
@@ -623,6 +643,121 @@ export async function benchSteps(service) {
     await page.locator("#study-across").selectOption("k");
     assert.match(await page.locator("#study .scatter").getAttribute("aria-label"), /least mean stiffness/);
     assert.match(await page.locator("#study .scatter").innerHTML(), /least mean stiffness in N\/µm/);
+  });
+
+  await step("what a sweep or a study found is marked once the design is another one, and begins with the torque of the design", service, async (page) => {
+    await open(page, service);
+    await (await field(page, "/output_torques_n_m")).fill("150");
+    await settled(page);
+    await tab(page, "sweep");
+    assert.deepEqual(await Promise.all(["from", "to"].map((end) => page.locator(`#sweep-${end}`).inputValue())), ["15", "300"]);
+    await page.locator("#sweep-from").fill("25");
+    await page.locator("#sweep button[type=submit]").click();
+    await page.locator("#sweep .scatter .strong").waitFor();
+    // Another torque of the same design is in the sweep; another hole is not.
+    const mark = page.locator("#sweep .outdated");
+    await changing(page, () => page.locator("#sweep button", { hasText: /^Show/ }).click());
+    assert.ok(await mark.isHidden());
+    await changing(page, async () => (await field(page, `${HOLES}/radius_mm`)).fill("6"));
+    await mark.waitFor();
+    await changing(page, () => mark.locator("button").click());
+    assert.ok(await mark.isHidden());
+    assert.equal((await designOf(page)).pair.driven.blank.holes.radius_mm, 7.5);
+    await tab(page, "curves");
+    await tab(page, "sweep");
+    assert.equal(await page.locator("#sweep-from").inputValue(), "25", "what was typed stays");
+    // A study names what it varies, offers no field that a design cannot have by itself, and says the mass that best is judged by.
+    await tab(page, "study");
+    const offered = await page.locator("#axis-0 option").allInnerTexts();
+    assert.equal(new Set(offered).size, offered.length, "nothing is offered twice");
+    assert.ok(!offered.some((each) => /Module|Pressure angle/.test(each)), "what both gears have alike is no field of one");
+    await page.locator("#axis-0").selectOption(`${HOLES}/radius_mm`);
+    await page.locator("#axis-0-values").fill("5, 7");
+    await page.locator("#study button[type=submit]").click();
+    await page.waitForFunction(() => /2 of 2 designs, successful/.test(document.querySelector("#study [role=status]").innerText));
+    const row = page.locator("#study tbody tr").first();
+    assert.match(await row.innerText(), /^Radius of a hole, driven gear 5\t/);
+    const mass = await page.evaluate(async () => (await (await fetch(`v1/studies/${(await (await fetch("v1/studies?limit=1")).json()).items[0].id}/results`)).json()).rows[0].pair_mass_kg);
+    assert.equal(await row.locator("td").nth(1).innerText(), mass.toFixed(3));
+    await row.locator("button", { hasText: "Open" }).click();
+    await page.locator("#study > .outdated").waitFor();
+    // Several patterns have fields of their own.
+    await (await field(page, HOLES)).selectOption({ index: 2 });
+    await settled(page);
+    await tab(page, "curves");
+    await tab(page, "study");
+    assert.equal(await page.locator(`#axis-0 option[value="${HOLES}/radius_mm"]`).count(), 0);
+    assert.equal(await page.locator(`#axis-0 option[value="${HOLES}/0/radius_mm"]`).innerText(), "driven: holes 1, Radius of a hole (mm)");
+    await axe(page);
+  });
+
+  await step("what is half typed is not told as wrong, what is wrong is told in the words of the form, and what is known takes no time", service, async (page) => {
+    await open(page, service);
+    await page.evaluate(() => {
+      window.told = [];
+      new MutationObserver(() => { const words = document.querySelector("#problem").innerText; if (words) window.told.push(words); }).observe(document.querySelector("#problem"), { childList: true });
+    });
+    const teeth = await field(page, "/pair/driven/tooth_count");
+    const refused = page.waitForResponse((answer) => answer.url().endsWith("/v1/preview") && answer.status() === 422);
+    await teeth.press("Control+a");
+    await teeth.press("5");
+    await refused;
+    await teeth.press("0");
+    await settled(page);
+    assert.deepEqual(await page.evaluate(() => window.told), []);
+    assert.match(await page.locator("#state").innerText(), /200 positions as computed before/);
+    await page.locator(`#form [id="field-/pair/driving/blank/hub"]`).evaluate((box) => box.closest("details").setAttribute("open", ""));
+    await page.locator(`#form [id="field-/pair/driving/blank/hub"]`).check();
+    await page.locator("#problem").waitFor();
+    const words = await page.locator("#problem").innerText();
+    assert.match(words, /“Hub, driving gear”/);
+    assert.doesNotMatch(words, /\/pair|three_dimensional/);
+    await page.locator("#undo").click();
+    // From number to number by one key, and what a number is by another.
+    await (await field(page, "/pair/driven/tooth_count")).focus();
+    await page.keyboard.press("Tab");
+    assert.equal(await page.evaluate(() => document.activeElement.id), "field-/pair/driven/profile_shift");
+    await page.keyboard.press("?");
+    assert.ok(await page.locator(`[id="help-/pair/driven/profile_shift"]`).isVisible());
+    assert.equal(await page.evaluate(() => document.activeElement.value), "");
+    // A default is a length, and a choice of one is none.
+    assert.equal(await page.locator(`[id="field-/pair/driving/tip_rounding_mm"]`).getAttribute("placeholder"), "sharp edges");
+    await page.locator("#start").selectOption("new pair");
+    await settled(page);
+    assert.equal(await page.locator(`[id="field-/pair/driving/dedendum_mm"]`).getAttribute("placeholder"), "2.5");
+    const list = page.locator(`#form fieldset.list`, { has: page.locator("legend", { hasText: /profile modifications/i }) }).first();
+    await list.evaluate((element) => { for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true; });
+    await list.locator(":scope > button").click();
+    await (await field(page, "/pair/driving/profile_modifications/0")).selectOption({ label: "Crowning" });
+    await settled(page);
+    assert.equal(await page.locator(`[id="field-/pair/driving/profile_modifications/0/kind"]`).count(), 0);
+    assert.equal((await designOf(page)).pair.driving.profile_modifications[0].kind, "crowning");
+  });
+
+  await step("a population draws its teeth in place of those of the design, at torques of the design, and a search says where it ends", service, async (page) => {
+    await open(page, service);
+    const drawn = page.locator("#deviations-driven-class");
+    await drawn.evaluate((element) => { for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true; });
+    await changing(page, () => page.locator("details.tool[open] button", { hasText: "Draw teeth" }).click());
+    await (await field(page, "/output_torques_n_m")).fill("150");
+    await settled(page);
+    await tab(page, "population");
+    assert.equal(await page.locator("#population-torques").inputValue(), "60, 105, 150, 210");
+    await page.locator("#population-torques").fill("150");
+    await page.locator("#population-size").fill("8");
+    await page.locator("#population button[type=submit]").click();
+    await page.waitForFunction(() => /8 of 8 members, successful/.test(document.querySelector("#population [role=status]").innerText));
+    assert.match(await page.locator("#population .influences tbody").innerText(), /Amount of tip relief, driving gear/);
+    await tab(page, "study");
+    await page.locator("#search summary").click();
+    await page.locator("#variable-0").selectOption("/pair/driving/tip_relief/amount_um");
+    await page.locator("#variable-1").selectOption("");
+    // Towards less relief than the least that is allowed.
+    for (const [name, value] of [["low", "60"], ["high", "61"], ["step", "1"]]) await page.locator(`#variable-0-${name}`).fill(value);
+    await page.locator("#search-evaluations").fill("2");
+    await page.locator("#search-run").click();
+    await page.waitForFunction(() => /designs looked at, successful/.test(document.querySelector("#search-state").innerText), null, { timeout: 120_000 });
+    assert.match(await page.locator("#search-out").innerText(), /At an end of its range: Amount of tip relief, driving gear/);
   });
 
   await step("a link is copied where pages may not use the clipboard, or it says that it is not", service, async (page) => {
