@@ -167,6 +167,45 @@ def test_ross_interpolates_our_stiffness(service):
     assert np.isclose(np.mean(curve.mesh_stiffness_tangent_n_per_m), mesh.stiffness, rtol=1e-9)
 
 
+def test_exudyn_turns_our_force_table_into_our_curve(service):
+    exu = pytest.importorskip("exudyn", reason="Exudyn is not installed")
+    from exudyn.itemInterface import NodeGenericODE2, ObjectGenericODE2, SensorNode
+
+    submission = service.example("standard-pair") | {"method": "flexible", "output_torques_n_m": [115.0], "force_table": {}}
+    results = service.solve(submission)
+    curve, table = results.curves[0], service.force_table(results.job["id"])
+
+    # The driving gear turns slowly, the driven one carries the load: what is left is the static curve.
+    load, inertia, damping, speed, end = 115.0, 1e-3, 25.0, 1.257, 0.2
+    system = exu.SystemContainer()
+    mbs = system.AddSystem()
+    lag = curve.transmission_error_um[0] * 1e-6 / table.base_radii_m[1]
+    node = mbs.AddNode(NodeGenericODE2(numberOfODE2Coordinates=1, referenceCoordinates=[0.0], initialCoordinates=[-lag], initialCoordinates_t=[speed]))
+
+    def torque(mbs, t, item, q, q_t):
+        return [table.torques(speed * t, q[0])[1] - load - damping * (q_t[0] - speed)]
+
+    mbs.AddObject(ObjectGenericODE2(nodeNumbers=[node], massMatrix=np.array([[inertia]]), forceUserFunction=torque))
+    sensor = mbs.AddSensor(SensorNode(nodeNumber=node, storeInternal=True, outputVariableType=exu.OutputVariableType.Coordinates))
+    mbs.Assemble()
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 800, end
+    settings.solution.file.write, settings.solution.sensors.writePeriod = False, end / 800
+    mbs.SolveDynamic(settings)
+
+    time, driven = mbs.GetSensorStoredData(sensor).T
+    one, other = table.base_radii_m
+    approach = 1e6 * (one * speed * time - other * driven)
+    period = table.driving_angle_rad[-1] - table.driving_angle_rad[0]
+    angles = np.append(np.deg2rad(curve["driving_angle_deg"]), period)
+    static = np.interp((speed * time) % period, angles, np.append(curve.transmission_error_um, curve.transmission_error_um[0]))
+    settled = time > end / 4
+    # Where a pair comes to carry, forty positions a mesh period cut the corner of the curve.
+    apart = np.abs(approach - static)[settled]
+    assert np.median(apart) < 0.02 and apart.max() < 0.3
+    assert np.ptp(static[settled]) > 0.5
+
+
 def test_results_are_plotted(service):
     import matplotlib
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 from .contact_pattern import ContactPattern
+from .force_table import ForceTable
 from .look_up import LookUpTable
 from .problem import ProblemError
 from .results import Results
@@ -51,6 +52,10 @@ def post(path: str, body: Mapping[str, Any] | None = None) -> Flow[Any]:
 def look_up_table(job_id: str, torque: float | None) -> Flow[LookUpTable]:
     query = "" if torque is None else f"?torque={torque}"
     return LookUpTable.parse((yield Call("GET", f"/v1/jobs/{job_id}/results/look-up-table.csv{query}", as_text=True)))
+
+
+def force_table(job_id: str) -> Flow[ForceTable]:
+    return ForceTable.parse((yield Call("GET", f"/v1/jobs/{job_id}/results/force-table.txt", as_text=True)))
 
 
 def fields(job_id: str, torque: float | None, mesh_position: float | None) -> Flow[str]:

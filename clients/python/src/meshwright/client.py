@@ -15,6 +15,7 @@ from . import _flows
 from ._flows import Call, Flow, Json, Report, Submission
 from ._progress import reporter
 from .contact_pattern import ContactPattern
+from .force_table import ForceTable
 from .look_up import LookUpTable
 from .problem import ProblemError
 from .results import Results
@@ -109,6 +110,10 @@ class Client:
         """One curve over the angle in SI units, for rotor dynamics: the first, or that of a torque."""
         return self._run(_flows.look_up_table(job_id, torque))
 
+    def force_table(self, job_id: str) -> ForceTable:
+        """The force between the gears over angle and approach, of a job that was asked for its `force_table`."""
+        return self._run(_flows.force_table(job_id))
+
     def fields(self, job_id: str, torque: float | None = None, mesh_position: float | None = None) -> str:
         """Displacements and stresses in both gears at a mesh position, as a VTU document for ParaView, PyVista or meshio."""
         return self._run(_flows.fields(job_id, torque, mesh_position))
@@ -191,6 +196,9 @@ class AsyncClient:
 
     async def look_up_table(self, job_id: str, torque: float | None = None) -> LookUpTable:
         return await self._run(_flows.look_up_table(job_id, torque))
+
+    async def force_table(self, job_id: str) -> ForceTable:
+        return await self._run(_flows.force_table(job_id))
 
     async def fields(self, job_id: str, torque: float | None = None, mesh_position: float | None = None) -> str:
         return await self._run(_flows.fields(job_id, torque, mesh_position))
