@@ -100,11 +100,11 @@ fn askew(seed: u64, image: bool, positions: &[f64]) -> Vec<FaceContact> {
         .each_ref()
         .map(|gear| gear.section().reference_radius());
     let alignment = Alignment {
-        axial_offset: 0.0,
+        axial_offset: sign * between(-1e-3, 1e-3),
         in_plane: sign * between(-20e-6, 20e-6),
         out_of_plane: sign * between(-20e-6, 20e-6),
     };
-    let leads = [Vec::new(), Vec::new()];
+    let leads = [2e-6, 6e-6].map(|amount| vec![LeadModification::Crowning { amount }]);
     let pair = SolidPair::new(gears, leads, one + other + 0.1e-3, alignment).expect("meshes");
     let load = pair.common_face_width() * between(50e3, 300e3);
     let model = FaceModel::new(pair, yields, SLICES, FARTHEST_COUPLED);
@@ -129,7 +129,7 @@ fn narrow_pairs_on_crooked_axes_are_their_images_at_every_position() {
             .iter()
             .map(|apart| (apart - shift).abs())
             .fold(0.0, f64::max);
-        assert!(most < 1e-12, "seed {seed}: {most:e}");
+        assert!(most < 1e-15, "seed {seed}: {most:e}");
     }
 }
 

@@ -228,7 +228,12 @@ mod tests {
                     }
                 }
                 let apart = (space.between(s, loaded) - &sum).norm_max();
-                assert!(apart < 1e-5 * sum.norm_max(), "{s} {loaded}: {apart:e} of {:e}, {}", sum.norm_max(), axial.len());
+                assert!(
+                    apart < 1e-5 * sum.norm_max(),
+                    "{s} {loaded}: {apart:e} of {:e}, {}",
+                    sum.norm_max(),
+                    axial.len()
+                );
             }
         }
     }

@@ -287,7 +287,7 @@ impl FaceModel {
             let teeth = counts.map(|count| pair % count as usize);
             (0..PLACES).map(move |i| self.pair.lead_gap(&self.deviations, teeth, at(i)))
         });
-        self.deviations.nearest() - gaps.fold(0.0, f64::min)
+        self.deviations.nearest() - gaps.fold(f64::INFINITY, f64::min)
     }
 
     /// The phases between which sections may touch before δ is `reach`.
