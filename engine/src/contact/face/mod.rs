@@ -283,11 +283,15 @@ impl FaceModel {
         let counts = Member::BOTH.map(|member| self.pair.section().gear(member).tooth_count());
         let pairs = counts[0].max(counts[1]) as usize;
         let pairs = if self.deviations.are_none() { 1 } else { pairs };
-        let gaps = (0..pairs).flat_map(|pair| {
+        let least = (0..pairs).map(|pair| {
             let teeth = counts.map(|count| pair % count as usize);
-            (0..PLACES).map(move |i| self.pair.lead_gap(&self.deviations, teeth, at(i)))
+            let gaps: [f64; PLACES] =
+                std::array::from_fn(|i| self.pair.lead_gap(&self.deviations, teeth, at(i)));
+            // Between two places a gap is less than at both by no more than they differ somewhere.
+            let steps = gaps.windows(2).map(|gaps| (gaps[1] - gaps[0]).abs());
+            gaps.into_iter().fold(f64::INFINITY, f64::min) - steps.fold(0.0, f64::max)
         });
-        self.deviations.nearest() - gaps.fold(f64::INFINITY, f64::min)
+        self.deviations.nearest() - least.fold(f64::INFINITY, f64::min)
     }
 
     /// The phases between which sections may touch before δ is `reach`.
