@@ -40,6 +40,7 @@ macro_rules! figures {
 
 const GUIDES: &[Guide] = guides! {
     "my-first-pair"
+    "an-hour-at-the-bench"
     "from-kisssoft-or-a-drawing"
     "choose-a-relief"
     "compare-hole-patterns"

@@ -5,6 +5,7 @@ import { readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { benchSteps } from "./bench.mjs";
 import { answer, axe, changed, changing, designOf, drag, downloaded, end, field, holeAt, linkOf, named, open, step, tab } from "./harness.mjs";
+import { hourSteps } from "./hour.mjs";
 import { start } from "./service.mjs";
 import { solidSteps } from "./solid.mjs";
 
@@ -310,6 +311,7 @@ await step("200 drags are followed in order", service, async (page) => {
 
 await benchSteps(service);
 await solidSteps(service);
+await hourSteps(service);
 
 const locked = await start();
 const key = locked.key("visitor");
