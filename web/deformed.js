@@ -80,7 +80,7 @@ function words({ output_torque_n_m: torque, mesh_position: position, driving, dr
   return [
     `At ${number(torque)} N m and position ${number(position, 4)}, displacements ${scale} times enlarged, the driven gear turned back by the transmission error; dashed without load. `,
     `Against its hub the driving gear moves by ${number(most(driving), 3)} µm at most, the driven one by ${number(most(driven), 3)} µm. `,
-    h("span", { className: "stress-scale" }, "Von Mises stress at the edges: 0 ", ...colors, ` ${number(top, 3)} MPa, the most at fillets and holes. `),
+    "Von Mises stress at the edges: ", h("span", { className: "stress-scale" }, "0 ", ...colors, ` ${number(top, 3)} MPa`), ", the most at fillets and holes. ",
     "Near a contact, where it is higher, the grid does not resolve it.",
   ];
 }

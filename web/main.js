@@ -380,7 +380,9 @@ function setUpButtons() {
     button.addEventListener("click", () => {
       for (const other of document.querySelectorAll("button[data-view]")) other.setAttribute("aria-pressed", String(other === button));
       const inSpace = button.dataset.view === "space";
-      if (!inSpace) drawing.setView(button.dataset.view);
+      // What lies inside is drawn in the plane alone.
+      if (inSpace) deformation.off();
+      else drawing.setView(button.dataset.view);
       showSpace(inSpace);
     });
   }

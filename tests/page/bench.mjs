@@ -297,9 +297,16 @@ export async function benchSteps(service) {
   await step("a run-up is asked for, shown with both branches, and its resonances are named", service, async (page) => {
     await open(page, service);
     await tab(page, "run-up");
+    await page.evaluate(() => {
+      window.said = [];
+      new MutationObserver(() => window.said.push(document.querySelector("#run-up").innerText)).observe(document.querySelector("#run-up"), { subtree: true, childList: true, attributes: true });
+    });
     await page.locator("#run-up-ask").click();
     await page.locator("#run-up .waterfall").waitFor();
     await settled(page);
+    const said = await page.evaluate(() => window.said);
+    assert.match(said[0], /The run-up is being computed/);
+    assert.ok(!said.some((words) => /has no run-up yet/.test(words)), "not once it has been asked for");
     const chart = page.locator("#run-up .speeds").first().locator("svg");
     assert.match(await chart.textContent(), /10×r7\.5@34, up[\s\S]*10×r7\.5@34, down/);
     assert.match(await chart.getAttribute("aria-label"), /running up, at most (6\.9|7\.0)\d µm peak-to-peak at 5,\d{3} rpm; flanks never part/);

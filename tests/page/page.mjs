@@ -267,6 +267,13 @@ await step("the pair is seen deformed at the position shown, by keys too", servi
   await page.locator(".deformation").waitFor({ state: "detached" });
   await page.locator(".deformation").waitFor({ state: "attached" });
   assert.notEqual(await shape(), before);
+  // In space there is nothing of it, and nothing is said of it.
+  await page.locator('[data-view="space"]').click();
+  await page.locator("canvas.space").waitFor();
+  assert.equal(await page.locator("#deformed").getAttribute("aria-pressed"), "false");
+  assert.equal(await page.locator("#deformed-note").innerText(), "");
+  await page.locator("#deformed").click();
+  await page.locator(".deformation").waitFor({ state: "attached" });
   // Another design is shown without load until it is asked for.
   await (await field(page, `${HOLES}/count`)).fill("8");
   await page.locator(".deformation").waitFor({ state: "detached" });
