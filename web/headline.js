@@ -62,7 +62,8 @@ export class Headline {
       const known = typeof now === "number" && typeof before === "number";
       change.textContent = known ? changeOf(now, before) : "";
       change.title = known ? `${other.name}: ${answer.print(before)} ${answer.unit}` : "";
-      const better = known && answer.less !== undefined && Math.abs(now - before) > 1e-3 * Math.abs(before) ? now < before === answer.less : null;
+      // At another torque less is not better: it is another question.
+      const better = known && other.curve.output_torque_n_m === curve.output_torque_n_m && answer.less !== undefined && Math.abs(now - before) > 1e-3 * Math.abs(before) ? now < before === answer.less : null;
       change.classList.toggle("better", better === true);
       change.classList.toggle("worse", better === false);
     }

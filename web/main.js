@@ -230,16 +230,26 @@ function showDesigns(moving = false) {
   if (!design.kept.includes(against)) against = design.kept[0] ?? null;
   const seen = designs.filter(({ hidden }) => !hidden);
   charts.show(seen.map((each) => ({ ...each, name: legendOf(each, seen) })), moving);
-  headline.show(shown.results.curves[0], against && { name: against.name, curve: against.results.curves[0] }, moving);
+  const [curve] = shown.results.curves;
+  headline.show(curve, against && { name: against.name, curve: atTorqueOf(curve, against.results) }, moving);
   // Numbers that change with every move cannot be read, and a new table lays the page out.
   if (moving) return;
   brush.show(shown);
   compare.show(designs);
   geometry.show(shown);
   const choice = byId("against");
-  choice.replaceChildren(...design.kept.map((each, i) => h("option", { value: i, selected: each === against }, each.name)));
+  choice.replaceChildren(...design.kept.map((each, i) => h("option", { value: i, selected: each === against }, nameBeside(curve, each))));
   byId("against-label").hidden = design.kept.length === 0;
   if (["export", "run-up"].includes(tab)) panels[tab]?.refresh();
+}
+
+/** The curve of `results` at the torque of another one; the first where there is none. */
+const atTorqueOf = ({ output_torque_n_m: torque }, { curves }) => curves.find((each) => each.output_torque_n_m === torque) ?? curves[0];
+
+/** What a kept design is called beside `curve`: with its torque, where that is another one. */
+function nameBeside(curve, { name, results }) {
+  const { output_torque_n_m: torque } = atTorqueOf(curve, results);
+  return torque === curve.output_torque_n_m ? name : `${name}, at ${number(torque)} N m`;
 }
 
 /** What a design is called beside others: by its method too, where they differ in it. */
