@@ -10,11 +10,11 @@ use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
 use meshwright_engine::analysis::stress::{GearStresses, PeakStress};
 use meshwright_engine::analysis::{Case, Curve, Method, analyze};
-use meshwright_engine::assembly::face_roots::SurfaceStress;
 use meshwright_engine::assembly::{FaceResolution, FaceRoots};
 use meshwright_engine::contact::face::SLICES;
+use meshwright_engine::fem::surface::SurfaceStress;
 use meshwright_engine::gear::{
-    Alignment, FaceEnds, GearData, LeadModification, SolidGear, SolidPair,
+    Alignment, FaceEnds, GearData, LeadModification, SolidGear, SolidPair, Web,
 };
 use meshwright_engine::grid::{GridLevel, ToothGrid};
 use meshwright_engine::library::Library;
@@ -316,7 +316,7 @@ fn at(
 ) -> Option<[f64; 2]> {
     let mut column: Vec<_> = stresses
         .iter()
-        .filter(|of| of.beside_loaded == beside && (of.angle - twist * of.z - angle).abs() < 1e-9)
+        .filter(|of| (of.edge == 0) == beside && (of.angle - twist * of.z - angle).abs() < 1e-9)
         .collect();
     column.sort_by(|a, b| a.z.total_cmp(&b.z));
     let around = column
@@ -363,8 +363,21 @@ fn peaks(of: &GearStresses) -> [&[PeakStress]; 3] {
 
 #[test]
 fn a_narrow_straight_pair_is_stressed_as_in_plane_stress() {
-    let solid = holed(gear(40, 20e-3), 8, 29e-3, 5e-3, 0.1);
-    for data in [gear(40, 20e-3), solid] {
+    // Holes feel orders that are left out, the more the nearer they are to the roots.
+    let near_roots = holed(gear(40, 20e-3), 8, 29e-3, 5e-3, 0.1);
+    let mut webbed = holed(gear(40, 20e-3), 6, 26.5e-3, 4e-3, 0.1);
+    webbed.blank.web = Some(Web {
+        inner_radius: 20e-3,
+        outer_radius: 33e-3,
+        thickness: 0.05e-3,
+    });
+    let mut in_all = 0;
+    let cases = [
+        (gear(40, 20e-3), [0.025, 0.0]),
+        (near_roots, [0.025, 0.05]),
+        (webbed, [0.03, 0.05]),
+    ];
+    for (data, [at_roots, at_holes]) in cases {
         let data = GearData {
             face_width: 0.1e-3,
             ..data
@@ -388,17 +401,25 @@ fn a_narrow_straight_pair_is_stressed_as_in_plane_stress() {
             }
             compared += 1;
             for (found, expected) in found.iter().zip(&expected) {
+                assert_eq!(found.holes.len(), expected.holes.len());
+                if let Some((found, expected)) = found.holes.get(i).zip(expected.holes.get(i)) {
+                    let off = found.stress / expected.stress - 1.0;
+                    assert!(off.abs() < at_holes, "{i}: {found:?} {expected:?} {off}");
+                    assert!(found.z.is_some() && expected.z.is_none());
+                }
                 for (found, expected) in peaks(found).into_iter().zip(peaks(expected)) {
                     let (found, expected) = (found[i], expected[i]);
                     let off = found.stress / expected.stress - 1.0;
-                    assert!(off.abs() < 0.025, "{i}: {found:?} {expected:?} {off}");
+                    assert!(off.abs() < at_roots, "{i}: {found:?} {expected:?} {off}");
                     assert!((found.angle - expected.angle).abs() < 0.01);
                     assert!(found.z.is_some() && expected.z.is_none());
                 }
             }
         }
-        assert!(compared >= 2, "{compared}");
+        assert!(compared >= 1);
+        in_all += compared;
     }
+    assert!(in_all >= 5, "{in_all}");
 }
 
 #[test]

@@ -14,7 +14,7 @@ use meshwright_engine::grid::{BlankGrid, GridLevel};
 use meshwright_engine::quadrature::gauss_legendre;
 use meshwright_engine::ring::solid::joint::trace;
 use meshwright_engine::ring::solid::revolution::Revolution;
-use meshwright_engine::ring::solid::web::holed_ring;
+use meshwright_engine::ring::solid::web::HoledRing;
 use meshwright_engine::run::Run;
 use serde_json::Value;
 
@@ -320,7 +320,8 @@ fn web_errors(case: &WebCase) -> Vec<f64> {
             axial: &across,
         };
         let largest = HOLE_ORDERS as usize;
-        let web = holed_ring(&grid, 0.0, &prism, None, largest, &Run::unattended());
+        let ring = HoledRing::new(&grid, &prism, None, &[]).expect("definite");
+        let web = ring.on_outer(largest, 0.0, &Run::unattended());
         let web = web.expect("definite");
         let low: Vec<usize> = (0..orders.len())
             .filter(|i| orders[*i].order.abs() <= seen)

@@ -146,7 +146,11 @@ fn of_faces(case: &Case, faces: &Faces, alone: Estimate) -> Estimate {
         let growth = (faces.resolution.face_order + 1) as f64 / 9.0;
         let [per_gear, per_answer] = ROOT_SECONDS;
         let answers = 2.0 * TEETH_ANSWERING * estimate.positions as f64;
-        estimate.seconds += 2.0 * per_gear * growth.powf(2.5) + per_answer * growth * answers;
+        // The edges of holes are condensed as the web is.
+        let holed = |member: &Member| !case.pair.gear(*member).holes().is_empty();
+        let holed = Member::BOTH.iter().filter(|member| holed(member)).count() as f64;
+        let made = 2.0 * per_gear + holed * per_web;
+        estimate.seconds += made * growth.powf(2.5) + per_answer * growth * answers;
         estimate.memory += (2.0 * ROOT_MEMORY * growth.powi(2)) as u64;
     }
     // Two pairs or more carry along all of the face.

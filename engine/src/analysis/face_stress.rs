@@ -1,4 +1,4 @@
-//! The largest stresses at the roots of the teeth along their faces, position by position.
+//! The largest stresses at the roots of the teeth along their faces and at the edges of the holes across the web, position by position.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -7,18 +7,24 @@ use rayon::prelude::*;
 
 use super::AnalysisError;
 use super::case::Faces;
-use super::stress::{GearStresses, PeakStress, REACH, largest, smallest};
-use crate::assembly::face_roots::SurfaceStress;
-use crate::assembly::{FaceRoots, FaceYield, FaceYieldSpec, Parts};
+use super::stress::{GearPeaks, GearStresses, PeakStress, PositionPeaks, REACH, largest, smallest};
+use crate::assembly::{FaceHoles, FaceRoots, FaceYield, FaceYieldSpec, PartError, Parts};
 use crate::contact::face::FaceContact;
+use crate::fem::surface::SurfaceStress;
 use crate::gear::{Member, SolidPair};
 use crate::run::Run;
 
-/// Both gears of a pair, to be asked for the stresses at their roots under a contact.
+/// Both gears of a pair, to be asked for the stresses at their roots and holes under a contact.
 pub(super) struct FaceStressModel<'a> {
     pair: &'a SolidPair,
     yields: &'a [Arc<FaceYield>; 2],
-    roots: [Arc<FaceRoots>; 2],
+    gears: [StressedFace; 2],
+}
+
+struct StressedFace {
+    roots: Arc<FaceRoots>,
+    /// `None` without holes.
+    holes: Option<Arc<FaceHoles>>,
 }
 
 impl<'a> FaceStressModel<'a> {
@@ -31,14 +37,19 @@ impl<'a> FaceStressModel<'a> {
     ) -> Result<Self, AnalysisError> {
         let of = |member: Member| {
             let spec = FaceYieldSpec::new(faces.pair.gear(member), faces.resolution);
-            let made = parts.face_roots(&spec.stack(), run);
-            made.map_err(|error| error.of(member))
+            let made = || {
+                Ok(StressedFace {
+                    roots: parts.face_roots(&spec.stack(), run)?,
+                    holes: parts.face_holes(&spec, run)?,
+                })
+            };
+            made().map_err(|error: PartError| error.of(member))
         };
         let (driving, driven) = rayon::join(|| of(Member::Driving), || of(Member::Driven));
         Ok(Self {
             pair: &faces.pair,
             yields,
-            roots: [driving?, driven?],
+            gears: [driving?, driven?],
         })
     }
 
@@ -48,26 +59,20 @@ impl<'a> FaceStressModel<'a> {
         contacts: &[FaceContact],
         run: &Run,
     ) -> Result<[GearStresses; 2], AnalysisError> {
-        let peaks: Vec<[[PeakStress; 3]; 2]> = contacts
+        let peaks: Vec<PositionPeaks> = contacts
             .par_iter()
             .map(|contact| {
                 run.check()?;
                 Ok(Member::BOTH.map(|member| self.peaks(member, contact)))
             })
             .collect::<Result<_, AnalysisError>>()?;
-        let of = |gear: usize, kind: usize| peaks.iter().map(|both| both[gear][kind]).collect();
-        Ok([0, 1].map(|gear| GearStresses {
-            root: of(gear, 0),
-            root_tension: of(gear, 1),
-            root_compression: of(gear, 2),
-            holes: Vec::new(),
-        }))
+        Ok(GearStresses::of_positions(&peaks))
     }
 
-    /// The largest stress of von Mises at tensile roots, and the largest and the smallest principal stress at all.
-    fn peaks(&self, member: Member, contact: &FaceContact) -> [PeakStress; 3] {
+    fn peaks(&self, member: Member, contact: &FaceContact) -> GearPeaks {
         let g = member.index();
-        let (roots, section) = (&self.roots[g], self.pair.section());
+        let StressedFace { roots, holes } = &self.gears[g];
+        let section = self.pair.section();
         let lines = contact
             .slices
             .chunk_by(|one, next| one.pair == next.pair)
@@ -90,12 +95,17 @@ impl<'a> FaceStressModel<'a> {
             angle: TAU * tooth as f64 / z as f64 + of.angle,
             z: Some(of.z),
         };
+        let hole = holes.as_ref().map(|holes| {
+            let answer = holes.under(&self.yields[g], &loads);
+            let stresses = answer.stresses();
+            largest(stresses.iter().map(|of| at(0, of, of.von_mises())))
+        });
         let (mut in_mesh, mut tension, mut compression) = (Vec::new(), Vec::new(), Vec::new());
         for tooth in (0..z).filter(|tooth| away(*tooth) <= REACH) {
             let stresses = answer.stresses(tooth);
             let beside = stresses.iter().filter(|of| {
                 // Where it is stretched more than pressed.
-                of.beside_loaded && away(tooth) <= 1 && of.principal[0] > -of.principal[1]
+                of.edge == 0 && away(tooth) <= 1 && of.principal[0] > -of.principal[1]
             });
             in_mesh.push(largest(beside.map(|of| at(tooth, of, of.von_mises()))));
             tension.push(largest(
@@ -105,10 +115,11 @@ impl<'a> FaceStressModel<'a> {
                 stresses.iter().map(|of| at(tooth, of, of.principal[1])),
             ));
         }
-        [
-            largest(in_mesh.into_iter()),
-            largest(tension.into_iter()),
-            smallest(compression.into_iter()),
-        ]
+        GearPeaks {
+            root: largest(in_mesh.into_iter()),
+            tension: largest(tension.into_iter()),
+            compression: smallest(compression.into_iter()),
+            hole,
+        }
     }
 }

@@ -37,7 +37,7 @@ pub struct GearStresses {
     pub root_tension: Vec<PeakStress>,
     /// The smallest one: the largest compression, which is negative.
     pub root_compression: Vec<PeakStress>,
-    /// The largest stress along the edges of the holes; empty without holes, and along faces.
+    /// The largest stress along the edges of the holes; empty without holes.
     pub holes: Vec<PeakStress>,
 }
 
@@ -63,11 +63,11 @@ struct StressedGear {
 /// The peaks of one gear at one position.
 #[derive(Clone, Copy)]
 pub(super) struct GearPeaks {
-    root: PeakStress,
-    tension: PeakStress,
-    compression: PeakStress,
+    pub(super) root: PeakStress,
+    pub(super) tension: PeakStress,
+    pub(super) compression: PeakStress,
     /// `None` without holes.
-    hole: Option<PeakStress>,
+    pub(super) hole: Option<PeakStress>,
 }
 
 /// The peaks of both gears at one position.

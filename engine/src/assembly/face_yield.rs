@@ -85,6 +85,11 @@ pub struct FaceYield {
 }
 
 impl FaceYieldSpec {
+    /// The gear.
+    pub(super) fn gear(&self) -> &SolidGear {
+        &self.gear
+    }
+
     /// That of `gear`. No modification or deviation counts, nor a broken edge: they are gaps and hardly change how a tooth bends.
     pub fn new(gear: &SolidGear, resolution: FaceResolution) -> Self {
         Self {
@@ -293,6 +298,13 @@ impl FaceYield {
     /// What holes change, if there are any.
     pub(super) fn holes(&self) -> Option<&HoledChange> {
         self.holes.as_ref()
+    }
+
+    /// How the outer circle of a holed web moves under loads on the functions of some teeth, each with its number: in amplitudes a_0, a_1, b_1,
+    /// …, component by component, function by function.
+    pub(super) fn circle(&self, loads: &[(usize, &[f64])]) -> Option<Vec<f64>> {
+        let (holes, web) = self.holes.as_ref().zip(self.plain.web.as_ref())?;
+        Some(holes.circle(web, loads))
     }
 
     /// The number of teeth after which all that they yield repeats.

@@ -10,12 +10,14 @@ use faer::{Mat, c64};
 
 use super::PartError;
 use super::carrier::{Stack, WebPorts};
+use crate::fem::FemError;
+use crate::fem::axial::AxialBasis;
 use crate::fem::dense::entries;
 use crate::fem::prism::Prism;
-use crate::gear::{BlankRegion, SpurGear, gcd};
+use crate::gear::{BlankRegion, Material, SpurGear, gcd};
 use crate::grid::{BlankGrid, GridLevel};
 use crate::ring::solid::gear::ClassAnswers;
-use crate::ring::solid::web::holed_ring;
+use crate::ring::solid::web::HoledRing;
 use crate::run::Run;
 
 /// Elements around the web for each order in which holes are seen, at the standard level.
@@ -185,7 +187,8 @@ impl HoledChange {
             ref answers,
             ..
         } = web;
-        let mut change = holed_stiffness(stack, section, largest, run)?;
+        let holed = HoledSection::new(stack, section, largest)?;
+        let mut change = holed.ring(&[])?.on_outer(largest, holed.phase, run)?;
         for order in -(largest as i64)..=largest as i64 {
             let plain = conjugate_below_zero(&web.plain[order.unsigned_abs() as usize], order);
             let first = (order + largest as i64) as usize * size;
@@ -253,6 +256,20 @@ impl HoledChange {
         sum.col_as_slice(0).to_vec()
     }
 
+    /// How the web's outer circle moves under `loads`, as in [`HoledChange::forces`], in amplitudes a_0, a_1, b_1, … from tooth 0; `web` is that
+    /// without holes.
+    pub(crate) fn circle(&self, web: &SeenWeb, loads: &[(usize, &[f64])]) -> Vec<f64> {
+        let forces = self.forces(loads);
+        let forces = Mat::from_fn(forces.len(), 1, |i, _| forces[i]);
+        let mut moved = &web.compliance * forces;
+        for (tooth, load) in loads {
+            let load = Mat::from_fn(load.len(), 1, |i, _| load[i]);
+            let angle = TAU * *tooth as f64 / self.tooth_count as f64;
+            moved += turned(&(&self.answers * load), self.size, angle);
+        }
+        moved.col_as_slice(0).to_vec()
+    }
+
     /// Forces on the web's outer circle as tooth `tooth` sees them.
     pub(crate) fn seen_from(&self, tooth: usize, forces: &[f64]) -> Vec<f64> {
         let forces = Mat::from_fn(forces.len(), 1, |i, _| forces[i]);
@@ -266,39 +283,65 @@ impl HoledChange {
     }
 }
 
-/// The stiffness of the web with its holes, on the orders of both signs.
-fn holed_stiffness(
-    stack: &Stack,
-    section: &SpurGear,
-    largest: usize,
-    run: &Run,
-) -> Result<Mat<c64>, PartError> {
-    let layer = &stack.layers[1];
-    let region = BlankRegion {
-        bore_radius: layer.inner_radius,
-        web: None,
-        ..section.data().blank.clone()
-    };
-    let z = section.tooth_count();
-    let grid = BlankGrid::of_region(
-        &region,
-        section.face_width(),
-        layer.outer_radius,
-        z,
-        ELEMENTS_PER_ORDER * largest as f64 / f64::from(z),
-        GridLevel::Coarse,
-    )?;
-    let hub = (0..=largest)
-        .map(|order| stack.below(1, order))
-        .collect::<Result<Option<Vec<_>>, _>>()?;
-    let prism = Prism {
-        grid: &grid.grid,
-        material: section.material(),
-        twist: 0.0,
-        axial: &stack.across[1],
-    };
-    let ring = holed_ring(&grid, region.phase(), &prism, hub.as_deref(), largest, run)?;
-    Ok(ring)
+/// The section of a web with its holes, and what carries it.
+pub(super) struct HoledSection {
+    pub(super) grid: BlankGrid,
+    /// Where hole 0 of a pattern stands.
+    pub(super) phase: f64,
+    /// What carries each order 0 … of its inner circle; `None` where that is held.
+    hub: Option<Vec<Mat<c64>>>,
+    material: Material,
+    axial: AxialBasis,
+}
+
+impl HoledSection {
+    /// The web of `section`, whose gear is otherwise that of `stack`, for the orders up to `largest`.
+    pub(super) fn new(
+        stack: &Stack,
+        section: &SpurGear,
+        largest: usize,
+    ) -> Result<Self, PartError> {
+        let layer = &stack.layers[1];
+        let region = BlankRegion {
+            bore_radius: layer.inner_radius,
+            web: None,
+            ..section.data().blank.clone()
+        };
+        let z = section.tooth_count();
+        let grid = BlankGrid::of_region(
+            &region,
+            section.face_width(),
+            layer.outer_radius,
+            z,
+            ELEMENTS_PER_ORDER * largest as f64 / f64::from(z),
+            GridLevel::Coarse,
+        )?;
+        let hub = (0..=largest)
+            .map(|order| stack.below(1, order))
+            .collect::<Result<Option<Vec<_>>, _>>()?;
+        Ok(Self {
+            grid,
+            phase: region.phase(),
+            hub,
+            material: *section.material(),
+            axial: stack.across[1].clone(),
+        })
+    }
+
+    /// It as a prism.
+    pub(super) fn prism(&self) -> Prism<'_> {
+        Prism {
+            grid: &self.grid.grid,
+            material: &self.material,
+            twist: 0.0,
+            axial: &self.axial,
+        }
+    }
+
+    /// The ring of it, which can be asked for the nodes `told`.
+    pub(super) fn ring(&self, told: &[u32]) -> Result<HoledRing<'_>, FemError> {
+        HoledRing::new(&self.grid, &self.prism(), self.hub.as_deref(), told)
+    }
 }
 
 /// That of an order of either sign, of that of 0 or more.
@@ -311,7 +354,7 @@ fn conjugate_below_zero(of: &Mat<c64>, order: i64) -> Mat<c64> {
 }
 
 /// Where the cosine of an order stands, in blocks; the sine follows.
-fn block(order: usize) -> usize {
+pub(super) fn block(order: usize) -> usize {
     if order == 0 { 0 } else { 2 * order - 1 }
 }
 

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::carrier::Stack;
+use super::face_holes::FaceHoles;
 use super::face_roots::FaceRoots;
 use super::face_yield::{FaceYield, FaceYieldSpec, PlainFace};
 use super::{BlankSpec, Gear, PairSpec, Teeth, TeethSpec, WantedGear, make_gears};
@@ -75,6 +76,19 @@ pub trait Parts: Sync {
     fn face_roots(&self, spec: &Stack, run: &Run) -> Result<Arc<FaceRoots>, PartError> {
         let plain = self.plain_face(spec, run)?;
         FaceRoots::new(spec, &plain, run).map(Arc::new)
+    }
+
+    /// How the edges of the holes of a solid gear are stressed; `None` if it has none.
+    ///
+    /// # Errors
+    ///
+    /// [`PartError`].
+    fn face_holes(
+        &self,
+        spec: &FaceYieldSpec,
+        run: &Run,
+    ) -> Result<Option<Arc<FaceHoles>>, PartError> {
+        Ok(FaceHoles::new(spec, run)?.map(Arc::new))
     }
 
     /// What is known of the flanks of `spec`: a place for it, if nothing is.

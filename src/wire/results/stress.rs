@@ -42,12 +42,15 @@ pub struct GearStressDocument {
     /// How high that is, in mm; absent in the plane.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub root_compression_z_mm: Vec<f64>,
-    /// The largest von Mises stress along the edges of the holes, in MPa; absent without holes, and in three dimensions.
+    /// The largest von Mises stress along the edges of the holes, in MPa; absent without holes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub hole_mpa: Vec<f64>,
     /// Where that is, in degrees; absent without holes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub hole_angle_deg: Vec<f64>,
+    /// How high that is, in mm; absent without holes, and in the plane.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub hole_z_mm: Vec<f64>,
 }
 
 /// The largest stresses of both gears over the span.
@@ -101,6 +104,7 @@ impl StressDocument {
             root_compression_z_mm: heights(&gear.root_compression),
             hole_mpa: stresses(&gear.holes),
             hole_angle_deg: angles(&gear.holes),
+            hole_z_mm: heights(&gear.holes),
         };
         Self {
             driving: of(driving),

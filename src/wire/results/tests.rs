@@ -158,6 +158,7 @@ fn the_document_speaks_the_units_of_its_names() {
     );
     near("/curves/0/stress/driving/root_mpa/1", 140.0);
     near("/curves/0/stress/driven/hole_angle_deg/0", 180.0);
+    near("/curves/0/stress/driven/hole_z_mm/0", -2.0);
     near("/curves/0/statistics/stress/driving/root_mpa", 140.0);
     near("/curves/0/statistics/stress/driven/hole_mpa", 31.0);
     near("/curves/0/stress/driving/root_compression_mpa/0", -160.0);

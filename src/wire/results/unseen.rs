@@ -66,12 +66,9 @@ fn forces_do_not_see(forces: Option<&ForcesRequest>) -> Vec<&'static str> {
 fn stress_not_told(case: &Case) -> Option<&'static str> {
     match case.method {
         _ if !case.stress => None,
-        Method::Flexible => Some(
+        Method::Flexible | Method::ThreeDimensional => Some(
             "stress under the contact itself, and concentrated where regions of unlike thickness meet: stress tells roots and hole edges",
         ),
-        Method::ThreeDimensional => {
-            Some("stress under the contact itself, and at the edges of holes: stress tells roots")
-        }
         _ => Some(
             "stress: it was asked for, and only the methods flexible and three_dimensional tell it",
         ),

@@ -6,95 +6,163 @@ use rayon::prelude::*;
 use super::revolution::{add_block, last_of};
 use super::sector::SolidSector;
 use crate::fem::FemError;
+use crate::fem::dense::Cholesky;
 use crate::fem::prism::Prism;
 use crate::grid::BlankGrid;
 use crate::run::Run;
 
-/// The Hermitian stiffness on the orders −`largest` … `largest` of the outer circle of the ring of sectors `grid`, order by
-/// order; `prism` is its section with the functions across it.
-///
-/// `hub` is what carries the inner circle, one of each order 0 … `largest`; without it that circle is held. Hole 0 of a pattern
-/// stands at the angle `phase`.
-///
-/// # Errors
-///
-/// [`FemError`].
-pub fn holed_ring(
-    grid: &BlankGrid,
-    phase: f64,
-    prism: &Prism<'_>,
-    hub: Option<&[Mat<c64>]>,
-    largest: usize,
-    run: &Run,
-) -> Result<Mat<c64>, FemError> {
-    let (right, left) = &grid.side_nodes;
-    let angle = |node: &u32| {
-        let place = grid.grid.nodes[*node as usize];
-        place.y.atan2(place.x)
-    };
-    let (inner, held) = match hub {
-        Some(_) => (grid.bore_nodes.as_slice(), [].as_slice()),
-        None => ([].as_slice(), grid.bore_nodes.as_slice()),
-    };
-    let kept: Vec<u32> = [right.as_slice(), left, inner, &grid.arc_nodes]
-        .into_iter()
-        .flatten()
-        .copied()
-        .collect();
-    let sector = SolidSector {
-        count: grid.sector_count as usize,
-        size: prism.unknowns_of_node(),
-        stiffness: prism.condense("the web", &kept, held, &[])?.stiffness,
-        side_nodes: right.len(),
-        arcs: vec![inner.iter().map(angle).collect(), grid.arc_angles.clone()],
-    };
-    let size = sector.size;
-    let classes: Vec<(Vec<i64>, Mat<c64>)> = (0..=sector.count / 2)
-        .into_par_iter()
-        .map(|class| {
-            run.check()?;
-            let orders = sector.orders(class, largest);
-            if orders.is_empty() {
-                return Ok((orders, Mat::zeros(0, 0)));
-            }
-            let mut stiffness = sector.class_stiffness(class, &orders);
-            let first = size * sector.side_nodes;
-            stiffness *= faer::Scale(c64::new(sector.count as f64, 0.0));
-            if let Some(hub) = hub {
-                for (k, order) in orders.iter().enumerate() {
-                    add_block(&mut stiffness, first + k * size, &of_order(hub, *order));
-                }
-            } else {
-                // The inner circle, which is held, has unknowns without stiffness: they are no part of it.
-                let from = first + orders.len() * size;
-                let place = |i: usize| if i < first { i } else { i - first + from };
-                let count = stiffness.nrows() - orders.len() * size;
-                stiffness = Mat::from_fn(count, count, |i, j| stiffness[(place(i), place(j))]);
-            }
-            let outer = last_of(&stiffness, orders.len() * size)?;
-            Ok((orders, outer))
-        })
-        .collect::<Result<_, FemError>>()?;
+/// A ring of sectors with holes, each condensed to its interface.
+#[derive(Debug)]
+pub struct HoledRing<'a> {
+    sector: SolidSector,
+    /// How the nodes that are told move, by the interface of their sector.
+    rows: Mat<f64>,
+    /// What carries the inner circle, one of each order 0 …; without it that circle is held.
+    hub: Option<&'a [Mat<c64>]>,
+}
 
-    let count = size * (2 * largest + 1);
-    let mut ring = Mat::<c64>::zeros(count, count);
-    let place = |order: i64| (order + largest as i64) as usize * size;
-    for (orders, outer) in &classes {
-        for (a, &n) in orders.iter().enumerate() {
-            for (b, &m) in orders.iter().enumerate() {
-                let turn = SolidSector::turn(m - n, phase);
-                for j in 0..size {
-                    for i in 0..size {
-                        let value = outer[(a * size + i, b * size + j)] * turn;
-                        // The class of the opposite orders is the conjugate of this one.
-                        ring[(place(n) + i, place(m) + j)] = value;
-                        ring[(place(-n) + i, place(-m) + j)] = value.conj();
+/// How nodes of sector 0 of a ring move by its outer circle, in one class.
+#[derive(Debug, Clone)]
+pub struct ClassRows {
+    /// The class k: from a sector to the next all turns by e^{ik2π/S}.
+    pub class: usize,
+    /// Its orders on the outer circle.
+    pub orders: Vec<i64>,
+    /// The unknowns of the nodes by the outer circle, order by order, in the frame of the sector.
+    pub rows: Mat<c64>,
+}
+
+impl<'a> HoledRing<'a> {
+    /// The ring of sectors `grid`; `prism` is its section with the functions across it, and the nodes `told` can be asked for.
+    ///
+    /// `hub` is what carries the inner circle, one of each order 0 … that is asked for; without it that circle is held.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError`].
+    pub fn new(
+        grid: &BlankGrid,
+        prism: &Prism<'_>,
+        hub: Option<&'a [Mat<c64>]>,
+        told: &[u32],
+    ) -> Result<Self, FemError> {
+        let (right, left) = &grid.side_nodes;
+        let angle = |node: &u32| {
+            let place = grid.grid.nodes[*node as usize];
+            place.y.atan2(place.x)
+        };
+        let (inner, held) = match hub {
+            Some(_) => (grid.bore_nodes.as_slice(), [].as_slice()),
+            None => ([].as_slice(), grid.bore_nodes.as_slice()),
+        };
+        let kept: Vec<u32> = [right.as_slice(), left, inner, &grid.arc_nodes]
+            .into_iter()
+            .flatten()
+            .copied()
+            .collect();
+        let (condensed, rows) = prism.condense_with("the web", &kept, held, &[], told)?;
+        let inner = hub.map(|_| inner.iter().map(angle).collect());
+        Ok(Self {
+            sector: SolidSector {
+                count: grid.sector_count as usize,
+                size: prism.unknowns_of_node(),
+                stiffness: condensed.stiffness,
+                side_nodes: right.len(),
+                arcs: inner.into_iter().chain([grid.arc_angles.clone()]).collect(),
+            },
+            rows: rows.by_kept,
+            hub,
+        })
+    }
+
+    /// Its Hermitian stiffness on the orders −`largest` … `largest` of the outer circle, order by order. Hole 0 of a pattern stands at the
+    /// angle `phase`.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError`].
+    pub fn on_outer(&self, largest: usize, phase: f64, run: &Run) -> Result<Mat<c64>, FemError> {
+        let size = self.sector.size;
+        let classes = self.each_class(largest, run, |_, orders, stiffness| {
+            last_of(&stiffness, orders.len() * size).map(|outer| (orders, outer))
+        })?;
+        let count = size * (2 * largest + 1);
+        let mut ring = Mat::<c64>::zeros(count, count);
+        let place = |order: i64| (order + largest as i64) as usize * size;
+        for (orders, outer) in &classes {
+            for (a, &n) in orders.iter().enumerate() {
+                for (b, &m) in orders.iter().enumerate() {
+                    let turn = SolidSector::turn(m - n, phase);
+                    for j in 0..size {
+                        for i in 0..size {
+                            let value = outer[(a * size + i, b * size + j)] * turn;
+                            // The class of the opposite orders is the conjugate of this one.
+                            ring[(place(n) + i, place(m) + j)] = value;
+                            ring[(place(-n) + i, place(-m) + j)] = value.conj();
+                        }
                     }
                 }
             }
         }
+        Ok(ring)
     }
-    Ok(ring)
+
+    /// How the nodes that are told move by the orders −`largest` … `largest` of the outer circle, class by class.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError`].
+    pub fn inside(&self, largest: usize, run: &Run) -> Result<Vec<ClassRows>, FemError> {
+        let sector = &self.sector;
+        self.each_class(largest, run, |class, orders, stiffness| {
+            let outer = orders.len() * sector.size;
+            let inner = stiffness.nrows() - outer;
+            let factor = Cholesky::new(stiffness.submatrix(0, 0, inner, inner).to_owned());
+            let factor = factor.ok_or(FemError::NotPositiveDefinite {
+                part: "the web",
+                unknowns: inner,
+            })?;
+            let mut follows = stiffness.submatrix(0, inner, inner, outer).to_owned();
+            factor.solve_in_place(follows.as_mut());
+            let rows = sector.on_class(&self.rows, class, &orders);
+            let by_inner = rows.subcols(0, inner) * follows;
+            Ok(ClassRows {
+                class,
+                rows: rows.subcols(inner, outer) - by_inner,
+                orders,
+            })
+        })
+    }
+
+    /// What `of` makes of each class that has orders up to `largest`: its number, these orders, and the stiffness of the ring on its
+    /// unknowns, the outer circle last.
+    fn each_class<T: Send>(
+        &self,
+        largest: usize,
+        run: &Run,
+        of: impl Fn(usize, Vec<i64>, Mat<c64>) -> Result<T, FemError> + Sync,
+    ) -> Result<Vec<T>, FemError> {
+        let sector = &self.sector;
+        let made = (0..=sector.count / 2).into_par_iter().map(|class| {
+            run.check()?;
+            let orders = sector.orders(class, largest);
+            if orders.is_empty() {
+                return Ok(None);
+            }
+            let mut stiffness = sector.class_stiffness(class, &orders);
+            stiffness *= faer::Scale(c64::new(sector.count as f64, 0.0));
+            if let Some(hub) = self.hub {
+                let first = sector.size * sector.side_nodes;
+                for (k, order) in orders.iter().enumerate() {
+                    let carried = of_order(hub, *order);
+                    add_block(&mut stiffness, first + k * sector.size, &carried);
+                }
+            }
+            of(class, orders, stiffness).map(Some)
+        });
+        let made: Vec<Option<T>> = made.collect::<Result<_, FemError>>()?;
+        Ok(made.into_iter().flatten().collect())
+    }
 }
 
 /// That of an order of either sign, of those of 0 and more.
