@@ -27,7 +27,15 @@ pub(super) async fn run(address: SocketAddr) -> anyhow::Result<()> {
         .send()
         .await
         .context("the service does not answer")?;
-    let job: Value = answer.json().await.context("the job is not JSON")?;
+    let (status, job): (_, Value) = (
+        answer.status(),
+        answer.json().await.context("the job is not JSON")?,
+    );
+    if status == reqwest::StatusCode::UNAUTHORIZED {
+        bail!(
+            "the demo has no key, and this service asks for one: let it listen on this machine alone, or leave --demo out"
+        );
+    }
     let link = |name: &str| -> anyhow::Result<String> {
         let path = job["links"][name]
             .as_str()

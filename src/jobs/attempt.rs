@@ -152,7 +152,8 @@ impl Shop {
                     rung = self.jobs.live.rung();
                 }
                 _ = heartbeat.tick(), if !held.is_empty() => {
-                    let holds = self.report(&held, &mut reported).await;
+                    // Its futures are large, and would stand on the stack of every claim.
+                    let holds = Box::pin(self.report(&held, &mut reported)).await;
                     give_up(&mut held, &holds);
                     rung = self.jobs.live.rung();
                 }

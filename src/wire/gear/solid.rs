@@ -165,14 +165,14 @@ fn solid_fault(pointer: &str, error: &SolidGearError) -> FieldError {
             .nearest(to_mm(nearest))
         }
         SolidGearError::HoleAcrossEdge {
-            hole,
             from,
             to,
             inner_radius,
             outer_radius,
+            ..
         } => {
             let detail = format!(
-                "Hole {hole} reaches from {} mm to {} mm; it has to lie between {} mm and {} mm.",
+                "A hole reaches from {} mm to {} mm; it has to lie within {} mm and {} mm, and touch neither edge.",
                 mm(from),
                 mm(to),
                 mm(inner_radius),
