@@ -2,9 +2,9 @@
 
 import uPlot from "./vendor/uplot.js";
 import { h, number } from "./dom.js";
-import { cellsOf, cssOf, faceOf, scaleOf, wordsOfFace } from "./face.js";
+import { cellsOf, cssOf, faceOf, SCALE, scaleOf, wordsOfFace } from "./face.js";
 import { figure } from "./figure.js";
-import { LEAST_AMPLITUDE, linesOf, ordersOf, PANELS, partialSpectrum, wordsOf, wordsOfSpectrum } from "./series.js";
+import { linesOf, namesOf, ordersOf, PANELS, partialSpectrum, placedNames, wordsOf, wordsOfSpectrum } from "./series.js";
 
 /** Where a mesh period has fewer pixels the curve is shown by its envelope. */
 const LEAST_PIXELS = 14;
@@ -93,12 +93,13 @@ export class Charts {
   /** The curves that are shown as drawings with titles, units and legends. */
   figures({ width = 760, height = 300, ids = null } = {}) {
     const colors = looks();
-    const shown = [...this.#panels.values()].filter((panel) => !panel.figure.hidden && (!ids || ids.includes(panel.id)));
+    const shown = [...this.#panels.values()].filter((panel) => !panel.figure.hidden && !panel.empty && (!ids || ids.includes(panel.id)));
     return shown.map((panel) => {
       const common = { title: panel.title, y: `${panel.title} in ${panel.unit}`, colors, width, height, heading: true };
       if (panel.id === "spectrum") {
-        const stems = this.#spectra().map(({ name, look, orders }) => ({ name, color: colors.series[look % 7], x: orders.map(([order]) => order), y: orders.map(([, value]) => value) }));
-        return figure({ ...common, x: ORDER_TITLE, stems });
+        const spectra = this.#spectra();
+        const stems = spectra.map(({ name, look, orders }) => ({ name, color: colors.series[look % 7], x: orders.map(([order]) => order), y: orders.map(([, value]) => value) }));
+        return figure({ ...common, x: ORDER_TITLE, stems, names: namesOf(spectra, this.#lastOrder()) });
       }
       if (panel.along) return faceFigure(faceOf(this.shown[0].results.curves[0]), { ...common, xRange: this.#range, panel });
       const lines = linesOf(panel, this.shown).map((line) => ({ ...line, color: colors.series[line.look % 7], x: closed(line), y: [...line.values, line.open ? null : line.values[0]] }));
@@ -129,6 +130,15 @@ export class Charts {
     const wanted = linesOf(panel, this.shown);
     panel.figure.hidden = wanted.length === 0;
     if (!wanted.length) return;
+    panel.empty = !wanted.some(({ values }) => values.some((value) => value !== null));
+    panel.canvas.hidden = panel.empty;
+    panel.below.hidden = !panel.gaps || !wanted.some(({ values }) => values.includes(null));
+    panel.below.textContent = (panel.empty ? panel.none : panel.gaps) ?? "";
+    if (panel.empty) {
+      panel.plot?.destroy();
+      Object.assign(panel, { plot: null, now: null, shape: "", width: null });
+      return panel.legend.replaceChildren();
+    }
     panel.span = Math.max(...wanted.map(({ span }) => span));
     const [from, end] = this.#range ?? [0, panel.span];
     const room = Math.floor(this.#width(panel) / LEAST_PIXELS);
@@ -149,9 +159,6 @@ export class Charts {
     panel.plot.setScale("x", { min: from, max: to });
     const note = many ? "envelope; zoom in for the curve" : to < end ? `${room} mesh periods, ${panel.note}` : panel.note;
     panel.legend.replaceChildren(...(note ? [h("span", {}, note)] : []), ...(wanted.length > 1 && !panel.note ? wanted.map((line) => sample(line, colors)) : []));
-    const gaps = panel.gaps && wanted.some(({ values }) => values.includes(null));
-    panel.below.hidden = !gaps;
-    if (gaps) panel.below.textContent = panel.gaps;
   }
 
   #make(panel, data, lines, colors, many) {
@@ -240,10 +247,14 @@ export class Charts {
     panel.plot.over.addEventListener("dblclick", () => this.zoom(null));
   }
 
+  /** As far as spectra are shown: four mesh orders of the live design. */
+  #lastOrder() {
+    return 4.4 * this.shown[0].teeth;
+  }
+
   /** The spectra of the designs, each with its orders out of the noise; of the live one an estimate where its span is part of the true period. */
   #spectra() {
-    const mesh = this.shown[0].teeth;
-    const last = 4.4 * mesh;
+    const last = this.#lastOrder();
     return this.shown.flatMap(({ name, results, look, teeth }, i) => {
       const [curve] = results.curves;
       const partial = !curve.spectrum;
@@ -257,8 +268,8 @@ export class Charts {
     const wanted = this.#spectra();
     panel.figure.hidden = wanted.length === 0;
     if (!wanted.length) return;
-    const last = 4.4 * this.shown[0].teeth;
-    panel.names = wanted[0].named.filter(({ order, transmission_error_um: value }) => order <= last && value > LEAST_AMPLITUDE);
+    const last = this.#lastOrder();
+    panel.names = namesOf(wanted, last);
     const data = uPlot.join(wanted.map(({ orders }) => (orders.length ? [orders.map(([order]) => order), orders.map(([, value]) => value)] : [[this.shown[0].teeth], [null]])));
     const shape = JSON.stringify([wanted.map(({ name, look }) => [name, look]), last]);
     if (panel.shape !== shape || !panel.plot) {
@@ -320,8 +331,10 @@ function drawCells(plot, face) {
 /** The load along a face as a drawing: the map, or the mean. */
 function faceFigure(face, { panel, xRange = null, ...common }) {
   if (!face.every) return figure({ ...common, x: "z in mm", lines: [{ x: face.z, y: face.rows[0], color: common.colors?.series[0] }] });
-  const cells = cellsOf(face, xRange ?? [0, face.span]).map(({ z, part, ...cell }) => ({ ...cell, y: z, color: cssOf(part) }));
-  return figure({ ...common, title: `${panel.title}, up to ${number(face.most, 3)} ${panel.unit}`, x: X_TITLE, y: "z in mm", cells });
+  const [from, to] = xRange ?? [0, face.span];
+  // As many cells as can be seen: each position of a long period would make a file of megabytes.
+  const cells = cellsOf(face, [from, to], (to - from) / common.width).map(({ z, part, ...cell }) => ({ ...cell, y: z, color: cssOf(part) }));
+  return figure({ ...common, x: X_TITLE, y: "z in mm", cells, scale: { colors: SCALE, words: ["0", `${number(face.most, 3)} ${panel.unit}`] } });
 }
 
 /** The positions of a line with the end of its span, where the first comes again. */
@@ -398,21 +411,13 @@ function mark(ctx, kind, x, y, r) {
   else ctx.fill();
 }
 
-/** Names over their lines, the tallest first, none over another. */
 function drawNames(plot, names, colors, ratio) {
-  const { ctx } = plot;
-  ctx.font = `${0.69 * colors.rem * ratio}px system-ui, sans-serif`;
+  const { ctx, bbox } = plot;
+  const letter = 0.69 * colors.rem * ratio;
+  ctx.font = `${letter}px system-ui, sans-serif`;
   ctx.fillStyle = colors.ink;
   ctx.textAlign = "center";
-  const taken = [];
-  const rank = ({ label }) => (/^H_(N\d?|Z\d?)$/.test(label) ? 0 : 1);
-  for (const line of [...names].sort((a, b) => rank(a) - rank(b) || b.transmission_error_um - a.transmission_error_um)) {
-    const width = ctx.measureText(line.label).width;
-    const x = Math.min(Math.max(plot.valToPos(line.order, "x", true), plot.bbox.left + width / 2), plot.bbox.left + plot.bbox.width - width / 2);
-    const y = plot.valToPos(line.transmission_error_um, "y", true) - 6 * ratio;
-    const box = [x - width / 2 - 2, y - 0.75 * colors.rem * ratio, x + width / 2 + 2, y + 2];
-    if (taken.some((other) => box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3])) continue;
-    taken.push(box);
-    ctx.fillText(line.label, x, y);
-  }
+  const shown = names.filter(({ order }) => order >= plot.scales.x.min && order <= plot.scales.x.max);
+  const placed = placedNames(shown, { px: (order) => plot.valToPos(order, "x", true), py: (value) => plot.valToPos(value, "y", true), left: bbox.left, right: bbox.left + bbox.width, letter, widthOf: (label) => ctx.measureText(label).width });
+  for (const { label, x, y } of placed) ctx.fillText(label, x, y);
 }

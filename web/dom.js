@@ -41,6 +41,18 @@ export function fixed(value, decimals) {
   return typeof value === "number" && Number.isFinite(value) ? value.toFixed(decimals) : "–";
 }
 
+/** The least and the most of any number of values; those that are no numbers are left out. Null where none is left. */
+export function extent(values) {
+  let found = null;
+  for (const value of values) {
+    if (!Number.isFinite(value)) continue;
+    if (!found) found = [value, value];
+    else if (value < found[0]) found[0] = value;
+    else if (value > found[1]) found[1] = value;
+  }
+  return found;
+}
+
 const UNITS = { 1: "", um: "µm", deg: "°", "N m": "N m", "1/min": "rpm", "kg/m3": "kg/m³", "%": "%" };
 
 /** A unit of the schema as it is printed. */

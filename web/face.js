@@ -1,6 +1,6 @@
 // The load along the face: as a map over mesh position and z, as a curve where only its mean is known, in words, and as a scale of colors.
 
-import { fixed, h, number } from "./dom.js";
+import { extent, fixed, h, number } from "./dom.js";
 import { spanOf } from "./series.js";
 
 /** Colors from little to much: their lightness alone tells them apart, so that every eye and gray paper do. */
@@ -17,6 +17,9 @@ export function rampAt(part) {
 
 export const cssOf = (part) => `rgb(${rampAt(part).join(" ")})`;
 
+/** The colors from nothing to the most, for a scale. */
+export const SCALE = Array.from({ length: 24 }, (_, i) => cssOf(i / 23));
+
 /** The edges of the strips whose middles are `z`. */
 function edgesOf(z) {
   const step = z.length > 1 ? z[1] - z[0] : 1;
@@ -27,11 +30,11 @@ function edgesOf(z) {
 export function faceOf({ face, mesh_position: positions, ...curve }) {
   if (!face) return null;
   const { z_mm: z, load_n_per_mm: rows } = face;
-  const most = Math.max(...rows.flat(), 1e-9);
+  const most = Math.max(extent(rows.flat())[1], 1e-9);
   return { z, rows, most, edges: edgesOf(z), every: rows.length === positions.length && rows.length > 1, positions, span: spanOf({ mesh_position: positions, ...curve }), factor: face.face_load_factor, centroid: face.load_centroid_mm, cure: face.cure ?? null };
 }
 
-/** The rectangles of the map between two mesh positions, each at least so wide: `{ x, width, z, height, part }`. */
+/** The rectangles of the map between two mesh positions, each at least so wide: `{ x, width, z, height, part }`. One that several positions share tells the most of each z, so that no peak is lost. */
 export function cellsOf({ rows, positions, edges, most, span }, [from, to], least = 0) {
   const step = span / positions.length;
   const taken = Math.max(1, Math.ceil(least / step));
@@ -41,8 +44,8 @@ export function cellsOf({ rows, positions, edges, most, span }, [from, to], leas
     const middle = positions[0] + i * step;
     const [x, end] = [Math.max(middle - step / 2, from), Math.min(middle + (taken - 0.5) * step, to)];
     if (end <= x) continue;
-    const row = rows[i % positions.length];
-    row.forEach((load, j) => cells.push({ x, width: end - x, z: edges[j], height: edges[j + 1] - edges[j], part: load / most }));
+    const shared = Array.from({ length: taken }, (_, k) => rows[(i + k) % positions.length]);
+    shared[0].map((_, j) => Math.max(...shared.map((row) => row[j]))).forEach((load, j) => cells.push({ x, width: end - x, z: edges[j], height: edges[j + 1] - edges[j], part: load / most }));
   }
   return cells;
 }
@@ -50,11 +53,11 @@ export function cellsOf({ rows, positions, edges, most, span }, [from, to], leas
 /** What a listener should know of the load along the face. */
 export function wordsOfFace({ z, rows, positions, most, every, factor, centroid, edges }) {
   const mean = z.map((_, j) => rows.reduce((sum, row) => sum + row[j], 0) / rows.length);
-  const [least, heaviest] = [Math.min(...mean), Math.max(...mean)];
+  const [least, heaviest] = extent(mean);
   const where = (value) => `z = ${number(z[mean.indexOf(value)], 3)} mm`;
   const peak = every ? rows.map((row) => Math.max(...row)) : null;
   const at = every ? ` The largest of all is ${number(most, 4)} N/mm, at position ${fixed(positions[peak.indexOf(most)], 2)}.` : "";
-  const wander = `The middle of the load lies from z = ${fixed(Math.min(...centroid), 2)} to ${fixed(Math.max(...centroid), 2)} mm.`;
+  const wander = `The middle of the load lies from z = ${extent(centroid).map((each) => fixed(each, 2)).join(" to ")} mm.`;
   return `Load along the face from z = ${number(edges[0])} to ${number(edges.at(-1))} mm, in N/mm, the mean over the positions: most at ${where(heaviest)}, ${number(heaviest, 4)}; least at ${where(least)}, ${number(least, 4)}.${at} ${wander} The face load factor is ${fixed(factor, 3)}.`;
 }
 

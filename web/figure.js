@@ -1,6 +1,7 @@
 // A figure as a drawing of its own, with title, axes, units and legend: for small charts on the page, for files and for print.
 
-import { number, s } from "./dom.js";
+import { extent, number, s } from "./dom.js";
+import { placedNames } from "./series.js";
 
 const FRAME = { left: 62, right: 14, top: 14, bottom: 44 };
 const LETTER = 11;
@@ -19,17 +20,16 @@ export function ticks(low, high, count = 5) {
 }
 
 function range(values, room) {
-  const known = values.filter((value) => Number.isFinite(value));
-  const [least, most] = known.length ? [Math.min(...known), Math.max(...known)] : [0, 1];
+  const [least, most] = extent(values) ?? [0, 1];
   const more = (most - least || Math.abs(most) || 1) * room;
   return [least - more, most + more];
 }
 
 /**
  * A figure of `cells` `{ x, y, width, height, color }`, of `lines` `{ name, color, dash, width, parted, x, y }`, where null breaks a line, of `points` `{ x, y, label, strong, open }`, where `open` is what a press of one does, and of `stems` `{ name, color, x, y }`, over named
- * axes. Looks come from `colors`, or from the style sheet where there are none. Its `frame` tells where a value of x is, and which value is at a place.
+ * axes, with `names` `{ order, label, value }` over stems, and a `scale` `{ colors, words }` of the colors of cells from their least to their most. Looks come from `colors`, or from the style sheet where there are none. Its `frame` tells where a value of x is, and which value is at a place.
  */
-export function figure({ title, x, y, cells = [], lines = [], points = [], stems = [], colors = null, width = 520, height = 300, heading = false, xRange = null, label = title }) {
+export function figure({ title, x, y, cells = [], lines = [], points = [], stems = [], names = [], scale = null, colors = null, width = 520, height = 300, heading = false, xRange = null, label = title }) {
   const named = [...lines, ...stems].filter(({ name }) => name);
   const legend = named.length > 1 ? legendRows(named, width) : [];
   const frame = { ...FRAME, top: FRAME.top + (heading ? 18 : 0) + 15 * legend.length };
@@ -45,7 +45,7 @@ export function figure({ title, x, y, cells = [], lines = [], points = [], stems
   if (heading) svg.append(words(title, { ...ink, x: frame.left, y: 16, "font-weight": 600, "font-size": LETTER + 2 }));
   for (const { x: at, y: foot, width: wide, height: tall, color } of cells) svg.append(s("rect", { x: px(at).toFixed(2), y: py(foot + tall).toFixed(2), width: (px(at + wide) - px(at) + 0.3).toFixed(2), height: (py(foot) - py(foot + tall) + 0.3).toFixed(2), fill: color }));
   for (const value of ticks(left, right)) {
-    svg.append(line({ x1: px(value), x2: px(value), y1: frame.top, y2: height - frame.bottom }, "grid"), words(number(value), { ...ink, x: px(value), y: height - frame.bottom + 16, "text-anchor": "middle" }));
+    svg.append(line({ x1: px(value), x2: px(value), y1: frame.top, y2: height - frame.bottom }, "grid"), words(number(value), { ...ink, x: Math.min(px(value), width - 3.3 * number(value).length), y: height - frame.bottom + 16, "text-anchor": "middle" }));
   }
   for (const value of ticks(low, high)) {
     svg.append(line({ x1: frame.left, x2: width - frame.right, y1: py(value), y2: py(value) }, "grid"), words(number(value, 6), { ...ink, x: frame.left - 6, y: py(value) + 4, "text-anchor": "end" }));
@@ -62,6 +62,8 @@ export function figure({ title, x, y, cells = [], lines = [], points = [], stems
     if (place < left || place > right) return;
     svg.append(s("line", { x1: px(place) + 2 * k, x2: px(place) + 2 * k, y1: py(0), y2: py(each.y[i]), stroke: each.color, "stroke-width": 1.5 }));
   }));
+  for (const { label: name, x: at, y: level } of placedNames(names, { px, py, left: frame.left, right: width - frame.right, letter: LETTER, widthOf: (text) => 6.6 * text.length })) svg.append(words(name, { ...ink, x: at, y: level, "text-anchor": "middle" }));
+  if (scale) svg.append(scaleAt(scale, width - frame.right, 8, ink));
   // Those that stand out are over the others.
   for (const point of [...points].sort((a, b) => Number(a.strong ?? false) - Number(b.strong ?? false))) {
     const dot = s("circle", { cx: px(point.x), cy: py(point.y), r: point.strong ? 5 : 3.2, class: point.strong ? "dot strong" : "dot" });
@@ -84,6 +86,13 @@ export function figure({ title, x, y, cells = [], lines = [], points = [], stems
   }
   svg.frame = { x: [left, right], px, valueAt: (at) => left + ((at - frame.left) / (width - frame.left - frame.right)) * (right - left), top: frame.top, bottom: height - frame.bottom };
   return svg;
+}
+
+/** A scale of colors that ends at a place, with what its ends mean. */
+function scaleAt({ colors, words: [least, most] }, right, y, ink) {
+  const step = 72 / colors.length;
+  const left = right - 6.6 * most.length - 72 - 5;
+  return s("g", {}, words(least, { ...ink, x: left - 5, y: y + 8, "text-anchor": "end" }), ...colors.map((color, i) => s("rect", { x: left + i * step, y, width: step + 0.3, height: 9, fill: color })), words(most, { ...ink, x: right, y: y + 8, "text-anchor": "end" }));
 }
 
 /** The names of lines in rows that fit. */

@@ -516,10 +516,10 @@ export class Form {
 
 const rank = (name) => ["bore_radius_mm", "holes"].indexOf(name) >>> 0;
 
-/** The only key of a document that is one of several. */
+/** What tells a document that is one of several from the others: its kind, or its only key. */
 function variantOf(value) {
   const keys = Object.keys(value);
-  return keys.length === 1 ? [["only", keys[0]]] : [];
+  return "kind" in value ? [["kind", value.kind]] : keys.length === 1 ? [["only", keys[0]]] : [];
 }
 
 function fits(variant, value) {

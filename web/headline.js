@@ -1,13 +1,10 @@
 // The answers in a line: what a designer looks at first, each with its change against the design that it is compared with.
 
-import { fixed, h, number } from "./dom.js";
+import { extent, fixed, h, number } from "./dom.js";
 
 const named = (curve, pattern) => curve.spectrum?.named.find(({ label }) => pattern.test(label))?.transmission_error_um ?? null;
 const mega = (value) => (value === null || value === undefined ? null : value * 1e-6);
-const largest = (values) => {
-  const known = values.filter((value) => value !== null && value !== undefined);
-  return known.length ? Math.max(...known) : null;
-};
+export const largest = (values) => extent(values)?.[1] ?? null;
 
 /** The part of its span in which one pair of teeth carries alone, in percent. */
 function alone(curve) {

@@ -268,6 +268,8 @@ async function address() {
 const carry = debounced(250, address);
 
 design.onChange((by) => {
+  // The way back that a notice offers is from the change that it tells of.
+  byId("notice").querySelector(".undo")?.remove();
   byId("undo").disabled = !design.canUndo;
   byId("redo").disabled = !design.canRedo;
   if (by === "kept") return showDesigns();
@@ -294,7 +296,7 @@ design.onRest(async () => {
 /** Says what else has happened, with a way back. */
 function notify(text, undoable = true) {
   const place = byId("notice");
-  place.replaceChildren(text, " ", ...(undoable ? [h("button", { type: "button", on: { click: () => { design.undo(); place.hidden = true; } } }, "Undo")] : []), h("button", { type: "button", ariaLabel: "Close the notice", on: { click: () => { place.hidden = true; } } }, "×"));
+  place.replaceChildren(text, " ", ...(undoable ? [h("button", { type: "button", className: "undo", on: { click: () => { design.undo(); place.hidden = true; } } }, "Undo")] : []), h("button", { type: "button", ariaLabel: "Close the notice", on: { click: () => { place.hidden = true; } } }, "×"));
   place.hidden = false;
   clearTimeout(notify.timer);
   notify.timer = setTimeout(() => { place.hidden = true; }, NOTICE);

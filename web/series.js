@@ -13,7 +13,7 @@ export const PANELS = [
   { id: "ste", title: "Transmission error", unit: "µm", of: (curve) => curve.transmission_error_um },
   { id: "stiffness", title: "Mesh stiffness, tangent", unit: "N/µm", of: (curve) => micro(curve.mesh_stiffness_tangent_n_per_m) },
   { id: "share", title: "Load share", unit: "%", ofLive: shares, note: "a line for each pair of teeth" },
-  { id: "pressure", title: "Peak contact pressure", unit: "MPa", of: (curve) => curve.peak_contact_pressure_mpa, gaps: "No line where a sharp tip corner carries: the pressure has no limit there. More tip relief avoids it." },
+  { id: "pressure", title: "Peak contact pressure", unit: "MPa", of: (curve) => curve.peak_contact_pressure_mpa, gaps: "No line where a sharp tip corner carries: the pressure has no limit there. More tip relief avoids it.", none: "No line: a sharp tip corner carries at every position, and the pressure has no limit there. A rounding of the tip edges or more tip relief gives it one." },
   { id: "face", title: "Load along the face", unit: "N/mm", along: "z" },
   { id: "stress", title: "Largest stress", unit: "MPa", ofLive: stresses },
 ];
@@ -72,6 +72,34 @@ export function linesOf(panel, designs) {
   }, longest, curve.statistics.partial)));
 }
 
+/** The names of orders up to `last` that spectra have, each at the most that any of them has there: a name stands above every line of its order. */
+export function namesOf(spectra, last) {
+  const names = new Map();
+  for (const { named, orders } of spectra) {
+    for (const { order, label, transmission_error_um: value } of named) {
+      if (order > last || !(value > LEAST_AMPLITUDE) || names.has(`${label} ${order}`)) continue;
+      const most = Math.max(value, ...spectra.flatMap((other) => other.orders.filter(([each]) => each === order).map(([, amplitude]) => amplitude)));
+      names.set(`${label} ${order}`, { order, label, value: most });
+    }
+  }
+  return [...names.values()];
+}
+
+/** The names of orders where there is room for them, the tallest first and those of holes and mesh before all, none over another: `{ label, x, y, width }`, centered over their lines. */
+export function placedNames(names, { px, py, left, right, letter, widthOf }) {
+  const taken = [];
+  const rank = ({ label }) => (/^H_(N\d?|Z\d?)$/.test(label) ? 0 : 1);
+  return [...names].sort((a, b) => rank(a) - rank(b) || b.value - a.value).flatMap(({ label, order, value }) => {
+    const width = widthOf(label);
+    const x = Math.min(Math.max(px(order), left + width / 2), right - width / 2);
+    const y = py(value) - 0.5 * letter;
+    const box = [x - width / 2 - 2, y - letter, x + width / 2 + 2, y + 2];
+    if (taken.some((other) => box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3])) return [];
+    taken.push(box);
+    return [{ label, x, y }];
+  });
+}
+
 /** The orders of the transmission error of `curve` that stand out of the noise, up to `last`. */
 export function ordersOf({ spectrum }, last = Infinity) {
   const kept = spectrum.order.map((order, i) => [order, spectrum.transmission_error_um[i]]);
@@ -123,7 +151,7 @@ export function wordsOf(panel, designs) {
     const range = `from ${number(least)} at position ${fixed(line.x[i], 2)} to ${number(most)} at ${fixed(line.x[j], 2)}, peak-to-peak ${number(most - least, 3)} ${panel.unit}`;
     return [`${line.name}: ${range}.`];
   });
-  const gaps = panel.gaps && linesOf(panel, designs).some(({ values }) => values.includes(null)) ? ` ${panel.gaps}` : "";
+  const gaps = panel.gaps && linesOf(panel, designs).some(({ values }) => values.includes(null)) ? ` ${told.length ? panel.gaps : panel.none}` : "";
   return `${panel.title} over ${number(Math.max(...designs.map(({ results }) => spanOf(results.curves[0]))))} mesh periods, in ${panel.unit}. ${told.join(" ")}${gaps}`;
 }
 

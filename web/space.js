@@ -1,7 +1,7 @@
 // The pair in space: turned by hand, touch and keys, with its lines of contact at the position shown. Made when it is first asked for, painted when something changes.
 
 import { json, ProblemError, solved } from "./api.js";
-import { debounced, fixed, h, number } from "./dom.js";
+import { debounced, extent, fixed, h, number } from "./dom.js";
 import { indexAt } from "./drawing.js";
 import { faceOf, rampAt, scaleOf } from "./face.js";
 import { pixelOf, Raster } from "./raster.js";
@@ -298,7 +298,7 @@ export class Space {
   }
 
   #mostOfPattern() {
-    this.#pattern.most ??= Math.max(...this.#pattern.positions.flatMap(({ lines }) => lines.flatMap(({ load_n_per_mm: loads }) => loads)), 1e-9);
+    this.#pattern.most ??= Math.max(extent(this.#pattern.positions.flatMap(({ lines }) => lines.flatMap(({ load_n_per_mm: loads }) => loads)))?.[1] ?? 0, 1e-9);
     return this.#pattern.most;
   }
 

@@ -35,6 +35,9 @@ export async function benchSteps(service) {
       assert.equal(gear.module_mm, 2.5);
       for (const name of ["addendum_mm", "dedendum_mm", "rack_tip_radius_mm"]) assert.equal(gear[name], undefined, name);
     }
+    // What the notice takes back is what it tells of, and nothing that came after.
+    await page.locator("#notice", { hasText: "Addendum" }).waitFor();
+    assert.equal(await page.locator("#notice button", { hasText: "Undo" }).count(), 0);
     // A rack that is not the usual one keeps its modules.
     await page.locator("#start").selectOption("test-case-2");
     await (await field(page, `${DRIVEN}/addendum_mm`)).fill("1.9");
@@ -593,6 +596,10 @@ export async function benchSteps(service) {
     }
     const curves = (await get("svg")).toString();
     for (const words of ["Transmission error in µm", "mesh position in mesh periods", "Spectrum of the transmission error in µm", "pair 1"]) assert.ok(curves.includes(words), words);
+    // Orders have their names, those of a kept design too.
+    const names = (svg) => [...svg.matchAll(/>(H_[\dNZ+-]+)</g)].map(([, name]) => name);
+    for (const name of ["H_N", "H_Z2", "H_2Z2"]) assert.ok(names(curves).includes(name), names(curves).join());
+    assert.equal(names(curves).filter((name) => name === "H_N").length, 1);
     const orders = (await get("orders")).toString().split("\r\n");
     assert.match(orders[0], /^output_torque_n_m,order,transmission_error_um/);
     assert.ok(orders.some((line) => /^115,10,0\.34.*H_N/.test(line)), "order 10 is H_N");
@@ -605,6 +612,10 @@ export async function benchSteps(service) {
     await page.locator("#language").selectOption("typescript");
     await page.waitForFunction(() => document.querySelector("#code").textContent.includes("service.solve(submission)"));
     await axe(page);
+    await page.locator("#pin").click();
+    await page.locator("#against-label").waitFor();
+    await changing(page, async () => (await field(page, `${HOLES}/count`)).fill("8"));
+    assert.equal(names((await get("svg")).toString()).filter((name) => name === "H_N").length, 2);
   });
 
   await step("a pair is taken out of a gearbox program, and given back to it", service, async (page) => {
@@ -760,6 +771,18 @@ export async function benchSteps(service) {
     await settled(page);
     assert.equal(await page.locator(`[id="field-/pair/driving/profile_modifications/0/kind"]`).count(), 0);
     assert.equal((await designOf(page)).pair.driving.profile_modifications[0].kind, "crowning");
+    // It is called what it is: a crowning and a slope have the same fields.
+    const kind = async () => {
+      const entry = await field(page, "/pair/driving/profile_modifications/0");
+      return [await entry.evaluate((select) => select.selectedOptions[0].textContent), await page.locator(`label[for="field-/pair/driving/profile_modifications/0/amount_um"]`).innerText()];
+    };
+    const crowned = await kind();
+    assert.match(crowned.join(), /^Crowning,.*crowning/);
+    await changing(page, async () => (await field(page, "/pair/driving/profile_modifications/0")).selectOption({ label: "Slope" }));
+    assert.equal((await designOf(page)).pair.driving.profile_modifications[0].kind, "slope");
+    assert.match((await kind()).join(), /^Slope,.*slope/);
+    await changing(page, () => page.locator("#undo").click());
+    assert.deepEqual(await kind(), crowned);
   });
 
   await step("a population draws its teeth in place of those of the design, at torques of the design, and a search says where it ends", service, async (page) => {

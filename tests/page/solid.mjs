@@ -120,8 +120,24 @@ export async function solidSteps(service) {
     // It is exported with the curves.
     await tab(page, "export");
     const svg = (await downloaded(page, () => page.locator("[data-download=svg]").click())).bytes.toString();
-    assert.match(svg, /Load along the face, up to \d+ N\/mm/);
+    assert.match(svg, /Load along the face[\s\S]*\d+ N\/mm/);
     assert.ok(svg.includes("rgb(255 240 138)"));
+    // No position of this pair leaves its sharp edges without load: there is no pressure to draw, which is said in place of an empty plot.
+    assert.doesNotMatch(svg, /Peak contact pressure/);
+    // However long the period, it is drawn: with no more cells than are seen, and none of the peaks lost.
+    const [cells, most, right] = await page.evaluate(async () => {
+      const [{ cellsOf, faceOf }, { figure }] = await Promise.all(["face", "figure"].map((name) => import(new URL(`web/${name}.js`, document.baseURI))));
+      const positions = Array.from({ length: 20_000 }, (_, i) => i / 40);
+      const face = faceOf({ mesh_position: positions, face: { z_mm: [-1, 0, 1], load_n_per_mm: positions.map((_, i) => [i === 4321 ? 9 : 1, 1, 1]), face_load_factor: 1, load_centroid_mm: [] } });
+      const all = cellsOf(face, [0, 500], 500 / 700);
+      const drawn = figure({ title: "", x: "", y: "", cells: cellsOf(face, [0, 500]).map(({ z, ...cell }) => ({ ...cell, y: z, color: "#000" })) });
+      return [all.length, Math.max(...all.map(({ part }) => part)), drawn.frame.x[1]];
+    });
+    assert.ok(cells > 1500 && cells < 2200, `${cells} cells`);
+    assert.deepEqual([most, Math.round(right)], [1, 500]);
+    await tab(page, "curves");
+    assert.match(await page.locator("#chart-pressure").innerText(), /at every position/);
+    assert.ok(await page.locator("#chart-pressure .canvas").isHidden());
     await tab(page, "geometry");
     assert.match(await page.locator("#geometry").innerText(), /Overlap ratio ε_β\s+0\.\d{4}/);
   });
