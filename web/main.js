@@ -197,7 +197,7 @@ function onProgress(job) {
   byId("stop").onclick = job.cancel;
   const { progress_percent: done = 0, elapsed } = job;
   const left = done > 2 ? `, about ${timeOf((elapsed * (100 - done)) / done)} more` : "";
-  byId("state").textContent = `A job computes it: ${done} %${left}.${shown ? " Until then all is of the design before." : ""}`;
+  byId("state").textContent = `A job: ${done} %${left}.${shown ? " Shown is the design before." : ""}`;
 }
 
 /** A time in milliseconds as somebody who waits wants it. */

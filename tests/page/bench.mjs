@@ -174,7 +174,7 @@ export async function benchSteps(service) {
     short.pair.driven.blank = { bore_radius_mm: 10, holes: { count: 5, circle_radius_mm: 17, radius_mm: 2 } };
     short.output_torques_n_m = [20, 50, 80];
     await openDesign(page, service, short);
-    await page.waitForFunction(() => document.querySelectorAll("#table tbody tr").length === 3);
+    await page.waitForFunction(() => document.querySelector("#table th.live")?.colSpan === 3 && document.querySelectorAll("#quantities tr:first-child td").length === 3);
     assert.equal(await page.locator("#chart-ste .entry").count(), 3);
   });
 
@@ -477,7 +477,7 @@ export async function benchSteps(service) {
     await (await field(page, `${HOLES}/count`)).fill("8");
     await named(page, "8×");
     assert.equal(await name.inputValue(), "as built");
-    assert.match(await page.locator("#compare caption", { hasText: "Differences" }).locator("..").innerText(), /Number of holes[\s\S]*8\s+10/i);
+    assert.match(await page.locator("#differences").innerText(), /Number of holes[\s\S]*8\s+10/i);
     assert.match(await page.locator("#answer-p-p .change").innerText(), /^[+−]\d/);
     await tab(page, "curves");
     assert.match(await page.locator("#chart-ste .legend").innerText(), /as built/);
@@ -489,6 +489,38 @@ export async function benchSteps(service) {
     const { bytes } = await downloaded(page, () => page.locator("#table-csv").click());
     assert.match(bytes.toString(), /as built,flexible,115/);
   });
+
+  await step("four designs stand beside each other without scrolling, on a phone under names that stay, and the best of each line is marked", service, async (page) => {
+    await open(page, service);
+    await tab(page, "compare");
+    for (const count of ["8", "6", "5"]) {
+      await page.locator("#pin").click();
+      await changing(page, async () => (await field(page, `${HOLES}/count`)).fill(count));
+    }
+    await page.locator("#pin").click();
+    await page.locator("#name-4").waitFor();
+    const wider = () => page.locator("#table").evaluate((scroll) => scroll.scrollWidth - scroll.clientWidth);
+    assert.equal(await wider(), 0, "five columns at 1280");
+    // Fewer holes are stiffer and heavier; every column is of the design at its head.
+    const line = (name) => page.locator("#quantities tr", { has: page.locator("th", { hasText: name }) });
+    const numbers = async (name) => (await line(name).locator("td").allInnerTexts()).map((text) => parseFloat(text));
+    const stiffness = await numbers("k mean");
+    assert.deepEqual(stiffness.slice(1), [...stiffness.slice(1)].sort((a, b) => a - b));
+    assert.equal(stiffness[0].toFixed(1), (await answer(page, "k")).toFixed(1));
+    assert.deepEqual(await line("k mean").locator("td").evaluateAll((cells) => cells.map((cell) => cell.classList.contains("best"))), [true, false, false, false, true], "the live design and the one kept last are the same");
+    assert.deepEqual(await line("Driven mass").locator("td").evaluateAll((cells) => cells.map((cell) => /best/.test(cell.textContent))), [false, true, false, false, false]);
+    assert.equal(await line("Torque").locator(".best").count(), 0);
+    assert.match(await page.locator("#differences").innerText(), /Number of holes, driven gear\s+5\s+10\s+8\s+6\s+5/);
+    await axe(page);
+    await page.setViewportSize({ width: 390, height: 844 });
+    const row = line("k mean").locator("th");
+    await page.locator("#table").evaluate((scroll) => { scroll.scrollLeft = scroll.scrollWidth; });
+    const [head, box] = [await row.boundingBox(), await page.locator("#table").boundingBox()];
+    assert.ok(Math.abs(head.x - box.x) < 2, "what a line is stays in view");
+    const seen = await line("k mean").locator("td").evaluateAll((cells, from) => cells.filter((cell) => cell.getBoundingClientRect().left >= from - 1 && cell.getBoundingClientRect().right <= innerWidth).length, head.x + head.width);
+    assert.ok(seen >= 3, `${seen} designs beside each other`);
+    await axe(page);
+  }, { viewport: { width: 1280, height: 800 } });
 
   await step("drawing and answers stay in view while the rest is scrolled", service, async (page) => {
     await open(page, service);
@@ -648,11 +680,8 @@ export async function benchSteps(service) {
     await (await field(page, "/stress")).check();
     await settled(page);
     await tab(page, "compare");
-    assert.match(await page.locator("#table thead").innerText(), /Root tension[\s\S]*Root compression/);
-    const [tension, compression] = await page.locator("#table tr.live").evaluate((row) => {
-      const heads = [...row.closest("table").querySelectorAll("thead th")].map((head) => head.textContent);
-      return ["Root tension", "Root compression"].map((name) => Number(row.children[heads.findIndex((head) => head.startsWith(name))].textContent));
-    });
+    const of = async (name) => Number(await page.locator("#quantities tr", { has: page.locator("th", { hasText: name }) }).locator("td").first().innerText());
+    const [tension, compression] = [await of("Root tension"), await of("Root compression")];
     assert.ok(tension > 10 && compression < -10, `${tension} ${compression}`);
     await tab(page, "study");
     await page.locator("#axis-0").selectOption("/pair/driven/blank/holes/count");

@@ -78,7 +78,7 @@ export async function field(page, pointer) {
 export const tab = (page, name) => page.locator(`#tab-${name}`).click();
 
 /** What the live design is called in the table, once it is called so. */
-export const named = (page, words) => page.waitForFunction((name) => document.querySelector("#table tr.live th")?.textContent.includes(name) && !document.body.classList.contains("busy"), words);
+export const named = (page, words) => page.waitForFunction((name) => document.querySelector("#table th.live")?.textContent.includes(name) && !document.body.classList.contains("busy"), words);
 
 /** Waits until the last change of the design has been answered, and the address carries it. */
 export const settled = (page) => page.waitForFunction(() => !document.body.classList.contains("busy") && history.state?.changes === Number(document.body.dataset.changes));

@@ -105,7 +105,7 @@ export async function hourSteps(service) {
     await page.locator("#name-1").press("Enter");
     await type("/pair/driving/profile_modifications/0/amount_um", 8);
     await headline();
-    await answered((await page.locator("#compare table").last().locator("tbody tr").innerText()).replace(/\t/g, ": ").replace(/: (\d+)$/, " and $1"));
+    await answered((await page.locator("#differences tr").last().innerText()).replace(/\t/g, ": ").replace(/: (\d+)$/, " and $1"));
 
     // A study, and a search.
     await tab(page, "study");
