@@ -1,7 +1,7 @@
 // Designs beside each other: their numbers under names that the user gives, and the fields in which they differ.
 
 import { extent, h, fixed, number } from "./dom.js";
-import { differences } from "./design.js";
+import { differences, told } from "./design.js";
 import { csvOf, save } from "./download.js";
 import { largest, largestStress } from "./headline.js";
 import { looks } from "./charts.js";
@@ -108,8 +108,7 @@ export class Compare {
 
   /** A field in which the designs differ. */
   #difference({ pointer, values }, designs) {
-    const shown = (value) => (value === undefined ? "not given" : Array.isArray(value) ? (value.length > 4 ? `${value.length} numbers` : value.join(", ")) : String(value).replace(/_/g, " "));
-    return h("tr", {}, h("th", { scope: "row" }, this.named(pointer)), ...values.map((value, i) => h("td", { colSpan: designs[i].results.curves.length }, shown(value))));
+    return h("tr", {}, h("th", { scope: "row" }, this.named(pointer)), ...values.map((value, i) => h("td", { colSpan: designs[i].results.curves.length }, told(value))));
   }
 }
 

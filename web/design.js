@@ -206,6 +206,13 @@ export function differences(submissions) {
   return rows.filter(({ values }) => values.some((value) => JSON.stringify(value) !== JSON.stringify(values[0])));
 }
 
+/** The value of a field in words: of a long list how long it is. */
+export function told(value) {
+  if (value === undefined) return "not given";
+  if (Array.isArray(value)) return value.length > 4 ? `${value.length} numbers` : value.join(", ");
+  return String(value).replace(/_/g, " ");
+}
+
 /** Every value of a document by its pointer; a list of numbers is one value. */
 function flattened(document, pointer = "", found = new Map()) {
   for (const [name, value] of Object.entries(document ?? {})) {

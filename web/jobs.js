@@ -2,22 +2,75 @@
 
 import { follow, hasEnded, json, post, ProblemError, request } from "./api.js";
 import { isSolid } from "./dimensions.js";
-import { h, number } from "./dom.js";
+import { differences, nameOf, told } from "./design.js";
+import { debounced, h, number } from "./dom.js";
 import { save } from "./download.js";
+import { read } from "./inputs.js";
 
 const SHOWN = 20;
 /** So many are followed at a time; a client may have few streams. */
 const FOLLOWED = 3;
 
-/** The jobs in `place`; the results of a finished one are opened by `onOpen`. */
-export function jobs(place, design, onOpen) {
+/** The documents of so many jobs are kept: what was asked never changes. */
+const DOCUMENTS = 200;
+/** So many fields of a job are named in which it differs. */
+const FIELDS = 4;
+const REST = 300;
+
+/** The jobs in `place`; `form` names fields, and the results of a finished one are opened by `onOpen`. */
+export function jobs(place, design, form, onOpen) {
   const out = h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Jobs" });
   const state = h("p", { className: "note", role: "status" });
+  const tags = h("input", { type: "text", id: "jobs-tags", maxLength: 200, spellcheck: false, on: { change: () => design.set("/tags", read(tags, { kind: "texts" }), "mend") } });
   const submit = h("button", { type: "button", className: "primary", on: { click: () => act(() => post("v1/jobs", design.submission)) } }, "Submit this design as a job");
+  const ofStudies = h("input", { type: "checkbox", id: "jobs-of-studies", on: { change: () => refresh() } });
   const look = h("button", { type: "button", on: { click: () => refresh() } }, "Look again");
-  place.replaceChildren(h("p", { className: "note" }, "A job is kept: its results can be fetched and linked to for weeks. What the page shows while you change numbers is not. A design that is too large to follow the hand is submitted by itself when the hand rests."), h("div", { className: "buttons" }, submit, look), state, out);
+  const older = h("button", { type: "button", hidden: true, on: { click: () => more() } }, "Older jobs");
+  place.replaceChildren(h("p", { className: "note" }, "A job is kept: its results can be fetched and linked to for weeks. What the page shows while you change numbers is not. A design that is too large to follow the hand is submitted by itself when the hand rests."),
+    h("div", { className: "line" }, submit, h("label", { htmlFor: tags.id }, "with the tags"), tags), h("div", { className: "line" }, look, h("label", {}, ofStudies, " those of studies too")), state, out, older);
   const rows = new Map();
   const followed = new Map();
+  const documents = new Map();
+  let listed = [];
+  let next = null;
+  /** The design as it is, with every default filled in as the documents of jobs are; null where it is none. */
+  let live = null;
+  let telling = 0;
+
+  design.onChange(debounced(REST, () => { if (!place.hidden) tell(); }));
+
+  /** Says of each job which design it is of. The list does not say it: each document is asked for once, the newest first. */
+  async function tell() {
+    telling += 1;
+    const turn = telling;
+    const filled = await post("v1/validate", design.submission).then(({ submission }) => submission, () => null);
+    if (turn !== telling) return;
+    live = filled;
+    for (const job of listed) {
+      const { id } = job;
+      if (!documents.has(id)) {
+        const whole = await json(`v1/jobs/${id}`).catch(() => null);
+        if (whole) documents.set(id, whole.submission);
+        if (documents.size > DOCUMENTS) documents.delete(documents.keys().next().value);
+      }
+      if (turn !== telling || place.hidden) return;
+      rows.get(id)?.querySelector(".of-design").replaceWith(designOf(job));
+    }
+  }
+
+  /** Which design a job is of: its tags, its name, and in which fields it differs from the design on the page. */
+  function designOf({ id, tags: given, method }) {
+    const submission = documents.get(id);
+    const cell = h("td", { className: "of-design" }, ...(given.length ? [h("strong", {}, given.join(", ")), " "] : []), submission ? nameOf(submission) : "", h("small", {}, ` ${method.replace(/_/g, " ")}`));
+    if (!submission || !live) return cell;
+    const all = differences([live, submission]).filter(({ pointer }) => pointer !== "/tags");
+    // The true period is filled in too: it goes with what has been changed.
+    const others = all.length > 1 ? all.filter(({ pointer }) => pointer !== "/resolution/span_mesh_periods") : all;
+    const shown = others.slice(0, FIELDS).map(({ pointer, values: [, value] }) => `${form.named(pointer)} ${told(value)}`);
+    const rest = others.length - shown.length;
+    cell.append(h("small", { className: "differs" }, others.length ? `${shown.join("; ")}${rest ? `; and ${rest} more` : ""}` : "the design on the page"));
+    return cell;
+  }
 
   /** Does something, and says why where it was refused. */
   async function attempt(work) {
@@ -37,9 +90,22 @@ export function jobs(place, design, onOpen) {
   }
 
   async function refresh() {
+    tags.value = (design.get("/tags") ?? []).join(", ");
+    telling += 1;
+    [listed, next] = [[], null];
+    await more();
+  }
+
+  /** The next page of the list. */
+  async function more() {
     try {
-      const { items } = await json(`v1/jobs?limit=${SHOWN}`);
-      out.replaceChildren(items.length ? tableOf(items) : h("p", { className: "note" }, "There are no jobs yet."));
+      const page = await json(`v1/jobs?limit=${SHOWN}${ofStudies.checked ? "" : "&study=none"}${next ? `&cursor=${encodeURIComponent(next)}` : ""}`);
+      listed = [...listed, ...page.items];
+      next = page.next;
+      older.hidden = !next;
+      const { items } = page;
+      out.replaceChildren(listed.length ? tableOf(listed) : h("p", { className: "note" }, "There are no jobs yet."));
+      tell();
       for (const job of items.filter(({ status }) => !hasEnded(status)).slice(-FOLLOWED)) watch(job);
     } catch (error) {
       if (!(error instanceof ProblemError)) throw error;
@@ -68,7 +134,7 @@ export function jobs(place, design, onOpen) {
   }
 
   function tableOf(items) {
-    const head = h("tr", {}, ...["Submitted", "Method", "State", "Time", "Actions"].map((name) => h("th", { scope: "col" }, name)));
+    const head = h("tr", {}, ...["Submitted", "Design, and what differs from the one on the page", "State", "Actions"].map((name) => h("th", { scope: "col" }, name)));
     return h("table", {}, h("thead", {}, head), h("tbody", {}, ...items.map(rowOf)));
   }
 
@@ -89,9 +155,10 @@ export function jobs(place, design, onOpen) {
     if (!hasEnded(job.status)) buttons.push(button("Cancel", () => request(`${address}/cancel`, { method: "POST" })));
     else buttons.push(button("Run again", async () => post("v1/jobs", (await json(address)).submission)));
     if (job.status === "successful") buttons.push(file("JSON", "results.json"), file("CSV", "ste.csv"), file("SVG", "ste.svg"), isSolid(job.method) ? file("Pattern", "contact-pattern.svg") : file("VTU", "fields.vtu"), more);
+    const took = (job.wall_time_seconds ?? null) === null ? null : h("small", {}, ` in ${number(job.wall_time_seconds, 2)} s`);
     const progress = hasEnded(job.status) ? job.status : h("span", {}, `${job.status} `, h("progress", { max: 100, value: job.progress_percent, ariaLabel: "Progress" }), ` ${job.progress_percent} %`);
     const why = job.problem ? h("small", {}, ` ${job.problem.detail}`) : null;
-    const row = h("tr", {}, h("th", { scope: "row" }, new Date(job.submitted_at).toLocaleString()), h("td", {}, job.method.replace(/_/g, " ")), h("td", {}, progress, why), h("td", {}, (job.wall_time_seconds ?? null) === null ? "" : `${number(job.wall_time_seconds, 2)} s`), h("td", { className: "actions" }, ...buttons));
+    const row = h("tr", {}, h("th", { scope: "row" }, new Date(job.submitted_at).toLocaleString()), designOf(job), h("td", {}, progress, took, why), h("td", { className: "actions" }, ...buttons));
     rows.set(job.id, row);
     return row;
   }

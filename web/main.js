@@ -575,7 +575,7 @@ async function begin() {
     sweep: sweep(byId("sweep"), design, limits, positions),
     study: study(byId("study"), design, form, open),
     population: population(byId("population"), design, form, open),
-    jobs: jobs(byId("jobs"), design, open),
+    jobs: jobs(byId("jobs"), design, form, open),
     export: exporting(byId("export"), { current, designs: () => [live, ...design.kept], drawing, charts, position: () => position }),
   };
   addEventListener("hashchange", async () => {

@@ -20,6 +20,9 @@ const UNSEEN = 50;
 /** So many designs are not computed again when they come back. */
 const KNOWN = 12;
 
+/** What decides the results of a submission: all of it but its tags. */
+const untagged = (submission) => JSON.stringify({ ...submission, tags: undefined });
+
 /** The results of `submission` at once. */
 export async function preview(submission, signal) {
   const { tags: _, ...asked } = submission;
@@ -67,7 +70,7 @@ export class Follower {
 
   /** The results of a submission that has been computed elsewhere. */
   know(submission, results) {
-    this.#known.set(JSON.stringify(submission), results);
+    this.#known.set(untagged(submission), results);
     if (this.#known.size > KNOWN) this.#known.delete(this.#known.keys().next().value);
   }
 
@@ -153,7 +156,7 @@ export class Follower {
     const begun = performance.now();
     const draft = asked !== submission;
     try {
-      const known = this.#known.get(JSON.stringify(submission));
+      const known = this.#known.get(untagged(submission));
       if (!draft && !known && (await isLong(submission, signal))) return "too large";
       const results = (!draft && known) || (await preview(asked, signal));
       this.#show(results, submission, { took: results === known ? null : performance.now() - begun, since, draft });

@@ -840,6 +840,53 @@ export async function benchSteps(service) {
     assert.match(await page.locator("#search-out").innerText(), /At an end of its range: Amount of tip relief, driving gear/);
   });
 
+  await step("jobs say which design each is of: by its tags, its name, and what differs from the design on the page", service, async (page) => {
+    const asked = [];
+    page.on("request", (request) => { if (/v1\/preview$/.test(request.url())) asked.push(request.url()); });
+    await open(page, service);
+    await tab(page, "jobs");
+    const rows = page.locator("#jobs tbody tr");
+    const submit = async (words) => {
+      const made = page.waitForResponse((answer) => answer.url().endsWith("/v1/jobs") && answer.request().method() === "POST");
+      await page.locator("#jobs button.primary").click();
+      await made;
+      await page.waitForFunction((text) => document.querySelector("#jobs tbody .of-design")?.innerText.replace(/\s+/g, " ").includes(text), words);
+    };
+    // Other tags are no other design: nothing is computed again for them.
+    asked.length = 0;
+    await changing(page, async () => { await page.locator("#jobs-tags").fill("as built, 10 holes"); await page.locator("#jobs-tags").press("Enter"); });
+    assert.deepEqual(asked, []);
+    assert.deepEqual((await designOf(page)).tags, ["as built", "10 holes"]);
+    await submit("as built, 10 holes 50/50, 10×r7.5@34 flexible the design on the page");
+    await changing(page, async () => { await page.locator("#jobs-tags").fill(""); await page.locator("#jobs-tags").press("Enter"); });
+    await changing(page, async () => (await field(page, `${HOLES}/count`)).fill("8"));
+    await changing(page, async () => (await field(page, "/output_torques_n_m")).fill("60"));
+    await submit("50/50, 8×r7.5@34 flexible the design on the page");
+    // The one of before differs by what has been changed since, and by nothing that is a default.
+    const words = async (index) => (await rows.nth(index).locator(".of-design").innerText()).replace(/\s+/g, " ");
+    await page.waitForFunction(() => /Number of holes/.test(document.querySelectorAll("#jobs tbody .of-design")[1].innerText));
+    assert.match(await words(1), /^as built, 10 holes .*flexible (Number of holes, driven gear 10; Output torques 115|Output torques 115; Number of holes, driven gear 10)$/);
+    await axe(page);
+    // It is opened with its tags, and is the design on the page then.
+    await changing(page, () => rows.nth(1).locator("button", { hasText: "Open" }).click());
+    await page.waitForFunction(() => /the design on the page/.test(document.querySelectorAll("#jobs tbody .of-design")[1].innerText) && /Number of holes, driven gear 8/.test(document.querySelectorAll("#jobs tbody .of-design")[0].innerText));
+    // Those of studies stand there when they are wanted; there are more than a page of all.
+    const before = await rows.count();
+    await page.locator("#jobs-of-studies").check();
+    await page.evaluate(async () => { const base = (await (await fetch("v1/examples")).json()).items.find(({ name }) => name === "test-case-2").submission; await fetch("v1/studies", { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify({ base, axes: [{ path: "/pair/driven/blank/holes/radius_mm", values: Array.from({ length: 24 }, (_, i) => 3 + i / 8) }] }) }); });
+    await page.locator("#jobs button", { hasText: "Look again" }).click();
+    const older = page.locator("#jobs button", { hasText: "Older jobs" });
+    await older.waitFor();
+    assert.equal(await rows.count(), 20);
+    await older.click();
+    await page.waitForFunction(() => document.querySelectorAll("#jobs tbody tr").length > 20);
+    await page.locator("#jobs-of-studies").uncheck();
+    await page.waitForFunction((count) => document.querySelectorAll("#jobs tbody tr").length === count, before);
+    // A phone has no room for columns.
+    await page.setViewportSize({ width: 390, height: 844 });
+    assert.equal(await page.locator("#jobs .scroll").evaluate((scroll) => scroll.scrollWidth - scroll.clientWidth), 0);
+  });
+
   await step("a link is copied where pages may not use the clipboard, or it says that it is not", service, async (page) => {
     await page.addInitScript(() => {
       Object.defineProperty(navigator, "clipboard", { value: undefined });
