@@ -76,6 +76,24 @@ export async function* events(path, signal) {
   }
 }
 
+/** The lines of an answer that is a document a line, as far as somebody reads them. */
+export async function* lines(path) {
+  const response = await request(path);
+  const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
+  let text = "";
+  try {
+    for (;;) {
+      const { value, done } = await reader.read();
+      if (done) return;
+      const found = (text + value).split("\n");
+      text = found.pop();
+      for (const line of found) if (line) yield JSON.parse(line);
+    }
+  } finally {
+    reader.cancel().catch(() => {});
+  }
+}
+
 const ENDED = ["successful", "failed", "dismissed"];
 
 /** Whether a job or a study with this status changes no more. */

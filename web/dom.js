@@ -60,6 +60,9 @@ export function unit(name) {
   return name === undefined ? "" : (UNITS[name] ?? name);
 }
 
+/** A time in milliseconds as somebody who waits wants it. */
+export const timeOf = (milliseconds) => (milliseconds < 90_000 ? `${Math.max(1, Math.round(milliseconds / 1000))} s` : `${Math.round(milliseconds / 60_000)} min`);
+
 /** Calls `work` with the last arguments, `wait` milliseconds after the last call. */
 export function debounced(wait, work) {
   let timer;

@@ -2,7 +2,7 @@
 
 import { hasKey, json, onKeyNeeded, post, ProblemError, setKey } from "./api.js";
 import { Brush } from "./brush.js";
-import { byId, debounced, fixed, h, number } from "./dom.js";
+import { byId, debounced, fixed, h, number, timeOf } from "./dom.js";
 import { Charts } from "./charts.js";
 import { Compare } from "./compare.js";
 import { isSolid, needsSolid } from "./dimensions.js";
@@ -199,9 +199,6 @@ function onProgress(job) {
   const left = done > 2 ? `, about ${timeOf((elapsed * (100 - done)) / done)} more` : "";
   byId("state").textContent = `A job: ${done} %${left}.${shown ? " Shown is the design before." : ""}`;
 }
-
-/** A time in milliseconds as somebody who waits wants it. */
-const timeOf = (milliseconds) => (milliseconds < 90_000 ? `${Math.max(1, Math.round(milliseconds / 1000))} s` : `${Math.round(milliseconds / 60_000)} min`);
 
 /** The last good curve stays; what is wrong stands above it and at its field. */
 function showProblem() {

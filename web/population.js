@@ -1,8 +1,8 @@
 // How good the pairs will be that are made by a design: members drawn from laws and classes of accuracy, and what they come to.
 
-import { follow, hasEnded, json, post, ProblemError, request } from "./api.js";
+import { follow, hasEnded, json, lines, post, ProblemError, request } from "./api.js";
 import { at, nameOf } from "./design.js";
-import { h, s, fixed, number } from "./dom.js";
+import { h, s, fixed, number, timeOf } from "./dom.js";
 import { figure } from "./figure.js";
 import { outdated } from "./outdated.js";
 
@@ -21,6 +21,9 @@ const QUANTITIES = {
 /** A member has at most so many positions in a mesh period: what many members tell settles long before one curve does. */
 const POSITIONS = 10;
 
+/** What most often cannot be made is looked for among so many members. */
+const LOOKED_AT = 500;
+
 const CLASSES = Array.from({ length: 11 }, (_, i) => i + 1);
 
 /** The fields that are offered first, with what they usually vary by. */
@@ -38,6 +41,7 @@ export function population(place, design, form, onOpen) {
   const quantity = h("select", { id: "population-quantity", on: { change: () => last && draw() } }, ...Object.entries(QUANTITIES).map(([name, [words, unit]]) => h("option", { value: name }, `${words} in ${unit}`)));
   const torque = h("select", { id: "population-torque", on: { change: () => last && draw() } });
   const picker = h("div", { className: "line", hidden: true }, h("label", { htmlFor: quantity.id }, "Look at"), quantity, h("label", { htmlFor: torque.id }, "at"), torque, h("span", { className: "unit" }, "N m"));
+  const missing = h("p", { className: "outdated", role: "status", hidden: true });
   const out = h("div", { className: "out" });
   const of = outdated(design);
   place.replaceChildren(
@@ -47,8 +51,9 @@ export function population(place, design, form, onOpen) {
       ...laws.map((each) => each.element),
       h("div", { className: "line" }, h("label", { htmlFor: torques.id }, "Torques"), torques, h("span", { className: "unit" }, "N m")),
       h("div", { className: "line" }, run, cancel)),
-    state, of.element, picker, out);
+    state, of.element, missing, picker, out);
   let last = null;
+  let refusals = null;
 
   const suggest = () => {
     laws.forEach((each) => each.refresh());
@@ -75,6 +80,7 @@ export function population(place, design, form, onOpen) {
   async function start() {
     run.disabled = true;
     of.renew();
+    missing.hidden = true;
     out.replaceChildren();
     try {
       await watch(await post("v1/studies", asked()));
@@ -93,10 +99,11 @@ export function population(place, design, form, onOpen) {
     const address = `v1/studies/${made.id}`;
     cancel.hidden = false;
     cancel.onclick = () => request(`${address}/cancel`, { method: "POST" }).catch(() => {});
-    let shown = performance.now();
-    last = null;
+    const begun = performance.now();
+    let shown = begun;
+    [last, refusals] = [null, null];
     const told = (_, data) => {
-      if (data.total) state.textContent = `${data.done} of ${data.total} members`;
+      if (data.total) state.textContent = `${data.done} of ${data.total} members${leftOf(data, performance.now() - begun)}`;
       if (performance.now() - shown < PAUSE) return;
       shown = performance.now();
       json(`${address}/results/population`).then((results) => hasEnded(last?.results.status) || show(results, address), () => {});
@@ -104,11 +111,39 @@ export function population(place, design, form, onOpen) {
     if (!hasEnded(made.status)) await follow(address, told);
     const results = await json(`${address}/results/population`);
     show(results, address);
-    state.textContent = `${results.done} of ${results.size} members, ${results.status}${results.failed ? `; ${results.failed} could not be computed` : ""}`;
+    state.textContent = `${results.done} of ${results.size} members, ${results.status}`;
+  }
+
+  /** How long the rest takes, once some have been computed: those that cannot be built are known at once. */
+  function leftOf({ done, total }, elapsed) {
+    const computed = done - (last?.results.failed ?? 0);
+    return last && computed > 2 ? `, about ${timeOf((elapsed * (total - done)) / computed)} more` : "";
+  }
+
+  /** Says how many members are none, and why most of these. */
+  async function refused({ failed, size }, address) {
+    if (!failed || refusals?.failed === failed) return;
+    refusals = { failed, words: null };
+    const told = new Map();
+    try {
+      for await (const { problem, label } of lines(`${address}/results/table.ndjson`)) {
+        if (problem) told.set(problem.title, { count: (told.get(problem.title)?.count ?? 0) + 1, detail: told.get(problem.title)?.detail ?? problem.errors?.[0]?.detail ?? problem.detail });
+        if (Number(label.split(" ").pop()) >= LOOKED_AT) break;
+      }
+    } catch (error) {
+      if (!(error instanceof ProblemError)) throw error;
+    }
+    const [[title, { detail }] = ["", {}]] = [...told].sort(([, one], [, other]) => other.count - one.count);
+    const words = `${failed} of ${size} members cannot be made${title ? `, most often because ${title[0].toLowerCase()}${title.slice(1)} (${form.inWords(detail).replace(/\.$/, "")})` : ""}. What stands below is of the others alone.`;
+    if (refusals?.failed !== failed) return;
+    refusals.words = words;
+    missing.textContent = words;
+    missing.hidden = false;
   }
 
   function show(results, address) {
     last = { results, address };
+    refused(results, address);
     const known = [...new Set(results.quantities.map((each) => each.output_torque_n_m).filter((each) => each !== null))];
     if (torque.options.length !== known.length || known.some((each, i) => Number(torque.options[i].value) !== each)) torque.replaceChildren(...known.map((each) => h("option", { value: each }, number(each))));
     const there = new Set(results.quantities.map(({ name }) => name));
@@ -126,7 +161,7 @@ export function population(place, design, form, onOpen) {
     const percentile = (each, percent) => each.percentiles.find((found) => found.percent === percent);
     const p95 = percentile(one, 95);
     const told = (value) => (value === null ? "?" : fixed(value * factor, 3));
-    const at95 = `95 of 100 pairs stay below ${told(p95.value)} ${unit} (with 95 % confidence between ${told(p95.low)} and ${told(p95.high)}); half are below ${told(percentile(one, 50).value)}.`;
+    const at95 = `95 of 100 pairs stay below ${told(p95.value)} ${unit} ${p95.low === null || p95.high === null ? "(too few members to say how surely)" : `(with 95 % confidence between ${told(p95.low)} and ${told(p95.high)})`}; half are below ${told(percentile(one, 50).value)}.`;
     const beyond = Object.entries(results.beyond_total_pitch_tolerance).filter(([, share]) => share !== null).map(([gear, share]) => `${fixed(100 * share, 1)} % of the ${gear} gears are beyond F_pT of their class.`);
     const member = (name, number) => h("button", { type: "button", on: { click: () => open(address, number) } }, `Open the ${name} member`);
     const pictures = [

@@ -1,7 +1,7 @@
 // The peak-to-peak transmission error over the torque, and where it is least.
 
-import { ProblemError } from "./api.js";
-import { h, fixed, number } from "./dom.js";
+import { hasEnded, ProblemError, request } from "./api.js";
+import { h, fixed, number, timeOf } from "./dom.js";
 import { figure } from "./figure.js";
 import { outdated } from "./outdated.js";
 import { resultsOf } from "./preview.js";
@@ -13,13 +13,18 @@ export function sweep(place, design, limits, positionsOf) {
   const from = h("input", { type: "number", id: "sweep-from", step: "any", min: 0 });
   const to = h("input", { type: "number", id: "sweep-to", step: "any", min: 0 });
   const run = h("button", { type: "submit", className: "primary" }, "Sweep");
-  const out = h("div", { className: "out", ariaLive: "polite" });
+  const cancel = h("button", { type: "button", hidden: true, on: { click: () => stop?.abort() } }, "Cancel");
+  const state = h("p", { className: "note", role: "status" });
+  const out = h("div", { className: "out" });
+  let stop = null;
+  /** The last job that computed torques, where a preview does not. */
+  let job = null;
   const of = outdated(design, ["/output_torques_n_m"]);
   for (const input of [from, to]) input.addEventListener("input", () => { input.dataset.typed = "yes"; });
   const form = h("form", { className: "line", on: { submit: (event) => { event.preventDefault(); start(); } } },
     h("label", { htmlFor: "sweep-from" }, "Torque from"), from, h("span", { className: "unit" }, "N m"),
-    h("label", { htmlFor: "sweep-to" }, "to"), to, h("span", { className: "unit" }, "N m"), run);
-  place.replaceChildren(h("p", { className: "note" }, "At which torque is the transmission error flattest? A tip relief suits one torque; this shows which."), form, of.element, out);
+    h("label", { htmlFor: "sweep-to" }, "to"), to, h("span", { className: "unit" }, "N m"), run, cancel);
+  place.replaceChildren(h("p", { className: "note" }, "At which torque is the transmission error flattest? A tip relief suits one torque; this shows which."), form, state, of.element, out);
 
   /** From a tenth of the design's torque to twice as much, until somebody types other ones. */
   const suggest = () => {
@@ -30,33 +35,48 @@ export function sweep(place, design, limits, positionsOf) {
 
   async function start() {
     const [low, high] = [Number(from.value), Number(to.value)];
-    if (!(low > 0 && high > low)) return out.replaceChildren(h("p", { className: "field-error" }, "The torques have to be positive, the second larger than the first."));
-    run.disabled = true;
+    if (!(low > 0 && high > low)) return state.replaceChildren(h("span", { className: "field-error" }, "The torques have to be positive, the second larger than the first."));
+    [stop, job] = [new AbortController(), null];
+    [run.disabled, cancel.hidden] = [true, false];
     of.renew();
-    out.replaceChildren(h("p", { className: "note" }, "Computing"));
+    out.replaceChildren();
+    state.textContent = "Computing";
+    const points = [];
     try {
-      out.replaceChildren(...shown(await pointsOf(low, high)));
+      await fill(points, low, high);
+      state.textContent = "";
+      out.replaceChildren(...shown(points));
     } catch (error) {
-      if (!(error instanceof ProblemError)) throw error;
-      out.replaceChildren(h("p", { className: "field-error" }, error.problem.errors?.[0]?.detail ?? error.message));
+      if (error.name === "AbortError") {
+        state.textContent = `Cancelled after ${points.length} torques.`;
+        if (job && !hasEnded(job.status)) request(`v1/jobs/${job.id}/cancel`, { method: "POST" }).catch(() => {});
+      }
+      else if (error instanceof ProblemError) state.replaceChildren(h("span", { className: "field-error" }, error.problem.errors?.[0]?.detail ?? error.message));
+      else throw error;
     } finally {
-      run.disabled = false;
+      [run.disabled, cancel.hidden] = [false, true];
     }
   }
 
-  /** As many torques in one request as a preview may have, and the rest in further ones. */
-  async function pointsOf(low, high) {
+  /** Adds the points of a sweep, which are seen as they come: as many torques in one request as a preview may have, and the rest in further ones. */
+  async function fill(points, low, high) {
+    const begun = performance.now();
     const torques = Array.from({ length: MOST_TORQUES }, (_, i) => Number((low + ((high - low) * i) / (MOST_TORQUES - 1)).toPrecision(6)));
     const each = Math.max(1, Math.floor(limits.previews.positions / Math.max(1, positionsOf())));
-    const points = [];
-    const { submission } = design;
+    // What goes on from a curve is not shown, and takes longer than the curve.
+    const { force_table: table, dynamics, stress, face_load: load, ...submission } = design.submission;
     for (let i = 0; i < torques.length; i += each) {
-      if (points.length) out.replaceChildren(h("p", { className: "note" }, `${points.length} of ${torques.length} torques`));
-      const results = await resultsOf({ ...submission, output_torques_n_m: torques.slice(i, i + each) });
+      if (points.length) {
+        const left = ((performance.now() - begun) * (torques.length - i)) / i;
+        state.textContent = `${i} of ${torques.length} torques, about ${timeOf(left)} more`;
+        out.replaceChildren(pictureOf(points));
+      }
+      const results = await resultsOf({ ...submission, output_torques_n_m: torques.slice(i, i + each) }, { signal: stop.signal, told: (event, data) => { if (event === "status") job = data; } });
       for (const curve of results.curves) points.push({ x: curve.output_torque_n_m, y: curve.statistics.transmission_error_um.peak_to_peak, label: `${number(curve.output_torque_n_m)} N m` });
     }
-    return points;
   }
+
+  const pictureOf = (points) => figure({ points, lines: [{ x: points.map((point) => point.x), y: points.map((point) => point.y) }], x: "output torque in N m", y: "STE peak-to-peak in µm", title: "Peak-to-peak transmission error over the torque" });
 
   function shown(points) {
     const least = points.reduce((best, point) => (point.y < best.y ? point : best));
@@ -65,7 +85,7 @@ export function sweep(place, design, limits, positionsOf) {
     const use = h("button", { type: "button", on: { click: () => design.set("/output_torques_n_m", [least.x], "mend") } }, `Show ${number(least.x)} N m`);
     const atEnd = least === points[0] || least === points.at(-1);
     const words = atEnd ? "The least lies at an end of the sweep; a wider one may find less." : "";
-    return [h("p", {}, `Least peak-to-peak of these torques: ${fixed(least.y, 3)} µm at ${number(least.x)} N m. ${words} `, use), figure({ points, lines: [{ x: points.map((point) => point.x), y: points.map((point) => point.y) }], x: "output torque in N m", y: "STE peak-to-peak in µm", title: "Peak-to-peak transmission error over the torque"})];
+    return [h("p", {}, `Least peak-to-peak of these torques: ${fixed(least.y, 3)} µm at ${number(least.x)} N m. ${words} `, use), pictureOf(points)];
   }
 
   suggest();

@@ -840,6 +840,54 @@ export async function benchSteps(service) {
     assert.match(await page.locator("#search-out").innerText(), /At an end of its range: Amount of tip relief, driving gear/);
   });
 
+  await step("a long sweep is seen as it comes, without what goes on from its curves, and can be cancelled", service, async (page) => {
+    const asked = [];
+    page.on("request", (request) => { if (/v1\/preview$/.test(request.url())) asked.push(JSON.parse(request.postData())); });
+    const pair = { ...LONG.pair, driving: { ...LONG.pair.driving, tooth_count: 24 }, center_distance_mm: 107.25 };
+    await openDesign(page, service, { ...LONG, pair, output_torques_n_m: [150], stress: true });
+    await settled(page);
+    await tab(page, "sweep");
+    asked.length = 0;
+    await page.locator("#sweep button[type=submit]").click();
+    await page.waitForFunction(() => document.querySelectorAll("#sweep .scatter circle").length > 1 && /^\d+ of 24 torques, about \d+ (s|min) more$/.test(document.querySelector("#sweep [role=status]").innerText));
+    assert.equal(await page.locator("#sweep .strong").count(), 0, "which is least is not known yet");
+    await page.locator("#sweep button", { hasText: "Cancel" }).click();
+    await page.waitForFunction(() => /^Cancelled after \d+ torques/.test(document.querySelector("#sweep [role=status]").innerText));
+    const count = asked.length;
+    assert.ok(count > 1 && count < 24, String(count));
+    assert.ok(asked.every(({ stress, dynamics, output_torques_n_m: torques }) => stress === undefined && dynamics === undefined && torques.length === 1));
+    await axe(page);
+    await page.waitForTimeout(1500);
+    assert.equal(asked.length, count, "nothing more is asked for");
+    assert.ok(await page.locator("#sweep button", { hasText: "Cancel" }).isHidden());
+  });
+
+  await step("a population says how many of its members cannot be made, and why most of these", service, async (page) => {
+    await open(page, service);
+    await tab(page, "population");
+    await page.locator("#population-size").fill("24");
+    await page.locator("#population-torques").fill("115");
+    // Case 2 has 0.35 mm of backlash at 100.5 mm: half a millimeter less is too near.
+    await page.locator("#law-0").selectOption("/pair/center_distance_mm");
+    await page.locator("#law-0-kind").selectOption("uniform");
+    await page.locator("#law-0-spread").fill("1");
+    await page.locator("#population button[type=submit]").click();
+    await page.waitForFunction(() => /24 of 24 members, successful/.test(document.querySelector("#population [role=status]").innerText));
+    const told = page.locator("#population .outdated", { hasText: "cannot be made" });
+    await told.waitFor();
+    const [, failed, why] = /^(\d+) of 24 members cannot be made, most often because the (.*)\. What stands below is of the others alone\.$/.exec(await told.innerText());
+    assert.match(why, /^(backlash is negative|contact ratio is|teeth).* \(.*\d/);
+    const results = await page.evaluate(async () => (await fetch(`v1/studies/${(await (await fetch("v1/studies?limit=1")).json()).items[0].id}/results/population`)).json());
+    assert.equal(Number(failed), results.failed);
+    assert.ok(results.failed > 2 && results.failed < 22, String(results.failed));
+    await axe(page);
+    // The next one has none of them.
+    await page.locator("#law-0-spread").fill("0.01");
+    await page.locator("#population button[type=submit]").click();
+    await page.waitForFunction(() => /24 of 24 members, successful/.test(document.querySelector("#population [role=status]").innerText) && document.querySelector("#population .scatter"));
+    assert.ok(await told.isHidden());
+  });
+
   await step("jobs say which design each is of: by its tags, its name, and what differs from the design on the page", service, async (page) => {
     const asked = [];
     page.on("request", (request) => { if (/v1\/preview$/.test(request.url())) asked.push(request.url()); });
