@@ -43,7 +43,7 @@ export function figure({ title, x, y, cells = [], lines = [], points = [], stems
   const line = (attributes, name) => s("line", { ...attributes, class: name, ...(colors ? { stroke: colors.grid } : {}) });
   const svg = s("svg", { viewBox: `0 0 ${width} ${height}`, width: colors ? width : undefined, height: colors ? height : undefined, class: "scatter", role: points.some(({ open }) => open) ? "group" : "img", "aria-label": label, xmlns: "http://www.w3.org/2000/svg" });
   if (heading) svg.append(words(title, { ...ink, x: frame.left, y: 16, "font-weight": 600, "font-size": LETTER + 2 }));
-  for (const { x: at, y: foot, width: wide, height: tall, color } of cells) svg.append(s("rect", { x: px(at).toFixed(2), y: py(foot + tall).toFixed(2), width: (px(at + wide) - px(at) + 0.3).toFixed(2), height: (py(foot) - py(foot + tall) + 0.3).toFixed(2), fill: color }));
+  for (const { x: at, y: foot, width: wide, height: tall, color } of cells) svg.append(s("rect", { x: px(at).toFixed(2), y: py(foot + tall).toFixed(2), width: (px(at + wide) - px(at) + 0.3).toFixed(2), height: (py(foot) - py(foot + tall) + 0.3).toFixed(2), fill: color, "shape-rendering": "crispEdges" }));
   for (const value of ticks(left, right)) {
     svg.append(line({ x1: px(value), x2: px(value), y1: frame.top, y2: height - frame.bottom }, "grid"), words(number(value), { ...ink, x: Math.min(px(value), width - 3.3 * number(value).length), y: height - frame.bottom + 16, "text-anchor": "middle" }));
   }

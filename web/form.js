@@ -19,6 +19,9 @@ const MULTIPLES = { addendum_mm: 1, dedendum_mm: 1.25, rack_tip_radius_mm: 0.38 
 
 const MEMBERS = ["driving", "driven"];
 
+/** The unit at the end of a field's name. */
+const UNIT_OF_NAME = /_(mm|um|deg|mpa|rpm)$/;
+
 /** The angle that diameters and the center distance go with. */
 const HELIX = "/pair/helix_angle_deg";
 
@@ -130,7 +133,7 @@ export class Form {
     // What both gears have alike cannot be changed by one field.
     return [...this.#fields.values()].filter(({ kind, pointer }) => kind && ["number", "choice", "flag"].includes(kind.kind) && !this.#isAlike(pointer)).map(({ pointer, schema, kind }) => {
       const place = /^\/pair\/(driving|driven)/.exec(pointer)?.[1];
-      const inner = pointer.split("/").slice(place ? 3 : 1, -1).filter((part) => !["pair", "blank"].includes(part)).map((part) => (/^\d+$/.test(part) ? Number(part) + 1 : part)).join(" ").replace(/_/g, " ");
+      const inner = pointer.split("/").slice(place ? 3 : 1, -1).filter((part) => !["pair", "blank"].includes(part)).map((part) => (/^\d+$/.test(part) ? Number(part) + 1 : part.replace(UNIT_OF_NAME, ""))).join(" ").replace(/_/g, " ");
       const printed = unit(schema["x-unit"]);
       return { pointer, kind, value: this.design.get(pointer) ?? schema.default, title: `${place ? `${place}: ` : ""}${inner ? `${inner}, ` : ""}${schema.title}${printed ? ` (${printed})` : ""}` };
     });

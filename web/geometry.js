@@ -7,6 +7,7 @@ const twice = (radius) => 2 * radius;
 /** Rows of the table of gears: what it is called, its symbol and unit, and how it is read from a gear's geometry and document. */
 export const OF_GEARS = [
   ["Teeth", "z", "", (_, gear) => String(gear.tooth_count)],
+  ["Module, normal", "m_n", "mm", (_, gear) => number(gear.module_mm, 5)],
   ["Profile shift", "x", "", (_, gear) => number(gear.profile_shift ?? 0, 5)],
   ["Face width", "b", "mm", (_, gear) => number(gear.face_width_mm, 6)],
   ["Reference diameter", "d", "mm", (it) => fixed(twice(it.reference_radius_mm), 3)],
@@ -32,6 +33,7 @@ export const OF_GEARS = [
 /** Rows of the table of the pair. */
 export const OF_PAIRS = [
   ["Center distance", "a", "mm", (it) => number(it.center_distance_mm, 8)],
+  ["Helix angle", "β", "°", (_, { helix_angle_deg: angle }) => (angle ? number(angle, 6) : "–")],
   ["Working pressure angle", "α_w", "°", (it) => fixed(it.working_pressure_angle_deg, 4)],
   ["Contact ratio", "ε_α", "", (it) => fixed(it.contact_ratio, 4)],
   ["Length of the path of contact", "g_α", "mm", (it) => fixed(it.path_of_contact.length_mm, 4)],
@@ -52,7 +54,7 @@ export function rowsOf({ results, submission }) {
   const { pair } = results;
   const gears = OF_GEARS.map(([name, symbol, unit, read]) => [name, symbol, unit, ...["driving", "driven"].map((member) => read(pair[member], submission.pair[member]))]);
   // What only helical pairs have is left out of the others.
-  const both = OF_PAIRS.map(([name, symbol, unit, read]) => [name, symbol, unit, read(pair)]).filter(([, , , value]) => value !== "–");
+  const both = OF_PAIRS.map(([name, symbol, unit, read]) => [name, symbol, unit, read(pair, submission.pair)]).filter(([, , , value]) => value !== "–");
   return { gears, both };
 }
 

@@ -17,6 +17,7 @@ import { Form } from "./form.js";
 import { Geometry } from "./geometry.js";
 import { Headline } from "./headline.js";
 import { jobs } from "./jobs.js";
+import { Pattern } from "./pattern.js";
 import { population } from "./population.js";
 import { Follower, resultsOf } from "./preview.js";
 import { RunUp } from "./runup.js";
@@ -60,6 +61,7 @@ let tab = "curves";
 const drawing = new Drawing(byId("drawing"), design, { onTurn: (to) => turn(to) });
 const brush = new Brush(byId("brush"), (range) => charts.zoom(range));
 const charts = new Charts(byId("charts"), { onPosition: (to) => turn(to), onRange: (range) => brush.setRange(range), onEveryPosition: () => design.set("/face_load", "positions", "mend") });
+const pattern = new Pattern(byId("pattern"), { live: current });
 const headline = new Headline(byId("headline"));
 const geometry = new Geometry(byId("geometry"), { onPrint: print, onPicture: picture });
 const compare = new Compare(byId("compare"), { onKept: changeKept, onOpen: ({ submission, results }) => open(submission, results), onMethods: compareMethods, named: (pointer) => form?.named(pointer) ?? pointer });
@@ -232,6 +234,7 @@ function showDesigns(moving = false) {
   // Numbers that change with every move cannot be read, and a new table lays the page out.
   if (moving) return;
   brush.show(shown);
+  pattern.show(shown);
   compare.show(designs);
   geometry.show(shown);
   const choice = byId("against");

@@ -2,7 +2,7 @@
 
 import { follow, hasEnded, json, post, ProblemError, request } from "./api.js";
 import { at, nameOf } from "./design.js";
-import { h, fixed, number } from "./dom.js";
+import { h, fixed, number, timeOf } from "./dom.js";
 import { figure } from "./figure.js";
 import { outdated } from "./outdated.js";
 import { preview } from "./preview.js";
@@ -15,7 +15,7 @@ const PAUSE = 500;
 const QUANTITIES = {
   "transmission_error_um.peak_to_peak": ["STE peak-to-peak", "µm", 1],
   "transmission_error_um.mean": ["STE mean", "µm", 1],
-  face_load_factor: ["K_Hβ", "1", 1],
+  face_load_factor: ["K_Hβ", "", 1],
   mesh_order_um: ["H_Z2", "µm", 1],
   hole_order_um: ["H_N", "µm", 1],
   peak_contact_pressure_mpa: ["contact pressure", "MPa", 1],
@@ -23,18 +23,24 @@ const QUANTITIES = {
   "mass_kg.driven": ["mass of the driven gear", "kg", 1],
   "mass_removed_percent.driven": ["removed by holes of the driven gear", "%", 1],
   "least_ligament_mm.driven": ["least material around its holes", "mm", 1],
-  contact_ratio: ["contact ratio", "1", 1],
+  contact_ratio: ["contact ratio", "", 1],
   backlash_mm: ["backlash", "mm", 1],
 };
 
-/** Fields that are searched first. */
-const FIRST = ["/pair/driving/tip_relief/amount_um", "/pair/driven/tip_relief/amount_um", ""];
+/** Fields that are searched first, as far as a design has them: each variable begins with the first that no other has. */
+const FIRST = ["/pair/driving/tip_relief/amount_um", "/pair/driven/tip_relief/amount_um", "/pair/driving/lead_modifications/0/amount_um", "/pair/driving/profile_modifications/0/amount_um", "/pair/driven/blank/holes/radius_mm", "/pair/driven/blank/web/thickness_mm"];
+const VARIABLES = 3;
+/** So many of them begin with a field. */
+const BEGUN = 2;
 
-const quantities = (id, label, none) => h("select", { id, ariaLabel: label }, ...(none ? [h("option", { value: "" }, none)] : []), ...Object.entries(QUANTITIES).map(([name, [words, unit]]) => h("option", { value: name }, `${words} in ${unit}`)));
+/** A quantity with its unit, if it has one. */
+const inUnit = ([words, unit]) => (unit ? `${words} in ${unit}` : words);
+
+const quantities = (id, label, none) => h("select", { id, ariaLabel: label }, ...(none ? [h("option", { value: "" }, none)] : []), ...Object.entries(QUANTITIES).map(([name, quantity]) => h("option", { value: name }, inUnit(quantity))));
 
 /** The search of `design` in `place`; `form` knows the fields, `onOpen` opens a design. */
 export function search(place, design, form, onOpen) {
-  const variables = FIRST.map((_, i) => variable(i, design, form));
+  const variables = Array.from({ length: VARIABLES }, (_, i) => variable(i, design, form));
   const goals = [quantities("search-goal", "What is to be small", null), quantities("search-goal-2", "And what besides", "nothing else")];
   const bounded = quantities("search-bounded", "What has to hold", "nothing");
   const side = h("select", { id: "search-side", ariaLabel: "Side of the bound" }, h("option", { value: "at_least" }, "at least"), h("option", { value: "at_most" }, "at most"));
@@ -87,8 +93,9 @@ export function search(place, design, form, onOpen) {
     cancel.hidden = false;
     cancel.onclick = () => request(`${address}/cancel`, { method: "POST" }).catch(() => {});
     let [shown, ended] = [performance.now(), false];
-    const told = (_, data) => {
-      if (data.total) state.textContent = `${data.done} of at most ${data.total} designs`;
+    const begun = performance.now();
+    const told = (_, { done, total }) => {
+      if (total) state.textContent = `${done} of at most ${total} designs${done > 2 ? `, about ${timeOf(((performance.now() - begun) * (total - done)) / done)} more` : ""}`;
       if (performance.now() - shown < PAUSE) return;
       shown = performance.now();
       json(address).then((study) => ended || show(study, question), () => {});
@@ -104,7 +111,7 @@ export function search(place, design, form, onOpen) {
     const address = `v1/studies/${id}`;
     const parts = question.search.minimize.map(({ quantity }) => QUANTITIES[quantity]);
     const conditions = question.search.subject_to.map(({ quantity }) => QUANTITIES[quantity]);
-    const told = (values, names) => names.map(([words, unit, factor], i) => `${words} ${values?.[i] === null || values?.[i] === undefined ? "?" : number(values[i] * factor, 4)} ${unit}`).join(", ");
+    const told = (values, names) => names.map(([words, unit, factor], i) => `${words} ${values?.[i] === null || values?.[i] === undefined ? "?" : number(values[i] * factor, 4)} ${unit}`.trim()).join(", ");
     const { best, front, confirmed, generations } = found;
     if (!best) return out.replaceChildren();
     const rows = Object.entries(best.values).map(([path, value]) => h("tr", {}, h("th", { scope: "row" }, form.named(path)), h("td", {}, number(at(question.base, path) ?? null, 5)), h("td", {}, number(value, 5))));
@@ -115,8 +122,8 @@ export function search(place, design, form, onOpen) {
     drawBeside(address, best.row, question.base);
     const reached = generations.map((each, i) => [i + 1, each.best]).filter(([, value]) => value !== null);
     const pictures = front.length > 1
-      ? [figure({ points: front.map(({ goals: [x, y], row }) => ({ x: x * parts[0][2], y: y * parts[1][2], label: `design ${row}`, strong: row === best.row, open: () => open(row) })), x: `${parts[0][0]} in ${parts[0][1]}`, y: `${parts[1][0]} in ${parts[1][1]}`, title: "The front: no design found is better in both; the large point is the best compromise. Press a point to open its design" }), frontOf(front, parts, use)]
-      : reached.length > 1 ? [figure({ lines: [{ x: reached.map(([i]) => i), y: reached.map(([, value]) => value * parts[0][2]) }], x: "generation", y: `${parts[0][0]} in ${parts[0][1]}`, title: "The best so far, generation by generation" })] : [];
+      ? [figure({ points: front.map(({ goals: [x, y], row }) => ({ x: x * parts[0][2], y: y * parts[1][2], label: `design ${row}`, strong: row === best.row, open: () => open(row) })), x: inUnit(parts[0]), y: inUnit(parts[1]), title: "The front: no design found is better in both; the large point is the best compromise. Press a point to open its design" }), frontOf(front, parts, use)]
+      : reached.length > 1 ? [figure({ lines: [{ x: reached.map(([i]) => i), y: reached.map(([, value]) => value * parts[0][2]) }], x: "generation", y: inUnit(parts[0]), title: "The best so far, generation by generation" })] : [];
     const fine = confirmed && (confirmed.error_estimate
       ? `By the flexible method on the fine grid: ${told(confirmed.goals, parts)}; another grid level changes the peak-to-peak value by ${fixed(confirmed.error_estimate.transmission_error_peak_to_peak_um, 4)} µm.`
       : `It could not be confirmed: ${confirmed.problem?.detail ?? "there are no results"}`);
@@ -153,7 +160,7 @@ export function search(place, design, form, onOpen) {
 
   /** The designs of a front, each to be used. */
   function frontOf(front, parts, use) {
-    const head = [...parts.map(([words, unit]) => `${words} in ${unit}`), ""].map((words) => h("th", { scope: "col" }, words || h("span", { className: "visually-hidden" }, "Actions")));
+    const head = [...parts.map(inUnit), ""].map((words) => h("th", { scope: "col" }, words || h("span", { className: "visually-hidden" }, "Actions")));
     const rows = front.map(({ row, goals }) => h("tr", {}, ...goals.map((value, i) => h("td", {}, number(value * parts[i][2], 4))), h("td", {}, use(row, "Use"))));
     return h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Designs of the front" }, h("table", {}, h("thead", {}, h("tr", {}, ...head)), h("tbody", {}, ...rows)));
   }
@@ -166,7 +173,8 @@ export function search(place, design, form, onOpen) {
 /** A field and the range that is searched, around the value that the design has. */
 function variable(index, design, form) {
   const id = `variable-${index}`;
-  const field = h("select", { id, on: { change: () => suggest() } });
+  // Until somebody chooses one the field is one that the design has, whichever design that is.
+  const field = h("select", { id, on: { change: () => { field.dataset.chosen = "yes"; suggest(); } } });
   const [low, high, step] = ["low", "high", "step"].map((name) => h("input", { type: "number", id: `${id}-${name}`, step: "any", ariaLabel: `${{ low: "Smallest", high: "Largest", step: "Step of the" }[name]} value of variable ${index + 1}` }));
   const element = h("div", { className: "line" }, h("label", { htmlFor: id }, index ? "and" : "Choose"), field, h("label", { htmlFor: low.id }, "from"), low, h("label", { htmlFor: high.id }, "to"), high, h("label", { htmlFor: step.id }, "in steps of"), step);
 
@@ -183,12 +191,13 @@ function variable(index, design, form) {
 
   /** Only fields that have a number in this design can be searched. */
   function refresh() {
-    const chosen = element.dataset.begun ? field.value : FIRST[index];
-    element.dataset.begun = "yes";
     const fields = form.fields().filter(({ pointer }) => typeof at(design.submission, pointer) === "number");
-    field.replaceChildren(h("option", { value: "" }, "nothing else"), ...fields.map(({ pointer, title }) => h("option", { value: pointer }, title)));
+    const offered = FIRST.filter((first) => fields.some(({ pointer }) => pointer === first)).slice(0, BEGUN);
+    const chosen = field.dataset.chosen ? field.value : (offered[index] ?? "");
+    const before = field.value;
+    field.replaceChildren(h("option", { value: "" }, index ? "nothing else" : "a field"), ...fields.map(({ pointer, title }) => h("option", { value: pointer }, title)));
     field.value = fields.some(({ pointer }) => pointer === chosen) ? chosen : "";
-    if (low.value === "") suggest();
+    if (low.value === "" || field.value !== before) suggest();
   }
   return { element, read, refresh };
 }

@@ -136,10 +136,55 @@ export async function solidSteps(service) {
     assert.ok(cells > 1500 && cells < 2200, `${cells} cells`);
     assert.deepEqual([most, Math.round(right)], [1, 500]);
     await tab(page, "curves");
+    // The flanks, as the service tells them of a job of this design.
+    await page.locator("#chart-pattern button").click();
+    await page.locator("#chart-pattern svg").nth(1).waitFor();
+    const flanks = await page.locator("#chart-pattern svg").evaluateAll((all) => all.map((svg) => [svg.getAttribute("aria-label"), svg.querySelectorAll("rect[fill^='url']").length, svg.querySelectorAll("rect[fill^=rgb]").length]));
+    const { curves: [computed], z_mm: z, driving } = await page.evaluate(async (submission) => {
+      const { solved, json } = await import(new URL("web/api.js", document.baseURI));
+      return json(`v1/jobs/${(await solved(submission)).id}/results/contact-pattern.json`);
+    }, HELICAL);
+    const all = computed.driving.pressure_mpa.flat();
+    const known = Math.max(...all.filter((value) => value !== null));
+    assert.match(flanks[0][0], new RegExp(`^The driving flank carries over .* at most ${known.toFixed(0)} MPa, at z = -?[\\d.]+ mm and a diameter of \\d+`));
+    assert.deepEqual(flanks[0].slice(1), [all.filter((value) => value === null).length, all.filter((value) => value > 0).length]);
+    assert.equal(all.length, z.length * driving.diameter_mm.length);
+    assert.match(await page.locator("#chart-pattern .legend").innerText(), /^0\s+\d+ MPa$/);
+    await axe(page);
+    // Another design has other flanks.
+    await changing(page, async () => (await field(page, "/output_torques_n_m")).fill("100"));
+    assert.equal(await page.locator("#chart-pattern svg").count(), 0);
+    assert.ok(await page.locator("#chart-pattern button").isVisible());
+    await changing(page, () => page.locator("#undo").click());
     assert.match(await page.locator("#chart-pressure").innerText(), /at every position/);
     assert.ok(await page.locator("#chart-pressure .canvas").isHidden());
     await tab(page, "geometry");
     assert.match(await page.locator("#geometry").innerText(), /Overlap ratio ε_β\s+0\.\d{4}/);
+  });
+
+  await step("a search begins with fields that the design has, each in the words of the form, and its lines stay lines", service, async (page) => {
+    const pair = { ...HELICAL.pair, driving: { ...HELICAL.pair.driving, lead_modifications: [{ kind: "slope", amount_um: 8 }] } };
+    await openDesign(page, service, { ...HELICAL, pair });
+    await settled(page);
+    await tab(page, "study");
+    await page.locator("#search summary").click();
+    const [first, second, third] = await Promise.all([0, 1, 2].map((i) => page.locator(`#variable-${i}`).evaluate((select) => [select.value, select.selectedOptions[0].textContent])));
+    assert.deepEqual(first, ["/pair/driving/lead_modifications/0/amount_um", "driving: lead modifications 1, Amount of the lead slope (µm)"]);
+    assert.deepEqual([second[0], third[0]], ["/pair/driven/blank/holes/radius_mm", ""]);
+    assert.deepEqual(await Promise.all(["low", "high"].map((end) => page.locator(`#variable-0-${end}`).inputValue())), ["3.2", "16"]);
+    const words = await page.locator("#variable-0 option").allInnerTexts();
+    assert.ok(words.includes("misalignment, Misalignment in the plane of the axes (µm)") && !words.some((each) => /\b(um|mm|deg)\b,/.test(each)), words.join("\n"));
+    assert.equal(await page.locator("#search-goal option[value=face_load_factor]").innerText(), "K_Hβ");
+    for (const line of await page.locator("#search .line:visible").all()) {
+      const heights = await line.evaluate((element) => new Set([...element.children].filter((each) => !each.hidden).map((each) => Math.round(each.getBoundingClientRect().top + each.getBoundingClientRect().height / 2))).size);
+      assert.equal(heights, 1, await line.innerText());
+    }
+    // Another design has other fields; what has been chosen stays where it can.
+    await page.locator("#variable-1").selectOption("/pair/driven/blank/web/thickness_mm");
+    await changing(page, async () => (await field(page, "/pair/driven/blank/holes")).selectOption({ index: 0 }));
+    await tab(page, "curves");
+    await tab(page, "study");
+    assert.equal(await page.locator("#variable-1").inputValue(), "/pair/driven/blank/web/thickness_mm");
   });
 
   await step("the pair is turned in space by mouse, keys and buttons, and its lines of contact carry what was computed", service, async (page) => {

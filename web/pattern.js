@@ -1,0 +1,80 @@
+// Where the flanks carry, and how much: the largest pressure of the period over face and diameter. A job tells it, so it is asked for by a press.
+
+import { json, ProblemError, solved } from "./api.js";
+import { same } from "./design.js";
+import { fixed, h, number, s } from "./dom.js";
+import { cssOf, scaleOf } from "./face.js";
+import { figure } from "./figure.js";
+
+const HATCH = "sharp-edge";
+
+/** The flanks of the live design in `place`; `live` waits for it and gives it, or null where it cannot be computed. */
+export class Pattern {
+  #shown = null;
+
+  constructor(place, { live }) {
+    this.live = live;
+    this.legend = h("p", { className: "legend" });
+    this.button = h("button", { type: "button", on: { click: () => this.#ask() } }, "Show the flanks");
+    this.state = h("p", { className: "note", role: "status" });
+    this.flanks = h("div", { className: "columns" });
+    this.element = h("figure", { className: "chart", id: "chart-pattern", hidden: true, aria: { label: "Contact pattern" } },
+      h("figcaption", {}, h("strong", {}, "Contact pattern"), " largest pressure of the period in MPa", this.legend), this.button, this.state, this.flanks);
+    place.append(this.element);
+  }
+
+  /** The design is another one: what is seen of the one before goes away. */
+  show({ results, submission }) {
+    this.element.hidden = !results.curves[0].face;
+    if (this.#shown && same(this.#shown, submission)) return;
+    this.#shown = null;
+    this.button.hidden = false;
+    this.state.textContent = "";
+    for (const part of [this.legend, this.flanks]) part.replaceChildren();
+  }
+
+  async #ask() {
+    this.button.hidden = true;
+    this.state.textContent = "A job computes it.";
+    const live = await this.live();
+    try {
+      if (!live) throw new ProblemError({ detail: "This design cannot be computed." });
+      this.#shown = live.submission;
+      const job = await solved(live.submission);
+      const [{ output_torque_n_m: torque }] = live.results.curves;
+      const pattern = await json(`v1/jobs/${job.id}/results/contact-pattern.json?torque=${torque}`);
+      if (this.#shown === live.submission) this.#draw(pattern);
+    } catch (error) {
+      if (!(error instanceof ProblemError)) throw error;
+      if (live && this.#shown !== live.submission) return;
+      this.button.hidden = false;
+      this.state.textContent = error.problem.errors?.[0]?.detail ?? error.message;
+    }
+  }
+
+  #draw(pattern) {
+    const [{ largest_pressure_mpa: most, output_torque_n_m: torque, ...curve }] = pattern.curves;
+    this.legend.replaceChildren(scaleOf(most, "MPa"));
+    this.state.textContent = `At ${number(torque)} N m. Hatched: a sharp tip edge carries, where the pressure has no limit. Empty: nothing touches.`;
+    this.flanks.replaceChildren(...["driving", "driven"].map((gear) => flankOf(gear, pattern, curve[gear].pressure_mpa, most)));
+  }
+}
+
+/** The edges of cells whose middles are these. */
+const edgesOf = (middles) => middles.map((middle, i) => middle - (i ? middle - middles[i - 1] : middles[1] - middle) / 2);
+
+/** The flank of a gear over face and diameter. */
+function flankOf(gear, { z_mm: z, [gear]: { diameter_mm: diameters } }, pressures, most) {
+  const [x, y] = [edgesOf(z), edgesOf(diameters)];
+  const [width, height] = [z[1] - z[0], diameters[1] - diameters[0]];
+  const touched = pressures.flatMap((row, i) => row.flatMap((pressure, j) => (pressure === 0 ? [] : [{ pressure, i, j }])));
+  const cells = touched.map(({ pressure, i, j }) => ({ x: x[j], y: y[i], width, height, color: pressure === null ? `url(#${HATCH}-${gear})` : cssOf(pressure / most) }));
+  const known = touched.filter(({ pressure }) => pressure !== null);
+  const edges = touched.length - known.length;
+  const top = known.length ? known.reduce((best, each) => (each.pressure > best.pressure ? each : best)) : null;
+  const told = top ? `at most ${fixed(top.pressure, 0)} MPa, at z = ${fixed(z[top.j], 1)} mm and a diameter of ${fixed(diameters[top.i], 1)} mm` : "no pressure that has a limit";
+  const words = `The ${gear} flank carries over ${fixed((100 * touched.length) / (z.length * diameters.length), 0)} % of what is drawn, ${told}${edges ? `; a sharp tip edge carries on ${fixed((100 * edges) / touched.length, 0)} % of it` : ""}.`;
+  const svg = figure({ title: `${gear} flank`, x: "z in mm", y: "diameter in mm", cells, label: words, xRange: [x[0], x.at(-1) + width], height: 260 });
+  svg.prepend(s("defs", {}, s("pattern", { id: `${HATCH}-${gear}`, width: 4, height: 4, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" }, s("rect", { width: 4, height: 4, class: "hatch-ground" }), s("line", { x1: 0, x2: 0, y1: 0, y2: 4, class: "hatch" }))));
+  return h("div", { className: "flank" }, h("p", { className: "note" }, `The ${gear} flank`), svg);
+}
