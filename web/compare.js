@@ -45,10 +45,10 @@ export function designsCsv(designs) {
   return csvOf(lines);
 }
 
-/** The comparison in `place`: a column for each design and torque. `named` says what the field at a pointer is called, and of which gear it is. */
+/** The comparison in `place`: a column for each design and torque. `named` says what the field at a pointer is called, and of which gear it is, `usual` what it is in a submission that does not give it. */
 export class Compare {
-  constructor(place, { onKept, onOpen, onMethods, named }) {
-    Object.assign(this, { onKept, onOpen, named });
+  constructor(place, { onKept, onOpen, onMethods, named, usual }) {
+    Object.assign(this, { onKept, onOpen, named, usual });
     this.table = h("div", { className: "scroll", id: "table", tabIndex: 0, role: "region", ariaLabel: "Designs beside each other" });
     this.note = h("p", { className: "note" });
     const button = (name, id, work) => h("button", { type: "button", id, on: { click: work } }, name);
@@ -61,7 +61,9 @@ export class Compare {
     this.designs = designs;
     const focused = document.activeElement?.id;
     const colors = looks();
-    const rows = differences(designs.map(({ submission }) => submission));
+    // What is not given has its default: a design that gives it is not another one.
+    const given = differences(designs.map(({ submission }) => submission)).map(({ pointer, values }) => ({ pointer, values: values.map((value, i) => value ?? this.usual(designs[i].submission, pointer)) }));
+    const rows = given.filter(({ pointer, values }) => pointer !== "/tags" && values.some((value) => told(value) !== told(values[0])));
     this.table.replaceChildren(h("table", {}, h("caption", { className: "visually-hidden" }, "Statistics over the true period, and the fields in which the designs differ"),
       h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Design"), ...designs.map((design, i) => this.#head(design, i, colors)))),
       h("tbody", { id: "quantities" }, ...this.#quantities(designs)),

@@ -21,7 +21,7 @@ import { Pattern } from "./pattern.js";
 import { population } from "./population.js";
 import { Follower, resultsOf } from "./preview.js";
 import { RunUp } from "./runup.js";
-import { openapi } from "./schema.js";
+import { bare, openapi, usualAt } from "./schema.js";
 import { stresses } from "./series.js";
 import { sheetOf } from "./sheet.js";
 import { copied } from "./snippets.js";
@@ -64,7 +64,7 @@ const charts = new Charts(byId("charts"), { onPosition: (to) => turn(to), onRang
 const pattern = new Pattern(byId("pattern"), { live: current });
 const headline = new Headline(byId("headline"));
 const geometry = new Geometry(byId("geometry"), { onPrint: print, onPicture: picture });
-const compare = new Compare(byId("compare"), { onKept: changeKept, onOpen: ({ submission, results }) => open(submission, results), onMethods: compareMethods, named: (pointer) => form?.named(pointer) ?? pointer });
+const compare = new Compare(byId("compare"), { onKept: changeKept, onOpen: ({ submission, results }) => open(submission, results), onMethods: compareMethods, named: (pointer) => form?.named(pointer) ?? pointer, usual: (submission, pointer) => (form ? usualAt(form.api, submission, pointer) : undefined) });
 const follower = new Follower({ onResults, onOutline, onProblem, onBusy, onProgress });
 
 const deformation = new Deformation({
@@ -306,6 +306,17 @@ function notify(text, undoable = true) {
 function open(submission, results) {
   if (results) follower.know(submission, results);
   design.replace(submission, "open");
+}
+
+/** Takes the design of a job or a study, where every default is filled in: without them, so that it is compared with others by what somebody has chosen. */
+async function openFilled(submission, results) {
+  try {
+    open(await bare(await openapi(), submission), results);
+  } catch (error) {
+    if (!(error instanceof ProblemError)) throw error;
+    // What is refused is told at its fields.
+    open(submission, results);
+  }
 }
 
 function keep(entry) {
@@ -573,9 +584,9 @@ async function begin() {
   panels = {
     "run-up": runUp,
     sweep: sweep(byId("sweep"), design, limits, positions),
-    study: study(byId("study"), design, form, open),
-    population: population(byId("population"), design, form, open),
-    jobs: jobs(byId("jobs"), design, form, open),
+    study: study(byId("study"), design, form, openFilled),
+    population: population(byId("population"), design, form, openFilled),
+    jobs: jobs(byId("jobs"), design, form, openFilled),
     export: exporting(byId("export"), { current, designs: () => [live, ...design.kept], drawing, charts, position: () => position }),
   };
   addEventListener("hashchange", async () => {

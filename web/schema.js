@@ -1,6 +1,7 @@
 // The schema of a submission, as the service describes it.
 
-import { json } from "./api.js";
+import { json, post } from "./api.js";
+import { at } from "./design.js";
 
 let documentOf = null;
 
@@ -72,3 +73,42 @@ export function saidDefault(schema) {
   if (modules !== undefined) return modules === 1 ? "1 module" : `${modules} modules`;
   return schema["x-absent"] ?? "";
 }
+
+/** `submission` without what the service fills in where it is left out, so that it says what somebody has chosen and no more. What cannot be left out without changing it stays. */
+export async function bare(api, submission) {
+  const fill = (asked) => post("v1/validate", asked);
+  const filled = await fill(submission);
+  const asked = withoutDefaults(api, submission, filled.pair.period_mesh_periods);
+  // The service has the last word on what is the same.
+  return JSON.stringify((await fill(asked)).submission) === JSON.stringify(filled.submission) ? asked : submission;
+}
+
+/** The value that a field of `submission` has where nobody gives it; undefined where there is none, or nothing that could have it. */
+export function usualAt(api, submission, pointer) {
+  const holder = pointer.slice(0, pointer.lastIndexOf("/"));
+  if (holder && !isNested(at(submission, holder)) && !isFilledIn(holder)) return undefined;
+  const schema = schemaAt(api, pointer);
+  const modules = schema?.["x-default-modules"];
+  return modules === undefined ? (schema?.default ?? undefined) : modules * at(submission, `${holder}/module_mm`);
+}
+
+function withoutDefaults(api, submission, period) {
+  const left = (value, pointer) => {
+    if (value === null) return undefined;
+    if (Array.isArray(value)) return value.length ? value.map((each, i) => (isNested(each) ? pruned(each, `${pointer}/${i}`) : each)) : undefined;
+    if (isNested(value)) {
+      const rest = pruned(value, pointer);
+      // An object that may be absent is not the same as an empty one.
+      return Object.keys(rest).length || !isFilledIn(pointer) ? rest : undefined;
+    }
+    const usual = pointer === "/resolution/span_mesh_periods" ? period : usualAt(api, submission, pointer);
+    return value === usual || Math.abs(value - usual) < 1e-9 ? undefined : value;
+  };
+  const pruned = (object, pointer) => Object.fromEntries(Object.entries(object).map(([name, value]) => [name, left(value, `${pointer}/${name}`)]).filter(([, value]) => value !== undefined));
+  return pruned(submission, "");
+}
+
+const isNested = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
+
+/** Whether the object at a pointer is there even if nobody gives it. */
+const isFilledIn = (pointer) => pointer === "/resolution" || pointer === "/resolution/load_distribution" || /\/material$/.test(pointer);

@@ -916,7 +916,16 @@ export async function benchSteps(service) {
     assert.match(await words(1), /^as built, 10 holes .*flexible (Number of holes, driven gear 10; Output torques 115|Output torques 115; Number of holes, driven gear 10)$/);
     await axe(page);
     // It is opened with its tags, and is the design on the page then.
+    await page.locator("#pin").click();
     await changing(page, () => rows.nth(1).locator("button", { hasText: "Open" }).click());
+    // A job has every default filled in; what is opened says what was asked for, and differs from a kept design in that alone.
+    const opened = await designOf(page);
+    assert.deepEqual([opened.tags, opened.pair.driven.material, opened.pair.driven.blank.holes.phase_deg, opened.resolution], [["as built", "10 holes"], undefined, undefined, undefined]);
+    assert.deepEqual((await page.locator("#differences tr th").allTextContents()).slice(1), ["Number of holes, driven gear", "Output torques"]);
+    // With other holes it has another true period, which nobody has fixed.
+    await changing(page, async () => (await field(page, `${HOLES}`)).selectOption({ index: 0 }));
+    assert.equal(await page.locator("#position").getAttribute("max"), "1");
+    await changing(page, () => page.locator("#undo").click());
     await page.waitForFunction(() => /the design on the page/.test(document.querySelectorAll("#jobs tbody .of-design")[1].innerText) && /Number of holes, driven gear 8/.test(document.querySelectorAll("#jobs tbody .of-design")[0].innerText));
     // Those of studies stand there when they are wanted; there are more than a page of all.
     const before = await rows.count();
