@@ -1,7 +1,7 @@
 // Curves over the true period and the spectrum, one design beside the other, zoomed together.
 
 import uPlot from "./vendor/uplot.js";
-import { h, number } from "./dom.js";
+import { h, number, s } from "./dom.js";
 import { cellsOf, cssOf, faceOf, SCALE, scaleOf, wordsOfFace } from "./face.js";
 import { figure } from "./figure.js";
 import { linesOf, namesOf, ordersOf, PANELS, partialSpectrum, placedNames, wordsOf, wordsOfSpectrum } from "./series.js";
@@ -35,6 +35,9 @@ export class Charts {
    */
   constructor(place, { onPosition, onRange, onEveryPosition }) {
     Object.assign(this, { place, onPosition, onRange, onEveryPosition });
+    // What stands in every chart is named once, above them.
+    this.legend = h("p", { className: "legend shared", hidden: true });
+    place.append(this.legend);
     for (const panel of [...PANELS, SPECTRUM]) {
       const canvas = h("div", { className: "canvas", aria: { hidden: "true" } });
       const legend = h("p", { className: "legend" });
@@ -60,6 +63,9 @@ export class Charts {
   show(designs, moving = false) {
     this.shown = designs;
     const colors = looks();
+    const shared = linesOf(PANELS[0], designs);
+    this.legend.hidden = shared.length < 2;
+    if (!moving) this.legend.replaceChildren(...shared.map((line) => sample(line, colors)));
     for (const panel of this.#panels.values()) {
       panel.late = moving && !panel.seen;
       if (!panel.late) this.#draw(panel, colors);
@@ -158,7 +164,7 @@ export class Charts {
     }
     panel.plot.setScale("x", { min: from, max: to });
     const note = many ? "envelope; zoom in for the curve" : to < end ? `${room} mesh periods, ${panel.note}` : panel.note;
-    panel.legend.replaceChildren(...(note ? [h("span", {}, note)] : []), ...(wanted.length > 1 && !panel.note ? wanted.map((line) => sample(line, colors)) : []));
+    panel.legend.replaceChildren(...(note ? [h("span", {}, note)] : []), ...(wanted.length > 1 && panel.ofLive && !panel.note ? wanted.map((line) => sample(line, colors)) : []));
   }
 
   #make(panel, data, lines, colors, many) {
@@ -279,7 +285,9 @@ export class Charts {
       panel.plot.setData(data);
     }
     const part = wanted.some(({ partial }) => partial);
-    panel.legend.replaceChildren(...(wanted.length > 1 ? wanted.map((line) => sample({ ...line, dash: [] }, colors)) : []));
+    // Of several torques it has the first alone.
+    const several = this.shown.some(({ results }) => results.curves.length > 1);
+    panel.legend.replaceChildren(...(several ? this.shown.map(({ name, look, results: { curves: [curve] } }, i) => sample({ name: `${name}, ${number(curve.output_torque_n_m)} N m`, look: look ?? i, dash: [] }, colors)) : []));
     panel.below.hidden = !part;
     if (part) panel.below.textContent = "Over the periods that were computed (Hann window): lines are wider than they are. For the whole spectrum clear Mesh periods under Load and method; a job computes it.";
   }
@@ -364,10 +372,9 @@ function yRange(_, least, most) {
 }
 
 /** A piece of a line beside its name. */
-export function sample({ name, look, dash }, colors) {
-  const line = h("span", { className: dash?.length ? "swatch dashed" : "swatch" });
-  line.style.borderColor = colors.series[look % 7];
-  return h("span", { className: "entry" }, line, name);
+function sample({ name, look, dash }, colors) {
+  const line = s("line", { x1: 0, x2: 36, y1: 4, y2: 4, stroke: colors.series[look % 7], "stroke-width": 2.5, "stroke-dasharray": dash?.length ? dash.join(" ") : null });
+  return h("span", { className: "entry" }, s("svg", { viewBox: "0 0 36 8", width: "2.25rem", height: "0.5rem", "aria-hidden": "true" }, line), name);
 }
 
 function drawStems(plot, names, colors) {

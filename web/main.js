@@ -225,7 +225,7 @@ function showProblem() {
 }
 
 function showDesigns(moving = false) {
-  const designs = [shown, ...design.kept];
+  const designs = besideKept(shown);
   if (!design.kept.includes(against)) against = design.kept[0] ?? null;
   const seen = designs.filter(({ hidden }) => !hidden);
   charts.show(seen.map((each) => ({ ...each, name: legendOf(each, seen) })), moving);
@@ -241,6 +241,12 @@ function showDesigns(moving = false) {
   choice.replaceChildren(...design.kept.map((each, i) => h("option", { value: i, selected: each === against }, nameBeside(curve, each))));
   byId("against-label").hidden = design.kept.length === 0;
   if (["export", "run-up"].includes(tab)) panels[tab]?.refresh();
+}
+
+/** `one` and the kept designs; it is told from one that is called the same. */
+function besideKept(one) {
+  const name = design.kept.some((each) => each.name === one.name) ? `${one.name} (now)` : one.name;
+  return [{ ...one, name }, ...design.kept];
 }
 
 /** The curve of `results` at the torque of another one; the first where there is none. */
@@ -575,7 +581,7 @@ async function begin() {
   showProblem();
   const positions = () => live?.results.curves[0].mesh_position.length ?? 200;
   const runUp = new RunUp(byId("run-up"), {
-    designs: () => (live ? [live, ...design.kept] : []),
+    designs: () => (live ? besideKept(live) : []),
     ask: () => form.begin("/dynamics"),
     asked: () => Boolean(design.get("/dynamics")) && !problem,
     focus: () => form.focus("/dynamics/driving_speed_rpm"),
@@ -587,7 +593,7 @@ async function begin() {
     study: study(byId("study"), design, form, openFilled),
     population: population(byId("population"), design, form, openFilled),
     jobs: jobs(byId("jobs"), design, form, openFilled),
-    export: exporting(byId("export"), { current, designs: () => [live, ...design.kept], drawing, charts, position: () => position }),
+    export: exporting(byId("export"), { current, designs: () => besideKept(live), drawing, charts, position: () => position }),
   };
   addEventListener("hashchange", async () => {
     const other = await fromFragment(location.hash);

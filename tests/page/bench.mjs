@@ -175,7 +175,7 @@ export async function benchSteps(service) {
     short.output_torques_n_m = [20, 50, 80];
     await openDesign(page, service, short);
     await page.waitForFunction(() => document.querySelector("#table th.live")?.colSpan === 3 && document.querySelectorAll("#quantities tr:first-child td").length === 3);
-    assert.equal(await page.locator("#chart-ste .entry").count(), 3);
+    assert.equal(await page.locator("#charts .legend.shared:not([hidden]) .entry").count(), 3);
   });
 
   await step("a web that a plane does not stand for is warned of, with the guide", service, async (page) => {
@@ -480,11 +480,11 @@ export async function benchSteps(service) {
     assert.match(await page.locator("#differences").innerText(), /Number of holes[\s\S]*8\s+10/i);
     assert.match(await page.locator("#answer-p-p .change").innerText(), /^[+−]\d/);
     await tab(page, "curves");
-    assert.match(await page.locator("#chart-ste .legend").innerText(), /as built/);
+    assert.match(await page.locator("#charts .legend.shared").innerText(), /as built/);
     await tab(page, "compare");
     await page.locator("#table input[type=checkbox]").uncheck();
     await tab(page, "curves");
-    assert.equal(await page.locator("#chart-ste .entry").count(), 0);
+    assert.equal(await page.locator("#charts .legend.shared:not([hidden]) .entry").count(), 0);
     await tab(page, "compare");
     const { bytes } = await downloaded(page, () => page.locator("#table-csv").click());
     assert.match(bytes.toString(), /as built,flexible,115/);
@@ -510,6 +510,7 @@ export async function benchSteps(service) {
     assert.deepEqual(await line("k mean").locator("td").evaluateAll((cells) => cells.map((cell) => cell.classList.contains("best"))), [true, false, false, false, true], "the live design and the one kept last are the same");
     assert.deepEqual(await line("Driven mass").locator("td").evaluateAll((cells) => cells.map((cell) => /best/.test(cell.textContent))), [false, true, false, false, false]);
     assert.equal(await line("Torque").locator(".best").count(), 0);
+    assert.match(await page.locator("#table th.live").innerText(), /5×r7\.5@34 \(now\)/, "told from the one that was kept under its name");
     assert.match(await page.locator("#differences").innerText(), /Number of holes, driven gear\s+5\s+10\s+8\s+6\s+5/);
     await axe(page);
     await page.setViewportSize({ width: 390, height: 844 });

@@ -138,7 +138,7 @@ await step("several designs and methods stand in one plot", service, async (page
   await tab(page, "compare");
   await page.locator("#methods").click();
   await page.waitForFunction(() => document.querySelectorAll("#table thead th").length === 5);
-  assert.equal(await page.locator("#chart-ste .entry").count(), 4);
+  assert.equal(await page.locator("#charts .legend.shared:not([hidden]) .entry").count(), 4);
   await page.locator("#table button", { hasText: "×" }).first().click();
   assert.equal(await page.locator("#table thead th").count(), 4);
 });
