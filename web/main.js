@@ -197,9 +197,9 @@ function onProgress(job) {
   if (!job) return;
   byId("progress").value = job.progress_percent ?? 0;
   byId("stop").onclick = job.cancel;
-  const { progress_percent: done = 0, elapsed } = job;
+  const { progress_percent: done = 0, elapsed, status } = job;
   const left = done > 2 ? `, about ${timeOf((elapsed * (100 - done)) / done)} more` : "";
-  byId("state").textContent = `A job: ${done} %${left}.${shown ? " Shown is the design before." : ""}`;
+  byId("state").textContent = `${status === "accepted" ? "A job waits for its turn" : `A job: ${done} %${left}`}.${shown ? " Shown is the design before." : ""}`;
 }
 
 /** The last good curve stays; what is wrong stands above it and at its field. */

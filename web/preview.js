@@ -117,9 +117,12 @@ export class Follower {
     const { signal } = this.#interrupt;
     const begun = performance.now();
     let job = null;
+    // What it has waited for others tells nothing of how long it takes.
+    let computed = null;
     const told = (event, data) => {
       if (event === "status") job = data;
-      this.onProgress({ ...job, ...data, elapsed: performance.now() - begun, cancel: () => this.#interrupt?.abort() });
+      if (job?.status !== "accepted") computed ??= performance.now();
+      this.onProgress({ ...job, ...data, elapsed: performance.now() - (computed ?? performance.now()), cancel: () => this.#interrupt?.abort() });
     };
     try {
       await rest(signal, LONG_REST);

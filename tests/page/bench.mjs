@@ -166,6 +166,24 @@ export async function benchSteps(service) {
     assert.deepEqual(previews, []);
   });
 
+  await step("a job that waits for others says so", service, async (page) => {
+    await open(page, service);
+    // What is asked is made to wait: its first event comes, and no further one until then.
+    const [event, answer] = await page.evaluate(async (submission) => {
+      const job = await (await fetch("v1/jobs", { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(submission) })).json();
+      return [{ ...job, status: "accepted" }, job];
+    }, LONG);
+    await page.route("**/v1/jobs", (route) => (route.request().method() === "POST" ? route.fulfill({ status: 202, contentType: "application/json", body: JSON.stringify(event) }) : route.continue()));
+    let go = null;
+    const waited = new Promise((resolve) => { go = resolve; });
+    await page.route(`**/v1/jobs/${answer.id}/events`, async (route) => { await waited; await route.continue(); });
+    await openDesign(page, service, LONG);
+    await page.waitForFunction(() => /^A job waits for its turn\./.test(document.querySelector("#state").innerText));
+    assert.ok(await page.locator("#stop").isVisible());
+    go();
+    await page.waitForFunction(() => !document.body.classList.contains("busy") && /positions in/.test(document.querySelector("#state").innerText));
+  });
+
   await step("several torques of a long period are computed too", service, async (page) => {
     const short = structuredClone(LONG);
     short.pair.driven.tooth_count = 23;

@@ -357,6 +357,13 @@ for (const [width, height] of WIDTHS) {
       await axe(page);
       const wider = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
       assert.equal(wider, 0, "nothing is wider than the window");
+      // Nor is anything cut at the end of its panel; what scrolls by itself can be scrolled.
+      for (const each of await page.locator("[role=tab]:visible").all()) {
+        await each.click();
+        const cut = await page.locator(".work-panel").evaluate((panel) => [...panel.querySelectorAll("*")].filter((element) => !element.closest("svg, .uplot, .scroll") && element.getBoundingClientRect().right > panel.getBoundingClientRect().right + 1).map(({ tagName, id, className }) => `${tagName} ${id} ${className}`));
+        assert.deepEqual(cut, [], await each.innerText());
+      }
+      await tab(page, "curves");
       if (process.argv.includes("--screenshots") && (width < 3840 || colorScheme === "light")) {
         await page.locator("#position").fill("0.3");
         await page.screenshot({ path: `${process.env.PICTURES}/page-${width}-${colorScheme}.png` });
