@@ -155,7 +155,7 @@ export function jobs(place, design, form, onOpen) {
     if (!hasEnded(job.status)) buttons.push(button("Cancel", () => request(`${address}/cancel`, { method: "POST" })));
     else buttons.push(button("Run again", async () => post("v1/jobs", (await json(address)).submission)));
     if (job.status === "successful") buttons.push(file("JSON", "results.json"), file("CSV", "ste.csv"), file("SVG", "ste.svg"), isSolid(job.method) ? file("Pattern", "contact-pattern.svg") : file("VTU", "fields.vtu"), more);
-    const took = (job.wall_time_seconds ?? null) === null ? null : h("small", {}, ` in ${number(job.wall_time_seconds, 2)} s`);
+    const took = job.links.same_as ? h("small", {}, " as computed before") : (job.wall_time_seconds ?? null) === null ? null : h("small", {}, ` in ${number(job.wall_time_seconds, 2)} s`);
     const progress = hasEnded(job.status) ? job.status : h("span", {}, `${job.status} `, h("progress", { max: 100, value: job.progress_percent, ariaLabel: "Progress" }), ` ${job.progress_percent} %`);
     const why = job.problem ? h("small", {}, ` ${job.problem.detail}`) : null;
     const row = h("tr", {}, h("th", { scope: "row" }, new Date(job.submitted_at).toLocaleString()), designOf(job), h("td", {}, progress, took, why), h("td", { className: "actions" }, ...buttons));
