@@ -1,7 +1,7 @@
 // Curves over the true period and the spectrum, one design beside the other, zoomed together.
 
 import uPlot from "./vendor/uplot.js";
-import { h, number, s } from "./dom.js";
+import { fixed, h, number, s } from "./dom.js";
 import { cellsOf, cssOf, faceOf, SCALE, scaleOf, wordsOfFace } from "./face.js";
 import { figure } from "./figure.js";
 import { linesOf, namesOf, ordersOf, PANELS, partialSpectrum, placedNames, wordsOf, wordsOfSpectrum } from "./series.js";
@@ -213,7 +213,7 @@ export class Charts {
     panel.figure.hidden = !face;
     if (!face) return;
     panel.below.hidden = face.every;
-    panel.legend.replaceChildren(face.every ? scaleOf(face.most) : "mean over the positions");
+    panel.legend.replaceChildren(h("span", {}, `K_Hβ ${fixed(face.factor, 3)}`), face.every ? scaleOf(face.most) : h("span", {}, "mean over the positions"));
     if (!face.every) {
       panel.plot?.destroy();
       Object.assign(panel, { plot: null, now: null, shape: "mean" });
@@ -342,7 +342,7 @@ function faceFigure(face, { panel, xRange = null, ...common }) {
   const [from, to] = xRange ?? [0, face.span];
   // As many cells as can be seen: each position of a long period would make a file of megabytes.
   const cells = cellsOf(face, [from, to], (to - from) / common.width).map(({ z, part, ...cell }) => ({ ...cell, y: z, color: cssOf(part) }));
-  return figure({ ...common, x: X_TITLE, y: "z in mm", cells, scale: { colors: SCALE, words: ["0", `${number(face.most, 3)} ${panel.unit}`] } });
+  return figure({ ...common, title: `${panel.title}, K_Hβ ${fixed(face.factor, 3)}`, x: X_TITLE, y: "z in mm", cells, scale: { colors: SCALE, words: ["0", `${number(face.most, 3)} ${panel.unit}`] } });
 }
 
 /** The positions of a line with the end of its span, where the first comes again. */

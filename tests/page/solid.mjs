@@ -95,6 +95,7 @@ export async function solidSteps(service) {
     const words = await page.locator("#words-face").textContent();
     assert.match(words, /from z = -8 to 8 mm.*N\/mm.*face load factor is 1\.\d+/s);
     assert.match(await map.innerText(), /0\s+\d+ N\/mm/, "a scale with its unit");
+    assert.ok((await map.innerText()).includes(`K_Hβ ${(await answer(page, "face")).toFixed(3)}`), await map.innerText());
     // What is painted is what was computed: the heaviest cell has the color of the most, and cells differ.
     const colors = await map.locator("canvas").evaluate((canvas) => {
       const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
