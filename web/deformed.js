@@ -1,6 +1,7 @@
 // The pair under load: how it deforms at the position shown, many times enlarged, its edges colored by stress.
 
 import { json, ProblemError, solved } from "./api.js";
+import { isSolid } from "./dimensions.js";
 import { debounced, h, number, s } from "./dom.js";
 
 /** Stresses are told apart in so many steps. */
@@ -65,7 +66,8 @@ export class Deformation {
       const edges = await json(`v1/jobs/${job.id}/results/edges.json?mesh_position=${this.position().toFixed(4)}`);
       if (!wanted()) return;
       const { scale, top } = this.drawing.setDeformed(edges);
-      this.note.replaceChildren(...words(edges, scale, top));
+      const section = isSolid(submission.method) ? "In the section through the middle of the common face; parts that end before it, where they end. " : "";
+      this.note.replaceChildren(section, ...words(edges, scale, top));
     } catch (error) {
       if (!(error instanceof ProblemError)) throw error;
       if (wanted()) this.note.replaceChildren(error.problem.errors?.[0]?.detail ?? error.message);

@@ -3,7 +3,6 @@
 import { ProblemError, request, solved } from "./api.js";
 import { looks } from "./charts.js";
 import { designsCsv } from "./compare.js";
-import { isSolid } from "./dimensions.js";
 import { csv, drawingOf, ordersCsv, save } from "./download.js";
 import { h } from "./dom.js";
 import { fileOf, pictureOf, stacked } from "./figure.js";
@@ -12,7 +11,7 @@ import { copied, snippets } from "./snippets.js";
 
 /** Files that the service makes of a job: the name of each, what it is called on the page, and what of the results it needs. */
 const FILES_OF_JOBS = [
-  ["submission.rexs", "Pair for a gearbox program, REXS"], ["look-up-table.csv", "Look-up table, CSV"], ["look-up-table.txt", "Look-up table, Modelica text"], ["fields.vtu", "Stress and displacement, VTU", ({ method }) => !isSolid(method)],
+  ["submission.rexs", "Pair for a gearbox program, REXS"], ["look-up-table.csv", "Look-up table, CSV"], ["look-up-table.txt", "Look-up table, Modelica text"], ["fields.vtu", "Stress and displacement, VTU"],
   ["contact-pattern.json", "Contact pattern, JSON", ({ curves }) => curves[0].face], ["contact-pattern.svg", "Contact pattern, SVG", ({ curves }) => curves[0].face],
   ["run-up.csv", "Run-up, CSV", ({ curves }) => curves[0].dynamics], ["run-up.svg", "Run-up, SVG", ({ curves }) => curves[0].dynamics],
   ...[["csv", "CSV"], ["txt", "CombiTable2D"], ["mo", "Modelica"], ["fmu", "FMU"]].map(([kind, name]) => [`force-table.${kind}`, `Force table, ${name}`, ({ force_table: table }) => table]),

@@ -147,14 +147,14 @@ export function jobs(place, design, form, onOpen) {
     // What else there is depends on what was asked for.
     const more = h("button", { type: "button", ariaLabel: `More files of ${job.id.slice(-6)}`, on: { click: () => attempt(async () => {
       const { submission } = await json(address);
-      const files = [["Look-up table", "look-up-table.csv"], ...(isSolid(job.method) ? [["Pattern JSON", "contact-pattern.json"]] : []), ...(submission.dynamics ? [["Run-up CSV", "run-up.csv"], ["Run-up SVG", "run-up.svg"]] : []), ...(submission.dynamics || submission.force_table ? ["csv", "txt", "mo", "fmu"].map((kind) => [`Forces ${kind.toUpperCase()}`, `force-table.${kind}`]) : [])];
+      const files = [["Look-up table", "look-up-table.csv"], ...(isSolid(job.method) ? [["Pattern JSON", "contact-pattern.json"], ["Pattern SVG", "contact-pattern.svg"]] : []), ...(submission.dynamics ? [["Run-up CSV", "run-up.csv"], ["Run-up SVG", "run-up.svg"]] : []), ...(submission.dynamics || submission.force_table ? ["csv", "txt", "mo", "fmu"].map((kind) => [`Forces ${kind.toUpperCase()}`, `force-table.${kind}`]) : [])];
       const rexs = h("button", { type: "button", on: { click: () => attempt(async () => save(`${job.id}.rexs`, "", await (await request(`${address}/submission.rexs`)).blob())) } }, "REXS");
       more.replaceWith(rexs, ...files.map(([words, name]) => file(words, name)));
     }) } }, "More files");
     const buttons = [button("Open", open)];
     if (!hasEnded(job.status)) buttons.push(button("Cancel", () => request(`${address}/cancel`, { method: "POST" })));
     else buttons.push(button("Run again", async () => post("v1/jobs", (await json(address)).submission)));
-    if (job.status === "successful") buttons.push(file("JSON", "results.json"), file("CSV", "ste.csv"), file("SVG", "ste.svg"), isSolid(job.method) ? file("Pattern", "contact-pattern.svg") : file("VTU", "fields.vtu"), more);
+    if (job.status === "successful") buttons.push(file("JSON", "results.json"), file("CSV", "ste.csv"), file("SVG", "ste.svg"), file("VTU", "fields.vtu"), more);
     const took = job.links.same_as ? h("small", {}, " as computed before") : (job.wall_time_seconds ?? null) === null ? null : h("small", {}, ` in ${number(job.wall_time_seconds, 2)} s`);
     const progress = hasEnded(job.status) ? job.status : h("span", {}, `${job.status} `, h("progress", { max: 100, value: job.progress_percent, ariaLabel: "Progress" }), ` ${job.progress_percent} %`);
     const why = job.problem ? h("small", {}, ` ${job.problem.detail}`) : null;

@@ -134,8 +134,6 @@ function onResults(results, submission, { took, since, draft }) {
   computed = submission;
   shown = { name: nameOf(submission), results, submission, teeth: submission.pair.driven.tooth_count, look: 0 };
   if (!draft) live = shown;
-  // What lies inside the gears is told by the plane methods.
-  byId("deformed").hidden = isSolid(results.method);
   byId("position").max = results.pair.period_mesh_periods;
   drawing.setCurve(results.curves[0]);
   if (outline) space?.setPair(outline, submission.pair);

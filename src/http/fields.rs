@@ -4,7 +4,7 @@ use axum::extract::{Path, State};
 use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE, HeaderValue};
 use axum::response::{IntoResponse, Response};
-use meshwright_engine::analysis::fields::Fields;
+
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use serde::Deserialize;
@@ -17,7 +17,7 @@ use super::parameters::{Parameters, invalid, job_id};
 use super::problem::{internal, of_missing_results};
 use crate::exchange::vtu;
 use crate::jobs::Job;
-use crate::wire::solve::fields;
+use crate::wire::solve::{Inside, inside, section};
 use crate::wire::{Code, LoadedEdges, Problem, SOLVER_VERSION, Submission, memory_of};
 
 /// Where to look.
@@ -36,9 +36,9 @@ pub(super) struct FieldParameters {
 /// Get displacements and stresses of both gears at a mesh position
 ///
 /// A VTK unstructured grid that ParaView, PyVista and meshio read: at points `displacement_um` of each gear against its hub, `stress_mpa`
-/// and `von_mises_mpa`, in cells `thickness_mm` and `gear` (0 driving, 1 driven); points in mm, the driving axis at the origin, the driven
-/// one on the x axis. It is computed by the flexible method, whatever the job's was, while the request waits, and bounded as previews
-/// are.
+/// and `von_mises_mpa`, in cells `gear` (0 driving, 1 driven); points in mm, the driving axis at the origin, the driven one on the x axis. Of a plane
+/// method plates with `thickness_mm`, by the flexible method; of `three_dimensional` and its projection volumes, by `three_dimensional`, with z from
+/// the middle of the common face. It is computed while the request waits, and bounded as previews are.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/fields.vtu", tag = "Results", operation_id = "get_fields",
     params(
@@ -67,8 +67,13 @@ pub(super) async fn vtu(
     Parameters(place): Parameters<FieldParameters>,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
-    let write = |found: &Fields, _, _| {
-        vtu::document(&found.gears).map_err(|error| {
+    let work = |submission: &Submission, place, library: &Library, run: &Run| {
+        let gears = match inside(submission, place, library, run)? {
+            Inside::Plates(found) => found.gears.each_ref().map(vtu::Piece::from),
+            Inside::Volumes(found) => found.gears.each_ref().map(vtu::Piece::from),
+        };
+
+        vtu::document(gears).map_err(|error| {
             tracing::error!(%error, "a field could not be written");
             internal()
         })
@@ -78,14 +83,15 @@ pub(super) async fn vtu(
         media_type: "text/xml",
         saved: true,
     };
-    answer(app, client, &id, &place, &request, file, write).await
+    answer(app, client, &id, &place, &request, file, work).await
 }
 
 /// Get the edges of both gears under load at a mesh position
 ///
 /// What a drawing of the deformed pair needs of `fields.vtu`: where the gears end, how far each node there moves against the hub of its
-/// gear, and its von Mises stress; and the transmission error, by which the driven gear is to be turned back for the flanks to touch. It
-/// is computed by the flexible method, whatever the job's was, while the request waits, and bounded as previews are.
+/// gear, and its von Mises stress; and the transmission error, by which the driven gear is to be turned back for the flanks to touch. Of
+/// gears that are seen along their faces it is a section through the middle of the common face, and of a part that ends before it, its end. It is
+/// computed by the method that `fields.vtu` has, while the request waits, and bounded as previews are.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/edges.json", tag = "Results", operation_id = "get_edges",
     params(
@@ -114,8 +120,9 @@ pub(super) async fn edges(
     Parameters(place): Parameters<FieldParameters>,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
-    let write = |found: &Fields, torque, position| {
-        let edges = LoadedEdges::of(found, torque, position);
+    let work = |submission: &Submission, place: (f64, f64), library: &Library, run: &Run| {
+        let found = section(submission, place, library, run)?;
+        let edges = LoadedEdges::of(&found, place.0, place.1);
         let text = edges.to_json().map_err(|_| internal())?;
         Ok(text.into_bytes())
     };
@@ -124,7 +131,7 @@ pub(super) async fn edges(
         media_type: "application/json",
         saved: false,
     };
-    answer(app, client, &id, &place, &request, file, write).await
+    answer(app, client, &id, &place, &request, file, work).await
 }
 
 /// How an answer is called and what it is.
@@ -135,7 +142,7 @@ pub(super) struct File {
     pub(super) saved: bool,
 }
 
-/// The fields of job `id` at `place`, as `write` writes them with their torque and mesh position.
+/// What `work` makes of job `id` at a torque and a mesh position of it, `place`.
 async fn answer(
     app: App,
     client: Client,
@@ -143,16 +150,17 @@ async fn answer(
     place: &FieldParameters,
     request: &HeaderMap,
     file: File,
-    write: impl FnOnce(&Fields, f64, f64) -> Result<Vec<u8>, Problem> + Send + 'static,
+    work: impl FnOnce(&Submission, (f64, f64), &Library, &Run) -> Result<Vec<u8>, Problem>
+    + Send
+    + 'static,
 ) -> Result<Response, Problem> {
     let done = Done::find(&app, &client, id).await?;
     let (torque, position) = place.within(&done.submission)?;
     let form = format!("{torque}/{position}");
-    let work = move |submission: &Submission, library: &Library, run: &Run| {
-        let found = fields(submission, torque, position, library, run)?;
-        write(&found, torque, position)
+    let look = move |submission: &Submission, library: &Library, run: &Run| {
+        work(submission, (torque, position), library, run)
     };
-    done.look(&app, &client, (file, &form), request, work).await
+    done.look(&app, &client, (file, &form), request, look).await
 }
 
 /// A job that has results, whose submission is computed once more for what they do not hold.

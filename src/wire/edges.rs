@@ -80,7 +80,7 @@ impl LoadedEdges {
 
 impl GearEdges {
     fn of(field: &GearField) -> Self {
-        let von_mises = field.von_mises();
+        let von_mises = &field.von_mises;
         let along = |nodes: &Vec<u32>| {
             let mut edge = Edge::default();
             for &node in nodes {

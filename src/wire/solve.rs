@@ -1,7 +1,8 @@
 //! From a submission to its results, or to what it would come to.
 
 use meshwright_engine::analysis::contact_pattern::ContactPattern;
-use meshwright_engine::analysis::fields::Fields;
+use meshwright_engine::analysis::face_fields::Volumes;
+use meshwright_engine::analysis::fields::{Fields, fields};
 use meshwright_engine::analysis::forces::run_up_seconds;
 use meshwright_engine::analysis::{self, AnalysisError};
 use meshwright_engine::library::Library;
@@ -46,27 +47,52 @@ pub fn results(submission: &Submission, library: &Library, run: &Run) -> Result<
     }
 }
 
+/// Displacements and stresses in both gears, as the method sees them.
+pub enum Inside {
+    /// Of plane methods: plates.
+    Plates(Fields),
+    /// Of those that see the faces.
+    Volumes(Volumes),
+}
+
 /// Displacements and stresses in both gears of `submission` under a torque of it, not 0, at a mesh position.
 ///
 /// # Errors
 ///
 /// As for [`solve`].
-pub fn fields(
+pub fn inside(
     submission: &Submission,
-    output_torque_n_m: f64,
-    mesh_position: f64,
+    (output_torque_n_m, mesh_position): (f64, f64),
+    library: &Library,
+    run: &Run,
+) -> Result<Inside, Problem> {
+    let (case, torque, eta) = (submission.case(), output_torque_n_m, mesh_position);
+    let found = match analysis::face_fields::volumes(case, torque, eta, library, run) {
+        Ok(Some(volumes)) => Ok(Inside::Volumes(volumes)),
+        Ok(None) => fields(case, torque, eta, library, run).map(Inside::Plates),
+        Err(error) => Err(error),
+    };
+    found.map_err(|error| problem_of(&error))
+}
+
+/// The same of plates, and in a section through the middle of the common face.
+///
+/// # Errors
+///
+/// As for [`solve`].
+pub fn section(
+    submission: &Submission,
+    (output_torque_n_m, mesh_position): (f64, f64),
     library: &Library,
     run: &Run,
 ) -> Result<Fields, Problem> {
-    submission.refuse_faces("Displacements and stresses inside the gears are told")?;
-    analysis::fields::fields(
-        submission.case(),
-        output_torque_n_m,
-        mesh_position,
-        library,
-        run,
-    )
-    .map_err(|error| problem_of(&error))
+    let (case, torque, eta) = (submission.case(), output_torque_n_m, mesh_position);
+    let found = match analysis::face_fields::section(case, torque, eta, library, run) {
+        Ok(Some(fields)) => Ok(fields),
+        Ok(None) => fields(case, torque, eta, library, run),
+        Err(error) => Err(error),
+    };
+    found.map_err(|error| problem_of(&error))
 }
 
 /// The contact pattern of `submission` under those of its torques, none of them 0.

@@ -168,6 +168,38 @@ fn helical() -> Value {
 }
 
 #[tokio::test]
+async fn fields_of_a_pair_along_its_faces_are_volumes_and_its_edges_those_of_a_section() {
+    let bench = Bench::real().await;
+    let submission = helical();
+    let path = bench.submit(&submission).await;
+    bench.ended(&path).await;
+    let get = async |file: &str| {
+        let path = format!("{path}/results/{file}?torque=50&mesh_position=0.25");
+        bench.get(&path).send().await.unwrap()
+    };
+    let volumes = get("fields.vtu").await;
+    assert_eq!(volumes.status(), StatusCode::OK);
+    let text = volumes.text().await.unwrap();
+    for name in ["displacement_um", "stress_mpa", "von_mises_mpa", "gear"] {
+        assert!(text.contains(&format!("Name=\"{name}\"")), "{name}");
+    }
+    assert!(!text.contains("thickness_mm"));
+    let edges: Value = get("edges.json").await.json().await.unwrap();
+    let results = bench.document(&format!("{path}/results")).await;
+    let at = |name: &str| results["curves"][2][name][2].as_f64().unwrap();
+    let lag = edges["transmission_error_um"].as_f64().unwrap();
+    assert_eq!(at("mesh_position"), 0.25);
+    assert!((lag - at("transmission_error_um")).abs() < 1e-3 * lag);
+    for member in ["driving", "driven"] {
+        let of = |name: &str| edges[member][name].as_array().unwrap().len() as u64;
+        let pair = &submission["pair"][member];
+        assert_eq!(of("teeth"), pair["tooth_count"].as_u64().unwrap());
+        // The bore is one.
+        assert_eq!(of("openings"), 1);
+    }
+}
+
+#[tokio::test]
 async fn the_contact_pattern_of_a_pair_along_its_faces_comes_as_numbers_and_as_a_picture() {
     let bench = Bench::quick().await;
     let path = bench.submit(&helical()).await;

@@ -241,6 +241,34 @@ def test_fields_are_read_back_with_the_stresses_of_the_curve(service, tmp_path):
     assert sorted({int(value) for block in grid.cell_data["gear"] for value in block}) == [0, 1]
 
 
+def test_fields_along_the_faces_are_volumes_as_stressed_as_the_curve_says(service, tmp_path):
+    submission = service.example("helical-pair")
+    submission["resolution"] = {"positions_per_mesh_period": 8, "face_order": 4, "face_slices": 20}
+    submission["output_torques_n_m"], submission["stress"] = [200.0], True
+    results = service.solve(submission)
+    curve, place = results.curves[0], 2
+    file = tmp_path / "fields.vtu"
+    file.write_text(service.fields(results.job["id"], mesh_position=float(curve.mesh_position[place])))
+    grid = meshio.read(file)
+    assert {block.type for block in grid.cells} == {"hexahedron20"}
+    stress = grid.point_data["stress_mpa"].reshape(-1, 3, 3)
+    assert np.allclose(stress, stress.transpose(0, 2, 1))
+    deviator = stress - np.trace(stress, axis1=1, axis2=2)[:, None, None] / 3 * np.eye(3)
+    mises = np.sqrt(1.5 * (deviator**2).sum(axis=(1, 2)))
+    assert np.allclose(mises, grid.point_data["von_mises_mpa"], rtol=1e-3, atol=1e-2)
+    # The faces are as wide as drawn and stand in the middle of the common one; hubs stand still.
+    driven = np.hypot(grid.points[:, 0] - 95.8, grid.points[:, 1])
+    rim = (driven > 56) & (driven < 62)
+    assert np.allclose([grid.points[rim, 2].min(), grid.points[rim, 2].max()], [-10.0, 10.0], atol=1e-4)
+    moved = np.linalg.norm(grid.point_data["displacement_um"], axis=1)
+    assert moved[driven < 20.001].max() == 0.0
+    assert 0.1 < moved.max() / curve.transmission_error_um[place] < 3.0
+    # About the root circle the stress is that of the curve: means over elements against the surface itself.
+    root = curve.stress("driven")["root_tension_mpa"][place]
+    near_roots = (driven > 59.9) & (driven < 61.5)
+    assert abs(np.linalg.eigvalsh(stress[near_roots])[:, 2].max() / root - 1.0) < 0.06
+
+
 def test_a_contact_pattern_is_read_and_drawn(service):
     import matplotlib
 

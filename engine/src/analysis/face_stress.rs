@@ -72,18 +72,10 @@ impl<'a> FaceStressModel<'a> {
     fn peaks(&self, member: Member, contact: &FaceContact) -> GearPeaks {
         let g = member.index();
         let StressedFace { roots, holes } = &self.gears[g];
-        let section = self.pair.section();
-        let lines = contact
-            .slices
-            .chunk_by(|one, next| one.pair == next.pair)
-            .map(|line| {
-                let pressing = line.iter().map(|slice| {
-                    let z = self.pair.own_height(member, slice.z);
-                    (slice.roll_lengths[g], z, slice.normal[0])
-                });
-                roots.forces(section.tooth(member, line[0].pair), pressing)
-            });
-        let loads: Vec<_> = lines.collect();
+        let loads: Vec<_> = contact
+            .pressing(self.pair, member)
+            .map(|(tooth, pressing)| roots.forces(tooth, pressing))
+            .collect();
         let answer = roots.under(Some(&self.yields[g]), &loads);
         let z = roots.tooth_count();
         let away = |tooth: usize| {

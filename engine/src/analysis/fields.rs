@@ -29,6 +29,8 @@ pub struct GearField {
     pub displacements: Vec<Vector>,
     /// The stresses (σ_xx, σ_yy, τ_xy) at each in Pa: the mean of the elements that meet there.
     pub stresses: Vec<[f64; 3]>,
+    /// The von Mises stress at each in Pa.
+    pub von_mises: Vec<f64>,
     /// The elements, on these nodes.
     pub elements: Vec<Element>,
     /// The thickness of each element in meters.
@@ -145,24 +147,21 @@ fn add_teeth(
     let interface = interface_of(tooth);
     let count = gear.tooth_count() as usize;
     let flank = gear.flank();
-    let on_flank = |forces: &[f64]| -> Vec<(u32, Vector)> {
+    let on_flank = |forces: &[f64]| -> Vec<(u32, Vec<f64>)> {
         let nodes = tooth.flank_nodes.iter().zip(&tooth.flank_roll_lengths);
         nodes
             .zip(forces.chunks_exact(2))
             .map(|((node, &s), force)| {
                 let to_tip = radial(flank.tangent_angle(s));
-                (*node, force[0] * flank.normal(s) + force[1] * to_tip)
+                let force = force[0] * flank.normal(s) + force[1] * to_tip;
+                (*node, force.as_slice().to_vec())
             })
             .collect()
     };
     let of_tooth = |number: usize| {
-        let moves = answer.in_tooth(number);
         let own = loads.iter().find(|load| load.tooth == number);
         Load {
-            moves: moves
-                .chunks_exact(2)
-                .map(|u| Vector::new(u[0], u[1]))
-                .collect(),
+            moves: answer.in_tooth(number),
             forces: own.map_or_else(Vec::new, |load| on_flank(&load.forces)),
         }
     };
@@ -193,7 +192,7 @@ fn add_blank(
         .map(|([u_r, u_t], angle)| u_r * radial(*angle) + u_t * tangential(*angle))
         .chain(whole.bore_nodes.iter().map(|_| Vector::zeros()));
     let acting = Load {
-        moves: moves.collect(),
+        moves: moves.flat_map(|u| [u.x, u.y]).collect(),
         forces: Vec::new(),
     };
     let moved: Vec<u32> = whole
@@ -212,7 +211,7 @@ fn add_blank(
 }
 
 /// The edges of `grid` that belong to one element alone and do not lie between nodes of `inner`.
-fn free_edges(grid: &Grid, inner: &[u32]) -> Vec<[u32; 3]> {
+pub(super) fn free_edges(grid: &Grid, inner: &[u32]) -> Vec<[u32; 3]> {
     let all = || grid.elements.iter().flat_map(edges_of);
     let ends = |[from, _, to]: [u32; 3]| (from.min(to), from.max(to));
     let mut elements_at: HashMap<(u32, u32), u32> = HashMap::new();
@@ -267,6 +266,11 @@ impl GearField {
             let (x, y) = (Vector::new(e_x.x, e_y.x), Vector::new(e_x.y, e_y.y));
             [along(&x, &x), along(&y, &y), along(&x, &y)]
         }));
+        self.von_mises.extend(
+            stresses
+                .iter()
+                .map(|[xx, yy, xy]| (xx * xx - xx * yy + yy * yy + 3.0 * xy * xy).sqrt()),
+        );
         self.edges
             .extend(edges.iter().map(|edge| edge.map(|node| first + node)));
         for element in &grid.elements {
@@ -274,11 +278,5 @@ impl GearField {
             self.thicknesses
                 .push(gear.face_width() * element.thickness());
         }
-    }
-
-    /// The von Mises stress at each node in Pa.
-    pub fn von_mises(&self) -> Vec<f64> {
-        let of = |[xx, yy, xy]: &[f64; 3]| (xx * xx - xx * yy + yy * yy + 3.0 * xy * xy).sqrt();
-        self.stresses.iter().map(of).collect()
     }
 }

@@ -99,8 +99,14 @@ impl Stack {
         orders.clamp(z, MOST_ORDERS_PER_TOOTH * z)
     }
 
+    /// How the outer circle of layer 1, a web, follows the rim in `order`, on the functions across each.
+    pub(crate) fn trace_of_web(&self, order: usize) -> Mat<c64> {
+        let twist = self.gear.twist();
+        trace(&self.across[1], &self.face, order as i64, twist)
+    }
+
     /// The rim below the interface circle, down to `inner_radius`.
-    fn rim(&self, inner_radius: f64) -> Revolution<'_> {
+    pub(crate) fn rim(&self, inner_radius: f64) -> Revolution<'_> {
         Revolution {
             material: self.gear.section().material(),
             twist: self.gear.twist(),
@@ -112,26 +118,35 @@ impl Stack {
     /// The stiffness of `order` on the outer circle of layer `index`, on the functions across it, without holes; nothing below the
     /// last.
     pub(crate) fn plain(&self, index: usize, order: usize) -> Result<Option<Mat<c64>>, FemError> {
-        let Some(layer) = self.layers.get(index) else {
+        if index >= self.layers.len() {
             return Ok(None);
-        };
-        let body = Revolution {
+        }
+        let body = self.layer(index);
+        let below = self.below(index, order, body.twist)?;
+        body.on_outer(order as i64, below.as_ref()).map(Some)
+    }
+
+    /// Layer `index` below the rim, without holes: it stands still, while the rim turns.
+    pub(crate) fn layer(&self, index: usize) -> Revolution<'_> {
+        let layer = &self.layers[index];
+        Revolution {
             material: self.gear.section().material(),
             twist: 0.0,
             axial: &self.across[index],
             radii: [layer.inner_radius, layer.outer_radius],
-        };
-        let below = self.below(index, order)?;
-        body.on_outer(order as i64, below.as_ref()).map(Some)
+        }
     }
 
-    /// What carries `order` on the inner circle of layer `index`, on the functions across that layer.
-    pub(crate) fn below(&self, index: usize, order: usize) -> Result<Option<Mat<c64>>, FemError> {
+    /// What carries `order` on the inner circle of layer `index`, on the functions across that layer, whose frame turns by `twist`.
+    pub(crate) fn below(
+        &self,
+        index: usize,
+        order: usize,
+        twist: f64,
+    ) -> Result<Option<Mat<c64>>, FemError> {
         let Some(under) = self.plain(index + 1, order)? else {
             return Ok(None);
         };
-        // Layers stand still; the rim turns.
-        let twist = if index == 0 { self.gear.twist() } else { 0.0 };
         let (lower, upper) = (&self.across[index + 1], &self.across[index]);
         carried(&under, lower, upper, order as i64, twist).map(Some)
     }
@@ -197,14 +212,14 @@ impl Carrier {
                 // A part as wide as the rim is the rim itself.
                 let inner = match stack.layers.get(1) {
                     Some(next) if next.heights == stack.layers[0].heights => {
-                        let below = stack.below(1, order)?;
                         let rim = stack.rim(next.inner_radius);
+                        let below = stack.below(1, order, rim.twist)?;
                         return Ok((rim.on_outer(order as i64, below.as_ref())?, None));
                     }
                     _ => stack.layers[0].inner_radius,
                 };
-                let below = stack.below(0, order)?;
                 let rim = stack.rim(inner);
+                let below = stack.below(0, order, rim.twist)?;
                 Ok((rim.on_outer(order as i64, below.as_ref())?, None))
             })
             .collect::<Result<Vec<_>, PartError>>()?;
@@ -224,12 +239,7 @@ fn through_rim(stack: &Stack, order: usize) -> Result<(Mat<c64>, WebPort), FemEr
         unknowns: 3 * stack.face.len(),
     };
     let plain = stack.plain(1, order)?.ok_or(failed.clone())?;
-    let t = trace(
-        &stack.across[1],
-        &stack.face,
-        order as i64,
-        stack.gear.twist(),
-    );
+    let t = stack.trace_of_web(order);
     let rim = stack.rim(stack.layers[0].inner_radius);
     let mut ports = rim.on_both(order as i64)?;
     let size = ports.size;

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 use faer::c64;
 
-use super::face_roots::FlankForces;
+use super::flank_forces::FlankForces;
 use super::holed::{HoledSection, block};
 use super::{FaceYield, FaceYieldSpec, PartError};
 use crate::fem::surface::{Surface, SurfaceStress};
@@ -35,34 +35,29 @@ pub struct HoleAnswer<'a> {
 }
 
 impl FaceHoles {
-    /// Those of the gear of `spec`; `None` if it has none.
+    /// Those of the gear of `spec`, which move by the orders up to `largest` of the outer circle of its web.
     ///
     /// # Errors
     ///
     /// [`PartError`].
-    pub fn new(spec: &FaceYieldSpec, run: &Run) -> Result<Option<Self>, PartError> {
-        let stack = spec.stack();
-        let Some(largest) = stack.hole_orders else {
-            return Ok(None);
-        };
-        let section = spec.gear().section();
-        let holed = HoledSection::new(&stack, section, largest)?;
+    pub fn new(spec: &FaceYieldSpec, largest: usize, run: &Run) -> Result<Self, PartError> {
+        let holed = HoledSection::new(&spec.stack(), spec.gear().section(), largest)?;
         run.check()?;
         let edges: Vec<&[u32]> = holed.grid.hole_edges.iter().map(Vec::as_slice).collect();
         let edges = Surface::new(&holed.prism(), &edges, true);
-        Ok(Some(Self {
+        Ok(Self {
             classes: holed.ring(&edges.nodes())?.inside(largest, run)?,
             sector_count: holed.grid.sector_count as usize,
             phase: holed.phase,
             edges,
-        }))
+        })
     }
 
     /// The edges under `loads` on the flanks of the same gear, which yield as `yields`.
     pub fn under<'a>(&'a self, yields: &FaceYield, loads: &[FlankForces]) -> HoleAnswer<'a> {
         let loads: Vec<_> = loads
             .iter()
-            .map(|load| (load.tooth(), load.smooth()))
+            .map(|load| (load.tooth, &load.smooth[..]))
             .collect();
         HoleAnswer {
             holes: self,
@@ -139,7 +134,7 @@ impl HoleAnswer<'_> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::assembly::{FaceResolution, MakeAll, Parts as _};
     use crate::fem::axial::AxialBasis;
@@ -242,9 +237,8 @@ mod tests {
         web_harmonics: 8,
     };
 
-    /// The stresses along the holes of a gear whose web stands off the middle by `offset`, of all hands `sign`; one of its holes is larger by
-    /// `larger`.
-    fn stressed(beta: f64, sign: f64, offset: f64, larger: f64) -> Vec<SurfaceStress> {
+    /// A gear of 30 teeth whose web with five holes stands off the middle by `offset`; one of the holes is larger by `larger`.
+    pub(in crate::assembly) fn webbed(beta: f64, offset: f64, larger: f64) -> SolidGear {
         let mut data = paper_gear(30);
         data.blank.bore_radius = 8e-3;
         data.blank.web = Some(Web {
@@ -265,8 +259,12 @@ mod tests {
             };
         }
         data.blank.holes = holes;
-        let gear = SolidGear::new(data, Helix::right(sign * beta), sign * offset, None);
-        let spec = FaceYieldSpec::new(&gear.expect("can be made"), COARSE);
+        SolidGear::new(data, Helix::right(beta), offset, None).expect("can be made")
+    }
+
+    /// The stresses along the holes of such a gear, or of its image where `sign` is negative.
+    fn stressed(beta: f64, sign: f64, offset: f64, larger: f64) -> Vec<SurfaceStress> {
+        let spec = FaceYieldSpec::new(&webbed(sign * beta, sign * offset, larger), COARSE);
         let run = Run::unattended();
         let roots = MakeAll.face_roots(&spec.stack(), &run).expect("sound");
         let yields = MakeAll.face_yield(&spec, &run).expect("sound");
@@ -332,6 +330,6 @@ mod tests {
         let gear = SolidGear::new(paper_gear(30), Helix::STRAIGHT, 0.0, None);
         let spec = FaceYieldSpec::new(&gear.expect("can be made"), COARSE);
         let run = Run::unattended();
-        assert!(FaceHoles::new(&spec, &run).expect("sound").is_none());
+        assert!(MakeAll.face_holes(&spec, &run).expect("sound").is_none());
     }
 }

@@ -6,13 +6,14 @@
 use faer::Mat;
 
 use super::carrier::Stack;
-use super::flank_fit::{FlankFit, OTHER_DEGREE, OWN_DEGREE, smoothed_rows, up_the_flank};
+use super::flank_fit::{FlankFit, OTHER_DEGREE, smoothed_rows};
+use super::flank_forces::{FlankForces, PressedFlank};
 use super::{FaceResolution, FaceYield, PartError, PlainFace};
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::entries;
 use crate::fem::prism::{COMPONENTS, Prism};
 use crate::fem::surface::{Surface, SurfaceStress};
-use crate::gear::{Involute, SolidGear, Vector};
+use crate::gear::{SolidGear, Vector};
 use crate::grid::{GridLevel, ToothGrid};
 use crate::ring::solid::gear::{interfaces, motions};
 use crate::ring::solid::tooth::{SolidTooth, flank_compliance_alone};
@@ -29,14 +30,11 @@ const BLURRED: f64 = 1.0;
 /// The roots of the teeth of a gear, by the loads on its flanks.
 #[derive(Debug)]
 pub struct FaceRoots {
-    axial: AxialBasis,
     /// The fillets: first the one beside the loaded flank.
     fillets: Surface,
     near: Nearness,
-    flank: Involute,
+    pressed: PressedFlank,
     tooth_count: usize,
-    roll_lengths: Vec<f64>,
-    squares: [f64; 2],
     /// The displacements of the fillets of a tooth by the forces on the nodes of its own flank.
     own: Mat<f64>,
     /// Those of the tooth d places counter-clockwise of a loaded one, for d from −reach to reach, by forces on the lower functions on its flank;
@@ -45,16 +43,6 @@ pub struct FaceRoots {
     /// Those of tooth 0 by forces on the outer circle of a web with holes, a column for each displacement.
     by_web: Option<Mat<f64>>,
     degrees_of_freedom: u64,
-}
-
-/// What presses the flank of one tooth, on its nodes and on the functions over it.
-#[derive(Debug, Clone)]
-pub struct FlankForces {
-    tooth: usize,
-    nodal: Vec<f64>,
-    smooth: Vec<f64>,
-    /// Where it acts near the foot of the flank: in the section, and how high.
-    at_foot: Vec<(Vector, f64)>,
 }
 
 /// How the roots answer to loads.
@@ -131,13 +119,14 @@ impl FaceRoots {
         });
         let nodes = tooth.grid_nodes - sector.side_nodes - 1;
         Ok(Self {
-            axial: stack.face.clone(),
             fillets,
             near: Nearness::new(gear, &stack.face),
-            flank: *section.flank(),
+            pressed: PressedFlank {
+                axial: stack.face.clone(),
+                flank: *section.flank(),
+                roll_lengths: tooth.roll_lengths,
+            },
             tooth_count: z,
-            squares: squares(&tooth.roll_lengths),
-            roll_lengths: tooth.roll_lengths,
             own,
             others,
             by_web,
@@ -164,15 +153,16 @@ impl FaceRoots {
         Ok(Self {
             fillets,
             near: Nearness::new(gear, &axial),
-            flank: *section.flank(),
             tooth_count: 1,
-            squares: squares(&grid.flank_roll_lengths),
-            roll_lengths: grid.flank_roll_lengths,
             own: rows.by_points,
             others: vec![Mat::zeros(0, 0)],
             by_web: None,
             degrees_of_freedom: (COMPONENTS * axial.len() * nodes) as u64,
-            axial,
+            pressed: PressedFlank {
+                axial,
+                flank: *section.flank(),
+                roll_lengths: grid.flank_roll_lengths,
+            },
         })
     }
 
@@ -182,44 +172,7 @@ impl FaceRoots {
         tooth: usize,
         pressing: impl Iterator<Item = (f64, f64, f64)>,
     ) -> FlankForces {
-        let m = self.axial.len();
-        let mut forces = FlankForces {
-            tooth,
-            nodal: vec![0.0; m * self.roll_lengths.len()],
-            smooth: vec![0.0; m * (OWN_DEGREE + 1)],
-            at_foot: Vec::new(),
-        };
-        let ends = [
-            self.roll_lengths[0],
-            self.roll_lengths[self.roll_lengths.len() - 1],
-        ];
-        for (roll_length, z, force) in pressing {
-            let s = roll_length.clamp(ends[0], ends[1]);
-            let place = self.flank.point(s);
-            if self
-                .near
-                .are_near((place, z), (self.flank.point(ends[0]), z))
-            {
-                forces.at_foot.push((place, z));
-            }
-            let across = self.axial.values(z);
-            let add = |to: &mut [f64], first: usize, share: f64| {
-                for (to, across) in to[first * m..].iter_mut().zip(&across) {
-                    *to += force * share * across;
-                }
-            };
-            let after = self.roll_lengths.partition_point(|roll| *roll <= s);
-            let first = 2 * ((after.max(1) - 1) / 2).min(self.roll_lengths.len() / 2 - 1);
-            let shares = lagrange(&self.roll_lengths[first..first + 3], s);
-            for (i, share) in shares.into_iter().enumerate() {
-                add(&mut forces.nodal, first + i, share);
-            }
-            let (up, _) = up_the_flank(self.squares, s, OWN_DEGREE);
-            for (a, up) in up.into_iter().enumerate() {
-                add(&mut forces.smooth, a, up);
-            }
-        }
-        forces
+        self.pressed.forces(tooth, pressing)
     }
 
     /// The roots under `loads`; `yields` are those of the same gear, and say what holes change.
@@ -262,13 +215,22 @@ impl FaceRoots {
 impl RootAnswer<'_> {
     /// The stresses on the fillets of tooth `tooth`, on both sides and all across the face, but for places under a contact.
     pub fn stresses(&self, tooth: usize) -> Vec<SurfaceStress> {
-        let FaceRoots { fillets, near, .. } = self.roots;
+        let FaceRoots {
+            fillets,
+            near,
+            pressed,
+            ..
+        } = self.roots;
+        let foot = pressed.flank.point(pressed.roll_lengths[0]);
         let own = self.loads.iter().find(|load| load.tooth == tooth);
-        let at_foot = own.map_or(&[][..], |load| &load.at_foot);
+        let places = own.map_or(&[][..], |load| &load.places).iter();
+        let at_foot: Vec<_> = places
+            .filter(|load| near.are_near(**load, (foot, load.1)))
+            .collect();
         let mut stresses = fillets.stresses(&self.displacements(tooth));
         stresses.retain(|of| {
             let mut loads = at_foot.iter();
-            !loads.any(|load| near.are_near(*load, (of.place, of.z)))
+            !loads.any(|load| near.are_near(**load, (of.place, of.z)))
         });
         stresses
     }
@@ -307,22 +269,6 @@ impl RootAnswer<'_> {
     }
 }
 
-/// The squares of the first and of the last of `roll_lengths`.
-fn squares(roll_lengths: &[f64]) -> [f64; 2] {
-    [roll_lengths[0], roll_lengths[roll_lengths.len() - 1]].map(|s| s * s)
-}
-
-/// The shares of three `places` in what is at `s` between them.
-fn lagrange(places: &[f64], s: f64) -> [f64; 3] {
-    let of = |i: usize| {
-        let others = (0..3).filter(|j| *j != i);
-        others
-            .map(|j| (s - places[j]) / (places[i] - places[j]))
-            .product()
-    };
-    [of(0), of(1), of(2)]
-}
-
 /// The surface of both fillets of `grid`, a sector of the section of `gear`: first the one beside the loaded flank.
 fn fillets(gear: &SolidGear, grid: &ToothGrid, axial: &AxialBasis) -> Surface {
     let prism = Prism {
@@ -357,26 +303,15 @@ impl Nearness {
     }
 }
 
-impl FlankForces {
-    /// The loaded tooth.
-    pub fn tooth(&self) -> usize {
-        self.tooth
-    }
-
-    /// What presses its flank, on the functions over it.
-    pub(super) fn smooth(&self) -> &[f64] {
-        &self.smooth
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::assembly::face_holes::tests::webbed;
     use crate::assembly::{FaceYieldSpec, MakeAll, Parts as _};
     use crate::fem::prescribed::{Load, displacements};
     use crate::fem::recovery::{Functional, edge_stresses};
     use crate::gear::spur::tests::paper_gear;
-    use crate::gear::{Helix, HolePattern, Material, Web};
+    use crate::gear::{Helix, HolePattern, Material};
     use crate::grid::BlankGrid;
     use crate::ring::blank::BlankSubstructure;
     use crate::ring::cyclic::Harmonics;
@@ -408,7 +343,7 @@ mod tests {
 
     /// An even load of 1 N per meter on a line along the flank of tooth 0.
     fn even(roots: &FaceRoots, s: f64) -> [FlankForces; 1] {
-        let rule = roots.axial.rule(16).into_iter();
+        let rule = roots.pressed.axial.rule(16).into_iter();
         [roots.forces(0, rule.map(|(z, w)| (s, z, w)))]
     }
 
@@ -461,7 +396,7 @@ mod tests {
             let section = gear.section();
             let inner = section.root_radius() - 4e-3;
             let roots = FaceRoots::of_sector(&gear, inner, of_order(order)).expect("sound");
-            let loads = even(&roots, roots.roll_lengths[7]);
+            let loads = even(&roots, roots.pressed.roll_lengths[7]);
             let found = in_the_middle(&roots.under(None, &loads), 0);
 
             let plain = section.without_blank();
@@ -469,8 +404,11 @@ mod tests {
             let grid = grid.expect("a usable grid");
             let s = grid.flank_roll_lengths[7];
             let load = Load {
-                moves: vec![Vector::zeros(); grid.arc_nodes.len()],
-                forces: vec![(grid.flank_nodes[7], -section.flank().normal(s))],
+                moves: vec![0.0; 2 * grid.arc_nodes.len()],
+                forces: vec![(
+                    grid.flank_nodes[7],
+                    (-section.flank().normal(s)).as_slice().to_vec(),
+                )],
             };
             let plate = (material, 1.0);
             let moved = displacements("a tooth", &grid.grid, plate, &grid.arc_nodes, &[load]);
@@ -531,7 +469,7 @@ mod tests {
             let angle = section.hole_angle();
             let motion = InterfaceMotion::new(&ring, &blank, angle, None, &run).expect("sound");
             for node in [9, 15] {
-                let loads = even(&roots, roots.roll_lengths[node]);
+                let loads = even(&roots, roots.pressed.roll_lengths[node]);
                 let answer = roots.under(Some(&yields), &loads);
                 let mut forces = vec![0.0; 2 * grid.flank_nodes.len()];
                 forces[2 * node] = -section.face_width();
@@ -552,7 +490,7 @@ mod tests {
         let run = Run::unattended();
         let stack = FaceYieldSpec::new(&gear, of_order(4)).stack();
         let roots = MakeAll.face_roots(&stack, &run).expect("sound");
-        let foot = roots.roll_lengths[0];
+        let foot = roots.pressed.roll_lengths[0];
         let loads = [roots.forces(0, [(foot, 4e-3, 10.0)].into_iter())];
         let answer = roots.under(None, &loads);
         let (own, neighbor) = (answer.stresses(0), answer.stresses(1));
@@ -562,7 +500,7 @@ mod tests {
             roots.fillets.nodes().len() * (4 * 4 + 2)
         );
         assert!(own.len() < neighbor.len() && own.len() > neighbor.len() * 3 / 4);
-        let (twist, foot) = (gear.twist(), roots.flank.point(foot));
+        let (twist, foot) = (gear.twist(), roots.pressed.flank.point(foot));
         let at_foot = |of: &&SurfaceStress| {
             (of.edge == 0) && (of.angle - twist * of.z - foot.y.atan2(foot.x)).abs() < 1e-9
         };
@@ -577,26 +515,12 @@ mod tests {
     #[test]
     fn a_gear_and_its_image_in_the_plane_of_its_face_are_stressed_alike() {
         let of = |beta: f64, sign: f64| {
-            let mut data = paper_gear(30);
-            data.blank.bore_radius = 8e-3;
-            data.blank.web = Some(Web {
-                inner_radius: 8e-3,
-                outer_radius: 22e-3,
-                thickness: 5e-3,
-            });
-            data.blank.holes = HolePattern {
-                count: 5,
-                circle_radius: 15e-3,
-                radius: 3e-3,
-                phase: 0.1,
-            }
-            .holes();
-            let gear = SolidGear::new(data, Helix::right(sign * beta), sign * 4e-3, None);
-            let spec = FaceYieldSpec::new(&gear.expect("can be made"), of_order(4));
+            let gear = webbed(sign * beta, sign * 4e-3, 0.0);
+            let spec = FaceYieldSpec::new(&gear, of_order(4));
             let run = Run::unattended();
             let roots = MakeAll.face_roots(&spec.stack(), &run).expect("sound");
             let yields = MakeAll.face_yield(&spec, &run).expect("sound");
-            let s = roots.roll_lengths[9];
+            let s = roots.pressed.roll_lengths[9];
             let loads = [(7, 3e-3), (8, -6e-3)]
                 .map(|(tooth, z)| roots.forces(tooth, [(s, sign * z, 100.0)].into_iter()));
             let answer = roots.under(Some(&yields), &loads);

@@ -98,6 +98,11 @@ impl FaceYieldSpec {
         }
     }
 
+    /// The orders of the outer circle of the web in which its holes are seen; `None` without holes.
+    pub fn hole_orders(&self) -> Option<usize> {
+        self.stack().hole_orders
+    }
+
     /// The parts of the gear.
     pub fn stack(&self) -> Stack {
         Stack::new(&self.gear, self.resolution)

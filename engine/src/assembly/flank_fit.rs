@@ -7,7 +7,7 @@ use super::half_space::HalfSpace;
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::symmetrize;
 use crate::gear::SolidGear;
-use crate::quadrature::{gauss_legendre, legendre};
+use crate::quadrature::{gauss_legendre, legendre, parabola};
 
 /// The degree up the flank of what a tooth yields under its own load, less the half space.
 pub(super) const OWN_DEGREE: usize = 6;
@@ -47,12 +47,11 @@ pub(super) struct FlankFit<'a> {
 impl<'a> FlankFit<'a> {
     /// On a flank with nodes at the ends and in the middle of each of its elements.
     pub(super) fn new(gear: &'a SolidGear, axial: &'a AxialBasis, roll_lengths: &'a [f64]) -> Self {
-        let last = roll_lengths[roll_lengths.len() - 1];
         Self {
             gear,
             axial,
             roll_lengths,
-            squares: [roll_lengths[0].powi(2), last.powi(2)],
+            squares: squares(roll_lengths),
         }
     }
 
@@ -86,14 +85,11 @@ impl<'a> FlankFit<'a> {
         let rule = gauss_legendre(OWN_DEGREE / 2 + 2);
         for (i, nodes) in self.roll_lengths.windows(3).enumerate().step_by(2) {
             // Arcs of an involute go with the square of the roll length.
-            let [a, b, c] = [0, 1, 2].map(|i| (nodes[i].powi(2) - from) / (to - from));
+            let arcs = [0, 1, 2].map(|i| (nodes[i].powi(2) - from) / (to - from));
+            let [a, _, c] = arcs;
             for (x, w) in &rule {
                 let at = f64::midpoint(a, c) + 0.5 * (c - a) * x;
-                let shapes = [
-                    (at - b) * (at - c) / ((a - b) * (a - c)),
-                    (at - a) * (at - c) / ((b - a) * (b - c)),
-                    (at - a) * (at - b) / ((c - a) * (c - b)),
-                ];
+                let shapes = parabola(arcs, at);
                 let roll_length = (from + at * (to - from)).sqrt();
                 let values = projecting(self.squares, roll_length, OWN_DEGREE);
                 for (row, value) in values.into_iter().enumerate() {
@@ -105,6 +101,11 @@ impl<'a> FlankFit<'a> {
         }
         nearest
     }
+}
+
+/// The squares of the first and of the last of `roll_lengths`.
+pub(super) fn squares(roll_lengths: &[f64]) -> [f64; 2] {
+    [roll_lengths[0], roll_lengths[roll_lengths.len() - 1]].map(|s| s * s)
 }
 
 /// Q g Qᵀ, with Q the same for each of `m` functions along the axis.

@@ -17,6 +17,8 @@ const STRETCH: f64 = 3.0;
 pub(super) struct HalfSpace {
     /// ∫ f_p(z) f_q(z − Δ) dz over Δ.
     products: Vec<Products>,
+    /// Places and weights between two distances, of −1 … 1.
+    rule: Vec<(f64, f64)>,
     scale: f64,
     twist: f64,
     base_radius: f64,
@@ -39,6 +41,7 @@ impl HalfSpace {
         } = *section.material();
         Self {
             products: Products::all(axial),
+            rule: gauss_legendre(POINTS),
             scale: (1.0 - nu * nu) / (PI * e),
             twist: gear.twist(),
             base_radius: section.base_radius(),
@@ -55,7 +58,6 @@ impl HalfSpace {
         let kappa = slope.hypot(self.along);
         let nearest = level * slope / (kappa * kappa);
         let reach = (level * self.along / kappa).abs() / kappa;
-        let rule = gauss_legendre(POINTS);
         let m = self.products[0].shares[0].nrows();
         let mut sum = Mat::zeros(m, m);
         for Products { ends, shares } in &self.products {
@@ -64,7 +66,7 @@ impl HalfSpace {
             let half = 0.5 * (to - from) / stretches;
             let mut integrals = vec![0.0; shares.len()];
             for stretch in 0..stretches as usize {
-                for (x, w) in &rule {
+                for (x, w) in &self.rule {
                     let v = from + half * ((2 * stretch + 1) as f64 + x);
                     let apart = nearest + reach * v.sinh();
                     let t = (2.0 * apart - ends[0] - ends[1]) / (ends[1] - ends[0]);

@@ -126,6 +126,12 @@ impl SeenWeb {
         self.largest
     }
 
+    /// What a force of `order`, given as that of its absolute value, on the web's outer circle is on the interface circle.
+    pub(crate) fn on_interface(&self, order: i64, force: &Mat<c64>) -> Mat<c64> {
+        let on = self.follows[order.unsigned_abs() as usize].adjoint() * force;
+        conjugate_below_zero(&on, order)
+    }
+
     /// The answer of the web's outer circle to what `circles` say of the interface circle: orders of each class, and what these answer to
     /// functions on tooth 0. `onto` makes rows for other functions of columns for these.
     pub(crate) fn answers_to<'a>(
@@ -317,7 +323,7 @@ impl HoledSection {
             GridLevel::Coarse,
         )?;
         let hub = (0..=largest)
-            .map(|order| stack.below(1, order))
+            .map(|order| stack.below(1, order, 0.0))
             .collect::<Result<Option<Vec<_>>, _>>()?;
         Ok(Self {
             grid,

@@ -2,7 +2,7 @@
 //!
 //! In reading order: [`interface`] (the circle on which teeth and blank meet), [`teeth`] (all teeth of a gear down to it),
 //! [`blank`] (what carries them), [`gear`] (both joined), [`pair`] (two gears and the rules of their contact);
-//! along faces [`face_yield`] (what carries the teeth and what holes change: `carrier`, `holed`; how it becomes polynomials: `flank_fit`, `half_space`) [`face_roots`] and [`face_holes`] (how it is stressed at its roots and at its holes);
+//! along faces [`face_yield`] (what carries the teeth and what holes change: `carrier`, `holed`; how it becomes polynomials: `flank_fit`, `half_space`), [`face_roots`] and [`face_holes`] (how it is stressed at its roots and at its holes), [`face_inside`] (how all of it moves);
 //! beside them [`cut`] (a gear parted at that circle again) and [`inside`] (what goes on in a gear whose flanks are loaded).
 //!
 //! Each part is a pure function of its *spec*, a value that says all that the part depends on. Equal specs are equal parts;
@@ -12,9 +12,11 @@ pub mod blank;
 mod carrier;
 pub mod cut;
 pub mod face_holes;
+pub mod face_inside;
 pub mod face_roots;
 pub mod face_yield;
 mod flank_fit;
+mod flank_forces;
 pub mod gear;
 mod half_space;
 mod holed;
@@ -28,8 +30,10 @@ pub use blank::BlankSpec;
 pub use carrier::Stack;
 pub use cut::CutGear;
 pub use face_holes::FaceHoles;
+pub use face_inside::FaceInside;
 pub use face_roots::FaceRoots;
 pub use face_yield::{FaceResolution, FaceYield, FaceYieldSpec, PlainFace};
+pub use flank_forces::FlankForces;
 pub use gear::{Carrier, Gear, GearGrids, GearSpec, WantedGear, make_gears};
 pub use inside::{Inside, Probes};
 pub use pair::{Blanks, Modeling, PairSpec};

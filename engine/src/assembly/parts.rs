@@ -88,7 +88,10 @@ pub trait Parts: Sync {
         spec: &FaceYieldSpec,
         run: &Run,
     ) -> Result<Option<Arc<FaceHoles>>, PartError> {
-        Ok(FaceHoles::new(spec, run)?.map(Arc::new))
+        let made = spec
+            .hole_orders()
+            .map(|orders| FaceHoles::new(spec, orders, run));
+        Ok(made.transpose()?.map(Arc::new))
     }
 
     /// What is known of the flanks of `spec`: a place for it, if nothing is.

@@ -2,7 +2,7 @@
 //!
 //! Read in this order: [`law`] (what strains stress), [`element`] (one element), `sparse` (the matrix of a grid) and `factor`,
 //! [`condensation`] (a grid's stiffness on the unknowns that are kept), [`recovery`] (displacements and stresses of the others), and
-//! [`prescribed`] (at every node); of bodies with an extent along an axis [`axial`], [`prism`] and [`surface`]. Beside them: [`dense`]. It knows grids and materials, and nothing of gears.
+//! [`prescribed`] (at every node); of bodies with an extent along an axis [`axial`], [`prism`], [`surface`] and [`volume`]. Beside them: [`dense`]. It knows grids and materials, and nothing of gears.
 
 pub mod axial;
 pub mod condensation;
@@ -15,6 +15,7 @@ pub mod prism;
 pub mod recovery;
 mod sparse;
 pub mod surface;
+pub mod volume;
 
 use crate::run::Stopped;
 

@@ -6,6 +6,7 @@ use super::FemError;
 use super::condensation::element_stiffnesses;
 use super::element::COMPONENTS;
 use super::factor::Factor;
+use super::prism::{Prism, TakeElement};
 use super::sparse::{BlockMatrix, Numbering};
 use crate::gear::{Material, Vector};
 use crate::grid::Grid;
@@ -16,13 +17,13 @@ const AT_ONCE: usize = 16;
 /// What acts on a grid.
 #[derive(Debug, Clone, Default)]
 pub struct Load {
-    /// How each moved node is moved, in meters.
-    pub moves: Vec<Vector>,
-    /// Forces in N on nodes that are free.
-    pub forces: Vec<(u32, Vector)>,
+    /// How the moved nodes are moved, in meters: node by node, all unknowns of each.
+    pub moves: Vec<f64>,
+    /// Forces in N on nodes that are free, one on each unknown.
+    pub forces: Vec<(u32, Vec<f64>)>,
 }
 
-/// The displacements of all nodes of `grid` under each of `loads`, which say how the nodes `moved` move.
+/// The displacements of all nodes of `grid`, a plate in its plane, under each of `loads`, which say how the nodes `moved` move.
 ///
 /// `thickness`, in meters, is that of an element whose own is 1.
 ///
@@ -36,58 +37,100 @@ pub fn displacements(
     moved: &[u32],
     loads: &[Load],
 ) -> Result<Vec<Vec<Vector>>, FemError> {
+    let each = |take: &mut TakeElement<'_>| {
+        let stiffnesses = element_stiffnesses(grid, material, thickness);
+        for (element, stiffness) in grid.elements.iter().zip(stiffnesses) {
+            take(element, &|i, j| stiffness[(i, j)]);
+        }
+    };
+    let answers = solve(part, (grid, COMPONENTS), each, moved, loads)?;
+    let vectors = |u: Vec<f64>| u.chunks_exact(2).map(Vector::from_column_slice).collect();
+    Ok(answers.into_iter().map(vectors).collect())
+}
+
+impl Prism<'_> {
+    /// The unknowns of all nodes under each of `loads`, which say how the nodes `moved` move.
+    ///
+    /// # Errors
+    ///
+    /// As [`displacements`].
+    pub fn displacements(
+        &self,
+        part: &'static str,
+        moved: &[u32],
+        loads: &[Load],
+    ) -> Result<Vec<Vec<f64>>, FemError> {
+        let size = self.unknowns_of_node();
+        solve(
+            part,
+            (self.grid, size),
+            |take| self.each_element(take),
+            moved,
+            loads,
+        )
+    }
+}
+
+/// The unknowns, `size` a node, under each of `loads`; `each_element` hands out every element of `grid` with its stiffness.
+fn solve(
+    part: &'static str,
+    (grid, size): (&Grid, usize),
+    each_element: impl Fn(&mut TakeElement<'_>),
+    moved: &[u32],
+    loads: &[Load],
+) -> Result<Vec<Vec<f64>>, FemError> {
     let numbering = Numbering::new(grid.nodes.len(), &[], moved);
     let mut places = vec![usize::MAX; grid.nodes.len()];
     for (place, node) in moved.iter().enumerate() {
         places[*node as usize] = place;
     }
-    let mut matrix = BlockMatrix::new(COMPONENTS, &grid.elements, &numbering);
+    let mut matrix = BlockMatrix::new(size, &grid.elements, &numbering);
     // The elements that reach a moved node pull at the free ones.
-    let mut reaching = Vec::new();
-    let stiffnesses = element_stiffnesses(grid, material, thickness);
-    for (element, stiffness) in grid.elements.iter().zip(stiffnesses) {
-        matrix.add(element, |i, j| stiffness[(i, j)], &numbering);
-        let mut nodes = element.nodes().iter();
-        if nodes.any(|node| places[*node as usize] != usize::MAX) {
-            reaching.push((element, stiffness));
-        }
-    }
-    let factor = Factor::new(part, matrix, &numbering)?;
-
-    let mut answers = Vec::with_capacity(loads.len());
-    for loads in loads.chunks(AT_ONCE) {
-        let mut columns = Mat::<f64>::zeros(2 * numbering.count, loads.len());
-        for (j, load) in loads.iter().enumerate() {
-            for (node, force) in &load.forces {
-                if let Some(place) = numbering.place(*node) {
-                    columns[(2 * place, j)] += force.x;
-                    columns[(2 * place + 1, j)] += force.y;
-                }
+    let mut pulls = Mat::<f64>::zeros(size * numbering.count, loads.len());
+    each_element(&mut |element, k| {
+        matrix.add(element, k, &numbering);
+        for (b, node) in element.nodes().iter().enumerate() {
+            let moved = places[*node as usize];
+            if moved == usize::MAX {
+                continue;
             }
-            for (element, stiffness) in &reaching {
-                for (b, node) in element.nodes().iter().enumerate() {
-                    let Some(moves) = load.moves.get(places[*node as usize]) else {
-                        continue;
-                    };
-                    for (a, node) in element.nodes().iter().enumerate() {
-                        let Some(place) = numbering.place(*node) else {
-                            continue;
-                        };
-                        for c in 0..2 {
-                            columns[(2 * place + c, j)] -= stiffness[(2 * a + c, 2 * b)] * moves.x
-                                + stiffness[(2 * a + c, 2 * b + 1)] * moves.y;
+            for (a, node) in element.nodes().iter().enumerate() {
+                let Some(place) = numbering.place(*node) else {
+                    continue;
+                };
+                for d in 0..size {
+                    for c in 0..size {
+                        let stiffness = k(size * a + c, size * b + d);
+                        for (j, load) in loads.iter().enumerate() {
+                            pulls[(size * place + c, j)] -=
+                                stiffness * load.moves[size * moved + d];
                         }
                     }
                 }
             }
         }
+    });
+    for (j, load) in loads.iter().enumerate() {
+        for (node, forces) in &load.forces {
+            if let Some(place) = numbering.place(*node) {
+                for (c, force) in forces.iter().enumerate() {
+                    pulls[(size * place + c, j)] += force;
+                }
+            }
+        }
+    }
+    let factor = Factor::new(part, matrix, &numbering)?;
+
+    let mut answers = Vec::with_capacity(loads.len());
+    for (part, loads) in loads.chunks(AT_ONCE).enumerate() {
+        let mut columns = pulls.subcols(part * AT_ONCE, loads.len()).to_owned();
         factor.solve_in_place(&mut columns);
         for (j, load) in loads.iter().enumerate() {
             let of_node = |node: usize| match numbering.place(node as u32) {
-                Some(place) => Vector::new(columns[(2 * place, j)], columns[(2 * place + 1, j)]),
-                None => load.moves[places[node]],
+                Some(place) => &columns.col_as_slice(j)[size * place..][..size],
+                None => &load.moves[size * places[node]..][..size],
             };
-            answers.push((0..grid.nodes.len()).map(of_node).collect());
+            answers.push((0..grid.nodes.len()).flat_map(of_node).copied().collect());
         }
     }
     Ok(answers)
@@ -118,6 +161,7 @@ mod tests {
             moves: moved
                 .iter()
                 .map(|node| factor * field(&grid.nodes[*node as usize]))
+                .flat_map(|u| [u.x, u.y])
                 .collect(),
             forces: Vec::new(),
         };
@@ -141,8 +185,8 @@ mod tests {
             crate::fem::condensation::condense("a patch", &grid, plate.0, plate.1, &[free], &fixed)
                 .expect("sound");
         let load = Load {
-            moves: vec![Vector::zeros(); fixed.len()],
-            forces: vec![(free, Vector::new(300.0, -100.0))],
+            moves: vec![0.0; 2 * fixed.len()],
+            forces: vec![(free, vec![300.0, -100.0])],
         };
         let u = &displacements("a patch", &grid, plate, &fixed, &[load]).expect("sound")[0]
             [free as usize];

@@ -69,6 +69,9 @@ pub struct NodeRows {
     pub by_points: Mat<f64>,
 }
 
+/// Takes an element and its stiffness by its unknowns.
+pub(super) type TakeElement<'a> = dyn FnMut(&Element, &dyn Fn(usize, usize) -> f64) + 'a;
+
 /// Unknowns that go through the factor together, about.
 const ROWS_AT_ONCE: usize = 64;
 
@@ -118,7 +121,7 @@ impl Prism<'_> {
         let numbering = Numbering::new(self.grid.nodes.len(), kept, fixed);
         let (size, functions) = (self.unknowns_of_node(), self.axial.len());
         let mut matrix = BlockMatrix::new(size, &self.grid.elements, &numbering);
-        self.each_element(|element, k| matrix.add(element, k, &numbering));
+        self.each_element(&mut |element, k| matrix.add(element, k, &numbering));
         // Springs on the kept unknowns make a floating grid definite; they add to the Schur complement exactly and are taken
         // off again below.
         let spring = if fixed.is_empty() {
@@ -208,7 +211,7 @@ impl Prism<'_> {
     pub fn energy(&self, u: &[f64]) -> f64 {
         let size = self.unknowns_of_node();
         let mut energy = 0.0;
-        self.each_element(|element, k| {
+        self.each_element(&mut |element, k| {
             let place = |i: usize| size * element.nodes()[i / size] as usize + i % size;
             let count = size * element.nodes().len();
             for j in 0..count {
@@ -221,10 +224,7 @@ impl Prism<'_> {
     }
 
     /// Hands each element with its stiffness to `take`.
-    pub(super) fn each_element(
-        &self,
-        mut take: impl FnMut(&Element, &dyn Fn(usize, usize) -> f64),
-    ) {
+    pub(super) fn each_element(&self, take: &mut TakeElement<'_>) {
         let law = Law3::new(self.material);
         let AxialMatrices { slope, slopes } = self.axial.matrices();
         let functions = self.axial.len();

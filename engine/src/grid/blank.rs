@@ -108,6 +108,18 @@ impl BlankGrid {
         self.grid.nodes.len() - shared
     }
 
+    /// The nodes of a sector that the next one does not have too.
+    pub fn own(&self) -> Vec<u32> {
+        let (_, left) = &self.side_nodes;
+        let mut shared = left.clone();
+        if !left.is_empty() {
+            let last = |nodes: &[u32]| nodes[nodes.len() - 1];
+            shared.extend([last(&self.bore_nodes), last(&self.arc_nodes)]);
+        }
+        let all = 0..self.grid.nodes.len() as u32;
+        all.filter(|node| !shared.contains(node)).collect()
+    }
+
     /// All sectors joined into one grid of a whole blank: the way without symmetry, to prove the other by.
     pub fn unrolled(&self) -> Self {
         let (right, left) = &self.side_nodes;

@@ -10,9 +10,9 @@ use std::sync::Arc;
 pub use shelf::ShelfUsage;
 
 use crate::assembly::{
-    AssemblyError, BlankSpec, ContactsSpec, FaceRoots, FaceYield, FaceYieldSpec, FlanksSpec, Gear,
-    GearSpec, PairSpec, PartError, Parts, PlainFace, Stack, Teeth, TeethSpec, WantedGear,
-    make_gears,
+    AssemblyError, BlankSpec, ContactsSpec, FaceHoles, FaceRoots, FaceYield, FaceYieldSpec,
+    FlanksSpec, Gear, GearSpec, PairSpec, PartError, Parts, PlainFace, Stack, Teeth, TeethSpec,
+    WantedGear, make_gears,
 };
 use crate::contact::compliances::Compliances;
 use crate::contact::drawn::DrawnFlanks;
@@ -37,6 +37,7 @@ struct Shelves {
     faces: Shelf<Stack, PlainFace>,
     yields: Shelf<FaceYieldSpec, FaceYield>,
     roots: Shelf<Stack, FaceRoots>,
+    holes: Shelf<FaceYieldSpec, FaceHoles>,
 }
 
 impl Default for Library {
@@ -50,7 +51,7 @@ impl Library {
     /// A library that keeps at most `bytes` of parts, of each kind the least recently used leaving first.
     pub fn with_capacity(bytes: usize) -> Self {
         Self(Arc::new(Shelves {
-            teeth: Shelf::new(3 * (bytes / 16), bytes_of_teeth),
+            teeth: Shelf::new(bytes / 8, bytes_of_teeth),
             blanks: Shelf::new(bytes / 8, bytes_of_blank),
             gears: Shelf::new(bytes / 8, bytes_of_gear),
             flanks: Shelf::new(bytes / 8, |_, flanks| flanks.bytes()),
@@ -61,11 +62,12 @@ impl Library {
             faces: Shelf::new(bytes / 16, |_, face| size_of::<f64>() * face.entries()),
             yields: Shelf::new(bytes / 16, |_, face| size_of::<f64>() * face.entries()),
             roots: Shelf::new(bytes / 16, |_, roots| size_of::<f64>() * roots.entries()),
+            holes: Shelf::new(bytes / 16, |_, holes| size_of::<f64>() * holes.entries()),
         }))
     }
 
     /// How each of its shelves is used, by what stands on it.
-    pub fn usage(&self) -> [(&'static str, ShelfUsage); 9] {
+    pub fn usage(&self) -> [(&'static str, ShelfUsage); 10] {
         let Shelves {
             teeth,
             blanks,
@@ -76,6 +78,7 @@ impl Library {
             faces,
             yields,
             roots,
+            holes,
         } = &*self.0;
         [
             ("teeth", teeth.usage()),
@@ -87,6 +90,7 @@ impl Library {
             ("faces", faces.usage()),
             ("yields", yields.usage()),
             ("roots", roots.usage()),
+            ("holes", holes.usage()),
         ]
     }
 }
@@ -126,34 +130,29 @@ impl Parts for Library {
     }
 
     fn plain_face(&self, spec: &Stack, run: &Run) -> Result<Arc<PlainFace>, PartError> {
-        let shelf = &self.0.faces;
-        if let Some(known) = shelf.find(spec) {
-            return Ok(known);
-        }
-        let made = PlainFace::new(spec, run).map(Arc::new)?;
-        shelf.keep(spec, &made);
-        Ok(made)
+        self.0.faces.made(spec, || PlainFace::new(spec, run))
     }
 
     fn face_yield(&self, spec: &FaceYieldSpec, run: &Run) -> Result<Arc<FaceYield>, PartError> {
-        let shelf = &self.0.yields;
-        if let Some(known) = shelf.find(spec) {
-            return Ok(known);
-        }
-        let made = spec.make(self, run).map(Arc::new)?;
-        shelf.keep(spec, &made);
-        Ok(made)
+        self.0.yields.made(spec, || spec.make(self, run))
     }
 
     fn face_roots(&self, spec: &Stack, run: &Run) -> Result<Arc<FaceRoots>, PartError> {
-        let shelf = &self.0.roots;
-        if let Some(known) = shelf.find(spec) {
-            return Ok(known);
-        }
-        let plain = self.plain_face(spec, run)?;
-        let made = FaceRoots::new(spec, &plain, run).map(Arc::new)?;
-        shelf.keep(spec, &made);
-        Ok(made)
+        self.0.roots.made(spec, || {
+            FaceRoots::new(spec, &*self.plain_face(spec, run)?, run)
+        })
+    }
+
+    fn face_holes(
+        &self,
+        spec: &FaceYieldSpec,
+        run: &Run,
+    ) -> Result<Option<Arc<FaceHoles>>, PartError> {
+        let made = spec.hole_orders().map(|orders| {
+            let shelf = &self.0.holes;
+            shelf.made(spec, || FaceHoles::new(spec, orders, run))
+        });
+        made.transpose()
     }
 
     fn flanks(&self, spec: &FlanksSpec) -> Arc<DrawnFlanks> {
@@ -258,6 +257,14 @@ mod tests {
                 roots.under(Some(&kept), &loads).stresses(4)
             });
             assert_eq!(roots[0], roots[1]);
+            let holes = [&library as &dyn Parts, &MakeAll].map(|parts| {
+                let roots = parts.face_roots(&spec.stack(), &run).expect("definite");
+                let loads = [roots.forces(3, [(9e-3, 2e-3, 100.0)].into_iter())];
+                let holes = parts.face_holes(&spec, &run).expect("definite");
+                let holes = holes.expect("it has holes");
+                holes.under(&kept, &loads).stresses()
+            });
+            assert_eq!(holes[0], holes[1]);
         }
         let uses = library.usage();
         let used = |name| {
@@ -266,6 +273,7 @@ mod tests {
         };
         assert_eq!(used("faces"), Some((1, 2)));
         assert_eq!(used("yields"), Some((2, 1)));
-        assert_eq!(used("roots"), Some((1, 2)));
+        assert_eq!(used("roots"), Some((1, 5)));
+        assert_eq!(used("holes"), Some((2, 1)));
     }
 }

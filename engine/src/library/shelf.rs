@@ -120,6 +120,20 @@ impl<S: PartialEq + Clone, P> Shelf<S, P> {
         made
     }
 
+    /// The part of `spec`, made if it is not there; two threads that want it at the same moment both make it, and get the same bits.
+    pub(super) fn made<E>(
+        &self,
+        spec: &S,
+        make: impl FnOnce() -> Result<P, E>,
+    ) -> Result<Arc<P>, E> {
+        if let Some(known) = self.find(spec) {
+            return Ok(known);
+        }
+        let made = make().map(Arc::new)?;
+        self.keep(spec, &made);
+        Ok(made)
+    }
+
     /// How it is used.
     pub(super) fn usage(&self) -> ShelfUsage {
         let stock = self.stock();

@@ -78,10 +78,10 @@ fn hubs_hold_the_torques_and_roots_and_holes_are_as_stressed_as_their_edges() {
         println!("{member}: hub {moment:.4} N m");
         assert!((moment.abs() / TORQUE - 1.0).abs() < 1e-3);
 
-        let von_mises = field.von_mises();
+        let von_mises = &field.von_mises;
         let tooth_0 = tooth_0_angle(field, center);
         let near = |angle: f64, radius: (f64, f64)| {
-            let nodes = field.nodes.iter().zip(&von_mises);
+            let nodes = field.nodes.iter().zip(von_mises);
             nodes
                 .filter(|(node, _)| {
                     let arm = *node - center;

@@ -22,7 +22,7 @@ use super::declare::{
 };
 use super::forces::DynamicsQuestion;
 use super::pair::PairDocument;
-use super::problem::{Code, FieldError, Problem};
+use super::problem::{FieldError, Problem};
 use super::resolution::ResolutionDocument;
 use super::size::{MOST_VALUES, refuse_many_values};
 use crate::hash::sha256_hex;
@@ -222,21 +222,6 @@ impl Submission {
     /// What the engine is asked.
     pub fn case(&self) -> &Case {
         &self.case
-    }
-
-    /// Refuses a pair along its faces where only plane ones are told, as `what` says.
-    ///
-    /// # Errors
-    ///
-    /// `not_in_three_dimensions`.
-    pub fn refuse_faces(&self, what: &str) -> Result<(), Problem> {
-        match self.case.faces {
-            None => Ok(()),
-            Some(_) => {
-                let detail = format!("{what} of plane methods alone so far.");
-                Err(Problem::new(Code::NotInThreeDimensions, detail))
-            }
-        }
     }
 
     /// What the engine is asked beside the curves.

@@ -148,6 +148,24 @@ impl FaceContact {
         moment / force
     }
 
+    /// What presses the flanks of `member` of `pair`, line by line: the tooth, and roll lengths, heights from the middle of its own face, and normal
+    /// forces.
+    pub fn pressing<'a>(
+        &'a self,
+        pair: &'a SolidPair,
+        member: Member,
+    ) -> impl Iterator<Item = (usize, impl Iterator<Item = (f64, f64, f64)> + 'a)> + 'a {
+        let lines = self.slices.chunk_by(|one, next| one.pair == next.pair);
+        lines.map(move |line| {
+            let of_slice = move |slice: &SliceLoad| {
+                let z = pair.own_height(member, slice.z);
+                (slice.roll_lengths[member.index()], z, slice.normal[0])
+            };
+            let tooth = pair.section().tooth(member, line[0].pair);
+            (tooth, line.iter().map(of_slice))
+        })
+    }
+
     /// The load in each of `count` equal strips of a common face of `width`, in N.
     pub fn strips(&self, width: f64, count: usize) -> Vec<f64> {
         let mut strips = vec![0.0; count];
@@ -328,11 +346,7 @@ impl FaceModel {
         load: f64,
         phases: [f64; 2],
     ) -> Result<FaceContact, PositionError> {
-        self.balanced(&slice::lay(self, eta, phases, Some(load)), load)
-    }
-
-    /// The contact on `slices` under `load`.
-    fn balanced(&self, slices: &[Slice], load: f64) -> Result<FaceContact, PositionError> {
+        let slices = slice::lay(self, eta, phases, Some(load));
         let (Some(first), Some(last)) = (slices.first(), slices.last()) else {
             return Err(PositionError::NoContact);
         };
@@ -343,8 +357,8 @@ impl FaceModel {
                 coupled: self.coupled,
             });
         }
-        let balance = balance(compliance(self, slices), slices, load)?;
-        Ok(self.told(slices, &balance, load))
+        let balance = balance(compliance(self, &slices), &slices, load)?;
+        Ok(self.told(&slices, &balance, load))
     }
 
     /// The smooth compliance of the teeth of `member` in the pairs from `first` on.

@@ -1,5 +1,7 @@
 //! A whole gear with an extent along its axis: Z teeth on what carries them.
 
+use std::ops::AddAssign as _;
+
 use faer::{Mat, c64};
 use rayon::prelude::*;
 
@@ -39,33 +41,43 @@ pub fn answers(
     wanted: Option<usize>,
     run: &Run,
 ) -> Result<Vec<ClassAnswers>, FemError> {
+    each_class(tooth, carriers, run, |ring, mut half| {
+        ring.factor.half_solve_in_place(half.as_mut());
+        let flank = half.adjoint() * &half;
+        let (orders, mut unit) = ring.units(&tooth.sector, wanted);
+        ring.factor.half_solve_in_place(unit.as_mut());
+        ClassAnswers {
+            class: ring.class,
+            orders,
+            circle: unit.adjoint() * &half,
+            compliance: unit.adjoint() * &unit,
+            flank,
+        }
+    })
+}
+
+/// What `of` makes of each class 0 … Z/2 of a ring of teeth on `carriers`, and of unit forces on the flank of tooth 0.
+fn each_class<T: Send>(
+    tooth: &SolidTooth,
+    carriers: &[Mat<c64>],
+    run: &Run,
+    of: impl Fn(ClassOfRing, Mat<c64>) -> T + Sync,
+) -> Result<Vec<T>, FemError> {
     let sector = &tooth.sector;
     (0..=sector.count / 2)
         .into_par_iter()
         .map(|class| {
             run.check()?;
             let ring = ClassOfRing::new(sector, carriers, class)?;
-            let mut half = sector
-                .on_class(&tooth.rows, class, &ring.orders)
-                .adjoint()
-                .to_owned();
-            ring.factor.half_solve_in_place(half.as_mut());
-            let flank = half.adjoint() * &half;
-            let (orders, mut unit) = ring.units(sector, wanted);
-            ring.factor.half_solve_in_place(unit.as_mut());
-            Ok(ClassAnswers {
-                class,
-                orders,
-                circle: unit.adjoint() * &half,
-                compliance: unit.adjoint() * &unit,
-                flank,
-            })
+            let rows = sector.on_class(&tooth.rows, class, &ring.orders);
+            Ok(of(ring, rows.adjoint().to_owned()))
         })
         .collect()
 }
 
 /// One class of a ring of teeth on what carries them.
 struct ClassOfRing {
+    class: usize,
     /// The orders of the class on the interface circle.
     orders: Vec<i64>,
     /// Its stiffness on the unknowns of the class.
@@ -89,6 +101,7 @@ impl ClassOfRing {
             unknowns,
         })?;
         Ok(Self {
+            class,
             orders,
             factor,
             unknowns,
@@ -142,28 +155,66 @@ pub fn motions(
     wanted: Option<usize>,
     run: &Run,
 ) -> Result<Vec<ClassMotion>, FemError> {
-    let sector = &tooth.sector;
-    (0..=sector.count / 2)
-        .into_par_iter()
-        .map(|class| {
-            run.check()?;
-            let ring = ClassOfRing::new(sector, carriers, class)?;
-            let mut by_flank = sector
-                .on_class(&tooth.rows, class, &ring.orders)
-                .adjoint()
-                .to_owned();
-            ring.factor.solve_in_place(by_flank.as_mut());
-            let (wanted, mut by_circle) = ring.units(sector, wanted);
-            ring.factor.solve_in_place(by_circle.as_mut());
-            Ok(ClassMotion {
-                class,
-                orders: ring.orders,
-                by_flank,
-                wanted,
-                by_circle,
-            })
-        })
-        .collect()
+    each_class(tooth, carriers, run, |ring, mut by_flank| {
+        ring.factor.solve_in_place(by_flank.as_mut());
+        let (wanted, mut by_circle) = ring.units(&tooth.sector, wanted);
+        ring.factor.solve_in_place(by_circle.as_mut());
+        ClassMotion {
+            class: ring.class,
+            orders: ring.orders,
+            by_flank,
+            wanted,
+            by_circle,
+        }
+    })
+}
+
+/// How the interfaces of all teeth move in one class under given forces.
+#[derive(Debug)]
+pub struct ForcedClass {
+    /// The class k.
+    pub class: usize,
+    /// Its orders on the interface circle.
+    pub orders: Vec<i64>,
+    /// The unknowns of the class.
+    pub motion: Mat<c64>,
+}
+
+/// How the interfaces of a ring of teeth on `carriers` move, class by class, under forces on the flank of each class and on the orders of the
+/// interface circle.
+///
+/// # Errors
+///
+/// As [`answers`].
+pub fn forced(
+    tooth: &SolidTooth,
+    carriers: &[Mat<c64>],
+    (on_flank, on_order): (
+        impl Fn(usize) -> Mat<c64> + Sync,
+        impl Fn(i64) -> Option<Mat<c64>> + Sync,
+    ),
+    run: &Run,
+) -> Result<Vec<ForcedClass>, FemError> {
+    let (size, sides) = (
+        tooth.sector.size,
+        tooth.sector.size * tooth.sector.side_nodes,
+    );
+    each_class(tooth, carriers, run, |ring, by_flank| {
+        let mut motion = by_flank * on_flank(ring.class);
+        for (k, &order) in ring.orders.iter().enumerate() {
+            if let Some(force) = on_order(order) {
+                motion
+                    .subrows_mut(sides + k * size, size)
+                    .add_assign(&force);
+            }
+        }
+        ring.factor.solve_in_place(motion.as_mut());
+        ForcedClass {
+            class: ring.class,
+            orders: ring.orders,
+            motion,
+        }
+    })
 }
 
 /// How the interfaces of the teeth at each of `distances` counter-clockwise of tooth 0 move, of what each class does: its number, its orders

@@ -40,24 +40,54 @@ pub fn carried(
     order: i64,
     twist: f64,
 ) -> Result<Mat<c64>, FemError> {
-    let width = |basis: &AxialBasis| basis.heights()[1] - basis.heights()[0];
-    if width(lower) <= width(upper) {
+    if is_narrower(lower, upper) {
         // U_lower = T U_upper.
         let t = trace(lower, upper, order, twist);
         return Ok(t.adjoint() * stiffness * &t);
     }
     // U_upper = T U_lower, and forces go the other way: T S⁻¹ Tᴴ is the compliance.
-    let failed = FemError::NotPositiveDefinite {
-        part: "the hub",
-        unknowns: stiffness.nrows(),
-    };
     let mut half = trace(upper, lower, order, -twist).adjoint().to_owned();
-    let factor = Cholesky::new(stiffness.clone()).ok_or(failed.clone())?;
+    let factor = Cholesky::new(stiffness.clone()).ok_or(not_definite(stiffness))?;
     factor.half_solve_in_place(half.as_mut());
     let compliance = half.adjoint() * &half;
     let mut inverse = Mat::<c64>::identity(compliance.nrows(), compliance.nrows());
     Cholesky::new(compliance)
-        .ok_or(failed)?
+        .ok_or(not_definite(stiffness))?
         .solve_in_place(inverse.as_mut());
     Ok(inverse)
+}
+
+/// How the circle on the functions `lower`, which `stiffness` carries, moves under one on the functions `upper` that moves by `moved`: what
+/// [`carried`] condenses.
+///
+/// # Errors
+///
+/// As [`carried`].
+pub fn below(
+    stiffness: &Mat<c64>,
+    [lower, upper]: [&AxialBasis; 2],
+    (order, twist): (i64, f64),
+    moved: &Mat<c64>,
+) -> Result<Mat<c64>, FemError> {
+    if is_narrower(lower, upper) {
+        return Ok(trace(lower, upper, order, twist) * moved);
+    }
+    let mut yields = trace(upper, lower, order, -twist).adjoint().to_owned();
+    let factor = Cholesky::new(stiffness.clone()).ok_or(not_definite(stiffness))?;
+    factor.solve_in_place(yields.as_mut());
+    let force = carried(stiffness, lower, upper, order, twist)? * moved;
+    Ok(yields * force)
+}
+
+/// Whether the lower part is no wider than the upper one.
+fn is_narrower(lower: &AxialBasis, upper: &AxialBasis) -> bool {
+    let width = |basis: &AxialBasis| basis.heights()[1] - basis.heights()[0];
+    width(lower) <= width(upper)
+}
+
+fn not_definite(stiffness: &Mat<c64>) -> FemError {
+    FemError::NotPositiveDefinite {
+        part: "the hub",
+        unknowns: stiffness.nrows(),
+    }
 }

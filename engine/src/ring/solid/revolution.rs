@@ -12,7 +12,7 @@ use crate::fem::axial::{AxialBasis, AxialMatrices};
 use crate::fem::dense::Cholesky;
 use crate::fem::prism::{COMPONENTS, Law3};
 use crate::gear::Material;
-use crate::quadrature::gauss_legendre;
+use crate::quadrature::{gauss_legendre, parabola};
 
 /// The size of the elements at both circles of a layer, by the length r/n in which an order fades; quadratic elements of it
 /// err by less than a thousandth.
@@ -42,6 +42,35 @@ pub struct Ports {
     pub stiffness: Mat<c64>,
     /// The unknowns of one circle.
     pub size: usize,
+}
+
+/// How the circles of a layer move in one order.
+#[derive(Debug, Clone)]
+pub struct Circles {
+    /// From the inner to the outer one: corners and middles of elements.
+    radii: Vec<f64>,
+    /// The amplitudes on each.
+    moved: Vec<Mat<c64>>,
+}
+
+impl Circles {
+    /// The amplitudes on the inner circle.
+    pub fn inner(&self) -> &Mat<c64> {
+        &self.moved[0]
+    }
+
+    /// The amplitudes at `radius`.
+    pub fn at(&self, radius: f64) -> Mat<c64> {
+        let last = self.radii.len() - 3;
+        let above = self.radii.partition_point(|r| *r <= radius);
+        let first = (above.max(1) - 1).min(last) / 2 * 2;
+        let shares = parabola([0, 1, 2].map(|i| self.radii[first + i]), radius);
+        let mut sum = Mat::zeros(self.moved[0].nrows(), 1);
+        for (share, moved) in shares.into_iter().zip(&self.moved[first..]) {
+            sum += moved * faer::Scale(c64::new(share, 0.0));
+        }
+        sum
+    }
 }
 
 type Radial = SMatrix<nalgebra::Complex<f64>, 9, 9>;
@@ -106,6 +135,71 @@ impl Revolution<'_> {
             stiffness: ports.unwrap_or_else(|| Mat::zeros(2 * size, 2 * size)),
             size,
         })
+    }
+
+    /// How its circles move in `order` where the outer one moves by `outer`: with `below` under the inner one as in [`Revolution::on_outer`],
+    /// and `forces` that act there.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError::NotPositiveDefinite`].
+    pub fn inside(
+        &self,
+        order: i64,
+        (below, forces): (Option<&Mat<c64>>, Option<Mat<c64>>),
+        outer: &Mat<c64>,
+    ) -> Result<Circles, FemError> {
+        let (size, matrices) = (self.size(), self.axial.matrices());
+        let division = self.division(order);
+        let none = || Mat::<c64>::zeros(size, 1);
+        let mut force = forces.unwrap_or_else(none);
+        let mut carried = below.cloned();
+        let mut elements = Vec::new();
+        for ends in division.windows(2) {
+            let mut k = self.element(order, [ends[0], ends[1]], &matrices);
+            // What is held does not move.
+            let held = if carried.is_some() { 0 } else { size };
+            if let Some(below) = &carried {
+                add_block(&mut k, 0, below);
+            }
+            let free = 2 * size - held;
+            let inner = k.submatrix(held, held, free, free).to_owned();
+            let factor = Cholesky::new(inner).ok_or(FemError::NotPositiveDefinite {
+                part: "a ring",
+                unknowns: free,
+            })?;
+            let mut follows = -k.submatrix(held, 2 * size, free, size).to_owned();
+            factor.solve_in_place(follows.as_mut());
+            let mut moved = Mat::<c64>::zeros(free, 1);
+            if held == 0 {
+                moved.subrows_mut(0, size).copy_from(&force);
+                factor.solve_in_place(moved.as_mut());
+            }
+            let back = k.submatrix(2 * size, held, size, free);
+            carried = Some(k.submatrix(2 * size, 2 * size, size, size) + back * &follows);
+            force = -(back * &moved);
+            elements.push((follows, moved));
+        }
+        let mut circles = vec![outer.clone()];
+        for (follows, moved) in elements.into_iter().rev() {
+            let inner = follows * &circles[circles.len() - 1] + moved;
+            let first = inner.nrows() - size;
+            circles.push(inner.subrows(first, size).to_owned());
+            circles.push(match first {
+                0 => none(),
+                _ => inner.subrows(0, size).to_owned(),
+            });
+        }
+        circles.reverse();
+        Ok(Circles {
+            radii: with_middles(&division),
+            moved: circles,
+        })
+    }
+
+    /// The radii of the circles on which its elements for `order` have nodes.
+    pub fn circles(&self, order: i64) -> Vec<f64> {
+        with_middles(&self.division(order))
     }
 
     /// The radii of its elements for `order`: small at both circles, where that order fades.
@@ -236,6 +330,15 @@ pub(super) fn add_block(k: &mut Mat<c64>, first: usize, block: &Mat<c64>) {
             k[(first + i, first + j)] += block[(i, j)];
         }
     }
+}
+
+/// Radii with the middle between each two.
+fn with_middles(radii: &[f64]) -> Vec<f64> {
+    let mut all = vec![radii[0]];
+    for ends in radii.windows(2) {
+        all.extend([f64::midpoint(ends[0], ends[1]), ends[1]]);
+    }
+    all
 }
 
 /// `k` with its blocks of `size` unknowns in another order.

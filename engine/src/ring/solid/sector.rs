@@ -105,6 +105,23 @@ impl SolidSector {
         off
     }
 
+    /// Adds what is `of` a class, and as its conjugate of the opposite one, to `sums`, one for each sector.
+    pub fn add_to_each(&self, class: usize, of: &Mat<c64>, sums: &mut [Vec<f64>]) {
+        // The class may be its own opposite.
+        let share = match (2 * class).is_multiple_of(self.count) {
+            true => 1.0,
+            false => 2.0,
+        };
+        for (number, sum) in sums.iter_mut().enumerate() {
+            let place = (class * number % self.count) as f64;
+            let turn = Self::turn(1, std::f64::consts::TAU * place / self.count as f64) * share;
+            sum.resize(of.nrows(), 0.0);
+            for (sum, of) in sum.iter_mut().zip(of.col_as_slice(0)) {
+                *sum += (turn * *of).re;
+            }
+        }
+    }
+
     /// The Hermitian stiffness of one sector on the unknowns of the class.
     pub fn class_stiffness(&self, class: usize, orders: &[i64]) -> Mat<c64> {
         let half = self.on_class(&self.stiffness, class, orders);

@@ -104,7 +104,7 @@ pub fn flank_compliance_alone(
 }
 
 /// The nodes of the loaded flank with their outward normals in polar components: (n cos β_b, −τ r_b cos β_b), n that of the section.
-fn flank_normals(gear: &SolidGear, grid: &ToothGrid) -> Vec<(u32, [f64; COMPONENTS])> {
+pub fn flank_normals(gear: &SolidGear, grid: &ToothGrid) -> Vec<(u32, [f64; COMPONENTS])> {
     let flank = gear.section().flank();
     let (sin, cos) = (gear.twist() * flank.base_radius()).atan().sin_cos();
     let nodes = grid.flank_nodes.iter().zip(&grid.flank_roll_lengths);

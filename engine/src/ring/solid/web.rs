@@ -32,6 +32,15 @@ pub struct ClassRows {
     pub rows: Mat<c64>,
 }
 
+/// How a ring moves.
+#[derive(Debug, Clone)]
+pub struct MovedRing {
+    /// The interface of each sector, in its own axes: right side, left side, inner circle unless it is held, outer circle.
+    pub sectors: Vec<Vec<f64>>,
+    /// The amplitudes of the orders 0 … of the inner circle; `None` where it is held.
+    pub hub: Option<Vec<Mat<c64>>>,
+}
+
 impl<'a> HoledRing<'a> {
     /// The ring of sectors `grid`; `prism` is its section with the functions across it, and the nodes `told` can be asked for.
     ///
@@ -115,22 +124,66 @@ impl<'a> HoledRing<'a> {
     pub fn inside(&self, largest: usize, run: &Run) -> Result<Vec<ClassRows>, FemError> {
         let sector = &self.sector;
         self.each_class(largest, run, |class, orders, stiffness| {
-            let outer = orders.len() * sector.size;
-            let inner = stiffness.nrows() - outer;
-            let factor = Cholesky::new(stiffness.submatrix(0, 0, inner, inner).to_owned());
-            let factor = factor.ok_or(FemError::NotPositiveDefinite {
-                part: "the web",
-                unknowns: inner,
-            })?;
-            let mut follows = stiffness.submatrix(0, inner, inner, outer).to_owned();
-            factor.solve_in_place(follows.as_mut());
+            let follows = following(&stiffness, orders.len() * sector.size)?;
             let rows = sector.on_class(&self.rows, class, &orders);
+            let (inner, outer) = (follows.nrows(), follows.ncols());
             let by_inner = rows.subcols(0, inner) * follows;
             Ok(ClassRows {
                 class,
-                rows: rows.subcols(inner, outer) - by_inner,
+                rows: rows.subcols(inner, outer) + by_inner,
                 orders,
             })
+        })
+    }
+
+    /// How the ring moves where its outer circle does: by `amplitude` of each of the orders −`largest` … `largest`, a column. Hole 0 of a pattern
+    /// stands at the angle `phase`.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError`].
+    pub fn moved(
+        &self,
+        (largest, phase): (usize, f64),
+        amplitude: impl Fn(i64) -> Mat<c64> + Sync,
+        run: &Run,
+    ) -> Result<MovedRing, FemError> {
+        let sector = &self.sector;
+        let (size, sides) = (sector.size, sector.size * sector.side_nodes);
+        let classes = self.each_class(largest, run, |class, orders, stiffness| {
+            let outer = orders.len() * size;
+            let follows = following(&stiffness, outer)?;
+            let inner = follows.nrows();
+            let mut motion = Mat::<c64>::zeros(inner + outer, 1);
+            for (k, &order) in orders.iter().enumerate() {
+                let seen = amplitude(order) * faer::Scale(SolidSector::turn(order, phase));
+                motion.subrows_mut(inner + k * size, size).copy_from(&seen);
+            }
+            let moved = follows * motion.subrows(inner, outer);
+            motion.subrows_mut(0, inner).copy_from(&moved);
+            Ok((class, orders, motion))
+        })?;
+        let mut hub = vec![Mat::zeros(size, 1); largest + 1];
+        let mut sectors = vec![Vec::new(); sector.count];
+        for (class, orders, motion) in &classes {
+            let interface = sector.off_class(motion, *class, orders);
+            sector.add_to_each(*class, &interface, &mut sectors);
+            for (k, &order) in orders.iter().enumerate() {
+                if self.hub.is_some() {
+                    let of = motion.subrows(sides + k * size, size);
+                    let of = of * faer::Scale(SolidSector::turn(-order, phase));
+                    let seen = if order < 0 {
+                        of.conjugate().to_owned()
+                    } else {
+                        of
+                    };
+                    hub[order.unsigned_abs() as usize] = seen;
+                }
+            }
+        }
+        Ok(MovedRing {
+            sectors,
+            hub: self.hub.is_some().then_some(hub),
         })
     }
 
@@ -163,6 +216,19 @@ impl<'a> HoledRing<'a> {
         let made: Vec<Option<T>> = made.collect::<Result<_, FemError>>()?;
         Ok(made.into_iter().flatten().collect())
     }
+}
+
+/// How all other unknowns follow the last `outer` of those of a class.
+fn following(stiffness: &Mat<c64>, outer: usize) -> Result<Mat<c64>, FemError> {
+    let inner = stiffness.nrows() - outer;
+    let factor = Cholesky::new(stiffness.submatrix(0, 0, inner, inner).to_owned());
+    let factor = factor.ok_or(FemError::NotPositiveDefinite {
+        part: "the web",
+        unknowns: inner,
+    })?;
+    let mut follows = -stiffness.submatrix(0, inner, inner, outer).to_owned();
+    factor.solve_in_place(follows.as_mut());
+    Ok(follows)
 }
 
 /// That of an order of either sign, of those of 0 and more.

@@ -1,0 +1,155 @@
+//! Displacements and stresses all through both gears of a pair that is seen along its faces, at one mesh position.
+
+use super::case::Faces;
+use super::fields::{Fields, GearField, free_edges};
+use super::three_dimensional::yields;
+use super::{AnalysisError, Case};
+use crate::assembly::face_inside::MovedParts;
+use crate::assembly::{FaceInside, FaceYieldSpec, Parts};
+use crate::contact::face::{FaceContact, FaceModel, FlankYield};
+use crate::contact::placement::Placement;
+use crate::fem::volume::{Place, Volume, von_mises};
+use crate::gear::{Member, Vector};
+use crate::ring::teeth::FARTHEST_COUPLED;
+use crate::run::Run;
+
+/// Both gears at one mesh position: the driving axis is that of z, the driven one crosses the x axis, and z counts from the middle of the common
+/// face.
+///
+/// Parts have nodes of their own where they meet, and a narrower part meets a wider one within its width.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Volumes {
+    /// How far the driven gear lags, along the line of action, in meters.
+    pub transmission_error: f64,
+    /// The driving and the driven gear, displaced against their hubs.
+    pub gears: [Volume; 2],
+}
+
+/// Both gears of `case` under `output_torque`, positive, at the mesh position `eta`, by the method that sees the whole gears; `None` for a plane
+/// case.
+///
+/// # Errors
+///
+/// As [`super::analyze`].
+pub fn volumes(
+    case: &Case,
+    output_torque: f64,
+    eta: f64,
+    parts: &dyn Parts,
+    run: &Run,
+) -> Result<Option<Volumes>, AnalysisError> {
+    let told = |moved: &[MovedParts], _: &Faces, _: Member, place: Place| {
+        let mut volume = Volume::default();
+        moved.iter().for_each(|of| of.add_to(&mut volume, place));
+        volume
+    };
+    let found = of_gears(case, (output_torque, eta), parts, run, told)?;
+    Ok(found.map(|(transmission_error, gears)| Volumes {
+        transmission_error,
+        gears,
+    }))
+}
+
+/// The same in the section through the middle of the common face; of parts that end before it, where they end. Stresses are those in the plane, von
+/// Mises stresses those of all components.
+///
+/// # Errors
+///
+/// As [`super::analyze`].
+pub fn section(
+    case: &Case,
+    output_torque: f64,
+    eta: f64,
+    parts: &dyn Parts,
+    run: &Run,
+) -> Result<Option<Fields>, AnalysisError> {
+    let told = |moved: &[MovedParts], faces: &Faces, member: Member, place: Place| {
+        let mut field = GearField::default();
+        let z = faces.pair.own_height(member, 0.0);
+        moved.iter().for_each(|of| field.cut(of, z, place));
+        field
+    };
+    let found = of_gears(case, (output_torque, eta), parts, run, told)?;
+    Ok(found.map(|(transmission_error, gears)| Fields {
+        transmission_error,
+        gears,
+    }))
+}
+
+/// The transmission error, and what `told` makes of both gears.
+fn of_gears<T: Send>(
+    case: &Case,
+    (output_torque, eta): (f64, f64),
+    parts: &dyn Parts,
+    run: &Run,
+    told: impl Fn(&[MovedParts], &Faces, Member, Place) -> T + Sync,
+) -> Result<Option<(f64, [T; 2])>, AnalysisError> {
+    faer::set_global_parallelism(faer::Par::Seq);
+    let Some(faces) = &case.faces else {
+        return Ok(None);
+    };
+    let yields = yields(faces, false, parts, run)?.map(|of| of as std::sync::Arc<dyn FlankYield>);
+    let model = FaceModel::new(faces.pair.clone(), yields, faces.slices, FARTHEST_COUPLED);
+    let contacts = model.contacts(case.pair.load(output_torque), &[eta], run)?;
+    let Some(contact) = contacts.first() else {
+        return Ok(None);
+    };
+    let deviations = case.pair.deviations();
+    let placement = Placement::real(&case.pair, &deviations, eta, 0, 0.0);
+    let of = |member: Member| {
+        let (axis, angle) = placement.frame(member);
+        // The gear's own middle stands beside that of the common face.
+        let own = faces.pair.own_height(member, 0.0);
+        let place = Place {
+            axis,
+            angle: angle - faces.pair.gear(member).twist() * own,
+            height: -own,
+        };
+        let moved = moved(faces, member, contact, parts, run)?;
+        run.check()?;
+        Ok::<_, AnalysisError>(told(&moved, faces, member, place))
+    };
+    let (driving, driven) = rayon::join(|| of(Member::Driving), || of(Member::Driven));
+    Ok(Some((contact.mesh.transmission_error, [driving?, driven?])))
+}
+
+fn moved(
+    faces: &Faces,
+    member: Member,
+    contact: &FaceContact,
+    parts: &dyn Parts,
+    run: &Run,
+) -> Result<Vec<MovedParts>, AnalysisError> {
+    let spec = FaceYieldSpec::new(faces.pair.gear(member), faces.resolution);
+    let inside = FaceInside::new(spec, parts, run).map_err(|error| error.of(member))?;
+    let loads: Vec<_> = contact
+        .pressing(&faces.pair, member)
+        .map(|(tooth, pressing)| inside.forces(tooth, pressing))
+        .collect();
+    let moved = inside.under(&loads, run);
+    moved.map_err(|error| error.of(member).into())
+}
+
+impl GearField {
+    /// Adds the sections of `parts` at the height `z`, of a gear that stands at `place`.
+    fn cut(&mut self, parts: &MovedParts, z: f64, place: Place) {
+        let edges = free_edges(parts.grid(), parts.joints());
+        for section in parts.sections(z, place) {
+            let first = self.nodes.len() as u32;
+            let flat = |v: &nalgebra::Vector3<f64>| Vector::new(v.x, v.y);
+            self.nodes.extend(section.nodes.iter().map(flat));
+            self.displacements
+                .extend(section.displacements.iter().map(flat));
+            let stresses = section.stresses.iter();
+            self.stresses
+                .extend(stresses.map(|of| [of.m11, of.m22, of.m12]));
+            self.von_mises
+                .extend(section.stresses.iter().map(von_mises));
+            let elements = parts.grid().elements.iter();
+            self.elements
+                .extend(elements.map(|of| of.renumbered(|node| first + node)));
+            self.edges
+                .extend(edges.iter().map(|edge| edge.map(|node| first + node)));
+        }
+    }
+}
