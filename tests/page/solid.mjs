@@ -282,6 +282,19 @@ export async function solidSteps(service) {
     for (const density of ratios) assert.ok(Math.abs(density / 7850 - 1) < 0.01, `steel of ${ratios.join(" and ")} kg/m3`);
   });
 
+  await step("a helical pair is seen deformed in the section through the middle of its face", service, async (page) => {
+    await openDesign(page, service, HELICAL);
+    await settled(page);
+    await page.locator("#deformed").click();
+    await page.locator(".deformation .strained.driven").waitFor({ state: "attached" });
+    assert.match(await page.locator("#deformed-note").innerText(), /^In the section through the middle of the common face; .* At 120 N m and position 0, displacements \d+ times enlarged/);
+    // Every tooth, all holes and the bore are there, and something is stressed most.
+    const moves = async (member) => ((await page.locator(`.deformation .strained.${member}`).getAttribute("d")).match(/M/g) ?? []).length;
+    assert.deepEqual([await moves("driving"), await moves("driven")], [2, 7]);
+    assert.ok((await page.locator(".deformation .stress.level-5").first().getAttribute("d")).length > 20);
+    if (process.argv.includes("--screenshots")) await page.locator(".drawing-panel").screenshot({ path: `${process.env.PICTURES}/page-deformed-helical.png` });
+  });
+
   await step("one finger turns the pair, and two zoom", service, async (page, context) => {
     await openDesign(page, service, HELICAL);
     await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");

@@ -23,6 +23,9 @@ const MOST_LOOKS: f64 = 1e6;
 /// How far, over the scale of the motion, a periodic motion may stand from where the last one stood to be its continuation.
 const NEAR: f64 = 0.1;
 
+/// Farther from where the last one stood a search for it has gone astray, as Newton's method may step over a motion by a few times its distance.
+const ASTRAY: f64 = 3.0 * NEAR;
+
 /// A displacement and its velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State {
@@ -93,6 +96,17 @@ impl Oscillator<'_> {
 
     /// The motion near `start` that repeats after `repeats` periods, stable or not.
     pub fn periodic(&self, start: State, repeats: u32, scale: Scale) -> Option<Orbit> {
+        self.periodic_within(f64::INFINITY, start, repeats, scale)
+    }
+
+    /// The same if it is found within `reach` of `start`.
+    fn periodic_within(
+        &self,
+        reach: f64,
+        start: State,
+        repeats: u32,
+        scale: Scale,
+    ) -> Option<Orbit> {
         let mut state = start;
         for _ in 0..MOST_STEPS {
             let (end, m) = self.after(state, repeats);
@@ -122,6 +136,9 @@ impl Oscillator<'_> {
                 u: state.u + step.u,
                 v: state.v + step.v,
             };
+            if scale.distance(state, start) > reach {
+                return None;
+            }
         }
         None
     }
@@ -130,18 +147,31 @@ impl Oscillator<'_> {
     /// time.
     pub fn settled(&self, from: Orbit, scale: Scale) -> Orbit {
         let continues = |near: State, repeats: u32| {
-            let orbit = self.periodic(near, repeats, scale)?;
+            let orbit = self.periodic_within(ASTRAY, near, repeats, scale)?;
             (orbit.multiplier < 1.0 && scale.distance(orbit.state, near) < NEAR).then_some(orbit)
         };
         if let Some(orbit) = continues(from.state, from.repeats.unwrap_or(1)) {
             return orbit;
         }
         let mut state = from.state;
-        for constants in SETTLED {
+        // One that goes on from a motion that does not repeat has nothing old to forget.
+        let settled = match from.repeats {
+            Some(_) => &SETTLED[..],
+            None => &SETTLED[..1],
+        };
+        for &constants in settled {
             (state, _) = self.after(state, self.periods_of(constants));
             let most = MOST_PERIODS.min(self.periods_in_looks(MOST_LOOKS / 16.0));
-            if let Some(orbit) = (1..=most).find_map(|repeats| continues(state, repeats)) {
-                return orbit;
+            let mut later = state;
+            for repeats in 1..=most {
+                (later, _) = self.after(later, 1);
+                // What has settled comes back to where it was, and what has not is not looked for in vain.
+                if scale.distance(later, state) > ASTRAY {
+                    continue;
+                }
+                if let Some(orbit) = continues(state, repeats) {
+                    return orbit;
+                }
             }
         }
         Orbit {
