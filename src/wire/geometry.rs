@@ -2,13 +2,13 @@
 
 use meshwright_engine::analysis::Case;
 use meshwright_engine::gear::{GearPair, Member, SolidPair};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::units::to_mm;
+use super::units::{to_mm, untold};
 
 /// The derived geometry of a pair.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(title = "Pair geometry")]
 pub struct PairGeometry {
     /// The operating center distance a, in mm.
@@ -52,25 +52,30 @@ pub struct PairGeometry {
 }
 
 /// The path of contact along the theoretical line of action, from the first touch of a pair of teeth to the last.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(title = "Path of contact")]
 pub struct PathOfContact {
     /// Its length, in mm.
     pub length_mm: f64,
     /// A: a pair comes into contact, at the tip of the driven tooth.
+    #[serde(alias = "a")]
     pub point_a: PathPoint,
     /// B: the pair before it leaves contact, one base pitch before E.
+    #[serde(alias = "b")]
     pub point_b: PathPoint,
     /// C: the pitch point.
+    #[serde(alias = "c")]
     pub point_c: PathPoint,
     /// D: the next pair comes into contact, one base pitch after A.
+    #[serde(alias = "d")]
     pub point_d: PathPoint,
     /// E: the pair leaves contact, at the tip of the driving tooth.
+    #[serde(alias = "e")]
     pub point_e: PathPoint,
 }
 
 /// A point of the path of contact.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(title = "Point of the path of contact")]
 pub struct PathPoint {
     /// The mesh position of the reference pair there, in mesh periods; zero at the pitch point.
@@ -82,7 +87,7 @@ pub struct PathPoint {
 }
 
 /// The derived geometry of a gear.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(title = "Gear geometry")]
 pub struct GearGeometry {
     /// The number of mesh periods after which this gear stands alike again: 1 for a solid blank, fewer than its teeth for holes that
@@ -103,10 +108,16 @@ pub struct GearGeometry {
     /// The working pitch radius, in mm.
     pub working_pitch_radius_mm: f64,
     /// The form diameter, in mm: where the involute ends and the fillet begins.
+    #[serde(default = "untold")]
+    #[schema(required)]
     pub form_diameter_mm: f64,
     /// The diameter at which the active profile begins, in mm: the lowest that the tip of the mate reaches.
+    #[serde(default = "untold")]
+    #[schema(required)]
     pub active_root_diameter_mm: f64,
     /// The working pitch diameter, in mm.
+    #[serde(default = "untold")]
+    #[schema(required)]
     pub working_pitch_diameter_mm: f64,
     /// The thickness of a tooth along its tip circle, in mm.
     pub tip_thickness_mm: f64,
@@ -139,7 +150,7 @@ pub struct GearGeometry {
 }
 
 /// The frequencies of eq. 2 at the speed given.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(title = "Frequencies")]
 pub struct Frequencies {
     /// f_m: the mesh frequency, in Hz.

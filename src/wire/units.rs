@@ -2,7 +2,9 @@
 
 use std::io;
 
+use serde::de::IgnoredAny;
 use serde::ser::SerializeSeq;
+use serde::{Deserialize, Deserializer};
 use serde_json::ser::{CompactFormatter, Formatter};
 use serde_json::value::RawValue;
 
@@ -142,6 +144,29 @@ pub(super) fn or_null<S: serde::Serializer>(
         }
     }
     list.end()
+}
+
+/// What a document of an earlier version does not tell: a number that is never written.
+pub(super) fn untold() -> f64 {
+    f64::NAN
+}
+
+/// Reads those of a list that this version knows; a later one may have kinds of them that it does not.
+pub(super) fn known<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
+    deserializer: D,
+) -> Result<Vec<T>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Maybe<T> {
+        Known(T),
+        Unknown(IgnoredAny),
+    }
+    let all: Vec<Maybe<T>> = Vec::deserialize(deserializer)?;
+    let known = all.into_iter().filter_map(|item| match item {
+        Maybe::Known(known) => Some(known),
+        Maybe::Unknown(_) => None,
+    });
+    Ok(known.collect())
 }
 
 struct RoundingFormatter;

@@ -1,14 +1,16 @@
 //! What a reader should know beside the numbers.
 
+use std::borrow::Cow;
+
 use meshwright_engine::analysis::{FormulaQuantity, FormulaRange, PLANE_RIM, PLANE_WEB, Warning};
 use meshwright_engine::gear::Member;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::units::{plain, significant, to_mm, to_mpa, to_n_per_mm, to_um};
 
 /// A warning: the result stands, but with something to know.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = Warning, title = "Warning")]
 pub struct WarningDocument {
     /// The stable code.
@@ -23,14 +25,14 @@ pub struct WarningDocument {
     pub value: Option<f64>,
     /// The unit of that number.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub unit: Option<&'static str>,
+    pub unit: Option<Cow<'static, str>>,
     /// Where the service has a guide that says more.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub guide: Option<&'static str>,
+    pub guide: Option<Cow<'static, str>>,
 }
 
 /// The stable code of a warning.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(title = "Warning code")]
 pub enum WarningCode {
@@ -59,7 +61,7 @@ pub enum WarningCode {
 }
 
 /// One of the two gears.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(title = "Gear name")]
 pub enum GearName {
@@ -114,7 +116,7 @@ impl WarningDocument {
             Warning::ThinLigament { member, ligament } => Self {
                 gear: Some(member.into()),
                 value: Some(to_mm(ligament)),
-                unit: Some("mm"),
+                unit: Some("mm".into()),
                 ..new(
                     WarningCode::ThinLigament,
                     format!(
@@ -126,8 +128,8 @@ impl WarningDocument {
             Warning::WebOutsidePlaneModel { member, web, rim } => Self {
                 gear: Some(member.into()),
                 value: Some(web),
-                unit: Some("1"),
-                guide: Some("/guides/is-my-thin-web-all-right"),
+                unit: Some("1".into()),
+                guide: Some("/guides/is-my-thin-web-all-right".into()),
                 ..new(
                     WarningCode::WebOutsidePlaneModel,
                     outside_plane(member, web, rim),
@@ -139,7 +141,7 @@ impl WarningDocument {
             } => Self {
                 gear: Some(member.into()),
                 value: Some(100.0 * largest_share),
-                unit: Some("%"),
+                unit: Some("%".into()),
                 ..new(
                     WarningCode::TipCornerContact,
                     format!(
@@ -159,7 +161,7 @@ impl WarningDocument {
             },
             Warning::FaceWidthsDiffer { ratio } => Self {
                 value: Some(ratio),
-                unit: Some("1"),
+                unit: Some("1".into()),
                 ..new(
                     WarningCode::FaceWidthsDiffer,
                     format!(
@@ -173,7 +175,7 @@ impl WarningDocument {
                 youngs_modulus,
             } => Self {
                 value: Some(to_mpa(pressure)),
-                unit: Some("MPa"),
+                unit: Some("MPa".into()),
                 ..new(
                     WarningCode::ContactBeyondElasticity,
                     format!(
@@ -185,7 +187,7 @@ impl WarningDocument {
             },
             Warning::PartialSpan { span, period } => Self {
                 value: Some(f64::from(span)),
-                unit: Some("mesh periods"),
+                unit: Some("mesh periods".into()),
                 ..new(
                     WarningCode::PartialSpan,
                     format!(
@@ -204,7 +206,7 @@ impl WarningDocument {
                 part_of_peak_to_peak,
             } => Self {
                 value: Some(to_um(error)),
-                unit: Some("um"),
+                unit: Some("um".into()),
                 ..new(
                     WarningCode::ProjectionDoubtful,
                     format!(
@@ -232,7 +234,7 @@ impl WarningDocument {
             detail: out_of_range(found, [value, least, greatest].map(plain)),
             gear: found.member.map(GearName::from),
             value: Some(value),
-            unit: Some(unit),
+            unit: Some(unit.into()),
             guide: None,
         }
     }
@@ -311,7 +313,7 @@ mod tests {
             "The gear body of Sainsot, Velex and Duverger was published for teeth that span 0.573 to 6.875 deg to each side at the root circle; those of the driven gear span 7.448 deg."
         );
         assert_eq!(
-            (warning.gear, warning.value, warning.unit),
+            (warning.gear, warning.value, warning.unit.as_deref()),
             (Some(GearName::Driven), Some(7.448), Some("deg"))
         );
     }
@@ -364,7 +366,7 @@ mod tests {
             "The single stiffness of ISO 6336-1 was published for a tangential force of at least 100 N/mm"
         ));
         assert_eq!(
-            (warning.gear, warning.value, warning.unit),
+            (warning.gear, warning.value, warning.unit.as_deref()),
             (None, Some(12.5), Some("N/mm"))
         );
     }

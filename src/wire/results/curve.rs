@@ -14,7 +14,7 @@ use super::stress::{PeakStressDocument, StressDocument};
 use crate::wire::units::{or_null, significant, to_mm, to_mpa, to_um};
 
 /// The curves at one output torque. All lists, those of the spectrum and of the dynamics aside, run over the same positions.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = Curve, title = "Curve")]
 pub struct CurveDocument {
     /// The output torque on the driven gear, in N m.
@@ -35,6 +35,8 @@ pub struct CurveDocument {
     pub mesh_stiffness_secant_n_per_m: Vec<f64>,
     /// The torque that the driver has to give, in N m; the load times the driving base radius where unmodified flanks touch on the line of action
     /// alone.
+    #[serde(default)]
+    #[schema(required)]
     pub driving_torque_n_m: Vec<f64>,
     /// The number of tooth pairs that carry load.
     pub pairs_in_contact: Vec<u32>,
@@ -119,7 +121,7 @@ impl CurveDocument {
 }
 
 /// The load along the common face.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = Face, title = "Load along the face")]
 pub struct FaceDocument {
     /// The middles of equal strips of the common face, in mm from its middle; +z is the side from which the driving gear is seen to turn
@@ -152,7 +154,7 @@ impl FaceDocument {
 
 /// What would even the load along the face at this torque: add a slope and a crowning of these amounts to the `lead_modifications` of the driving gear.
 /// Found from a few positions, and within 2 % of what a job finds for it.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = LeadCure, title = "Lead that evens the load")]
 pub struct LeadCureDocument {
     /// The slope to add, in um: taken off at the +z end of the face; negative adds.
@@ -174,7 +176,7 @@ impl LeadCureDocument {
 }
 
 /// The share of the load that the pairs at one offset carry.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = LoadShare, title = "Load share")]
 pub struct LoadShareDocument {
     /// 0 for the pair that passed the pitch point last, 1 for the next, -1 for the one before.

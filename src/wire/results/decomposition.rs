@@ -1,7 +1,7 @@
 //! What the decomposition adds up.
 
 use meshwright_engine::analysis::curve::{BlankFit, DecompositionParts};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::each;
@@ -9,7 +9,7 @@ use crate::wire::units::{to_mm, to_um};
 use crate::wire::warning::GearName;
 
 /// What the decomposition adds up, eq. 15.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = Decomposition, title = "Decomposition")]
 pub struct DecompositionDocument {
     /// The transmission error with rigid blanks, in um, at each position of the curve.
@@ -28,7 +28,7 @@ impl DecompositionDocument {
 }
 
 /// What the decomposition found for one holed blank: mean + amplitude cos(N theta + phase), eq. 13.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = BlankFit, title = "Blank fit")]
 pub struct BlankFitDocument {
     /// The gear.
@@ -42,7 +42,7 @@ pub struct BlankFitDocument {
     /// The phase, in degrees.
     pub phase_deg: f64,
     /// The harmonics 2, 3 and so on of holes that are not equal or not evenly spaced; absent for a pattern, which has none.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub higher: Vec<BlankHarmonicDocument>,
     /// The samples that were fitted.
     pub samples: Vec<BlankSampleDocument>,
@@ -77,7 +77,7 @@ impl BlankFitDocument {
 }
 
 /// One sample of a holed blank.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = BlankSample, title = "Blank sample")]
 pub struct BlankSampleDocument {
     /// The mesh position, in mesh periods.
@@ -87,7 +87,7 @@ pub struct BlankSampleDocument {
 }
 
 /// A further harmonic of a holed blank: amplitude cos(harmonic N theta + phase).
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = BlankHarmonic, title = "Blank harmonic")]
 pub struct BlankHarmonicDocument {
     /// Which of them.

@@ -1,5 +1,7 @@
 //! How good the numbers are, and what they mean.
 
+use std::borrow::Cow;
+
 use meshwright_engine::analysis::Analysis;
 use meshwright_engine::analysis::ErrorEstimate;
 use serde::{Deserialize, Serialize};
@@ -11,11 +13,11 @@ use crate::wire::submission::{SOLVER_VERSION, Submission};
 use crate::wire::units::to_um;
 
 /// How well the equations are satisfied, what they are, and what they leave out.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = Evidence, title = "Evidence")]
 pub struct EvidenceDocument {
     /// The version of the solver.
-    pub solver_version: &'static str,
+    pub solver_version: Cow<'static, str>,
     /// SHA-256 of what decides the result: the filled-in submission without its tags, and the solver's version.
     pub input_hash: String,
     /// Unknowns of both gears before condensation; zero for formulas.
@@ -40,7 +42,7 @@ pub struct EvidenceDocument {
     /// What the numbers mean.
     pub definitions: Vec<Definition>,
     /// What the method leaves out.
-    pub does_not_see: Vec<&'static str>,
+    pub does_not_see: Vec<Cow<'static, str>>,
     /// What a second grid level changes, where it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error_estimate: Option<ErrorEstimateDocument>,
@@ -49,8 +51,9 @@ pub struct EvidenceDocument {
 impl EvidenceDocument {
     pub(super) fn of(submission: &Submission, analysis: &Analysis) -> Self {
         let evidence = &analysis.evidence;
+        let unseen = does_not_see(submission.case(), submission.forces());
         Self {
-            solver_version: SOLVER_VERSION,
+            solver_version: SOLVER_VERSION.into(),
             input_hash: submission.input_hash(),
             degrees_of_freedom: evidence.degrees_of_freedom,
             equilibrium_residual: evidence.equilibrium_residual,
@@ -60,8 +63,8 @@ impl EvidenceDocument {
             projection_error_um: evidence.projection_error.map(to_um),
             stiffness_rule: submission.resolution().stiffness_in_words(),
             resolution: resolution_of(submission),
-            definitions: DEFINITIONS.to_vec(),
-            does_not_see: does_not_see(submission.case(), submission.forces()),
+            definitions: DEFINITIONS.map(Definition::of).into(),
+            does_not_see: unseen.into_iter().map(Cow::from).collect(),
             error_estimate: evidence
                 .error_estimate
                 .as_ref()
@@ -87,44 +90,48 @@ fn resolution_of(submission: &Submission) -> Map<String, Value> {
 }
 
 /// A term and what it means here.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[schema(title = "Definition")]
 pub struct Definition {
     /// The term.
-    pub term: &'static str,
+    pub term: Cow<'static, str>,
     /// What it means.
-    pub meaning: &'static str,
+    pub meaning: Cow<'static, str>,
 }
 
-const DEFINITIONS: &[Definition] = &[
-    Definition {
-        term: "transmission_error",
-        meaning: "The driven base radius times the rotation of the driven hub away from its conjugate position, the driving hub held; positive when load makes the driven gear lag, zero for unmodified rigid involutes in contact.",
-    },
-    Definition {
-        term: "mesh_stiffness_tangent",
-        meaning: "dF/d delta at the load, eq. 3 of the paper; stiffness_rule says how it was obtained.",
-    },
-    Definition {
-        term: "mesh_stiffness_secant",
-        meaning: "F/delta.",
-    },
-    Definition {
-        term: "mesh_position",
-        meaning: "Counts mesh periods; at 0 the reference pair, tooth 0 of both gears, touches at the pitch point. Both gears have then turned by mesh_position times 2 pi/Z, rigidly.",
-    },
-    Definition {
-        term: "statistics",
-        meaning: "Over the span: mean, root mean square after the mean is removed, largest less smallest.",
-    },
-    Definition {
-        term: "order",
-        meaning: "Per revolution of the driven gear. Amplitudes are single-sided, y = sum of A cos(2 pi k j/n + phase), without window.",
-    },
-    Definition {
-        term: "pair_offset",
-        meaning: "n - floor(mesh_position) for the pair that passes the pitch point at mesh position n: 0 for the pair that passed it last, 1 for the next.",
-    },
+impl Definition {
+    fn of((term, meaning): (&'static str, &'static str)) -> Self {
+        let [term, meaning] = [term, meaning].map(Cow::from);
+        Self { term, meaning }
+    }
+}
+
+const DEFINITIONS: [(&str, &str); 7] = [
+    (
+        "transmission_error",
+        "The driven base radius times the rotation of the driven hub away from its conjugate position, the driving hub held; positive when load makes the driven gear lag, zero for unmodified rigid involutes in contact.",
+    ),
+    (
+        "mesh_stiffness_tangent",
+        "dF/d delta at the load, eq. 3 of the paper; stiffness_rule says how it was obtained.",
+    ),
+    ("mesh_stiffness_secant", "F/delta."),
+    (
+        "mesh_position",
+        "Counts mesh periods; at 0 the reference pair, tooth 0 of both gears, touches at the pitch point. Both gears have then turned by mesh_position times 2 pi/Z, rigidly.",
+    ),
+    (
+        "statistics",
+        "Over the span: mean, root mean square after the mean is removed, largest less smallest.",
+    ),
+    (
+        "order",
+        "Per revolution of the driven gear. Amplitudes are single-sided, y = sum of A cos(2 pi k j/n + phase), without window.",
+    ),
+    (
+        "pair_offset",
+        "n - floor(mesh_position) for the pair that passes the pitch point at mesh position n: 0 for the pair that passed it last, 1 for the next.",
+    ),
 ];
 
 /// What a second grid level changes, the largest over the torques.

@@ -2,14 +2,14 @@
 
 use meshwright_engine::analysis::forces::CurveDynamics;
 use meshwright_engine::dynamics::{Branch, ForceTable, ResonanceKind};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::each;
 use crate::wire::units::to_um;
 
 /// The force between the gears over mesh position and approach: under which approach each load acts at each position, over the true period.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = ForceTable, title = "Force table")]
 pub struct ForceTableDocument {
     /// The mesh position, in mesh periods, end excluded.
@@ -19,6 +19,8 @@ pub struct ForceTableDocument {
     /// The approach under each load, in um: one row a load, one number a position. Positive where the driven gear lags.
     pub transmission_error_um: Vec<Vec<f64>>,
     /// The stiffness dF/d(approach) under each load, in N/m: one row a load, that of the load 0 being 0. With it tables need fewer loads.
+    #[serde(default)]
+    #[schema(required)]
     pub mesh_stiffness_tangent_n_per_m: Vec<Vec<f64>>,
     /// The backlash along the line of action at each position, in um: no force acts while the approach is less than that of load 0 by up to
     /// this much.
@@ -50,7 +52,7 @@ impl ForceTableDocument {
 }
 
 /// The motion of the gears over speed under one torque. All lists run over the same speeds.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = Dynamics, title = "Dynamics")]
 pub struct CurveDynamicsDocument {
     /// The natural frequency of the mean mesh stiffness and the equivalent mass, in Hz.
@@ -70,7 +72,7 @@ pub struct CurveDynamicsDocument {
 }
 
 /// The motion over speed, run through one way.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = RunUpBranch, title = "Branch of a run-up")]
 pub struct BranchDocument {
     /// The dynamic transmission error, in um.
@@ -86,7 +88,7 @@ pub struct BranchDocument {
 }
 
 /// The dynamic transmission error over speed, in um.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = DynamicTransmissionError, title = "Dynamic transmission error")]
 pub struct DynamicErrorDocument {
     /// The root mean square of the fluctuation, the mean removed.
@@ -96,7 +98,7 @@ pub struct DynamicErrorDocument {
 }
 
 /// The amplitude at one order over speed.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = OrderAmplitudes, title = "Amplitudes of an order")]
 pub struct OrderAmplitudesDocument {
     /// Its name, as in the spectrum.
@@ -107,7 +109,7 @@ pub struct OrderAmplitudesDocument {
 }
 
 /// A speed at which an order resonates.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = Resonance, title = "Resonance")]
 pub struct ResonanceDocument {
     /// The speed of the driving gear, in 1/min.
@@ -120,7 +122,7 @@ pub struct ResonanceDocument {
 }
 
 /// Why an order resonates.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = ResonanceKind, title = "Kind of a resonance")]
 pub enum ResonanceKindName {

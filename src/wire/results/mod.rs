@@ -11,9 +11,11 @@ mod unseen;
 #[cfg(test)]
 mod tests;
 
+use std::borrow::Cow;
+
 use meshwright_engine::analysis::Analysis;
 use meshwright_engine::analysis::forces::Forces;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 pub use curve::{
@@ -34,22 +36,23 @@ pub use stress::{GearPeakStress, GearStressDocument, PeakStressDocument, StressD
 use super::geometry::{Frequencies, PairGeometry};
 use super::problem::{Code, Problem};
 use super::submission::Submission;
-use super::units::rounded_json;
+use super::units::{known, rounded_json};
 use super::warning::WarningDocument;
 
 /// What a submission comes to. It is bit-identical for the same input and version.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(title = "Results")]
 pub struct Results {
     /// How the curves were computed.
     #[schema(schema_with = crate::wire::method_schema)]
-    pub method: &'static str,
+    pub method: Cow<'static, str>,
     /// The derived geometry.
     pub pair: PairGeometry,
     /// The frequencies at the speed given; absent without a speed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frequencies: Option<Frequencies>,
     /// What to know beside the numbers.
+    #[serde(deserialize_with = "known")]
     pub warnings: Vec<WarningDocument>,
     /// One curve for each output torque, in the order of the submission.
     pub curves: Vec<CurveDocument>,
@@ -66,7 +69,7 @@ impl Results {
         let case = submission.case();
         let dynamics = |i: usize| forces.and_then(|forces| forces.dynamics.get(i));
         Self {
-            method: submission.method(),
+            method: submission.method().into(),
             pair: PairGeometry::of(case),
             frequencies: Frequencies::of(case),
             warnings: analysis.warnings.iter().map(WarningDocument::of).collect(),
@@ -81,6 +84,15 @@ impl Results {
         }
     }
 
+    /// Reads a document that this version wrote, or another one: members that it does not know are passed over.
+    ///
+    /// # Errors
+    ///
+    /// A text that is not JSON, or lacks what every version told.
+    pub fn read(document: &str) -> serde_json::Result<Self> {
+        serde_json::from_str(document)
+    }
+
     /// The document as JSON, its numbers rounded to ten significant digits.
     ///
     /// # Errors
@@ -90,6 +102,10 @@ impl Results {
         rounded_json(self).map_err(|error| Problem::new(Code::InternalError, error.to_string()))
     }
 }
+
+/// A small results document, in a text that no serializer would write.
+#[cfg(test)]
+pub(crate) const STUB: &str = include_str!("../../../tests/it/results.json");
 
 fn each(values: &[f64], convert: impl Fn(f64) -> f64) -> Vec<f64> {
     values.iter().copied().map(convert).collect()

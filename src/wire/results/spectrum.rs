@@ -2,16 +2,16 @@
 
 use meshwright_engine::analysis::spectrum::{NamedOrder, Spectrum};
 use meshwright_engine::analysis::{Case, OrderCause, OrderKind};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::each;
 use crate::wire::geometry::Frequencies;
-use crate::wire::units::to_um;
+use crate::wire::units::{known, to_um};
 use crate::wire::warning::GearName;
 
 /// Single-sided amplitudes and phases: y = sum of A cos(2 pi k j/n + phase), no window; the mean is left out.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = Spectrum, title = "Spectrum")]
 pub struct SpectrumDocument {
     /// Orders per revolution of the driven gear.
@@ -30,6 +30,7 @@ pub struct SpectrumDocument {
     /// Phases of the tangent stiffness, in degrees.
     pub mesh_stiffness_tangent_phase_deg: Vec<f64>,
     /// The lines that have names, by rising order.
+    #[serde(deserialize_with = "known")]
     pub named: Vec<NamedOrderDocument>,
 }
 
@@ -60,7 +61,7 @@ impl SpectrumDocument {
 }
 
 /// A line of the spectrum that has a name.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = NamedOrder, title = "Named order")]
 pub struct NamedOrderDocument {
     /// The order per revolution of the driven gear.
@@ -90,7 +91,7 @@ pub struct NamedOrderDocument {
 }
 
 /// What a line of the spectrum is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = OrderKind, title = "Kind of an order")]
 pub enum OrderKindName {

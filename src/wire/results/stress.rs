@@ -8,7 +8,7 @@ use crate::wire::units::{to_mm, to_mpa};
 
 /// The largest stresses of both gears at each position. Angles are polar ones from the centerline of tooth 0, where it stands in the middle of
 /// the face, from 0 to 360 degrees; heights are those from the middle of the gear's own face, and absent in the plane.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = Stress, title = "Stress")]
 pub struct StressDocument {
     /// Of the driving gear.
@@ -18,7 +18,7 @@ pub struct StressDocument {
 }
 
 /// The largest stresses of a gear at each position, and where they are.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = GearStress, title = "Stress of a gear")]
 pub struct GearStressDocument {
     /// The largest von Mises stress along the tensile root fillets of the teeth in mesh and their neighbors, in MPa.
@@ -26,30 +26,38 @@ pub struct GearStressDocument {
     /// Where that is, in degrees.
     pub root_angle_deg: Vec<f64>,
     /// How high that is, in mm; absent in the plane.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub root_z_mm: Vec<f64>,
     /// The largest first principal stress along the root fillets on both sides of all teeth in reach of the load, in MPa.
+    #[serde(default)]
+    #[schema(required)]
     pub root_tension_mpa: Vec<f64>,
     /// Where that is, in degrees.
+    #[serde(default)]
+    #[schema(required)]
     pub root_tension_angle_deg: Vec<f64>,
     /// How high that is, in mm; absent in the plane.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub root_tension_z_mm: Vec<f64>,
     /// The smallest one, in MPa: the largest compression, which is negative.
+    #[serde(default)]
+    #[schema(required)]
     pub root_compression_mpa: Vec<f64>,
     /// Where that is, in degrees.
+    #[serde(default)]
+    #[schema(required)]
     pub root_compression_angle_deg: Vec<f64>,
     /// How high that is, in mm; absent in the plane.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub root_compression_z_mm: Vec<f64>,
     /// The largest von Mises stress along the edges of the holes, in MPa; absent without holes.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub hole_mpa: Vec<f64>,
     /// Where that is, in degrees; absent without holes.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub hole_angle_deg: Vec<f64>,
     /// How high that is, in mm; absent without holes, and in the plane.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub hole_z_mm: Vec<f64>,
 }
 

@@ -7,10 +7,13 @@ use meshwright_engine::analysis::spectrum::Spectrum;
 use meshwright_engine::analysis::stress::{GearStresses, PeakStress};
 use meshwright_engine::analysis::{Case, Curve, ErrorEstimate, Evidence, Statistics, Warning};
 use meshwright_engine::gear::Member;
+use meshwright_engine::library::Library;
+use meshwright_engine::run::Run;
 use serde_json::{Value, json};
 
 use super::*;
-use crate::wire::examples;
+use crate::wire::warning::WarningCode;
+use crate::wire::{examples, solve};
 
 fn submission(name: &str, speed: Option<f64>) -> Submission {
     let example = examples()
@@ -256,4 +259,104 @@ fn an_interface_radius_that_is_left_to_one_gear_s_default_has_results() {
         let radii = &written["evidence"]["resolution"]["interface_radius_mm"];
         assert!(radii.get("driving").is_none(), "{radii}");
     }
+}
+
+/// Reads a document, writes it again, and holds it to its own bytes.
+fn reads_back(text: &str) -> Results {
+    let read = Results::read(text).expect("a results document");
+    assert_eq!(read.to_json().expect("finite"), text);
+    read
+}
+
+#[test]
+fn the_results_of_every_example_read_back_to_the_same_bytes() {
+    let mut read = 0;
+    for example in examples() {
+        let mut document: Value = serde_json::from_str(example.json).expect("JSON");
+        document["driving_speed_rpm"] = json!(600.0);
+        // Those that are no submission are studies.
+        if let Ok(submission) = Submission::parse(document.to_string().as_bytes()) {
+            let results = Results::new(&submission, &analysis(submission.case()), None);
+            reads_back(&results.to_json().expect("finite"));
+            read += 1;
+        }
+    }
+    assert!(read > 20, "{read}");
+}
+
+#[test]
+fn computed_results_read_back_with_all_that_they_may_have() {
+    let computed = |name: &str, change: Value| {
+        let example = examples().iter().find(|example| example.name == name);
+        let mut document: Value = serde_json::from_str(example.expect("ships").json).expect("JSON");
+        let changes = change.as_object().expect("an object").clone();
+        document.as_object_mut().expect("an object").extend(changes);
+        let submission = Submission::parse(document.to_string().as_bytes()).expect("valid");
+        let text = solve(&submission, &Library::default(), &Run::unattended()).expect("results");
+        reads_back(&text)
+    };
+    let few = json!({ "grid": "coarse", "positions_per_mesh_period": 8 });
+    let plane = json!({ "method": "flexible", "stress": true, "resolution": few, "output_torques_n_m": [115, 0] });
+    let curve = &computed("test-case-2", plane).curves[0];
+    assert!(curve.stress.is_some() && curve.spectrum.is_some());
+    let parts = json!({ "method": "decomposition", "resolution": few });
+    assert!(
+        computed("test-case-2", parts).curves[0]
+            .decomposition
+            .is_some()
+    );
+    let faces = json!({ "output_torques_n_m": [200],
+        "resolution": { "positions_per_mesh_period": 8, "face_order": 4, "face_slices": 10 } });
+    assert!(computed("helical-pair", faces).curves[0].face.is_some());
+    let speeds = computed("run-up", json!({ "resolution": few }));
+    assert!(speeds.curves[0].dynamics.is_some() && speeds.force_table.is_some());
+}
+
+#[test]
+fn documents_of_other_versions_are_read_and_what_they_do_not_tell_is_never_written() {
+    let mut document: Value = serde_json::from_str(STUB).expect("JSON");
+    document["later"] = json!({ "of": "a later version" });
+    let known = document["curves"][0]["spectrum"]["named"][0].clone();
+    let mut unknown = known.clone();
+    unknown["kind"] = json!("of_a_later_version");
+    document["curves"][0]["spectrum"]["named"] = json!([unknown, known]);
+    document["warnings"] = json!([{ "code": "of_a_later_version", "detail": "" },
+        { "code": "zero_backlash", "detail": "" }]);
+    let read = Results::read(&document.to_string()).expect("a later one");
+    assert_eq!(
+        (read.warnings.len(), read.warnings[0].code),
+        (1, WarningCode::ZeroBacklash)
+    );
+    assert_eq!(
+        read.curves[0]
+            .spectrum
+            .as_ref()
+            .map(|spectrum| spectrum.named.len()),
+        Some(1)
+    );
+    assert!(read.to_json().is_ok());
+
+    // As version 0.3.0 wrote it.
+    for curve in document["curves"].as_array_mut().expect("curves") {
+        curve
+            .as_object_mut()
+            .expect("a curve")
+            .remove("driving_torque_n_m");
+    }
+    for gear in ["driving", "driven"] {
+        let gear = document["pair"][gear].as_object_mut().expect("a gear");
+        gear.retain(|name, _| !name.ends_with("_diameter_mm"));
+    }
+    let path = document["pair"]["path_of_contact"]
+        .as_object_mut()
+        .expect("a path");
+    for point in ["a", "b", "c", "d", "e"] {
+        let told = path.remove(&format!("point_{point}")).expect("told");
+        path.insert(point.to_owned(), told);
+    }
+    let read = Results::read(&document.to_string()).expect("an earlier one");
+    assert!(read.curves[0].driving_torque_n_m.is_empty());
+    assert_eq!(read.pair.path_of_contact.point_b.mesh_position, -0.2);
+    assert!(read.pair.driving.form_diameter_mm.is_nan());
+    assert!(read.to_json().is_err());
 }
