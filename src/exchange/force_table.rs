@@ -9,7 +9,8 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use meshwright_engine::dynamics::{ForceTable, Ladder};
-use serde_json::Value;
+
+use crate::wire::Results;
 
 /// How much finer than computed the tables are that others interpolate in straight lines: in position, and in load.
 const REFINED: (usize, usize) = (2, 4);
@@ -42,49 +43,34 @@ pub struct MeshForces {
 
 impl MeshForces {
     /// The one of `results`; `None` if they have none.
-    pub fn of(results: &Value) -> Option<Self> {
-        let table = results.get("force_table")?;
-        let numbers = |list: &Value| -> Option<Vec<f64>> {
-            list.as_array()?.iter().map(Value::as_f64).collect()
-        };
-        let rows = |name: &str| -> Option<Vec<Vec<f64>>> {
-            let meters = |row| Some(numbers(row)?.into_iter().map(|um| um * 1e-6).collect());
-            table.get(name)?.as_array()?.iter().map(meters).collect()
-        };
-        let loads = numbers(table.get("load_n")?)?;
+    pub fn of(results: &Results) -> Option<Self> {
+        let (pair, table) = (&results.pair, results.force_table.as_ref()?);
         let ladder = Ladder {
-            count: loads.len(),
-            largest: *loads.last()?,
+            count: table.load_n.len(),
+            largest: *table.load_n.last()?,
         };
-        let pair = results.get("pair")?;
-        let of_gear = |gear: &str, name: &str| pair.get(gear)?.get(name)?.as_f64();
-        let period = pair.get("period_mesh_periods")?.as_u64()?;
-        let base_radii = [
-            of_gear("driving", "base_radius_mm")? * 1e-3,
-            of_gear("driven", "base_radius_mm")? * 1e-3,
-        ];
-        let compliance = |row: &Value| -> Option<Vec<f64>> {
-            let stiffness = numbers(row)?.into_iter();
-            Some(
-                stiffness
-                    .map(|k| if k > 0.0 { 1.0 / k } else { 0.0 })
-                    .collect(),
-            )
+        let base_radii = [&pair.driving, &pair.driven].map(|gear| gear.base_radius_mm * 1e-3);
+        let rows = |rows: &[Vec<f64>], convert: fn(f64) -> f64| {
+            let row = |row: &Vec<f64>| row.iter().copied().map(convert).collect();
+            rows.iter().map(row).collect::<Vec<Vec<f64>>>()
         };
-        let stiffness = table.get("mesh_stiffness_tangent_n_per_m")?.as_array()?;
-        let compliance: Vec<Vec<f64>> = stiffness.iter().map(compliance).collect::<Option<_>>()?;
-        let base_pitch = pair.get("base_pitch_mm")?.as_f64()? * 1e-3;
+        let meters = |um: f64| um * 1e-6;
+        let mut forces = ForceTable::new(
+            pair.period_mesh_periods,
+            ladder,
+            rows(&table.transmission_error_um, meters),
+            rows(&table.other_flank_transmission_error_um, meters),
+        );
+        if !table.mesh_stiffness_tangent_n_per_m.is_empty() {
+            let compliance = |k: f64| if k > 0.0 { 1.0 / k } else { 0.0 };
+            forces =
+                forces.with_compliance(rows(&table.mesh_stiffness_tangent_n_per_m, compliance));
+        }
         Some(Self {
-            table: ForceTable::new(
-                u32::try_from(period).ok()?,
-                ladder,
-                rows("transmission_error_um")?,
-                rows("other_flank_transmission_error_um")?,
-            )
-            .with_compliance(compliance),
+            table: forces,
             base_radii,
-            tooth_count: (TAU * base_radii[0] / base_pitch).round(),
-            method: results.get("method")?.as_str()?.to_owned(),
+            tooth_count: (TAU * base_radii[0] / (pair.base_pitch_mm * 1e-3)).round(),
+            method: results.method.to_string(),
         })
     }
 
@@ -305,33 +291,38 @@ end MeshwrightMesh;
 
 #[cfg(test)]
 pub(super) mod tests {
-    use serde_json::json;
-
     use super::*;
+    use crate::wire::results::{ForceTableDocument, STUB};
 
     /// Two positions a period, δ = F/k with k = 1e8 and 2e8 N/m, 100 um of backlash.
-    pub(in crate::exchange) fn results() -> Value {
+    pub(in crate::exchange) fn results() -> Results {
         let loads = Ladder {
             count: 4,
             largest: 1000.0,
         };
         let loads = loads.loads();
-        let rows = |sign: f64, from: f64| -> Vec<[f64; 2]> {
+        let rows = |sign: f64, from: f64| -> Vec<Vec<f64>> {
             loads
                 .iter()
-                .map(|load| [from + sign * load * 1e-2, from + sign * load * 0.5e-2])
+                .map(|load| vec![from + sign * load * 1e-2, from + sign * load * 0.5e-2])
                 .collect()
         };
-        json!({
-            "method": "flexible",
-            "pair": { "period_mesh_periods": 1, "base_pitch_mm": TAU * 2.0,
-                      "driving": { "base_radius_mm": 40.0 }, "driven": { "base_radius_mm": 50.0 } },
-            "force_table": {
-                "mesh_position": [0.0, 0.5], "load_n": loads,
-                "transmission_error_um": rows(1.0, 0.0),
-                "mesh_stiffness_tangent_n_per_m": [[0.0, 0.0], [1e8, 2e8], [1e8, 2e8], [1e8, 2e8]], "backlash_um": [100.0, 100.0],
-                "other_flank_transmission_error_um": rows(-1.0, -100.0) },
-        })
+        let mut results = Results::read(STUB).expect("a results document");
+        results.pair.period_mesh_periods = 1;
+        results.pair.base_pitch_mm = TAU * 2.0;
+        results.pair.driving.base_radius_mm = 40.0;
+        results.pair.driven.base_radius_mm = 50.0;
+        let mut stiffness = vec![vec![1e8, 2e8]; 4];
+        stiffness[0].fill(0.0);
+        results.force_table = Some(ForceTableDocument {
+            mesh_position: vec![0.0, 0.5],
+            transmission_error_um: rows(1.0, 0.0),
+            mesh_stiffness_tangent_n_per_m: stiffness,
+            backlash_um: vec![100.0; 2],
+            other_flank_transmission_error_um: rows(-1.0, -100.0),
+            load_n: loads,
+        });
+        results
     }
 
     #[test]
@@ -413,7 +404,7 @@ pub(super) mod tests {
     #[test]
     fn results_without_a_table_have_none() {
         let mut results = results();
-        results["force_table"] = Value::Null;
+        results.force_table = None;
         assert!(MeshForces::of(&results).is_none());
     }
 }

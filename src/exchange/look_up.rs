@@ -3,9 +3,10 @@
 //! A head tells datum, signs and period, so that the file is enough by itself. The last row repeats the first at the end of the true
 //! period: a reader that interpolates between rows and wraps at the last angle is right everywhere.
 
-use std::fmt::Write as _;
+use serde_json::json;
 
-use serde_json::Value;
+use crate::wire::Results;
+use crate::wire::results::CurveDocument;
 
 /// How rows and remarks are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,10 +41,10 @@ impl Form {
     }
 }
 
-/// The table of one curve of a results document. `None` where the curve spans no whole true period: it could not be repeated.
-pub fn table(results: &Value, curve: &Value, form: Form) -> Option<String> {
+/// The table of one curve of the results. `None` where the curve spans no whole true period: it could not be repeated.
+pub fn table(results: &Results, curve: &CurveDocument, form: Form) -> Option<String> {
     let rows = Rows::of(results, curve)?;
-    let mut text = head(results, curve, &rows, form)?;
+    let mut text = head(results, curve, &rows, form);
     let line = |values: [f64; 4]| {
         let written: Vec<String> = values.iter().map(|value| format!("{value:.9e}")).collect();
         written.join(form.between())
@@ -62,43 +63,28 @@ struct Rows {
 }
 
 impl Rows {
-    fn of(results: &Value, curve: &Value) -> Option<Self> {
-        let list = |name: &str| -> Option<Vec<f64>> {
-            curve
-                .get(name)?
-                .as_array()?
-                .iter()
-                .map(Value::as_f64)
-                .collect()
-        };
-        let position = list("mesh_position")?;
-        let step = position.get(1)? - position.first()?;
-        let periods = (step * position.len() as f64).round();
-        let true_period = results.get("pair")?.get("period_mesh_periods")?.as_f64()?;
+    fn of(results: &Results, curve: &CurveDocument) -> Option<Self> {
+        let positions = &curve.mesh_position;
+        let step = positions.get(1)? - positions.first()?;
+        let periods = (step * positions.len() as f64).round();
+        let true_period = f64::from(results.pair.period_mesh_periods);
         if true_period <= 0.0 || periods <= 0.0 || periods % true_period != 0.0 {
             return None;
         }
-        let (driving, driven) = (list("driving_angle_deg")?, list("driven_angle_deg")?);
-        let (stiffness, error) = (
-            list("mesh_stiffness_tangent_n_per_m")?,
-            list("transmission_error_um")?,
-        );
         let row = |i: usize| -> Option<[f64; 4]> {
             Some([
-                driving.get(i)?.to_radians(),
-                driven.get(i)?.to_radians(),
-                *stiffness.get(i)?,
-                error.get(i)? * 1e-6,
+                curve.driving_angle_deg.get(i)?.to_radians(),
+                curve.driven_angle_deg.get(i)?.to_radians(),
+                *curve.mesh_stiffness_tangent_n_per_m.get(i)?,
+                curve.transmission_error_um.get(i)? * 1e-6,
             ])
         };
-        let mut rows = (0..position.len()).map(row).collect::<Option<Vec<_>>>()?;
+        let mut rows = (0..positions.len()).map(row).collect::<Option<Vec<_>>>()?;
         let again = *rows.first()?;
-        let span = |angles: &[f64]| -> Option<f64> {
-            Some((angles.get(1)? - angles.first()?).to_radians() * position.len() as f64)
-        };
+        let span = |angles: &[f64]| (angles[1] - angles[0]).to_radians() * positions.len() as f64;
         rows.push([
-            again[0] + span(&driving)?,
-            again[1] + span(&driven)?,
+            again[0] + span(&curve.driving_angle_deg),
+            again[1] + span(&curve.driven_angle_deg),
             again[2],
             again[3],
         ]);
@@ -106,62 +92,54 @@ impl Rows {
     }
 }
 
-fn head(results: &Value, curve: &Value, rows: &Rows, form: Form) -> Option<String> {
-    let pair = results.get("pair")?;
-    let base_radius = |gear: &str| Some(pair.get(gear)?.get("base_radius_mm")?.as_f64()? * 1e-3);
-    let mut text = String::new();
+fn head(results: &Results, curve: &CurveDocument, rows: &Rows, form: Form) -> String {
+    let [driving, driven] = [&results.pair.driving, &results.pair.driven];
     let remark = form.remark();
-    let mut say = |words: String| writeln!(text, "{remark} {words}").ok();
-    say("Meshwright look-up table, form 1: mesh stiffness and static transmission error over the true period".to_owned())?;
-    say(format!(
-        "method: {}",
-        results
-            .get("method")
-            .and_then(Value::as_str)
-            .unwrap_or("unknown")
-    ))?;
-    say(format!(
-        "output_torque_n_m: {}",
-        curve.get("output_torque_n_m")?
-    ))?;
-    say(format!("load_n: {}", curve.get("load_n")?))?;
-    say(format!(
-        "driving_base_radius_m: {}",
-        base_radius("driving")?
-    ))?;
-    say(format!("driven_base_radius_m: {}", base_radius("driven")?))?;
-    say(format!("period_mesh_periods: {}", rows.periods))?;
-    say("datum: at angle 0 of both gears a pair of teeth touches at the pitch point; each angle grows in the sense in which its gear turns".to_owned())?;
-    say("signs: the transmission error is positive where load makes the driven gear lag, a length along the line of action: the driven base radius times the angle of lag".to_owned())?;
-    say("stiffness: tangent, dF/d(transmission error) along the line of action; the last row is the first one a period later".to_owned())?;
+    let mut text: String = [
+        "Meshwright look-up table, form 1: mesh stiffness and static transmission error over the true period".to_owned(),
+        format!("method: {}", results.method),
+        // As JSON writes them.
+        format!("output_torque_n_m: {}", json!(curve.output_torque_n_m)),
+        format!("load_n: {}", json!(curve.load_n)),
+        format!("driving_base_radius_m: {}", driving.base_radius_mm * 1e-3),
+        format!("driven_base_radius_m: {}", driven.base_radius_mm * 1e-3),
+        format!("period_mesh_periods: {}", rows.periods),
+        "datum: at angle 0 of both gears a pair of teeth touches at the pitch point; each angle grows in the sense in which its gear turns".to_owned(),
+        "signs: the transmission error is positive where load makes the driven gear lag, a length along the line of action: the driven base radius times the angle of lag".to_owned(),
+        "stiffness: tangent, dF/d(transmission error) along the line of action; the last row is the first one a period later".to_owned(),
+    ]
+    .iter()
+    .map(|line| format!("{remark} {line}\n"))
+    .collect();
     match form {
-        Form::Csv => writeln!(text, "{}", COLUMNS.join(",")).ok()?,
-        Form::Text => writeln!(text, "{remark} {}", COLUMNS.join(" ")).ok()?,
+        Form::Csv => text += &COLUMNS.join(","),
+        Form::Text => text += &format!("{remark} {}", COLUMNS.join(" ")),
     }
-    Some(text)
+    text + "\n"
 }
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
-
     use super::*;
+    use crate::wire::results::STUB;
 
-    fn results() -> Value {
-        json!({
-            "method": "flexible",
-            "pair": { "period_mesh_periods": 2, "driving": { "base_radius_mm": 40.0 }, "driven": { "base_radius_mm": 50.0 } },
-            "curves": [{
-                "output_torque_n_m": 115.0, "load_n": 2300.0, "mesh_position": [0.0, 0.5, 1.0, 1.5],
-                "driving_angle_deg": [0.0, 9.0, 18.0, 27.0], "driven_angle_deg": [0.0, 4.5, 9.0, 13.5],
-                "mesh_stiffness_tangent_n_per_m": [2.0e8, 1.5e8, 2.1e8, 1.4e8], "transmission_error_um": [13.0, 14.0, 13.5, 14.5] }],
-        })
+    fn results() -> Results {
+        let mut results = Results::read(STUB).expect("a results document");
+        results.pair.period_mesh_periods = 2;
+        results.pair.driven.base_radius_mm = 50.0;
+        let curve = &mut results.curves[0];
+        curve.mesh_position = vec![0.0, 0.5, 1.0, 1.5];
+        curve.driving_angle_deg = vec![0.0, 9.0, 18.0, 27.0];
+        curve.driven_angle_deg = vec![0.0, 4.5, 9.0, 13.5];
+        curve.mesh_stiffness_tangent_n_per_m = vec![2.0e8, 1.5e8, 2.1e8, 1.4e8];
+        curve.transmission_error_um = vec![13.0, 14.0, 13.5, 14.5];
+        results
     }
 
     #[test]
     fn the_last_row_is_the_first_a_period_later() {
         let results = results();
-        let text = table(&results, &results["curves"][0], Form::Csv).expect("a whole period");
+        let text = table(&results, &results.curves[0], Form::Csv).expect("a whole period");
         let rows: Vec<Vec<f64>> = text
             .lines()
             .filter(|line| !line.starts_with('#'))
@@ -184,7 +162,7 @@ mod tests {
     fn the_head_tells_datum_signs_and_period_in_both_forms() {
         let results = results();
         for (form, remark) in [(Form::Csv, "# "), (Form::Text, "% ")] {
-            let text = table(&results, &results["curves"][0], form).expect("a whole period");
+            let text = table(&results, &results.curves[0], form).expect("a whole period");
             for said in [
                 "datum: ",
                 "signs: ",
@@ -195,7 +173,7 @@ mod tests {
                 assert!(text.contains(&format!("{remark}{said}")), "{said}: {text}");
             }
         }
-        let text = table(&results, &results["curves"][0], Form::Text).expect("a whole period");
+        let text = table(&results, &results.curves[0], Form::Text).expect("a whole period");
         let first = text
             .lines()
             .find(|line| !line.starts_with('%'))
@@ -206,9 +184,9 @@ mod tests {
     #[test]
     fn a_span_that_cannot_be_repeated_has_no_table() {
         let mut results = results();
-        results["pair"]["period_mesh_periods"] = json!(5);
-        assert_eq!(table(&results, &results["curves"][0], Form::Csv), None);
-        results["pair"]["period_mesh_periods"] = json!(0);
-        assert_eq!(table(&results, &results["curves"][0], Form::Csv), None);
+        results.pair.period_mesh_periods = 5;
+        assert_eq!(table(&results, &results.curves[0], Form::Csv), None);
+        results.pair.period_mesh_periods = 0;
+        assert_eq!(table(&results, &results.curves[0], Form::Csv), None);
     }
 }

@@ -8,10 +8,10 @@ use meshwright_plot::map::Cell;
 use meshwright_plot::{
     Axis, Chart, Drawing, Figure, Look, Map, Mark, PALETTE, Panel, RGBColor, Series, drawing,
 };
-use serde_json::Value;
 
 use super::problem::internal;
 use crate::wire::Problem;
+use crate::wire::results::{CurveDocument, ResonanceDocument, ResonanceKindName};
 
 /// Width and height of a picture in pixels.
 const SIZE: (u32, u32) = (760, 340);
@@ -32,37 +32,16 @@ pub(super) enum Picture {
     RunUp,
 }
 
-const NAMES: [(&str, Picture); 5] = [
-    ("ste.svg", Picture::TransmissionError),
-    ("mesh-stiffness.svg", Picture::MeshStiffness),
-    ("load-share.svg", Picture::LoadShare),
-    ("spectrum.svg", Picture::Spectrum),
-    ("run-up.svg", Picture::RunUp),
-];
-
 impl Picture {
-    /// The picture of a file name; `None` if there is no such one.
-    pub(super) fn named(file: &str) -> Option<Self> {
-        NAMES
-            .iter()
-            .find_map(|&(name, picture)| (name == file).then_some(picture))
-    }
-
-    /// The picture of these curves of a results document; `None` if they have nothing that it shows.
-    pub(super) fn draw(self, curves: &[&Value]) -> Option<Result<String, Problem>> {
+    /// The picture of these curves; `None` if they have nothing that it shows.
+    pub(super) fn draw(self, curves: &[&CurveDocument]) -> Option<Result<String, Problem>> {
         let chart = match self {
-            Self::TransmissionError => over_period(
-                curves,
-                "transmission error in µm",
-                "transmission_error_um",
-                1.0,
-            ),
-            Self::MeshStiffness => over_period(
-                curves,
-                "tangent mesh stiffness in N/µm",
-                "mesh_stiffness_tangent_n_per_m",
-                1e-6,
-            ),
+            Self::TransmissionError => over_period(curves, "transmission error in µm", |curve| {
+                curve.transmission_error_um.clone()
+            }),
+            Self::MeshStiffness => over_period(curves, "tangent mesh stiffness in N/µm", |curve| {
+                scaled(&curve.mesh_stiffness_tangent_n_per_m, 1e-6)
+            }),
             Self::LoadShare => load_share(curves),
             Self::Spectrum => spectrum(curves),
             Self::RunUp => run_up(curves),
@@ -175,27 +154,20 @@ fn svg(title: &str, panel: Panel, panel_size: (u32, u32)) -> Result<String, Prob
     })
 }
 
-/// The numbers of a list; what is null is no number.
-fn numbers(holder: &Value, name: &str) -> Option<Vec<f64>> {
-    let list = holder.get(name)?.as_array()?;
-    Some(
-        list.iter()
-            .map(|each| each.as_f64().unwrap_or(f64::NAN))
-            .collect(),
-    )
+fn torque_of(curve: &CurveDocument) -> String {
+    format!("{} N m", curve.output_torque_n_m)
 }
 
-fn torque_of(curve: &Value) -> String {
-    let torque = curve.get("output_torque_n_m").and_then(Value::as_f64);
-    torque.map_or(String::new(), |torque| format!("{torque} N m"))
-}
-
-fn over_period(curves: &[&Value], label: &str, name: &str, factor: f64) -> Option<Chart> {
+fn over_period(
+    curves: &[&CurveDocument],
+    label: &str,
+    values: impl Fn(&CurveDocument) -> Vec<f64>,
+) -> Option<Chart> {
     let series: Vec<Series> = curves
         .iter()
         .zip(PALETTE.iter().skip(2).chain(&PALETTE).cycle())
         .filter_map(|(curve, &color)| {
-            let points = closed(curve, &scaled(numbers(curve, name)?, factor))?;
+            let points = closed(curve, values(curve))?;
             Some(Series::new(&torque_of(curve), color, Look::Line, points))
         })
         .collect();
@@ -203,35 +175,33 @@ fn over_period(curves: &[&Value], label: &str, name: &str, factor: f64) -> Optio
 }
 
 /// The shares of the first curve, a series for each offset.
-fn load_share(curves: &[&Value]) -> Option<Chart> {
+fn load_share(curves: &[&CurveDocument]) -> Option<Chart> {
     let curve = curves.first()?;
-    let shares = curve.get("load_shares")?.as_array()?;
+    let positions = &curve.mesh_position;
     let colors = PALETTE.iter().skip(1).cycle();
-    let series = shares.iter().zip(colors).filter_map(|(share, &color)| {
-        let offset = share.get("pair_offset")?.as_i64()?;
-        let name = match offset {
+    let series = curve.load_shares.iter().zip(colors).map(|(share, &color)| {
+        let name = match share.pair_offset {
             0 => "pair that passed the pitch point last".to_owned(),
-            1.. => format!("{offset} after it"),
-            _ => format!("{} before it", -offset),
+            offset @ 1.. => format!("{offset} after it"),
+            offset => format!("{} before it", -offset),
         };
-        let points = position(curve)?
-            .into_iter()
-            .zip(scaled(numbers(share, "share")?, 100.0));
-        Some(Series::new(&name, color, Look::Dots, points.collect()))
+        let shares = scaled(&share.share, 100.0);
+        let points = positions.iter().copied().zip(shares).collect();
+        Series::new(&name, color, Look::Dots, points)
     });
     chart(series.collect(), "load share in %", Some((0.0, 100.0)))
 }
 
-fn spectrum(curves: &[&Value]) -> Option<Chart> {
+fn spectrum(curves: &[&CurveDocument]) -> Option<Chart> {
     let mesh_order = curves.iter().find_map(|curve| named_order(curve, "H_Z2"));
     let last = mesh_order.map_or(f64::INFINITY, |order| MESH_ORDERS * order);
     let series: Vec<Series> = curves
         .iter()
         .zip(PALETTE.iter().skip(2).chain(&PALETTE).cycle())
         .filter_map(|(curve, &color)| {
-            let spectrum = curve.get("spectrum")?;
-            let amplitudes = numbers(spectrum, "transmission_error_um")?;
-            let lines = numbers(spectrum, "order")?.into_iter().zip(amplitudes);
+            let spectrum = curve.spectrum.as_ref()?;
+            let orders = spectrum.order.iter().copied();
+            let lines = orders.zip(spectrum.transmission_error_um.iter().copied());
             let points = lines.filter(|&(order, value)| order <= last && value >= LEAST_AMPLITUDE);
             Some(Series::new(
                 &torque_of(curve),
@@ -264,22 +234,25 @@ fn spectrum(curves: &[&Value]) -> Option<Chart> {
 }
 
 /// The dynamic transmission error over speed, both branches, with the resonances of the first curve.
-fn run_up(curves: &[&Value]) -> Option<Chart> {
+fn run_up(curves: &[&CurveDocument]) -> Option<Chart> {
     let colors = PALETTE.iter().skip(2).chain(&PALETTE).cycle();
     let mut series = Vec::new();
     for (curve, &color) in curves.iter().zip(colors) {
-        let Some(dynamics) = curve.get("dynamics") else {
+        let Some(dynamics) = &curve.dynamics else {
             continue;
         };
-        let speeds = numbers(dynamics, "driving_speed_rpm")?;
-        for (branch, look) in [("up", Look::Line), ("down", Look::Dots)] {
-            let Some(error) = dynamics.pointer(&format!("/{branch}/dynamic_transmission_error_um"))
-            else {
+        for (word, branch, look) in [
+            ("up", &dynamics.up, Look::Line),
+            ("down", &dynamics.down, Look::Dots),
+        ] {
+            let Some(branch) = branch else {
                 continue;
             };
-            let points = speeds.iter().copied().zip(numbers(error, "peak_to_peak")?);
-            let name = format!("{}, {branch}", torque_of(curve));
-            series.push(Series::new(&name, color, look, points.collect()));
+            let speeds = dynamics.driving_speed_rpm.iter().copied();
+            let ranges = &branch.dynamic_transmission_error_um.peak_to_peak;
+            let points = speeds.zip(ranges.iter().copied()).collect();
+            let name = format!("{}, {word}", torque_of(curve));
+            series.push(Series::new(&name, color, look, points));
         }
     }
     let most = |pick: fn(&(f64, f64)) -> f64| {
@@ -301,33 +274,27 @@ fn run_up(curves: &[&Value]) -> Option<Chart> {
 }
 
 /// Where the orders of mesh and holes resonate.
-fn resonances(curves: &[&Value]) -> Vec<Mark> {
-    let found = curves.iter().find_map(|curve| {
-        let resonances = curve.get("dynamics")?.get("resonances")?;
-        resonances.as_array()
+fn resonances(curves: &[&CurveDocument]) -> Vec<Mark> {
+    let found = curves.iter().find_map(|curve| curve.dynamics.as_ref());
+    let resonances = found.iter().flat_map(|dynamics| &dynamics.resonances);
+    let shown = resonances.filter(|resonance| {
+        resonance.kind == ResonanceKindName::Forced
+            && ["H_N", "H_N1", "H_N2", "H_Z2", "H_2Z2", "H_3Z2"].contains(&&*resonance.label)
     });
-    let mark = |resonance: &Value| {
-        let label = resonance.get("label")?.as_str()?;
-        let shown = ["H_N", "H_N1", "H_N2", "H_Z2", "H_2Z2", "H_3Z2"].contains(&label);
-        let forced = resonance.get("kind")?.as_str()? == "forced";
-        (shown && forced).then_some(Mark {
-            x: resonance.get("driving_speed_rpm")?.as_f64()?,
-            name: label.to_owned(),
-        })
+    let mark = |resonance: &ResonanceDocument| Mark {
+        x: resonance.driving_speed_rpm,
+        name: resonance.label.clone(),
     };
-    found.into_iter().flatten().filter_map(mark).collect()
+    shown.map(mark).collect()
 }
 
-fn named_order(curve: &Value, label: &str) -> Option<f64> {
-    let named = curve.get("spectrum")?.get("named")?.as_array()?;
-    let line = named
-        .iter()
-        .find(|line| line.get("label").and_then(Value::as_str) == Some(label));
-    line?.get("order")?.as_f64()
+fn named_order(curve: &CurveDocument, label: &str) -> Option<f64> {
+    let mut named = curve.spectrum.as_ref()?.named.iter();
+    Some(named.find(|line| line.label == label)?.order)
 }
 
 /// The orders of holes and of the mesh by their names.
-fn marks(curves: &[&Value], most: f64) -> Vec<Mark> {
+fn marks(curves: &[&CurveDocument], most: f64) -> Vec<Mark> {
     let names = [
         "H_N", "H_N1", "H_N2", "H_Z2", "H_2Z2", "H_3Z2", "H_4Z2", "H_5Z2",
     ];
@@ -342,26 +309,17 @@ fn marks(curves: &[&Value], most: f64) -> Vec<Mark> {
         .collect()
 }
 
-fn position(curve: &Value) -> Option<Vec<f64>> {
-    numbers(curve, "mesh_position").filter(|positions| positions.len() > 1)
-}
-
-fn scaled(values: Vec<f64>, factor: f64) -> Vec<f64> {
-    values.into_iter().map(|value| value * factor).collect()
+fn scaled(values: &[f64], factor: f64) -> Vec<f64> {
+    values.iter().map(|value| value * factor).collect()
 }
 
 /// The points of a curve, and the first again at the end of the span.
-fn closed(curve: &Value, values: &[f64]) -> Option<Vec<(f64, f64)>> {
-    let positions = position(curve)?;
+fn closed(curve: &CurveDocument, values: Vec<f64>) -> Option<Vec<(f64, f64)>> {
+    let positions = &curve.mesh_position;
     let end = positions.last()? + positions.get(1)? - positions.first()?;
     let again = (end, *values.first()?);
-    Some(
-        positions
-            .into_iter()
-            .zip(values.iter().copied())
-            .chain([again])
-            .collect(),
-    )
+    let points = positions.iter().copied().zip(values);
+    Some(points.chain([again]).collect())
 }
 
 fn chart(series: Vec<Series>, label: &str, range: Option<(f64, f64)>) -> Option<Chart> {
@@ -390,52 +348,62 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::wire::{Submission, examples};
+    use crate::wire::results::STUB;
+    use crate::wire::{Results, Submission, examples};
 
-    fn curve() -> Value {
-        json!({ "output_torque_n_m": 115.0, "mesh_position": [0.0, 0.5], "transmission_error_um": [13.0, 14.0],
-                "mesh_stiffness_tangent_n_per_m": [2.2e8, 2.2e8],
-                "load_shares": [{ "pair_offset": 0, "share": [1.0, 0.5] }, { "pair_offset": 1, "share": [0.0, 0.5] }],
-                "spectrum": { "order": [10, 50], "transmission_error_um": [0.3, 0.2], "named": [{ "label": "H_Z2", "order": 50 }] },
-                "dynamics": { "driving_speed_rpm": [0.0, 500.0, 1000.0], "resonances": [{ "driving_speed_rpm": 500.0, "label": "H_Z2", "kind": "forced" }],
-                              "up": { "dynamic_transmission_error_um": { "peak_to_peak": [3.0, 9.0, 1.0] } },
-                              "down": { "dynamic_transmission_error_um": { "peak_to_peak": [3.0, 8.0, 1.0] } } } })
+    /// The first of the stub, with a run-up.
+    fn curve() -> CurveDocument {
+        let mut curve = Results::read(STUB)
+            .expect("a results document")
+            .curves
+            .remove(0);
+        let branch = |resonant: f64| {
+            json!({ "dynamic_transmission_error_um": { "rms": [1.0, 3.0, 1.0], "peak_to_peak": [3.0, resonant, 1.0] },
+                    "dynamic_load_factor": [], "contact_lost": [], "period_multiple": [], "orders": [] })
+        };
+        let dynamics = json!({ "natural_frequency_hz": 1.0, "equivalent_mass_kg": 1.0, "driving_speed_rpm": [0.0, 500.0, 1000.0],
+            "resonances": [{ "driving_speed_rpm": 500.0, "label": "H_Z2", "kind": "forced" }], "up": branch(9.0), "down": branch(8.0) });
+        curve.dynamics = Some(serde_json::from_value(dynamics).expect("a run-up"));
+        curve
     }
+
+    const ALL: [(Picture, [&str; 2]); 5] = [
+        (
+            Picture::TransmissionError,
+            ["transmission error in µm", "115 N m"],
+        ),
+        (Picture::MeshStiffness, ["N/µm", "115 N m"]),
+        (Picture::LoadShare, ["load share in %", "1 after it"]),
+        (Picture::RunUp, ["115 N m, down", "H_Z2"]),
+        (
+            Picture::Spectrum,
+            ["H_N", "per revolution of the driven gear"],
+        ),
+    ];
 
     #[test]
     fn every_picture_is_drawn_and_says_its_unit_and_torque() {
         let curve = curve();
-        for (name, words) in [
-            ("ste.svg", ["transmission error in µm", "115 N m"]),
-            ("mesh-stiffness.svg", ["N/µm", "115 N m"]),
-            ("load-share.svg", ["load share in %", "1 after it"]),
-            ("run-up.svg", ["115 N m, down", "H_Z2"]),
-            (
-                "spectrum.svg",
-                ["H_Z2", "per revolution of the driven gear"],
-            ),
-        ] {
-            let picture = Picture::named(name).expect("known");
+        for (picture, words) in ALL {
             let svg = picture
                 .draw(&[&curve])
                 .expect("has what it shows")
                 .expect("drawn");
-            assert!(svg.starts_with("<svg"), "{name}");
+            assert!(svg.starts_with("<svg"), "{picture:?}");
             for word in words {
-                assert!(svg.contains(word), "{name} lacks {word}");
+                assert!(svg.contains(word), "{picture:?} lacks {word}");
             }
         }
     }
 
     #[test]
     fn results_that_lack_what_a_picture_shows_have_no_such_picture() {
-        let bare = json!({ "output_torque_n_m": 1.0, "mesh_position": [0.0] });
-        assert!(
-            NAMES
-                .iter()
-                .all(|(_, picture)| picture.draw(&[&bare]).is_none())
-        );
-        assert_eq!(Picture::named("peak.svg"), None);
+        let mut bare = curve();
+        bare.mesh_position.truncate(1);
+        (bare.spectrum, bare.dynamics) = (None, None);
+        for (picture, _) in ALL {
+            assert!(picture.draw(&[&bare]).is_none(), "{picture:?}");
+        }
     }
 
     #[test]

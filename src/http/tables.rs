@@ -5,8 +5,8 @@ use axum::extract::{Path, State};
 use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE, HeaderName};
 use axum::response::{IntoResponse, Response};
-use serde::Deserialize;
-use serde_json::{Map, Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 use utoipa::{IntoParams, ToSchema};
 
 use super::app::App;
@@ -21,131 +21,176 @@ use crate::exchange::force_table::{self, MeshForces};
 use crate::exchange::look_up;
 use crate::jobs::{Document, JobError};
 use crate::wire::csv::CsvWriter;
-use crate::wire::results::{NamedOrderDocument, ResonanceDocument};
-use crate::wire::{Code, Problem};
+use crate::wire::results::{
+    CurveDocument, CurveDynamicsDocument, NamedOrderDocument, ResonanceDocument,
+};
+use crate::wire::{Code, Problem, Results};
 
-/// What a table shows: where in a curve its columns stand, and which they are.
-struct Table {
-    name: &'static str,
-    /// The member of the curve that holds the columns; empty for the curve itself.
-    within: &'static str,
-    columns: &'static [&'static str],
-    /// What is shown beside the columns in JSON, where a table cannot hold it.
-    beside: &'static [&'static str],
+/// What a table shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Table {
+    TransmissionError,
+    MeshStiffness,
+    Spectrum,
+    RunUp,
 }
-
-const POSITION: [&str; 3] = ["mesh_position", "driving_angle_deg", "driven_angle_deg"];
-
-const TABLES: [Table; 4] = [
-    Table {
-        name: "ste",
-        within: "",
-        columns: &[
-            POSITION[0],
-            POSITION[1],
-            POSITION[2],
-            "transmission_error_um",
-        ],
-        beside: &[],
-    },
-    Table {
-        name: "mesh-stiffness",
-        within: "",
-        columns: &[
-            POSITION[0],
-            POSITION[1],
-            POSITION[2],
-            "mesh_stiffness_tangent_n_per_m",
-            "mesh_stiffness_secant_n_per_m",
-        ],
-        beside: &[],
-    },
-    Table {
-        name: "spectrum",
-        within: "spectrum",
-        columns: &[
-            "order",
-            "frequency_hz",
-            "transmission_error_um",
-            "transmission_error_phase_deg",
-            "mesh_stiffness_tangent_n_per_m",
-            "mesh_stiffness_tangent_phase_deg",
-        ],
-        beside: &["named"],
-    },
-    Table {
-        name: RUN_UP,
-        within: "dynamics",
-        columns: &[
-            "driving_speed_rpm",
-            "branch",
-            "rms_um",
-            "peak_to_peak_um",
-            "dynamic_load_factor",
-            "contact_lost",
-            "period_multiple",
-        ],
-        beside: &["resonances"],
-    },
-];
-
-const RUN_UP: &str = "run-up";
 
 /// A table of the results as JSON: for each curve its torque, and the columns of the table, which have one value for each
 /// position or order. A column that the results do not have is absent.
-#[derive(ToSchema)]
+#[derive(Serialize, ToSchema)]
 #[schema(title = "CurveTable")]
-#[expect(dead_code, reason = "it stands for the table in the OpenAPI document")]
 pub(super) struct CurveTable {
     /// One entry for each output torque.
     curves: Vec<CurveColumns>,
 }
 
-/// The columns of one curve.
-#[derive(ToSchema)]
-#[schema(title = "CurveColumns")]
-#[expect(dead_code, reason = "it stands for the table in the OpenAPI document")]
-struct CurveColumns {
-    /// The output torque, in N m.
-    output_torque_n_m: f64,
+/// Declares the columns that tables have.
+macro_rules! columns {
+    ($($(#[doc = $about:literal])* $name:ident: $cell:ident,)*) => {
+        /// The columns of one curve.
+        #[derive(Default, Serialize, ToSchema)]
+        #[schema(title = "CurveColumns")]
+        struct CurveColumns {
+            /// The output torque, in N m.
+            output_torque_n_m: f64,
+            $(
+                $(#[doc = $about])*
+                #[serde(skip_serializing_if = "Option::is_none")]
+                $name: Option<Vec<$cell>>,
+            )*
+            /// The orders that have names.
+            #[serde(skip_serializing_if = "Option::is_none")]
+            named: Option<Vec<NamedOrderDocument>>,
+            /// The speeds at which orders resonate.
+            #[serde(skip_serializing_if = "Option::is_none")]
+            resonances: Option<Vec<ResonanceDocument>>,
+        }
+
+        impl CurveColumns {
+            /// Its columns by their names, their cells as JSON has them.
+            fn cells(&self) -> [(&'static str, Option<Vec<Value>>); [$(stringify!($name)),*].len()] {
+                [$((
+                    stringify!($name),
+                    self.$name.as_ref().map(|cells| cells.iter().map(|cell| json!(cell)).collect()),
+                )),*]
+            }
+        }
+    };
+}
+
+columns! {
     /// The position in mesh periods.
-    mesh_position: Option<Vec<f64>>,
+    mesh_position: f64,
     /// The angle of the driving gear, in degrees.
-    driving_angle_deg: Option<Vec<f64>>,
+    driving_angle_deg: f64,
     /// The angle of the driven gear, in degrees.
-    driven_angle_deg: Option<Vec<f64>>,
-    /// The transmission error, in um; in the spectrum its amplitude.
-    transmission_error_um: Option<Vec<f64>>,
-    /// The tangent mesh stiffness, in N/m; in the spectrum its amplitude.
-    mesh_stiffness_tangent_n_per_m: Option<Vec<f64>>,
-    /// The secant mesh stiffness, in N/m.
-    mesh_stiffness_secant_n_per_m: Option<Vec<f64>>,
+    driven_angle_deg: f64,
     /// The order, for each revolution of the driven gear.
-    order: Option<Vec<f64>>,
+    order: f64,
     /// The frequency of the order, in Hz.
-    frequency_hz: Option<Vec<f64>>,
+    frequency_hz: f64,
+    /// The transmission error, in um; in the spectrum its amplitude.
+    transmission_error_um: f64,
     /// The phase of the transmission error, in degrees.
-    transmission_error_phase_deg: Option<Vec<f64>>,
+    transmission_error_phase_deg: f64,
+    /// The tangent mesh stiffness, in N/m; in the spectrum its amplitude.
+    mesh_stiffness_tangent_n_per_m: f64,
     /// The phase of the tangent mesh stiffness, in degrees.
-    mesh_stiffness_tangent_phase_deg: Option<Vec<f64>>,
-    /// The orders that have names.
-    named: Option<Vec<NamedOrderDocument>>,
+    mesh_stiffness_tangent_phase_deg: f64,
+    /// The secant mesh stiffness, in N/m.
+    mesh_stiffness_secant_n_per_m: f64,
     /// The speed of the driving gear, in 1/min: of the branch that runs up, and again of the one that runs down.
-    driving_speed_rpm: Option<Vec<f64>>,
+    driving_speed_rpm: f64,
     /// `up` or `down`.
-    branch: Option<Vec<String>>,
+    branch: String,
     /// The root mean square of the dynamic transmission error, in um.
-    rms_um: Option<Vec<f64>>,
+    rms_um: f64,
     /// Its largest less its smallest value, in um.
-    peak_to_peak_um: Option<Vec<f64>>,
+    peak_to_peak_um: f64,
     /// The largest force between the gears over the static load.
-    dynamic_load_factor: Option<Vec<f64>>,
+    dynamic_load_factor: f64,
     /// Whether the loaded flanks part.
-    contact_lost: Option<Vec<bool>>,
+    contact_lost: bool,
     /// True periods after which the motion repeats; 0 where it was not found to.
-    period_multiple: Option<Vec<u32>>,
-    /// The speeds at which orders resonate.
-    resonances: Option<Vec<ResonanceDocument>>,
+    period_multiple: u32,
+}
+
+impl CurveColumns {
+    /// The columns of `table`, if the curve has them.
+    fn of(table: Table, curve: &CurveDocument) -> Option<Self> {
+        let torque = Self {
+            output_torque_n_m: curve.output_torque_n_m,
+            ..Self::default()
+        };
+        if table == Table::Spectrum {
+            let spectrum = curve.spectrum.as_ref()?;
+            return Some(Self {
+                order: told(&spectrum.order),
+                frequency_hz: spectrum.frequency_hz.clone(),
+                transmission_error_um: told(&spectrum.transmission_error_um),
+                transmission_error_phase_deg: told(&spectrum.transmission_error_phase_deg),
+                mesh_stiffness_tangent_n_per_m: told(&spectrum.mesh_stiffness_tangent_n_per_m),
+                mesh_stiffness_tangent_phase_deg: told(&spectrum.mesh_stiffness_tangent_phase_deg),
+                named: Some(spectrum.named.clone()),
+                ..torque
+            });
+        }
+        if table == Table::RunUp {
+            return torque.with_branches(curve.dynamics.as_ref()?);
+        }
+        let positions = Self {
+            mesh_position: told(&curve.mesh_position),
+            driving_angle_deg: told(&curve.driving_angle_deg),
+            driven_angle_deg: told(&curve.driven_angle_deg),
+            ..torque
+        };
+        Some(if table == Table::TransmissionError {
+            Self {
+                transmission_error_um: told(&curve.transmission_error_um),
+                ..positions
+            }
+        } else {
+            Self {
+                mesh_stiffness_tangent_n_per_m: told(&curve.mesh_stiffness_tangent_n_per_m),
+                mesh_stiffness_secant_n_per_m: told(&curve.mesh_stiffness_secant_n_per_m),
+                ..positions
+            }
+        })
+    }
+
+    /// With the branches of a run-up one after the other, up first.
+    fn with_branches(self, dynamics: &CurveDynamicsDocument) -> Option<Self> {
+        let branches = [("up", &dynamics.up), ("down", &dynamics.down)];
+        let branches = branches.map(|(word, branch)| Some((word, branch.as_ref()?)));
+        let speeds = &dynamics.driving_speed_rpm;
+        let mut columns = Self {
+            resonances: Some(dynamics.resonances.clone()),
+            ..self
+        };
+        for (word, branch) in branches.into_iter().flatten() {
+            let error = &branch.dynamic_transmission_error_um;
+            append(&mut columns.driving_speed_rpm, speeds);
+            append(&mut columns.branch, &vec![word.to_owned(); speeds.len()]);
+            append(&mut columns.rms_um, &error.rms);
+            append(&mut columns.peak_to_peak_um, &error.peak_to_peak);
+            append(
+                &mut columns.dynamic_load_factor,
+                &branch.dynamic_load_factor,
+            );
+            append(&mut columns.contact_lost, &branch.contact_lost);
+            append(&mut columns.period_multiple, &branch.period_multiple);
+        }
+        Some(columns)
+    }
+}
+
+/// A list of the results as a column: an earlier version may not have told it.
+fn told(list: &[f64]) -> Option<Vec<f64>> {
+    (!list.is_empty()).then(|| list.to_vec())
+}
+
+fn append<T: Clone>(column: &mut Option<Vec<T>>, cells: &[T]) {
+    column.get_or_insert_default().extend_from_slice(cells);
 }
 
 /// Which curve.
@@ -218,39 +263,46 @@ fn make(
     name: &str,
 ) -> Result<Response, Problem> {
     let text = document.text().map_err(JobError::from)?;
-    let results: Value = serde_json::from_str(&text).map_err(|_| nothing_to_show())?;
+    let results = Results::read(&text).map_err(|error| {
+        tracing::warn!(%error, "results are of a version that tables are not made of");
+        let detail = "These results are of a version of which this one makes no tables; the whole document has them.";
+        Problem::new(Code::NotFound, detail)
+    })?;
     let curves = curves_of(&results, torque)?;
-    let (table, form) = match wanted {
-        File::Table(table, form) => (table, form),
+    match wanted {
+        File::Table(table, form) => {
+            let curves = select(table, &curves)?;
+            Ok(match form {
+                Form::Json => Json(CurveTable { curves }).into_response(),
+                Form::Csv => {
+                    let headers = file_headers("text/csv; charset=utf-8", name);
+                    (headers, csv(&curves)).into_response()
+                }
+            })
+        }
         File::Picture(picture) => {
-            let svg = picture
-                .draw(&curves)
-                .unwrap_or_else(|| Err(nothing_to_show()));
-            return svg.map(pictures::answer);
+            let svg = picture.draw(&curves).unwrap_or_else(|| {
+                let detail = "These results have nothing that this shows.";
+                Err(Problem::new(Code::NotFound, detail))
+            });
+            svg.map(pictures::answer)
         }
-        File::LookUp(form) => return look_up_table(&results, &curves, form, name),
-        File::Forces(form) => return forces(&results, form, name),
-        File::Fmu => return packed(&results, name),
-    };
-    let curves = select(table, &curves)?;
-    Ok(match form {
-        Form::Json => Json(json!({ "curves": curves })).into_response(),
-        Form::Csv => {
-            let headers = file_headers("text/csv; charset=utf-8", name);
-            (headers, csv(table, &curves)).into_response()
-        }
-    })
+        File::LookUp(form) => look_up_table(&results, &curves, form, name),
+        File::Forces(form) => forces(&results, form, name),
+        File::Fmu => packed(&results, name),
+    }
 }
 
 /// The first of the curves as a look-up table.
 fn look_up_table(
-    results: &Value,
-    curves: &[&Value],
+    results: &Results,
+    curves: &[&CurveDocument],
     form: look_up::Form,
     name: &str,
 ) -> Result<Response, Problem> {
-    let curve = curves.first().ok_or_else(nothing_to_show)?;
-    let table = look_up::table(results, curve, form).ok_or_else(|| {
+    let first = curves.first();
+    let table = first.and_then(|curve| look_up::table(results, curve, form));
+    let table = table.ok_or_else(|| {
         let detail = "These results span no whole number of true periods, and a look-up table is read over and over.";
         Problem::new(Code::NotFound, detail)
     })?;
@@ -267,11 +319,9 @@ fn no_forces() -> Problem {
 }
 
 /// The force table as an FMU. What it was computed from tells it from others.
-fn packed(results: &Value, name: &str) -> Result<Response, Problem> {
+fn packed(results: &Results, name: &str) -> Result<Response, Problem> {
     let forces = MeshForces::of(results).ok_or_else(no_forces)?;
-    let hash = results.pointer("/evidence/input_hash");
-    let guid = hash.and_then(Value::as_str).unwrap_or_default();
-    let bytes = fmu(&forces, guid).map_err(|error| {
+    let bytes = fmu(&forces, &results.evidence.input_hash).map_err(|error| {
         tracing::error!(%error, "an FMU could not be packed");
         internal()
     })?;
@@ -279,7 +329,7 @@ fn packed(results: &Value, name: &str) -> Result<Response, Problem> {
 }
 
 /// The force table as others read it.
-fn forces(results: &Value, form: force_table::Form, name: &str) -> Result<Response, Problem> {
+fn forces(results: &Results, form: force_table::Form, name: &str) -> Result<Response, Problem> {
     let forces = MeshForces::of(results).ok_or_else(no_forces)?;
     let media_type = match form {
         force_table::Form::Csv => "text/csv; charset=utf-8",
@@ -298,71 +348,73 @@ fn file_headers(media_type: &str, name: &str) -> [(HeaderName, String); 2] {
     ]
 }
 
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Form {
     Json,
     Csv,
 }
 
 /// What a file name asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum File {
-    Table(&'static Table, Form),
+    Table(Table, Form),
     Picture(Picture),
     LookUp(look_up::Form),
     Forces(force_table::Form),
     Fmu,
 }
 
+const FILES: [(&str, File); 19] = [
+    (
+        "ste.json",
+        File::Table(Table::TransmissionError, Form::Json),
+    ),
+    ("ste.csv", File::Table(Table::TransmissionError, Form::Csv)),
+    ("ste.svg", File::Picture(Picture::TransmissionError)),
+    (
+        "mesh-stiffness.json",
+        File::Table(Table::MeshStiffness, Form::Json),
+    ),
+    (
+        "mesh-stiffness.csv",
+        File::Table(Table::MeshStiffness, Form::Csv),
+    ),
+    ("mesh-stiffness.svg", File::Picture(Picture::MeshStiffness)),
+    ("spectrum.json", File::Table(Table::Spectrum, Form::Json)),
+    ("spectrum.csv", File::Table(Table::Spectrum, Form::Csv)),
+    ("spectrum.svg", File::Picture(Picture::Spectrum)),
+    ("run-up.json", File::Table(Table::RunUp, Form::Json)),
+    ("run-up.csv", File::Table(Table::RunUp, Form::Csv)),
+    ("run-up.svg", File::Picture(Picture::RunUp)),
+    ("load-share.svg", File::Picture(Picture::LoadShare)),
+    ("look-up-table.csv", File::LookUp(look_up::Form::Csv)),
+    ("look-up-table.txt", File::LookUp(look_up::Form::Text)),
+    ("force-table.csv", File::Forces(force_table::Form::Csv)),
+    ("force-table.txt", File::Forces(force_table::Form::Text)),
+    ("force-table.mo", File::Forces(force_table::Form::Modelica)),
+    ("force-table.fmu", File::Fmu),
+];
+
 fn find_file(file: &str) -> Result<File, Problem> {
-    match file {
-        "look-up-table.csv" => return Ok(File::LookUp(look_up::Form::Csv)),
-        "look-up-table.txt" => return Ok(File::LookUp(look_up::Form::Text)),
-        "force-table.csv" => return Ok(File::Forces(force_table::Form::Csv)),
-        "force-table.txt" => return Ok(File::Forces(force_table::Form::Text)),
-        "force-table.fmu" => return Ok(File::Fmu),
-        "force-table.mo" => return Ok(File::Forces(force_table::Form::Modelica)),
-        _ => {}
-    }
-    if let Some(picture) = Picture::named(file) {
-        return Ok(File::Picture(picture));
-    }
-    let found = file.split_once('.').and_then(|(name, extension)| {
-        let form = match extension {
-            "json" => Form::Json,
-            "csv" => Form::Csv,
-            _ => return None,
-        };
-        let table = TABLES.iter().find(|table| table.name == name)?;
-        Some(File::Table(table, form))
-    });
-    found.ok_or_else(|| {
-        Problem::new(
-            Code::NotFound,
-            "The tables are ste, mesh-stiffness, spectrum and run-up, each as .json or .csv; the pictures are those and load-share, as .svg; there are look-up-table.csv, look-up-table.txt, force-table.csv, force-table.txt, force-table.mo and force-table.fmu.",
-        )
+    let found = FILES.iter().find(|(name, _)| *name == file);
+    found.map(|(_, file)| *file).ok_or_else(|| {
+        let names = FILES.map(|(name, _)| name).join(", ");
+        let detail = format!("The tables and pictures are {names}.");
+        Problem::new(Code::NotFound, detail)
     })
 }
 
 /// The curves of the results, or the one of a torque.
-fn curves_of(results: &Value, torque: Option<f64>) -> Result<Vec<&Value>, Problem> {
-    let curves = results
-        .get("curves")
-        .and_then(Value::as_array)
-        .map_or(&[][..], Vec::as_slice);
-    let torque_of = |curve: &Value| curve.get("output_torque_n_m").and_then(Value::as_f64);
+fn curves_of(results: &Results, torque: Option<f64>) -> Result<Vec<&CurveDocument>, Problem> {
     // A torque is one of those in the submission; the tolerance is for how it was written.
-    let is_meant = |curve: &&Value| {
-        torque.is_none_or(|torque| {
-            torque_of(curve).is_some_and(|of| (of - torque).abs() <= 1e-9 * of.abs())
-        })
+    let is_meant = |curve: &&CurveDocument| {
+        let of = curve.output_torque_n_m;
+        torque.is_none_or(|torque| (of - torque).abs() <= 1e-9 * of.abs())
     };
-    let meant: Vec<&Value> = curves.iter().filter(is_meant).collect();
+    let meant: Vec<_> = results.curves.iter().filter(is_meant).collect();
     if let (Some(torque), true) = (torque, meant.is_empty()) {
-        let known: Vec<String> = curves
-            .iter()
-            .filter_map(torque_of)
-            .map(|torque| torque.to_string())
-            .collect();
+        let known = results.curves.iter().map(|curve| curve.output_torque_n_m);
+        let known: Vec<String> = known.map(|torque| torque.to_string()).collect();
         let detail = format!(
             "There is no curve for {torque} N m; there are {} N m.",
             known.join(", ")
@@ -372,12 +424,12 @@ fn curves_of(results: &Value, torque: Option<f64>) -> Result<Vec<&Value>, Proble
     Ok(meant)
 }
 
-/// The chosen columns of the chosen curves.
-fn select(table: &Table, curves: &[&Value]) -> Result<Vec<Map<String, Value>>, Problem> {
-    let selected: Vec<_> = curves
+/// The columns of `table` of those curves that have them.
+fn select(table: Table, curves: &[&CurveDocument]) -> Result<Vec<CurveColumns>, Problem> {
+    let columns = curves
         .iter()
-        .filter_map(|curve| select_columns(table, curve))
-        .collect();
+        .filter_map(|curve| CurveColumns::of(table, curve));
+    let selected: Vec<_> = columns.collect();
     if selected.is_empty() {
         Err(no_table(table))
     } else {
@@ -385,77 +437,26 @@ fn select(table: &Table, curves: &[&Value]) -> Result<Vec<Map<String, Value>>, P
     }
 }
 
-fn select_columns(table: &Table, curve: &Value) -> Option<Map<String, Value>> {
-    let one_after_the_other = (table.name == RUN_UP).then(|| branches(curve)).flatten();
-    let curve = one_after_the_other.as_ref().unwrap_or(curve);
-    let holder = if table.within.is_empty() {
-        curve
-    } else {
-        curve.get(table.within)?
-    };
-    let mut selected = Map::new();
-    selected.insert(
-        "output_torque_n_m".to_owned(),
-        curve.get("output_torque_n_m")?.clone(),
-    );
-    for name in table.columns.iter().chain(table.beside) {
-        if let Some(values @ Value::Array(_)) = holder.get(*name) {
-            selected.insert((*name).to_owned(), values.clone());
-        }
-    }
-    Some(selected).filter(|selected| selected.len() > 1)
-}
-
-/// A curve whose dynamics are columns: the branches one after the other, up first.
-fn branches(curve: &Value) -> Option<Value> {
-    let dynamics = curve.get("dynamics")?;
-    let speeds = dynamics.get("driving_speed_rpm")?.as_array()?;
-    let mut columns: Map<String, Value> = Map::new();
-    let mut add = |name: String, values: &[Value]| {
-        let column = columns.entry(name).or_insert_with(|| json!([]));
-        if let Value::Array(column) = column {
-            column.extend_from_slice(values);
-        }
-    };
-    for branch in ["up", "down"] {
-        let Some(of_branch) = dynamics.get(branch) else {
-            continue;
-        };
-        add("driving_speed_rpm".to_owned(), speeds);
-        add("branch".to_owned(), &vec![json!(branch); speeds.len()]);
-        let error = of_branch.get("dynamic_transmission_error_um")?;
-        for name in ["rms", "peak_to_peak"] {
-            add(format!("{name}_um"), error.get(name)?.as_array()?);
-        }
-        for name in ["dynamic_load_factor", "contact_lost", "period_multiple"] {
-            add(name.to_owned(), of_branch.get(name)?.as_array()?);
-        }
-    }
-    columns.insert("resonances".to_owned(), dynamics.get("resonances")?.clone());
-    Some(json!({ "output_torque_n_m": curve.get("output_torque_n_m")?, "dynamics": columns }))
-}
-
 /// One line for each torque and position or order. Numbers are written as they stand in the results.
-fn csv(table: &Table, curves: &[Map<String, Value>]) -> String {
-    let present = |name: &&&str| curves.iter().any(|curve| curve.contains_key(**name));
-    let columns: Vec<&str> = table.columns.iter().filter(present).copied().collect();
+fn csv(curves: &[CurveColumns]) -> String {
+    let cells: Vec<_> = curves.iter().map(CurveColumns::cells).collect();
+    let present = |column: &usize| cells.iter().any(|cells| cells[*column].1.is_some());
+    let columns = cells.first().map_or(0, |cells| cells.len());
+    let columns: Vec<usize> = (0..columns).filter(present).collect();
     let mut text = CsvWriter::new();
     text.text("output_torque_n_m");
-    for name in &columns {
-        text.text(name);
+    for &column in &columns {
+        text.text(cells[0][column].0);
     }
     text.end_line();
-    for curve in curves {
-        let column = |name: &&str| {
-            curve
-                .get(*name)
-                .and_then(Value::as_array)
-                .map_or(&[][..], Vec::as_slice)
-        };
-        let cells: Vec<&[Value]> = columns.iter().map(column).collect();
-        for row in 0..cells.iter().map(|cells| cells.len()).max().unwrap_or(0) {
-            text.value(curve.get("output_torque_n_m"));
-            for column in &cells {
+    for (curve, cells) in curves.iter().zip(&cells) {
+        let columns: Vec<&[Value]> = columns
+            .iter()
+            .map(|&column| cells[column].1.as_deref().unwrap_or_default())
+            .collect();
+        for row in 0..columns.iter().map(|cells| cells.len()).max().unwrap_or(0) {
+            text.number(Some(curve.output_torque_n_m));
+            for column in &columns {
                 text.value(column.get(row));
             }
             text.end_line();
@@ -464,17 +465,12 @@ fn csv(table: &Table, curves: &[Map<String, Value>]) -> String {
     text.into_text()
 }
 
-fn nothing_to_show() -> Problem {
-    Problem::new(
-        Code::NotFound,
-        "These results have nothing that this shows.",
-    )
-}
-
-fn no_table(table: &Table) -> Problem {
-    let detail = match table.name {
-        "spectrum" => "These results have no spectrum: they span no whole number of true periods.",
-        RUN_UP => "These results have no run-up: the submission asks for no dynamics.",
+fn no_table(table: Table) -> Problem {
+    let detail = match table {
+        Table::Spectrum => {
+            "These results have no spectrum: they span no whole number of true periods."
+        }
+        Table::RunUp => "These results have no run-up: the submission asks for no dynamics.",
         _ => "These results have no such table.",
     };
     Problem::new(Code::NotFound, detail)
@@ -483,66 +479,90 @@ fn no_table(table: &Table) -> Problem {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::json;
+    use crate::wire::results::STUB;
 
-    fn results() -> Value {
-        json!({ "curves": [
-            { "output_torque_n_m": 115.0, "mesh_position": [0.0, 0.025], "transmission_error_um": [14.1, null],
-              "spectrum": { "order": [10, 50], "transmission_error_um": [1e-3, 0.4], "named": [{ "label": "H_N" }] } },
-            { "output_torque_n_m": 20.0, "mesh_position": [0.0, 0.025], "transmission_error_um": [5.0, 6.0] },
-        ] })
+    fn results() -> Results {
+        Results::read(STUB).expect("a results document")
     }
 
-    fn table_of(file: &str) -> &'static Table {
-        match find_file(file) {
-            Ok(File::Table(table, _)) => table,
-            _ => panic!("{file} is a table"),
-        }
+    fn table_of(file: &str, torque: Option<f64>) -> Result<Vec<CurveColumns>, Problem> {
+        let Ok(File::Table(table, _)) = find_file(file) else {
+            panic!("{file} is a table");
+        };
+        select(table, &curves_of(&results(), torque)?)
     }
 
     #[test]
     fn a_table_has_one_line_for_each_torque_and_position() {
-        let table = table_of("ste.csv");
-        let results = results();
-        let text = csv(
-            table,
-            &select(table, &curves_of(&results, None).unwrap()).unwrap(),
-        );
         let lines = [
-            "output_torque_n_m,mesh_position,transmission_error_um",
-            "115.0,0.0,14.1",
-            "115.0,0.025,",
-            "20.0,0.0,5.0",
-            "20.0,0.025,6.0",
+            "output_torque_n_m,mesh_position,driving_angle_deg,driven_angle_deg,transmission_error_um",
+            "115.0,0.0,0.0,0.0,13.79",
+            "115.0,0.5,3.6,3.6,14.0",
+            "20.0,0.0,0.0,0.0,5.0",
+            "20.0,0.5,3.6,3.6,6.0",
             "",
         ];
+        let text = csv(&table_of("ste.csv", None).unwrap());
         assert_eq!(text, lines.join("\r\n"));
     }
 
     #[test]
+    fn a_column_of_one_curve_leaves_its_cells_empty_in_others() {
+        let mut results = results();
+        results.curves[1].driving_angle_deg.clear();
+        let curves: Vec<_> = results.curves.iter().collect();
+        let text = csv(&select(Table::TransmissionError, &curves).unwrap());
+        assert!(text.ends_with("20.0,0.5,,3.6,6.0\r\n"), "{text}");
+        results.curves[0].driving_angle_deg.clear();
+        let curves: Vec<_> = results.curves.iter().collect();
+        let text = csv(&select(Table::TransmissionError, &curves).unwrap());
+        assert!(text.starts_with("output_torque_n_m,mesh_position,driven_angle_deg,"));
+    }
+
+    #[test]
     fn a_torque_selects_its_curve_and_an_unknown_one_is_told_which_there_are() {
-        let (table, results) = (table_of("ste.json"), results());
-        let selected = select(table, &curves_of(&results, Some(20.0)).unwrap()).unwrap();
-        assert_eq!(selected.len(), 1);
+        let selected = json!(table_of("ste.json", Some(20.0)).unwrap());
+        assert_eq!(selected.as_array().map(Vec::len), Some(1));
         assert_eq!(selected[0]["transmission_error_um"], json!([5.0, 6.0]));
-        let problem = curves_of(&results, Some(21.0)).unwrap_err();
+        let problem = table_of("ste.json", Some(21.0)).err().expect("refused");
         assert!(problem.detail.contains("115, 20 N m"), "{}", problem.detail);
     }
 
     #[test]
     fn the_spectrum_keeps_its_names_in_json_and_may_be_absent() {
-        let (table, results) = (table_of("spectrum.json"), results());
-        let at = |torque| curves_of(&results, Some(torque)).unwrap();
-        let selected = select(table, &at(115.0)).unwrap();
-        assert_eq!(selected[0]["named"], json!([{ "label": "H_N" }]));
-        assert_eq!(
-            csv(table, &selected),
-            "output_torque_n_m,order,transmission_error_um\r\n115.0,10,0.001\r\n115.0,50,0.4\r\n"
+        let selected = table_of("spectrum.json", Some(115.0)).unwrap();
+        assert_eq!(json!(selected)[0]["named"][0]["label"], "H_N");
+        let text = csv(&selected);
+        assert!(
+            text.starts_with(
+                "output_torque_n_m,order,transmission_error_um,transmission_error_phase_deg,"
+            ),
+            "{text}"
         );
-        assert!(select(table, &at(20.0)).is_err());
+        assert!(text.contains("\r\n115.0,10.0,0.1,"), "{text}");
+        assert!(table_of("spectrum.csv", Some(20.0)).is_err());
         for unknown in ["ste", "x.csv", "x.svg", "load-share.csv"] {
             assert!(find_file(unknown).is_err(), "{unknown}");
         }
-        assert!(matches!(find_file("ste.svg"), Ok(File::Picture(_))));
+    }
+
+    #[test]
+    fn the_branches_of_a_run_up_stand_one_after_the_other() {
+        let mut results = results();
+        assert!(table_of("run-up.csv", None).is_err());
+        let branch = |load_factor: f64| {
+            json!({ "dynamic_transmission_error_um": { "rms": [1.0, 2.0], "peak_to_peak": [3.0, 4.0] },
+                    "dynamic_load_factor": [1.0, load_factor], "contact_lost": [false, true], "period_multiple": [1, 0],
+                    "orders": [] })
+        };
+        let dynamics = json!({ "natural_frequency_hz": 1.0, "equivalent_mass_kg": 1.0, "driving_speed_rpm": [100.0, 200.0],
+                               "up": branch(1.5), "down": branch(2.5), "resonances": [] });
+        results.curves[0].dynamics = Some(serde_json::from_value(dynamics).unwrap());
+        let curves: Vec<_> = results.curves.iter().collect();
+        let text = csv(&select(Table::RunUp, &curves).unwrap());
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines.len(), 5, "of the one curve that has it");
+        assert_eq!(lines[2], "115.0,200.0,up,2.0,4.0,1.5,true,0");
+        assert_eq!(lines[4], "115.0,200.0,down,2.0,4.0,2.5,true,0");
     }
 }

@@ -20,12 +20,7 @@ use crate::stores;
 pub(crate) const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Results as an engine might give them, with a text that no serializer would write.
-pub(crate) const RESULTS: &str = r#"{ "method": "flexible",  "curves": [
-  { "output_torque_n_m": 115.0, "mesh_position": [0.0, 0.5], "driving_angle_deg": [0.0, 3.6], "driven_angle_deg": [0.0, 3.6],
-    "transmission_error_um": [13.79, 14.0], "mesh_stiffness_tangent_n_per_m": [2.2e8, 2.1e8],
-    "mesh_stiffness_secant_n_per_m": [1.8e8, 1.7e8],
-    "spectrum": { "order": [10], "transmission_error_um": [0.1], "named": [ { "order": 10, "label": "H_N", "transmission_error_um": 0.1 } ] } },
-  { "output_torque_n_m": 20.0, "mesh_position": [0.0, 0.5], "transmission_error_um": [5.0, 6.0] } ] }"#;
+pub(crate) const RESULTS: &str = include_str!("results.json");
 
 /// The usual configuration, with one worker, few places and a free port.
 pub(crate) fn config(database: &Place) -> Config {

@@ -211,7 +211,12 @@ async fn results_without_what_a_picture_shows_say_so() {
     let bench = Bench::quick().await;
     let path = bench.submit(&submission(115.0)).await;
     bench.ended(&path).await;
-    for absent in ["load-share.svg", "look-up-table.txt", "drawing.svg"] {
+    for absent in [
+        "run-up.svg",
+        "spectrum.svg?torque=20",
+        "force-table.txt",
+        "drawing.svg",
+    ] {
         let answer = bench
             .get(&format!("{path}/results/{absent}"))
             .send()
