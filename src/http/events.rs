@@ -38,29 +38,37 @@ pub(super) struct ProgressView {
     positions_total: u64,
 }
 
-/// An event of a job.
+/// An event of a job or of a study.
 #[derive(ToSchema)]
-#[schema(title = "JobEvent")]
-#[expect(dead_code, reason = "it stands for the events in the OpenAPI document")]
-pub(super) struct JobEvent {
+#[schema(title = "WatchEvent")]
+pub(super) struct WatchEvent {
     /// The number of the event in the stream.
     id: String,
     /// `status` at the start of the stream and whenever the state changes, else `progress`.
     event: EventName,
-    /// JSON: of `status` a `Job`, of `progress` a `Progress`.
+    /// JSON: of `status` a `Job` or a `SubmittedStudy`, of `progress` a `Progress` or a `StudyProgress`.
     #[schema(content_media_type = "application/json")]
     data: String,
 }
 
 /// The name of an event.
-#[derive(ToSchema)]
+#[derive(Clone, Copy, ToSchema)]
 #[schema(title = "EventName", rename_all = "snake_case")]
-#[expect(dead_code, reason = "it stands for the names in the OpenAPI document")]
 pub(super) enum EventName {
     /// What is watched, as it stands.
     Status,
     /// How far it has come.
     Progress,
+}
+
+impl From<WatchEvent> for Event {
+    fn from(WatchEvent { id, event, data }: WatchEvent) -> Self {
+        let name = match event {
+            EventName::Status => "status",
+            EventName::Progress => "progress",
+        };
+        Self::default().id(id).event(name).data(data)
+    }
 }
 
 /// Watch a job
@@ -75,9 +83,9 @@ pub(super) enum EventName {
         ("Last-Event-ID" = Option<String>, Header, description = "Sent by a client that comes back; every stream starts with the present state."),
     ),
     responses(
-        (status = 200, description = "Events: `status` with a Job as data, and `progress` with a Progress.", body = JobEvent, content_type = "text/event-stream"),
-        (status = 404, description = "There is no such job.", body = Problem, content_type = "application/problem+json"),
-        (status = 429, description = "As many streams are open as one client may have.", body = Problem, content_type = "application/problem+json"),
+        (status = 200, description = "Events: `status` with a Job as data, and `progress` with a Progress.", body = WatchEvent, content_type = "text/event-stream"),
+        (status = 404, description = "There is no such job."),
+        (status = 429, description = "As many streams are open as one client may have."),
     ),
 )]
 pub(super) async fn events(
@@ -93,17 +101,25 @@ pub(super) async fn events(
         app: app.clone(),
         client: client.0.client,
         id,
-        count: 0,
         status: None,
         progress: None,
     };
     Ok(answer(app, watch, client.1, place))
 }
 
+/// What an event tells: its name, and its data as JSON.
+pub(super) type Told = (EventName, String);
+
+/// The event `name` with this data.
+pub(super) fn told(name: EventName, data: &impl Serialize) -> Option<Told> {
+    let data = serde_json::to_string(data).expect("a view is plain data");
+    Some((name, data))
+}
+
 /// One who watches until there is nothing more to see.
 pub(super) trait Watching: Send + 'static {
     /// The next event; none at the end.
-    fn next(&mut self) -> impl Future<Output = Option<Event>> + Send;
+    fn next(&mut self) -> impl Future<Output = Option<Told>> + Send;
 }
 
 /// A place among those who wait.
@@ -120,10 +136,13 @@ pub(super) fn place(app: &App, client: &str) -> Result<PlaceToWait, Problem> {
 /// watches would not get in any more.
 pub(super) fn answer(app: App, watch: impl Watching, pass: Pass, place: PlaceToWait) -> Response {
     let events = stream::unfold(
-        (app, watch, pass, place),
-        async |(app, mut watch, pass, place)| {
-            let event = next(&app, &mut watch, &pass).await?;
-            Some((Ok::<_, Infallible>(event), (app, watch, pass, place)))
+        (app, watch, pass, place, 1_u64),
+        async |(app, mut watch, pass, place, count)| {
+            let (event, data) = next(&app, &mut watch, &pass).await?;
+            let id = count.to_string();
+            let event = Event::from(WatchEvent { id, event, data });
+            let next = (app, watch, pass, place, count + 1);
+            Some((Ok::<_, Infallible>(event), next))
         },
     );
     // A proxy that collects the answer before it passes it on would spoil the stream.
@@ -135,7 +154,7 @@ pub(super) fn answer(app: App, watch: impl Watching, pass: Pass, place: PlaceToW
 }
 
 /// The next event for one who may see it; none when his key is revoked meanwhile.
-async fn next(app: &App, watch: &mut impl Watching, pass: &Pass) -> Option<Event> {
+async fn next(app: &App, watch: &mut impl Watching, pass: &Pass) -> Option<Told> {
     let mut event = pin!(watch.next());
     loop {
         tokio::select! {
@@ -152,23 +171,12 @@ async fn next(app: &App, watch: &mut impl Watching, pass: &Pass) -> Option<Event
     }
 }
 
-/// Event number `count` of a stream.
-pub(super) fn event(count: u64, name: &str, data: &impl Serialize) -> Event {
-    let data = serde_json::to_string(data).expect("a view is plain data");
-    Event::default()
-        .id(count.to_string())
-        .event(name)
-        .data(data)
-}
-
 /// One client that watches one job.
 struct Watch {
     app: App,
     client: String,
     id: Uuid,
     news: News,
-    /// Events sent.
-    count: u64,
     /// What the client knows.
     status: Option<Status>,
     progress: Option<Progress>,
@@ -176,7 +184,7 @@ struct Watch {
 
 impl Watching for Watch {
     /// The next event; none after the job has ended or vanished, or when the service shuts down.
-    async fn next(&mut self) -> Option<Event> {
+    async fn next(&mut self) -> Option<Told> {
         if self.status.is_some_and(Status::has_ended) {
             return None;
         }
@@ -184,7 +192,7 @@ impl Watching for Watch {
             let job = self.app.jobs.find(&self.client, self.id).await.ok()?;
             if self.status != Some(job.status) {
                 self.status = Some(job.status);
-                return Some(self.event("status", &JobView::new(&job, &self.app.edge)));
+                return told(EventName::Status, &JobView::new(&job, &self.app.edge));
             }
             if job.status == Status::Running && self.progress != Some(job.progress) {
                 self.pause().await?;
@@ -194,7 +202,7 @@ impl Watching for Watch {
                     positions_done: job.progress.done,
                     positions_total: job.progress.total,
                 };
-                return Some(self.event("progress", &view));
+                return told(EventName::Progress, &view);
             }
             tokio::select! {
                 () = self.news.changed(self.progress) => {}
@@ -214,10 +222,5 @@ impl Watch {
             () = tokio::time::sleep(PROGRESS_INTERVAL) => Some(()),
             () = self.app.jobs.stop().cancelled() => None,
         }
-    }
-
-    fn event(&mut self, name: &str, data: &impl Serialize) -> Event {
-        self.count += 1;
-        event(self.count, name, data)
     }
 }

@@ -4,7 +4,6 @@ use std::time::Duration;
 
 use axum::extract::{Path, State};
 use axum::response::Response;
-use axum::response::sse::Event;
 use serde::Serialize;
 use utoipa::ToSchema;
 use uuid::Uuid;
@@ -13,7 +12,7 @@ use super::study_id;
 use super::view::StudyView;
 use crate::http::app::App;
 use crate::http::client::Client;
-use crate::http::events::{self, EventName, Watching};
+use crate::http::events::{self, EventName, Told, WatchEvent, Watching, told};
 use crate::jobs::News;
 use crate::wire::{Problem, Status};
 
@@ -30,20 +29,6 @@ pub(in crate::http) struct StudyProgressView {
     total: u64,
 }
 
-/// An event of a study.
-#[derive(ToSchema)]
-#[schema(title = "StudyEvent")]
-#[expect(dead_code, reason = "it stands for the events in the OpenAPI document")]
-pub(in crate::http) struct StudyEvent {
-    /// The number of the event in the stream.
-    id: String,
-    /// `status` at the start of the stream and whenever the state changes, else `progress`.
-    event: EventName,
-    /// JSON: of `status` a `SubmittedStudy`, of `progress` a `StudyProgress`.
-    #[schema(content_media_type = "application/json")]
-    data: String,
-}
-
 /// Watch a study
 ///
 /// A stream of server-sent events: `status` with the study as data, at the start and whenever its state changes, and
@@ -52,9 +37,9 @@ pub(in crate::http) struct StudyEvent {
     get, path = "/v1/studies/{id}/events", tag = "Studies", operation_id = "watch_study",
     params(("id" = String, Path, format = "uuid", description = "The id of the study.")),
     responses(
-        (status = 200, description = "Events: `status` with a SubmittedStudy as data, and `progress` with a StudyProgress.", body = StudyEvent, content_type = "text/event-stream"),
-        (status = 404, description = "There is no such study.", body = Problem, content_type = "application/problem+json"),
-        (status = 429, description = "As many streams are open as one client may have.", body = Problem, content_type = "application/problem+json"),
+        (status = 200, description = "Events: `status` with a SubmittedStudy as data, and `progress` with a StudyProgress.", body = WatchEvent, content_type = "text/event-stream"),
+        (status = 404, description = "There is no such study."),
+        (status = 429, description = "As many streams are open as one client may have."),
     ),
 )]
 pub(in crate::http) async fn events(
@@ -70,7 +55,6 @@ pub(in crate::http) async fn events(
         app: app.clone(),
         client: client.0.client,
         id,
-        count: 0,
         known: None,
     };
     Ok(events::answer(app, watch, client.1, place))
@@ -82,15 +66,13 @@ struct Watch {
     client: String,
     id: Uuid,
     news: News,
-    /// Events sent.
-    count: u64,
     /// What the client knows: the state, and the designs done.
     known: Option<(Status, u64)>,
 }
 
 impl Watching for Watch {
     /// The next event; none after the study has ended or vanished, or when the service shuts down.
-    async fn next(&mut self) -> Option<Event> {
+    async fn next(&mut self) -> Option<Told> {
         if self.known.is_some_and(|(status, _)| status.has_ended()) {
             return None;
         }
@@ -99,14 +81,14 @@ impl Watching for Watch {
             let now = (study.status(), study.done());
             let before = self.known.replace(now);
             if before.map(|(status, _)| status) != Some(now.0) {
-                return Some(self.event("status", &StudyView::new(&study, &self.app.edge)));
+                return told(EventName::Status, &StudyView::new(&study, &self.app.edge));
             }
             if before != Some(now) {
                 let view = StudyProgressView {
                     done: study.done(),
                     total: study.total,
                 };
-                return Some(self.event("progress", &view));
+                return told(EventName::Progress, &view);
             }
             // The pause comes after the news, so that many of them cost one look.
             let news = async {
@@ -118,12 +100,5 @@ impl Watching for Watch {
                 () = self.app.jobs.stop().cancelled() => return None,
             }
         }
-    }
-}
-
-impl Watch {
-    fn event(&mut self, name: &str, data: &impl Serialize) -> Event {
-        self.count += 1;
-        events::event(self.count, name, data)
     }
 }

@@ -9,7 +9,8 @@ use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE, HeaderName, HeaderValue, LINK};
 use axum::response::{IntoResponse, Response};
 use futures_util::stream;
-use serde::Serialize;
+use serde::de::IntoDeserializer;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use serde_json::value::RawValue;
 use utoipa::ToSchema;
@@ -41,7 +42,7 @@ use crate::wire::{Code, Problem, Results, RowState, StudyResults};
             ("Retry-After" = u32, description = "Until the study has ended: seconds after which it is worth looking again."),
         )),
         (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
-        (status = 404, description = "There is no such study.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such study."),
     ),
 )]
 pub(in crate::http) async fn results(
@@ -50,7 +51,7 @@ pub(in crate::http) async fn results(
     Path(id): Path<String>,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
-    send(app, client, &id, &request, Form::Json).await
+    send(app, client, &id, &request, StudyFile::Json).await
 }
 
 /// Get the table of a study, or its results, as a file
@@ -73,7 +74,7 @@ pub(in crate::http) async fn results(
             (NdjsonLine = "application/x-ndjson"),
         ), headers(("ETag" = String, description = "Stands for this answer."))),
         (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
-        (status = 404, description = "There is no such study, or no such file.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such study, or no such file."),
     ),
 )]
 pub(in crate::http) async fn file(
@@ -82,18 +83,14 @@ pub(in crate::http) async fn file(
     Path((id, file)): Path<(String, String)>,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
-    let form = match file.as_str() {
-        "table.json" => Form::Json,
-        "table.ndjson" => Form::Ndjson,
-        "table.csv" => Form::Csv,
-        "documents.ndjson" => Form::Documents,
-        _ => {
-            return Err(Problem::new(
-                Code::NotFound,
-                "The files are table.json, table.ndjson, table.csv and documents.ndjson.",
-            ));
-        }
-    };
+    let form: Result<StudyFile, serde::de::value::Error> =
+        StudyFile::deserialize(file.as_str().into_deserializer());
+    let form = form.map_err(|_| {
+        Problem::new(
+            Code::NotFound,
+            "The files are table.json, table.ndjson, table.csv and documents.ndjson.",
+        )
+    })?;
     send(app, client, &id, &request, form).await
 }
 
@@ -108,7 +105,7 @@ pub(in crate::http) async fn old_csv(
         "<{}/v1/studies/{id}/results/table.csv>; rel=\"successor-version\"",
         app.edge.public_url
     );
-    let mut response = send(app, client, &id, &request, Form::Csv).await?;
+    let mut response = send(app, client, &id, &request, StudyFile::Csv).await?;
     let headers = response.headers_mut();
     // 2026-11-21, as RFC 9745 wants it.
     headers.insert(
@@ -122,9 +119,8 @@ pub(in crate::http) async fn old_csv(
 }
 
 /// A file of a study.
-#[derive(ToSchema)]
+#[derive(Clone, Copy, Deserialize, ToSchema)]
 #[schema(title = "StudyFile")]
-#[expect(dead_code, reason = "it stands for the names in the OpenAPI document")]
 pub(in crate::http) enum StudyFile {
     /// The table.
     #[serde(rename = "table.json")]
@@ -157,10 +153,9 @@ pub(in crate::http) struct DesignResults<'a> {
 }
 
 /// A line of NDJSON: a row in `table.ndjson`, the results of a design in `documents.ndjson`.
-#[derive(ToSchema)]
+#[derive(Serialize, ToSchema)]
 #[schema(title = "StudyLine")]
 #[serde(untagged)]
-#[expect(dead_code, reason = "it stands for the lines in the OpenAPI document")]
 pub(in crate::http) enum NdjsonLine<'a> {
     /// A row of the table.
     Row(Box<TableRow>),
@@ -168,15 +163,15 @@ pub(in crate::http) enum NdjsonLine<'a> {
     Results(DesignResults<'a>),
 }
 
-#[derive(Clone, Copy)]
-enum Form {
-    Json,
-    Ndjson,
-    Csv,
-    Documents,
+impl NdjsonLine<'_> {
+    fn text(&self) -> String {
+        let mut text = serde_json::to_string(self).expect("a line is plain data");
+        text.push('\n');
+        text
+    }
 }
 
-impl Form {
+impl StudyFile {
     fn word(self) -> &'static str {
         match self {
             Self::Json => "table.json",
@@ -200,18 +195,20 @@ async fn send(
     client: Client,
     id: &str,
     request: &HeaderMap,
-    form: Form,
+    form: StudyFile,
 ) -> Result<Response, Problem> {
     let study = app.jobs.find_study(client.name(), study_id(id)?).await?;
     let tag = tag_of(&study, form.word(), &app.edge);
     let name = Arc::from(client.name());
     let made = async {
         let body = match form {
-            Form::Json | Form::Ndjson | Form::Csv => table(app, name, &study, form).await?,
-            Form::Documents => documents(app, name, &study).await?,
+            StudyFile::Json | StudyFile::Ndjson | StudyFile::Csv => {
+                table(app, name, &study, form).await?
+            }
+            StudyFile::Documents => documents(app, name, &study).await?,
         };
         let mut response = ([(CONTENT_TYPE, form.content_type())], body).into_response();
-        if !matches!(form, Form::Json) {
+        if !matches!(form, StudyFile::Json) {
             let name = format!(
                 "attachment; filename=\"study-{}-{}\"",
                 study.id,
@@ -233,7 +230,7 @@ async fn table(
     app: App,
     client: Arc<str>,
     study: &StudyRecord,
-    form: Form,
+    form: StudyFile,
 ) -> Result<Body, Problem> {
     let mut outline = Outline::default();
     let mut read = 0;
@@ -253,12 +250,12 @@ async fn table(
     let (pointers, told) = (outline.pointers().to_vec(), outline.told());
     let front = aside(&client, move |_| outline.front()).await?;
     let (head, foot, layout) = match form {
-        Form::Csv => {
+        StudyFile::Csv => {
             let csv = CsvTable::new(pointers, told);
             (csv.header(), "", Layout::Csv(csv))
         }
-        Form::Ndjson => (String::new(), "", Layout::Lines),
-        Form::Json | Form::Documents => (head_of_json(study, &app), "]}", Layout::List),
+        StudyFile::Ndjson => (String::new(), "", Layout::Lines),
+        StudyFile::Json | StudyFile::Documents => (head_of_json(study, &app), "]}", Layout::List),
     };
     let writer = RowWriter {
         client,
@@ -327,18 +324,14 @@ impl RowWriter {
             let best = usize::try_from(i).ok().and_then(|i| self.front.get(i));
             let mut row = TableRow::new(self.study.gear, state, best.copied().unwrap_or(false));
             row.problem = row.problem.map(|problem| self.with_address(problem));
-            let json = || serde_json::to_string(&row).expect("a row is plain data");
             match &self.layout {
                 Layout::Csv(csv) => text.push_str(&csv.lines([&row])),
-                Layout::Lines => {
-                    text.push_str(&json());
-                    text.push('\n');
-                }
+                Layout::Lines => text.push_str(&NdjsonLine::Row(Box::new(row)).text()),
                 Layout::List => {
                     if i > 0 {
                         text.push(',');
                     }
-                    text.push_str(&json());
+                    text.push_str(&serde_json::to_string(&row).expect("a row is plain data"));
                 }
             }
         }
@@ -405,13 +398,11 @@ fn line(line: &DocumentLine) -> Result<String, Problem> {
     let text = text.replace(['\n', '\r'], " ");
     let results: &RawValue =
         serde_json::from_str(&text).map_err(|_| crate::http::problem::internal())?;
-    let line = DesignResults {
+    let line = NdjsonLine::Results(DesignResults {
         row: line.position,
         label: &line.label,
         job: &line.job,
         results,
-    };
-    let mut text = serde_json::to_string(&line).expect("a line is plain data");
-    text.push('\n');
-    Ok(text)
+    });
+    Ok(line.text())
 }
