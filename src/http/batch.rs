@@ -70,12 +70,11 @@ pub(super) struct BatchItem<'a> {
     ),
     responses(
         (status = 202, description = "What came of each submission. None may have been taken.", body = BatchAnswer),
-        (status = 400, description = "The body is no JSON, or a header is not understood.", body = Problem, content_type = "application/problem+json"),
-        (status = 408, description = "The body came too slowly.", body = Problem, content_type = "application/problem+json"),
-        (status = 413, description = "The body has more than 4 MiB.", body = Problem, content_type = "application/problem+json"),
-        (status = 415, description = "The body is not declared as JSON.", body = Problem, content_type = "application/problem+json"),
-        (status = 422, description = "The body is no batch, has more than 100 submissions, or fields that no submission may have; `errors` says which.", body = Problem, content_type = "application/problem+json"),
-        (status = 503, description = "Too many batches come at once. Try again after `Retry-After` seconds.", body = Problem, content_type = "application/problem+json"),
+        (status = 400, description = "The body is no JSON, or a header is not understood."),
+        (status = 413, description = "The body has more than 4 MiB."),
+        (status = 415, description = "The body is not declared as JSON."),
+        (status = 422, description = "The body is no batch, has more than 100 submissions, or fields that no submission may have; `errors` says which."),
+        (status = 503, description = "Too many batches come at once. Try again after `Retry-After` seconds."),
     ),
 )]
 pub(super) async fn submit(

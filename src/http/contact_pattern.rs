@@ -45,11 +45,11 @@ pub(super) struct PatternParameters {
             ("Results-Solver-Version" = Option<String>, description = "The version that computed the job's results, where it is another one: its curves may differ a little from what is seen here."),
         )),
         (status = 304, description = "The client has this pattern."),
-        (status = 400, description = "A parameter is not understood.", body = Problem, content_type = "application/problem+json"),
-        (status = 404, description = "There is no such job or torque, the job has not ended, or its method does not see the faces.", body = Problem, content_type = "application/problem+json"),
-        (status = 409, description = "The job failed or was cancelled, and has no results.", body = Problem, content_type = "application/problem+json"),
-        (status = 422, description = "The pattern cannot be computed, or takes too long.", body = Problem, content_type = "application/problem+json"),
-        (status = 503, description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds.", body = Problem, content_type = "application/problem+json"),
+        (status = 400, description = "A parameter is not understood."),
+        (status = 404, description = "There is no such job or torque, the job has not ended, or its method does not see the faces."),
+        (status = 409, description = "The job failed or was cancelled, and has no results."),
+        (status = 422, description = "The pattern cannot be computed, or takes too long."),
+        (status = 503, description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds."),
     ),
 )]
 pub(super) async fn json(
@@ -88,11 +88,11 @@ pub(super) async fn json(
             ("Results-Solver-Version" = Option<String>, description = "The version that computed the job's results, where it is another one."),
         )),
         (status = 304, description = "The client has this picture."),
-        (status = 400, description = "A parameter is not understood.", body = Problem, content_type = "application/problem+json"),
-        (status = 404, description = "There is no such job or torque, the job has not ended, or its method does not see the faces.", body = Problem, content_type = "application/problem+json"),
-        (status = 409, description = "The job failed or was cancelled, and has no results.", body = Problem, content_type = "application/problem+json"),
-        (status = 422, description = "The pattern cannot be computed, or takes too long.", body = Problem, content_type = "application/problem+json"),
-        (status = 503, description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds.", body = Problem, content_type = "application/problem+json"),
+        (status = 400, description = "A parameter is not understood."),
+        (status = 404, description = "There is no such job or torque, the job has not ended, or its method does not see the faces."),
+        (status = 409, description = "The job failed or was cancelled, and has no results."),
+        (status = 422, description = "The pattern cannot be computed, or takes too long."),
+        (status = 503, description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds."),
     ),
 )]
 pub(super) async fn svg(

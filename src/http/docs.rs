@@ -62,7 +62,8 @@ pub(super) fn introduction() -> OpenApi {
     openapi
 }
 
-/// Adds to every operation what may be answered whatever it is: by who asks, by its bounds, by the state of the service.
+/// Adds to every operation what may be answered whatever it is: by who asks, by its bounds, by the state of the service. Whatever
+/// is refused is refused with a problem.
 pub(super) fn add_common_answers(openapi: &mut OpenApi) {
     const WITH_KEY: [(&str, &str); 3] = [
         (
@@ -90,25 +91,33 @@ pub(super) fn add_common_answers(openapi: &mut OpenApi) {
         for operation in operations.into_iter().flatten() {
             let is_public = operation.security.is_some();
             let with_key = WITH_KEY.iter().filter(|_| !is_public);
+            let responses = &mut operation.responses.responses;
             for (status, description) in with_key.chain(&ALWAYS) {
-                let responses = &mut operation.responses.responses;
+                let response = || {
+                    ResponseBuilder::new()
+                        .description(*description)
+                        .build()
+                        .into()
+                };
                 responses
                     .entry((*status).to_owned())
-                    .or_insert_with(|| problem(description));
+                    .or_insert_with(response);
+            }
+            for (status, response) in responses {
+                if let RefOr::T(response) = response
+                    && status.starts_with(['4', '5', 'd'])
+                    && response.content.is_empty()
+                {
+                    let problem =
+                        ContentBuilder::new().schema(Some(Ref::from_schema_name("Problem")));
+                    let media_type = "application/problem+json".to_owned();
+                    response
+                        .content
+                        .insert(media_type, RefOr::T(problem.build()));
+                }
             }
         }
     }
-}
-
-fn problem(description: &str) -> RefOr<utoipa::openapi::Response> {
-    let content = ContentBuilder::new()
-        .schema(Some(Ref::from_schema_name("Problem")))
-        .build();
-    ResponseBuilder::new()
-        .description(description)
-        .content("application/problem+json", content)
-        .build()
-        .into()
 }
 
 /// Says whether requests need a key, those aside that never do, and whose tokens will do as well.

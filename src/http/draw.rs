@@ -18,11 +18,10 @@ use crate::wire::{Draw, DrawnDeviations, Problem};
     request_body(content = DrawDocument, content_type = "application/json", description = "The gear, the class, and the seed."),
     responses(
         (status = 200, description = "The teeth.", body = DrawnDeviations),
-        (status = 400, description = "The body is no JSON.", body = Problem, content_type = "application/problem+json"),
-        (status = 408, description = "The body came too slowly.", body = Problem, content_type = "application/problem+json"),
-        (status = 413, description = "The body has more than 1 MiB.", body = Problem, content_type = "application/problem+json"),
-        (status = 415, description = "The body is not declared as JSON.", body = Problem, content_type = "application/problem+json"),
-        (status = 422, description = "The gear cannot be made, or there is no such class; `errors` says which field is why.", body = Problem, content_type = "application/problem+json"),
+        (status = 400, description = "The body is no JSON."),
+        (status = 413, description = "The body has more than 1 MiB."),
+        (status = 415, description = "The body is not declared as JSON."),
+        (status = 422, description = "The gear cannot be made, or there is no such class; `errors` says which field is why."),
     ),
 )]
 pub(super) async fn draw(

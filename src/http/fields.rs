@@ -53,11 +53,11 @@ pub(super) struct FieldParameters {
             ("Results-Solver-Version" = Option<String>, description = "The version that computed the job's results, where it is another one: its curves may differ a little from what is seen here."),
         )),
         (status = 304, description = "The client has this grid."),
-        (status = 400, description = "A parameter is not understood, or the position is outside the span.", body = Problem, content_type = "application/problem+json"),
-        (status = 404, description = "There is no such job or torque, or the job has not ended.", body = Problem, content_type = "application/problem+json"),
-        (status = 409, description = "The job failed or was cancelled, and has no results.", body = Problem, content_type = "application/problem+json"),
-        (status = 422, description = "This position cannot be computed, or takes too long.", body = Problem, content_type = "application/problem+json"),
-        (status = 503, description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds.", body = Problem, content_type = "application/problem+json"),
+        (status = 400, description = "A parameter is not understood, or the position is outside the span."),
+        (status = 404, description = "There is no such job or torque, or the job has not ended."),
+        (status = 409, description = "The job failed or was cancelled, and has no results."),
+        (status = 422, description = "This position cannot be computed, or takes too long."),
+        (status = 503, description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds."),
     ),
 )]
 pub(super) async fn vtu(
@@ -106,11 +106,11 @@ pub(super) async fn vtu(
             ("Results-Solver-Version" = Option<String>, description = "The version that computed the job's results, where it is another one: its curves may differ a little from what is seen here."),
         )),
         (status = 304, description = "The client has these edges."),
-        (status = 400, description = "A parameter is not understood, or the position is outside the span.", body = Problem, content_type = "application/problem+json"),
-        (status = 404, description = "There is no such job or torque, or the job has not ended.", body = Problem, content_type = "application/problem+json"),
-        (status = 409, description = "The job failed or was cancelled, and has no results.", body = Problem, content_type = "application/problem+json"),
-        (status = 422, description = "This position cannot be computed, or takes too long.", body = Problem, content_type = "application/problem+json"),
-        (status = 503, description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds.", body = Problem, content_type = "application/problem+json"),
+        (status = 400, description = "A parameter is not understood, or the position is outside the span."),
+        (status = 404, description = "There is no such job or torque, or the job has not ended."),
+        (status = 409, description = "The job failed or was cancelled, and has no results."),
+        (status = 422, description = "This position cannot be computed, or takes too long."),
+        (status = 503, description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds."),
     ),
 )]
 pub(super) async fn edges(

@@ -149,7 +149,7 @@ fn words(list: &str) -> impl Iterator<Item = &str> {
         (status = 200, description = "The jobs.", body = Page<JobView>, headers(
             ("Link" = String, description = "With rel=next, the address of the next page; absent at the end."),
         )),
-        (status = 400, description = "A parameter is not understood.", body = Problem, content_type = "application/problem+json"),
+        (status = 400, description = "A parameter is not understood."),
     ),
 )]
 pub(super) async fn list(
@@ -192,7 +192,7 @@ pub(super) async fn list(
             ("Retry-After" = u32, description = "Until the job has ended: seconds after which it is worth looking again."),
         )),
         (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
-        (status = 404, description = "There is no such job.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such job."),
     ),
 )]
 pub(super) async fn show(
@@ -235,8 +235,8 @@ pub(super) async fn show(
     params(("id" = String, Path, format = "uuid", description = "The id of the job.")),
     responses(
         (status = 202, description = "The job is dismissed.", body = JobView),
-        (status = 404, description = "There is no such job.", body = Problem, content_type = "application/problem+json"),
-        (status = 409, description = "The job is successful or failed already.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such job."),
+        (status = 409, description = "The job is successful or failed already."),
     ),
 )]
 pub(super) async fn cancel(
@@ -256,8 +256,8 @@ pub(super) async fn cancel(
     params(("id" = String, Path, format = "uuid", description = "The id of the job.")),
     responses(
         (status = 204, description = "The job is gone."),
-        (status = 404, description = "There is no such job.", body = Problem, content_type = "application/problem+json"),
-        (status = 409, description = "The job is running; cancel it first.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such job."),
+        (status = 409, description = "The job is running; cancel it first."),
     ),
 )]
 pub(super) async fn delete(

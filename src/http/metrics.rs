@@ -190,8 +190,8 @@ pub(super) async fn count(request: Request, next: Next) -> Response {
     get, path = "/metrics", tag = "Operation", operation_id = "metrics",
     responses(
         (status = 200, description = "The numbers.", body = String, content_type = "text/plain"),
-        (status = 404, description = "The numbers have a listener of their own.", body = Problem, content_type = "application/problem+json"),
-        (status = 503, description = "The database cannot be read now.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "The numbers have a listener of their own."),
+        (status = 503, description = "The database cannot be read now."),
     ),
 )]
 pub(super) async fn metrics(State(app): State<App>, _: Operator) -> Result<Response, Problem> {

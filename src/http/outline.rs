@@ -21,11 +21,10 @@ use crate::wire::{PairOutline, Problem, Submission};
     request_body(content = Submission, content_type = "application/json", description = "The submission."),
     responses(
         (status = 200, description = "The outline.", content((PairOutline = "application/json"), (String = "image/svg+xml"))),
-        (status = 400, description = "The body is no JSON.", body = Problem, content_type = "application/problem+json"),
-        (status = 408, description = "The body came too slowly.", body = Problem, content_type = "application/problem+json"),
-        (status = 413, description = "The body has more than 1 MiB.", body = Problem, content_type = "application/problem+json"),
-        (status = 415, description = "The body is not declared as JSON.", body = Problem, content_type = "application/problem+json"),
-        (status = 422, description = "The pair cannot be made; `errors` says which field is why.", body = Problem, content_type = "application/problem+json"),
+        (status = 400, description = "The body is no JSON."),
+        (status = 413, description = "The body has more than 1 MiB."),
+        (status = 415, description = "The body is not declared as JSON."),
+        (status = 422, description = "The pair cannot be made; `errors` says which field is why."),
     ),
 )]
 pub(super) async fn outline(

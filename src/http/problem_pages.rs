@@ -38,7 +38,7 @@ pub(super) async fn index() -> Html<String> {
     params(("slug" = String, Path, description = "The code of the problem, with hyphens.")),
     responses(
         (status = 200, description = "The page.", body = String, content_type = "text/html"),
-        (status = 404, description = "There is no such problem.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such problem."),
     ),
 )]
 pub(super) async fn page_of(Path(slug): Path<String>) -> Result<Html<String>, Problem> {

@@ -28,12 +28,11 @@ use crate::wire::{self, Limits, Problem, Submission, Validation};
     request_body(content = Submission, content_type = "application/json", description = "The submission."),
     responses(
         (status = 200, description = "The submission can be computed.", body = Validation),
-        (status = 400, description = "The body is no JSON.", body = Problem, content_type = "application/problem+json"),
-        (status = 408, description = "The body came too slowly.", body = Problem, content_type = "application/problem+json"),
-        (status = 413, description = "The body has more than 1 MiB.", body = Problem, content_type = "application/problem+json"),
-        (status = 415, description = "The body is not declared as JSON.", body = Problem, content_type = "application/problem+json"),
-        (status = 422, description = "The submission cannot be computed; `errors` says which field is why.", body = Problem, content_type = "application/problem+json"),
-        (status = 503, description = "Too many submissions are checked at once. Try again after `Retry-After` seconds.", body = Problem, content_type = "application/problem+json"),
+        (status = 400, description = "The body is no JSON."),
+        (status = 413, description = "The body has more than 1 MiB."),
+        (status = 415, description = "The body is not declared as JSON."),
+        (status = 422, description = "The submission cannot be computed; `errors` says which field is why."),
+        (status = 503, description = "Too many submissions are checked at once. Try again after `Retry-After` seconds."),
     ),
 )]
 pub(super) async fn validate(

@@ -29,9 +29,9 @@ use crate::wire::Problem;
             ("ETag" = String, description = "Stands for these results."),
         )),
         (status = 304, description = "The client has these results."),
-        (status = 404, description = "There is no such job, or it has not ended; then `Retry-After` says when to ask again.", body = Problem, content_type = "application/problem+json"),
-        (status = 409, description = "The job failed or was cancelled, and has no results.", body = Problem, content_type = "application/problem+json"),
-        (status = 410, description = "The study of the job keeps statistics only (`results_not_kept`); submitted alone, the design has results.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such job, or it has not ended; then `Retry-After` says when to ask again."),
+        (status = 409, description = "The job failed or was cancelled, and has no results."),
+        (status = 410, description = "The study of the job keeps statistics only (`results_not_kept`); submitted alone, the design has results."),
     ),
 )]
 pub(super) async fn results(

@@ -83,10 +83,10 @@ pub(super) struct RefusedView {
     params(ModelParameters),
     responses(
         (status = 200, description = "The submissions.", body = ModelView),
-        (status = 400, description = "A parameter is not understood.", body = Problem, content_type = "application/problem+json"),
-        (status = 413, description = "The body has more than 4 MiB.", body = Problem, content_type = "application/problem+json"),
-        (status = 415, description = "The body is not declared as XML.", body = Problem, content_type = "application/problem+json"),
-        (status = 422, description = "It is no model, or none of its stages can be taken; the detail says why.", body = Problem, content_type = "application/problem+json"),
+        (status = 400, description = "A parameter is not understood."),
+        (status = 413, description = "The body has more than 4 MiB."),
+        (status = 415, description = "The body is not declared as XML."),
+        (status = 422, description = "It is no model, or none of its stages can be taken; the detail says why."),
     ),
 )]
 pub(super) async fn read(
@@ -196,7 +196,7 @@ impl From<Fault> for RefusedView {
     params(("id" = String, Path, format = "uuid", description = "The id of the job.")),
     responses(
         (status = 200, description = "The model.", body = String, content_type = "application/xml"),
-        (status = 404, description = "There is no such job.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such job."),
     ),
 )]
 pub(super) async fn write(

@@ -223,10 +223,10 @@ pub(super) struct TableParameters {
             (String = "text/plain"),
         ), headers(("ETag" = String, description = "Stands for this table."))),
         (status = 304, description = "The client has this table."),
-        (status = 400, description = "A parameter is not understood.", body = Problem, content_type = "application/problem+json"),
-        (status = 404, description = "There is no such job, table or torque, or the job has not ended.", body = Problem, content_type = "application/problem+json"),
-        (status = 409, description = "The job failed or was cancelled, and has no results.", body = Problem, content_type = "application/problem+json"),
-        (status = 410, description = "The study of the job keeps statistics only (`results_not_kept`); submitted alone, the design has results.", body = Problem, content_type = "application/problem+json"),
+        (status = 400, description = "A parameter is not understood."),
+        (status = 404, description = "There is no such job, table or torque, or the job has not ended."),
+        (status = 409, description = "The job failed or was cancelled, and has no results."),
+        (status = 410, description = "The study of the job keeps statistics only (`results_not_kept`); submitted alone, the design has results."),
     ),
 )]
 pub(super) async fn table(

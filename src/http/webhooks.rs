@@ -177,11 +177,10 @@ fn webhook_id(text: &str) -> Result<Uuid, Problem> {
     responses(
         (status = 200, description = "The webhook that an earlier request with this key has made, with its secret.", body = WebhookView),
         (status = 201, description = "The webhook, with its secret, which is told this once.", body = WebhookView),
-        (status = 400, description = "The body is no JSON, or a header is not understood.", body = Problem, content_type = "application/problem+json"),
-        (status = 408, description = "The body came too slowly.", body = Problem, content_type = "application/problem+json"),
-        (status = 413, description = "The body has more than 1 MiB.", body = Problem, content_type = "application/problem+json"),
-        (status = 415, description = "The body is not declared as JSON.", body = Problem, content_type = "application/problem+json"),
-        (status = 422, description = "Webhooks are off, the address is not one to send to, or the key was used for another webhook.", body = Problem, content_type = "application/problem+json"),
+        (status = 400, description = "The body is no JSON, or a header is not understood."),
+        (status = 413, description = "The body has more than 1 MiB."),
+        (status = 415, description = "The body is not declared as JSON."),
+        (status = 422, description = "Webhooks are off, the address is not one to send to, or the key was used for another webhook."),
     ),
 )]
 pub(super) async fn make(
@@ -242,7 +241,7 @@ pub(super) async fn list(
     params(("id" = String, Path, format = "uuid", description = "The id of the webhook.")),
     responses(
         (status = 204, description = "The webhook is gone."),
-        (status = 404, description = "There is no such webhook.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such webhook."),
     ),
 )]
 pub(super) async fn delete(
@@ -262,7 +261,7 @@ pub(super) async fn delete(
     params(("id" = String, Path, format = "uuid", description = "The id of the webhook.")),
     responses(
         (status = 200, description = "The webhook, without its secret.", body = WebhookView),
-        (status = 404, description = "There is no such webhook.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such webhook."),
     ),
 )]
 pub(super) async fn show(
@@ -282,8 +281,8 @@ pub(super) async fn show(
     params(("id" = String, Path, format = "uuid", description = "The id of the webhook.")),
     responses(
         (status = 202, description = "The message.", body = DeliveryView),
-        (status = 404, description = "There is no such webhook.", body = Problem, content_type = "application/problem+json"),
-        (status = 409, description = "The webhook was given up.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such webhook."),
+        (status = 409, description = "The webhook was given up."),
     ),
 )]
 pub(super) async fn ping(
@@ -303,7 +302,7 @@ pub(super) async fn ping(
     params(("id" = String, Path, format = "uuid", description = "The id of the webhook.")),
     responses(
         (status = 200, description = "The messages.", body = DeliveryListView),
-        (status = 404, description = "There is no such webhook.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such webhook."),
     ),
 )]
 pub(super) async fn deliveries(
@@ -328,8 +327,8 @@ pub(super) async fn deliveries(
     params(("id" = String, Path, format = "uuid", description = "The id of the webhook.")),
     responses(
         (status = 200, description = "The webhook.", body = WebhookView),
-        (status = 404, description = "There is no such webhook.", body = Problem, content_type = "application/problem+json"),
-        (status = 422, description = "The address is no longer one to send to.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such webhook."),
+        (status = 422, description = "The address is no longer one to send to."),
     ),
 )]
 pub(super) async fn enable(
@@ -350,7 +349,7 @@ pub(super) async fn enable(
     params(("id" = String, Path, format = "uuid", description = "The id of the webhook.")),
     responses(
         (status = 200, description = "The webhook, with its new secret, which is told this once.", body = WebhookView),
-        (status = 404, description = "There is no such webhook.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such webhook."),
     ),
 )]
 pub(super) async fn rotate(

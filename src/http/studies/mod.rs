@@ -59,13 +59,12 @@ fn study_id(text: &str) -> Result<Uuid, Problem> {
             ("Retry-After" = u32, description = "Seconds after which it is worth looking."),
         )),
         (status = 200, description = "With a repeated `Idempotency-Key`, the study that has ended meanwhile.", body = StudyView),
-        (status = 400, description = "The body is no JSON, or a header is not understood.", body = Problem, content_type = "application/problem+json"),
-        (status = 408, description = "The body came too slowly.", body = Problem, content_type = "application/problem+json"),
-        (status = 413, description = "The body has more than 16 MiB.", body = Problem, content_type = "application/problem+json"),
-        (status = 415, description = "The body is not declared as JSON.", body = Problem, content_type = "application/problem+json"),
-        (status = 422, description = "The study is not understood, or has more than 100,000 designs; `errors` says which field is why. Or the key was used for another study.", body = Problem, content_type = "application/problem+json"),
-        (status = 429, description = "More designs of this client wait than may.", body = Problem, content_type = "application/problem+json"),
-        (status = 503, description = "Too many designs wait, nothing can be stored, or the service is shutting down. Try again after `Retry-After` seconds.", body = Problem, content_type = "application/problem+json"),
+        (status = 400, description = "The body is no JSON, or a header is not understood."),
+        (status = 413, description = "The body has more than 16 MiB."),
+        (status = 415, description = "The body is not declared as JSON."),
+        (status = 422, description = "The study is not understood, or has more than 100,000 designs; `errors` says which field is why. Or the key was used for another study."),
+        (status = 429, description = "More designs of this client wait than may."),
+        (status = 503, description = "Too many designs wait, nothing can be stored, or the service is shutting down. Try again after `Retry-After` seconds."),
     ),
 )]
 pub(in crate::http) async fn submit(
@@ -130,7 +129,7 @@ pub(in crate::http) struct StudyListParameters {
         (status = 200, description = "The studies.", body = Page<StudyView>, headers(
             ("Link" = String, description = "With rel=next, the address of the next page; absent at the end."),
         )),
-        (status = 400, description = "A parameter is not understood.", body = Problem, content_type = "application/problem+json"),
+        (status = 400, description = "A parameter is not understood."),
     ),
 )]
 pub(in crate::http) async fn list(
@@ -181,7 +180,7 @@ pub(in crate::http) async fn list(
             ("Retry-After" = u32, description = "Until the study has ended: seconds after which it is worth looking again."),
         )),
         (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
-        (status = 404, description = "There is no such study.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such study."),
     ),
 )]
 pub(in crate::http) async fn show(
@@ -239,7 +238,7 @@ fn tell_when_to_return(study: &StudyRecord, response: &mut Response) {
             ("ETag" = String, description = "Stands for this document."),
         )),
         (status = 304, description = "The client has this document."),
-        (status = 404, description = "There is no such study.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such study."),
     ),
 )]
 pub(in crate::http) async fn document(
@@ -265,8 +264,8 @@ pub(in crate::http) async fn document(
     params(("id" = String, Path, format = "uuid", description = "The id of the study.")),
     responses(
         (status = 202, description = "The study is dismissed.", body = StudyView),
-        (status = 404, description = "There is no such study.", body = Problem, content_type = "application/problem+json"),
-        (status = 409, description = "The study has ended already.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such study."),
+        (status = 409, description = "The study has ended already."),
     ),
 )]
 pub(in crate::http) async fn cancel(
@@ -287,8 +286,8 @@ pub(in crate::http) async fn cancel(
     params(("id" = String, Path, format = "uuid", description = "The id of the study.")),
     responses(
         (status = 204, description = "The study is gone."),
-        (status = 404, description = "There is no such study.", body = Problem, content_type = "application/problem+json"),
-        (status = 409, description = "The study has not ended; cancel it first.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such study."),
+        (status = 409, description = "The study has not ended; cancel it first."),
     ),
 )]
 pub(in crate::http) async fn delete(

@@ -36,7 +36,7 @@ use crate::wire::{
             ("Retry-After" = u32, description = "Until the study has ended: seconds after which it is worth looking again."),
         )),
         (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
-        (status = 404, description = "There is no such study, or it is no population.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such study, or it is no population."),
     ),
 )]
 pub(in crate::http) async fn population(
@@ -128,7 +128,7 @@ async fn document(app: &App, client: &str, record: &StudyRecord) -> Result<Study
             ("ETag" = String, description = "Stands for this answer."),
         )),
         (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
-        (status = 404, description = "There is no such study, or it has no such row.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such study, or it has no such row."),
     ),
 )]
 pub(in crate::http) async fn design(
@@ -189,7 +189,7 @@ async fn submission_of(
             ("Retry-After" = u32, description = "Until the search has ended: seconds after which it is worth looking again."),
         )),
         (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
-        (status = 404, description = "There is no such study, it is no search, or no design of it could be had so far.", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "There is no such study, it is no search, or no design of it could be had so far."),
     ),
 )]
 pub(in crate::http) async fn best(
