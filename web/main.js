@@ -2,7 +2,7 @@
 
 import { hasKey, json, onKeyNeeded, post, ProblemError, setKey } from "./api.js";
 import { Brush } from "./brush.js";
-import { byId, debounced, fixed, h, number, timeOf } from "./dom.js";
+import { byId, debounced, fixed, h, number, timeLeft } from "./dom.js";
 import { Charts } from "./charts.js";
 import { Compare } from "./compare.js";
 import { isSolid, needsSolid } from "./dimensions.js";
@@ -196,7 +196,7 @@ function onProgress(job) {
   byId("progress").value = job.progress_percent ?? 0;
   byId("stop").onclick = job.cancel;
   const { progress_percent: done = 0, elapsed, status } = job;
-  const left = done > 2 ? `, about ${timeOf((elapsed * (100 - done)) / done)} more` : "";
+  const left = timeLeft(performance.now() - elapsed, done, 100);
   byId("state").textContent = `${status === "accepted" ? "A job waits for its turn" : `A job: ${done} %${left}`}.${shown ? " Shown is the design before." : ""}`;
 }
 

@@ -2,7 +2,7 @@
 
 import { follow, hasEnded, json, lines, post, ProblemError, request } from "./api.js";
 import { at, nameOf } from "./design.js";
-import { h, s, fixed, number, timeOf } from "./dom.js";
+import { h, s, fixed, number, timeLeft } from "./dom.js";
 import { figure } from "./figure.js";
 import { outdated } from "./outdated.js";
 
@@ -103,7 +103,8 @@ export function population(place, design, form, onOpen) {
     let shown = begun;
     [last, refusals] = [null, null];
     const told = (_, data) => {
-      if (data.total) state.textContent = `${data.done} of ${data.total} members${leftOf(data, performance.now() - begun)}`;
+      // Those that cannot be built are known at once, and tell nothing of the time that the others take.
+      if (data.total) state.textContent = `${data.done} of ${data.total} members${last ? timeLeft(begun, data.done - last.results.failed, data.total - last.results.failed) : ""}`;
       if (performance.now() - shown < PAUSE) return;
       shown = performance.now();
       json(`${address}/results/population`).then((results) => hasEnded(last?.results.status) || show(results, address), () => {});
@@ -112,12 +113,6 @@ export function population(place, design, form, onOpen) {
     const results = await json(`${address}/results/population`);
     show(results, address);
     state.textContent = `${results.done} of ${results.size} members, ${results.status}`;
-  }
-
-  /** How long the rest takes, once some have been computed: those that cannot be built are known at once. */
-  function leftOf({ done, total }, elapsed) {
-    const computed = done - (last?.results.failed ?? 0);
-    return last && computed > 2 ? `, about ${timeOf((elapsed * (total - done)) / computed)} more` : "";
   }
 
   /** Says how many members are none, and why most of these. */

@@ -2,7 +2,7 @@
 
 import { follow, hasEnded, json, post, ProblemError, request } from "./api.js";
 import { at, nameOf } from "./design.js";
-import { h, fixed, number, timeOf } from "./dom.js";
+import { h, fixed, number, timeLeft } from "./dom.js";
 import { figure } from "./figure.js";
 import { outdated } from "./outdated.js";
 import { preview } from "./preview.js";
@@ -95,7 +95,7 @@ export function search(place, design, form, onOpen) {
     let [shown, ended] = [performance.now(), false];
     const begun = performance.now();
     const told = (_, { done, total }) => {
-      if (total) state.textContent = `${done} of at most ${total} designs${done > 2 ? `, about ${timeOf(((performance.now() - begun) * (total - done)) / done)} more` : ""}`;
+      if (total) state.textContent = `${done} of at most ${total} designs${timeLeft(begun, done, total)}`;
       if (performance.now() - shown < PAUSE) return;
       shown = performance.now();
       json(address).then((study) => ended || show(study, question), () => {});

@@ -2,7 +2,7 @@
 // that chooses the values itself.
 
 import { follow, hasEnded, json, post, ProblemError, request } from "./api.js";
-import { h, fixed, number } from "./dom.js";
+import { h, fixed, number, timeLeft } from "./dom.js";
 import { at, nameOf, withValue } from "./design.js";
 import { save } from "./download.js";
 import { figure } from "./figure.js";
@@ -90,8 +90,9 @@ export function study(place, design, form, onOpen) {
     cancel.hidden = false;
     cancel.onclick = () => request(`${address}/cancel`, { method: "POST" }).catch(() => {});
     let shown = 0;
-    const told = (_, data) => {
-      if (data.total) state.textContent = `${data.done} of ${data.total} designs`;
+    const begun = performance.now();
+    const told = (_, { done, total }) => {
+      if (total) state.textContent = `${done} of ${total} designs${timeLeft(begun, done, total)}`;
       if (performance.now() - shown < PAUSE) return;
       shown = performance.now();
       json(`${address}/results`).then((results) => hasEnded(last?.status) || show(results, address), () => {});

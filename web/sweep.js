@@ -1,7 +1,7 @@
 // The peak-to-peak transmission error over the torque, and where it is least.
 
 import { hasEnded, ProblemError, request } from "./api.js";
-import { h, fixed, number, timeOf } from "./dom.js";
+import { h, fixed, number, timeLeft } from "./dom.js";
 import { figure } from "./figure.js";
 import { outdated } from "./outdated.js";
 import { resultsOf } from "./preview.js";
@@ -67,8 +67,7 @@ export function sweep(place, design, limits, positionsOf) {
     const { force_table: table, dynamics, stress, face_load: load, ...submission } = design.submission;
     for (let i = 0; i < torques.length; i += each) {
       if (points.length) {
-        const left = ((performance.now() - begun) * (torques.length - i)) / i;
-        state.textContent = `${i} of ${torques.length} torques, about ${timeOf(left)} more`;
+        state.textContent = `${i} of ${torques.length} torques${timeLeft(begun, i, torques.length)}`;
         out.replaceChildren(pictureOf(points));
       }
       const results = await resultsOf({ ...submission, output_torques_n_m: torques.slice(i, i + each) }, { signal: stop.signal, told: (event, data) => { if (event === "status") job = data; } });

@@ -870,6 +870,11 @@ export async function benchSteps(service) {
     await page.locator("#sweep button[type=submit]").click();
     await page.waitForFunction(() => document.querySelectorAll("#sweep .scatter circle").length > 1 && /^\d+ of 24 torques, about \d+ (s|min) more$/.test(document.querySelector("#sweep [role=status]").innerText));
     assert.equal(await page.locator("#sweep .strong").count(), 0, "which is least is not known yet");
+    // A third in ten seconds: twenty more. Of too few nothing is said.
+    assert.deepEqual(await page.evaluate(async () => {
+      const { timeLeft } = await import(new URL("web/dom.js", document.baseURI));
+      return [[5, 15], [2, 15], [15, 15], [5, 155]].map(([done, total]) => timeLeft(performance.now() - 10_000, done, total));
+    }), [", about 20 s more", "", "", ", about 5 min more"]);
     await page.locator("#sweep button", { hasText: "Cancel" }).click();
     await page.waitForFunction(() => /^Cancelled after \d+ torques/.test(document.querySelector("#sweep [role=status]").innerText));
     const count = asked.length;
