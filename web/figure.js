@@ -29,13 +29,13 @@ function range(values, room) {
  * A figure of `cells` `{ x, y, width, height, color }`, of `lines` `{ name, color, dash, width, parted, x, y }`, where null breaks a line, of `points` `{ x, y, label, strong, open }`, where `open` is what a press of one does, and of `stems` `{ name, color, x, y }`, over named
  * axes, with `names` `{ order, label, value }` over stems, and a `scale` `{ colors, words }` of the colors of cells from their least to their most. Looks come from `colors`, or from the style sheet where there are none. Its `frame` tells where a value of x is, and which value is at a place.
  */
-export function figure({ title, x, y, cells = [], lines = [], points = [], stems = [], names = [], scale = null, colors = null, width = 520, height = 300, heading = false, xRange = null, label = title }) {
+export function figure({ title, x, y, cells = [], lines = [], points = [], stems = [], names = [], scale = null, colors = null, width = 520, height = 300, heading = false, xRange = null, yRange = null, label = title }) {
   const named = [...lines, ...stems].filter(({ name }) => name);
   const legend = named.length > 1 ? legendRows(named, width) : [];
   const frame = { ...FRAME, top: FRAME.top + (heading ? 18 : 0) + 15 * legend.length };
   let [left, right] = xRange ?? range([...points.map((each) => each.x), ...lines.flatMap((line) => line.x), ...stems.flatMap((each) => each.x), ...cells.flatMap((each) => [each.x, each.x + each.width])], points.length ? 0.08 : 0);
   const ys = [...points.map((each) => each.y), ...lines.flatMap((line) => line.y.filter((value, i) => value !== null && line.x[i] >= left && line.x[i] <= right)), ...stems.flatMap((each) => [0, ...each.y]), ...cells.flatMap((each) => [each.y, each.y + each.height])];
-  let [low, high] = range(ys, cells.length ? 0 : 0.08);
+  let [low, high] = yRange ?? range(ys, cells.length ? 0 : 0.08);
   if (stems.length) [left, low] = [0, 0];
   const px = (value) => frame.left + ((value - left) / (right - left || 1)) * (width - frame.left - frame.right);
   const py = (value) => height - frame.bottom - ((value - low) / (high - low)) * (height - frame.top - frame.bottom);

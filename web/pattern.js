@@ -55,7 +55,8 @@ export class Pattern {
   #draw(pattern) {
     const [{ largest_pressure_mpa: most, output_torque_n_m: torque, ...curve }] = pattern.curves;
     this.legend.replaceChildren(scaleOf(most, "MPa"));
-    this.state.textContent = `At ${number(torque)} N m. Hatched: a sharp tip edge carries, where the pressure has no limit. Empty: nothing touches.`;
+    const sharp = ["driving", "driven"].some((gear) => curve[gear].pressure_mpa.flat().includes(null));
+    this.state.textContent = `At ${number(torque)} N m, from the form diameter to the tip. Empty: nothing touches.${sharp ? " Hatched: a sharp tip edge carries, where the pressure has no limit." : ""}`;
     this.flanks.replaceChildren(...["driving", "driven"].map((gear) => flankOf(gear, pattern, curve[gear].pressure_mpa, most)));
   }
 }
@@ -64,7 +65,7 @@ export class Pattern {
 const edgesOf = (middles) => middles.map((middle, i) => middle - (i ? middle - middles[i - 1] : middles[1] - middle) / 2);
 
 /** The flank of a gear over face and diameter. */
-function flankOf(gear, { z_mm: z, [gear]: { diameter_mm: diameters } }, pressures, most) {
+function flankOf(gear, { z_mm: z, [gear]: { diameter_mm: diameters, form_diameter_mm: form, tip_diameter_mm: tip } }, pressures, most) {
   const [x, y] = [edgesOf(z), edgesOf(diameters)];
   const [width, height] = [z[1] - z[0], diameters[1] - diameters[0]];
   const touched = pressures.flatMap((row, i) => row.flatMap((pressure, j) => (pressure === 0 ? [] : [{ pressure, i, j }])));
@@ -74,7 +75,7 @@ function flankOf(gear, { z_mm: z, [gear]: { diameter_mm: diameters } }, pressure
   const top = known.length ? known.reduce((best, each) => (each.pressure > best.pressure ? each : best)) : null;
   const told = top ? `at most ${fixed(top.pressure, 0)} MPa, at z = ${fixed(z[top.j], 1)} mm and a diameter of ${fixed(diameters[top.i], 1)} mm` : "no pressure that has a limit";
   const words = `The ${gear} flank carries over ${fixed((100 * touched.length) / (z.length * diameters.length), 0)} % of what is drawn, ${told}${edges ? `; a sharp tip edge carries on ${fixed((100 * edges) / touched.length, 0)} % of it` : ""}.`;
-  const svg = figure({ title: `${gear} flank`, x: "z in mm", y: "diameter in mm", cells, label: words, xRange: [x[0], x.at(-1) + width], height: 260 });
+  const svg = figure({ title: `${gear} flank`, x: "z in mm", y: "diameter in mm", cells, label: words, xRange: [x[0], x.at(-1) + width], yRange: [form, tip], height: 260 });
   svg.prepend(s("defs", {}, s("pattern", { id: `${HATCH}-${gear}`, width: 4, height: 4, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" }, s("rect", { width: 4, height: 4, class: "hatch-ground" }), s("line", { x1: 0, x2: 0, y1: 0, y2: 4, class: "hatch" }))));
   return h("div", { className: "flank" }, h("p", { className: "note" }, `The ${gear} flank`), svg);
 }

@@ -150,6 +150,14 @@ export async function solidSteps(service) {
     assert.match(flanks[0][0], new RegExp(`^The driving flank carries over .* at most ${known.toFixed(0)} MPa, at z = -?[\\d.]+ mm and a diameter of \\d+`));
     assert.deepEqual(flanks[0].slice(1), [all.filter((value) => value === null).length, all.filter((value) => value > 0).length]);
     assert.equal(all.length, z.length * driving.diameter_mm.length);
+    // The whole flank is seen, from the form diameter to the tip, and what is computed lies where it is.
+    const [top, bottom] = await page.locator("#chart-pattern svg").first().evaluate((svg) => [svg.frame.top, svg.frame.bottom]);
+    const places = await page.locator("#chart-pattern svg").first().locator("rect[shape-rendering]").evaluateAll((rects) => rects.map((rect) => [Number(rect.getAttribute("y")), Number(rect.getAttribute("y")) + Number(rect.getAttribute("height"))]));
+    const placeOf = (diameter) => bottom - ((diameter - driving.form_diameter_mm) / (driving.tip_diameter_mm - driving.form_diameter_mm)) * (bottom - top);
+    const first = computed.driving.pressure_mpa.findIndex((row) => row.some((value) => value !== 0));
+    const half = (driving.diameter_mm[1] - driving.diameter_mm[0]) / 2;
+    assert.ok(Math.abs(Math.max(...places.map(([, foot]) => foot)) - placeOf(driving.diameter_mm[first] - half)) < 1, "the lowest row that touches");
+    assert.match(await page.locator("#chart-pattern .note").first().innerText(), /Hatched/);
     assert.match(await page.locator("#chart-pattern .legend").innerText(), /^0\s+\d+ MPa$/);
     await axe(page);
     // Another design has other flanks.
