@@ -9,12 +9,7 @@ use meshwright_engine::dynamics::{
 };
 use meshwright_engine::run::Run;
 
-const AT_REST: Orbit = Orbit {
-    state: State { u: 0.0, v: 0.0 },
-    repeats: Some(1),
-    periods: 1,
-    multiplier: 0.0,
-};
+const AT_REST: Orbit = Orbit::REST;
 
 /// Mass 1 on a stiffness that is 1 in the mean and rectangular: k_max for ε − 1 of the period, k_min = 0.6 k_max for the rest, ε = 1.5.
 fn rectangular(omega: f64, zeta: f64) -> f64 {
@@ -177,6 +172,16 @@ fn table(
     wave: impl Fn(f64) -> f64,
     compliance: impl Fn(f64) -> f64,
 ) -> ForceTable {
+    with_backlash_of(1e3, (positions, largest), wave, compliance)
+}
+
+/// The same with the other flank `apart` from the loaded one.
+fn with_backlash_of(
+    apart: f64,
+    (positions, largest): (usize, f64),
+    wave: impl Fn(f64) -> f64,
+    compliance: impl Fn(f64) -> f64,
+) -> ForceTable {
     let ladder = Ladder { count: 5, largest };
     let rows = |from: f64, sign: f64| {
         ladder
@@ -192,7 +197,7 @@ fn table(
             })
             .collect()
     };
-    ForceTable::new(1, ladder, rows(0.0, 1.0), rows(-1e3, -1.0))
+    ForceTable::new(1, ladder, rows(0.0, 1.0), rows(-apart, -1.0))
 }
 
 fn data(speeds: Vec<f64>, load: f64, orders: &[f64]) -> RunUpData {
@@ -244,6 +249,28 @@ fn a_linear_mesh_answers_each_harmonic_as_a_forced_oscillator() {
     assert!(coarse < 1.5e-3, "{coarse}");
     let order = (coarse / fine).log2();
     assert!((order - 2.0).abs() < 0.1, "second order: {order}");
+}
+
+#[test]
+fn a_motion_that_is_pumped_without_bound_is_told_to_run_away() {
+    // Meissner's stiffness on both flanks, with nothing between them: with ζ = 0.05 unstable for ω in 1.8712 to 2.1182, and nothing limits it.
+    let compliance = |eta: f64| if eta < 0.5 { 0.8 } else { 0.8 / 0.6 };
+    let frequencies = [1.2, 1.8, 1.95, 2.05, 2.2, 3.0];
+    let speeds = frequencies.map(|w| w / (2.0 * PI)).to_vec();
+    for (apart, pumped) in [(0.0, true), (1e3, false)] {
+        let table = with_backlash_of(apart, (256, 4.0), |_| 0.0, compliance);
+        let found = run_up(&data(speeds.clone(), 1.0, &[1.0]), &table);
+        for branch in [found.up, found.down].into_iter().flatten() {
+            for (i, w) in frequencies.into_iter().enumerate() {
+                let expected = pumped && (1.8712..2.1182).contains(&w);
+                assert_eq!(branch.runs_away[i], expected, "{w}, {apart} apart");
+                assert!(!expected || branch.repeats[i].is_none(), "{w}");
+                // A thousand times the deflection and what it fluctuates by, to either side, and not what it would grow to.
+                let told = [branch.rms[i], branch.peak_to_peak[i], branch.orders[0][i]];
+                assert!(told.iter().all(|of| *of < 4e3), "{w}: {told:?}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -42,6 +42,8 @@ pub enum WarningCode {
     ThinLigament,
     /// A web or its rim is thinner than a plane model can stand for.
     WebOutsidePlaneModel,
+    /// The motion grows without bound at some speeds.
+    MotionUnbounded,
     /// A tip corner carries load off the line of action.
     TipCornerContact,
     /// The contact reaches the fillet of a gear, where it is not followed.
@@ -135,6 +137,18 @@ impl WarningDocument {
                     outside_plane(member, web, rim),
                 )
             },
+            Warning::MotionUnbounded { speeds } => {
+                let [low, high] = speeds.map(|speed| plain((60.0 * speed).round()));
+                Self {
+                    guide: Some("/guides/will-it-rattle-or-whine".into()),
+                    ..new(
+                        WarningCode::MotionUnbounded,
+                        format!(
+                            "Between {low} and {high} 1/min the motion grows without bound: the mesh stiffness pumps it more than damping takes from it. It is told until it is a thousand times the static deflection. More damping, more relief or some backlash limits it."
+                        ),
+                    )
+                }
+            }
             Warning::TipCornerContact {
                 member,
                 largest_share,

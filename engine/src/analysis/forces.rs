@@ -2,6 +2,7 @@
 
 use super::curve::Curve;
 use super::estimate::usual_stiffness;
+use super::warning::warn_of_motions;
 use super::{Analysis, AnalysisError, Case, Faces, OrderKind, StiffnessRule, analyze, expected};
 use crate::assembly::Parts;
 use crate::dynamics::table::between_closed;
@@ -73,7 +74,7 @@ pub fn analyze_with_forces(
     run: &Run,
 ) -> Result<(Analysis, Forces), AnalysisError> {
     run.expect_whole(expected(case) + table_positions(case, request.table));
-    let analysis = analyze(case, parts, run)?;
+    let mut analysis = analyze(case, parts, run)?;
     let table = force_table(case, request.table, parts, run)?;
     let curves = request.dynamics.iter().flat_map(|dynamics| {
         let curves = analysis.curves.iter();
@@ -81,7 +82,8 @@ pub fn analyze_with_forces(
     });
     let dynamics = curves
         .map(|(request, curve)| dynamics(case, curve, &table, request, run))
-        .collect::<Result<_, _>>()?;
+        .collect::<Result<Vec<_>, _>>()?;
+    warn_of_motions(&mut analysis.warnings, &dynamics);
     Ok((analysis, Forces { table, dynamics }))
 }
 

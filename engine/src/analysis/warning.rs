@@ -1,5 +1,6 @@
 //! What a reader of a result should know beside the numbers.
 
+use super::forces::CurveDynamics;
 use super::load_distribution::out_of_range;
 use super::{Case, Curve, Method, Statistics};
 use crate::contact::MeshContact;
@@ -41,6 +42,11 @@ pub enum Warning {
         member: Member,
         /// The ligament in meters.
         ligament: f64,
+    },
+    /// The motion grows without bound at some speeds.
+    MotionUnbounded {
+        /// The lowest and the highest of these speeds of the driving gear, in revolutions per second.
+        speeds: [f64; 2],
     },
     /// A tip corner carries load off the line of action.
     TipCornerContact {
@@ -228,4 +234,21 @@ pub(super) fn warn_of_pressures(warnings: &mut Vec<Warning>, case: &Case, curves
             youngs_modulus,
         });
     }
+}
+
+/// Tells of speeds at which the motion grows without bound.
+pub(super) fn warn_of_motions(warnings: &mut Vec<Warning>, dynamics: &[CurveDynamics]) {
+    let speeds = dynamics.iter().flat_map(|of| {
+        let branches = [&of.run_up.up, &of.run_up.down].into_iter().flatten();
+        branches.flat_map(|branch| {
+            let seen = branch.runs_away.iter().zip(&of.speeds);
+            seen.filter(|(runs_away, _)| **runs_away)
+                .map(|(_, speed)| *speed)
+        })
+    });
+    let ends = speeds.fold(None, |ends: Option<[f64; 2]>, speed| {
+        let [low, high] = ends.unwrap_or([speed; 2]);
+        Some([low.min(speed), high.max(speed)])
+    });
+    warnings.extend(ends.map(|speeds| Warning::MotionUnbounded { speeds }));
 }

@@ -26,6 +26,9 @@ const NEAR: f64 = 0.1;
 /// Farther from where the last one stood a search for it has gone astray, as Newton's method may step over a motion by a few times its distance.
 const ASTRAY: f64 = 3.0 * NEAR;
 
+/// A motion that is so many times the scale has run away: the mesh pumps it more than damping takes from it.
+const RUN_AWAY: f64 = 1e3;
+
 /// A displacement and its velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State {
@@ -46,6 +49,19 @@ pub struct Orbit {
     pub periods: u32,
     /// The modulus of the largest multiplier; infinite where the motion was not found to repeat.
     pub multiplier: f64,
+    /// Whether the motion grows without bound.
+    pub runs_away: bool,
+}
+
+impl Orbit {
+    /// At rest.
+    pub const REST: Self = Self {
+        state: State { u: 0.0, v: 0.0 },
+        repeats: Some(1),
+        periods: 1,
+        multiplier: 0.0,
+        runs_away: false,
+    };
 }
 
 /// What is large: of displacements and of velocities.
@@ -58,6 +74,11 @@ pub struct Scale {
 }
 
 impl Scale {
+    /// Whether a motion that comes to `u` has run away.
+    pub fn is_left_by(&self, u: f64) -> bool {
+        u.is_nan() || u.abs() > RUN_AWAY * self.u
+    }
+
     fn distance(&self, a: State, b: State) -> f64 {
         ((a.u - b.u) / self.u)
             .abs()
@@ -130,6 +151,7 @@ impl Oscillator<'_> {
                     repeats: Some(repeats),
                     periods: repeats,
                     multiplier: multipliers(&m)[0],
+                    runs_away: false,
                 });
             }
             state = State {
@@ -160,7 +182,19 @@ impl Oscillator<'_> {
             None => &SETTLED[..1],
         };
         for &constants in settled {
-            (state, _) = self.after(state, self.periods_of(constants));
+            for _ in 0..self.periods_of(constants) {
+                let (next, _) = self.after(state, 1);
+                if scale.is_left_by(next.u) {
+                    return Orbit {
+                        state,
+                        repeats: None,
+                        multiplier: f64::INFINITY,
+                        runs_away: true,
+                        ..Orbit::REST
+                    };
+                }
+                state = next;
+            }
             let most = MOST_PERIODS.min(self.periods_in_looks(MOST_LOOKS / 16.0));
             let mut later = state;
             for repeats in 1..=most {
@@ -179,6 +213,7 @@ impl Oscillator<'_> {
             repeats: None,
             periods: self.periods_of(WATCHED),
             multiplier: f64::INFINITY,
+            runs_away: false,
         }
     }
 

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::law::Laws;
-use super::orbit::{Orbit, Scale, State};
+use super::orbit::{Orbit, Scale};
 use super::oscillator::{Oscillator, Step};
 use super::table::ForceTable;
 use crate::run::{Run, Stopped};
@@ -62,6 +62,8 @@ pub struct Branch {
     pub repeats: Vec<Option<u32>>,
     /// The amplitude of x at each order asked for, in m, order by order.
     pub orders: Vec<Vec<f64>>,
+    /// Whether the motion grows without bound; it is told until it has run away.
+    pub runs_away: Vec<bool>,
 }
 
 /// The motion over speed under one load.
@@ -265,12 +267,7 @@ impl<'a> Mesh<'a> {
         let count = data.speeds.len();
         let mut seen: Vec<Option<Motion>> = vec![None; count];
         let scale = self.scale();
-        let mut orbit = Orbit {
-            state: State { u: 0.0, v: 0.0 },
-            repeats: Some(1),
-            periods: 1,
-            multiplier: 0.0,
-        };
+        let mut orbit = Orbit::REST;
         let order = |k: usize| if down { count - 1 - k } else { k };
         for place in (0..count).map(order) {
             run.check()?;
@@ -278,7 +275,11 @@ impl<'a> Mesh<'a> {
             seen[place] = Some(if speed > 0.0 {
                 let oscillator = self.oscillator(speed);
                 orbit = oscillator.settled(orbit, scale);
-                self.motion(&oscillator, orbit)
+                let motion = self.motion(&oscillator, orbit);
+                if orbit.runs_away {
+                    orbit = Orbit::REST;
+                }
+                motion
             } else {
                 self.standing()
             });
@@ -293,6 +294,7 @@ impl<'a> Mesh<'a> {
             branch.load_factor.push(motion.load_factor);
             branch.contact_lost.push(motion.contact_lost);
             branch.repeats.push(motion.repeats);
+            branch.runs_away.push(motion.runs_away);
             for (list, amplitude) in branch.orders.iter_mut().zip(motion.orders) {
                 list.push(amplitude);
             }
@@ -308,17 +310,22 @@ impl<'a> Mesh<'a> {
             let before = (i + self.deflection.len() - 1) % self.deflection.len();
             watched.end_of_step(before, x);
         }
-        watched.motion(1.0, false, Some(1))
+        watched.motion(1.0, false, Orbit::REST)
     }
 
     /// What `orbit` is seen to do.
     fn motion(&self, oscillator: &Oscillator<'_>, orbit: Orbit) -> Motion {
         let mut watched = Watched::new(self);
         let mut state = orbit.state;
-        let (mut most, mut parted) = (0.0_f64, false);
+        let (mut most, mut parted, mut left) = (0.0_f64, false, false);
+        let scale = self.scale();
         let count = self.deflection.len();
         for _ in 0..orbit.periods {
             (state, _) = oscillator.after_period(state, |seen| {
+                left |= scale.is_left_by(seen.u);
+                if left {
+                    return;
+                }
                 let (from, to) = (
                     self.deflection[seen.step],
                     self.deflection[(seen.step + 1) % count],
@@ -332,7 +339,7 @@ impl<'a> Mesh<'a> {
                 }
             });
         }
-        watched.motion(most / self.data.load, parted, orbit.repeats)
+        watched.motion(most / self.data.load, parted, orbit)
     }
 }
 
@@ -345,6 +352,7 @@ struct Motion {
     contact_lost: bool,
     repeats: Option<u32>,
     orders: Vec<f64>,
+    runs_away: bool,
 }
 
 /// Sums over a motion.
@@ -391,15 +399,17 @@ impl<'a> Watched<'a> {
         }
     }
 
-    fn motion(self, load_factor: f64, contact_lost: bool, repeats: Option<u32>) -> Motion {
-        let mean = self.sum / self.steps;
-        let amplitude = |(cosine, sine): (f64, f64)| 2.0 * cosine.hypot(sine) / self.steps;
+    fn motion(self, load_factor: f64, contact_lost: bool, orbit: Orbit) -> Motion {
+        let steps = self.steps.max(1.0);
+        let mean = self.sum / steps;
+        let amplitude = |(cosine, sine): (f64, f64)| 2.0 * cosine.hypot(sine) / steps;
         Motion {
-            rms: (self.squares / self.steps - mean * mean).max(0.0).sqrt(),
-            peak_to_peak: self.most - self.least,
+            rms: (self.squares / steps - mean * mean).max(0.0).sqrt(),
+            peak_to_peak: (self.most - self.least).max(0.0),
             load_factor,
             contact_lost,
-            repeats,
+            repeats: orbit.repeats,
+            runs_away: orbit.runs_away,
             orders: self.orders.into_iter().map(amplitude).collect(),
         }
     }
