@@ -1,5 +1,7 @@
 //! Displacements and stresses everywhere in both gears at one mesh position, for those who look inside.
 
+use std::time::Duration;
+
 use axum::extract::{Path, State};
 use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE, HeaderValue};
@@ -19,6 +21,10 @@ use crate::exchange::vtu;
 use crate::jobs::Job;
 use crate::wire::solve::{Inside, inside, section};
 use crate::wire::{Code, LoadedEdges, Problem, SOLVER_VERSION, Submission, memory_of};
+
+/// How long it may take, in times of a preview, and at most: nobody drags what is looked at here, and volumes of both gears take seconds.
+const PREVIEWS_LONG: u32 = 4;
+const LONGEST: Duration = Duration::from_secs(60);
 
 /// Where to look.
 #[derive(Deserialize, IntoParams)]
@@ -209,7 +215,9 @@ impl Done {
         let made = async {
             let library = app.library.clone();
             let work = move |run: &Run| work(&submission, &library, run);
-            let made = app.previews.work(client.name(), None, memory, work);
+            let most = app.previews.rules().time_limit * PREVIEWS_LONG;
+            let within = (memory, most.min(LONGEST));
+            let made = app.previews.work(client.name(), None, within, work);
             let document = made.await?.answer;
             let mut response = ([(CONTENT_TYPE, media_type)], document).into_response();
             if saved {

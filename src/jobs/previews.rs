@@ -216,7 +216,9 @@ impl Previews {
             answer,
             waited,
             computed,
-        } = self.work(client, id, memory, work).await?;
+        } = self
+            .work(client, id, (memory, self.rules().time_limit), work)
+            .await?;
         metrics::histogram!("meshwright_preview_engine_seconds").record(computed.as_secs_f64());
         Ok(Previewed {
             document: answer,
@@ -225,7 +227,7 @@ impl Previews {
         })
     }
 
-    /// Does `work` for which a request of `client` waits, and which takes so many MB of memory; and stops the older one of the
+    /// Does `work` for which a request of `client` waits, and which takes so many MB of memory and at most so long; and stops the older one of the
     /// same `id`. Dropping the future stops the engine.
     ///
     /// # Errors
@@ -235,13 +237,13 @@ impl Previews {
         &self,
         client: &str,
         id: Option<String>,
-        memory: u64,
+        (memory, time_limit): (u64, Duration),
         work: impl FnOnce(&Run) -> Result<T, Problem> + Send + 'static,
     ) -> Result<Computed<T>, PreviewError> {
         let rules = self.rules();
         let admitted = self.admit(client, id)?;
         let start = Instant::now();
-        let deadline = start + rules.time_limit;
+        let deadline = start + time_limit;
 
         let room = self.room(client);
         let room = admitted
@@ -251,7 +253,7 @@ impl Previews {
         let result = admitted
             .unless_over(
                 deadline,
-                PreviewError::TimeLimit(rules.time_limit),
+                PreviewError::TimeLimit(time_limit),
                 room.launch(memory, work, admitted.run()),
             )
             .await?;
