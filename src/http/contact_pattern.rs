@@ -67,6 +67,7 @@ pub(super) async fn json(
         name: "contact-pattern.json",
         media_type: "application/json",
         saved: false,
+        has_volumes: false,
     };
     answer(&app, &client, &id, &which, &request, file, write).await
 }
@@ -107,6 +108,7 @@ pub(super) async fn svg(
         name: "contact-pattern.svg",
         media_type: "image/svg+xml",
         saved: false,
+        has_volumes: false,
     };
     answer(&app, &client, &id, &which, &request, file, write).await
 }

@@ -6,7 +6,7 @@ use axum::extract::{Path, State};
 use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE, HeaderValue};
 use axum::response::{IntoResponse, Response};
-
+use meshwright_engine::gear::Member;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use serde::Deserialize;
@@ -25,6 +25,9 @@ use crate::wire::{Code, LoadedEdges, Problem, SOLVER_VERSION, Submission, memory
 /// How long it may take, in times of a preview, and at most: nobody drags what is looked at here, and volumes of both gears take seconds.
 const PREVIEWS_LONG: u32 = 4;
 const LONGEST: Duration = Duration::from_secs(60);
+
+/// What volumes of both gears take until they are written, in MB of 2^20 bytes for each tooth.
+const VOLUMES_MB_A_TOOTH: u64 = 4;
 
 /// Where to look.
 #[derive(Deserialize, IntoParams)]
@@ -88,6 +91,7 @@ pub(super) async fn vtu(
         name: "fields.vtu",
         media_type: "text/xml",
         saved: true,
+        has_volumes: true,
     };
     answer(app, client, &id, &place, &request, file, work).await
 }
@@ -136,6 +140,7 @@ pub(super) async fn edges(
         name: "edges.json",
         media_type: "application/json",
         saved: false,
+        has_volumes: false,
     };
     answer(app, client, &id, &place, &request, file, work).await
 }
@@ -146,6 +151,8 @@ pub(super) struct File {
     pub(super) media_type: &'static str,
     /// Whether a browser saves it rather than shows it.
     pub(super) saved: bool,
+    /// Whether it has volumes of gears that are seen along their faces.
+    pub(super) has_volumes: bool,
 }
 
 /// What `work` makes of job `id` at a torque and a mesh position of it, `place`.
@@ -206,12 +213,19 @@ impl Done {
             submission,
         } = self;
         app.jobs.check_memory(&submission)?;
-        let memory = memory_of(&submission);
         let File {
             name,
             media_type,
             saved,
+            has_volumes,
         } = file;
+        let case = submission.case();
+        let teeth = Member::BOTH.map(|member| u64::from(case.pair.gear(member).tooth_count()));
+        let volumes = match has_volumes && case.faces.is_some() {
+            true => VOLUMES_MB_A_TOOTH * (teeth[0] + teeth[1]),
+            false => 0,
+        };
+        let memory = memory_of(&submission) + volumes;
         let made = async {
             let library = app.library.clone();
             let work = move |run: &Run| work(&submission, &library, run);
