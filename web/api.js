@@ -54,44 +54,36 @@ export async function json(path, options) {
 
 export const post = (path, body, options = {}) => json(path, { ...options, method: "POST", body });
 
-/** The events of a stream that the service sends, each `{ event, data }`, until it ends; `EventSource` cannot send a key. */
-export async function* events(path, signal) {
-  const response = await request(path, { headers: { accept: "text/event-stream" }, signal });
+/** The pieces of an answer that end with `end`, as far as somebody reads them. */
+async function* pieces(response, end) {
   const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
   let text = "";
   try {
     for (;;) {
       const { value, done } = await reader.read();
       if (done) return;
-      text += value.replace(/\r/g, "");
-      for (let end = text.indexOf("\n\n"); end >= 0; end = text.indexOf("\n\n")) {
-        const lines = text.slice(0, end).split("\n");
-        text = text.slice(end + 2);
-        const of = (name) => lines.filter((line) => line.startsWith(`${name}:`)).map((line) => line.slice(name.length + 1).trimStart()).join("\n");
-        if (of("data")) yield { event: of("event") || "message", data: JSON.parse(of("data")) };
-      }
+      const found = (text + value.replace(/\r/g, "")).split(end);
+      text = found.pop();
+      yield* found;
     }
   } finally {
     reader.cancel().catch(() => {});
   }
 }
 
+/** The events of a stream that the service sends, each `{ event, data }`, until it ends; `EventSource` cannot send a key. */
+export async function* events(path, signal) {
+  const response = await request(path, { headers: { accept: "text/event-stream" }, signal });
+  for await (const piece of pieces(response, "\n\n")) {
+    const lines = piece.split("\n");
+    const of = (name) => lines.filter((line) => line.startsWith(`${name}:`)).map((line) => line.slice(name.length + 1).trimStart()).join("\n");
+    if (of("data")) yield { event: of("event") || "message", data: JSON.parse(of("data")) };
+  }
+}
+
 /** The lines of an answer that is a document a line, as far as somebody reads them. */
 export async function* lines(path) {
-  const response = await request(path);
-  const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
-  let text = "";
-  try {
-    for (;;) {
-      const { value, done } = await reader.read();
-      if (done) return;
-      const found = (text + value).split("\n");
-      text = found.pop();
-      for (const line of found) if (line) yield JSON.parse(line);
-    }
-  } finally {
-    reader.cancel().catch(() => {});
-  }
+  for await (const line of pieces(await request(path), "\n")) if (line) yield JSON.parse(line);
 }
 
 const ENDED = ["successful", "failed", "dismissed"];

@@ -1,10 +1,10 @@
 //! From a submission to its results, or to what it would come to.
 
 use meshwright_engine::analysis::contact_pattern::ContactPattern;
-use meshwright_engine::analysis::face_fields::Volumes;
 use meshwright_engine::analysis::fields::{Fields, fields};
 use meshwright_engine::analysis::forces::run_up_seconds;
-use meshwright_engine::analysis::{self, AnalysisError};
+use meshwright_engine::analysis::{self, AnalysisError, face_fields};
+use meshwright_engine::fem::volume::Volume;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use serde::Serialize;
@@ -52,7 +52,7 @@ pub enum Inside {
     /// Of plane methods: plates.
     Plates(Fields),
     /// Of those that see the faces.
-    Volumes(Volumes),
+    Volumes(Fields<Volume>),
 }
 
 /// Displacements and stresses in both gears of `submission` under a torque of it, not 0, at a mesh position.
@@ -67,12 +67,11 @@ pub fn inside(
     run: &Run,
 ) -> Result<Inside, Problem> {
     let (case, torque, eta) = (submission.case(), output_torque_n_m, mesh_position);
-    let found = match analysis::face_fields::volumes(case, torque, eta, library, run) {
-        Ok(Some(volumes)) => Ok(Inside::Volumes(volumes)),
-        Ok(None) => fields(case, torque, eta, library, run).map(Inside::Plates),
-        Err(error) => Err(error),
+    let found = || match face_fields::volumes(case, torque, eta, library, run)? {
+        Some(volumes) => Ok(Inside::Volumes(volumes)),
+        None => fields(case, torque, eta, library, run).map(Inside::Plates),
     };
-    found.map_err(|error| problem_of(&error))
+    found().map_err(|error| problem_of(&error))
 }
 
 /// The same of plates, and in a section through the middle of the common face.
@@ -87,12 +86,11 @@ pub fn section(
     run: &Run,
 ) -> Result<Fields, Problem> {
     let (case, torque, eta) = (submission.case(), output_torque_n_m, mesh_position);
-    let found = match analysis::face_fields::section(case, torque, eta, library, run) {
-        Ok(Some(fields)) => Ok(fields),
-        Ok(None) => fields(case, torque, eta, library, run),
-        Err(error) => Err(error),
+    let found = || match face_fields::section(case, torque, eta, library, run)? {
+        Some(section) => Ok(section),
+        None => fields(case, torque, eta, library, run),
     };
-    found.map_err(|error| problem_of(&error))
+    found().map_err(|error| problem_of(&error))
 }
 
 /// The contact pattern of `submission` under those of its torques, none of them 0.

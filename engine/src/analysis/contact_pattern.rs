@@ -1,14 +1,11 @@
 //! The contact pattern: where the flanks touch over a period, and how they press there; and the lines of contact that make it.
 
-use std::sync::Arc;
-
 use super::case::Faces;
-use super::three_dimensional::yields;
+use super::three_dimensional::{face_model, yields};
 use super::{AnalysisError, Case};
 use crate::assembly::Parts;
-use crate::contact::face::{FaceContact, FaceModel, FlankYield, SliceLoad};
+use crate::contact::face::{FaceContact, SliceLoad};
 use crate::gear::{Member, SolidPair};
-use crate::ring::teeth::FARTHEST_COUPLED;
 use crate::run::Run;
 
 /// Equal strips across the common face, and equal bands of the height of a flank.
@@ -92,8 +89,7 @@ pub fn contact_pattern(
     let Some(faces) = &case.faces else {
         return Ok(None);
     };
-    let yields = yields(faces, false, parts, run)?.map(|of| of as Arc<dyn FlankYield>);
-    let model = FaceModel::new(faces.pair.clone(), yields, faces.slices, FARTHEST_COUPLED);
+    let model = face_model(faces, &yields(faces, false, parts, run)?);
     let positions = case.mesh_positions();
     let flanks = Member::BOTH.map(|member| FlankBands::of(&faces.pair, member));
     let map = Map {

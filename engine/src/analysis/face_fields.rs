@@ -1,32 +1,24 @@
 //! Displacements and stresses all through both gears of a pair that is seen along its faces, at one mesh position.
 
+use std::sync::Arc;
+
 use super::case::Faces;
 use super::fields::{Fields, GearField, free_edges};
-use super::three_dimensional::yields;
+use super::three_dimensional::{face_model, yields};
 use super::{AnalysisError, Case};
 use crate::assembly::face_inside::MovedParts;
-use crate::assembly::{FaceInside, FaceYieldSpec, Parts};
-use crate::contact::face::{FaceContact, FaceModel, FlankYield};
+use crate::assembly::{FaceInside, FaceYield, FaceYieldSpec, Parts};
+use crate::contact::face::FaceContact;
 use crate::contact::placement::Placement;
 use crate::fem::volume::{Place, Volume, von_mises};
 use crate::gear::{Member, Vector};
-use crate::ring::teeth::FARTHEST_COUPLED;
 use crate::run::Run;
-
-/// Both gears at one mesh position: the driving axis is that of z, the driven one crosses the x axis, and z counts from the middle of the common
-/// face.
-///
-/// Parts have nodes of their own where they meet, and a narrower part meets a wider one within its width.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Volumes {
-    /// How far the driven gear lags, along the line of action, in meters.
-    pub transmission_error: f64,
-    /// The driving and the driven gear, displaced against their hubs.
-    pub gears: [Volume; 2],
-}
 
 /// Both gears of `case` under `output_torque`, positive, at the mesh position `eta`, by the method that sees the whole gears; `None` for a plane
 /// case.
+///
+/// The driving axis is that of z, the driven one crosses the x axis, and z counts from the middle of the common face. Parts have nodes of their own
+/// where they meet, and a narrower part meets a wider one within its width.
 ///
 /// # Errors
 ///
@@ -37,17 +29,13 @@ pub fn volumes(
     eta: f64,
     parts: &dyn Parts,
     run: &Run,
-) -> Result<Option<Volumes>, AnalysisError> {
+) -> Result<Option<Fields<Volume>>, AnalysisError> {
     let told = |moved: &[MovedParts], _: &Faces, _: Member, place: Place| {
         let mut volume = Volume::default();
         moved.iter().for_each(|of| of.add_to(&mut volume, place));
         volume
     };
-    let found = of_gears(case, (output_torque, eta), parts, run, told)?;
-    Ok(found.map(|(transmission_error, gears)| Volumes {
-        transmission_error,
-        gears,
-    }))
+    of_gears(case, (output_torque, eta), parts, run, told)
 }
 
 /// The same in the section through the middle of the common face; of parts that end before it, where they end. Stresses are those in the plane, von
@@ -69,28 +57,24 @@ pub fn section(
         moved.iter().for_each(|of| field.cut(of, z, place));
         field
     };
-    let found = of_gears(case, (output_torque, eta), parts, run, told)?;
-    Ok(found.map(|(transmission_error, gears)| Fields {
-        transmission_error,
-        gears,
-    }))
+    of_gears(case, (output_torque, eta), parts, run, told)
 }
 
-/// The transmission error, and what `told` makes of both gears.
+/// What `told` makes of both gears.
 fn of_gears<T: Send>(
     case: &Case,
     (output_torque, eta): (f64, f64),
     parts: &dyn Parts,
     run: &Run,
     told: impl Fn(&[MovedParts], &Faces, Member, Place) -> T + Sync,
-) -> Result<Option<(f64, [T; 2])>, AnalysisError> {
+) -> Result<Option<Fields<T>>, AnalysisError> {
     faer::set_global_parallelism(faer::Par::Seq);
     let Some(faces) = &case.faces else {
         return Ok(None);
     };
-    let yields = yields(faces, false, parts, run)?.map(|of| of as std::sync::Arc<dyn FlankYield>);
-    let model = FaceModel::new(faces.pair.clone(), yields, faces.slices, FARTHEST_COUPLED);
-    let contacts = model.contacts(case.pair.load(output_torque), &[eta], run)?;
+    let yields = yields(faces, false, parts, run)?;
+    let contacts =
+        face_model(faces, &yields).contacts(case.pair.load(output_torque), &[eta], run)?;
     let Some(contact) = contacts.first() else {
         return Ok(None);
     };
@@ -105,23 +89,27 @@ fn of_gears<T: Send>(
             angle: angle - faces.pair.gear(member).twist() * own,
             height: -own,
         };
-        let moved = moved(faces, member, contact, parts, run)?;
+        let moved = moved((faces, &yields), member, contact, parts, run)?;
         run.check()?;
         Ok::<_, AnalysisError>(told(&moved, faces, member, place))
     };
     let (driving, driven) = rayon::join(|| of(Member::Driving), || of(Member::Driven));
-    Ok(Some((contact.mesh.transmission_error, [driving?, driven?])))
+    Ok(Some(Fields {
+        transmission_error: contact.mesh.transmission_error,
+        gears: [driving?, driven?],
+    }))
 }
 
 fn moved(
-    faces: &Faces,
+    (faces, yields): (&Faces, &[Arc<FaceYield>; 2]),
     member: Member,
     contact: &FaceContact,
     parts: &dyn Parts,
     run: &Run,
 ) -> Result<Vec<MovedParts>, AnalysisError> {
     let spec = FaceYieldSpec::new(faces.pair.gear(member), faces.resolution);
-    let inside = FaceInside::new(spec, parts, run).map_err(|error| error.of(member))?;
+    let yields = yields[member.index()].clone();
+    let inside = FaceInside::new(spec, yields, parts, run).map_err(|error| error.of(member))?;
     let loads: Vec<_> = contact
         .pressing(&faces.pair, member)
         .map(|(tooth, pressing)| inside.forces(tooth, pressing))

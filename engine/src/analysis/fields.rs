@@ -42,11 +42,11 @@ pub struct GearField {
 
 /// Both gears at one mesh position.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Fields {
+pub struct Fields<G = GearField> {
     /// How far the driven gear lags, along the line of action, in meters: the hub of each gear turns by it or stands, as one looks at it.
     pub transmission_error: f64,
     /// The driving and the driven gear.
-    pub gears: [GearField; 2],
+    pub gears: [G; 2],
 }
 
 /// Where a part stands: its origin and the direction of its x axis.

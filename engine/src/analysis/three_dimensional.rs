@@ -123,18 +123,13 @@ struct Solved {
 
 impl<'a> OfFaces<'a> {
     fn new((case, faces): (&'a Case, &Faces), yields: &[Arc<FaceYield>; 2], run: &'a Run) -> Self {
-        let model = |of: &dyn Fn(&Arc<FaceYield>) -> Arc<FaceYield>| {
-            let yields = yields
-                .each_ref()
-                .map(|each| of(each) as Arc<dyn FlankYield>);
-            FaceModel::new(faces.pair.clone(), yields, faces.slices, FARTHEST_COUPLED)
-        };
+        let round = yields.each_ref().map(|of| Arc::new(of.round_average()));
         let uneven = |member: &Member| yields[member.index()].repeats_after() > 1;
         Self {
             case,
             run,
-            whole: model(&Arc::clone),
-            round: model(&|of| Arc::new(of.round_average())),
+            whole: face_model(faces, yields),
+            round: face_model(faces, &round),
             uneven: Member::BOTH.into_iter().filter(uneven).collect(),
         }
     }
@@ -275,6 +270,14 @@ pub(super) fn yields(
     };
     let (driving, driven) = rayon::join(|| of(Member::Driving), || of(Member::Driven));
     Ok([driving?, driven?])
+}
+
+/// The pair whose flanks yield as `yields`.
+pub(super) fn face_model(faces: &Faces, yields: &[Arc<FaceYield>; 2]) -> FaceModel {
+    let yields = yields
+        .each_ref()
+        .map(|of| Arc::clone(of) as Arc<dyn FlankYield>);
+    FaceModel::new(faces.pair.clone(), yields, faces.slices, FARTHEST_COUPLED)
 }
 
 impl FlankYield for FaceYield {

@@ -98,13 +98,7 @@ impl HoleAnswer<'_> {
         let mut moved = vec![0.0; holes.classes.first().map_or(0, |class| class.rows.nrows())];
         for of in &holes.classes {
             let size = of.rows.ncols() / of.orders.len();
-            // The class of the opposite orders is the conjugate of this one, and may be this one.
-            let share = match (2 * of.class).is_multiple_of(holes.sector_count) {
-                true => 1.0,
-                false => 2.0,
-            };
-            let turn = TAU * (of.class * sector % holes.sector_count) as f64;
-            let turn = SolidSector::turn(1, turn / holes.sector_count as f64) * share;
+            let turn = SolidSector::part(of.class, sector, holes.sector_count);
             let columns = of.orders.iter().flat_map(|&order| {
                 let seen = SolidSector::turn(order, holes.phase) * turn;
                 (0..size).map(move |i| seen * self.amplitude(order, i, size))

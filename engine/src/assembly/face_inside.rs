@@ -19,13 +19,14 @@ use crate::fem::axial::AxialBasis;
 use crate::fem::prescribed::Load;
 use crate::fem::prism::Prism;
 use crate::fem::volume::{Level, Place, Volume};
-use crate::gear::{Material, radial};
-use crate::grid::{Element, Grid, GridLevel, ToothGrid};
+use crate::gear::Material;
+use crate::grid::{Grid, GridLevel, ToothGrid};
 use crate::ring::solid::gear::forced;
 use crate::ring::solid::joint::below;
 use crate::ring::solid::revolution::{Circles, Revolution};
 use crate::ring::solid::sector::SolidSector;
 use crate::ring::solid::tooth::{SolidTooth, flank_normals};
+use crate::ring::solid::web::conjugate_below_zero;
 use crate::run::Run;
 
 /// The orders for which the radii are chosen at which the rim and the parts below it are told, as parts of the number of teeth: elements of the rim
@@ -63,19 +64,24 @@ struct MovedTeeth {
 }
 
 impl FaceInside {
-    /// The gear of `spec`.
+    /// The gear of `spec`, whose flanks yield as `yields`.
     ///
     /// # Errors
     ///
     /// [`PartError`].
-    pub fn new(spec: FaceYieldSpec, parts: &dyn Parts, run: &Run) -> Result<Self, PartError> {
+    pub fn new(
+        spec: FaceYieldSpec,
+        yields: Arc<FaceYield>,
+        parts: &dyn Parts,
+        run: &Run,
+    ) -> Result<Self, PartError> {
         let stack = spec.stack();
         let section = stack.gear.section().without_blank();
         let radius = stack.interface_radius;
         let grid = ToothGrid::of_stressed_prism(&section, radius, GridLevel::Standard)?;
         Ok(Self {
             plain: parts.plain_face(&stack, run)?,
-            yields: parts.face_yield(&spec, run)?,
+            yields,
             pressed: PressedFlank {
                 axial: stack.face.clone(),
                 flank: *section.flank(),
@@ -187,10 +193,8 @@ impl FaceInside {
             let sides = sector.size * sector.side_nodes;
             for (k, &order) in class.orders.iter().enumerate() {
                 let of = motion.subrows(sides + k * sector.size, sector.size);
-                moved.circle[order.unsigned_abs() as usize] = match order {
-                    ..0 => of.conjugate().to_owned(),
-                    _ => of.to_owned(),
-                };
+                moved.circle[order.unsigned_abs() as usize] =
+                    conjugate_below_zero(&of.to_owned(), order);
             }
         }
         Ok(moved)
@@ -273,7 +277,7 @@ impl FaceInside {
         if index > 0 && angles.len().is_multiple_of(4) {
             angles = angles.into_iter().step_by(2).collect();
         }
-        let grid = polar(&told, &angles);
+        let grid = Grid::polar(&told, &angles);
         let (nodes, around_circle) = (grid.nodes.len() as u32, angles.len() as u32);
         let outermost = nodes - around_circle..nodes;
         // The last part ends at the bore.
@@ -301,14 +305,7 @@ impl FaceInside {
     ) -> Result<Vec<Mat<c64>>, PartError> {
         let largest = self.stack.hole_orders.unwrap_or(0);
         let holed = HoledSection::new(&self.stack, self.spec.gear().section(), largest)?;
-        let of = |order: i64| {
-            let of = &outer[order.unsigned_abs() as usize];
-            match order {
-                ..0 => of.conjugate().to_owned(),
-                _ => of.clone(),
-            }
-        };
-        let ring = holed.ring(&[])?.moved((largest, holed.phase), of, run)?;
+        let ring = holed.ring(&[])?.moved((largest, holed.phase), outer, run)?;
         run.check()?;
         let (grid, prism) = (&holed.grid, holed.prism());
         let (right, left) = &grid.side_nodes;
@@ -432,42 +429,6 @@ fn around(circles: &[Circles], radii: &[f64], angles: &[f64]) -> Vec<f64> {
     told.concat()
 }
 
-/// A ring of quadrilaterals with nodes on `radii` at `angles`, corners and middles in turn: circle by circle, on those between corners alone.
-fn polar(radii: &[f64], angles: &[f64]) -> Grid {
-    let count = angles.len();
-    let mut nodes = Vec::new();
-    let mut first = Vec::new();
-    for (i, radius) in radii.iter().enumerate() {
-        first.push(nodes.len());
-        nodes.extend(
-            angles
-                .iter()
-                .step_by(1 + i % 2)
-                .map(|a| *radius * radial(*a)),
-        );
-    }
-    let node = |i: usize, j: usize| {
-        let of_circle = j % count / (1 + i % 2);
-        (first[i] + of_circle) as u32
-    };
-    let mut elements = Vec::new();
-    for i in (0..radii.len() - 1).step_by(2) {
-        for j in (0..count).step_by(2) {
-            elements.push(Element::quadrilateral([
-                node(i, j),
-                node(i + 2, j),
-                node(i + 2, j + 2),
-                node(i, j + 2),
-                node(i + 1, j),
-                node(i + 2, j + 1),
-                node(i + 1, j + 2),
-                node(i, j + 1),
-            ]));
-        }
-    }
-    Grid { nodes, elements }
-}
-
 #[cfg(test)]
 mod tests {
     use nalgebra::{Matrix3, Vector3};
@@ -478,7 +439,7 @@ mod tests {
     use crate::fem::surface::SurfaceStress;
     use crate::fem::volume::{VolumeElement, von_mises};
     use crate::gear::spur::tests::paper_gear;
-    use crate::gear::{Helix, Hub, SolidGear};
+    use crate::gear::{Helix, Hub, SolidGear, radial};
 
     const RESOLUTION: FaceResolution = FaceResolution {
         face_order: 6,
@@ -515,7 +476,9 @@ mod tests {
 
     fn inside(gear: &SolidGear) -> FaceInside {
         let spec = FaceYieldSpec::new(gear, RESOLUTION);
-        FaceInside::new(spec, &MakeAll, &Run::unattended()).expect("sound")
+        let run = Run::unattended();
+        let yields = MakeAll.face_yield(&spec, &run).expect("sound");
+        FaceInside::new(spec, yields, &MakeAll, &run).expect("sound")
     }
 
     fn loads(inside: &FaceInside) -> Vec<FlankForces> {

@@ -17,7 +17,7 @@ use crate::fem::prism::Prism;
 use crate::gear::{BlankRegion, Material, SpurGear, gcd};
 use crate::grid::{BlankGrid, GridLevel};
 use crate::ring::solid::gear::ClassAnswers;
-use crate::ring::solid::web::HoledRing;
+use crate::ring::solid::web::{HoledRing, conjugate_below_zero, of_order};
 use crate::run::Run;
 
 /// Elements around the web for each order in which holes are seen, at the standard level.
@@ -69,13 +69,10 @@ impl SeenWeb {
         let mut compliance = Mat::<c64>::zeros(unknowns, unknowns);
         for class in classes {
             let inner = class.circle.nrows() / class.orders.len().max(1);
-            let follows: Vec<Mat<c64>> = class
-                .orders
-                .iter()
-                .map(|&order| {
-                    conjugate_below_zero(&web.of[order.unsigned_abs() as usize].follows, order)
-                })
-                .collect();
+            let follows = |order: &i64| {
+                conjugate_below_zero(&web.of[order.unsigned_abs() as usize].follows, *order)
+            };
+            let follows: Vec<Mat<c64>> = class.orders.iter().map(follows).collect();
             for (a, &n) in class.orders.iter().enumerate() {
                 for (b, &m) in class.orders.iter().enumerate() {
                     let between = class
@@ -147,7 +144,7 @@ impl SeenWeb {
         for (orders, circle) in circles {
             let inner = circle.nrows() / orders.len().max(1);
             for (a, &n) in orders.iter().enumerate() {
-                let follows = conjugate_below_zero(&self.follows[n.unsigned_abs() as usize], n);
+                let follows = of_order(&self.follows, n);
                 let answer = onto(&(follows * circle.subrows(a * inner, inner)));
                 answers.resize_with(unknowns, answer.nrows(), |_, _| c64::new(0.0, 0.0));
                 for j in 0..answer.nrows() {
@@ -196,7 +193,7 @@ impl HoledChange {
         let holed = HoledSection::new(stack, section, largest)?;
         let mut change = holed.ring(&[])?.on_outer(largest, holed.phase, run)?;
         for order in -(largest as i64)..=largest as i64 {
-            let plain = conjugate_below_zero(&web.plain[order.unsigned_abs() as usize], order);
+            let plain = of_order(&web.plain, order);
             let first = (order + largest as i64) as usize * size;
             for j in 0..size {
                 for i in 0..size {
@@ -347,15 +344,6 @@ impl HoledSection {
     /// The ring of it, which can be asked for the nodes `told`.
     pub(super) fn ring(&self, told: &[u32]) -> Result<HoledRing<'_>, FemError> {
         HoledRing::new(&self.grid, &self.prism(), self.hub.as_deref(), told)
-    }
-}
-
-/// That of an order of either sign, of that of 0 or more.
-fn conjugate_below_zero(of: &Mat<c64>, order: i64) -> Mat<c64> {
-    if order < 0 {
-        of.conjugate().to_owned()
-    } else {
-        of.clone()
     }
 }
 

@@ -129,21 +129,9 @@ impl GridBuilder {
             }
         }
         let at = |i: usize, j: usize| lattice[j * (m + 1) + i];
-        for j in (0..n).step_by(2) {
-            for i in (0..m).step_by(2) {
-                let element = Element::quadrilateral([
-                    at(i, j),
-                    at(i + 2, j),
-                    at(i + 2, j + 2),
-                    at(i, j + 2),
-                    at(i + 1, j),
-                    at(i + 2, j + 1),
-                    at(i + 1, j + 2),
-                    at(i, j + 1),
-                ]);
-                self.elements.push(element.of_thickness(self.thickness));
-            }
-        }
+        let elements = quadrilaterals(m, n, at);
+        self.elements
+            .extend(elements.map(|element| element.of_thickness(self.thickness)));
     }
 
     /// The grid, with every node moved to its image under `map`.
@@ -153,6 +141,29 @@ impl GridBuilder {
             elements: self.elements,
         }
     }
+}
+
+/// The elements between the nodes `at` lattice points (i, j), 0 ≤ i ≤ `m`, 0 ≤ j ≤ `n`, corners where both are even.
+pub(super) fn quadrilaterals(
+    m: usize,
+    n: usize,
+    at: impl Fn(usize, usize) -> u32,
+) -> impl Iterator<Item = Element> {
+    let corners = (0..n)
+        .step_by(2)
+        .flat_map(move |j| (0..m).step_by(2).map(move |i| (i, j)));
+    corners.map(move |(i, j)| {
+        Element::quadrilateral([
+            at(i, j),
+            at(i + 2, j),
+            at(i + 2, j + 2),
+            at(i, j + 2),
+            at(i + 1, j),
+            at(i + 2, j + 1),
+            at(i + 1, j + 2),
+            at(i, j + 1),
+        ])
+    })
 }
 
 /// The same edge from its other end.

@@ -14,6 +14,7 @@ pub mod level;
 mod outline;
 mod outlines;
 pub mod planar;
+mod polar;
 mod root_curve;
 mod sector;
 mod sizes;

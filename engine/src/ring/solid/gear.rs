@@ -260,11 +260,7 @@ fn add_class(
     tooth_count: usize,
     distance: usize,
 ) {
-    let own_conjugate = (2 * class).is_multiple_of(tooth_count);
-    let weight = if own_conjugate { 1.0 } else { 2.0 } / tooth_count as f64;
-    let place = (class * distance) % tooth_count;
-    let angle = std::f64::consts::TAU * place as f64 / tooth_count as f64;
-    let turn = SolidSector::turn(1, angle) * weight;
+    let turn = SolidSector::part(class, distance, tooth_count) * (1.0 / tooth_count as f64);
     for j in 0..of.ncols() {
         for (sum, of) in sum.col_as_slice_mut(j).iter_mut().zip(of.col_as_slice(j)) {
             *sum += (turn * *of).re;

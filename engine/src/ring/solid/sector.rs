@@ -33,6 +33,18 @@ impl SolidSector {
         c64::new(cos, sin)
     }
 
+    /// By what a class adds to the sector `ahead` places counter-clockwise of `count`, if it is told together with the opposite one, its conjugate:
+    /// the real part is to be taken.
+    pub fn part(class: usize, ahead: usize, count: usize) -> c64 {
+        // The class may be its own opposite.
+        let share = match (2 * class).is_multiple_of(count) {
+            true => 1.0,
+            false => 2.0,
+        };
+        let place = (class * ahead % count) as f64;
+        Self::turn(1, std::f64::consts::TAU * place / count as f64) * share
+    }
+
     /// The unknowns of a class: those of one side, and on each arc those of each of `orders`.
     pub fn unknowns(&self, orders: &[i64]) -> usize {
         self.size * (self.side_nodes + self.arcs.len() * orders.len())
@@ -107,14 +119,8 @@ impl SolidSector {
 
     /// Adds what is `of` a class, and as its conjugate of the opposite one, to `sums`, one for each sector.
     pub fn add_to_each(&self, class: usize, of: &Mat<c64>, sums: &mut [Vec<f64>]) {
-        // The class may be its own opposite.
-        let share = match (2 * class).is_multiple_of(self.count) {
-            true => 1.0,
-            false => 2.0,
-        };
         for (number, sum) in sums.iter_mut().enumerate() {
-            let place = (class * number % self.count) as f64;
-            let turn = Self::turn(1, std::f64::consts::TAU * place / self.count as f64) * share;
+            let turn = Self::part(class, number, self.count);
             sum.resize(of.nrows(), 0.0);
             for (sum, of) in sum.iter_mut().zip(of.col_as_slice(0)) {
                 *sum += (turn * *of).re;

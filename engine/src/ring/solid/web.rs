@@ -136,8 +136,8 @@ impl<'a> HoledRing<'a> {
         })
     }
 
-    /// How the ring moves where its outer circle does: by `amplitude` of each of the orders −`largest` … `largest`, a column. Hole 0 of a pattern
-    /// stands at the angle `phase`.
+    /// How the ring moves where its outer circle does: by the first of `amplitudes`, of the orders 0 …, up to the order `largest`, each a column.
+    /// Hole 0 of a pattern stands at the angle `phase`.
     ///
     /// # Errors
     ///
@@ -145,7 +145,7 @@ impl<'a> HoledRing<'a> {
     pub fn moved(
         &self,
         (largest, phase): (usize, f64),
-        amplitude: impl Fn(i64) -> Mat<c64> + Sync,
+        amplitudes: &[Mat<c64>],
         run: &Run,
     ) -> Result<MovedRing, FemError> {
         let sector = &self.sector;
@@ -156,7 +156,8 @@ impl<'a> HoledRing<'a> {
             let inner = follows.nrows();
             let mut motion = Mat::<c64>::zeros(inner + outer, 1);
             for (k, &order) in orders.iter().enumerate() {
-                let seen = amplitude(order) * faer::Scale(SolidSector::turn(order, phase));
+                let seen =
+                    of_order(amplitudes, order) * faer::Scale(SolidSector::turn(order, phase));
                 motion.subrows_mut(inner + k * size, size).copy_from(&seen);
             }
             let moved = follows * motion.subrows(inner, outer);
@@ -172,12 +173,7 @@ impl<'a> HoledRing<'a> {
                 if self.hub.is_some() {
                     let of = motion.subrows(sides + k * size, size);
                     let of = of * faer::Scale(SolidSector::turn(-order, phase));
-                    let seen = if order < 0 {
-                        of.conjugate().to_owned()
-                    } else {
-                        of
-                    };
-                    hub[order.unsigned_abs() as usize] = seen;
+                    hub[order.unsigned_abs() as usize] = conjugate_below_zero(&of, order);
                 }
             }
         }
@@ -233,7 +229,11 @@ fn following(stiffness: &Mat<c64>, outer: usize) -> Result<Mat<c64>, FemError> {
 
 /// That of an order of either sign, of those of 0 and more.
 pub fn of_order(orders: &[Mat<c64>], order: i64) -> Mat<c64> {
-    let of = &orders[order.unsigned_abs() as usize];
+    conjugate_below_zero(&orders[order.unsigned_abs() as usize], order)
+}
+
+/// That of an order of either sign, of that of 0 or more; or the other way.
+pub fn conjugate_below_zero(of: &Mat<c64>, order: i64) -> Mat<c64> {
     if order < 0 {
         of.conjugate().to_owned()
     } else {
