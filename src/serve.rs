@@ -17,7 +17,7 @@ use crate::jobs::{Budget, Clock, Jobs, Keeper, OpenError, Place, Previews, Solve
 use crate::lock::{DatabaseLock, LockError};
 use crate::tokens::Tokens;
 use crate::webhooks::{Deliveries, HookRules, Webhooks};
-use crate::wire::{Problem, Submission};
+use crate::wire::{Problem, Results, Submission};
 
 /// At a shutdown, running work and open answers get so long to end.
 const GRACE: Duration = Duration::from_secs(8);
@@ -28,7 +28,7 @@ pub const END: Duration = Duration::from_secs(9);
 /// How a submission is computed with the substructures that all computations share, as by
 /// [`wire::solve`](fn@crate::wire::solve).
 pub type Compute =
-    Arc<dyn Fn(&Submission, &Library, &Run) -> Result<String, Problem> + Send + Sync>;
+    Arc<dyn Fn(&Submission, &Library, &Run) -> Result<Results, Problem> + Send + Sync>;
 
 /// What the service has from outside, beside its configuration.
 pub struct World {

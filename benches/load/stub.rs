@@ -5,7 +5,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 use std::time::Duration;
 
-use anyhow::Context;
 use clap::Parser;
 use meshwright::config::Config;
 use meshwright::jobs::Clock;
@@ -64,14 +63,10 @@ fn instant() -> anyhow::Result<Compute> {
         .map_err(|problem| anyhow::anyhow!("{problem:?}"))?;
     let results = wire::solve(&submission, &Library::default(), &Run::unattended())
         .map_err(|problem| anyhow::anyhow!("{problem:?}"))?;
-    let rest = results
-        .trim_start()
-        .strip_prefix('{')
-        .context("results are an object")?
-        .to_owned();
     let jobs = AtomicU64::new(0);
     Ok(Arc::new(move |_, _, _| {
-        let job = jobs.fetch_add(1, Ordering::Relaxed);
-        Ok(format!("{{\"job\":{job},{rest}"))
+        let mut own = results.clone();
+        own.curves[0].load_n += jobs.fetch_add(1, Ordering::Relaxed) as f64;
+        Ok(own)
     }))
 }

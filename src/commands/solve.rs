@@ -11,7 +11,7 @@ use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
 use meshwright::exchange::rexs::is_xml;
 use meshwright::wire::results::{CurveDocument, GearPeakStress, PeakStressDocument, Results};
-use meshwright::wire::{Problem, Submission, solve::results};
+use meshwright::wire::{Problem, Submission, solve};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
@@ -124,7 +124,7 @@ fn compute(submission: &Submission) -> Result<Results, Problem> {
         watched.set_length(total);
         watched.set_position(done);
     });
-    let results = results(submission, &Library::with_capacity(LIBRARY_BYTES), &run);
+    let results = solve(submission, &Library::with_capacity(LIBRARY_BYTES), &run);
     bar.finish_and_clear();
     results
 }

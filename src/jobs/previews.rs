@@ -211,7 +211,7 @@ impl Previews {
         let Preview { submission, id } = preview;
         let solve = Arc::clone(&self.0.solve);
         let memory = memory_of(&submission);
-        let work = move |run: &Run| solve(&submission, run);
+        let work = move |run: &Run| solve(&submission, run)?.to_json();
         let Computed {
             answer,
             waited,

@@ -294,7 +294,10 @@ impl Jobs {
         let Some(hash) = &job.document else {
             return Err(JobError::Ended(job.status));
         };
-        let document = self.store.document(hash).await?;
+        let document = match job.keep {
+            Kept::Results => self.store.document(hash).await?,
+            Kept::Statistics => self.store.document_of_equal(job.id).await?,
+        };
         document.ok_or(match job.keep {
             Kept::Results => JobError::NotFound(job.id),
             Kept::Statistics => JobError::ResultsNotKept(job.id),

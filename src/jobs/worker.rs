@@ -14,11 +14,10 @@ use uuid::Uuid;
 use super::queue::Jobs;
 use super::store::{Claimed, Lease, Lost, Reader, Started, StoreError};
 use super::threads::{Cores, Work, engine_threads};
-use crate::wire::{Code, DOCUMENT_VERSION, Problem, SOLVER_VERSION, Submission};
+use crate::wire::{Code, DOCUMENT_VERSION, Problem, Results, SOLVER_VERSION, Submission};
 
-/// The computation of a submission: long work that fills a core, reports to the run and obeys its stop. Gives the
-/// text of the results document.
-pub type Solve = Arc<dyn Fn(&Submission, &Run) -> Result<String, Problem> + Send + Sync>;
+/// The computation of a submission: long work that fills a core, reports to the run and obeys its stop.
+pub type Solve = Arc<dyn Fn(&Submission, &Run) -> Result<Results, Problem> + Send + Sync>;
 
 /// How the workers keep time.
 #[derive(Debug, Clone, Copy)]
@@ -335,6 +334,7 @@ mod tests {
     use super::super::store::{Place, Store};
     use super::*;
     use crate::wire::Status;
+    use crate::wire::results::STUB;
 
     const RULES: Rules = Rules {
         queue_limit: 100,
@@ -353,6 +353,13 @@ mod tests {
             "output_torques_n_m": [torque],
         });
         Submission::parse(document.to_string().as_bytes()).unwrap()
+    }
+
+    /// What an engine gives at once; for each torque it is another document.
+    fn results(torque: f64) -> Results {
+        let mut results = Results::read(STUB).unwrap();
+        results.curves[0].output_torque_n_m = torque;
+        results
     }
 
     /// A queue on a file, and how many transactions have been written that waited for the disk, and how many that did not.
@@ -423,11 +430,11 @@ mod tests {
                 move |submission, _| match submission.case().output_torques[0] {
                     1.0 => {
                         wait.lock().unwrap().recv().unwrap();
-                        Ok("{}".to_owned())
+                        Ok(results(1.0))
                     }
                     4.0 => panic!("as the test ordered"),
                     5.0 => Err(Problem::new(Code::NotConverged, "as the test ordered")),
-                    torque => Ok(format!("{{\"torque\":{torque}}}")),
+                    torque => Ok(results(torque)),
                 },
             );
         let pace = Pace {
@@ -462,7 +469,7 @@ mod tests {
         let wait = std::sync::Mutex::new(wait);
         let solve: Solve = Arc::new(move |_, _| {
             wait.lock().unwrap().recv().unwrap();
-            Ok("{}".to_owned())
+            Ok(results(1.0))
         });
         let pace = Pace::with_time_limit(Duration::from_secs(3600));
         let workers = Workers::beside(desk.jobs.clone(), solve, 2, pace).await;
@@ -507,12 +514,8 @@ mod tests {
     #[tokio::test]
     async fn for_one_job_after_the_other_there_are_few_looks_beside_their_claims() {
         let desk = Desk::new().await;
-        let solve: Solve = Arc::new(|submission, _| {
-            Ok(format!(
-                "{{\"torque\":{}}}",
-                submission.case().output_torques[0]
-            ))
-        });
+        let solve: Solve =
+            Arc::new(|submission, _| Ok(results(submission.case().output_torques[0])));
         let pace = Pace::with_time_limit(Duration::from_secs(3600));
         let workers = Workers::beside(desk.jobs.clone(), solve, 2, pace).await;
         let mut workers = workers.unwrap();

@@ -19,21 +19,12 @@ use super::submission::{MOST_POSITIONS, MOST_TAGS, MOST_TORQUES, SOLVER_VERSION,
 use super::units::{plain, to_um};
 use super::warning::WarningDocument;
 
-/// Computes `submission` and writes its results document.
-///
-/// # Errors
-///
-/// A [`Problem`]: `not_converged`, `discretization_failed`, or `stopped` where `run` was told to stop.
-pub fn solve(submission: &Submission, library: &Library, run: &Run) -> Result<String, Problem> {
-    results(submission, library, run)?.to_json()
-}
-
 /// Computes `submission`.
 ///
 /// # Errors
 ///
-/// As for [`solve`].
-pub fn results(submission: &Submission, library: &Library, run: &Run) -> Result<Results, Problem> {
+/// A [`Problem`]: `not_converged`, `discretization_failed`, or `stopped` where `run` was told to stop.
+pub fn solve(submission: &Submission, library: &Library, run: &Run) -> Result<Results, Problem> {
     let answer = match submission.forces() {
         None => analysis::analyze(submission.case(), library, run).map(|analysis| (analysis, None)),
         Some(request) => {

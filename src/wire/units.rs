@@ -2,9 +2,10 @@
 
 use std::io;
 
-use serde::de::IgnoredAny;
+use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::ser::SerializeSeq;
 use serde::{Deserialize, Deserializer};
+use serde_json::Value;
 use serde_json::ser::{CompactFormatter, Formatter};
 use serde_json::value::RawValue;
 
@@ -129,6 +130,28 @@ pub(super) fn rounded_json(document: &impl serde::Serialize) -> serde_json::Resu
     String::from_utf8(text).map_err(serde::ser::Error::custom)
 }
 
+/// What is read of a text like that of [`rounded_json`], in which values may be absent.
+///
+/// # Errors
+///
+/// A number that has to be there and is not finite.
+pub(super) fn rounded<T: serde::Serialize + DeserializeOwned>(exact: &T) -> serde_json::Result<T> {
+    fn round(value: &mut Value) {
+        match value {
+            Value::Number(number) if number.is_f64() => {
+                let rounded = number.as_f64().map(|exact| significant(exact, DIGITS));
+                *value = rounded.into();
+            }
+            Value::Array(items) => items.iter_mut().for_each(round),
+            Value::Object(members) => members.values_mut().for_each(round),
+            _ => {}
+        }
+    }
+    let mut value = serde_json::to_value(exact)?;
+    round(&mut value);
+    serde_json::from_value(value)
+}
+
 /// Writes numbers of which some are meant to be absent.
 pub(super) fn or_null<S: serde::Serializer>(
     values: &[Option<f64>],
@@ -169,11 +192,13 @@ pub(super) fn known<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
     Ok(known.collect())
 }
 
+/// Documents have so many significant digits.
+const DIGITS: usize = 10;
+
 struct RoundingFormatter;
 
 impl Formatter for RoundingFormatter {
     fn write_f64<W: io::Write + ?Sized>(&mut self, writer: &mut W, value: f64) -> io::Result<()> {
-        const DIGITS: usize = 10;
         CompactFormatter.write_f64(writer, significant(value, DIGITS))
     }
 

@@ -7,7 +7,7 @@ use meshwright::config::Config;
 use meshwright::jobs::{Clock, Place, Solve};
 use meshwright::serve::{Compute, Service, World, serve};
 use meshwright::webhooks::HookRules;
-use meshwright::wire::{self, Code, Problem, Submission};
+use meshwright::wire::{self, Code, Problem, Results, Submission};
 use meshwright_engine::run::Run;
 use reqwest::{Client, RequestBuilder, Response, StatusCode};
 use serde_json::{Value, json};
@@ -19,8 +19,13 @@ use crate::stores;
 /// Nothing here takes long; what does not come in this time does not come.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(20);
 
-/// Results as an engine might give them, with a text that no serializer would write.
-pub(crate) const RESULTS: &str = include_str!("results.json");
+/// Results as an engine might give them, as they are written.
+pub(crate) const RESULTS: &str = include_str!("results.json").trim_ascii_end();
+
+/// The same as the engine gives them.
+pub(crate) fn results() -> Results {
+    Results::read(RESULTS).unwrap()
+}
 
 /// The usual configuration, with one worker, few places and a free port.
 pub(crate) fn config(database: &Place) -> Config {
@@ -75,14 +80,14 @@ pub(crate) struct Work {
 
 enum Order {
     Reach(u64),
-    Finish(Result<String, Problem>),
+    Finish(Box<Result<Results, Problem>>),
     Panic,
 }
 
 impl Bench {
     /// A service with one worker whose engine gives [`RESULTS`] at once.
     pub(crate) async fn quick() -> Self {
-        Self::start(|_| {}, Arc::new(|_, _| Ok(RESULTS.to_owned()))).await
+        Self::start(|_| {}, Arc::new(|_, _| Ok(results()))).await
     }
 
     /// A service with one worker whose engine waits for orders.
@@ -298,14 +303,14 @@ impl Engine {
     }
 }
 
-fn obey(to_do: &blocking::Receiver<Order>, run: &Run) -> Result<String, Problem> {
+fn obey(to_do: &blocking::Receiver<Order>, run: &Run) -> Result<Results, Problem> {
     let stopped = || Problem::new(Code::InternalError, "stopped");
     loop {
         run.check().map_err(|_| stopped())?;
         // The engine's promise: a stop is obeyed within 100 ms.
         match to_do.recv_timeout(Duration::from_millis(2)) {
             Ok(Order::Reach(count)) => run.reached(count).map_err(|_| stopped())?,
-            Ok(Order::Finish(result)) => return result,
+            Ok(Order::Finish(result)) => return *result,
             Ok(Order::Panic) => panic!("as the test ordered"),
             Err(blocking::RecvTimeoutError::Timeout) => {}
             Err(blocking::RecvTimeoutError::Disconnected) => return Err(stopped()),
@@ -320,12 +325,14 @@ impl Work {
 
     pub(crate) fn finish(self) {
         self.orders
-            .send(Order::Finish(Ok(RESULTS.to_owned())))
+            .send(Order::Finish(Box::new(Ok(results()))))
             .unwrap();
     }
 
     pub(crate) fn fail(self, problem: Problem) {
-        self.orders.send(Order::Finish(Err(problem))).unwrap();
+        self.orders
+            .send(Order::Finish(Box::new(Err(problem))))
+            .unwrap();
     }
 
     pub(crate) fn panic(self) {

@@ -6,10 +6,10 @@ use meshwright::config::Config;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 
-use crate::bench::{Bench, PATIENCE, RESULTS, problem, submission};
+use crate::bench::{Bench, PATIENCE, problem, results, submission};
 
 async fn service(adjust: impl FnOnce(&mut Config)) -> Bench {
-    Bench::start(adjust, std::sync::Arc::new(|_, _| Ok(RESULTS.to_owned()))).await
+    Bench::start(adjust, std::sync::Arc::new(|_, _| Ok(results()))).await
 }
 
 async fn connect(bench: &Bench) -> TcpStream {

@@ -12,7 +12,7 @@ use tokio::io::AsyncWriteExt;
 use tokio::net::{TcpSocket, TcpStream};
 use tokio::task::JoinSet;
 
-use crate::bench::{Bench, PATIENCE, RESULTS};
+use crate::bench::{Bench, PATIENCE, results};
 use crate::process::Process;
 use crate::stores;
 
@@ -75,7 +75,7 @@ fn flood(service: SocketAddr, addresses: u8) -> JoinSet<()> {
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn eighty_sockets_that_take_nothing_lock_nobody_out_of_sixty_four_places() {
-    let engine = Arc::new(|_: &_, _: &_| Ok(RESULTS.to_owned()));
+    let engine = Arc::new(|_: &_, _: &_| Ok(results()));
     let bench = Bench::start(|config| config.door.connections = 64, engine).await;
     let key = make_key(&bench.config.database, "portal").await;
     let service = bench.service().address().unwrap();

@@ -8,7 +8,7 @@ use meshwright_engine::run::Run;
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
-use crate::bench::{Bench, RESULTS, problem, submission};
+use crate::bench::{Bench, RESULTS, problem, results, submission};
 
 #[tokio::test]
 async fn a_job_goes_from_submission_over_progress_to_the_very_text_of_its_results() {
@@ -343,7 +343,7 @@ async fn the_engine_gives_way_to_those_who_answer() {
     let (tell, mut told) = tokio::sync::mpsc::unbounded_channel();
     let solve = move |_: &Submission, _: &Run| {
         tell.send(niceness()).unwrap();
-        Ok(RESULTS.to_owned())
+        Ok(results())
     };
     let bench = Bench::start(|_| {}, Arc::new(solve)).await;
     let path = bench.submit(&submission(115.0)).await;
@@ -361,7 +361,7 @@ async fn of_small_jobs_that_are_computed_together_each_has_its_own_end() {
     let solve: Solve = Arc::new(|submission, _| match submission.case().output_torques[0] {
         7.0 => panic!("as the test ordered"),
         8.0 => Err(Problem::new(Code::NotConverged, "as the test ordered")),
-        _ => Ok(RESULTS.to_owned()),
+        _ => Ok(results()),
     });
     let bench = Bench::start(|_| {}, solve).await;
     let mut base = submission(1.0);

@@ -12,7 +12,7 @@ use tokio::sync::mpsc;
 use tokio::task::JoinHandle;
 use tokio_util::sync::CancellationToken;
 
-use crate::bench::{Bench, PATIENCE, RESULTS, problem, submission};
+use crate::bench::{Bench, PATIENCE, RESULTS, problem, results, submission};
 use crate::stores;
 
 fn named(id: &str, torque: f64) -> Value {
@@ -27,7 +27,7 @@ fn ask(bench: &Bench, preview: &Value) -> JoinHandle<Response> {
     tokio::spawn(async move { request.send().await.unwrap() })
 }
 
-async fn results(response: Response) -> String {
+async fn text(response: Response) -> String {
     assert_eq!(response.status(), StatusCode::OK);
     response.text().await.unwrap()
 }
@@ -43,7 +43,7 @@ impl Stubborn {
             // A test that is over holds nothing.
             let _ = begun.send((run.clone(), hold));
             let _ = held.recv();
-            Ok(RESULTS.to_owned())
+            Ok(results())
         });
         (Self(works), solve)
     }
@@ -76,8 +76,8 @@ async fn a_preview_is_the_document_of_a_job_to_the_last_digit_and_is_not_kept() 
         .unwrap_or_else(|| panic!("{timing}"));
     assert!(engine > 0.0);
     assert!(!headers.contains_key("etag") && !headers.contains_key("location"));
-    let cold = results(cold).await;
-    let warm = results(bench.post("/v1/preview", &preview).send().await.unwrap()).await;
+    let cold = text(cold).await;
+    let warm = text(bench.post("/v1/preview", &preview).send().await.unwrap()).await;
 
     for count in [
         "select count(*) from jobs",
@@ -87,9 +87,9 @@ async fn a_preview_is_the_document_of_a_job_to_the_last_digit_and_is_not_kept() 
         assert_eq!(rows, 0, "{count}");
     }
     let job = bench.post("/v1/jobs", &case).header("prefer", "wait=20");
-    let answer: Value = serde_json::from_str(&results(job.send().await.unwrap()).await).unwrap();
+    let answer: Value = serde_json::from_str(&text(job.send().await.unwrap()).await).unwrap();
     let path = answer["links"]["results"].as_str().unwrap();
-    let job = results(bench.get(path).send().await.unwrap()).await;
+    let job = text(bench.get(path).send().await.unwrap()).await;
     assert!(cold == job && warm == job);
 
     let numbers = bench.get("/metrics").send().await.unwrap();
@@ -134,7 +134,7 @@ async fn a_newer_preview_stops_the_older_one_of_its_id_and_no_other() {
         work.finish();
     }
     for answer in [other, nameless] {
-        assert_eq!(results(answer.await.unwrap()).await, RESULTS);
+        assert_eq!(text(answer.await.unwrap()).await, RESULTS);
     }
     let old_work = engine.next().await;
     let other = ask(&bench, &named("b", 4.0));
@@ -145,9 +145,9 @@ async fn a_newer_preview_stops_the_older_one_of_its_id_and_no_other() {
     let new_work = engine.next().await;
     assert_eq!(new_work.submission["output_torques_n_m"], json!([5.0]));
     new_work.finish();
-    assert_eq!(results(newer.await.unwrap()).await, RESULTS);
+    assert_eq!(text(newer.await.unwrap()).await, RESULTS);
     other_work.finish();
-    assert_eq!(results(other.await.unwrap()).await, RESULTS);
+    assert_eq!(text(other.await.unwrap()).await, RESULTS);
 }
 
 #[tokio::test]
@@ -170,7 +170,7 @@ async fn a_newer_preview_is_not_refused_while_the_older_one_winds_down() {
 
     drop(hold);
     drop(engine.next().await);
-    assert_eq!(results(newer.await.unwrap()).await, RESULTS);
+    assert_eq!(text(newer.await.unwrap()).await, RESULTS);
 }
 
 #[tokio::test]
@@ -183,11 +183,11 @@ async fn beyond_the_number_at_once_a_preview_is_told_to_come_again() {
     assert_eq!(refused.headers()["retry-after"], "1");
     problem(refused, 503, "previews_full").await;
     work.finish();
-    results(first.await.unwrap()).await;
+    text(first.await.unwrap()).await;
 
     let second = ask(&bench, &submission(2.0));
     engine.next().await.finish();
-    results(second.await.unwrap()).await;
+    text(second.await.unwrap()).await;
 }
 
 #[tokio::test]
@@ -226,7 +226,7 @@ async fn a_client_that_goes_away_stops_its_preview_and_leaves_its_place() {
 
     let next = ask(&bench, &submission(2.0));
     engine.next().await.finish();
-    results(next.await.unwrap()).await;
+    text(next.await.unwrap()).await;
 }
 
 #[tokio::test]
@@ -268,7 +268,7 @@ async fn what_the_engine_cannot_do_ends_one_preview() {
     problem(answer.await.unwrap(), 422, "not_converged").await;
     let answer = ask(&bench, &submission(1.0));
     engine.next().await.finish();
-    results(answer.await.unwrap()).await;
+    text(answer.await.unwrap()).await;
 }
 
 #[tokio::test]

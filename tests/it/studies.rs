@@ -7,7 +7,7 @@ use meshwright::wire::{Code, Problem};
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
-use crate::bench::{Bench, Engine, Events, RESULTS, Work, problem, submission};
+use crate::bench::{Bench, Engine, Events, RESULTS, Work, problem, results, submission};
 
 /// A study of torques: as many designs, all of which can be built.
 fn torques(values: &[f64]) -> Value {
@@ -511,7 +511,7 @@ async fn a_thousand_quick_designs_come_through_the_queue() {
         |config| config.workers = Some(2.try_into().unwrap()),
         Arc::new(move |_, _| {
             counted.fetch_add(1, Ordering::Relaxed);
-            Ok(RESULTS.to_owned())
+            Ok(results())
         }),
     )
     .await;

@@ -8,11 +8,11 @@ use jiff::Timestamp;
 use meshwright::jobs::{
     Clock, Filter, Job, Jobs, Member, Pace, Place, Rules, Solve, Store, Workers,
 };
-use meshwright::wire::{Code, Problem, Status, Submission};
+use meshwright::wire::{Code, Problem, Results, Status, Submission};
 use tempfile::TempDir;
 use tokio_util::sync::CancellationToken;
 
-use crate::bench::{PATIENCE, RESULTS, submission};
+use crate::bench::{PATIENCE, RESULTS, results, submission};
 use crate::stores;
 
 const CLIENT: &str = "anonymous";
@@ -132,15 +132,15 @@ async fn a_job_that_takes_longer_than_the_limit_is_stopped_and_fails() {
     workers.ended().await;
 }
 
-/// An engine whose computations wait for a text to give.
-fn waiting_engine() -> (Solve, impl AsyncFn() -> mpsc::Sender<&'static str>) {
+/// An engine whose computations wait for what to give.
+fn waiting_engine() -> (Solve, impl AsyncFn() -> mpsc::Sender<Results>) {
     let (begun, begins) = mpsc::channel();
     let begins = Arc::new(std::sync::Mutex::new(begins));
     let solve: Solve = Arc::new(move |_, _| {
-        let (order, orders) = mpsc::channel::<&'static str>();
+        let (order, orders) = mpsc::channel();
         begun.send(order).unwrap();
-        let text = orders.recv().map(str::to_owned);
-        text.map_err(|_| Problem::new(Code::InternalError, "dropped"))
+        let given = orders.recv();
+        given.map_err(|_| Problem::new(Code::InternalError, "dropped"))
     });
     let next = async move || {
         let begins = Arc::clone(&begins);
@@ -176,8 +176,12 @@ async fn a_job_whose_lease_ran_out_runs_again_elsewhere_and_the_late_results_are
     hands.advance(1);
     let second = begin().await;
     assert_eq!(jobs.find(CLIENT, job.id).await.unwrap().attempt, 2);
-    first.send("{ \"late\": true }").unwrap();
-    second.send(RESULTS).unwrap();
+    let late = Results {
+        method: "late".into(),
+        ..results()
+    };
+    first.send(late).unwrap();
+    second.send(results()).unwrap();
     let job = ended(&others, &job).await;
     let text = jobs.document(&job).await.unwrap().text().unwrap();
     assert_eq!((job.status, text.as_str()), (Status::Successful, RESULTS));
@@ -210,7 +214,7 @@ async fn a_clock_that_is_set_forward_takes_no_job_from_its_worker_nor_a_key_from
     assert_eq!((running.status, running.attempt), (Status::Running, 1));
     let again = jobs.submit(&member(), &case(1.0), key()).await.unwrap();
     assert!(again.repeated, "the key is a moment old");
-    order.send(RESULTS).unwrap();
+    order.send(results()).unwrap();
     assert_eq!(ended(&jobs, &job).await.status, Status::Successful);
     stop.cancel();
     workers.ended().await;
@@ -229,7 +233,7 @@ async fn a_clock_that_is_set_back_gives_no_negative_times_and_lists_new_jobs_fir
     let order = begin().await;
     hands.advance(3);
     hands.jump(-3600);
-    order.send(RESULTS).unwrap();
+    order.send(results()).unwrap();
     let first = ended(&jobs, &first).await;
     assert_eq!(first.elapsed.unwrap().as_secs(), 3, "what it took");
     assert!(first.finished_at >= first.started_at && first.started_at >= Some(first.submitted_at));
@@ -247,7 +251,7 @@ async fn a_clock_that_is_set_back_gives_no_negative_times_and_lists_new_jobs_fir
         [second.id, first.id],
         "the one that came last stands first"
     );
-    order.send("{}").unwrap();
+    order.send(results()).unwrap();
     ended(&jobs, &second).await;
     stop.cancel();
     workers.ended().await;

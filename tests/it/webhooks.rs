@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpListener;
 
-use crate::bench::{Bench, PATIENCE, RESULTS, problem, submission};
+use crate::bench::{Bench, PATIENCE, problem, results, submission};
 use crate::door::key_of;
 use crate::stores;
 
@@ -399,7 +399,7 @@ async fn webhooks_are_off_unless_hosts_are_allowed_and_private_addresses_never_a
             let hosts = ["hooks.example.com", "10.0.0.1", "http://169.254.169.254"];
             config.door.webhook_hosts = hosts.map(|host| host.parse().unwrap()).to_vec();
         },
-        Arc::new(|_, _| Ok(RESULTS.to_owned())),
+        Arc::new(|_, _| Ok(results())),
     )
     .await;
     for url in [

@@ -84,19 +84,20 @@ fn compute_designs(
 
     bar.inc((count - work.iter().map(Vec::len).sum::<usize>()) as u64);
     let one = |equal: &Vec<usize>| -> anyhow::Result<Outcome> {
-        let document = designs[equal[0]]
+        let results = designs[equal[0]]
             .submission
             .as_ref()
             .map_err(Problem::clone)
             .and_then(|submission| solve(submission, library, &Run::unattended()));
-        if let (Some(folder), Ok(document)) = (folder, &document) {
+        if let (Some(folder), Ok(results)) = (folder, &results) {
+            let document = results.to_json()?;
             for &i in equal {
-                folder.write_result(first + i, &designs[i].label, document)?;
+                folder.write_result(first + i, &designs[i].label, &document)?;
             }
         }
         bar.inc(equal.len() as u64);
-        // Documents go to the disk; in memory thousands of them would be too many.
-        Ok(document.map(|document| Summary::of_document(&document).unwrap_or_default()))
+        // Results go to the disk; in memory thousands of them would be too many.
+        Ok(results.and_then(|results| Summary::of(&results)))
     };
     let solved = on_every_core(&work, one)?;
 

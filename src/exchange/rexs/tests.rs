@@ -5,7 +5,7 @@ use meshwright_engine::run::Run;
 use serde_json::{Value, json};
 
 use super::{Choices, Import, Refused, export, import, is_xml};
-use crate::wire::solve::results;
+use crate::wire::solve;
 use crate::wire::{Submission, examples};
 
 const CASE_2: &str = include_str!("../../../api/examples/test-case-2.rexs");
@@ -461,7 +461,7 @@ fn every_valid_example_comes_back_as_the_same_pair() {
     let quick = json!({ "positions_per_mesh_period": 8, "span_mesh_periods": 1, "grid": "coarse" });
     let library = Library::with_capacity(256 << 20);
     let solved = |submission: &Submission| {
-        let solved = results(submission, &library, &Run::unattended()).expect("computed");
+        let solved = solve(submission, &library, &Run::unattended()).expect("computed");
         serde_json::to_value(solved).expect("JSON")
     };
     for example in examples().iter().filter(|example| example.valid) {
@@ -635,7 +635,7 @@ fn the_curves_stand_at_the_stage_in_the_units_of_the_standard() {
         .find(|example| example.name == "standard-pair");
     let submission = Submission::parse(example.expect("ships").json.as_bytes()).expect("valid");
     let library = Library::with_capacity(64 << 20);
-    let solved = results(&submission, &library, &Run::unattended()).expect("computed");
+    let solved = solve(&submission, &library, &Run::unattended()).expect("computed");
     let results = serde_json::to_value(&solved).expect("JSON");
     let text = export(&submission, Some(&results), DATE);
     let document = roxmltree::Document::parse(&text).expect("XML");

@@ -8,6 +8,7 @@ use flate2::Compression;
 use flate2::read::GzDecoder;
 use flate2::write::GzEncoder;
 use serde_json::json;
+use uuid::Uuid;
 
 use super::statement::{Connection, list, query, query_as};
 use super::{Store, StoreError, dialect};
@@ -166,6 +167,25 @@ impl Store {
                 .fetch_optional(&self.readers)
                 .await?;
         Ok(found.map(|(encoding, body)| Document::kept(hash.to_owned(), &encoding, body)))
+    }
+
+    /// The results document of a successful job, or, where only the statistics of that one were kept, of another one of the same client with the same
+    /// input and solver.
+    pub(in crate::jobs) async fn document_of_equal(
+        &self,
+        id: Uuid,
+    ) -> Result<Option<Document>, StoreError> {
+        let found: Option<(String, String, Vec<u8>)> = query_as(
+            "select hash, encoding, body from jobs asked
+             join jobs equal on equal.client = asked.client and equal.input_hash = asked.input_hash and equal.solver_version = asked.solver_version
+             join documents on hash = equal.document
+             where asked.id = $1 and equal.status = 'successful' and whole = 1
+             order by equal.sequence limit 1",
+        )
+        .bind(id.to_string())
+        .fetch_optional(&self.readers)
+        .await?;
+        Ok(found.map(|(hash, encoding, body)| Document::kept(hash, &encoding, body)))
     }
 }
 

@@ -4,8 +4,9 @@ use meshwright_engine::run::Run;
 use serde_json::{Value, json};
 
 use super::*;
+use crate::wire::results::STUB;
 use crate::wire::study_table::{RowState, Summary};
-use crate::wire::{Code, Design, Problem, Status, Study};
+use crate::wire::{Code, Design, Problem, Results, Status, Study};
 
 fn base() -> Value {
     let gear = json!({
@@ -308,12 +309,15 @@ fn what_cannot_be_drawn_is_refused_with_its_place_and_the_nearest() {
 /// A row with results in which the peak-to-peak value is this.
 fn row(design: &Design, range: Option<f64>) -> RowState {
     let summary = range.map(|range| {
-        let values = json!({ "mean": 1.0, "rms": 0.0, "peak_to_peak": range });
-        let document = json!({ "method": "flexible", "pair": { "contact_ratio": 1.5 }, "curves": [{
-            "output_torque_n_m": 50.0,
-            "statistics": { "partial": false, "transmission_error_um": values, "mesh_stiffness_tangent_n_per_m": values },
-        }] });
-        Summary::of_document(&document.to_string()).expect("a results document")
+        let mut results = Results::read(STUB).expect("a results document");
+        results.pair.contact_ratio = 1.5;
+        results.curves.truncate(1);
+        let curve = &mut results.curves[0];
+        curve.output_torque_n_m = 50.0;
+        let values = &mut curve.statistics.transmission_error_um;
+        (values.mean, values.rms, values.peak_to_peak) = (1.0, 0.0, range);
+        curve.statistics.mesh_stiffness_tangent_n_per_m = values.clone();
+        Summary::of(&results).expect("finite")
     });
     RowState {
         label: design.label.clone(),

@@ -103,7 +103,7 @@ impl Results {
     }
 }
 
-/// A small results document, in a text that no serializer would write.
+/// A small results document.
 #[cfg(test)]
 pub(crate) const STUB: &str = include_str!("../../../tests/it/results.json");
 

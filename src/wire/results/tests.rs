@@ -292,8 +292,9 @@ fn computed_results_read_back_with_all_that_they_may_have() {
         let changes = change.as_object().expect("an object").clone();
         document.as_object_mut().expect("an object").extend(changes);
         let submission = Submission::parse(document.to_string().as_bytes()).expect("valid");
-        let text = solve(&submission, &Library::default(), &Run::unattended()).expect("results");
-        reads_back(&text)
+        let results = solve(&submission, &Library::default(), &Run::unattended());
+        let results = results.expect("results");
+        reads_back(&results.to_json().expect("finite"))
     };
     let few = json!({ "grid": "coarse", "positions_per_mesh_period": 8 });
     let plane = json!({ "method": "flexible", "stress": true, "resolution": few, "output_torques_n_m": [115, 0] });

@@ -63,7 +63,7 @@ fn computed(design: Design, library: &Library) -> RowState {
         .submission
         .and_then(|submission| solve(&submission, library, &Run::unattended()));
     let (summary, problem) = match solved {
-        Ok(document) => (Summary::of_document(&document), None),
+        Ok(results) => (Summary::of(&results).ok(), None),
         Err(problem) => (None, serde_json::to_value(problem).ok()),
     };
     RowState {

@@ -6,8 +6,10 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::pareto::Conditions;
-use crate::wire::results::{ErrorEstimateDocument, StatisticsDocument};
-use crate::wire::units::significant;
+use crate::wire::geometry::GearGeometry;
+use crate::wire::problem::{Code, Problem};
+use crate::wire::results::{CurveDocument, ErrorEstimateDocument, Results, StatisticsDocument};
+use crate::wire::units::{rounded, significant};
 use crate::wire::warning::GearName;
 
 /// What of a results document a table shows. It is kept beside the document, so that a table of thousands of rows reads
@@ -76,109 +78,70 @@ const DRIVING_HOLE_ORDER: &str = "H_N1";
 const DRIVEN_HOLE_ORDER: &str = "H_N2";
 
 impl Summary {
-    /// The summary of a results document. Its curves are passed over, not kept. None if it is no results document.
-    pub fn of_document(document: &str) -> Option<Self> {
-        #[derive(Deserialize)]
-        struct Glance {
-            method: Option<String>,
-            #[serde(default)]
-            pair: Pair,
-            #[serde(default)]
-            curves: Vec<Curve>,
-            #[serde(default)]
-            evidence: Evidence,
-        }
-        #[derive(Default, Deserialize)]
-        struct Evidence {
-            error_estimate: Option<ErrorEstimateDocument>,
-        }
-        #[derive(Default, Deserialize)]
-        #[serde(default)]
-        struct Pair {
-            driving: GearSummary,
-            driven: GearSummary,
-            contact_ratio: Option<f64>,
-            backlash_mm: Option<f64>,
-        }
-        #[derive(Deserialize)]
-        struct Curve {
-            output_torque_n_m: f64,
-            statistics: Option<StatisticsDocument>,
-            #[serde(default)]
-            peak_contact_pressure_mpa: Vec<Option<f64>>,
-            spectrum: Option<Spectrum>,
-            dynamics: Option<Dynamics>,
-            face: Option<Face>,
-        }
-        #[derive(Deserialize)]
-        struct Face {
-            face_load_factor: f64,
-        }
-        #[derive(Deserialize)]
-        struct Dynamics {
-            up: Option<Branch>,
-            down: Option<Branch>,
-        }
-        #[derive(Deserialize)]
-        struct Branch {
-            dynamic_transmission_error_um: DynamicError,
-        }
-        #[derive(Deserialize)]
-        struct DynamicError {
-            peak_to_peak: Vec<f64>,
-        }
-        #[derive(Deserialize)]
-        struct Spectrum {
-            #[serde(default)]
-            named: Vec<Line>,
-        }
-        #[derive(Deserialize)]
-        struct Line {
-            label: String,
-            transmission_error_um: Option<f64>,
-        }
-
-        let Glance {
+    /// That of `results`, in the very numbers that their document has.
+    ///
+    /// # Errors
+    ///
+    /// `internal_error` if a number is not finite, which no valid case may come to.
+    pub fn of(results: &Results) -> Result<Self, Problem> {
+        let Results {
             method,
             pair,
             curves,
             evidence,
-        } = serde_json::from_str(document).ok()?;
-        let curve = |curve: Curve| {
-            let named = curve
-                .spectrum
-                .map_or_else(Vec::new, |spectrum| spectrum.named);
-            let orders = named.into_iter().filter_map(|line| {
-                let shown = ORDERS.contains(&line.label.as_str());
-                line.transmission_error_um
-                    .filter(|_| shown)
-                    .map(|amplitude| (line.label, amplitude))
-            });
-            let pressures: Option<Vec<f64>> = curve.peak_contact_pressure_mpa.into_iter().collect();
-            let branches = curve.dynamics.into_iter();
-            let branches = branches.flat_map(|dynamics| [dynamics.up, dynamics.down]);
-            let dynamic = branches
-                .flatten()
-                .flat_map(|branch| branch.dynamic_transmission_error_um.peak_to_peak);
-            CurveSummary {
-                dynamic_peak_to_peak_um: dynamic.reduce(f64::max),
-                peak_contact_pressure_mpa: pressures
-                    .and_then(|pressures| pressures.into_iter().reduce(f64::max)),
-                output_torque_n_m: curve.output_torque_n_m,
-                statistics: curve.statistics,
-                face_load_factor: curve.face.map(|face| face.face_load_factor),
-                orders: orders.collect(),
-            }
+            ..
+        } = results;
+        let exact = Self {
+            method: Some(method.to_string()),
+            driving: GearSummary::of(&pair.driving),
+            driven: GearSummary::of(&pair.driven),
+            contact_ratio: Some(pair.contact_ratio),
+            backlash_mm: Some(pair.backlash_mm),
+            curves: curves.iter().map(CurveSummary::of).collect(),
+            error_estimate: evidence.error_estimate.clone(),
         };
-        Some(Self {
-            method,
-            driving: pair.driving,
-            driven: pair.driven,
-            contact_ratio: pair.contact_ratio,
-            backlash_mm: pair.backlash_mm,
-            curves: curves.into_iter().map(curve).collect(),
-            error_estimate: evidence.error_estimate,
-        })
+        rounded(&exact).map_err(|error| Problem::new(Code::InternalError, error.to_string()))
+    }
+
+    /// It as it is kept.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string(self).expect("a summary is plain data")
+    }
+}
+
+impl GearSummary {
+    fn of(gear: &GearGeometry) -> Self {
+        Self {
+            mass_kg: Some(gear.mass_kg),
+            mass_removed_percent: Some(gear.mass_removed_percent),
+            least_ligament_mm: gear.least_ligament_mm,
+            polar_inertia_kg_m2: Some(gear.polar_inertia_kg_m2),
+        }
+    }
+}
+
+impl CurveSummary {
+    fn of(curve: &CurveDocument) -> Self {
+        let pressures = curve.peak_contact_pressure_mpa.iter().copied();
+        let pressures: Option<Vec<f64>> = pressures.collect();
+        let branches = curve.dynamics.iter();
+        let branches = branches.flat_map(|dynamics| [&dynamics.up, &dynamics.down]);
+        let ranges = branches
+            .flatten()
+            .flat_map(|branch| &branch.dynamic_transmission_error_um.peak_to_peak);
+        let named = curve.spectrum.iter().flat_map(|spectrum| &spectrum.named);
+        let shown = named.filter(|line| ORDERS.contains(&line.label.as_str()));
+        Self {
+            output_torque_n_m: curve.output_torque_n_m,
+            statistics: Some(curve.statistics.clone()),
+            peak_contact_pressure_mpa: pressures
+                .and_then(|pressures| pressures.into_iter().reduce(f64::max)),
+            dynamic_peak_to_peak_um: ranges.copied().reduce(f64::max),
+            face_load_factor: curve.face.as_ref().map(|face| face.face_load_factor),
+            orders: shown
+                .map(|line| (line.label.clone(), line.transmission_error_um))
+                .collect(),
+        }
     }
 }
 

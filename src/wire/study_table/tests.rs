@@ -3,37 +3,49 @@
 use serde_json::json;
 
 use super::*;
+use crate::wire::Code;
+use crate::wire::results::{Results, STUB};
 
 /// A results document with two torques, of which the second has no spectrum.
-fn document(mass: f64, ranges: [f64; 2], stiffness: f64) -> String {
-    let statistics = |range: f64| {
-        json!({
+fn document(mass: f64, ranges: [f64; 2], stiffness: f64) -> Value {
+    let mut document: Value = serde_json::from_str(STUB).expect("JSON");
+    let pair = &mut document["pair"];
+    for (gear, mass, removed, inertia) in
+        [("driving", 1.0, 0.0, 1e-3), ("driven", mass, 25.0, 9e-4)]
+    {
+        pair[gear]["mass_kg"] = json!(mass);
+        pair[gear]["mass_removed_percent"] = json!(removed);
+        pair[gear]["polar_inertia_kg_m2"] = json!(inertia);
+    }
+    pair["driven"]["least_ligament_mm"] = json!(5.5);
+    let of_stub = document["curves"][0].clone();
+    let curve = |torque: f64, range: f64| {
+        let mut curve = of_stub.clone();
+        curve["output_torque_n_m"] = json!(torque);
+        curve["statistics"] = json!({
             "partial": false,
             "transmission_error_um": { "mean": 13.79, "rms": 0.38, "peak_to_peak": range },
             "mesh_stiffness_tangent_n_per_m": { "mean": stiffness, "rms": 2.4e7, "peak_to_peak": 6.8e7 },
-        })
+        });
+        curve["spectrum"] = Value::Null;
+        curve
     };
-    json!({
-        "method": "flexible",
-        "pair": {
-            "driving": { "mass_kg": 1.0, "mass_removed_percent": 0.0, "polar_inertia_kg_m2": 1e-3 },
-            "driven": {
-                "mass_kg": mass, "mass_removed_percent": 25.0, "least_ligament_mm": 5.5, "polar_inertia_kg_m2": 9e-4
-            }
-        },
-        "curves": [
-            {
-                "output_torque_n_m": 115.0, "transmission_error_um": [1.0, 2.0], "statistics": statistics(ranges[0]),
-                "spectrum": { "order": [10, 50], "named": [
-                    { "order": 10, "label": "H_N", "transmission_error_um": 0.31 },
-                    { "order": 50, "label": "H_Z2", "transmission_error_um": 0.42 },
-                    { "order": 60, "label": "H_Z2+N", "transmission_error_um": 0.01 },
-                ] }
-            },
-            { "output_torque_n_m": 20.0, "transmission_error_um": [1.0], "statistics": statistics(ranges[1]) },
-        ]
-    })
-    .to_string()
+    let mut curves = [curve(115.0, ranges[0]), curve(20.0, ranges[1])];
+    let line = |order: f64, label: &str, kind: &str, amplitude: f64| json!({ "order": order, "label": label, "kind": kind, "gears": ["driven"], "transmission_error_um": amplitude, "mesh_stiffness_tangent_n_per_m": 0.0 });
+    curves[0]["spectrum"] = json!({
+        "order": [], "driving_order": [], "transmission_error_um": [], "transmission_error_phase_deg": [],
+        "mesh_stiffness_tangent_n_per_m": [], "mesh_stiffness_tangent_phase_deg": [],
+        "named": [
+            line(10.0, "H_N", "holes", 0.31), line(50.0, "H_Z2", "mesh", 0.42), line(60.0, "H_Z2+N", "hole_sideband", 0.01),
+        ],
+    });
+    document["curves"] = json!(curves);
+    document
+}
+
+fn summary(document: &Value) -> Summary {
+    let results = Results::read(&document.to_string()).expect("a results document");
+    Summary::of(&results).expect("finite")
 }
 
 fn state(label: &str, mass: f64, ranges: [f64; 2], stiffness: f64) -> RowState {
@@ -43,7 +55,7 @@ fn state(label: &str, mass: f64, ranges: [f64; 2], stiffness: f64) -> RowState {
         changes: changes.as_object().unwrap().clone(),
         job: Some(Uuid::nil()),
         status: Status::Successful,
-        summary: Summary::of_document(&document(mass, ranges, stiffness)),
+        summary: Some(summary(&document(mass, ranges, stiffness))),
         problem: None,
     }
 }
@@ -61,13 +73,25 @@ fn failed(label: &str) -> RowState {
 
 #[test]
 fn a_summary_keeps_what_the_table_shows_and_survives_the_store() {
-    let summary = Summary::of_document(&document(0.9, [1.7, 2.5], 2.2e8)).unwrap();
-    let stored = serde_json::to_string(&summary).unwrap();
-    assert!(!stored.contains("[1.0,2.0]"), "no curve: {stored}");
+    let mut document = document(0.9, [1.7, 2.5], 2.2e8);
+    document["curves"][0]["output_torque_n_m"] = json!(115.000_000_000_049);
+    let summary = summary(&document);
+    let stored = summary.to_json();
+    assert!(!stored.contains("mesh_position"), "no curve: {stored}");
+    assert!(
+        stored.contains("115.0,"),
+        "rounded as documents are: {stored}"
+    );
     assert_eq!(serde_json::from_str::<Summary>(&stored).unwrap(), summary);
-    assert_eq!(Summary::of_document("not JSON"), None);
-    // A document without any of it has a summary without any of it.
-    assert_eq!(Summary::of_document("{}"), Some(Summary::default()));
+    // What an earlier version kept may tell none of it.
+    assert_eq!(
+        serde_json::from_str::<Summary>("{}").unwrap(),
+        Summary::default()
+    );
+
+    let mut results = Results::read(&document.to_string()).unwrap();
+    results.curves[1].statistics.transmission_error_um.mean = f64::NAN;
+    assert_eq!(Summary::of(&results).unwrap_err().code, Code::InternalError);
 }
 
 #[test]
@@ -186,11 +210,10 @@ fn the_csv_has_a_line_for_each_row_and_torque_and_names_joined_by_dots() {
 
 #[test]
 fn the_csv_has_columns_for_stresses_where_any_row_tells_them() {
-    let mut document: Value =
-        serde_json::from_str(&document(0.9, [1.7, 2.5], 2.2e8)).expect("a document");
+    let mut document = document(0.9, [1.7, 2.5], 2.2e8);
     document["curves"][0]["statistics"]["stress"] = json!({ "driving": { "root_mpa": 151.0 }, "driven": { "root_mpa": 157.5, "root_tension_mpa": 160.0, "root_compression_mpa": -181.0, "hole_mpa": 38.9 } });
     let mut stressed = state("stressed", 0.9, [1.7, 2.5], 2.2e8);
-    stressed.summary = Summary::of_document(&document.to_string());
+    stressed.summary = Some(summary(&document));
     let rows = table(
         GearName::Driven,
         vec![stressed, state("plain", 0.9, [1.7, 2.5], 2.2e8)],
@@ -221,11 +244,10 @@ fn the_csv_has_columns_for_stresses_where_any_row_tells_them() {
 
 #[test]
 fn the_load_along_the_face_is_told_by_those_who_see_it() {
-    let mut document: Value =
-        serde_json::from_str(&document(0.9, [1.7, 2.5], 2.2e8)).expect("a document");
-    document["curves"][0]["face"] = json!({ "face_load_factor": 1.69, "z_mm": [0.0] });
+    let mut document = document(0.9, [1.7, 2.5], 2.2e8);
+    document["curves"][0]["face"] = json!({ "face_load_factor": 1.69, "z_mm": [0.0], "load_n_per_mm": [[0.0]], "load_centroid_mm": [0.0] });
     let mut helical = state("helical", 0.9, [1.7, 2.5], 2.2e8);
-    helical.summary = Summary::of_document(&document.to_string());
+    helical.summary = Some(summary(&document));
     let told = |state: &RowState, curve: usize| {
         let quantity = QUANTITIES
             .iter()

@@ -270,7 +270,7 @@ fn forces_and_run_ups_are_told_along_faces_too() {
         let (case, forces) = (submission.case(), submission.forces());
         let (run, library) = (Run::unattended(), Library::default());
         let results = solve(&submission, &library, &run).expect("solves");
-        let results: Value = serde_json::from_str(&results).expect("JSON");
+        let results = serde_json::to_value(results).expect("JSON");
         let table = &results["force_table"];
         let rows = table["transmission_error_um"].as_array().expect("rows");
         let row = |j: usize| rows[j].as_array().expect("a row");
@@ -317,7 +317,7 @@ fn the_projection_tells_what_the_whole_solution_does_and_how_far_it_is_off() {
     let solved = |document: &Value| -> Value {
         let submission = parse(document).expect("valid");
         let results = solve(&submission, &Library::default(), &Run::unattended());
-        serde_json::from_str(&results.expect("solves")).expect("JSON")
+        serde_json::to_value(results.expect("solves")).expect("JSON")
     };
     let projected = solved(&document);
     let whole = solved(&with(document, &[("/method", json!("three_dimensional"))]));
@@ -365,7 +365,7 @@ fn results_tell_the_load_along_the_face() {
     );
     let submission = parse(&document).expect("valid");
     let results = solve(&submission, &Library::default(), &Run::unattended()).expect("solves");
-    let results: Value = serde_json::from_str(&results).expect("JSON");
+    let results = serde_json::to_value(results).expect("JSON");
     let (curve, face) = (&results["curves"][0], &results["curves"][0]["face"]);
     let rows = face["load_n_per_mm"].as_array().expect("rows");
     let heights = face["z_mm"].as_array().expect("heights");
@@ -438,7 +438,7 @@ fn a_contact_pattern_tells_every_line_and_the_largest_pressure_of_all() {
     let z = numbers(&pattern["z_mm"]);
     assert!((z[0] + 9.75).abs() < 1e-9 && z.len() == 40);
     let results = solve(&submission, &Library::default(), &Run::unattended()).expect("solves");
-    let results: Value = serde_json::from_str(&results).expect("JSON");
+    let results = serde_json::to_value(results).expect("JSON");
     let curves = pattern["curves"].as_array().expect("curves");
     assert_eq!(curves.len(), 2);
     for (curve, solved) in curves
@@ -595,7 +595,7 @@ fn pressure_at_a_sharp_edge_is_null_in_the_pattern_and_in_the_curve() {
     for (changes, is_sharp) in [(Vec::new(), false), (sharp, true)] {
         let submission = pattern_pair(&changes);
         let results = solve(&submission, &Library::default(), &Run::unattended()).expect("solves");
-        let results: Value = serde_json::from_str(&results).expect("JSON");
+        let results = serde_json::to_value(results).expect("JSON");
         let peaks = numbers(&results["curves"][0]["peak_contact_pressure_mpa"]);
         let pattern = pattern(&submission);
         let curve = &pattern["curves"][0];
@@ -651,7 +651,7 @@ fn a_plane_method_has_no_pattern_and_says_which_has() {
 /// K_Hbeta of each curve, and what would lower it.
 fn cures(submission: &Submission) -> Vec<(f64, [f64; 3])> {
     let results = solve(submission, &Library::default(), &Run::unattended()).expect("solves");
-    let results: Value = serde_json::from_str(&results).expect("JSON");
+    let results = serde_json::to_value(results).expect("JSON");
     let curves = results["curves"].as_array().expect("curves").iter();
     curves
         .map(|curve| {
