@@ -161,7 +161,8 @@ fn rigid(pair: &GearPair, eta: f64) -> f64 {
 
 #[test]
 fn steep_reliefs_agree_with_a_second_solver() {
-    // Three of the second solver's four numbers; the fourth (384 N m at 0.55, 22.390 µm where we find 22.294) is told in docs/validity.md.
+    // Three of the second solver's four numbers. The fourth, 22.390 µm at 384 N m and 0.55, is what it finds of reliefs that belong to the nominal roll
+    // length; of these reliefs CalculiX finds 22.288 there (tests/reference/calculix-steep-relief.json), where this finds 22.294.
     let model = model(&relieved(30e-6));
     for (torque, eta, expected) in [
         (96.0, 0.600, 10.156),

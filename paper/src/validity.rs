@@ -55,12 +55,14 @@ const FIGURES: [(&str, &str, &[Shown]); 3] = [
     ),
     (
         "validity-pairs.svg",
-        "Paths beside the pitch point, materials, three pairs in contact",
+        "Paths beside the pitch point, materials, three pairs in contact, steep reliefs",
         &[
             shown("40/80, recess", &["recess"], 115.0),
             shown("40/80, approach", &["approach"], 115.0),
             shown("steel on a polymer", &["materials"], 8.0),
             shown("contact ratio 2.09", &["contact-ratio"], 180.0),
+            shown("17/80, reliefs of 30 µm", &["steep-relief"], 96.0),
+            shown("17/80, reliefs of 30 µm", &["steep-relief"], 384.0),
         ],
     ),
     (
@@ -174,13 +176,9 @@ fn points_of(series: &Value, torque: f64) -> anyhow::Result<Vec<(f64, f64)>> {
 fn curve_of(submission: &Value, library: &Library) -> anyhow::Result<Vec<(f64, f64)>> {
     let refused = |problem: meshwright::wire::Problem| anyhow::anyhow!("{}", problem.detail);
     let submission = Submission::parse(submission.to_string().as_bytes()).map_err(refused)?;
-    let text = solve(&submission, library, &Run::unattended()).map_err(refused)?;
-    let curve = serde_json::from_str::<Value>(&text)?["curves"][0].take();
-    let numbers = |name: &str| -> anyhow::Result<Vec<f64>> {
-        let values = curve[name].as_array().context("no curve")?.iter();
-        Ok(values.filter_map(Value::as_f64).collect())
-    };
-    let (positions, errors) = (numbers("mesh_position")?, numbers("transmission_error_um")?);
+    let results = solve(&submission, library, &Run::unattended()).map_err(refused)?;
+    let curve = results.curves.into_iter().next().context("no curve")?;
+    let (positions, errors) = (curve.mesh_position, curve.transmission_error_um);
     let step = positions[1] - positions[0];
     let end = positions.last().map(|last| (last + step, errors[0]));
     Ok(positions.into_iter().zip(errors).chain(end).collect())

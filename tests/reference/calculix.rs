@@ -402,6 +402,23 @@ fn a_chamfered_tip_that_carries_follows_calculix() {
     check("calculix-chamfer.json", pair, Corners::Settled, 7);
 }
 
+#[test]
+fn steep_parabolic_reliefs_follow_calculix_at_light_and_at_full_load() {
+    let toothed = |tooth_count, bore_radius| {
+        let mut data = gear(tooth_count, bore_radius);
+        data.rack.pressure_angle = 25_f64.to_radians();
+        data.rack.tip_radius = 0.58e-3;
+        data.modifications = vec![ModificationData::TipRelief(ReliefData {
+            amount: 30e-6,
+            shape: ReliefShape::Parabolic,
+            start: ReliefStart::RadialLength(1e-3),
+        })];
+        data
+    };
+    let pair = pair(toothed(17, 8.5e-3), toothed(80, 32e-3), 97.5e-3);
+    check("calculix-steep-relief.json", pair, Corners::Settled, 12);
+}
+
 /// The standard pair with relief, its driven gear on a blank of a bore of 15 mm, these round holes (circle and own radius in mm, angle in
 /// degrees), and this web.
 fn on_blank(holes: &[(f64, f64, f64)], web: Option<Web>) -> GearPair {

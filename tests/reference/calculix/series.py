@@ -98,6 +98,7 @@ def all_series():
         fillet(),
         rounding(),
         chamfer(),
+        steep_relief(),
     ]
     return {series.name: series for series in listed}
 
@@ -230,4 +231,18 @@ def rounding():
         # Half the contact of a rounding is 10 um wide.
         Options(contact=0.02, strip=0.25, core=0.0025),
         check_at=0.25,
+    )
+
+
+def steep_relief():
+    def gear(z, bore):
+        return Gear(z=z, m=2.0, bore=bore, alpha_deg=25.0, rack_tip_radius=0.58, relief=Relief(0.030, 1.0, 2))
+
+    return Series(
+        "calculix-steep-relief",
+        "parabolic relief of 30 um from 1 mm below the tips, at light and at full load",
+        Pair(gear(17, 8.5), gear(80, 32.0), 97.5),
+        (96.0, 384.0),
+        (0.475, 0.525, 0.55, 0.575, 0.6, 0.65),
+        check_at=0.55,
     )
