@@ -27,6 +27,18 @@ const OWN: f64 = 0.1;
 /// Updates of the multipliers after which the augmented Lagrangian gives up.
 const MULTIPLIER_UPDATES: u32 = 2000;
 
+/// Cells are halved so often at most.
+const MOST_HALVED: u32 = 3;
+
+/// What a pair wants beside the cells that it has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Want {
+    /// More of them; or the same, moved so far ([`Extent::moved`]) that a contact narrower than they reach lies among them.
+    Room { moved: i32 },
+    /// Each in two.
+    Halves,
+}
+
 /// The contact cells of all pairs in reach of each other, with the teeth that stand there in one mesh period.
 ///
 /// Cells are numbered pair after pair, pairs from the reference pair of the period.
@@ -587,21 +599,32 @@ impl<'a> ContactCells<'a> {
         Some(touching.collect())
     }
 
-    /// The pairs whose contact reaches beyond their cells, or that penetrate beside them, and that have room for more; and how far cells are to be
-    /// moved ([`Extent::moved`]) so that a contact narrower than they reach lies among them.
-    pub(super) fn wanting_room(
+    /// What pairs want: room, if their contact reaches beyond their cells or they penetrate beside them, and there is room for more; and where none
+    /// does, halves, if they penetrate deeper than `deep` between their cells.
+    pub(super) fn wants(
         &self,
         solution: &ContactSolution,
         found: &Found,
-    ) -> Vec<(i64, i32)> {
-        let wanting = self.ranges().filter_map(|(laid, range)| {
+        deep: f64,
+    ) -> Vec<(i64, Want)> {
+        let room = self.ranges().filter_map(|(laid, range)| {
             let patch = &laid.cells().patch;
             let active = &solution.active[range];
             let beside = found.beside.contains(&laid.pair);
             let wants = patch.can_widen() && (beside || patch.overflows(active));
-            wants.then(|| (laid.pair, patch.off_middle(active)))
+            let moved = patch.off_middle(active);
+            wants.then_some((laid.pair, Want::Room { moved }))
         });
-        wanting.collect()
+        let room: Vec<(i64, Want)> = room.collect();
+        if !room.is_empty() {
+            return room;
+        }
+        let deepest = |laid: &Laid| found.between.get(&laid.pair).copied().unwrap_or(0.0);
+        let halves = self
+            .laid
+            .iter()
+            .filter(|laid| laid.extent.halved < MOST_HALVED && deepest(laid) > deep);
+        halves.map(|laid| (laid.pair, Want::Halves)).collect()
     }
 
     /// What a force in the middle of one pair yields in the middle of the next, in the mean.

@@ -77,13 +77,15 @@ pub(super) struct Stretch {
     pub(super) more: f64,
 }
 
-/// How far about its hollows a pair is covered with cells.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+/// How far about its hollows a pair is covered with cells, and how densely.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub(super) struct Extent {
     /// The hollows that are covered, of those that touch first.
     pub(super) hollows: usize,
     /// How often cells were added on all open sides.
     pub(super) widened: usize,
+    /// How often all cells were halved.
+    pub(super) halved: u32,
     /// How far deviations that incline the flanks move the contact towards the seat's tip, in halves of [`half_width`].
     pub(super) moved: i32,
 }
@@ -351,6 +353,7 @@ fn chains(
     } else {
         count.max(CELLS_A_KINK * kinks).min(MOST_REFINED * count)
     };
+    let count = count << extent.halved;
     let width = (to - from) / count as f64;
     // Moved by whole cells too.
     let half = (0.5 * count as f64 / (2.0 * CORE)).round() * width;
@@ -640,6 +643,7 @@ mod tests {
             hollows: 1,
             widened: 0,
             moved: 0,
+            halved: 0,
         };
         Patch::new(&view, &facing, 2447.61, count, extent)
     }
@@ -667,6 +671,7 @@ mod tests {
                 hollows: facing.hollows.len(),
                 widened: 1,
                 moved: 0,
+                halved: 0,
             };
             let patch = Patch::new(&view, &facing, 2447.61, 8, extent);
             // Those at the ends of the flanks apart.

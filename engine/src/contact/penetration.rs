@@ -5,6 +5,7 @@
 //! give way where they are pressed, so that a stretch with g_0 > δ w stays open; of the others u is taken from the model. Stretches are as
 //! wide as a cell, since pressures that are even over a cell close gaps in the mean over one.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use faer::Mat;
@@ -31,6 +32,8 @@ pub(super) struct Found {
     pub(super) largest: f64,
     /// Pairs that penetrate beside their cells.
     pub(super) beside: Vec<i64>,
+    /// How deep pairs penetrate between cells, which are wide beside the contact, or within one, about a kink.
+    pub(super) between: BTreeMap<i64, f64>,
     /// Pairs in which the tip of one gear is pressed into the fillet of the other, and that other gear; cells do not follow there.
     pub(super) fillets: Vec<(i64, Member)>,
 }
@@ -142,7 +145,11 @@ pub(super) fn found(
             match looked.place {
                 Place::Fillet(member) => found.fillets.push((laid.pair, member)),
                 Place::Beside if !found.beside.contains(&laid.pair) => found.beside.push(laid.pair),
-                _ => {}
+                Place::Beside => {}
+                Place::Across(_) | Place::Kink => {
+                    let deepest = found.between.entry(laid.pair).or_default();
+                    *deepest = depth.max(*deepest);
+                }
             }
         }
     }

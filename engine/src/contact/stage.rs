@@ -4,9 +4,9 @@
 //! differs is which teeth they belong to, and so how the blanks under them yield and how the teeth deviate. Cells and the compliance of the
 //! teeth themselves are therefore found once for a fraction of the mesh period, and each period adds W V X Vᵀ Wᵀ.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 
-use super::cells::{ContactCells, Laid, MeshCells, MeshContact};
+use super::cells::{ContactCells, Laid, MeshCells, MeshContact, Want};
 use super::compliances::{Known, StatedCells};
 use super::facings::{Facings, Near};
 use super::meeting::Standing;
@@ -41,12 +41,11 @@ struct Stated {
     known: Known,
 }
 
-/// What a pair wants beside the cells that it is given at first.
-struct Room {
-    pair: i64,
-    moved: i32,
-    widened: usize,
-}
+/// Flanks may penetrate between cells by so much of what load brings them together.
+const DEEP: f64 = 5e-4;
+
+/// What pairs want beside the cells that they are given at first.
+type Wanted = BTreeMap<i64, Extent>;
 
 impl<'a> Stage<'a> {
     /// The mesh of `made` at the mesh position `eta` and whole mesh periods from there, under `load`.
@@ -112,7 +111,7 @@ impl<'a> Stage<'a> {
     /// Solves mesh period `period` and lets `answer` see the cells, the problem stated on them, its solution, and what penetrates.
     ///
     /// Gaps are those of flanks that just touch. Cells are laid on more pairs and about more hollows as far as the load brings them together,
-    /// and on more of each flank, until nothing that faces penetrates beside them.
+    /// and on more of each flank, until nothing that faces penetrates beside them; and they are halved where it penetrates between them.
     fn solved<T>(
         &mut self,
         period: i64,
@@ -122,10 +121,10 @@ impl<'a> Stage<'a> {
         let touch = self.facings.touch(period);
         let beyond = |delta: f64, factor: f64| touch + factor * (delta - touch).max(0.0);
         let mut reach = beyond(warm.transmission_error.unwrap_or(touch), GUESS);
-        let mut room: Vec<Room> = Vec::new();
+        let mut wanted = Wanted::new();
         loop {
             let near = self.facings.within(period, reach);
-            let cells = self.lay(&near, &room, (period, touch, reach))?;
+            let cells = self.lay(&near, &wanted, (period, touch, reach))?;
             let problem = self.state(&cells)?;
             let solution = cells.solve(&problem, self.load, warm)?;
             let delta = solution.transmission_error;
@@ -136,20 +135,19 @@ impl<'a> Stage<'a> {
                 continue;
             }
             let found = self.look(&cells, &solution);
-            let wider = cells.wanting_room(&solution, &found);
-            if wider.is_empty() {
+            let wants = cells.wants(&solution, &found, DEEP * (delta - touch));
+            if wants.is_empty() {
                 *warm = cells.warm_start(&problem, &solution, self.load, warm);
                 return Ok(answer(&cells, problem, solution, found));
             }
-            for (pair, beside) in wider {
-                match room.iter_mut().find(|room| room.pair == pair) {
-                    Some(room) => room.widened += 1,
+            for (pair, want) in wants {
+                let is_first = !wanted.contains_key(&pair);
+                let extent = wanted.entry(pair).or_default();
+                match want {
                     // A contact that fits is first laid about.
-                    None => room.push(Room {
-                        pair,
-                        moved: beside,
-                        widened: usize::from(beside == 0),
-                    }),
+                    Want::Room { moved } if is_first && moved != 0 => extent.moved = moved,
+                    Want::Room { .. } => extent.widened += 1,
+                    Want::Halves => extent.halved += 1,
                 }
             }
         }
@@ -159,17 +157,16 @@ impl<'a> Stage<'a> {
     fn lay(
         &mut self,
         near: &[Near],
-        room: &[Room],
+        wanted: &Wanted,
         (period, touch, reach): (i64, f64, f64),
     ) -> Result<ContactCells<'a>, PositionError> {
         let mut pairs = Vec::with_capacity(near.len());
         for near in near {
-            let room = room.iter().find(|room| room.pair == near.pair);
+            let wanted = wanted.get(&near.pair).copied().unwrap_or_default();
             let extent = Extent {
                 hollows: near.hollows_within(reach),
-                widened: room.map_or(0, |room| room.widened),
-                moved: near.moved(self.made, (period, self.load))
-                    + room.map_or(0, |room| room.moved),
+                moved: near.moved(self.made, (period, self.load)) + wanted.moved,
+                ..wanted
             };
             let known = |laid: &&Laid| (laid.pair, laid.extent) == (near.pair, extent);
             let laid = match self.laid.iter().find(known) {

@@ -359,5 +359,8 @@ pub(crate) fn pairs() -> Vec<(&'static str, DrawnPair)> {
                 0.5153916487364921,
             )
         }),
+        // Light contacts on measured profiles, narrower than a cell, which let flanks penetrate between cells.
+        ("a narrow contact at a kink", DrawnPair::as_made(841)),
+        ("a narrow contact at an edge", DrawnPair::as_made(447)),
     ]
 }

@@ -85,6 +85,7 @@ impl Spring {
             hollows: facing.hollows.len(),
             widened: 1,
             moved: 0,
+            halved: 0,
         };
         let patch = Patch::new(view, facing, density, CELLS, extent);
         let stretches: Vec<[f64; 2]> = patch.stretches().collect();
