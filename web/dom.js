@@ -61,7 +61,10 @@ export function unit(name) {
 }
 
 /** A time in milliseconds as somebody who waits wants it. */
-const timeOf = (milliseconds) => (milliseconds < 90_000 ? `${Math.max(1, Math.round(milliseconds / 1000))} s` : `${Math.round(milliseconds / 60_000)} min`);
+export function timeOf(milliseconds) {
+  if (milliseconds < 90_000) return `${Math.max(1, Math.round(milliseconds / 1000))} s`;
+  return milliseconds < 5_400_000 ? `${Math.round(milliseconds / 60_000)} min` : `${fixed(milliseconds / 3_600_000, 1)} h`;
+}
 
 /** How long the rest of `total` takes, in words that go on from others, once a few of them have been `done` since `begun`. */
 export const timeLeft = (begun, done, total) => (done > 2 && done < total ? `, about ${timeOf(((performance.now() - begun) * (total - done)) / done)} more` : "");

@@ -238,7 +238,7 @@ function showDesigns(moving = false) {
   const choice = byId("against");
   choice.replaceChildren(...design.kept.map((each, i) => h("option", { value: i, selected: each === against }, nameBeside(curve, each))));
   byId("against-label").hidden = design.kept.length === 0;
-  if (["export", "run-up"].includes(tab)) panels[tab]?.refresh();
+  if (["export", "run-up", "population"].includes(tab)) panels[tab]?.refresh();
 }
 
 /** `one` and the kept designs; it is told from one that is called the same. */

@@ -2,7 +2,7 @@
 
 import { follow, hasEnded, json, lines, post, ProblemError, request } from "./api.js";
 import { at, nameOf } from "./design.js";
-import { h, s, fixed, number, timeLeft } from "./dom.js";
+import { debounced, h, s, fixed, number, timeLeft, timeOf } from "./dom.js";
 import { figure } from "./figure.js";
 import { outdated } from "./outdated.js";
 
@@ -21,6 +21,9 @@ const QUANTITIES = {
 /** A member has at most so many positions in a mesh period: what many members tell settles long before one curve does. */
 const POSITIONS = 10;
 
+/** What the members will take is asked for so long after the last change, in milliseconds. */
+const REST = 400;
+
 /** What most often cannot be made is looked for among so many members. */
 const LOOKED_AT = 500;
 
@@ -37,6 +40,7 @@ export function population(place, design, form, onOpen) {
   const laws = FIRST.map((_, i) => law(i, design, form));
   const run = h("button", { type: "submit", className: "primary" }, "Draw them");
   const cancel = h("button", { type: "button", hidden: true }, "Cancel");
+  const ahead = h("p", { className: "note" });
   const state = h("p", { className: "note", role: "status" });
   const quantity = h("select", { id: "population-quantity", on: { change: () => last && draw() } }, ...Object.entries(QUANTITIES).map(([name, [words, unit]]) => h("option", { value: name }, `${words} in ${unit}`)));
   const torque = h("select", { id: "population-torque", on: { change: () => last && draw() } });
@@ -46,12 +50,12 @@ export function population(place, design, form, onOpen) {
   const of = outdated(design);
   place.replaceChildren(
     h("p", { className: "note" }, "Every member has teeth of its own, drawn within the class of ISO 1328-1 in place of those that the design may give, and fields that vary by a law. ", h("a", { href: "guides/how-good-will-they-be" }, "How good will they be?")),
-    h("form", { on: { submit: (event) => { event.preventDefault(); start(); } } },
+    h("form", { on: { submit: (event) => { event.preventDefault(); start(); }, input: () => foresee() } },
       h("div", { className: "line" }, h("label", { htmlFor: size.id }, "Members"), size, ...classes.flatMap((each, i) => [h("label", { htmlFor: each.id }, `teeth of the ${["driving", "driven"][i]} gear`), each])),
       ...laws.map((each) => each.element),
       h("div", { className: "line" }, h("label", { htmlFor: torques.id }, "Torques"), torques, h("span", { className: "unit" }, "N m")),
       h("div", { className: "line" }, run, cancel)),
-    state, of.element, missing, picker, out);
+    ahead, state, of.element, missing, picker, out);
   let last = null;
   let refusals = null;
 
@@ -59,7 +63,23 @@ export function population(place, design, form, onOpen) {
     laws.forEach((each) => each.refresh());
     const own = design.get("/output_torques_n_m") ?? [100];
     if (!torques.dataset.typed || !torques.value) torques.value = (own.length > 1 ? own : [0.4, 0.7, 1, 1.4].map((part) => Number((part * own[0]).toPrecision(3)))).join(", ");
+    foresee();
   };
+
+  /** Says what the members will take: one whose teeth all differ repeats only when every tooth has met every other. */
+  const foresee = debounced(REST, async () => {
+    if (place.hidden) return;
+    const { base, population: { size: count, accuracy } } = asked();
+    for (const member of Object.keys(accuracy ?? {})) base.pair[member].tooth_deviations = { pitch_cumulative_um: Array.from({ length: base.pair[member].tooth_count }, (_, i) => Number(i === 1)) };
+    try {
+      const { estimate: { seconds, positions } } = await post("v1/validate", base);
+      ahead.textContent = `A member has ${number(positions)} positions, all torques together, and takes a core ${timeOf(1000 * seconds)} at most, by a rough estimate: ${timeOf(1000 * seconds * count)} for all ${number(count)}.`;
+    } catch (error) {
+      // Who draws them is told what is wrong.
+      if (!(error instanceof ProblemError)) throw error;
+      ahead.textContent = "";
+    }
+  });
 
   function asked() {
     const base = structuredClone(design.submission);

@@ -844,6 +844,8 @@ export async function benchSteps(service) {
     assert.equal(await page.locator("#population-torques").inputValue(), "60, 105, 150, 210");
     await page.locator("#population-torques").fill("150");
     await page.locator("#population-size").fill("8");
+    // Every driven tooth meets every driving one after 50 mesh periods, of ten positions each; eight are a second or two.
+    await page.waitForFunction(() => /A member has 500 positions.*takes a core 1 s at most.* \d s for all 8\./.test(document.querySelector("#population").innerText));
     await page.locator("#population button[type=submit]").click();
     await page.waitForFunction(() => /8 of 8 members, successful/.test(document.querySelector("#population [role=status]").innerText));
     assert.match(await page.locator("#population .influences tbody").innerText(), /Amount of tip relief, driving gear/);

@@ -10,7 +10,7 @@ use sqlx::postgres::PgConnectOptions;
 /// Where the database is: a file of SQLite, or a server of PostgreSQL.
 #[derive(Clone, PartialEq, Eq)]
 pub enum Place {
-    /// A file, served by one process.
+    /// A file, served by one process; `sqlite:` may stand before its path.
     File(PathBuf),
     /// A database of a server, `postgres://user:password@host:port/name`, on which several processes work.
     Postgres(String),
@@ -33,10 +33,14 @@ impl FromStr for Place {
     // with the password.
     fn from_str(text: &str) -> Result<Self, Infallible> {
         let is_address = text.starts_with("postgres://") || text.starts_with("postgresql://");
+        let file = ["sqlite://", "sqlite:"]
+            .iter()
+            .find_map(|scheme| text.strip_prefix(scheme))
+            .unwrap_or(text);
         Ok(if is_address {
             Self::Postgres(text.to_owned())
         } else {
-            Self::File(text.into())
+            Self::File(file.into())
         })
     }
 }
@@ -78,7 +82,14 @@ mod tests {
     #[test]
     fn a_database_is_a_file_or_a_server_and_no_password_is_shown() {
         let place = |text: &str| text.parse::<Place>().unwrap();
-        assert_eq!(place("./a.db"), Place::File("./a.db".into()));
+        for (text, file) in [
+            ("./a.db", "./a.db"),
+            ("sqlite:a.db", "a.db"),
+            ("sqlite://a.db", "a.db"),
+            ("sqlite:///var/a.db", "/var/a.db"),
+        ] {
+            assert_eq!(place(text), Place::File(file.into()));
+        }
         for (text, shown) in [
             (
                 "postgres://me:secret@db.example:5433/gears",

@@ -75,6 +75,37 @@ impl GearDocument {
             })
     }
 
+    /// A hole reaches over an edge of the web, or of the part that it stands in. All in meters.
+    pub(super) fn edge_fault(
+        &self,
+        hole: usize,
+        [from, to]: [f64; 2],
+        [inner, outer]: [f64; 2],
+    ) -> Fault {
+        let (pattern, code) = (self.blank.holes.pattern_of(hole), Code::HoleAcrossEdge);
+        let detail = format!(
+            "A hole reaches from {} mm to {} mm; it has to lie within {} mm and {} mm, and touch neither edge.",
+            plain(to_mm(from)),
+            plain(to_mm(to)),
+            plain(to_mm(inner)),
+            plain(to_mm(outer))
+        );
+        let (low, high) = (inner + LEAST_LIGAMENT, outer - LEAST_LIGAMENT);
+        if to - from > high - low {
+            let missing = to_mm((low - from).max(to - high));
+            let narrower = self.narrower(pattern, missing, code, &detail);
+            return narrower
+                .unwrap_or_else(|| Fault::new(Field::HoleWidth(pattern), code, detail, None));
+        }
+        let circle = self.value(Field::HoleCircle(pattern));
+        let bound = if from <= inner {
+            (circle + to_mm(low - from), Side::AtLeast)
+        } else {
+            (circle - to_mm(to - high), Side::AtMost)
+        };
+        Fault::new(Field::HoleCircle(pattern), code, detail, Some(bound))
+    }
+
     /// That the holes of a pattern are wider by `missing` mm to each side than would do, if holes so narrow can be made.
     fn narrower(&self, pattern: usize, missing: f64, code: Code, detail: &str) -> Option<Fault> {
         let shape = &self.blank.holes.patterns()[pattern];

@@ -67,7 +67,16 @@ impl GearDocument {
         Err(self.told(pointer, faults))
     }
 
-    fn told(&self, pointer: &str, faults: Vec<Fault>) -> Vec<FieldError> {
+    /// `fault` with the nearest value that its field takes.
+    pub(super) fn cured(&self, fault: Fault) -> Fault {
+        let bound = fault
+            .bound
+            .map(|(bound, side)| rounded_inward(bound, side, 0));
+        let cure = bound.filter(|value| self.accepts(fault.field, *value));
+        Fault { cure, ..fault }
+    }
+
+    pub(super) fn told(&self, pointer: &str, faults: Vec<Fault>) -> Vec<FieldError> {
         faults
             .into_iter()
             .map(|fault| {

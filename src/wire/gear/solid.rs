@@ -66,7 +66,7 @@ impl GearDocument {
             self.blank.web_offset(),
             self.blank.hub_data(),
         );
-        made.map_err(|error| vec![solid_fault(pointer, &error)])
+        made.map_err(|error| self.solid_faults(pointer, &error))
     }
 
     /// Its lead modifications as the engine is told.
@@ -99,90 +99,81 @@ impl GearDocument {
             .map(|(place, nearest)| (format!("{pointer}/{place}"), nearest))
             .collect()
     }
-}
 
-/// What is wrong with a gear along its axis.
-fn solid_fault(pointer: &str, error: &SolidGearError) -> FieldError {
-    let mm = |value: f64| plain(to_mm(value));
-    let hub = |field: &str| format!("{pointer}/blank/hub/{field}");
-    match *error {
-        // These were looked for before, with everything that would help.
-        SolidGearError::Section(ref error) => {
-            FieldError::new(pointer, Code::OutOfRange, error.to_string())
-        }
-        SolidGearError::HelixAngle { largest, .. } => {
-            let detail = format!(
-                "Teeth that wind by more than {} deg are not computed.",
-                plain(largest.to_degrees())
-            );
-            FieldError::new("/pair/helix_angle_deg", Code::OutOfRange, detail)
-                .nearest(largest.to_degrees())
-        }
-        SolidGearError::WebBeyondFace { beyond, nearest } => {
-            let detail = format!("The web stands {} mm out of the face.", mm(beyond));
-            let pointer = format!("{pointer}/blank/web/{}", WebDocument::offset_mm.name);
-            FieldError::new(pointer, Code::WebBeyondFace, detail).nearest(to_mm(nearest))
-        }
-        SolidGearError::HubNarrowerThanWeb { width, nearest } => {
-            let detail = format!(
-                "The hub is {} mm wide, narrower than the web on it; at least {} mm hold the web.",
-                mm(width),
-                mm(nearest)
-            );
-            FieldError::new(hub(HubDocument::width_mm.name), Code::HubDoesNotFit, detail)
+    /// What is wrong with a gear along its axis.
+    fn solid_faults(&self, pointer: &str, error: &SolidGearError) -> Vec<FieldError> {
+        let mm = |value: f64| plain(to_mm(value));
+        let hub = |field: &str| format!("{pointer}/blank/hub/{field}");
+        let fault = match *error {
+            // These were looked for before, with everything that would help.
+            SolidGearError::Section(ref error) => {
+                FieldError::new(pointer, Code::OutOfRange, error.to_string())
+            }
+            SolidGearError::HelixAngle { largest, .. } => {
+                let detail = format!(
+                    "Teeth that wind by more than {} deg are not computed.",
+                    plain(largest.to_degrees())
+                );
+                FieldError::new("/pair/helix_angle_deg", Code::OutOfRange, detail)
+                    .nearest(largest.to_degrees())
+            }
+            SolidGearError::WebBeyondFace { beyond, nearest } => {
+                let detail = format!("The web stands {} mm out of the face.", mm(beyond));
+                let pointer = format!("{pointer}/blank/web/{}", WebDocument::offset_mm.name);
+                FieldError::new(pointer, Code::WebBeyondFace, detail).nearest(to_mm(nearest))
+            }
+            SolidGearError::HubNarrowerThanWeb { width, nearest } => {
+                let detail = format!(
+                    "The hub is {} mm wide, narrower than the web on it; at least {} mm hold the web.",
+                    mm(width),
+                    mm(nearest)
+                );
+                FieldError::new(hub(HubDocument::width_mm.name), Code::HubDoesNotFit, detail)
+                    .nearest(to_mm(nearest))
+            }
+            SolidGearError::HubOutside {
+                outer_radius,
+                least,
+                largest,
+            } => {
+                let nearest = if outer_radius >= largest {
+                    least + 0.99 * (largest - least)
+                } else {
+                    least + 0.01 * (largest - least)
+                };
+                let detail = format!(
+                    "The hub ends at {} mm; it has to end between the bore at {} mm and {} mm.",
+                    mm(outer_radius),
+                    mm(least),
+                    mm(largest)
+                );
+                let pointer = hub(HubDocument::outer_radius_mm.name);
+                FieldError::new(pointer, Code::HubDoesNotFit, detail).nearest(to_mm(nearest))
+            }
+            SolidGearError::HubBesideFace { offset, nearest } => {
+                let detail = format!(
+                    "At the offset {} mm the hub and the face reach past each other; {} mm would do.",
+                    mm(offset),
+                    mm(nearest)
+                );
+                FieldError::new(
+                    hub(HubDocument::offset_mm.name),
+                    Code::HubDoesNotFit,
+                    detail,
+                )
                 .nearest(to_mm(nearest))
-        }
-        SolidGearError::HubOutside {
-            outer_radius,
-            least,
-            largest,
-        } => {
-            let nearest = if outer_radius >= largest {
-                least + 0.99 * (largest - least)
-            } else {
-                least + 0.01 * (largest - least)
-            };
-            let detail = format!(
-                "The hub ends at {} mm; it has to end between the bore at {} mm and {} mm.",
-                mm(outer_radius),
-                mm(least),
-                mm(largest)
-            );
-            let pointer = hub(HubDocument::outer_radius_mm.name);
-            FieldError::new(pointer, Code::HubDoesNotFit, detail).nearest(to_mm(nearest))
-        }
-        SolidGearError::HubBesideFace { offset, nearest } => {
-            let detail = format!(
-                "At the offset {} mm the hub and the face reach past each other; {} mm would do.",
-                mm(offset),
-                mm(nearest)
-            );
-            FieldError::new(
-                hub(HubDocument::offset_mm.name),
-                Code::HubDoesNotFit,
-                detail,
-            )
-            .nearest(to_mm(nearest))
-        }
-        SolidGearError::HoleAcrossEdge {
-            from,
-            to,
-            inner_radius,
-            outer_radius,
-            ..
-        } => {
-            let detail = format!(
-                "A hole reaches from {} mm to {} mm; it has to lie within {} mm and {} mm, and touch neither edge.",
-                mm(from),
-                mm(to),
-                mm(inner_radius),
-                mm(outer_radius)
-            );
-            FieldError::new(
-                format!("{pointer}/blank/holes"),
-                Code::HoleAcrossEdge,
-                detail,
-            )
-        }
+            }
+            SolidGearError::HoleAcrossEdge {
+                hole,
+                from,
+                to,
+                inner_radius,
+                outer_radius,
+            } => {
+                let fault = self.edge_fault(hole, [from, to], [inner_radius, outer_radius]);
+                return self.told(pointer, vec![self.cured(fault)]);
+            }
+        };
+        vec![fault]
     }
 }

@@ -140,6 +140,13 @@ fn each_fault_along_the_axis_is_told_with_a_value_that_would_do() {
         |length: f64| json!([{ "kind": "end_relief", "amount_um": 5, "length_mm": length }]);
     let table = json!([{ "kind": "table", "z_mm": [0, 0], "removed_um": [0, 1] }]);
     let blank = "/pair/driven/blank";
+    let holed = |circle: f64, radius: f64| -> Changes<'_> {
+        let holes = json!({ "count": 3, "circle_radius_mm": circle, "radius_mm": radius });
+        vec![
+            ("/pair/driven/blank/web", web(0.0)),
+            ("/pair/driven/blank/holes", holes),
+        ]
+    };
     let cases: Vec<(Changes<'_>, &str, Code)> = vec![
         (
             vec![("/pair/axial_offset_mm", json!(19))],
@@ -168,6 +175,21 @@ fn each_fault_along_the_axis_is_told_with_a_value_that_would_do() {
             vec![("/pair/driven/blank/hub", hub(24.0, 60.0))],
             "/pair/driven/blank/hub/outer_radius_mm",
             Code::HubDoesNotFit,
+        ),
+        (
+            holed(24.0, 5.0),
+            "/pair/driven/blank/holes/circle_radius_mm",
+            Code::HoleAcrossEdge,
+        ),
+        (
+            holed(39.0, 5.0),
+            "/pair/driven/blank/holes/circle_radius_mm",
+            Code::HoleAcrossEdge,
+        ),
+        (
+            holed(31.0, 12.0),
+            "/pair/driven/blank/holes/radius_mm",
+            Code::HoleAcrossEdge,
         ),
         (
             vec![("/pair/driven/lead_modifications", relief(11.0))],
