@@ -27,8 +27,9 @@ const OWN: f64 = 0.1;
 /// Updates of the multipliers after which the augmented Lagrangian gives up.
 const MULTIPLIER_UPDATES: u32 = 2000;
 
-/// Cells are halved so often at most.
+/// Cells are halved so often at most, and where there are no more than so many: those of a jagged profile are narrow already.
 const MOST_HALVED: u32 = 3;
+const MOST_TO_HALVE: usize = 128;
 
 /// What a pair wants beside the cells that it has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -620,10 +621,11 @@ impl<'a> ContactCells<'a> {
             return room;
         }
         let deepest = |laid: &Laid| found.between.get(&laid.pair).copied().unwrap_or(0.0);
-        let halves = self
-            .laid
-            .iter()
-            .filter(|laid| laid.extent.halved < MOST_HALVED && deepest(laid) > deep);
+        let halves = self.laid.iter().filter(|laid| {
+            laid.extent.halved < MOST_HALVED
+                && laid.cells().patch.cells.len() <= MOST_TO_HALVE
+                && deepest(laid) > deep
+        });
         halves.map(|laid| (laid.pair, Want::Halves)).collect()
     }
 

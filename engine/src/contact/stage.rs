@@ -42,7 +42,7 @@ struct Stated {
 }
 
 /// Flanks may penetrate between cells by so much of what load brings them together.
-const DEEP: f64 = 5e-4;
+const DEEP: f64 = 1e-3;
 
 /// What pairs want beside the cells that they are given at first.
 type Wanted = BTreeMap<i64, Extent>;

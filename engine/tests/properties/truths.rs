@@ -51,8 +51,7 @@ pub(crate) const TRUTHS: &[Truth] = &[
     },
     Truth {
         name: "driver_and_driven_swapped_are_mirror_images",
-        // A contact as wide as a hundredth of its radii stands a little beside the line of action, with other arms about one center than
-        // about the other: the square of its width, in proportion to the load.
+        // Over the deflection: the arms of a wide contact change within it.
         bound: 2e-3,
         figure: swapped,
     },
@@ -435,24 +434,26 @@ fn on_path(pair: &GearPair, contact: &MeshContact, eta: f64, torque: f64) -> boo
 }
 
 fn swapped(drawn: &DrawnPair) -> Result<Option<f64>, String> {
-    // Whatever inclines a flank moves the contact beside the line of action, where the arms about both centers differ by its slope.
-    let plain = plain(&drawn.pair)?;
-    let pair = &plain;
+    // A tooth that deviates would have another number on the other gear.
+    let distance = drawn.pair.center_distance();
+    let pair = &changed(&drawn.pair, distance, |data, _| {
+        data.deviations = ToothDeviations::default();
+    })?;
     // Seen from behind and run backward, the same flanks touch: hole angles, told from the loaded flank, stay as they are.
-    let other = GearPair::new(
-        pair.driven().clone(),
-        pair.driving().clone(),
-        pair.center_distance(),
-    )
-    .map_err(|error| error.to_string())?;
+    let other = GearPair::new(pair.driven().clone(), pair.driving().clone(), distance)
+        .map_err(|error| error.to_string())?;
     let load = pair.load(drawn.output_torque);
     let (here, there) = (model(pair)?, model(&other)?);
     let mut worst = None;
     for i in 0..POSITIONS {
         let eta = f64::from(i) / f64::from(POSITIONS);
-        let (one, two) = (contact(&here, eta, load)?, contact(&there, -eta, load)?);
+        let one = contact(&here, eta, load)?;
         if on_path(pair, &one, eta, drawn.output_torque) {
-            let apart = (one.transmission_error / two.transmission_error - 1.0).abs();
+            // Who is driven now stood still and turns, by what the other gear lagged; and is asked for what the driver gave.
+            let lag = one.transmission_error / pair.base_pitch();
+            let two = contact(&there, lag - eta, one.driving_load)?;
+            let apart = (one.transmission_error - two.transmission_error).abs();
+            let apart = apart * one.stiffness / load;
             worst = Some(apart.max(worst.unwrap_or(0.0)));
         }
     }
