@@ -161,16 +161,17 @@ fn rigid(pair: &GearPair, eta: f64) -> f64 {
 
 #[test]
 fn steep_reliefs_agree_with_a_second_solver() {
-    // Three of the second solver's four numbers. The fourth, 22.390 µm at 384 N m and 0.55, is what it finds of reliefs that belong to the nominal roll
-    // length; of these reliefs CalculiX finds 22.288 there (tests/reference/calculix-steep-relief.json), where this finds 22.294.
+    // Three numbers of the second solver, and for 384 N m at 0.55 that of CalculiX on a grid twice as fine as its series. What was told as the second
+    // solver's there, 22.390 µm, is that of reliefs that belong to the nominal roll length (docs/validity.md).
     let model = model(&relieved(30e-6));
     for (torque, eta, expected) in [
         (96.0, 0.600, 10.156),
         (96.0, 0.475, 9.538),
         (384.0, 0.650, 23.412),
+        (384.0, 0.550, 22.296),
     ] {
         let found = delta(&model, eta, torque);
-        // CalculiX and the second solver agree within 0.01 µm.
+        // CalculiX, on that grid, and the second solver agree within 0.005 µm.
         assert!((found - expected).abs() < 0.01, "{torque}, {eta}: {found}");
     }
 }
