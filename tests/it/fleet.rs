@@ -109,6 +109,34 @@ impl Fleet {
         self.workers.push(worker);
     }
 
+    /// Freezes a worker in the middle of something: what it holds still runs when the others have gone on.
+    async fn freeze(&mut self) -> Process {
+        let worker = self.workers.pop().unwrap();
+        loop {
+            worker.signal(Signal::STOP);
+            let held = self.running().await;
+            let done = self.number(SUCCESSFUL).await;
+            self.successful(done + 10).await;
+            let still = self.running().await;
+            if held.iter().any(|job| still.contains(job)) {
+                return worker;
+            }
+            worker.signal(Signal::CONT);
+        }
+    }
+
+    /// The jobs that run.
+    async fn running(&self) -> Vec<String> {
+        let Place::Postgres(address) = &self.place else {
+            unreachable!("a fleet has a server")
+        };
+        let mut connection = server::connect(address).await;
+        sqlx::query_scalar("select id from jobs where status = 'running'")
+            .fetch_all(&mut connection)
+            .await
+            .unwrap()
+    }
+
     /// Comes back when so many jobs are successful.
     async fn successful(&self, count: i64) {
         self.until(SUCCESSFUL, count).await;
@@ -169,9 +197,8 @@ async fn troubled(count: u64, lease: u64) {
     let part = |of: u64| i64::try_from(count * of / 10).unwrap();
 
     fleet.successful(part(2)).await;
-    // Frozen in the middle of something; it goes on long after its lease.
-    let frozen = fleet.workers.pop().unwrap();
-    frozen.signal(Signal::STOP);
+    // It goes on long after its lease.
+    let frozen = fleet.freeze().await;
     let frozen_at = Instant::now();
     fleet.hire();
     fleet.successful(part(4)).await;
