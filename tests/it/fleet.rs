@@ -13,6 +13,7 @@ use meshwright::jobs::Place;
 use reqwest::Client;
 use rustix::process::Signal;
 use serde_json::{Value, json};
+use sqlx::PgConnection;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::tcp::{OwnedReadHalf, OwnedWriteHalf};
 use tokio::net::{TcpListener, TcpStream};
@@ -109,32 +110,44 @@ impl Fleet {
         self.workers.push(worker);
     }
 
-    /// Freezes a worker in the middle of something: what it holds still runs when the others have gone on.
-    async fn freeze(&mut self) -> Process {
-        let worker = self.workers.pop().unwrap();
-        loop {
+    /// Freezes the first worker, whom the database calls `owner`, in the middle of something that nobody ends for it; `enough`
+    /// jobs may end before that is seen.
+    async fn freeze(&mut self, owner: &str, enough: i64) -> Process {
+        let worker = self.workers.remove(0);
+        while self.number(SUCCESSFUL).await < enough {
             worker.signal(Signal::STOP);
-            let held = self.running().await;
-            let done = self.number(SUCCESSFUL).await;
-            self.successful(done + 10).await;
-            let still = self.running().await;
+            let held = self.held_by(owner).await;
+            // A statement that it had sent ends without it.
+            tokio::time::sleep(Duration::from_millis(500)).await;
+            let still = self.held_by(owner).await;
             if held.iter().any(|job| still.contains(job)) {
                 return worker;
             }
             worker.signal(Signal::CONT);
         }
+        panic!("the worker is never seen at work");
     }
 
-    /// The jobs that run.
-    async fn running(&self) -> Vec<String> {
+    /// The jobs that a worker runs.
+    async fn held_by(&self, owner: &str) -> Vec<String> {
+        let held =
+            sqlx::query_scalar("select id from jobs where status = 'running' and owner = $1");
+        let mut connection = self.connect().await;
+        held.bind(owner).fetch_all(&mut connection).await.unwrap()
+    }
+
+    /// What the database calls the only worker that there has been.
+    async fn owner(&self) -> String {
+        let owner =
+            sqlx::query_scalar("select distinct owner from jobs where status = 'successful'");
+        owner.fetch_one(&mut self.connect().await).await.unwrap()
+    }
+
+    async fn connect(&self) -> PgConnection {
         let Place::Postgres(address) = &self.place else {
             unreachable!("a fleet has a server")
         };
-        let mut connection = server::connect(address).await;
-        sqlx::query_scalar("select id from jobs where status = 'running'")
-            .fetch_all(&mut connection)
-            .await
-            .unwrap()
+        server::connect(address).await
     }
 
     /// Comes back when so many jobs are successful.
@@ -142,10 +155,17 @@ impl Fleet {
         self.until(SUCCESSFUL, count).await;
     }
 
-    /// Comes back when `query` counts as many.
+    /// Comes back when `query` counts as many. Panics when it has counted no more for a long while.
     async fn until(&self, query: &'static str, count: i64) {
-        while self.number(query).await < count {
+        const LONG: Duration = Duration::from_secs(180);
+        let (mut seen, mut since) = (self.number(query).await, Instant::now());
+        while seen < count {
             tokio::time::sleep(Duration::from_millis(50)).await;
+            let number = self.number(query).await;
+            if number > seen {
+                (seen, since) = (number, Instant::now());
+            }
+            assert!(since.elapsed() < LONG, "{seen} of {count}: {query}");
         }
     }
 
@@ -176,14 +196,8 @@ async fn check(fleet: &Fleet, count: u64) {
 }
 
 async fn share_of_workers(fleet: &Fleet) -> Vec<i64> {
-    let Place::Postgres(address) = &fleet.place else {
-        unreachable!("a fleet has a server")
-    };
-    let mut connection = server::connect(address).await;
-    sqlx::query_scalar("select count(*) from jobs group by owner order by 1 desc")
-        .fetch_all(&mut connection)
-        .await
-        .unwrap()
+    let shares = sqlx::query_scalar("select count(*) from jobs group by owner order by 1 desc");
+    shares.fetch_all(&mut fleet.connect().await).await.unwrap()
 }
 
 /// A round of `count` jobs in which everything happens that can happen. `lease` in seconds.
@@ -192,13 +206,18 @@ async fn troubled(count: u64, lease: u64) {
     let (server, folder) = tokio::task::spawn_blocking(server::start).await.unwrap();
     let address = server::database_of(&server, "fleet").await;
     let start = Instant::now();
-    let mut fleet = Fleet::start(&address, 3, 2, &format!("{lease}s"));
+    let mut fleet = Fleet::start(&address, 1, 2, &format!("{lease}s"));
     let submitters = fleet.submit(count);
     let part = |of: u64| i64::try_from(count * of / 10).unwrap();
 
+    fleet.successful(1).await;
+    let owner = fleet.owner().await;
+    for _ in 0..2 {
+        fleet.hire();
+    }
     fleet.successful(part(2)).await;
     // It goes on long after its lease.
-    let frozen = fleet.freeze().await;
+    let frozen = fleet.freeze(&owner, part(6)).await;
     let frozen_at = Instant::now();
     fleet.hire();
     fleet.successful(part(4)).await;
