@@ -13,6 +13,7 @@ import { copied, snippets } from "./snippets.js";
 const FILES_OF_JOBS = [
   ["submission.rexs", "Pair for a gearbox program, REXS"], ["look-up-table.csv", "Look-up table, CSV"], ["look-up-table.txt", "Look-up table, Modelica text"], ["fields.vtu", "Stress and displacement, VTU"],
   ["contact-pattern.json", "Contact pattern, JSON", ({ curves }) => curves[0].face], ["contact-pattern.svg", "Contact pattern, SVG", ({ curves }) => curves[0].face],
+  ["face-load.csv", "Load along the face, CSV", ({ curves }) => curves[0].face], ["face-load.svg", "Load along the face, SVG", ({ curves }) => curves[0].face],
   ["run-up.csv", "Run-up, CSV", ({ curves }) => curves[0].dynamics], ["run-up.svg", "Run-up, SVG", ({ curves }) => curves[0].dynamics],
   ...[["csv", "CSV"], ["txt", "CombiTable2D"], ["mo", "Modelica"], ["fmu", "FMU"]].map(([kind, name]) => [`force-table.${kind}`, `Force table, ${name}`, ({ force_table: table }) => table]),
 ];

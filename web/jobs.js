@@ -147,7 +147,7 @@ export function jobs(place, design, form, onOpen) {
     // What else there is depends on what was asked for.
     const more = h("button", { type: "button", ariaLabel: `More files of ${job.id.slice(-6)}`, on: { click: () => attempt(async () => {
       const { submission } = await json(address);
-      const files = [["Look-up table", "look-up-table.csv"], ...(isSolid(job.method) ? [["Pattern JSON", "contact-pattern.json"], ["Pattern SVG", "contact-pattern.svg"]] : []), ...(submission.dynamics ? [["Run-up CSV", "run-up.csv"], ["Run-up SVG", "run-up.svg"]] : []), ...(submission.dynamics || submission.force_table ? ["csv", "txt", "mo", "fmu"].map((kind) => [`Forces ${kind.toUpperCase()}`, `force-table.${kind}`]) : [])];
+      const files = [["Look-up table", "look-up-table.csv"], ...(isSolid(job.method) ? [["Face load CSV", "face-load.csv"], ["Pattern JSON", "contact-pattern.json"], ["Pattern SVG", "contact-pattern.svg"]] : []), ...(submission.dynamics ? [["Run-up CSV", "run-up.csv"], ["Run-up SVG", "run-up.svg"]] : []), ...(submission.dynamics || submission.force_table ? ["csv", "txt", "mo", "fmu"].map((kind) => [`Forces ${kind.toUpperCase()}`, `force-table.${kind}`]) : [])];
       const rexs = h("button", { type: "button", on: { click: () => attempt(async () => save(`${job.id}.rexs`, "", await (await request(`${address}/submission.rexs`)).blob())) } }, "REXS");
       more.replaceWith(rexs, ...files.map(([words, name]) => file(words, name)));
     }) } }, "More files");

@@ -228,3 +228,96 @@ fn delta_follows_pitch_and_slope_of_every_tooth_as_its_influences_say() {
     // Where the tooth is the first to touch, gaps are taken at another angle; elsewhere eight digits agree.
     assert!(largest < 1e-3, "{largest:e}");
 }
+
+#[test]
+fn gradients_tell_what_each_gear_makes_of_the_spread_as_a_sample_does() {
+    const MEMBERS: u64 = 400;
+    // So little that the same cells touch, nearly.
+    const SPREADS: [f64; 2] = [0.02e-6, 0.03e-6];
+    let pair = drawn();
+    let model = model(&pair);
+    let load = pair.load(TORQUE);
+    let run = Run::unattended();
+    let positions = [0.13, 4.4, 6.71, 9.95];
+    let draw = |member: Member, seed: u64| {
+        let normals = Normals::new(seed, member.index() as u64);
+        let count = pair.gear(member).tooth_count() as usize;
+        let pitch = normals.map(|normal| SPREADS[member.index()] * normal);
+        ToothDeviations {
+            cumulative_pitch: pitch.take(count).collect(),
+            ..ToothDeviations::default()
+        }
+    };
+    let curves = |members: &[[ToothDeviations; 2]]| -> Vec<Vec<f64>> {
+        let of = |teeth: &[ToothDeviations; 2]| PairDeviations::new(&pair, teeth.each_ref());
+        let members: Result<Vec<PairDeviations>, _> = members.iter().map(of).collect();
+        let members = members.expect("room for them");
+        let found = contacts_of_many(&model, &members, load, &positions, &run, |contact| {
+            contact.transmission_error
+        });
+        let found = found.expect("not stopped").into_iter();
+        found.map(|curve| curve.expect("contacts")).collect()
+    };
+    let none = ToothDeviations::default();
+    let none = PairDeviations::new(&pair, [&none, &none]).expect("room");
+    let made = model.made(&none);
+    let influences = contacts_keeping(made, load, &positions, &run, |cells, solution| {
+        cells.influences(solution)
+    });
+    let influences = influences.expect("contacts");
+
+    let seeds = 0..MEMBERS;
+    let first: Vec<[ToothDeviations; 2]> = seeds
+        .clone()
+        .map(|seed| Member::BOTH.map(|member| draw(member, seed)))
+        .collect();
+    // The same driving gears beside others.
+    let second: Vec<[ToothDeviations; 2]> = seeds
+        .map(|seed| {
+            [
+                draw(Member::Driving, seed),
+                draw(Member::Driven, MEMBERS + seed),
+            ]
+        })
+        .collect();
+    let (one, other) = (curves(&first), curves(&second));
+    for (place, (contact, influences)) in influences.iter().enumerate() {
+        let told = |teeth: &[ToothDeviations; 2]| -> f64 {
+            let each = influences.iter().flat_map(|of| {
+                Member::BOTH.map(|member| {
+                    let g = member.index();
+                    of.by_pitch[g] * teeth[g].cumulative_pitch[of.teeth[g]]
+                })
+            });
+            contact.transmission_error + each.sum::<f64>()
+        };
+        let by_gear = Member::BOTH.map(|member| {
+            let g = member.index();
+            let each = influences.iter().map(|of| of.by_pitch[g] * SPREADS[g]);
+            each.map(|part| part * part).sum::<f64>()
+        });
+        let (variance, share) = (
+            by_gear[0] + by_gear[1],
+            by_gear[0] / (by_gear[0] + by_gear[1]),
+        );
+        let spread = variance.sqrt();
+        for (teeth, curve) in first.iter().zip(&one) {
+            let off = (curve[place] - told(teeth)).abs();
+            // What cells that begin to touch add.
+            assert!(off < 0.05 * spread, "{off:e} of {spread:e}");
+        }
+        let column = |curves: &[Vec<f64>]| -> Vec<f64> {
+            let mean = curves.iter().map(|curve| curve[place]).sum::<f64>() / MEMBERS as f64;
+            curves.iter().map(|curve| curve[place] - mean).collect()
+        };
+        let (one, other) = (column(&one), column(&other));
+        let product = |a: &[f64], b: &[f64]| -> f64 {
+            a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / MEMBERS as f64
+        };
+        let sampled = product(&one, &other) / product(&one, &one);
+        println!("{share:.3} of the variance by gradients, {sampled:.3} by a sample");
+        // Three standard errors of a correlation of so many.
+        assert!((sampled - share).abs() < 3.0 / (MEMBERS as f64).sqrt());
+        assert!((product(&one, &one) / variance - 1.0).abs() < 3.0 * (2.0 / MEMBERS as f64).sqrt());
+    }
+}

@@ -9,8 +9,8 @@ use utoipa::IntoParams;
 
 use super::app::App;
 use super::client::Client;
-use super::fields::{Done, File};
-use super::parameters::Parameters;
+use super::fields::{Done, File, NoLook};
+use super::parameters::{IfNoneMatch, Parameters};
 use super::pictures;
 use super::problem::internal;
 use crate::wire::solve::contact_pattern;
@@ -33,23 +33,13 @@ pub(super) struct PatternParameters {
 /// contact alone, as the gears are known from the job.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/contact-pattern.json", tag = "Results", operation_id = "get_contact_pattern",
-    params(
-        ("id" = String, Path, format = "uuid", description = "The id of the job."),
-        PatternParameters,
-        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
-    ),
+    params(PatternParameters, IfNoneMatch),
     responses(
         (status = 200, description = "The pattern.", body = ContactPatternDocument, headers(
-            ("ETag" = String, description = "Stands for this pattern, as this version of the solver computes it."),
             ("Solver-Version" = String, description = "The version of the solver that has computed this pattern."),
             ("Results-Solver-Version" = Option<String>, description = "The version that computed the job's results, where it is another one: its curves may differ a little from what is seen here."),
         )),
-        (status = 304, description = "The client has this pattern."),
-        (status = 400, description = "A parameter is not understood."),
-        (status = 404, description = "There is no such job or torque, the job has not ended, or its method does not see the faces."),
-        (status = 409, description = "The job failed or was cancelled, and has no results."),
-        (status = 422, description = "The pattern cannot be computed, or takes too long."),
-        (status = 503, description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds."),
+        NoLook,
     ),
 )]
 pub(super) async fn json(
@@ -77,23 +67,13 @@ pub(super) async fn json(
 /// The largest pressure over the period by color, on both flanks, over the face and the diameter: a row for each output torque.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/contact-pattern.svg", tag = "Results", operation_id = "draw_contact_pattern",
-    params(
-        ("id" = String, Path, format = "uuid", description = "The id of the job."),
-        PatternParameters,
-        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
-    ),
+    params(PatternParameters, IfNoneMatch),
     responses(
         (status = 200, description = "The picture.", body = String, content_type = "image/svg+xml", headers(
-            ("ETag" = String, description = "Stands for this picture, as this version of the solver computes it."),
             ("Solver-Version" = String, description = "The version of the solver that has computed this pattern."),
             ("Results-Solver-Version" = Option<String>, description = "The version that computed the job's results, where it is another one."),
         )),
-        (status = 304, description = "The client has this picture."),
-        (status = 400, description = "A parameter is not understood."),
-        (status = 404, description = "There is no such job or torque, the job has not ended, or its method does not see the faces."),
-        (status = 409, description = "The job failed or was cancelled, and has no results."),
-        (status = 422, description = "The pattern cannot be computed, or takes too long."),
-        (status = 503, description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds."),
+        NoLook,
     ),
 )]
 pub(super) async fn svg(

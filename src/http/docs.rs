@@ -9,9 +9,11 @@ use axum::response::{Redirect, Response};
 use axum::routing::get;
 use serde_json::Value;
 use utoipa::OpenApi as _;
+use utoipa::openapi::path::{Operation, Parameter};
 use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityRequirement, SecurityScheme};
 use utoipa::openapi::{
-    ContentBuilder, OpenApi, Ref, RefOr, ResponseBuilder, Server, ServerBuilder,
+    ContentBuilder, HeaderBuilder, ObjectBuilder, OpenApi, Ref, RefOr, ResponseBuilder,
+    SchemaFormat, Server, ServerBuilder, Type,
 };
 
 use super::app::App;
@@ -86,9 +88,11 @@ pub(super) fn add_common_answers(openapi: &mut OpenApi) {
         ),
         ("default", "Any other problem."),
     ];
-    for item in openapi.paths.paths.values_mut() {
+    for (path, item) in &mut openapi.paths.paths {
         let operations = [&mut item.get, &mut item.post, &mut item.delete];
         for operation in operations.into_iter().flatten() {
+            describe_ids(path, operation);
+            add_answers_to_conditions(operation);
             let is_public = operation.security.is_some();
             let with_key = WITH_KEY.iter().filter(|_| !is_public);
             let responses = &mut operation.responses.responses;
@@ -118,6 +122,54 @@ pub(super) fn add_common_answers(openapi: &mut OpenApi) {
             }
         }
     }
+}
+
+/// Says whose the `id` of a path is, which comes first.
+fn describe_ids(path: &str, operation: &mut Operation) {
+    let whose = [
+        ("/v1/jobs/", "job"),
+        ("/v1/studies/", "study"),
+        ("/v1/webhooks/", "webhook"),
+    ];
+    let Some((_, whose)) = whose.iter().find(|(root, _)| path.starts_with(root)) else {
+        return;
+    };
+    let Some(parameters) = &mut operation.parameters else {
+        return;
+    };
+    for parameter in parameters.iter_mut() {
+        if let RefOr::T(parameter) = parameter
+            && parameter.name == "id"
+        {
+            let id = ObjectBuilder::new()
+                .schema_type(Type::String)
+                .format(Some(SchemaFormat::Custom("uuid".to_owned())));
+            parameter.schema = Some(id.into());
+            parameter.description = Some(format!("The id of the {whose}."));
+        }
+    }
+    let is_other =
+        |parameter: &RefOr<Parameter>| !matches!(parameter, RefOr::T(it) if it.name == "id");
+    parameters.sort_by_key(is_other);
+}
+
+/// Adds the `ETag` and the answer without a body, where a request may say which answer it has.
+fn add_answers_to_conditions(operation: &mut Operation) {
+    let is_condition =
+        |each: &RefOr<Parameter>| matches!(each, RefOr::T(each) if each.name == "If-None-Match");
+    if !operation.parameters.iter().flatten().any(is_condition) {
+        return;
+    }
+    let responses = &mut operation.responses.responses;
+    if let Some(RefOr::T(whole)) = responses.get_mut("200") {
+        let tag = HeaderBuilder::new()
+            .schema(Some(ObjectBuilder::new().schema_type(Type::String)))
+            .description(Some("Stands for this answer."));
+        whole.headers.insert("ETag".to_owned(), tag.build().into());
+    }
+    let same = "Nothing has changed since the answer of that `ETag`.";
+    let same = ResponseBuilder::new().description(same).build();
+    responses.insert("304".to_owned(), same.into());
 }
 
 /// Says whether requests need a key, those aside that never do, and whose tokens will do as well.

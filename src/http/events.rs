@@ -79,7 +79,6 @@ impl From<WatchEvent> for Event {
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/events", tag = "Jobs", operation_id = "watch_job",
     params(
-        ("id" = String, Path, format = "uuid", description = "The id of the job."),
         ("Last-Event-ID" = Option<String>, Header, description = "Sent by a client that comes back; every stream starts with the present state."),
     ),
     responses(

@@ -10,12 +10,12 @@ use meshwright_engine::gear::Member;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use serde::Deserialize;
-use utoipa::IntoParams;
+use utoipa::{IntoParams, IntoResponses};
 
 use super::app::App;
 use super::client::Client;
 use super::conditional::{Keep, Tag};
-use super::parameters::{Parameters, invalid, job_id};
+use super::parameters::{IfNoneMatch, Parameters, invalid, job_id};
 use super::problem::{internal, of_missing_results};
 use crate::exchange::vtu;
 use crate::jobs::Job;
@@ -50,23 +50,13 @@ pub(super) struct FieldParameters {
 /// the middle of the common face. It is computed while the request waits, and bounded as previews are, but for four times their time.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/fields.vtu", tag = "Results", operation_id = "get_fields",
-    params(
-        ("id" = String, Path, format = "uuid", description = "The id of the job."),
-        FieldParameters,
-        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
-    ),
+    params(FieldParameters, IfNoneMatch),
     responses(
         (status = 200, description = "The grid.", body = String, content_type = "text/xml", headers(
-            ("ETag" = String, description = "Stands for this grid, as this version of the solver computes it."),
             ("Solver-Version" = String, description = "The version of the solver that has computed this grid."),
             ("Results-Solver-Version" = Option<String>, description = "The version that computed the job's results, where it is another one: its curves may differ a little from what is seen here."),
         )),
-        (status = 304, description = "The client has this grid."),
-        (status = 400, description = "A parameter is not understood, or the position is outside the span."),
-        (status = 404, description = "There is no such job or torque, or the job has not ended."),
-        (status = 409, description = "The job failed or was cancelled, and has no results."),
-        (status = 422, description = "This position cannot be computed, or takes too long."),
-        (status = 503, description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds."),
+        NoLook,
     ),
 )]
 pub(super) async fn vtu(
@@ -104,23 +94,13 @@ pub(super) async fn vtu(
 /// computed by the method that `fields.vtu` has, while the request waits, and bounded as previews are, but for four times their time.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/edges.json", tag = "Results", operation_id = "get_edges",
-    params(
-        ("id" = String, Path, format = "uuid", description = "The id of the job."),
-        FieldParameters,
-        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
-    ),
+    params(FieldParameters, IfNoneMatch),
     responses(
         (status = 200, description = "The edges.", body = LoadedEdges, headers(
-            ("ETag" = String, description = "Stands for these edges, as this version of the solver computes them."),
             ("Solver-Version" = String, description = "The version of the solver that has computed these edges."),
             ("Results-Solver-Version" = Option<String>, description = "The version that computed the job's results, where it is another one: its curves may differ a little from what is seen here."),
         )),
-        (status = 304, description = "The client has these edges."),
-        (status = 400, description = "A parameter is not understood, or the position is outside the span."),
-        (status = 404, description = "There is no such job or torque, or the job has not ended."),
-        (status = 409, description = "The job failed or was cancelled, and has no results."),
-        (status = 422, description = "This position cannot be computed, or takes too long."),
-        (status = 503, description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds."),
+        NoLook,
     ),
 )]
 pub(super) async fn edges(
@@ -143,6 +123,37 @@ pub(super) async fn edges(
         has_volumes: false,
     };
     answer(app, client, &id, &place, &request, file, work).await
+}
+
+/// Why a job that is computed once more shows nothing.
+#[derive(IntoResponses)]
+#[expect(dead_code, reason = "the document alone reads it")]
+pub(super) enum NoLook {
+    #[response(
+        status = 400,
+        description = "A parameter is not understood, or outside the span."
+    )]
+    Parameters,
+    #[response(
+        status = 404,
+        description = "There is no such job or torque, the job has not ended, or its method does not see this."
+    )]
+    Absent,
+    #[response(
+        status = 409,
+        description = "The job failed or was cancelled, and has no results."
+    )]
+    NoResults,
+    #[response(
+        status = 422,
+        description = "This cannot be computed, or takes too long."
+    )]
+    Uncomputed,
+    #[response(
+        status = 503,
+        description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds."
+    )]
+    Busy,
 }
 
 /// How an answer is called and what it is.

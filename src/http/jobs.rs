@@ -13,7 +13,7 @@ use super::app::App;
 use super::client::Client;
 use super::conditional::{Keep, Tag};
 use super::page::{self, LARGEST_LIMIT, Page, USUAL_LIMIT};
-use super::parameters::{Parameters, invalid, job_id};
+use super::parameters::{IfNoneMatch, Parameters, invalid, job_id};
 use super::prefer::Wait;
 use super::view::JobView;
 use crate::jobs::{Filter, Membership};
@@ -182,16 +182,13 @@ pub(super) async fn list(
 #[utoipa::path(
     get, path = "/v1/jobs/{id}", tag = "Jobs", operation_id = "get_job",
     params(
-        ("id" = String, Path, format = "uuid", description = "The id of the job."),
         ("Prefer" = Option<String>, Header, description = "`wait=N`: answer when the job has ended, or after N seconds (60 at most)."),
-        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
+        IfNoneMatch,
     ),
     responses(
         (status = 200, description = "The job.", body = JobView, headers(
-            ("ETag" = String, description = "Stands for this answer."),
             ("Retry-After" = u32, description = "Until the job has ended: seconds after which it is worth looking again."),
         )),
-        (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
         (status = 404, description = "There is no such job."),
     ),
 )]
@@ -232,7 +229,6 @@ pub(super) async fn show(
 /// changes nothing.
 #[utoipa::path(
     post, path = "/v1/jobs/{id}/cancel", tag = "Jobs", operation_id = "cancel_job",
-    params(("id" = String, Path, format = "uuid", description = "The id of the job.")),
     responses(
         (status = 202, description = "The job is dismissed.", body = JobView),
         (status = 404, description = "There is no such job."),
@@ -253,7 +249,6 @@ pub(super) async fn cancel(
 /// Removes a job that does not run, with its submission and results.
 #[utoipa::path(
     delete, path = "/v1/jobs/{id}", tag = "Jobs", operation_id = "delete_job",
-    params(("id" = String, Path, format = "uuid", description = "The id of the job.")),
     responses(
         (status = 204, description = "The job is gone."),
         (status = 404, description = "There is no such job."),

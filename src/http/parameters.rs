@@ -3,6 +3,7 @@
 use axum::extract::{FromRequestParts, Query};
 use axum::http::request::Parts;
 use serde::de::DeserializeOwned;
+use utoipa::IntoParams;
 use uuid::Uuid;
 
 use crate::wire::{Code, Problem};
@@ -52,6 +53,16 @@ impl<S: Sync> FromRequestParts<S> for IdempotencyKey {
             )),
         }
     }
+}
+
+/// The header of a conditional request; what it asks for is answered with an `ETag`, or 304.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Header)]
+#[expect(dead_code, reason = "the document alone reads it")]
+pub(super) struct IfNoneMatch {
+    /// The `ETag` of an earlier answer.
+    #[param(rename = "If-None-Match")]
+    tag: Option<String>,
 }
 
 /// The id in a path. What is no id names no job.

@@ -30,6 +30,7 @@ pub(super) enum Picture {
     LoadShare,
     Spectrum,
     RunUp,
+    FaceLoad,
 }
 
 impl Picture {
@@ -45,6 +46,7 @@ impl Picture {
             Self::LoadShare => load_share(curves),
             Self::Spectrum => spectrum(curves),
             Self::RunUp => run_up(curves),
+            Self::FaceLoad => face_load(curves),
         }?;
         Some(svg(self.title(), Panel::Chart(chart), SIZE))
     }
@@ -56,6 +58,7 @@ impl Picture {
             Self::LoadShare => "Load share of the tooth pairs",
             Self::Spectrum => "Spectrum of the transmission error",
             Self::RunUp => "Run-up and run-down",
+            Self::FaceLoad => "Load along the face, mean over the period",
         }
     }
 }
@@ -269,6 +272,35 @@ fn run_up(curves: &[&CurveDocument]) -> Option<Chart> {
             1.08 * highest,
         ),
         marks: resonances(curves),
+        series,
+    })
+}
+
+/// The mean over the positions of the load on each strip of the common face.
+fn face_load(curves: &[&CurveDocument]) -> Option<Chart> {
+    let colors = PALETTE.iter().skip(2).chain(&PALETTE).cycle();
+    let series = curves.iter().zip(colors).filter_map(|(curve, &color)| {
+        let face = curve.face.as_ref()?;
+        let rows = &face.load_n_per_mm;
+        let mean =
+            |strip: usize| rows.iter().map(|row| row[strip]).sum::<f64>() / rows.len() as f64;
+        let points = face
+            .z_mm
+            .iter()
+            .enumerate()
+            .map(|(strip, z)| (*z, mean(strip)));
+        let name = format!("{}, K_Hβ {:.3}", torque_of(curve), face.face_load_factor);
+        Some(Series::new(&name, color, Look::Line, points.collect()))
+    });
+    let series: Vec<Series> = series.collect();
+    let points = || series.iter().flat_map(|each| &each.points);
+    let half = points().map(|point| point.0.abs()).fold(0.0, f64::max);
+    let most = points().map(|point| point.1).fold(0.0, f64::max);
+    (half > 0.0 && most > 0.0).then(|| Chart {
+        title: String::new(),
+        x: Axis::linear("z from the middle of the common face, in mm", -half, half),
+        y: Axis::linear("load in N/mm", 0.0, 1.08 * most),
+        marks: Vec::new(),
         series,
     })
 }

@@ -10,7 +10,7 @@ use super::aside::aside;
 use super::client::Client;
 use super::conditional::{Keep, Tag};
 use super::packing::takes_gzip;
-use super::parameters::job_id;
+use super::parameters::{IfNoneMatch, job_id};
 use super::problem::of_missing_results;
 use crate::jobs::{Document, Job, JobError};
 use crate::wire::Problem;
@@ -20,15 +20,9 @@ use crate::wire::Problem;
 /// The results never change, so a client may keep them for good.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results", tag = "Results", operation_id = "get_results",
-    params(
-        ("id" = String, Path, format = "uuid", description = "The id of the job."),
-        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
-    ),
+    params(IfNoneMatch),
     responses(
-        (status = 200, description = "The results.", body = crate::wire::Results, headers(
-            ("ETag" = String, description = "Stands for these results."),
-        )),
-        (status = 304, description = "The client has these results."),
+        (status = 200, description = "The results.", body = crate::wire::Results),
         (status = 404, description = "There is no such job, or it has not ended; then `Retry-After` says when to ask again."),
         (status = 409, description = "The job failed or was cancelled, and has no results."),
         (status = 410, description = "The study of the job keeps statistics only (`results_not_kept`); submitted alone, the design has results."),

@@ -193,7 +193,6 @@ impl From<Fault> for RefusedView {
 /// A REXS model, version 2.0, of the submission; of a job that has results with its curves, one load case for each torque.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/submission.rexs", tag = "Jobs", operation_id = "get_model",
-    params(("id" = String, Path, format = "uuid", description = "The id of the job.")),
     responses(
         (status = 200, description = "The model.", body = String, content_type = "application/xml"),
         (status = 404, description = "There is no such job."),

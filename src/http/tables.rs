@@ -13,7 +13,7 @@ use super::app::App;
 use super::aside::aside;
 use super::client::Client;
 use super::conditional::{Keep, Tag};
-use super::parameters::{Parameters, job_id};
+use super::parameters::{IfNoneMatch, Parameters, job_id};
 use super::pictures::{self, Picture};
 use super::problem::{internal, of_missing_results};
 use crate::exchange::fmu::fmu;
@@ -22,7 +22,7 @@ use crate::exchange::look_up;
 use crate::jobs::{Document, JobError};
 use crate::wire::csv::CsvWriter;
 use crate::wire::results::{
-    CurveDocument, CurveDynamicsDocument, NamedOrderDocument, ResonanceDocument,
+    CurveDocument, CurveDynamicsDocument, FaceDocument, NamedOrderDocument, ResonanceDocument,
 };
 use crate::wire::{Code, Problem, Results};
 
@@ -33,6 +33,7 @@ enum Table {
     MeshStiffness,
     Spectrum,
     RunUp,
+    FaceLoad,
 }
 
 /// A table of the results as JSON: for each curve its torque, and the columns of the table, which have one value for each
@@ -99,6 +100,10 @@ columns! {
     mesh_stiffness_tangent_phase_deg: f64,
     /// The secant mesh stiffness, in N/m.
     mesh_stiffness_secant_n_per_m: f64,
+    /// The middle of a strip of the common face, in mm from the middle of the face.
+    z_mm: f64,
+    /// The load on the strip for its width, in N/mm: the mean over the positions, where none stands beside it.
+    load_n_per_mm: f64,
     /// The speed of the driving gear, in 1/min: of the branch that runs up, and again of the one that runs down.
     driving_speed_rpm: f64,
     /// `up` or `down`.
@@ -137,6 +142,9 @@ impl CurveColumns {
         }
         if table == Table::RunUp {
             return torque.with_branches(curve.dynamics.as_ref()?);
+        }
+        if table == Table::FaceLoad {
+            return Some(torque.with_strips(curve.face.as_ref()?, &curve.mesh_position));
         }
         let positions = Self {
             mesh_position: told(&curve.mesh_position),
@@ -182,6 +190,18 @@ impl CurveColumns {
         }
         Some(columns)
     }
+
+    /// With the strips of the face, position after position where the results tell each.
+    fn with_strips(self, face: &FaceDocument, positions: &[f64]) -> Self {
+        let rows = &face.load_n_per_mm;
+        let of_strips = |position: &f64| vec![*position; face.z_mm.len()];
+        Self {
+            mesh_position: (rows.len() > 1).then(|| positions.iter().flat_map(of_strips).collect()),
+            z_mm: Some(face.z_mm.repeat(rows.len())),
+            load_n_per_mm: Some(rows.concat()),
+            ..self
+        }
+    }
 }
 
 /// A list of the results as a column: an earlier version may not have told it.
@@ -205,15 +225,14 @@ pub(super) struct TableParameters {
 
 /// Get one table or picture of the results
 ///
-/// The transmission error, the mesh stiffness or the spectrum alone, as JSON, as CSV or as a picture; the load shares as a
+/// The transmission error, the mesh stiffness, the spectrum, the run-up or the load along the face alone, as JSON, as CSV or as a picture; the load shares as a
 /// picture. The first column of a CSV is the output torque. A column that the results do not have is left out.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/{table}", tag = "Results", operation_id = "get_table",
     params(
-        ("id" = String, Path, format = "uuid", description = "The id of the job."),
-        ("table" = String, Path, description = "`ste`, `mesh-stiffness`, `spectrum` or `run-up`, with `.json`, `.csv` or `.svg`; or `load-share.svg`; or `force-table.csv`, `force-table.txt` (CombiTable2D), `force-table.mo` (a Modelica package), `force-table.fmu` (FMU 2.0, `application/octet-stream`); or `look-up-table.csv`, `look-up-table.txt`, which have one curve over the angle in SI units, datum and signs in their head."),
+        ("table" = String, Path, description = "`ste`, `mesh-stiffness`, `spectrum`, `run-up` or `face-load`, with `.json`, `.csv` or `.svg`; or `load-share.svg`; or `force-table.csv`, `force-table.txt` (CombiTable2D), `force-table.mo` (a Modelica package), `force-table.fmu` (FMU 2.0, `application/octet-stream`); or `look-up-table.csv`, `look-up-table.txt`, which have one curve over the angle in SI units, datum and signs in their head."),
         TableParameters,
-        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
+        IfNoneMatch,
     ),
     responses(
         (status = 200, description = "The table.", content(
@@ -221,8 +240,7 @@ pub(super) struct TableParameters {
             (String = "text/csv"),
             (String = "image/svg+xml"),
             (String = "text/plain"),
-        ), headers(("ETag" = String, description = "Stands for this table."))),
-        (status = 304, description = "The client has this table."),
+        )),
         (status = 400, description = "A parameter is not understood."),
         (status = 404, description = "There is no such job, table or torque, or the job has not ended."),
         (status = 409, description = "The job failed or was cancelled, and has no results."),
@@ -364,7 +382,7 @@ enum File {
     Fmu,
 }
 
-const FILES: [(&str, File); 19] = [
+const FILES: [(&str, File); 22] = [
     (
         "ste.json",
         File::Table(Table::TransmissionError, Form::Json),
@@ -386,6 +404,9 @@ const FILES: [(&str, File); 19] = [
     ("run-up.json", File::Table(Table::RunUp, Form::Json)),
     ("run-up.csv", File::Table(Table::RunUp, Form::Csv)),
     ("run-up.svg", File::Picture(Picture::RunUp)),
+    ("face-load.json", File::Table(Table::FaceLoad, Form::Json)),
+    ("face-load.csv", File::Table(Table::FaceLoad, Form::Csv)),
+    ("face-load.svg", File::Picture(Picture::FaceLoad)),
     ("load-share.svg", File::Picture(Picture::LoadShare)),
     ("look-up-table.csv", File::LookUp(look_up::Form::Csv)),
     ("look-up-table.txt", File::LookUp(look_up::Form::Text)),
@@ -471,6 +492,9 @@ fn no_table(table: Table) -> Problem {
             "These results have no spectrum: they span no whole number of true periods."
         }
         Table::RunUp => "These results have no run-up: the submission asks for no dynamics.",
+        Table::FaceLoad => {
+            "These results have no load along the face: a plane method spreads it evenly."
+        }
         _ => "These results have no such table.",
     };
     Problem::new(Code::NotFound, detail)
@@ -544,6 +568,40 @@ mod tests {
         for unknown in ["ste", "x.csv", "x.svg", "load-share.csv"] {
             assert!(find_file(unknown).is_err(), "{unknown}");
         }
+    }
+
+    #[test]
+    fn the_load_along_a_face_is_told_strip_by_strip_and_position_by_position_where_it_is_known() {
+        let mut results = results();
+        assert!(table_of("face-load.csv", None).is_err());
+        let of_face = |rows: Value| {
+            serde_json::from_value(
+                json!({ "z_mm": [-5.0, 5.0], "load_n_per_mm": rows, "face_load_factor": 1.25,
+                                           "load_centroid_mm": [0.5, 0.5] }),
+            )
+        };
+        let table = |results: &Results| {
+            let curves: Vec<_> = results.curves.iter().collect();
+            csv(&select(Table::FaceLoad, &curves).unwrap())
+        };
+        results.curves[0].face = Some(of_face(json!([[60.0, 100.0]])).unwrap());
+        let mean = [
+            "output_torque_n_m,z_mm,load_n_per_mm",
+            "115.0,-5.0,60.0",
+            "115.0,5.0,100.0",
+            "",
+        ];
+        assert_eq!(table(&results), mean.join("\r\n"));
+        results.curves[0].face = Some(of_face(json!([[60.0, 100.0], [70.0, 90.0]])).unwrap());
+        let each = [
+            "output_torque_n_m,mesh_position,z_mm,load_n_per_mm",
+            "115.0,0.0,-5.0,60.0",
+            "115.0,0.0,5.0,100.0",
+            "115.0,0.5,-5.0,70.0",
+            "115.0,0.5,5.0,90.0",
+            "",
+        ];
+        assert_eq!(table(&results), each.join("\r\n"));
     }
 
     #[test]

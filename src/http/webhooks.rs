@@ -238,7 +238,6 @@ pub(super) async fn list(
 /// Nothing is sent any more, not even what waited to be sent.
 #[utoipa::path(
     delete, path = "/v1/webhooks/{id}", tag = "Webhooks", operation_id = "delete_webhook",
-    params(("id" = String, Path, format = "uuid", description = "The id of the webhook.")),
     responses(
         (status = 204, description = "The webhook is gone."),
         (status = 404, description = "There is no such webhook."),
@@ -258,7 +257,6 @@ pub(super) async fn delete(
 /// How it stands: whether messages arrive, and when it is tried again if not.
 #[utoipa::path(
     get, path = "/v1/webhooks/{id}", tag = "Webhooks", operation_id = "get_webhook",
-    params(("id" = String, Path, format = "uuid", description = "The id of the webhook.")),
     responses(
         (status = 200, description = "The webhook, without its secret.", body = WebhookView),
         (status = 404, description = "There is no such webhook."),
@@ -278,7 +276,6 @@ pub(super) async fn show(
 /// A message of the type `webhook.ping` is sent to it now, and whatever else waits with it. The deliveries tell what came of it.
 #[utoipa::path(
     post, path = "/v1/webhooks/{id}/ping", tag = "Webhooks", operation_id = "ping_webhook",
-    params(("id" = String, Path, format = "uuid", description = "The id of the webhook.")),
     responses(
         (status = 202, description = "The message.", body = DeliveryView),
         (status = 404, description = "There is no such webhook."),
@@ -299,7 +296,6 @@ pub(super) async fn ping(
 /// The latest hundred messages to a webhook, the newest first, and what has come of each. They are kept for a week.
 #[utoipa::path(
     get, path = "/v1/webhooks/{id}/deliveries", tag = "Webhooks", operation_id = "list_deliveries",
-    params(("id" = String, Path, format = "uuid", description = "The id of the webhook.")),
     responses(
         (status = 200, description = "The messages.", body = DeliveryListView),
         (status = 404, description = "There is no such webhook."),
@@ -324,7 +320,6 @@ pub(super) async fn deliveries(
 /// was given up is not told.
 #[utoipa::path(
     post, path = "/v1/webhooks/{id}/enable", tag = "Webhooks", operation_id = "enable_webhook",
-    params(("id" = String, Path, format = "uuid", description = "The id of the webhook.")),
     responses(
         (status = 200, description = "The webhook.", body = WebhookView),
         (status = 404, description = "There is no such webhook."),
@@ -346,7 +341,6 @@ pub(super) async fn enable(
 /// separated by a blank.
 #[utoipa::path(
     post, path = "/v1/webhooks/{id}/rotate", tag = "Webhooks", operation_id = "rotate_webhook",
-    params(("id" = String, Path, format = "uuid", description = "The id of the webhook.")),
     responses(
         (status = 200, description = "The webhook, with its new secret, which is told this once.", body = WebhookView),
         (status = 404, description = "There is no such webhook."),

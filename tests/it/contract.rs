@@ -23,6 +23,28 @@ fn the_committed_openapi_document_is_the_generated_one() {
 }
 
 #[test]
+fn every_parameter_of_an_operation_stands_once_and_is_described() {
+    let document = meshwright::http::openapi();
+    let mut seen = 0;
+    for (path, item) in document["paths"].as_object().unwrap() {
+        for (method, operation) in item.as_object().unwrap() {
+            let mut places = Vec::new();
+            for parameter in operation["parameters"].as_array().into_iter().flatten() {
+                seen += 1;
+                let place = (&parameter["in"], &parameter["name"]);
+                assert!(!places.contains(&place), "{method} {path}: {place:?} twice");
+                places.push(place);
+                let described = parameter["description"].is_string();
+                assert!(described, "{method} {path}: {place:?} is not described");
+            }
+            let in_path = places.iter().filter(|(place, _)| *place == "path").count();
+            assert_eq!(in_path, path.matches('{').count(), "{method} {path}");
+        }
+    }
+    assert!(seen > 60, "{seen} parameters");
+}
+
+#[test]
 fn every_field_of_a_submission_tells_a_form_its_title_and_its_kind() {
     let document = meshwright::http::openapi();
     let schemas = &document["components"]["schemas"];

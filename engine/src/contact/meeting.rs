@@ -211,12 +211,12 @@ impl<'a> Standing<'a> {
         let turn = chord * (1.0 + square * (1.0 / 6.0 + square * (3.0 / 40.0)));
         let foot = probe.foot - r_b * turn;
         let slope = self.slopes[mate];
-        let missing = other.removed(s) - slope * (s - self.forms[mate]);
-        let inclination = other.inclination(s) - slope;
+        let (removed, inclination) = other.removed_and_inclination(s);
+        let missing = removed - slope * (s - self.forms[mate]);
 
         let on_mate = turned(
             self.turns[mate],
-            inclined(radial, across, s, r_b, inclination),
+            inclined(radial, across, s, r_b, inclination - slope),
         );
         let on_seat = turned(self.turns[seat], normal);
         let push = Push::new(self.seat, on_seat, on_mate);

@@ -297,6 +297,15 @@ impl Modification {
         }
     }
 
+    /// The roll lengths of `flank` between which it removes nothing.
+    pub(super) fn untouched(&self, flank: &Involute) -> [f64; 2] {
+        match self {
+            Self::Tip(relief) => [0.0, flank.roll_length(relief.start_radius)],
+            Self::Root(relief) => [flank.roll_length(relief.start_radius), f64::INFINITY],
+            Self::Crowning { .. } | Self::Slope { .. } | Self::Table { .. } => [0.0, 0.0],
+        }
+    }
+
     /// Whether it only ever bends the flank away from its mate, so that the gap keeps one least place.
     pub(super) fn is_convex(&self) -> bool {
         match self {

@@ -35,7 +35,6 @@ pub(in crate::http) struct StudyProgressView {
 /// `progress` with the designs that are done, four times a second at most. It ends when the study has ended.
 #[utoipa::path(
     get, path = "/v1/studies/{id}/events", tag = "Studies", operation_id = "watch_study",
-    params(("id" = String, Path, format = "uuid", description = "The id of the study.")),
     responses(
         (status = 200, description = "Events: `status` with a SubmittedStudy as data, and `progress` with a StudyProgress.", body = WatchEvent, content_type = "text/event-stream"),
         (status = 404, description = "There is no such study."),

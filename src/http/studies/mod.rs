@@ -20,7 +20,7 @@ use super::client::Client;
 use super::conditional::{Keep, Tag};
 use super::document::Document;
 use super::page::{self, Page, USUAL_LIMIT};
-use super::parameters::{IdempotencyKey, Parameters};
+use super::parameters::{IdempotencyKey, IfNoneMatch, Parameters};
 use super::prefer::Wait;
 use crate::jobs::{StudyFilter, StudyRecord, StudySubmitted};
 use crate::wire::{Code, Problem, Study};
@@ -170,16 +170,13 @@ pub(in crate::http) async fn list(
 #[utoipa::path(
     get, path = "/v1/studies/{id}", tag = "Studies", operation_id = "get_study",
     params(
-        ("id" = String, Path, format = "uuid", description = "The id of the study."),
         ("Prefer" = Option<String>, Header, description = "`wait=N`: answer when the study has ended, or after N seconds (60 at most)."),
-        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
+        IfNoneMatch,
     ),
     responses(
         (status = 200, description = "The study.", body = StudyView, headers(
-            ("ETag" = String, description = "Stands for this answer."),
             ("Retry-After" = u32, description = "Until the study has ended: seconds after which it is worth looking again."),
         )),
-        (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
         (status = 404, description = "There is no such study."),
     ),
 )]
@@ -229,15 +226,9 @@ fn tell_when_to_return(study: &StudyRecord, response: &mut Response) {
 /// The document that was submitted, without its white space. It never changes.
 #[utoipa::path(
     get, path = "/v1/studies/{id}/document", tag = "Studies", operation_id = "get_study_document",
-    params(
-        ("id" = String, Path, format = "uuid", description = "The id of the study."),
-        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
-    ),
+    params(IfNoneMatch),
     responses(
-        (status = 200, description = "The study.", body = Study, headers(
-            ("ETag" = String, description = "Stands for this document."),
-        )),
-        (status = 304, description = "The client has this document."),
+        (status = 200, description = "The study.", body = Study),
         (status = 404, description = "There is no such study."),
     ),
 )]
@@ -261,7 +252,6 @@ pub(in crate::http) async fn document(
 /// Dismisses what waits or runs of it; what has results keeps them. Cancelling again changes nothing.
 #[utoipa::path(
     post, path = "/v1/studies/{id}/cancel", tag = "Studies", operation_id = "cancel_study",
-    params(("id" = String, Path, format = "uuid", description = "The id of the study.")),
     responses(
         (status = 202, description = "The study is dismissed.", body = StudyView),
         (status = 404, description = "There is no such study."),
@@ -283,7 +273,6 @@ pub(in crate::http) async fn cancel(
 /// Removes a study that has ended, with its jobs and their results.
 #[utoipa::path(
     delete, path = "/v1/studies/{id}", tag = "Studies", operation_id = "delete_study",
-    params(("id" = String, Path, format = "uuid", description = "The id of the study.")),
     responses(
         (status = 204, description = "The study is gone."),
         (status = 404, description = "There is no such study."),

@@ -13,6 +13,7 @@ use crate::http::app::App;
 use crate::http::aside::{aside, turn_to_read};
 use crate::http::client::Client;
 use crate::http::conditional::{Keep, Tag};
+use crate::http::parameters::IfNoneMatch;
 use crate::jobs::StudyRecord;
 use crate::wire::{
     Code, PopulationResults, PopulationSample, Problem, SearchState, Study, Submission,
@@ -26,16 +27,11 @@ use crate::wire::{
 /// the gear in common.
 #[utoipa::path(
     get, path = "/v1/studies/{id}/results/population", tag = "Studies", operation_id = "get_study_population",
-    params(
-        ("id" = String, Path, format = "uuid", description = "The id of the study."),
-        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
-    ),
+    params(IfNoneMatch),
     responses(
         (status = 200, description = "What the members tell so far.", body = PopulationResults, headers(
-            ("ETag" = String, description = "Stands for this answer."),
             ("Retry-After" = u32, description = "Until the study has ended: seconds after which it is worth looking again."),
         )),
-        (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
         (status = 404, description = "There is no such study, or it is no population."),
     ),
 )]
@@ -119,15 +115,11 @@ async fn document(app: &App, client: &str, record: &StudyRecord) -> Result<Study
 #[utoipa::path(
     get, path = "/v1/studies/{id}/designs/{row}", tag = "Studies", operation_id = "get_study_design",
     params(
-        ("id" = String, Path, format = "uuid", description = "The id of the study."),
         ("row" = u32, Path, description = "The place of the design in the table, from 0.", minimum = 0),
-        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
+        IfNoneMatch,
     ),
     responses(
-        (status = 200, description = "The submission.", body = Submission, headers(
-            ("ETag" = String, description = "Stands for this answer."),
-        )),
-        (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
+        (status = 200, description = "The submission.", body = Submission),
         (status = 404, description = "There is no such study, or it has no such row."),
     ),
 )]
@@ -179,16 +171,11 @@ async fn submission_of(
 /// The design of `search.best`, as a submission with every default filled in: the best so far while the search runs.
 #[utoipa::path(
     get, path = "/v1/studies/{id}/best", tag = "Studies", operation_id = "get_study_best",
-    params(
-        ("id" = String, Path, format = "uuid", description = "The id of the study."),
-        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
-    ),
+    params(IfNoneMatch),
     responses(
         (status = 200, description = "The submission.", body = Submission, headers(
-            ("ETag" = String, description = "Stands for this answer."),
             ("Retry-After" = u32, description = "Until the search has ended: seconds after which it is worth looking again."),
         )),
-        (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
         (status = 404, description = "There is no such study, it is no search, or no design of it could be had so far."),
     ),
 )]

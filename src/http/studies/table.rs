@@ -21,6 +21,7 @@ use crate::http::app::App;
 use crate::http::aside::{aside, turn_to_read};
 use crate::http::client::Client;
 use crate::http::conditional::Keep;
+use crate::http::parameters::IfNoneMatch;
 use crate::http::view::with_public_type;
 use crate::jobs::{DocumentLine, JobError, StudyRecord};
 use crate::wire::study_table::{CsvTable, Outline, TableRow};
@@ -32,16 +33,11 @@ use crate::wire::{Code, Problem, Results, RowState, StudyResults};
 /// study is taken, those beyond the first 500 a moment later.
 #[utoipa::path(
     get, path = "/v1/studies/{id}/results", tag = "Studies", operation_id = "get_study_results",
-    params(
-        ("id" = String, Path, format = "uuid", description = "The id of the study."),
-        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
-    ),
+    params(IfNoneMatch),
     responses(
         (status = 200, description = "The table.", body = StudyResults, headers(
-            ("ETag" = String, description = "Stands for this answer."),
             ("Retry-After" = u32, description = "Until the study has ended: seconds after which it is worth looking again."),
         )),
-        (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
         (status = 404, description = "There is no such study."),
     ),
 )]
@@ -63,17 +59,15 @@ pub(in crate::http) async fn results(
 #[utoipa::path(
     get, path = "/v1/studies/{id}/results/{file}", tag = "Studies", operation_id = "get_study_file",
     params(
-        ("id" = String, Path, format = "uuid", description = "The id of the study."),
         ("file" = inline(StudyFile), Path, description = "`table.json`, `table.ndjson`, `table.csv` or `documents.ndjson`."),
-        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of an earlier answer."),
+        IfNoneMatch,
     ),
     responses(
         (status = 200, description = "The table, or the results: of NDJSON, the schema is that of a line, `Row` in `table.ndjson`.", content(
             (StudyResults = "application/json"),
             (String = "text/csv"),
             (NdjsonLine = "application/x-ndjson"),
-        ), headers(("ETag" = String, description = "Stands for this answer."))),
-        (status = 304, description = "Nothing has changed since the answer of that `ETag`."),
+        )),
         (status = 404, description = "There is no such study, or no such file."),
     ),
 )]

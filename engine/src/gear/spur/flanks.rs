@@ -55,6 +55,26 @@ impl SpurGear {
         modified + self.edge_slope(s)
     }
 
+    /// [`SpurGear::removed`] and [`SpurGear::inclination`] at once; where nothing is removed that costs nothing.
+    pub fn removed_and_inclination(&self, s: f64) -> (f64, f64) {
+        let half = ROUNDED * self.data.rack.module;
+        let [from, to] = self.untouched;
+        if from + half < s && s + half < to {
+            return (0.0, 0.0);
+        }
+        (self.removed(s), self.inclination(s))
+    }
+
+    /// The roll lengths between which nothing is removed.
+    pub(super) fn untouched_roll_lengths(&self) -> [f64; 2] {
+        let below_edge = self.broken_edge.map_or(f64::INFINITY, |edge| edge.from);
+        let each = self.modifications.iter();
+        each.map(|each| each.untouched(&self.flank))
+            .fold([0.0, below_edge], |[from, to], [low, high]| {
+                [from.max(low), to.min(high)]
+            })
+    }
+
     fn edge_slope(&self, s: f64) -> f64 {
         self.broken_edge
             .map_or(0.0, |edge| edge.depth_and_slope(&self.flank, s).1)

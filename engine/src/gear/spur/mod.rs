@@ -25,6 +25,8 @@ pub struct SpurGear {
     flank: Involute,
     broken_edge: Option<BrokenEdge>,
     modifications: Vec<Modification>,
+    /// Roll lengths between which the flank is as the rack cuts it.
+    untouched: [f64; 2],
     hole_repeats: u32,
 }
 
@@ -54,6 +56,7 @@ impl SpurGear {
             flank: Involute::new(r * alpha.cos(), psi_b),
             broken_edge: None,
             modifications: Vec::new(),
+            untouched: [0.0, f64::INFINITY],
             hole_repeats: 0,
         };
 
@@ -63,6 +66,7 @@ impl SpurGear {
         gear.check_blank()?;
         gear.hole_repeats = gear.data.blank.symmetry().count;
         gear.modifications = gear.checked_modifications()?;
+        gear.untouched = gear.untouched_roll_lengths();
         gear.fits(&gear.data.deviations)?;
         gear.data.deviations = std::mem::take(&mut gear.data.deviations).without_zeros();
         Ok(gear)
