@@ -688,6 +688,7 @@ fn the_searches_of_the_guide_are_searches() {
     let examples = [
         include_str!("../../../api/examples/search-reliefs.json"),
         include_str!("../../../api/examples/search-holes.json"),
+        include_str!("../../../api/examples/search-front.json"),
         include_str!("../../../api/examples/search-classes.json"),
     ];
     assert_eq!(told.len(), examples.len());
@@ -698,6 +699,42 @@ fn the_searches_of_the_guide_are_searches() {
         assert!(asked(&mut search)[0].submission.is_ok());
         let own: Value = serde_json::from_str(example).expect("JSON");
         assert_eq!(own["search"], told);
+    }
+}
+
+#[test]
+fn a_front_of_mass_and_noise_beats_designs_of_the_paper() {
+    // By the flexible method (docs/compare-hole-patterns.md): a quarter of the blank removed.
+    const MASS: f64 = 0.83847;
+    const OF_PAPER: [(&str, f64); 4] = [
+        ("8R34", 2.229),
+        ("10R34", 1.746),
+        ("6R30", 1.996),
+        ("8R30", 1.524),
+    ];
+    let example = include_str!("../../../api/examples/search-front.json");
+    let mut study: Value = serde_json::from_str(example).expect("JSON");
+    study["search"]["evaluations"] = json!(400);
+    study["search"]["seed"] = json!(1);
+    let study = parse(&study).expect("a search");
+    let mut search = Searching::new(study).expect("it is one");
+    assert_eq!(go_on(&mut search, usize::MAX).len(), 400);
+    let front = search.state().front;
+    let goals: Vec<[f64; 2]> = front
+        .iter()
+        .map(|design| [0, 1].map(|goal| design.goals[goal].expect("computed")))
+        .collect();
+    for [mass, range] in &goals {
+        let beaten = goals
+            .iter()
+            .any(|[lighter, quieter]| lighter < mass && quieter <= range);
+        assert!(!beaten, "{mass} kg, {range} µm");
+    }
+    for (name, range) in OF_PAPER {
+        let better = goals
+            .iter()
+            .find(|[mass, quieter]| *mass <= MASS && *quieter < range);
+        assert!(better.is_some(), "{name}: {goals:?}");
     }
 }
 
