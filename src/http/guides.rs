@@ -60,6 +60,7 @@ const FIGURES: &[Figure] = figures! {
     "fig-03-blank-rotation.svg"
     "fig-07-case-2.svg"
     "fig-11-designs-at-115-n-m.svg"
+    "page-deformed-helical.png"
     "page-deformed.png"
     "page-helical.png"
     "spacing-even.svg"

@@ -200,6 +200,51 @@ async fn fields_of_a_pair_along_its_faces_are_volumes_and_its_edges_those_of_a_s
 }
 
 #[tokio::test]
+async fn the_load_along_a_face_adds_up_to_the_whole_in_the_mean_and_at_every_position() {
+    let bench = Bench::real().await;
+    for (each, rows) in [(false, 1), (true, 8)] {
+        let mut submission = helical();
+        if each {
+            submission["face_load"] = "positions".into();
+        }
+        let path = bench.submit(&submission).await;
+        bench.ended(&path).await;
+        let results = bench.document(&format!("{path}/results")).await;
+        let load = results["curves"][2]["load_n"].as_f64().unwrap();
+        let get = async |file: &str| {
+            let path = format!("{path}/results/face-load.{file}");
+            bench.get(&path).send().await.unwrap().text().await.unwrap()
+        };
+        let table = get("csv?torque=50").await;
+        let lines: Vec<Vec<&str>> = table
+            .lines()
+            .map(|line| line.split(',').collect())
+            .collect();
+        assert_eq!(lines[0].contains(&"mesh_position"), each, "{:?}", lines[0]);
+        let number = |text: &str| text.parse::<f64>().unwrap();
+        let strips: Vec<[f64; 2]> = lines[1..]
+            .iter()
+            .map(|line| [line[line.len() - 2], line[line.len() - 1]].map(number))
+            .collect();
+        assert_eq!(strips.len(), rows * 20);
+        let width = strips[1][0] - strips[0][0];
+        for row in strips.chunks(20) {
+            let whole = width * row.iter().map(|strip| strip[1]).sum::<f64>();
+            // Ten digits of each are written.
+            assert!((whole / load - 1.0).abs() < 1e-8, "{whole} of {load}");
+        }
+        let picture = get("svg").await;
+        assert!(picture.contains("200 N m, K_Hβ") && picture.contains("50 N m, K_Hβ"));
+    }
+    let plane = bench.submit(&submission(115.0)).await;
+    bench.ended(&plane).await;
+    for file in ["json", "csv", "svg"] {
+        let path = format!("{plane}/results/face-load.{file}");
+        problem(bench.get(&path).send().await.unwrap(), 404, "not_found").await;
+    }
+}
+
+#[tokio::test]
 async fn the_contact_pattern_of_a_pair_along_its_faces_comes_as_numbers_and_as_a_picture() {
     let bench = Bench::quick().await;
     let path = bench.submit(&helical()).await;

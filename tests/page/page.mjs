@@ -366,6 +366,7 @@ for (const [width, height] of WIDTHS) {
       await tab(page, "curves");
       if (process.argv.includes("--screenshots") && (width < 3840 || colorScheme === "light")) {
         await page.locator("#position").fill("0.3");
+        await page.evaluate(() => { document.activeElement.blur(); scrollTo(0, 0); });
         await page.screenshot({ path: `${process.env.PICTURES}/page-${width}-${colorScheme}.png` });
       }
     }, { viewport: { width, height }, colorScheme });
