@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
@@ -20,6 +21,33 @@ fn the_committed_openapi_document_is_the_generated_one() {
         committed == generated,
         "api/openapi.json is stale: run MESHWRIGHT_WRITE_OPENAPI=1 ./test contract"
     );
+}
+
+#[test]
+fn the_readme_shows_what_solve_prints_of_its_pair() {
+    let readme = fs::read_to_string(root().join("README.md")).unwrap();
+    let (_, rest) = readme.split_once("```json\n").unwrap();
+    let (pair, rest) = rest.split_once("```").unwrap();
+    let (_, rest) = rest.split_once("```\n").unwrap();
+    let (shown, _) = rest.split_once("```").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let submission = folder.path().join("pair.json");
+    fs::write(&submission, pair).unwrap();
+    let ran = Command::new(env!("CARGO_BIN_EXE_meshwright"))
+        .arg("solve")
+        .arg(submission)
+        .arg("--output")
+        .arg(folder.path().join("results.json"))
+        .output()
+        .unwrap();
+    let printed = String::from_utf8(ran.stdout).unwrap();
+    // But for how long it took.
+    let timeless = |text: &str| {
+        let (before, time) = text.split_once(" positions in ").unwrap();
+        let (_, after) = time.split_once(" s, ").unwrap();
+        format!("{before}{after}")
+    };
+    assert_eq!(timeless(&printed), timeless(shown));
 }
 
 #[test]
