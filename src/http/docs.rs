@@ -124,40 +124,38 @@ pub(super) fn add_common_answers(openapi: &mut OpenApi) {
     }
 }
 
-/// Says whose the `id` of a path is, which comes first.
+/// Says whose `id` a path has, before its other parameters.
 fn describe_ids(path: &str, operation: &mut Operation) {
     let whose = [
         ("/v1/jobs/", "job"),
         ("/v1/studies/", "study"),
         ("/v1/webhooks/", "webhook"),
     ];
-    let Some((_, whose)) = whose.iter().find(|(root, _)| path.starts_with(root)) else {
+    let whose = whose.iter().find(|(root, _)| path.starts_with(root));
+    let (Some((_, whose)), Some(parameters)) = (whose, &mut operation.parameters) else {
         return;
     };
-    let Some(parameters) = &mut operation.parameters else {
-        return;
-    };
-    for parameter in parameters.iter_mut() {
-        if let RefOr::T(parameter) = parameter
-            && parameter.name == "id"
-        {
-            let id = ObjectBuilder::new()
-                .schema_type(Type::String)
-                .format(Some(SchemaFormat::Custom("uuid".to_owned())));
-            parameter.schema = Some(id.into());
-            parameter.description = Some(format!("The id of the {whose}."));
-        }
+    parameters.sort_by_key(|parameter| !is_called("id", parameter));
+    if let Some(RefOr::T(id)) = parameters
+        .first_mut()
+        .filter(|first| is_called("id", first))
+    {
+        let uuid = ObjectBuilder::new()
+            .schema_type(Type::String)
+            .format(Some(SchemaFormat::Custom("uuid".to_owned())));
+        id.schema = Some(uuid.into());
+        id.description = Some(format!("The id of the {whose}."));
     }
-    let is_other =
-        |parameter: &RefOr<Parameter>| !matches!(parameter, RefOr::T(it) if it.name == "id");
-    parameters.sort_by_key(is_other);
+}
+
+fn is_called(name: &str, parameter: &RefOr<Parameter>) -> bool {
+    matches!(parameter, RefOr::T(parameter) if parameter.name == name)
 }
 
 /// Adds the `ETag` and the answer without a body, where a request may say which answer it has.
 fn add_answers_to_conditions(operation: &mut Operation) {
-    let is_condition =
-        |each: &RefOr<Parameter>| matches!(each, RefOr::T(each) if each.name == "If-None-Match");
-    if !operation.parameters.iter().flatten().any(is_condition) {
+    let mut parameters = operation.parameters.iter().flatten();
+    if !parameters.any(|parameter| is_called("If-None-Match", parameter)) {
         return;
     }
     let responses = &mut operation.responses.responses;

@@ -161,6 +161,11 @@ fn torque_of(curve: &CurveDocument) -> String {
     format!("{} N m", curve.output_torque_n_m)
 }
 
+/// The colors of curves, one after the other.
+fn colors() -> impl Iterator<Item = &'static RGBColor> {
+    PALETTE.iter().skip(2).chain(&PALETTE).cycle()
+}
+
 fn over_period(
     curves: &[&CurveDocument],
     label: &str,
@@ -168,7 +173,7 @@ fn over_period(
 ) -> Option<Chart> {
     let series: Vec<Series> = curves
         .iter()
-        .zip(PALETTE.iter().skip(2).chain(&PALETTE).cycle())
+        .zip(colors())
         .filter_map(|(curve, &color)| {
             let points = closed(curve, values(curve))?;
             Some(Series::new(&torque_of(curve), color, Look::Line, points))
@@ -200,7 +205,7 @@ fn spectrum(curves: &[&CurveDocument]) -> Option<Chart> {
     let last = mesh_order.map_or(f64::INFINITY, |order| MESH_ORDERS * order);
     let series: Vec<Series> = curves
         .iter()
-        .zip(PALETTE.iter().skip(2).chain(&PALETTE).cycle())
+        .zip(colors())
         .filter_map(|(curve, &color)| {
             let spectrum = curve.spectrum.as_ref()?;
             let orders = spectrum.order.iter().copied();
@@ -238,9 +243,8 @@ fn spectrum(curves: &[&CurveDocument]) -> Option<Chart> {
 
 /// The dynamic transmission error over speed, both branches, with the resonances of the first curve.
 fn run_up(curves: &[&CurveDocument]) -> Option<Chart> {
-    let colors = PALETTE.iter().skip(2).chain(&PALETTE).cycle();
     let mut series = Vec::new();
-    for (curve, &color) in curves.iter().zip(colors) {
+    for (curve, &color) in curves.iter().zip(colors()) {
         let Some(dynamics) = &curve.dynamics else {
             continue;
         };
@@ -278,8 +282,7 @@ fn run_up(curves: &[&CurveDocument]) -> Option<Chart> {
 
 /// The mean over the positions of the load on each strip of the common face.
 fn face_load(curves: &[&CurveDocument]) -> Option<Chart> {
-    let colors = PALETTE.iter().skip(2).chain(&PALETTE).cycle();
-    let series = curves.iter().zip(colors).filter_map(|(curve, &color)| {
+    let series = curves.iter().zip(colors()).filter_map(|(curve, &color)| {
         let face = curve.face.as_ref()?;
         let rows = &face.load_n_per_mm;
         let mean =
