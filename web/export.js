@@ -1,22 +1,14 @@
 // What is on the screen for other programs: curves, orders, tables, pictures, files of a job, and the request as a program.
 
-import { ProblemError, request, solved } from "./api.js";
+import { ProblemError, solved } from "./api.js";
 import { looks } from "./charts.js";
 import { designsCsv } from "./compare.js";
 import { csv, drawingOf, ordersCsv, save } from "./download.js";
 import { h } from "./dom.js";
 import { fileOf, pictureOf, stacked } from "./figure.js";
+import { filesOf, saveFile } from "./files.js";
 import { inLight, sheetOf } from "./sheet.js";
 import { copied, snippets } from "./snippets.js";
-
-/** Files that the service makes of a job: the name of each, what it is called on the page, and what of the results it needs. */
-const FILES_OF_JOBS = [
-  ["submission.rexs", "Pair for a gearbox program, REXS"], ["look-up-table.csv", "Look-up table, CSV"], ["look-up-table.txt", "Look-up table, Modelica text"], ["fields.vtu", "Stress and displacement, VTU"],
-  ["contact-pattern.json", "Contact pattern, JSON", ({ curves }) => curves[0].face], ["contact-pattern.svg", "Contact pattern, SVG", ({ curves }) => curves[0].face],
-  ["face-load.csv", "Load along the face, CSV", ({ curves }) => curves[0].face], ["face-load.svg", "Load along the face, SVG", ({ curves }) => curves[0].face],
-  ["run-up.csv", "Run-up, CSV", ({ curves }) => curves[0].dynamics], ["run-up.svg", "Run-up, SVG", ({ curves }) => curves[0].dynamics],
-  ...[["csv", "CSV"], ["txt", "CombiTable2D"], ["mo", "Modelica"], ["fmu", "FMU"]].map(([kind, name]) => [`force-table.${kind}`, `Force table, ${name}`, ({ force_table: table }) => table]),
-];
 
 const LANGUAGES = { curl: "curl", python: "Python", typescript: "TypeScript" };
 
@@ -34,13 +26,13 @@ export function exporting(place, { current, designs, drawing, charts, position }
     page: ["Report page, SVG", (live) => save("meshwright-report.svg", "image/svg+xml", fileOf(sheetOf({ live, drawing: drawing.element, charts })))],
   };
   const buttons = Object.entries(kinds).map(([kind, [name, work]]) => h("button", { type: "button", data: { download: kind }, on: { click: () => run(work) } }, name));
-  const ofJobs = FILES_OF_JOBS.map(([file, name]) => h("button", { type: "button", data: { download: file }, on: { click: () => run((live) => fileOfJob(live, file)) } }, name));
+  const ofJob = h("div", { className: "buttons wrap" });
   const code = h("pre", { id: "code", tabIndex: 0, ariaLabel: "Program" });
   const language = h("select", { id: "language", on: { change: () => show() } }, ...Object.entries(LANGUAGES).map(([value, name]) => h("option", { value }, name)));
   const copy = h("button", { type: "button", on: { click: async () => { state.textContent = (await copied(code.textContent)) ? "The program is copied." : "Copying is not allowed here: select the text."; } } }, "Copy it");
   place.replaceChildren(
     h("p", { className: "note" }, "Everything is of one design: the one that is drawn, with the curves and numbers that are shown."),
-    h("div", { className: "buttons wrap" }, ...buttons), h("h3", {}, "Files that a job makes"), h("div", { className: "buttons wrap" }, ...ofJobs), state,
+    h("div", { className: "buttons wrap" }, ...buttons), h("h3", {}, "Files that a job makes"), ofJob, state,
     h("h3", {}, "This as a program"), h("div", { className: "line" }, h("label", { htmlFor: language.id }, "Language"), language, copy), code);
 
   const curves = () => inLight(() => stacked(charts.figures(), looks().panel));
@@ -63,15 +55,17 @@ export function exporting(place, { current, designs, drawing, charts, position }
   async function fileOfJob(live, file) {
     state.textContent = "A job computes it.";
     const job = await solved(live.submission);
-    const query = file === "fields.vtu" ? `?mesh_position=${position().toFixed(4)}` : "";
-    const place = file === "submission.rexs" ? file : `results/${file}${query}`;
-    save(file === "submission.rexs" ? "meshwright.rexs" : `meshwright-${file}`, "", await (await request(`v1/jobs/${job.id}/${place}`)).blob());
+    await saveFile(job.id, file, "meshwright", file === "fields.vtu" ? `?mesh_position=${position().toFixed(4)}` : "");
     state.textContent = "";
   }
 
   async function show() {
     const live = await current();
-    FILES_OF_JOBS.forEach(([, , needs], i) => { ofJobs[i].hidden = Boolean(needs) && !(live && needs(live.results)); });
+    const files = live ? filesOf(live.submission) : [];
+    // The same buttons stay, with whoever stands on one.
+    if (files.map(({ name }) => name).join() !== [...ofJob.children].map((each) => each.dataset.download).join()) {
+      ofJob.replaceChildren(...files.map(({ name, title }) => h("button", { type: "button", data: { download: name }, on: { click: () => run((live) => fileOfJob(live, name)) } }, title)));
+    }
     if (live) code.textContent = snippets(live.submission, new URL(".", document.baseURI).href)[language.value];
   }
 

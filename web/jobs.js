@@ -1,15 +1,17 @@
 // The jobs of this client: submitted, followed by their events, cancelled, opened, run again.
 
 import { follow, hasEnded, json, post, ProblemError, request } from "./api.js";
-import { isSolid } from "./dimensions.js";
 import { differences, nameOf, told } from "./design.js";
 import { debounced, h, number } from "./dom.js";
-import { save } from "./download.js";
+import { filesOf, saveFile } from "./files.js";
 import { read } from "./inputs.js";
 
 const SHOWN = 20;
 /** So many are followed at a time; a client may have few streams. */
 const FOLLOWED = 3;
+
+/** The files that a row offers at once. */
+const IN_ROW = [["JSON", "results.json"], ["CSV", "ste.csv"], ["SVG", "ste.svg"], ["VTU", "fields.vtu"]];
 
 /** The documents of so many jobs are kept: what was asked never changes. */
 const DOCUMENTS = 200;
@@ -142,19 +144,17 @@ export function jobs(place, design, form, onOpen) {
     const address = `v1/jobs/${job.id}`;
     const button = (name, work) => h("button", { type: "button", on: { click: () => act(work) }, ariaLabel: `${name} ${job.id.slice(-6)}` }, name);
     // A file changes no job: the rows stay as they are under the pointer.
-    const file = (words, name) => h("button", { type: "button", ariaLabel: `${words} ${job.id.slice(-6)}`, on: { click: () => attempt(async () => save(`${job.id}-${name}`, "", await (await request(`${address}/results${name === "results.json" ? "" : `/${name}`}`)).blob())) } }, words);
+    const file = (words, name) => h("button", { type: "button", ariaLabel: `${words} ${job.id.slice(-6)}`, on: { click: () => attempt(() => saveFile(job.id, name, job.id)) } }, words);
     const open = async () => onOpen((await json(address)).submission, job.status === "successful" ? await json(`${address}/results`) : null);
     // What else there is depends on what was asked for.
     const more = h("button", { type: "button", ariaLabel: `More files of ${job.id.slice(-6)}`, on: { click: () => attempt(async () => {
-      const { submission } = await json(address);
-      const files = [["Look-up table", "look-up-table.csv"], ...(isSolid(job.method) ? [["Face load CSV", "face-load.csv"], ["Pattern JSON", "contact-pattern.json"], ["Pattern SVG", "contact-pattern.svg"]] : []), ...(submission.dynamics ? [["Run-up CSV", "run-up.csv"], ["Run-up SVG", "run-up.svg"]] : []), ...(submission.dynamics || submission.force_table ? ["csv", "txt", "mo", "fmu"].map((kind) => [`Forces ${kind.toUpperCase()}`, `force-table.${kind}`]) : [])];
-      const rexs = h("button", { type: "button", on: { click: () => attempt(async () => save(`${job.id}.rexs`, "", await (await request(`${address}/submission.rexs`)).blob())) } }, "REXS");
-      more.replaceWith(rexs, ...files.map(([words, name]) => file(words, name)));
+      const files = filesOf((await json(address)).submission).filter(({ name }) => !IN_ROW.some(([, shown]) => shown === name));
+      more.replaceWith(...files.map(({ name, title }) => file(title, name)));
     }) } }, "More files");
     const buttons = [button("Open", open)];
     if (!hasEnded(job.status)) buttons.push(button("Cancel", () => request(`${address}/cancel`, { method: "POST" })));
     else buttons.push(button("Run again", async () => post("v1/jobs", (await json(address)).submission)));
-    if (job.status === "successful") buttons.push(file("JSON", "results.json"), file("CSV", "ste.csv"), file("SVG", "ste.svg"), file("VTU", "fields.vtu"), more);
+    if (job.status === "successful") buttons.push(...IN_ROW.map(([words, name]) => file(words, name)), more);
     const took = job.links.same_as ? h("small", {}, " as computed before") : (job.wall_time_seconds ?? null) === null ? null : h("small", {}, ` in ${number(job.wall_time_seconds, 2)} s`);
     const progress = hasEnded(job.status) ? job.status : h("span", {}, `${job.status} `, h("progress", { max: 100, value: job.progress_percent, ariaLabel: "Progress" }), ` ${job.progress_percent} %`);
     const why = job.problem ? h("small", {}, ` ${job.problem.detail}`) : null;

@@ -408,7 +408,7 @@ export async function benchSteps(service) {
     }
     await tab(page, "jobs");
     await page.locator("#jobs tbody tr", { hasText: "successful" }).first().locator("button", { hasText: "More files" }).click();
-    const { name, bytes } = await downloaded(page, () => page.locator("#jobs button", { hasText: "Run-up CSV" }).first().click());
+    const { name, bytes } = await downloaded(page, () => page.locator("#jobs button", { hasText: "Run-up, CSV" }).first().click());
     assert.match(name, /run-up\.csv$/);
     assert.match(bytes.toString(), /contact_lost/);
   });
