@@ -281,12 +281,13 @@ impl<'a> ContactCells<'a> {
                 self.made.model.pair.tooth(member, self.period + pair),
                 teeth_on(member, other.pair - pair),
             );
-            let force = &other.loads[gear];
-            moved += if transposed {
-                x.transpose() * force
+            let x = if transposed {
+                x.transpose()
             } else {
-                x * force
+                x.as_ref()
             };
+            let force = &other.loads[gear];
+            matmul(moved.as_mut(), Accum::Add, x, force, 1.0, Par::Seq);
         }
         moved
     }

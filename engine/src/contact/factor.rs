@@ -9,6 +9,8 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt;
 use faer::{Mat, Par};
 
+use super::wide::{Loops, wide};
+
 /// Points that enter and leave a core together.
 const BLOCK: usize = 4;
 
@@ -162,19 +164,12 @@ impl Factor {
             sides.map(|side| -> Vec<f64> { places.iter().map(|place| side[*place]).collect() })
         };
         let ([mut x, mut y], [mut u, mut v]) = (picked(in_core), picked(others));
-        core.factor.solve_both(&mut x, &mut y);
-        for ((u, v), beside) in u.iter_mut().zip(&mut v).zip(&beside) {
-            *u -= dot(beside, &x);
-            *v -= dot(beside, &y);
-        }
-        self.factor.solve_both(&mut u, &mut v);
-        self.factor.solve_transposed(&mut u);
-        self.factor.solve_transposed(&mut v);
-        for ((u, v), beside) in u.iter().zip(&v).zip(&beside) {
-            subtract(&mut x, &mut y, beside, *u, *v);
-        }
-        core.factor.solve_transposed(&mut x);
-        core.factor.solve_transposed(&mut y);
+        wide(Substitution {
+            factors: [&core.factor, &self.factor],
+            beside: &beside,
+            in_core: [&mut x, &mut y],
+            others: [&mut u, &mut v],
+        });
         for (side, (core, others)) in right_sides.into_iter().zip([(x, u), (y, v)]) {
             for (place, value) in in_core.iter().zip(core) {
                 side[*place] = value;
@@ -183,6 +178,37 @@ impl Factor {
                 side[*place] = value;
             }
         }
+    }
+}
+
+/// The substitutions forth and back with the factors of a core and of the points beside.
+struct Substitution<'a> {
+    factors: [&'a Lower; 2],
+    beside: &'a [&'a [f64]],
+    in_core: [&'a mut [f64]; 2],
+    others: [&'a mut [f64]; 2],
+}
+
+impl Loops for Substitution<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let ([core, own], beside) = (self.factors, self.beside);
+        let ([x, y], [u, v]) = (self.in_core, self.others);
+        core.solve_both(x, y);
+        for ((u, v), beside) in u.iter_mut().zip(&mut *v).zip(beside) {
+            *u -= dot(beside, x);
+            *v -= dot(beside, y);
+        }
+        own.solve_both(u, v);
+        own.solve_transposed(u);
+        own.solve_transposed(v);
+        for ((u, v), beside) in u.iter().zip(&*v).zip(beside) {
+            subtract(x, y, beside, *u, *v);
+        }
+        core.solve_transposed(x);
+        core.solve_transposed(y);
     }
 }
 
@@ -227,6 +253,7 @@ impl Lower {
     }
 
     /// L⁻¹ x in the place of x.
+    #[inline(always)]
     fn solve(&self, x: &mut [f64]) {
         for (j, column) in self.columns() {
             let (here, below) = x[j..].split_at_mut(1);
@@ -238,6 +265,7 @@ impl Lower {
     }
 
     /// The same of two at once.
+    #[inline(always)]
     fn solve_both(&self, x: &mut [f64], y: &mut [f64]) {
         for (j, column) in self.columns() {
             let (x, x_below) = x[j..].split_at_mut(1);
@@ -249,6 +277,7 @@ impl Lower {
     }
 
     /// L⁻ᵀ x in the place of x.
+    #[inline(always)]
     fn solve_transposed(&self, x: &mut [f64]) {
         for (j, column) in self.columns().rev() {
             let (here, below) = x[j..].split_at_mut(1);
@@ -258,6 +287,7 @@ impl Lower {
 }
 
 /// Takes `column` times one factor each from `x` and `y`.
+#[inline(always)]
 fn subtract(x: &mut [f64], y: &mut [f64], column: &[f64], by_x: f64, by_y: f64) {
     for ((x, y), entry) in x.iter_mut().zip(y).zip(column) {
         *x -= entry * by_x;
@@ -266,7 +296,8 @@ fn subtract(x: &mut [f64], y: &mut [f64], column: &[f64], by_x: f64, by_y: f64) 
 }
 
 /// Sums of several products at once, in an order that is the same on every machine.
-fn dot(one: &[f64], other: &[f64]) -> f64 {
+#[inline(always)]
+pub(super) fn dot(one: &[f64], other: &[f64]) -> f64 {
     const LANES: usize = 8;
     let (ones, others) = (one.chunks_exact(LANES), other.chunks_exact(LANES));
     let rest = ones.remainder().iter().zip(others.remainder());

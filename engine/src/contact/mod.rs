@@ -55,6 +55,7 @@ pub mod placement;
 pub mod positions;
 mod problem;
 pub mod stage;
+mod wide;
 
 pub use active_set::solve_active_set;
 pub use augmented_lagrangian::{AugmentedLagrangian, default_penalty, solve_augmented_lagrangian};

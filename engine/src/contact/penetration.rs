@@ -8,18 +8,17 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use faer::Mat;
-
 use super::ContactSolution;
 use super::cells::{ContactCells, Laid};
 use super::drawn::Carrying;
 use super::facing::{Facing, FlankRange, RangeEnd, View};
+use super::factor::dot;
 use super::half_plane::Entries;
 use super::meeting::{Probe, Standing};
 use super::model::{MadePair, PairModel};
 use super::pair_cells::{PairCells, compliance};
 use super::patch::{Cell, Patch, Stretch};
-use crate::fem::dense::entries;
+use super::wide::wide;
 use crate::gear::Member;
 
 /// Stretches spread over the flanks beside the cells.
@@ -41,14 +40,25 @@ pub(super) struct Found {
 /// Where a stretch lies, and how its gap is told.
 #[derive(Debug, Clone, Copy)]
 enum Place {
-    /// Across the end of this cell and the beginning of the next: the gap is between theirs.
-    Across(usize),
+    /// Across the end of the cell `at` and the beginning of the next, perhaps at a kink: the gap is between theirs.
+    Across { at: usize, kink: bool },
     /// Within a cell, about a kink.
     Kink,
     /// On the flanks, beside the cells.
     Beside,
     /// On the fillet of a gear, faced by the other's tip.
     Fillet(Member),
+}
+
+impl Place {
+    /// The gear from whose flank its gap is told on a pair laid on `seat`; `None` where that is known from cells.
+    fn seen_from(self, seat: Member) -> Option<Member> {
+        match self {
+            Self::Across { .. } => None,
+            Self::Fillet(member) => Some(member.other()),
+            Self::Kink | Self::Beside => Some(seat),
+        }
+    }
 }
 
 /// A stretch that may penetrate.
@@ -64,16 +74,15 @@ struct Looked {
 #[derive(Debug)]
 pub(super) struct Looks {
     looked: Vec<Looked>,
-    /// What unit forces on the cells of the pair do to each, with the interfaces held.
-    held: Mat<f64>,
-    /// W V of each gear.
-    shapes: [Mat<f64>; 2],
+    /// Row by row what unit forces on the cells of the pair do to each with the interfaces held, and W V of each gear.
+    yields: Vec<f64>,
 }
 
 /// The looks at one pair as it stands.
 pub(super) struct Look<'a> {
     looks: Arc<Looks>,
-    standing: Option<[Standing<'a>; 2]>,
+    /// As the seat of the pair sees it, and as its mate does, where stretches ask for it.
+    standings: [Option<Standing<'a>>; 2],
 }
 
 impl<'a> Look<'a> {
@@ -84,38 +93,42 @@ impl<'a> Look<'a> {
         made: MadePair<'a>,
         (fraction, period): (f64, i64),
     ) -> Self {
-        let beside = |looked: &Looked| !matches!(looked.place, Place::Across(_));
-        let needed = looks.looked.iter().any(beside);
-        let standing = needed.then(|| {
-            let seat = laid.cells().patch.seat;
+        let seat = laid.cells().patch.seat;
+        let standings = [seat, seat.other()].map(|from| {
+            let asks = |looked: &Looked| looked.place.seen_from(seat) == Some(from);
             let (eta, n) = (fraction + period as f64, period + laid.pair);
-            [seat, seat.other()]
-                .map(|seat| made.standing(eta, n, laid.lag, (seat, laid.drawn.phase)))
+            let standing = || made.standing(eta, n, laid.lag, (from, laid.drawn.phase));
+            looks.looked.iter().any(asks).then(standing)
         });
-        Self { looks, standing }
+        Self { looks, standings }
     }
 
-    /// The gap of each stretch under no load, and its arm about the driven axis.
-    fn gaps(&self, cells: &PairCells, gaps: &[f64], arms: &[f64], lag: f64) -> Vec<(f64, f64)> {
-        let told = |looked: &Looked| {
-            let (gap, arm) = match (looked.place, &self.standing) {
-                (Place::Across(i), _) => {
-                    let [one, other] = [i, i + 1].map(|i| cells.patch.cells[i].width);
-                    let between = |of: &[f64]| (one * of[i] + other * of[i + 1]) / (one + other);
-                    (between(gaps), between(arms))
+    /// The gap of a stretch of `laid` under no load, and its arm about the driven axis; `None` between two cells that stay open, as the
+    /// flanks do there but for a kink.
+    fn gap(&self, looked: &Looked, laid: &Laid, active: &[bool]) -> Option<(f64, f64)> {
+        let patch = &laid.cells().patch;
+        let (gap, arm) = match looked.place {
+            Place::Across { at: i, kink } => {
+                if !(active[i] || active[i + 1] || kink) {
+                    return None;
                 }
-                (place, Some([on_seat, on_mate])) => {
-                    let fillet =
-                        matches!(place, Place::Fillet(member) if member == cells.patch.seat);
-                    let standing = if fillet { on_mate } else { on_seat };
-                    let meeting = standing.meeting(&looked.probe);
-                    (meeting.gap + lag * meeting.arms[1], meeting.arms[1])
-                }
-                (_, None) => (f64::INFINITY, 1.0),
-            };
-            (gap + looked.more, arm)
+                let [one, other] = [i, i + 1].map(|i| patch.cells[i].width);
+                let between = |one_gap: f64, other_gap: f64| {
+                    (one * one_gap + other * other_gap) / (one + other)
+                };
+                (
+                    between(laid.gaps[i], laid.gaps[i + 1]),
+                    between(laid.arms[i][1], laid.arms[i + 1][1]),
+                )
+            }
+            place => {
+                let from_mate = place.seen_from(patch.seat) != Some(patch.seat);
+                let standing = self.standings[usize::from(from_mate)]?;
+                let meeting = standing.meeting(&looked.probe);
+                (meeting.gap + laid.lag * meeting.arms[1], meeting.arms[1])
+            }
         };
-        self.looks.looked.iter().map(told).collect()
+        Some((gap + looked.more, arm))
     }
 }
 
@@ -132,12 +145,22 @@ pub(super) fn found(
         if looks.looked.is_empty() {
             continue;
         }
-        let moved = Member::BOTH.map(|member| cells.moved(member, laid.pair, &loads));
-        let yielded = looks.yielded(&solution.forces[range], &moved);
-        let arms: Vec<f64> = laid.arms.iter().map(|arms| arms[1]).collect();
-        let gaps = look.gaps(laid.cells(), &laid.gaps, &arms, laid.lag);
-        for ((looked, (gap, arm)), yielded) in looks.looked.iter().zip(gaps).zip(yielded) {
-            let depth = solution.transmission_error * arm - gap - yielded;
+        // What the forces are, and how the interfaces move under them.
+        let mut yielding = solution.forces[range.clone()].to_vec();
+        for member in Member::BOTH {
+            let moved = cells.moved(member, laid.pair, &loads);
+            yielding.extend_from_slice(moved.col_as_slice(0));
+        }
+        let rows = looks.yields.chunks_exact(yielding.len());
+        for (looked, row) in looks.looked.iter().zip(rows) {
+            let Some((gap, arm)) = look.gap(looked, laid, &solution.active[range.clone()]) else {
+                continue;
+            };
+            let closed = solution.transmission_error * arm - gap;
+            if closed <= 0.0 {
+                continue;
+            }
+            let depth = closed - wide(|| dot(row, &yielding));
             if depth <= 0.0 {
                 continue;
             }
@@ -146,7 +169,7 @@ pub(super) fn found(
                 Place::Fillet(member) => found.fillets.push((laid.pair, member)),
                 Place::Beside if !found.beside.contains(&laid.pair) => found.beside.push(laid.pair),
                 Place::Beside => {}
-                Place::Across(_) | Place::Kink => {
+                Place::Across { .. } | Place::Kink => {
                     let deepest = found.between.entry(laid.pair).or_default();
                     *deepest = depth.max(*deepest);
                 }
@@ -174,12 +197,12 @@ impl Looks {
             if apart || pair.iter().all(|cell| cell.gap > reach) {
                 continue;
             }
-            // Between two cells that are open the flanks are, but for a kink.
             let carries = carrying.holds(i) || carrying.holds(i + 1);
-            let end = patch.ends_along[pair[1].stretch][0];
-            if !carries && !facing.kinks.contains(&end) {
+            let kink = facing.kinks.contains(&patch.ends_along[pair[1].stretch][0]);
+            if !carries && !kink {
                 continue;
             }
+            let place = Place::Across { at: i, kink };
             let [from, at, to] = [0, 1, 2].map(|end| patch.ends_along[pair[0].stretch + end][0]);
             let across = lay(f64::midpoint(from, at), f64::midpoint(at, to));
             let [one, other] = [pair[0], pair[1]];
@@ -188,7 +211,7 @@ impl Looks {
             looked.extend(
                 across
                     .filter(within)
-                    .map(|stretch| (stretch, Place::Across(i), stretch.cell.gap - between)),
+                    .map(|stretch| (stretch, place, stretch.cell.gap - between)),
             );
         }
         let half = 0.5 * patch.usual_width();
@@ -238,7 +261,10 @@ impl Looks {
         let stretches: Vec<[f64; 2]> = looked.iter().map(|(stretch, ..)| stretch.along).collect();
         let here: Vec<Cell> = looked.iter().map(|(stretch, ..)| stretch.cell).collect();
         let (held, shapes) = compliance(model, &cells.patch, (&here, &stretches), Entries::All);
+        let parts = [&held, &shapes[0], &shapes[1]];
+        let row = |i: usize| parts.map(|part| part.row(i).iter().copied()).into_iter();
         Self {
+            yields: (0..looked.len()).flat_map(|i| row(i).flatten()).collect(),
             looked: looked
                 .into_iter()
                 .map(|(stretch, place, more)| Looked {
@@ -247,32 +273,12 @@ impl Looks {
                     more,
                 })
                 .collect(),
-            held,
-            shapes,
         }
     }
 
     /// About how much memory they take, in bytes.
     pub(super) fn bytes(&self) -> usize {
-        let numbers = entries(&self.held) + self.shapes.iter().map(entries).sum::<usize>();
-        size_of::<Self>() + size_of_val(self.looked.as_slice()) + size_of::<f64>() * numbers
-    }
-
-    /// u of each stretch under the `forces` on the cells of its pair, with the interfaces `moved`.
-    fn yielded(&self, forces: &[f64], moved: &[Mat<f64>; 2]) -> Vec<f64> {
-        let mut yielded = vec![0.0; self.looked.len()];
-        let mut add = |rows: &Mat<f64>, column: &mut dyn Iterator<Item = f64>| {
-            for (j, factor) in column.enumerate().filter(|(_, factor)| *factor != 0.0) {
-                for (sum, entry) in yielded.iter_mut().zip(rows.col_as_slice(j)) {
-                    *sum += entry * factor;
-                }
-            }
-        };
-        add(&self.held, &mut forces.iter().copied());
-        for (shapes, moved) in self.shapes.iter().zip(moved) {
-            add(shapes, &mut moved.col_as_slice(0).iter().copied());
-        }
-        yielded
+        size_of::<Self>() + size_of_val(&*self.looked) + size_of_val(&*self.yields)
     }
 }
 

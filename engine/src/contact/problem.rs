@@ -7,6 +7,7 @@ use faer::{Mat, MatRef};
 
 use super::compliances::Known;
 use super::factor::{Core, Factor, core_of};
+use super::wide::{Loops, wide};
 use crate::run::Stopped;
 
 /// Entries of the compliance that mirror each other may differ by this much, relative to the diagonal.
@@ -128,19 +129,13 @@ impl ContactProblem {
     }
 
     /// Adds to `gaps` what `forces` at their points open, four at a time.
-    pub(super) fn open(&self, gaps: &mut [f64], mut forces: impl Iterator<Item = (usize, f64)>) {
-        while let Some(first) = forces.next() {
-            let mut four = [first; 4];
-            for each in &mut four[1..] {
-                *each = forces.next().unwrap_or((first.0, 0.0));
-            }
-            let [a, b, c, d] = four.map(|(point, _)| self.compliance_column(point));
-            let [p_a, p_b, p_c, p_d] = four.map(|(_, force)| force);
-            let columns = a.iter().zip(b).zip(c.iter().zip(d));
-            for (gap, ((a, b), (c, d))) in gaps.iter_mut().zip(columns) {
-                *gap += (a * p_a + b * p_b) + (c * p_c + d * p_d);
-            }
-        }
+    pub(super) fn open(&self, gaps: &mut [f64], forces: impl Iterator<Item = (usize, f64)>) {
+        let problem = self;
+        wide(Opening {
+            problem,
+            gaps,
+            forces,
+        });
     }
 
     /// The gaps g_0 before loading, in m, positive where open.
@@ -159,6 +154,32 @@ impl ContactProblem {
         touches.enumerate().fold((0, f64::INFINITY), |first, next| {
             if next.1 < first.1 { next } else { first }
         })
+    }
+}
+
+struct Opening<'a, F> {
+    problem: &'a ContactProblem,
+    gaps: &'a mut [f64],
+    forces: F,
+}
+
+impl<F: Iterator<Item = (usize, f64)>> Loops for Opening<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(mut self) {
+        while let Some(first) = self.forces.next() {
+            let mut four = [first; 4];
+            for each in &mut four[1..] {
+                *each = self.forces.next().unwrap_or((first.0, 0.0));
+            }
+            let [a, b, c, d] = four.map(|(point, _)| self.problem.compliance_column(point));
+            let [p_a, p_b, p_c, p_d] = four.map(|(_, force)| force);
+            let columns = a.iter().zip(b).zip(c.iter().zip(d));
+            for (gap, ((a, b), (c, d))) in self.gaps.iter_mut().zip(columns) {
+                *gap += (a * p_a + b * p_b) + (c * p_c + d * p_d);
+            }
+        }
     }
 }
 
