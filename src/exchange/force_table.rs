@@ -15,8 +15,15 @@ use crate::wire::Results;
 /// How much finer than computed the tables are that others interpolate in straight lines: in position, and in load.
 const REFINED: (usize, usize) = (2, 4);
 
-/// Columns of a table over approach: in the other flank, in the backlash, and in the loaded flank.
-const COLUMNS: [usize; 3] = [24, 2, 120];
+/// Columns of a table over approach for a flank that closes evenly from touch to the largest load: straight lines cut the corner at the
+/// touch by less than 0.2 % of that load.
+const COLUMNS: f64 = 160.0;
+
+/// The most columns for a flank, where the touch wanders far.
+const MOST_COLUMNS: usize = 320;
+
+/// Columns in the backlash.
+const IN_BACKLASH: usize = 2;
 
 /// How the table is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -137,8 +144,21 @@ impl MeshForces {
             fold(&one[0], f64::min),
             fold(&one[last], f64::max),
         ];
+        let columns = |rows: &[Vec<f64>], range: f64| {
+            let closes = rows[0]
+                .iter()
+                .zip(&rows[last])
+                .map(|(touch, end)| (end - touch).abs());
+            let least = closes.reduce(f64::min).unwrap_or_default();
+            ((COLUMNS * range / least).ceil() as usize).clamp(1, MOST_COLUMNS)
+        };
+        let counts = [
+            columns(other, ends[1] - ends[0]),
+            IN_BACKLASH,
+            columns(one, ends[3] - ends[2]),
+        ];
         let mut approaches: Vec<f64> = Vec::new();
-        for (part, &count) in COLUMNS.iter().enumerate() {
+        for (part, &count) in counts.iter().enumerate() {
             let (from, to) = (ends[part], ends[part + 1].max(ends[part]));
             for i in 0..count {
                 approaches.push(from + (to - from) * i as f64 / count as f64);

@@ -331,3 +331,57 @@ def test_the_fmu_validates_and_gives_the_loads_of_the_table(service, tmp_path):
             assert told["torque_2_n_m"] == pytest.approx(load * r_2, rel=1e-6, abs=1e-6)
             assert told["torque_1_n_m"] == pytest.approx(-load * r_1, rel=0.02, abs=1e-6)
             assert told["transmission_error_um"] == pytest.approx(approach * 1e6, abs=1e-6)
+
+
+# What the package takes of the Modelica library. No package of Debian or PyPI brings a compiler with the library itself.
+LIBRARY = """
+package Modelica
+  package Mechanics
+    package Rotational
+      package Interfaces
+        connector Flange_a Real phi; flow Real tau; end Flange_a;
+        connector Flange_b Real phi; flow Real tau; end Flange_b;
+      end Interfaces;
+    end Rotational;
+  end Mechanics;
+  package Blocks
+    package Types
+      type Extrapolation = enumeration(HoldLastPoint, LastTwoPoints, Periodic, NoExtrapolation);
+    end Types;
+    package Tables
+      block CombiTable2Ds
+        parameter Real table[:, :];
+        parameter Modelica.Blocks.Types.Extrapolation extrapolation;
+        Real u1; Real u2; Real y;
+      end CombiTable2Ds;
+    end Tables;
+  end Blocks;
+end Modelica;
+"""
+
+
+def test_the_modelica_package_is_a_whole_model_whose_table_has_the_loads(service):
+    from pymoca import ast, parser, tree
+
+    submission = service.example("standard-pair")
+    submission |= {"force_table": {}, "resolution": {"positions_per_mesh_period": 8, "grid": "coarse"}}
+    results = service.solve(submission)
+    base = os.environ.get("MESHWRIGHT_URL", "http://127.0.0.1:8080")
+    with urllib.request.urlopen(f"{base}/v1/jobs/{results.job['id']}/results/force-table.mo") as answer:
+        text = answer.read().decode()
+    models = parser.parse(LIBRARY)
+    models.extend(parser.parse(text))
+    mesh = tree.flatten(models, ast.ComponentRef.from_string("MeshwrightMesh.Mesh")).classes["MeshwrightMesh.Mesh"]
+    unknowns = [each for each in mesh.symbols.values() if not {"constant", "parameter"} & set(each.prefixes)]
+    # Each table has an equation of its own.
+    assert len(unknowns) == len(mesh.equations) + 2
+
+    matrix = text.split("force[:,:] = [")[1].split("]")[0]
+    rows = np.array([[float(cell) for cell in row.split(",")] for row in matrix.split(";")])
+    angles, approaches = rows[1:, 0], rows[0, 1:]
+    table = results.document["force_table"]
+    for position, eta in enumerate(table["mesh_position"]):
+        row = rows[1 + np.argmin(abs(angles - 2 * np.pi * eta / 50)), 1:]
+        for load, deltas in zip(table["load_n"], table["transmission_error_um"]):
+            # Straight lines between columns.
+            assert np.interp(deltas[position] * 1e-6, approaches, row) == pytest.approx(load, abs=2e-3 * table["load_n"][-1])
