@@ -261,10 +261,18 @@ impl Looks {
         let stretches: Vec<[f64; 2]> = looked.iter().map(|(stretch, ..)| stretch.along).collect();
         let here: Vec<Cell> = looked.iter().map(|(stretch, ..)| stretch.cell).collect();
         let (held, shapes) = compliance(model, &cells.patch, (&here, &stretches), Entries::All);
-        let parts = [&held, &shapes[0], &shapes[1]];
-        let row = |i: usize| parts.map(|part| part.row(i).iter().copied()).into_iter();
+        let [one, other] = &shapes;
+        let width = held.ncols() + one.ncols() + other.ncols();
+        let mut yields = vec![0.0; looked.len() * width];
+        let columns =
+            [&held, one, other].map(|part| (0..part.ncols()).map(|j| part.col_as_slice(j)));
+        for (j, column) in columns.into_iter().flatten().enumerate() {
+            for (row, entry) in yields.chunks_exact_mut(width).zip(column) {
+                row[j] = *entry;
+            }
+        }
         Self {
-            yields: (0..looked.len()).flat_map(|i| row(i).flatten()).collect(),
+            yields,
             looked: looked
                 .into_iter()
                 .map(|(stretch, place, more)| Looked {
