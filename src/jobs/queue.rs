@@ -428,7 +428,7 @@ impl NewJob {
             submission: submission.canonical_json(),
             document_version: DOCUMENT_VERSION,
             input_hash: submission.input_hash(),
-            cost: rough_cost(submission),
+            cost: rough_cost(submission, false),
             positions_total: submission.positions_total(),
             submitted_at: now,
             idempotency_key: None,
@@ -439,16 +439,17 @@ impl NewJob {
     }
 }
 
-/// What a submission takes of a core, in microseconds, as far as its size tells. The engine's own estimate is better, and
-/// takes a tenth of a job; for fair shares the order of magnitude is enough.
-fn rough_cost(submission: &Submission) -> u64 {
+/// What a submission takes of a core, in microseconds, as far as its size tells; less where the pair as drawn is known from others. The
+/// engine's own estimate is better, and takes a tenth of a job; for fair shares the order of magnitude is enough.
+pub(super) fn rough_cost(submission: &Submission, is_known_as_drawn: bool) -> u64 {
     // The closed form of the load distribution needs no grid.
-    let (fixed, per_position) = match submission.case().method {
+    let (as_drawn, per_position) = match submission.case().method {
         Method::LoadDistribution => (200, 5),
         Method::ThreeDimensional => (4_000_000, 5_000),
         Method::ThreeDimensionalProjected => (4_000_000, 50),
-        _ => (20_000, 50),
+        _ => (20_000, 25),
     };
+    let fixed = if is_known_as_drawn { 0 } else { as_drawn };
     submission
         .positions_total()
         .saturating_mul(per_position)

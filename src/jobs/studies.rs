@@ -10,7 +10,7 @@ use uuid::Uuid;
 use meshwright_engine::run::Run;
 
 use super::error::JobError;
-use super::queue::{Jobs, Member};
+use super::queue::{Jobs, Member, rough_cost};
 use super::searches;
 use super::store::{
     Cursor, Document, NewJob, NewRow, NewStudy, StoreError, StoredRow, StudyFilter, StudyOutcome,
@@ -74,13 +74,7 @@ impl Jobs {
     ) -> Result<StudySubmitted, JobError> {
         self.refuse_if_failing()?;
         let now = self.clock.now();
-        let owner = Owner {
-            study: Uuid::now_v7(),
-            client: member.client.clone(),
-            submitted_at: now,
-            memory_mb: self.rules.job_memory_mb,
-            keep: study.keep(),
-        };
+        let owner = self.owner(&study, Uuid::now_v7(), member.client.clone(), now);
         let Expanded {
             study,
             rows,
@@ -149,13 +143,7 @@ impl Jobs {
             match Study::parse(document.as_bytes(), &Run::unattended()) {
                 Ok(study) => {
                     info!(study = %id, expanded = record.expanded, designs = record.total, "study resumed");
-                    let owner = Owner {
-                        study: id,
-                        client,
-                        submitted_at: record.submitted_at,
-                        memory_mb: self.rules.job_memory_mb,
-                        keep: study.keep(),
-                    };
+                    let owner = self.owner(&study, id, client, record.submitted_at);
                     let expanded = usize::try_from(record.expanded).unwrap_or(usize::MAX);
                     self.continue_in_background(study, expanded, owner);
                 }
@@ -169,6 +157,17 @@ impl Jobs {
             }
         }
         Ok(())
+    }
+
+    fn owner(&self, study: &Study, id: Uuid, client: String, submitted_at: Timestamp) -> Owner {
+        Owner {
+            study: id,
+            client,
+            submitted_at,
+            memory_mb: self.rules.job_memory_mb,
+            keep: study.keep(),
+            is_population: study.is_population(),
+        }
     }
 
     fn continue_in_background(&self, study: Study, expanded: usize, owner: Owner) {
@@ -431,6 +430,8 @@ pub(super) struct Owner {
     memory_mb: u64,
     /// How much of their results is kept.
     keep: Kept,
+    /// Whether they are members of a population, whose drawn pair is known from the first of them.
+    is_population: bool,
 }
 
 impl Owner {
@@ -445,6 +446,7 @@ impl Owner {
             Ok(submission) => Ok(NewJob {
                 study: Some(self.study),
                 keep: self.keep,
+                cost: rough_cost(&submission, self.is_population),
                 ..NewJob::of(&submission, &self.client, self.submitted_at)
             }),
             Err(problem) => Err(problem.to_json()),

@@ -52,8 +52,9 @@ impl Pace {
     }
 }
 
-/// So much of a core is claimed at once, in microseconds by the rough estimate: several jobs of a millisecond, or one that takes longer.
-const AT_ONCE: i64 = 20_000;
+/// So much of a core is claimed at once, in microseconds by the rough estimate: many jobs of a millisecond, a few members of a
+/// population, or one that takes longer. While a claim and an end are written their worker computes nothing.
+const AT_ONCE: i64 = 50_000;
 
 /// The workers of this process.
 pub struct Workers {

@@ -239,7 +239,7 @@ mod tests {
         );
         assert!(
             text.contains(
-                "% of the variance of the peak-to-peak value come from /pair/center_distance_mm."
+                "% of the variance of the peak-to-peak value comes from /pair/center_distance_mm."
             ),
             "{text}"
         );

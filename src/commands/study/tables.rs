@@ -146,7 +146,7 @@ pub(super) fn spread_table(results: &PopulationResults, elapsed: Duration) -> St
                 (None, _) => "the teeth of the driven gear".to_owned(),
             };
             text.push_str(&format!(
-                "At {torque} N m {:.0} % of the variance of the peak-to-peak value come from {input}.\n",
+                "At {torque} N m {:.0} % of the variance of the peak-to-peak value comes from {input}.\n",
                 100.0 * influence.share
             ));
         }

@@ -160,6 +160,11 @@ impl Study {
         search.map_or_else(Vec::new, Search::conditions_in_words)
     }
 
+    /// Whether its designs are the members of one population.
+    pub fn is_population(&self) -> bool {
+        self.population().is_some()
+    }
+
     /// Whether its designs are chosen by a search, one after the other.
     pub fn is_search(&self) -> bool {
         self.search().is_some()

@@ -88,12 +88,7 @@ async fn only_the_latest_attempt_may_report_or_finish() {
             .await
             .unwrap()
     );
-    assert!(
-        !store
-            .succeed(lost, end(35), &Packed::of("{}"), None, VERSION)
-            .await
-            .unwrap()
-    );
+    assert!(!store.ends(lost, 35).await);
     assert!(!store.fail(lost, end(35), "{}").await.unwrap());
     assert!(!store.release(lost).await.unwrap());
     assert_eq!(find(&store, job.id).await.status, Status::Running);
@@ -106,12 +101,7 @@ async fn only_the_latest_attempt_may_report_or_finish() {
         "results that come too late leave nothing behind"
     );
 
-    assert!(
-        store
-            .succeed(held, end(36), &Packed::of("{}"), None, VERSION)
-            .await
-            .unwrap()
-    );
+    assert!(store.ends(held, 36).await);
 }
 
 #[tokio::test]
@@ -161,18 +151,8 @@ async fn a_shutdown_does_not_count_as_an_attempt_but_still_fences() {
 
     let held = claim(&store, 3).await;
     assert_eq!(find(&store, job.id).await.attempts_counted, 1);
-    assert!(
-        !store
-            .succeed(given_back, end(4), &Packed::of("{}"), None, VERSION)
-            .await
-            .unwrap()
-    );
-    assert!(
-        store
-            .succeed(held, end(4), &Packed::of("{}"), None, VERSION)
-            .await
-            .unwrap()
-    );
+    assert!(!store.ends(given_back, 4).await);
+    assert!(store.ends(held, 4).await);
 }
 
 #[tokio::test]
@@ -206,18 +186,7 @@ async fn a_waiting_and_a_running_job_can_be_cancelled_and_an_ended_one_cannot() 
 async fn equal_input_gets_the_results_at_once_even_after_the_first_job_is_deleted() {
     let (store, _folder) = store().await;
     let first = queued(&store, 1, "a").await;
-    assert!(
-        store
-            .succeed(
-                claim(&store, 2).await,
-                end(3),
-                &Packed::of("{}"),
-                None,
-                VERSION
-            )
-            .await
-            .unwrap()
-    );
+    assert!(store.ends(claim(&store, 2).await, 3).await);
 
     let Outcome::Known(second) = submit(&store, new(4, "a")).await else {
         panic!("computed twice")
@@ -249,18 +218,7 @@ async fn equal_input_gets_the_results_at_once_even_after_the_first_job_is_delete
 async fn another_client_or_another_version_computes_afresh() {
     let (store, _folder) = store().await;
     queued(&store, 1, "a").await;
-    assert!(
-        store
-            .succeed(
-                claim(&store, 2).await,
-                end(3),
-                &Packed::of("{}"),
-                None,
-                VERSION
-            )
-            .await
-            .unwrap()
-    );
+    assert!(store.ends(claim(&store, 2).await, 3).await);
     let mut foreign = new(4, "a");
     foreign.client = "other".to_owned();
     assert!(matches!(submit(&store, foreign).await, Outcome::Queued(_)));
@@ -335,18 +293,7 @@ async fn a_key_sees_the_submission_before_it_in_the_same_commit() {
 async fn a_full_queue_takes_no_more_but_still_knows_what_it_has_done() {
     let (store, _folder) = store().await;
     queued(&store, 1, "done").await;
-    assert!(
-        store
-            .succeed(
-                claim(&store, 2).await,
-                end(3),
-                &Packed::of("{}"),
-                None,
-                VERSION
-            )
-            .await
-            .unwrap()
-    );
+    assert!(store.ends(claim(&store, 2).await, 3).await);
     let batch = [new(4, "a"), new(4, "b"), new(4, "c"), new(4, "done")];
     let outcomes = store.submit(&batch, bounds(4, 2)).await.unwrap();
     assert!(matches!(

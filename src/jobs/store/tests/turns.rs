@@ -210,12 +210,7 @@ async fn equal_jobs_are_computed_once_and_block_nobody() {
         other.id,
         "the equal one is passed over"
     );
-    assert!(
-        store
-            .succeed(first, end(6), &Packed::of("{}"), None, VERSION)
-            .await
-            .unwrap()
-    );
+    assert!(store.ends(first, 6).await);
     let claimed = store.claim(at(7), lease(7), READER).await.unwrap();
     assert!(claimed.started.is_empty());
     assert_eq!(
@@ -345,9 +340,7 @@ async fn of_equal_designs_and_computed_ones_in_one_lane_only_new_work_is_begun()
     let known = queued(&store, 1, "known").await;
     let held = claim(&store, 1).await;
     let id = study_of(&store, &["new", "known", "new", "other", "known", "last"]).await;
-    let text = Packed::of("{}");
-    let ended = store.succeed(held, end(2), &text, None, VERSION);
-    assert!(ended.await.unwrap());
+    assert!(store.ends(held, 2).await);
     let several = Reader {
         at_once: 2500,
         ..READER
@@ -463,12 +456,7 @@ async fn a_job_that_kills_its_process_is_found_and_those_beside_it_lose_no_attem
     assert_eq!(held.id, innocent.id, "it is run alone, too");
     assert_eq!(find(&store, innocent.id).await.attempts_counted, 1);
     assert_eq!(next(&store, 7).await, None);
-    assert!(
-        store
-            .succeed(held, end(8), &Packed::of("{}"), None, VERSION)
-            .await
-            .unwrap()
-    );
+    assert!(store.ends(held, 8).await);
     assert_eq!(next(&store, 9).await.unwrap().id, waiting.id);
     assert_eq!(find(&store, waiting.id).await.attempts_counted, 1);
 }
@@ -535,9 +523,7 @@ async fn a_study_that_is_cancelled_ends_with_the_last_of_its_jobs() {
     assert!(store.cancel_study(CLIENT, id, at(3)).await.unwrap());
     assert_eq!(next(&store, 3).await, None, "no further one is begun");
     // What ends meanwhile keeps its results, and does not end the study; another process finds it.
-    let text = Packed::of("{}");
-    let kept = store.succeed(running, end(4), &text, None, VERSION);
-    assert!(kept.await.unwrap());
+    assert!(store.ends(running, 4).await);
     assert_eq!(store.unfinished_cancellations().await.unwrap(), [id]);
     let mut dismissed = Vec::new();
     loop {

@@ -123,12 +123,7 @@ async fn equal_work_is_done_once_whoever_takes_it() {
     let claimed = at_once(&stores, async |_, store: Store| next(&store, 2).await).await;
     let claimed: Vec<Job> = claimed.into_iter().flatten().collect();
     assert_eq!(claimed.len(), 1, "the others wait for its results");
-    assert!(
-        stores[3]
-            .succeed(of(&claimed[0]), end(3), &Packed::of("{}"), None, VERSION)
-            .await
-            .unwrap()
-    );
+    assert!(stores[3].ends(of(&claimed[0]), 3).await);
     let given = at_once(&stores, async |_, store: Store| {
         let claimed = store.claim(at(4), lease(4), READER).await.unwrap();
         assert_eq!(claimed.started, []);
@@ -162,12 +157,7 @@ async fn a_process_takes_nothing_from_another_one_that_reports() {
             .await
             .unwrap()
     );
-    assert!(
-        !first
-            .succeed(of_first, end(34), &Packed::of("{}"), None, VERSION)
-            .await
-            .unwrap()
-    );
+    assert!(!first.ends(of_first, 34).await);
     let again = find(&first, a.id).await;
     assert_eq!(
         (again.status, again.attempts_counted),
@@ -199,12 +189,7 @@ async fn what_ran_together_in_a_process_that_died_is_run_alone_in_one() {
     assert_eq!(next(&living, 35).await, None, "it computes something else");
     assert_eq!(claim(&third, 35).await.id, poison.id);
     assert_eq!(next(&third, 35).await, None, "nothing begins beside it");
-    assert!(
-        living
-            .succeed(held, end(36), &Packed::of("{}"), None, VERSION)
-            .await
-            .unwrap()
-    );
+    assert!(living.ends(held, 36).await);
     assert_eq!(claim(&living, 37).await.id, innocent.id);
     assert_eq!(find(&living, innocent.id).await.attempts_counted, 1);
 }
@@ -426,12 +411,7 @@ async fn a_document_that_jobs_come_to_need_is_not_removed_under_them() {
                     None => tokio::task::yield_now().await,
                 }
             };
-            assert!(
-                store
-                    .succeed(of(&claimed), end(3), &Packed::of("{}"), None, VERSION)
-                    .await
-                    .unwrap()
-            );
+            assert!(store.ends(of(&claimed), 3).await);
             while !store
                 .find(&client, id)
                 .await
