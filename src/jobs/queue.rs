@@ -447,7 +447,7 @@ pub(super) fn rough_cost(submission: &Submission, is_known_as_drawn: bool) -> u6
         Method::LoadDistribution => (200, 5),
         Method::ThreeDimensional => (4_000_000, 5_000),
         Method::ThreeDimensionalProjected => (4_000_000, 50),
-        _ => (20_000, 25),
+        _ => (40_000, 25),
     };
     let fixed = if is_known_as_drawn { 0 } else { as_drawn };
     submission
