@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-/// Static transmission error and mesh stiffness of spur gears with lightening holes.
+/// Static transmission error and mesh stiffness of gears with lightening holes.
 #[derive(Parser)]
 #[command(version, about)]
 struct Arguments {

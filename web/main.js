@@ -554,7 +554,7 @@ async function openFile(file) {
     }
     const { submissions, not_read: left, assumed, refused } = await post("v1/rexs", text, { headers: { "content-type": "application/xml" } });
     const [submission] = submissions;
-    if (!submission) throw new ProblemError({ detail: refused.map(({ place, detail }) => `${place}: ${detail}`).join(" ") || "The model has no pair of spur gears." });
+    if (!submission) throw new ProblemError({ detail: refused.map(({ place, detail }) => `${place}: ${detail}`).join(" ") || "The model has no pair of external gears." });
     design.replace(submission, "open");
     const more = submissions.length > 1 ? [`The first of ${submissions.length} pairs.`] : [];
     note.replaceChildren([...more, ...assumed, ...(left.length ? [`Not read: ${left.map(({ component, attribute }) => [component, attribute].filter(Boolean).join(" ")).join(", ")}.`] : [])].join(" "));

@@ -1,4 +1,4 @@
-//! The mechanics of Meshwright: static transmission error and mesh stiffness of spur gears whose blanks have holes.
+//! The mechanics of Meshwright: static transmission error and mesh stiffness of spur and helical gears whose blanks have holes.
 //!
 //! Pure functions of SI quantities: no clock, file, document or server. The source is Benaicha et al., "A decomposition
 //! method for the fast computation of the transmission error of gears with holes" (2021, hal-03230238); equation numbers

@@ -28,7 +28,7 @@ use crate::wire::{Code, Problem};
 #[openapi(
     info(
         title = "Meshwright",
-        description = "Static transmission error and mesh stiffness of spur gear pairs, with tip relief and lightening holes.\n\nSubmit a job, look until it is `successful`, get its results. Units stand in the names of fields. Every error is a problem document (RFC 9457) with a stable `code`.",
+        description = "Static transmission error and mesh stiffness of spur and helical gear pairs, with tip relief and lightening holes.\n\nSubmit a job, look until it is `successful`, get its results. Units stand in the names of fields. Every error is a problem document (RFC 9457) with a stable `code`.",
         license(name = "MIT", identifier = "MIT"),
     ),
     components(schemas(ProgressView, StudyProgressView)),

@@ -42,7 +42,7 @@ pub(super) struct ModelParameters {
 #[derive(Serialize, ToSchema)]
 #[schema(as = RexsModel, title = "Model")]
 pub(super) struct ModelView {
-    /// A submission for each cylindrical stage that is a pair of spur gears, every default filled in.
+    /// A submission for each cylindrical stage that is a pair of external gears, every default filled in.
     #[schema(value_type = Vec<Submission>)]
     submissions: Vec<Submission>,
     /// What the model says and was read for none of them.

@@ -98,7 +98,7 @@ codes! {
     TooLarge "too-large" 422 "The work asked for is too large"
         "A submission may have at most 60 torques and 20,000 positions, a preview fewer, counted as mesh periods times positions per mesh period times torques. The detail says how many were asked for and what would fit: fewer positions, fewer torques or a shorter span. /v1/limits tells the limits."
     ModelRefused "model-refused" 422 "The model has no pair that can be taken"
-        "The body is no REXS model, or none of its cylindrical stages is a pair of external spur gears that can be computed. The detail says why of each, with its component and attribute."
+        "The body is no REXS model, or none of its cylindrical stages is a pair of external gears that can be computed. The detail says why of each, with its component and attribute."
     NotConverged "not-converged" 422 "The contact did not converge"
         "The contact solver did not meet its tolerance at a position, which the detail names with the residual gap, or no flanks came near each other there. A larger gap tolerance, another penalty or the active set helps where the augmented Lagrangian was asked for."
     NoFormula "no-formula" 422 "A formula does not hold for this pair"

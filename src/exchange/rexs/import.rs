@@ -57,7 +57,7 @@ impl Import {
 ///
 /// # Errors
 ///
-/// Everything that is wrong, with its place: what is no model, several stages, and what a spur gear pair cannot have.
+/// Everything that is wrong, with its place: what is no model, several stages, and what the mechanics cannot compute.
 pub fn import(bytes: &[u8], choices: &Choices) -> Result<Import, Refused> {
     let model = Model::read(bytes)?;
     let reading = Reading {
@@ -315,7 +315,7 @@ impl<'a> Reading<'a> {
         for gear in [first, second] {
             if gear.kind != "cylindrical_gear" {
                 let detail = format!(
-                    "A gear of type {} cannot be computed; the mechanics know external spur gears, type cylindrical_gear.",
+                    "A gear of type {} cannot be computed; the mechanics know external spur and helical gears, type cylindrical_gear.",
                     gear.kind
                 );
                 self.wrong(gear.place(), detail);

@@ -44,7 +44,7 @@ use super::units::{Side, from_mm, from_um, rounded_inward};
 pub(super) const MOST_MODIFICATIONS: usize = 16;
 
 document! {
-    /// A spur gear as its drawing describes it.
+    /// A spur or helical gear as its drawing describes it.
     pub struct GearDocument as "Gear", "Gear" {
         /// The number of teeth Z. Few teeth need profile shift against undercut.
         tooth_count: u32 = number("Number of teeth", "1", 5.0, 300.0),

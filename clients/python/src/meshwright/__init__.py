@@ -1,4 +1,4 @@
-"""Client of a Meshwright service: transmission error and mesh stiffness of spur gear pairs with holes."""
+"""Client of a Meshwright service: transmission error and mesh stiffness of gear pairs with holes."""
 
 from .client import AsyncClient, Client
 from .contact_pattern import ContactPattern
