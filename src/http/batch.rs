@@ -16,7 +16,7 @@ use super::document::Document;
 use super::headers::Made;
 use super::parameters::IdempotencyKey;
 use super::view::{JobView, with_public_type};
-use crate::jobs::Submitted;
+use crate::jobs::{Job, Submitted};
 use crate::wire::{Code, FieldError, Problem, Submission};
 
 /// The most submissions of a batch.
@@ -65,14 +65,10 @@ pub(super) struct BatchItem<'a> {
 #[utoipa::path(
     post, path = "/v1/jobs/batch", tag = "Jobs", operation_id = "submit_batch",
     request_body(content = Batch, content_type = "application/json", description = "The submissions."),
-    params(
-        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[!-~]([ -~]*[!-~])?$", description = "A word of the client's choice, 1 to 250 characters, kept for a day: the same key and submission at the same place get the same job."),
-    ),
+    params(IdempotencyKey),
     responses(
         (status = 202, description = "What came of each submission. None may have been taken.", body = BatchAnswer),
-        (status = 400, description = "The body is no JSON, or a header is not understood."),
-        (status = 413, description = "The body has more than 4 MiB."),
-        (status = 415, description = "The body is not declared as JSON."),
+        Document<4>,
         (status = 422, description = "The body is no batch, has more than 100 submissions, or fields that no submission may have; `errors` says which."),
         (status = 503, description = "Too many batches come at once. Try again after `Retry-After` seconds."),
     ),
@@ -94,10 +90,10 @@ pub(super) async fn submit(
         }
     });
     // Submissions that arrive together share a commit.
-    let outcomes: Vec<Result<Submitted, Problem>> = join_all(jobs).await;
+    let outcomes: Vec<Result<Submitted<Job>, Problem>> = join_all(jobs).await;
 
-    let item = |outcome: &'_ Result<Submitted, Problem>| match outcome {
-        Ok(submitted) => (Some(submitted.job.clone()), None),
+    let item = |outcome: &'_ Result<Submitted<Job>, Problem>| match outcome {
+        Ok(submitted) => (Some(submitted.record.clone()), None),
         Err(problem) => (None, Some(problem.clone())),
     };
     let outcomes: Vec<_> = outcomes.iter().map(item).collect();

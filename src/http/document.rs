@@ -1,5 +1,6 @@
 //! The body of a request: a JSON document of bounded size.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -11,6 +12,8 @@ use futures_util::StreamExt;
 use http_body::Body as _;
 use serde::Deserialize;
 use tokio::time::timeout;
+use utoipa::IntoResponses;
+use utoipa::openapi::{RefOr, Response};
 
 use super::app::App;
 use super::client::ClientName;
@@ -38,18 +41,45 @@ impl<const MIB: usize> FromRequest<App> for Document<MIB> {
     type Rejection = Problem;
 
     async fn from_request(request: Request, app: &App) -> Result<Self, Problem> {
-        let (body, memory) = taken(request, app, MIB * 1024 * 1024, "json").await?;
+        let (body, memory) = taken(request, app, MIB, "json").await?;
         Ok(Self(body, memory))
     }
 }
 
-/// The body of `request`, of the media type `kind` and `limit` bytes at most, and the memory for it.
+impl<const MIB: usize> IntoResponses for Document<MIB> {
+    fn responses() -> BTreeMap<String, RefOr<Response>> {
+        let broken = (
+            "400",
+            "The body is no JSON, or a header is not understood.".to_owned(),
+        );
+        [broken]
+            .into_iter()
+            .chain(refusals(MIB, "JSON"))
+            .map(declared)
+            .collect()
+    }
+}
+
+/// What may be wrong with a body before it is read: its status, and a sentence.
+fn refusals(mib: usize, kind: &str) -> [(&'static str, String); 2] {
+    [
+        ("413", format!("The body has more than {mib} MiB.")),
+        ("415", format!("The body is not declared as {kind}.")),
+    ]
+}
+
+fn declared((status, sentence): (&str, String)) -> (String, RefOr<Response>) {
+    (status.to_owned(), Response::new(sentence).into())
+}
+
+/// The body of `request`, of the media type `kind` and `mib` MiB at most, and the memory for it.
 async fn taken(
     request: Request,
     app: &App,
-    limit: usize,
+    mib: usize,
     kind: &str,
 ) -> Result<(Bytes, Part), Problem> {
+    let limit = mib * 1024 * 1024;
     let media_type = check_media_type(request.headers(), kind);
     let length = request.body().size_hint().upper();
     let length = length.map_or(limit, |length| length.min(limit as u64) as usize);
@@ -81,15 +111,24 @@ impl<const MIB: usize> Document<MIB> {
     }
 }
 
-/// The bytes of a request's XML document, 4 MiB at most, and the memory that it takes.
+/// A model of a gearbox may have so many MiB.
+const XML_MIB: usize = 4;
+
+/// The bytes of a request's XML document, and the memory that it takes.
 pub(super) struct XmlDocument(pub(super) Bytes, pub(super) Part);
 
 impl FromRequest<App> for XmlDocument {
     type Rejection = Problem;
 
     async fn from_request(request: Request, app: &App) -> Result<Self, Problem> {
-        let (body, memory) = taken(request, app, 4 * 1024 * 1024, "xml").await?;
+        let (body, memory) = taken(request, app, XML_MIB, "xml").await?;
         Ok(Self(body, memory))
+    }
+}
+
+impl IntoResponses for XmlDocument {
+    fn responses() -> BTreeMap<String, RefOr<Response>> {
+        refusals(XML_MIB, "XML").into_iter().map(declared).collect()
     }
 }
 

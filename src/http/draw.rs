@@ -18,9 +18,7 @@ use crate::wire::{Draw, DrawnDeviations, Problem};
     request_body(content = DrawDocument, content_type = "application/json", description = "The gear, the class, and the seed."),
     responses(
         (status = 200, description = "The teeth.", body = DrawnDeviations),
-        (status = 400, description = "The body is no JSON."),
-        (status = 413, description = "The body has more than 1 MiB."),
-        (status = 415, description = "The body is not declared as JSON."),
+        Document,
         (status = 422, description = "The gear cannot be made, or there is no such class; `errors` says which field is why."),
     ),
 )]

@@ -3,12 +3,13 @@
 use axum::Json;
 use axum::extract::{Path, State};
 use axum::http::StatusCode;
-use axum::http::header::{CONTENT_TYPE, HeaderMap, HeaderValue, RETRY_AFTER};
+use axum::http::header::HeaderMap;
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use utoipa::IntoParams;
 use uuid::Uuid;
 
+use super::answer::{json, tell_when_to_return};
 use super::app::App;
 use super::client::Client;
 use super::conditional::{Keep, Tag};
@@ -162,18 +163,10 @@ pub(super) async fn list(
         .jobs
         .list(client.name(), &parameters.filter()?, limit)
         .await?;
-    let views = found.items.iter().map(|job| JobView::new(job, &app.edge));
-    let page = Page {
-        items: views.collect(),
-        next: found.next.map(|cursor| cursor.to_string()),
-    };
     let limit = limit.to_string();
-    Ok(page::answer(
-        &app.edge,
-        "/v1/jobs",
-        &parameters.pairs(&limit),
-        page,
-    ))
+    let pairs = parameters.pairs(&limit);
+    let view = |job| JobView::new(job, &app.edge);
+    Ok(page::answer(&app.edge, "/v1/jobs", &pairs, &found, view))
 }
 
 /// Look at a job
@@ -181,10 +174,7 @@ pub(super) async fn list(
 /// Its state, progress and submission. With `If-None-Match` it costs nothing while nothing changes.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}", tag = "Jobs", operation_id = "get_job",
-    params(
-        ("Prefer" = Option<String>, Header, description = "`wait=N`: answer when the job has ended, or after N seconds (60 at most)."),
-        IfNoneMatch,
-    ),
+    params(Wait, IfNoneMatch),
     responses(
         (status = 200, description = "The job.", body = JobView, headers(
             ("Retry-After" = u32, description = "Until the job has ended: seconds after which it is worth looking again."),
@@ -212,14 +202,11 @@ pub(super) async fn show(
     let whole = async {
         let submission = app.jobs.submission(id).await?;
         let body = JobView::whole(&job, &submission, &app.edge).to_json();
-        Ok::<_, Problem>(([(CONTENT_TYPE, "application/json")], body).into_response())
+        Ok::<_, Problem>(json(body))
     };
     let mut response = tag.answer(Keep::AskAgain, &request, whole).await?;
-    let headers = response.headers_mut();
-    wait.acknowledge(headers);
-    if !job.status.has_ended() {
-        headers.insert(RETRY_AFTER, HeaderValue::from_static("1"));
-    }
+    wait.acknowledge(response.headers_mut());
+    tell_when_to_return(job.status.has_ended(), &mut response);
     Ok(response)
 }
 

@@ -2,8 +2,9 @@
 //!
 //! In reading order: what handlers work with; how connections are served (who is there, and what they take of their answers);
 //! the router and its layers; who gets in; how errors become problem documents; what requests are made of (body, client,
-//! parameters, preferences); what answers are made of (entity tags, packing, pages, the view of a job); the handlers.
+//! parameters, preferences); what answers are made of (bodies and headers, entity tags, packing, pages, the view of a job); the handlers.
 
+mod answer;
 mod app;
 mod aside;
 mod batch;

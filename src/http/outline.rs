@@ -1,9 +1,10 @@
 //! The outline of a pair: numbers for pages that draw it, or the drawing itself.
 
 use axum::http::HeaderMap;
-use axum::http::header::{ACCEPT, CONTENT_TYPE, HeaderValue, VARY};
-use axum::response::{IntoResponse, Response};
+use axum::http::header::{ACCEPT, HeaderValue, VARY};
+use axum::response::Response;
 
+use super::answer::json;
 use super::aside::aside;
 use super::client::Onlooker;
 use super::document::Document;
@@ -21,9 +22,7 @@ use crate::wire::{PairOutline, Problem, Submission};
     request_body(content = Submission, content_type = "application/json", description = "The submission."),
     responses(
         (status = 200, description = "The outline.", content((PairOutline = "application/json"), (String = "image/svg+xml"))),
-        (status = 400, description = "The body is no JSON."),
-        (status = 413, description = "The body has more than 1 MiB."),
-        (status = 415, description = "The body is not declared as JSON."),
+        Document,
         (status = 422, description = "The pair cannot be made; `errors` says which field is why."),
     ),
 )]
@@ -39,8 +38,8 @@ pub(super) async fn outline(
         if as_picture {
             return pictures::pair(pair).map(pictures::answer);
         }
-        let json = PairOutline::of(pair).to_json().map_err(|_| internal())?;
-        Ok(([(CONTENT_TYPE, "application/json")], json).into_response())
+        let outline = PairOutline::of(pair).to_json().map_err(|_| internal())?;
+        Ok(json(outline))
     });
     let mut response = made.await??;
     let headers = response.headers_mut();

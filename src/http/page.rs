@@ -9,7 +9,7 @@ use utoipa::ToSchema;
 
 use super::app::Edge;
 use super::parameters::invalid;
-use crate::jobs::{Cursor, Span};
+use crate::jobs::{Cursor, Listed, Span};
 use crate::wire::Problem;
 
 /// A list has so many items unless it is told, and so many at most.
@@ -20,9 +20,9 @@ pub(super) const LARGEST_LIMIT: u32 = 200;
 #[derive(Serialize, ToSchema)]
 pub(super) struct Page<T> {
     /// The items, newest first.
-    pub(super) items: Vec<T>,
+    items: Vec<T>,
     /// The value of `cursor` that gives the next items; null at the end of the list.
-    pub(super) next: Option<String>,
+    next: Option<String>,
 }
 
 /// The number of items that is asked for.
@@ -58,13 +58,18 @@ pub(super) fn span(since: Option<&str>, until: Option<&str>) -> Result<Span, Pro
     })
 }
 
-/// The answer: the page, and a link to the next one at `path` with the same parameters.
-pub(super) fn answer<T: Serialize>(
+/// The answer: the page of what was `found`, and a link to the next one at `path` with the same parameters.
+pub(super) fn answer<'a, T, V: Serialize>(
     edge: &Edge,
     path: &str,
     parameters: &[(&str, Option<&str>)],
-    page: Page<T>,
+    found: &'a Listed<T>,
+    view: impl Fn(&'a T) -> V,
 ) -> Response {
+    let page = Page {
+        items: found.items.iter().map(view).collect(),
+        next: found.next.map(|cursor| cursor.to_string()),
+    };
     let link = page.next.as_ref().map(|cursor| {
         let mut query = form_urlencoded::Serializer::new(String::new());
         for (name, value) in parameters {

@@ -7,6 +7,7 @@ use axum::extract::FromRequestParts;
 use axum::http::HeaderMap;
 use axum::http::header::HeaderValue;
 use axum::http::request::Parts;
+use utoipa::IntoParams;
 
 use super::door::{Door, PlaceToWait};
 
@@ -14,8 +15,13 @@ use super::door::{Door, PlaceToWait};
 pub(super) const LONGEST_WAIT_S: u64 = 60;
 
 /// So long a client would wait for the end of a job.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Wait(Option<u64>);
+#[derive(Debug, Clone, Copy, PartialEq, Eq, IntoParams)]
+#[into_params(names("Prefer"), parameter_in = Header)]
+pub(super) struct Wait(
+    /// `wait=N`: answer when it has ended, or after N seconds (60 at most).
+    #[param(value_type = Option<String>)]
+    Option<u64>,
+);
 
 /// So long it may wait, and its place among those who do. Who finds no place is answered at once.
 #[derive(Debug)]

@@ -28,9 +28,7 @@ use crate::wire::{self, Limits, Problem, Submission, Validation};
     request_body(content = Submission, content_type = "application/json", description = "The submission."),
     responses(
         (status = 200, description = "The submission can be computed.", body = Validation),
-        (status = 400, description = "The body is no JSON."),
-        (status = 413, description = "The body has more than 1 MiB."),
-        (status = 415, description = "The body is not declared as JSON."),
+        Document,
         (status = 422, description = "The submission cannot be computed; `errors` says which field is why."),
         (status = 503, description = "Too many submissions are checked at once. Try again after `Retry-After` seconds."),
     ),

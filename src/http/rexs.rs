@@ -84,8 +84,7 @@ pub(super) struct RefusedView {
     responses(
         (status = 200, description = "The submissions.", body = ModelView),
         (status = 400, description = "A parameter is not understood."),
-        (status = 413, description = "The body has more than 4 MiB."),
-        (status = 415, description = "The body is not declared as XML."),
+        XmlDocument,
         (status = 422, description = "It is no model, or none of its stages can be taken; the detail says why."),
     ),
 )]

@@ -1,11 +1,10 @@
 //! Submitting a job.
 
 use axum::extract::State;
-use axum::http::StatusCode;
-use axum::http::header::{CONTENT_TYPE, HeaderValue, LOCATION, RETRY_AFTER};
-use axum::response::{IntoResponse, Response};
+use axum::response::Response;
 use serde_json::value::RawValue;
 
+use super::answer;
 use super::app::App;
 use super::aside::aside;
 use super::client::Client;
@@ -14,7 +13,7 @@ use super::headers::Made;
 use super::parameters::IdempotencyKey;
 use super::prefer::Wait;
 use super::view::JobView;
-use crate::jobs::{Job, Submitted};
+use crate::jobs::Job;
 use crate::wire::{Problem, Submission};
 
 /// Submit a job
@@ -24,19 +23,14 @@ use crate::wire::{Problem, Submission};
 #[utoipa::path(
     post, path = "/v1/jobs", tag = "Jobs", operation_id = "submit_job",
     request_body(content = Submission, content_type = "application/json", description = "The submission."),
-    params(
-        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[!-~]([ -~]*[!-~])?$", description = "A word of the client's choice, 1 to 255 characters, kept for a day: the same key and submission get the same job, however often they are sent."),
-        ("Prefer" = Option<String>, Header, description = "`wait=N`: answer when the job has ended, with its `results` inside, or after N seconds (60 at most)."),
-    ),
+    params(IdempotencyKey, Wait),
     responses(
         (status = 202, description = "The job is queued, or is known and successful already.", body = JobView, headers(
             ("Location" = String, description = "The address of the job."),
             ("Retry-After" = u32, description = "Seconds after which it is worth looking."),
         )),
         (status = 200, description = "The job has ended: with `Prefer: wait` in time, and its `results` or its `problem` is inside; with a repeated `Idempotency-Key` meanwhile.", body = JobView),
-        (status = 400, description = "The body is no JSON, or a header is not understood."),
-        (status = 413, description = "The body has more than 1 MiB."),
-        (status = 415, description = "The body is not declared as JSON."),
+        Document,
         (status = 422, description = "The submission cannot be computed; `errors` says which field is why. Or the key was used for another submission."),
         (status = 429, description = "More jobs of this client wait than may."),
         (status = 503, description = "The queue is full, nothing can be stored, or the service is shutting down. Try again after `Retry-After` seconds."),
@@ -52,7 +46,8 @@ pub(super) async fn submit(
     let submission = Submission::parse(&document)?;
     // What was read is small now, and its client may wait for long.
     drop((document, memory));
-    let Submitted { mut job, repeated } = app.jobs.submit(&client.0, &submission, key).await?;
+    let submitted = app.jobs.submit(&client.0, &submission, key).await?;
+    let (mut job, repeated) = (submitted.record, submitted.repeated);
     let made = (!job.status.has_ended()).then(|| Made(vec![job.id]));
 
     // The job was made: whatever goes wrong from here on, it is told of it.
@@ -65,24 +60,12 @@ pub(super) async fn submit(
         results = results_of(&app, &job).await;
     }
     let has_waited = wait.patience().is_some();
-    let status = if job.status.has_ended() && (repeated || has_waited) {
-        StatusCode::OK
-    } else {
-        StatusCode::ACCEPTED
-    };
-    let body = JobView::with_results(&job, results, &app.edge).to_json();
-    let mut response = (status, [(CONTENT_TYPE, "application/json")], body).into_response();
-    if !job.status.has_ended() {
-        response
-            .headers_mut()
-            .insert(RETRY_AFTER, HeaderValue::from_static("1"));
-    }
+    let view = JobView::with_results(&job, results, &app.edge).to_json();
+    let (address, has_ended) = (app.edge.job(job.id), job.status.has_ended());
+    let mut response = answer::submitted(view, &address, has_ended, repeated || has_waited);
     if let Some(made) = made {
         response.extensions_mut().insert(made);
     }
-    response
-        .headers_mut()
-        .insert(LOCATION, address(&app.edge.job(job.id)));
     wait.acknowledge(response.headers_mut());
     Ok(response)
 }
@@ -93,9 +76,4 @@ async fn results_of(app: &App, job: &Job) -> Option<Box<RawValue>> {
     let document = app.jobs.document(job).await.ok()?;
     let read = move |_: &_| RawValue::from_string(document.text().ok()?).ok();
     aside(&job.client, read).await.ok()?
-}
-
-pub(super) fn address(url: &str) -> HeaderValue {
-    HeaderValue::from_str(url)
-        .expect("the public address was checked at the start, an id is hexadecimal")
 }

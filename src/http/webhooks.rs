@@ -171,15 +171,11 @@ fn webhook_id(text: &str) -> Result<Uuid, Problem> {
 #[utoipa::path(
     post, path = "/v1/webhooks", tag = "Webhooks", operation_id = "make_webhook",
     request_body(content = NewWebhookDocument, content_type = "application/json", description = "The webhook."),
-    params(
-        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[!-~]([ -~]*[!-~])?$", description = "A word of the client's choice, kept for a day: the same key and document get the same webhook, with its secret."),
-    ),
+    params(IdempotencyKey),
     responses(
         (status = 200, description = "The webhook that an earlier request with this key has made, with its secret.", body = WebhookView),
         (status = 201, description = "The webhook, with its secret, which is told this once.", body = WebhookView),
-        (status = 400, description = "The body is no JSON, or a header is not understood."),
-        (status = 413, description = "The body has more than 1 MiB."),
-        (status = 415, description = "The body is not declared as JSON."),
+        Document,
         (status = 422, description = "Webhooks are off, the address is not one to send to, or the key was used for another webhook."),
     ),
 )]

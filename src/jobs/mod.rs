@@ -2,7 +2,7 @@
 //!
 //! In reading order: the two [`Clock`]s; what a [`Job`] and a [`StudyRecord`] are; the [`Store`] that keeps them and the
 //! transitions between their states; what of a running job lives in memory only (`live`); the [`Jobs`] that handlers speak
-//! to (`queue`, `studies`); the [`Workers`] that compute; and the keeper that removes what is old. What clients share is a [`Budget`].
+//! to (`queue`, `studies`, and in `resource` what both have in common); the [`Workers`] that compute; and the keeper that removes what is old. What clients share is a [`Budget`].
 //! [`Previews`] are computed in the same way, but are no jobs: a request waits for each, and nothing is kept.
 
 mod attempt;
@@ -15,6 +15,7 @@ mod live;
 mod others;
 mod previews;
 mod queue;
+mod resource;
 mod searches;
 pub(crate) mod store;
 mod studies;
@@ -30,13 +31,14 @@ pub use keeper::{Keep, Keeper};
 pub use live::News;
 pub use previews::{Computed, PreviewError, PreviewRules, Previewed, Previews};
 pub(crate) use queue::KEY_LIFETIME;
-pub use queue::{Jobs, Member, Page, Rules, Submitted};
+pub use queue::{Jobs, Member, Rules};
+pub use resource::{Listed, Submitted};
 pub use store::{
     BackupError, Cursor, Damaged, Depth, Document, EventKind, Filter, KeyRecord, Membership,
     Migrate, NoCursor, OpenError, Place, Removed, Role, Space, Span, Store, StoreError,
     StudyFilter,
 };
-pub use studies::{DocumentLine, StudyPage, StudySubmitted};
+pub use studies::DocumentLine;
 pub use study::StudyRecord;
 pub use threads::Cores;
 pub use worker::{Pace, Solve, StartError, Workers};

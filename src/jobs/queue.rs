@@ -15,9 +15,8 @@ use super::error::JobError;
 use super::job::Job;
 use super::live::{Live, News};
 use super::others;
-use super::store::{
-    Cursor, Depth, Document, Filter, NewJob, Outcome, QueueBounds, Store, StoreError,
-};
+use super::resource::{Listed, Submitted};
+use super::store::{Depth, Document, Filter, NewJob, Outcome, QueueBounds, Store, StoreError};
 use crate::wire::{DOCUMENT_VERSION, Kept, SOLVER_VERSION, Status, Submission};
 
 /// So long a repeated request is recognized by its key.
@@ -58,24 +57,6 @@ impl Member {
             queue_limit: None,
         }
     }
-}
-
-/// A job that answers a submission.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Submitted {
-    /// The job.
-    pub job: Job,
-    /// Whether an earlier request with the same key made it.
-    pub repeated: bool,
-}
-
-/// Some jobs of a list.
-#[derive(Debug)]
-pub struct Page {
-    /// The jobs, newest first.
-    pub items: Vec<Job>,
-    /// Where the list goes on.
-    pub next: Option<Cursor>,
 }
 
 /// All jobs: the store, and what of the running ones lives in memory.
@@ -137,7 +118,7 @@ impl Jobs {
         member: &Member,
         submission: &Submission,
         idempotency_key: Option<String>,
-    ) -> Result<Submitted, JobError> {
+    ) -> Result<Submitted<Job>, JobError> {
         self.refuse_if_failing()?;
         self.check_memory(submission)?;
         let client_limit = member.queue_limit.unwrap_or(self.rules.client_queue_limit);
@@ -153,11 +134,11 @@ impl Jobs {
             .map_err(|_| JobError::ShuttingDown)?;
         match outcome.await.map_err(|_| JobError::ShuttingDown)?? {
             Outcome::Queued(job) | Outcome::Known(job) => Ok(Submitted {
-                job,
+                record: job,
                 repeated: false,
             }),
             Outcome::Repeated(job) => Ok(Submitted {
-                job: self.with_live_progress(job),
+                record: self.with_live_progress(job),
                 repeated: true,
             }),
             Outcome::KeyConflict => Err(JobError::KeyConflict),
@@ -243,21 +224,11 @@ impl Jobs {
     ///
     /// [`JobError::NotFound`], [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn wait(&self, client: &str, id: Uuid, patience: Duration) -> Result<Job, JobError> {
-        let ended = async {
-            let mut news = self.news(id);
-            loop {
-                let job = self.find(client, id).await?;
-                if job.status.has_ended() {
-                    return Ok(job);
-                }
-                news.changed_state().await;
-            }
-        };
-        tokio::select! {
-            job = ended => job,
-            () = tokio::time::sleep(patience) => self.find(client, id).await,
-            () = self.stop.cancelled() => self.find(client, id).await,
-        }
+        let look = || self.find(client, id);
+        self.until_ended(id, patience, Duration::ZERO, look, |job| {
+            job.status.has_ended()
+        })
+        .await
     }
 
     /// At most `limit` jobs, newest first.
@@ -265,23 +236,15 @@ impl Jobs {
     /// # Errors
     ///
     /// [`JobError::Database`].
-    pub async fn list(&self, client: &str, filter: &Filter, limit: u32) -> Result<Page, JobError> {
-        // One more than asked for tells whether the list goes on.
-        let mut items = self
-            .store
-            .list(client, filter, limit.saturating_add(1))
-            .await?;
-        let goes_on = items.len() > limit as usize;
-        items.truncate(limit as usize);
-        let next = items.last().filter(|_| goes_on);
-        let next = next.map(|job| Cursor(job.sequence));
-        Ok(Page {
-            items: items
-                .into_iter()
-                .map(|job| self.with_live_progress(job))
-                .collect(),
-            next,
-        })
+    pub async fn list(
+        &self,
+        client: &str,
+        filter: &Filter,
+        limit: u32,
+    ) -> Result<Listed<Job>, JobError> {
+        let found = self.store.list(client, filter, limit + 1).await?;
+        let found = found.into_iter().map(|job| self.with_live_progress(job));
+        Ok(Listed::first(found.collect(), limit, |job| job.sequence))
     }
 
     /// The results of a job that was found successful.

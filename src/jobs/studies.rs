@@ -11,9 +11,10 @@ use meshwright_engine::run::Run;
 
 use super::error::JobError;
 use super::queue::{Jobs, Member, rough_cost};
+use super::resource::{Listed, Submitted};
 use super::searches;
 use super::store::{
-    Cursor, Document, NewJob, NewRow, NewStudy, StoreError, StoredRow, StudyFilter, StudyOutcome,
+    Document, NewJob, NewRow, NewStudy, StoreError, StoredRow, StudyFilter, StudyOutcome,
 };
 use super::study::StudyRecord;
 use crate::hash::sha256_hex;
@@ -27,24 +28,6 @@ pub(super) const CHUNK: usize = 500;
 /// So many rows of a table are read at a time, and so many documents.
 const ROWS_AT_ONCE: u32 = 500;
 const DOCUMENTS_AT_ONCE: u32 = 8;
-
-/// A study that answers a submission.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StudySubmitted {
-    /// The study.
-    pub study: StudyRecord,
-    /// Whether an earlier request with the same key made it.
-    pub repeated: bool,
-}
-
-/// Some studies of a list.
-#[derive(Debug)]
-pub struct StudyPage {
-    /// The studies, newest first.
-    pub items: Vec<StudyRecord>,
-    /// Where the list goes on.
-    pub next: Option<Cursor>,
-}
 
 /// The results of a design.
 #[derive(Debug, Clone)]
@@ -71,7 +54,7 @@ impl Jobs {
         member: &Member,
         study: Study,
         idempotency_key: Option<String>,
-    ) -> Result<StudySubmitted, JobError> {
+    ) -> Result<Submitted<StudyRecord>, JobError> {
         self.refuse_if_failing()?;
         let now = self.clock.now();
         let owner = self.owner(&study, Uuid::now_v7(), member.client.clone(), now);
@@ -118,8 +101,8 @@ impl Jobs {
                 });
             }
         };
-        let study = self.find_study(&member.client, id).await?;
-        Ok(StudySubmitted { study, repeated })
+        let record = self.find_study(&member.client, id).await?;
+        Ok(Submitted { record, repeated })
     }
 
     /// Goes on with the expansion of studies, and with their cancellation, that another process has left.
@@ -271,22 +254,11 @@ impl Jobs {
     ) -> Result<StudyRecord, JobError> {
         /// Between two looks: the jobs of a study end much faster than anybody wants to know.
         const PAUSE: Duration = Duration::from_millis(50);
-        let ended = async {
-            let mut news = self.news(id);
-            loop {
-                let study = self.find_study(client, id).await?;
-                if study.status().has_ended() {
-                    return Ok(study);
-                }
-                news.changed_state().await;
-                tokio::time::sleep(PAUSE).await;
-            }
-        };
-        tokio::select! {
-            study = ended => study,
-            () = tokio::time::sleep(patience) => self.find_study(client, id).await,
-            () = self.stop().cancelled() => self.find_study(client, id).await,
-        }
+        let look = || self.find_study(client, id);
+        self.until_ended(id, patience, PAUSE, look, |study| {
+            study.status().has_ended()
+        })
+        .await
     }
 
     /// At most `limit` studies, newest first.
@@ -299,17 +271,9 @@ impl Jobs {
         client: &str,
         filter: &StudyFilter,
         limit: u32,
-    ) -> Result<StudyPage, JobError> {
-        // One more than asked for tells whether the list goes on.
-        let mut items = self
-            .store
-            .list_studies(client, filter, limit.saturating_add(1))
-            .await?;
-        let goes_on = items.len() > limit as usize;
-        items.truncate(limit as usize);
-        let next = items.last().filter(|_| goes_on);
-        let next = next.map(|study| Cursor(study.sequence));
-        Ok(StudyPage { items, next })
+    ) -> Result<Listed<StudyRecord>, JobError> {
+        let found = self.store.list_studies(client, filter, limit + 1).await?;
+        Ok(Listed::first(found, limit, |study| study.sequence))
     }
 
     /// The study that was found, as it was sent, JSON.

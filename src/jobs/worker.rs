@@ -391,7 +391,7 @@ mod tests {
         async fn submit(&self, torque: f64) -> Uuid {
             let member = Member::usual("portal");
             let submitted = self.jobs.submit(&member, &small(torque), None).await;
-            submitted.unwrap().job.id
+            submitted.unwrap().record.id
         }
 
         fn commits(&self, waits: &str) -> u32 {

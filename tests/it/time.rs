@@ -120,7 +120,11 @@ async fn a_job_that_takes_longer_than_the_limit_is_stopped_and_fails() {
 
     let job = ended(
         &jobs,
-        &jobs.submit(&member(), &case(1.0), None).await.unwrap().job,
+        &jobs
+            .submit(&member(), &case(1.0), None)
+            .await
+            .unwrap()
+            .record,
     )
     .await;
     assert_eq!(
@@ -165,7 +169,11 @@ async fn a_job_whose_lease_ran_out_runs_again_elsewhere_and_the_late_results_are
     let mut workers = Workers::start(jobs.clone(), Arc::clone(&solve), 1, pace, false)
         .await
         .unwrap();
-    let job = jobs.submit(&member(), &case(1.0), None).await.unwrap().job;
+    let job = jobs
+        .submit(&member(), &case(1.0), None)
+        .await
+        .unwrap()
+        .record;
     let first = begin().await;
 
     // As it would be in another process on the same database, whose start recovers nothing of the living.
@@ -204,7 +212,11 @@ async fn a_clock_that_is_set_forward_takes_no_job_from_its_worker_nor_a_key_from
         .await
         .unwrap();
     let key = || Some("k".to_owned());
-    let job = jobs.submit(&member(), &case(1.0), key()).await.unwrap().job;
+    let job = jobs
+        .submit(&member(), &case(1.0), key())
+        .await
+        .unwrap()
+        .record;
     let order = begin().await;
     hands.jump(10 * 365 * 24 * 3600);
     // While the only worker computes, nobody looks at the clock but the watch over leases. A look follows the end of the one
@@ -229,7 +241,11 @@ async fn a_clock_that_is_set_back_gives_no_negative_times_and_lists_new_jobs_fir
     let mut workers = Workers::start(jobs.clone(), solve, 1, pace, false)
         .await
         .unwrap();
-    let first = jobs.submit(&member(), &case(1.0), None).await.unwrap().job;
+    let first = jobs
+        .submit(&member(), &case(1.0), None)
+        .await
+        .unwrap()
+        .record;
     let order = begin().await;
     hands.advance(3);
     hands.jump(-3600);
@@ -238,7 +254,11 @@ async fn a_clock_that_is_set_back_gives_no_negative_times_and_lists_new_jobs_fir
     assert_eq!(first.elapsed.unwrap().as_secs(), 3, "what it took");
     assert!(first.finished_at >= first.started_at && first.started_at >= Some(first.submitted_at));
 
-    let second = jobs.submit(&member(), &case(2.0), None).await.unwrap().job;
+    let second = jobs
+        .submit(&member(), &case(2.0), None)
+        .await
+        .unwrap()
+        .record;
     assert!(
         second.submitted_at < first.submitted_at,
         "as the clock says"
@@ -271,5 +291,5 @@ async fn a_key_is_forgotten_after_a_day() {
     assert!(submit(2.0).await.is_err());
     hands.advance(1);
     let next = submit(2.0).await.unwrap();
-    assert!(!next.repeated && next.job.id != first.job.id);
+    assert!(!next.repeated && next.record.id != first.record.id);
 }

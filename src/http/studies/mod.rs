@@ -8,12 +8,13 @@ mod view;
 use axum::Json;
 use axum::extract::{Path, State};
 use axum::http::StatusCode;
-use axum::http::header::{CONTENT_TYPE, HeaderMap, HeaderValue, LOCATION, RETRY_AFTER};
+use axum::http::header::HeaderMap;
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use utoipa::IntoParams;
 use uuid::Uuid;
 
+use super::answer::{self, json, tell_when_to_return};
 use super::app::{App, Edge};
 use super::aside::aside;
 use super::client::Client;
@@ -22,7 +23,7 @@ use super::document::Document;
 use super::page::{self, Page, USUAL_LIMIT};
 use super::parameters::{IdempotencyKey, IfNoneMatch, Parameters};
 use super::prefer::Wait;
-use crate::jobs::{StudyFilter, StudyRecord, StudySubmitted};
+use crate::jobs::{StudyFilter, StudyRecord};
 use crate::wire::{Code, Problem, Study};
 use view::StudyView;
 
@@ -50,18 +51,14 @@ fn study_id(text: &str) -> Result<Uuid, Problem> {
 #[utoipa::path(
     post, path = "/v1/studies", tag = "Studies", operation_id = "submit_study",
     request_body(content = Study, content_type = "application/json", description = "The study."),
-    params(
-        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[!-~]([ -~]*[!-~])?$", description = "A word of the client's choice, 1 to 255 characters, kept for a day: the same key and study get the same study, however often they are sent."),
-    ),
+    params(IdempotencyKey),
     responses(
         (status = 202, description = "The study is taken.", body = StudyView, headers(
             ("Location" = String, description = "The address of the study."),
             ("Retry-After" = u32, description = "Seconds after which it is worth looking."),
         )),
         (status = 200, description = "With a repeated `Idempotency-Key`, the study that has ended meanwhile.", body = StudyView),
-        (status = 400, description = "The body is no JSON, or a header is not understood."),
-        (status = 413, description = "The body has more than 16 MiB."),
-        (status = 415, description = "The body is not declared as JSON."),
+        Document<MIB>,
         (status = 422, description = "The study is not understood, or has more than 100,000 designs; `errors` says which field is why. Or the key was used for another study."),
         (status = 429, description = "More designs of this client wait than may."),
         (status = 503, description = "Too many designs wait, nothing can be stored, or the service is shutting down. Try again after `Retry-After` seconds."),
@@ -74,24 +71,16 @@ pub(in crate::http) async fn submit(
     Document(document, _memory): Document<MIB>,
 ) -> Result<Response, Problem> {
     let study = aside(client.name(), move |run| Study::parse(&document, run)).await??;
-    let StudySubmitted { study, repeated } = app.jobs.submit_study(&client.0, study, key).await?;
-
-    let ended = study.status().has_ended();
-    let status = if repeated && ended {
-        StatusCode::OK
-    } else {
-        StatusCode::ACCEPTED
-    };
-    let body = StudyView::new(&study, &app.edge).to_json();
-    let mut response = (status, [(CONTENT_TYPE, "application/json")], body).into_response();
-    let headers = response.headers_mut();
-    if let Ok(address) = HeaderValue::try_from(app.edge.study(study.id)) {
-        headers.insert(LOCATION, address);
-    }
-    if !ended {
-        headers.insert(RETRY_AFTER, HeaderValue::from_static("1"));
-    }
-    Ok(response)
+    let submitted = app.jobs.submit_study(&client.0, study, key).await?;
+    let study = &submitted.record;
+    let view = StudyView::new(study, &app.edge).to_json();
+    let (address, has_ended) = (app.edge.study(study.id), study.status().has_ended());
+    Ok(answer::submitted(
+        view,
+        &address,
+        has_ended,
+        submitted.repeated,
+    ))
 }
 
 /// What to list.
@@ -146,14 +135,6 @@ pub(in crate::http) async fn list(
         after: page::cursor(parameters.cursor.as_deref())?,
     };
     let found = app.jobs.list_studies(client.name(), &filter, limit).await?;
-    let views = found
-        .items
-        .iter()
-        .map(|study| StudyView::new(study, &app.edge));
-    let page = Page {
-        items: views.collect(),
-        next: found.next.map(|cursor| cursor.to_string()),
-    };
     let pairs = [
         ("name", parameters.name.as_deref()),
         ("tag", parameters.tag.as_deref()),
@@ -161,7 +142,8 @@ pub(in crate::http) async fn list(
         ("submitted_before", before.as_deref()),
         ("limit", Some(&*limit.to_string())),
     ];
-    Ok(page::answer(&app.edge, "/v1/studies", &pairs, page))
+    let view = |study| StudyView::new(study, &app.edge);
+    Ok(page::answer(&app.edge, "/v1/studies", &pairs, &found, view))
 }
 
 /// Look at a study
@@ -169,10 +151,7 @@ pub(in crate::http) async fn list(
 /// Its state, its progress and the study as it was sent. With `If-None-Match` it costs nothing while nothing changes.
 #[utoipa::path(
     get, path = "/v1/studies/{id}", tag = "Studies", operation_id = "get_study",
-    params(
-        ("Prefer" = Option<String>, Header, description = "`wait=N`: answer when the study has ended, or after N seconds (60 at most)."),
-        IfNoneMatch,
-    ),
+    params(Wait, IfNoneMatch),
     responses(
         (status = 200, description = "The study.", body = StudyView, headers(
             ("Retry-After" = u32, description = "Until the study has ended: seconds after which it is worth looking again."),
@@ -198,11 +177,11 @@ pub(in crate::http) async fn show(
     let whole = async {
         let document = app.jobs.short_study_text(id, LONGEST_IN_VIEW).await?;
         let body = StudyView::whole(&study, document, &app.edge).to_json();
-        Ok::<_, Problem>(([(CONTENT_TYPE, "application/json")], body).into_response())
+        Ok::<_, Problem>(json(body))
     };
     let mut response = tag.answer(Keep::AskAgain, &request, whole).await?;
     wait.acknowledge(response.headers_mut());
-    tell_when_to_return(&study, &mut response);
+    tell_when_to_return(study.status().has_ended(), &mut response);
     Ok(response)
 }
 
@@ -210,15 +189,6 @@ pub(in crate::http) async fn show(
 fn tag_of(study: &StudyRecord, form: &str, edge: &Edge) -> Tag {
     let (id, version) = (study.id.to_string(), study.version.to_string());
     Tag::of(&["study", &id, &version, form, &edge.public_url])
-}
-
-/// Until the study has ended it is worth looking again.
-fn tell_when_to_return(study: &StudyRecord, response: &mut Response) {
-    if !study.status().has_ended() {
-        response
-            .headers_mut()
-            .insert(RETRY_AFTER, HeaderValue::from_static("1"));
-    }
 }
 
 /// Get a study as it was sent
@@ -241,7 +211,7 @@ pub(in crate::http) async fn document(
     let study = app.jobs.find_study(client.name(), study_id(&id)?).await?;
     let text = async {
         let text = app.jobs.study_text(study.id).await?;
-        Ok::<_, Problem>(([(CONTENT_TYPE, "application/json")], text).into_response())
+        Ok::<_, Problem>(json(text))
     };
     let tag = Tag::of(&["study document", &study.id.to_string()]);
     tag.answer(Keep::ForGood, &request, text).await

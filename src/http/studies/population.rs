@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use axum::extract::{Path, State};
 use axum::http::HeaderMap;
-use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
 use meshwright_engine::run::Run;
 
-use super::{study_id, tag_of, tell_when_to_return};
+use super::{study_id, tag_of};
+use crate::http::answer::{json, tell_when_to_return};
 use crate::http::app::App;
 use crate::http::aside::{aside, turn_to_read};
 use crate::http::client::Client;
@@ -49,7 +49,7 @@ pub(in crate::http) async fn population(
         Ok::<_, Problem>(axum::Json(results).into_response())
     };
     let mut response = tag.answer(Keep::AskAgain, &request, made).await?;
-    tell_when_to_return(&study, &mut response);
+    tell_when_to_return(study.status().has_ended(), &mut response);
     Ok(response)
 }
 
@@ -140,7 +140,7 @@ pub(in crate::http) async fn design(
             let detail = format!("The study has {} designs, counted from 0.", record.total);
             return Err(Problem::new(Code::NotFound, detail));
         };
-        Ok(([(CONTENT_TYPE, "application/json")], text).into_response())
+        Ok(json(text))
     };
     let tag = Tag::of(&["design", &record.id.to_string(), &row]);
     tag.answer(Keep::ForGood, &request, text).await
@@ -203,10 +203,10 @@ pub(in crate::http) async fn best(
     let text = async {
         let found = submission_of(&app, client.name(), &record, best.row as u32).await?;
         let text = found.ok_or_else(crate::http::problem::internal)?;
-        Ok::<_, Problem>(([(CONTENT_TYPE, "application/json")], text).into_response())
+        Ok::<_, Problem>(json(text))
     };
     let tag = Tag::of(&["best", &record.id.to_string(), &best.row.to_string()]);
     let mut response = tag.answer(Keep::AskAgain, &request, text).await?;
-    tell_when_to_return(&record, &mut response);
+    tell_when_to_return(record.status().has_ended(), &mut response);
     Ok(response)
 }

@@ -16,7 +16,8 @@ use serde_json::value::RawValue;
 use utoipa::ToSchema;
 
 use super::view::why_failed;
-use super::{study_id, tag_of, tell_when_to_return};
+use super::{study_id, tag_of};
+use crate::http::answer::tell_when_to_return;
 use crate::http::app::App;
 use crate::http::aside::{aside, turn_to_read};
 use crate::http::client::Client;
@@ -215,7 +216,7 @@ async fn send(
         Ok::<_, Problem>(response)
     };
     let mut response = tag.answer(Keep::AskAgain, request, made).await?;
-    tell_when_to_return(&study, &mut response);
+    tell_when_to_return(study.status().has_ended(), &mut response);
     Ok(response)
 }
 

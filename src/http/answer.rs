@@ -1,0 +1,38 @@
+//! What answers are made of.
+
+use axum::body::{Body, Bytes};
+use axum::http::StatusCode;
+use axum::http::header::{CONTENT_TYPE, HeaderValue, LOCATION, RETRY_AFTER};
+use axum::response::{IntoResponse, Response};
+
+/// A document that is JSON already.
+pub(super) fn json(text: impl Into<Body>) -> Response {
+    ([(CONTENT_TYPE, "application/json")], text.into()).into_response()
+}
+
+/// What a submission came to, which stands at `address`: 200 where the client is `told_the_end`, 202 otherwise.
+pub(super) fn submitted(
+    view: Bytes,
+    address: &str,
+    has_ended: bool,
+    told_the_end: bool,
+) -> Response {
+    let mut response = json(view);
+    if !(has_ended && told_the_end) {
+        *response.status_mut() = StatusCode::ACCEPTED;
+    }
+    let address = HeaderValue::from_str(address);
+    let address =
+        address.expect("the public address was checked at the start, an id is hexadecimal");
+    response.headers_mut().insert(LOCATION, address);
+    tell_when_to_return(has_ended, &mut response);
+    response
+}
+
+/// Until something has ended it is worth looking again.
+pub(super) fn tell_when_to_return(has_ended: bool, response: &mut Response) {
+    if !has_ended {
+        let seconds = HeaderValue::from_static("1");
+        response.headers_mut().insert(RETRY_AFTER, seconds);
+    }
+}
