@@ -10,11 +10,13 @@ use super::compliances::Known;
 use super::drawn::DrawnPair;
 use super::facing::RangeEnd;
 use super::facings::Near;
+use super::factor::{add, dot};
 use super::meeting::Standing;
 use super::model::{ContactSolver, MadePair, PositionError, WarmPair, WarmStart};
 use super::pair_cells::PairCells;
 use super::patch::{Extent, Patch};
 use super::penetration::Found;
+use super::wide::{Loops, wide};
 use super::{
     AugmentedLagrangian, ContactProblem, ContactSolution, default_penalty, solve_active_set,
     solve_augmented_lagrangian,
@@ -78,14 +80,13 @@ impl Laid {
         standing: &Standing<'_>,
         lag: f64,
     ) -> Option<Self> {
-        let probes = &Option::as_ref(&cells)?.patch.probes;
-        let (gaps, arms) = probes
-            .iter()
-            .map(|(probe, more)| {
-                let meeting = standing.meeting(probe);
-                (meeting.gap + more + lag * meeting.arms[1], meeting.arms)
-            })
-            .unzip();
+        let patch = &Option::as_ref(&cells)?.patch;
+        let meetings = standing.meetings(&patch.probes);
+        let each = meetings.iter().zip(&patch.more);
+        let gaps = each
+            .map(|(meeting, more)| meeting.gap + more + lag * meeting.arms[1])
+            .collect();
+        let arms = meetings.iter().map(|meeting| meeting.arms).collect();
         Some(Self {
             pair: near.pair,
             drawn: near.drawn.clone(),
@@ -271,25 +272,12 @@ impl<'a> ContactCells<'a> {
         self.laid.iter().zip(ranges)
     }
 
-    /// How the interface of `member` in `pair` moves under what loads the interfaces of all pairs.
-    pub(super) fn moved(&self, member: Member, pair: i64, loads: &[PairLoads]) -> Mat<f64> {
-        let gear = member.index();
-        let coupling = &self.made.model.gears[gear].coupling;
-        let mut moved = Mat::zeros(coupling.shape_count(), 1);
-        for other in loads {
-            let (x, transposed) = coupling.block(
-                self.made.model.pair.tooth(member, self.period + pair),
-                teeth_on(member, other.pair - pair),
-            );
-            let x = if transposed {
-                x.transpose()
-            } else {
-                x.as_ref()
-            };
-            let force = &other.loads[gear];
-            matmul(moved.as_mut(), Accum::Add, x, force, 1.0, Par::Seq);
-        }
-        moved
+    /// How the interfaces of each pair move under the `forces` on all cells: that of the driving gear, and behind it that of the driven one.
+    pub(super) fn interfaces_moved(&self, forces: &[f64]) -> Vec<Vec<f64>> {
+        wide(InterfacesMoved {
+            cells: self,
+            forces,
+        })
     }
 
     /// What the compliance of these cells depends on beside the cells themselves: how the blanks stand under their teeth.
@@ -488,12 +476,13 @@ impl<'a> ContactCells<'a> {
                 &solution.forces[range],
             );
             let by = |member: Member, turn: f64, slope: f64| -> f64 {
-                let [more, less] =
-                    [1.0, -1.0].map(|sign| standing.deviating(member, sign * turn, sign * slope));
-                let probes = patch.probes.iter().zip(q.iter().zip(p));
-                let touching = probes.filter(|(_, (q, _))| **q != 0.0);
-                let each = touching.map(|((probe, _), (q, p))| {
-                    let (more, less) = (more.meeting(probe), less.meeting(probe));
+                let [more, less] = [1.0, -1.0].map(|sign| {
+                    let deviating = standing.deviating(member, sign * turn, sign * slope);
+                    deviating.meetings(&patch.probes)
+                });
+                let each = more.iter().zip(&less).zip(q.iter().zip(p));
+                let touching = each.filter(|(_, (q, _))| **q != 0.0);
+                let each = touching.map(|((more, less), (q, p))| {
                     let opens = more.gap - less.gap;
                     let arm = more.arms[1] - less.arms[1];
                     q * (opens - (delta - laid.lag) * arm) - p * arm / solution.stiffness
@@ -669,6 +658,67 @@ impl<'a> ContactCells<'a> {
             transmission_error: Some(delta),
             between,
             pairs: pairs.collect(),
+        }
+    }
+}
+
+/// The loops of [`ContactCells::interfaces_moved`].
+struct InterfacesMoved<'a> {
+    cells: &'a ContactCells<'a>,
+    forces: &'a [f64],
+}
+
+impl Loops for InterfacesMoved<'_> {
+    type Output = Vec<Vec<f64>>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let cells = self.cells;
+        let mut loads = Vec::with_capacity(cells.laid.len());
+        for (laid, range) in cells.ranges() {
+            loads.push(laid.cells().loads(&self.forces[range]));
+        }
+        let mut all_moved = Vec::with_capacity(cells.laid.len());
+        for laid in &cells.laid {
+            let mut moved = Vec::new();
+            for member in Member::BOTH {
+                cells.move_interface(&mut moved, member, laid.pair, &loads);
+            }
+            all_moved.push(moved);
+        }
+        all_moved
+    }
+}
+
+impl ContactCells<'_> {
+    /// Puts behind `moved` how the interface of `member` in `pair` moves under the `loads` of all pairs.
+    #[inline(always)]
+    fn move_interface(
+        &self,
+        moved: &mut Vec<f64>,
+        member: Member,
+        pair: i64,
+        loads: &[[Vec<f64>; 2]],
+    ) {
+        let model = self.made.model;
+        let coupling = &model.gears[member.index()].coupling;
+        let start = moved.len();
+        moved.resize(start + coupling.shape_count(), 0.0);
+        let moved = &mut moved[start..];
+        for (other, load) in self.laid.iter().zip(loads) {
+            let (x, transposed) = coupling.block(
+                model.pair.tooth(member, self.period + pair),
+                teeth_on(member, other.pair - pair),
+            );
+            let load = &load[member.index()];
+            for (j, force) in load.iter().enumerate() {
+                let column = x.col_as_slice(j);
+                if transposed {
+                    moved[j] += dot(column, load);
+                } else {
+                    add(moved, column, *force);
+                }
+            }
         }
     }
 }

@@ -140,8 +140,10 @@ impl Factor {
             .iter()
             .map(|&point| known.beside(compliance, point))
             .collect();
-        let factor = Lower::of(points.len(), |i, j| {
-            compliance[(points[i], points[j])] - dot(beside[i], beside[j])
+        let factor = wide(Rest {
+            compliance,
+            points: &points,
+            beside: &beside,
         })?;
         Some(Self {
             places,
@@ -181,6 +183,31 @@ impl Factor {
     }
 }
 
+/// The factor of what is left of the points beside a core once that is eliminated.
+struct Rest<'a> {
+    compliance: &'a Mat<f64>,
+    points: &'a [usize],
+    beside: &'a [&'a [f64]],
+}
+
+impl Loops for Rest<'_> {
+    type Output = Option<Lower>;
+
+    #[inline(always)]
+    fn call(self) -> Option<Lower> {
+        let (points, beside) = (self.points, self.beside);
+        let size = points.len();
+        let mut lower = Vec::with_capacity(size * (size + 1) / 2);
+        for j in 0..size {
+            let column = self.compliance.col_as_slice(points[j]);
+            for i in j..size {
+                lower.push(column[points[i]] - dot(beside[i], beside[j]));
+            }
+        }
+        Lower::of(size, lower)
+    }
+}
+
 /// The substitutions forth and back with the factors of a core and of the points beside.
 struct Substitution<'a> {
     factors: [&'a Lower; 2],
@@ -198,27 +225,23 @@ impl Loops for Substitution<'_> {
         let ([x, y], [u, v]) = (self.in_core, self.others);
         core.solve_both(x, y);
         for ((u, v), beside) in u.iter_mut().zip(&mut *v).zip(beside) {
-            *u -= dot(beside, x);
-            *v -= dot(beside, y);
+            let [by_x, by_y] = dots(beside, [x, y]);
+            *u -= by_x;
+            *v -= by_y;
         }
         own.solve_both(u, v);
-        own.solve_transposed(u);
-        own.solve_transposed(v);
+        own.solve_both_transposed(u, v);
         for ((u, v), beside) in u.iter().zip(&*v).zip(beside) {
             subtract(x, y, beside, *u, *v);
         }
-        core.solve_transposed(x);
-        core.solve_transposed(y);
+        core.solve_both_transposed(x, y);
     }
 }
 
 impl Lower {
-    /// The factor of the matrix whose lower triangle has these `entries`; `None` where it is not positive definite.
-    fn of(size: usize, entries: impl Fn(usize, usize) -> f64) -> Option<Self> {
-        let mut lower = Vec::with_capacity(size * (size + 1) / 2);
-        for j in 0..size {
-            lower.extend((j..size).map(|i| entries(i, j)));
-        }
+    /// The factor of the matrix whose `lower` triangle stands column by column; `None` where it is not positive definite.
+    #[inline(always)]
+    fn of(size: usize, mut lower: Vec<f64>) -> Option<Self> {
         let mut rest = lower.as_mut_slice();
         for j in 0..size {
             let (column, after) = rest.split_at_mut(size - j);
@@ -276,13 +299,24 @@ impl Lower {
         }
     }
 
-    /// L⁻ᵀ x in the place of x.
+    /// L⁻ᵀ x in the place of x, of two at once.
     #[inline(always)]
-    fn solve_transposed(&self, x: &mut [f64]) {
+    fn solve_both_transposed(&self, x: &mut [f64], y: &mut [f64]) {
         for (j, column) in self.columns().rev() {
-            let (here, below) = x[j..].split_at_mut(1);
-            here[0] = (here[0] - dot(&column[1..], below)) * column[0];
+            let (x, x_below) = x[j..].split_at_mut(1);
+            let (y, y_below) = y[j..].split_at_mut(1);
+            let [by_x, by_y] = dots(&column[1..], [x_below, y_below]);
+            x[0] = (x[0] - by_x) * column[0];
+            y[0] = (y[0] - by_y) * column[0];
         }
+    }
+}
+
+/// Adds `by` times `column` to `x`.
+#[inline(always)]
+pub(super) fn add(x: &mut [f64], column: &[f64], by: f64) {
+    for (x, entry) in x.iter_mut().zip(column) {
+        *x += by * entry;
     }
 }
 
@@ -295,20 +329,37 @@ fn subtract(x: &mut [f64], y: &mut [f64], column: &[f64], by_x: f64, by_y: f64) 
     }
 }
 
-/// Sums of several products at once, in an order that is the same on every machine.
+/// The sum of products, several of them at once, in an order that is the same on every machine.
 #[inline(always)]
 pub(super) fn dot(one: &[f64], other: &[f64]) -> f64 {
+    let [sum] = dots(one, [other]);
+    sum
+}
+
+/// [`dot`] of `one` and each of `others`, which are as long.
+#[inline(always)]
+fn dots<const N: usize>(one: &[f64], others: [&[f64]; N]) -> [f64; N] {
     const LANES: usize = 8;
-    let (ones, others) = (one.chunks_exact(LANES), other.chunks_exact(LANES));
-    let rest = ones.remainder().iter().zip(others.remainder());
-    let rest: f64 = rest.map(|(one, other)| one * other).sum();
-    let mut sums = [0.0; LANES];
-    for (one, other) in ones.zip(others) {
-        for ((sum, one), other) in sums.iter_mut().zip(one).zip(other) {
-            *sum += one * other;
+    let (ones, rest) = one.as_chunks::<LANES>();
+    let others = others.map(|other| other[..one.len()].as_chunks::<LANES>());
+    let mut sums = [[0.0; LANES]; N];
+    for (i, one) in ones.iter().enumerate() {
+        for (sums, (other, _)) in sums.iter_mut().zip(&others) {
+            for ((sum, one), other) in sums.iter_mut().zip(one).zip(&other[i]) {
+                *sum += one * other;
+            }
         }
     }
-    sums.iter().sum::<f64>() + rest
+    let mut totals = [0.0; N];
+    for (total, (sums, (_, other))) in totals.iter_mut().zip(sums.iter().zip(&others)) {
+        let rest: f64 = rest
+            .iter()
+            .zip(*other)
+            .map(|(one, other)| one * other)
+            .sum();
+        *total = sums.iter().sum::<f64>() + rest;
+    }
+    totals
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use faer::Mat;
 
 use super::facing::{Facing, View};
+use super::factor::dot;
 use super::flank_table::{FlankPoint, FlankTable};
 use super::half_plane::{Entries, near_compliance};
 use super::model::PairModel;
@@ -40,6 +41,27 @@ impl PairCells {
             held,
             shapes,
         })
+    }
+
+    /// What `forces` on its cells load the interface of each gear with: Vᵀ Wᵀ p.
+    #[inline(always)]
+    pub(super) fn loads(&self, forces: &[f64]) -> [Vec<f64>; 2] {
+        let presses = |force: &f64| *force != 0.0;
+        let from = forces.iter().position(presses).unwrap_or(forces.len());
+        let to = forces
+            .iter()
+            .rposition(presses)
+            .map_or(from, |last| last + 1);
+        let mut loads = self
+            .shapes
+            .each_ref()
+            .map(|shapes| vec![0.0; shapes.ncols()]);
+        for (shapes, loads) in self.shapes.iter().zip(&mut loads) {
+            for (j, load) in loads.iter_mut().enumerate() {
+                *load = dot(&shapes.col_as_slice(j)[from..to], &forces[from..to]);
+            }
+        }
+        loads
     }
 
     /// What `forces` on its cells are on the unknowns of `flank`, that of the gear of index `gear`.

@@ -6,7 +6,7 @@
 
 use super::facing::{Facing, Hollow, RangeEnd, View};
 use super::half_plane::{NearField, logarithm_factor};
-use super::meeting::{Probe, Push};
+use super::meeting::{Probe, Probes, Push};
 use crate::gear::{GearPair, Member, Vector};
 use crate::root_finding::bisect;
 
@@ -61,8 +61,10 @@ pub struct Patch {
     pub near_fields: [NearField; 2],
     /// Whether the nominal contact lies past the seat's tip, off the path of contact.
     pub off_path: bool,
-    /// The middle of each cell, to be followed, and what the mean gap of the cell is more than the gap there.
-    pub(super) probes: Vec<(Probe, f64)>,
+    /// The middle of each cell, to be followed.
+    pub(super) probes: Probes,
+    /// What the mean gap of each cell is more than the gap there.
+    pub(super) more: Vec<f64>,
 }
 
 /// A stretch of flank on which forces may be even.
@@ -141,7 +143,8 @@ impl Patch {
                 NearField::new(gears.gear(member), s, width)
             }),
             off_path: facing.off_path,
-            probes: Vec::new(),
+            probes: Probes::default(),
+            more: Vec::new(),
         };
         let (mut last, mut along) = (None::<Vector>, 0.0);
         for chain in &chains {
@@ -170,7 +173,8 @@ impl Patch {
                 stretch: place,
                 ..stretch.cell
             });
-            self.probes.push((stretch.probe, stretch.more));
+            self.probes.push(&stretch.probe);
+            self.more.push(stretch.more);
         }
     }
 
@@ -253,7 +257,8 @@ impl Patch {
     pub(super) fn bytes(&self) -> usize {
         size_of_val(self.cells.as_slice())
             + size_of_val(self.ends_along.as_slice())
-            + size_of_val(self.probes.as_slice())
+            + self.probes.bytes()
+            + size_of_val(self.more.as_slice())
     }
 
     /// Whether `arc` lies in a cell.

@@ -14,7 +14,7 @@ use super::drawn::Carrying;
 use super::facing::{Facing, FlankRange, RangeEnd, View};
 use super::factor::dot;
 use super::half_plane::Entries;
-use super::meeting::{Probe, Standing};
+use super::meeting::{Meeting, Probes};
 use super::model::{MadePair, PairModel};
 use super::pair_cells::{PairCells, compliance};
 use super::patch::{Cell, Patch, Stretch};
@@ -65,8 +65,7 @@ impl Place {
 #[derive(Debug)]
 struct Looked {
     place: Place,
-    probe: Probe,
-    /// What its mean gap is more than what `place` or `probe` tells.
+    /// What its mean gap is more than what `place` or its probe tells.
     more: f64,
 }
 
@@ -74,86 +73,94 @@ struct Looked {
 #[derive(Debug)]
 pub(super) struct Looks {
     looked: Vec<Looked>,
+    /// Those whose gap is told by a probe: as the seat of the pair sees them, and as its mate does.
+    probes: [Probes; 2],
     /// Row by row what unit forces on the cells of the pair do to each with the interfaces held, and W V of each gear.
     yields: Vec<f64>,
 }
 
 /// The looks at one pair as it stands.
-pub(super) struct Look<'a> {
+pub(super) struct Look {
     looks: Arc<Looks>,
-    /// As the seat of the pair sees it, and as its mate does, where stretches ask for it.
-    standings: [Option<Standing<'a>>; 2],
+    /// How flanks meet at the probes.
+    met: [Vec<Meeting>; 2],
 }
 
-impl<'a> Look<'a> {
+impl Look {
     /// The `looks` at the pair `laid` in mesh period `period`.
     pub(super) fn new(
         looks: Arc<Looks>,
         laid: &Laid,
-        made: MadePair<'a>,
+        made: MadePair<'_>,
         (fraction, period): (f64, i64),
     ) -> Self {
         let seat = laid.cells().patch.seat;
-        let standings = [seat, seat.other()].map(|from| {
-            let asks = |looked: &Looked| looked.place.seen_from(seat) == Some(from);
+        let met = [seat, seat.other()].map(|from| {
+            let probes = &looks.probes[usize::from(from != seat)];
+            if probes.is_empty() {
+                return Vec::new();
+            }
             let (eta, n) = (fraction + period as f64, period + laid.pair);
-            let standing = || made.standing(eta, n, laid.lag, (from, laid.drawn.phase));
-            looks.looked.iter().any(asks).then(standing)
+            let standing = made.standing(eta, n, laid.lag, (from, laid.drawn.phase));
+            standing.meetings(probes)
         });
-        Self { looks, standings }
+        Self { looks, met }
     }
 
-    /// The gap of a stretch of `laid` under no load, and its arm about the driven axis; `None` between two cells that stay open, as the
-    /// flanks do there but for a kink.
-    fn gap(&self, looked: &Looked, laid: &Laid, active: &[bool]) -> Option<(f64, f64)> {
+    /// The stretches that may be closed, with their gap under no load and its arm about the driven axis. Between two cells that stay open flanks
+    /// do so too, but for a kink.
+    fn gaps<'a>(
+        &'a self,
+        laid: &'a Laid,
+        active: &'a [bool],
+    ) -> impl Iterator<Item = Option<(f64, f64)>> + 'a {
         let patch = &laid.cells().patch;
-        let (gap, arm) = match looked.place {
+        let mut met = self.met.each_ref().map(|met| met.iter());
+        let gap = move |looked: &Looked| match looked.place {
             Place::Across { at: i, kink } => {
-                if !(active[i] || active[i + 1] || kink) {
-                    return None;
-                }
+                let closes = active[i] || active[i + 1] || kink;
                 let [one, other] = [i, i + 1].map(|i| patch.cells[i].width);
                 let between = |one_gap: f64, other_gap: f64| {
                     (one * one_gap + other * other_gap) / (one + other)
                 };
-                (
-                    between(laid.gaps[i], laid.gaps[i + 1]),
-                    between(laid.arms[i][1], laid.arms[i + 1][1]),
-                )
+                closes.then(|| {
+                    (
+                        between(laid.gaps[i], laid.gaps[i + 1]),
+                        between(laid.arms[i][1], laid.arms[i + 1][1]),
+                    )
+                })
             }
             place => {
                 let from_mate = place.seen_from(patch.seat) != Some(patch.seat);
-                let standing = self.standings[usize::from(from_mate)]?;
-                let meeting = standing.meeting(&looked.probe);
-                (meeting.gap + laid.lag * meeting.arms[1], meeting.arms[1])
+                let meeting = met[usize::from(from_mate)].next()?;
+                Some((meeting.gap + laid.lag * meeting.arms[1], meeting.arms[1]))
             }
         };
-        Some((gap + looked.more, arm))
+        let mut gap = gap;
+        self.looks
+            .looked
+            .iter()
+            .map(move |looked| gap(looked).map(|(gap, arm)| (gap + looked.more, arm)))
     }
 }
 
 /// What penetrates under the forces of `solution` on `cells`, by their `looks`, pair by pair.
-pub(super) fn found(
-    cells: &ContactCells<'_>,
-    looks: &[Look<'_>],
-    solution: &ContactSolution,
-) -> Found {
+pub(super) fn found(cells: &ContactCells<'_>, looks: &[Look], solution: &ContactSolution) -> Found {
     let mut found = Found::default();
-    let loads = cells.loads(&[&solution.forces]);
-    for (look, (laid, range)) in looks.iter().zip(cells.ranges()) {
+    let interfaces = cells.interfaces_moved(&solution.forces);
+    let pairs = cells.ranges().zip(interfaces);
+    for (look, ((laid, range), moved)) in looks.iter().zip(pairs) {
         let looks = &look.looks;
         if looks.looked.is_empty() {
             continue;
         }
         // What the forces are, and how the interfaces move under them.
         let mut yielding = solution.forces[range.clone()].to_vec();
-        for member in Member::BOTH {
-            let moved = cells.moved(member, laid.pair, &loads);
-            yielding.extend_from_slice(moved.col_as_slice(0));
-        }
+        yielding.extend(moved);
         let rows = looks.yields.chunks_exact(yielding.len());
-        for (looked, row) in looks.looked.iter().zip(rows) {
-            let Some((gap, arm)) = look.gap(looked, laid, &solution.active[range.clone()]) else {
+        let gaps = look.gaps(laid, &solution.active[range]);
+        for ((looked, row), gap) in looks.looked.iter().zip(rows).zip(gaps) {
+            let Some((gap, arm)) = gap else {
                 continue;
             };
             let closed = solution.transmission_error * arm - gap;
@@ -271,22 +278,26 @@ impl Looks {
                 row[j] = *entry;
             }
         }
+        let mut probes = [Probes::default(), Probes::default()];
+        for (stretch, place, _) in &looked {
+            if let Some(from) = place.seen_from(cells.patch.seat) {
+                probes[usize::from(from != cells.patch.seat)].push(&stretch.probe);
+            }
+        }
         Self {
             yields,
+            probes,
             looked: looked
                 .into_iter()
-                .map(|(stretch, place, more)| Looked {
-                    place,
-                    probe: stretch.probe,
-                    more,
-                })
+                .map(|(_, place, more)| Looked { place, more })
                 .collect(),
         }
     }
 
     /// About how much memory they take, in bytes.
     pub(super) fn bytes(&self) -> usize {
-        size_of::<Self>() + size_of_val(&*self.looked) + size_of_val(&*self.yields)
+        let probes: usize = self.probes.iter().map(Probes::bytes).sum();
+        size_of::<Self>() + size_of_val(&*self.looked) + probes + size_of_val(&*self.yields)
     }
 }
 

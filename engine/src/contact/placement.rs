@@ -5,7 +5,10 @@
 
 use std::f64::consts::PI;
 
+use nalgebra::{SimdBool, Vector2};
+
 use super::meeting::{Meeting, Push};
+use super::wide::Numbers;
 use crate::gear::{
     GearPair, Member, PairDeviations, SpurGear, Vector, radial, tangential, teeth_on,
 };
@@ -53,22 +56,36 @@ pub(super) struct Sight {
 
 /// The outward unit normal of a flank from which e is missing with the slope e' by the roll length `s`; `radial` and `across` are those
 /// of its tangent point on the base circle of radius `r_b`.
-pub(super) fn inclined(radial: Vector, across: Vector, s: f64, r_b: f64, slope: f64) -> Vector {
-    if slope == 0.0 {
+#[inline(always)]
+pub(super) fn inclined<T: Numbers>(
+    radial: Vector2<T>,
+    across: Vector2<T>,
+    s: T,
+    r_b: f64,
+    slope: T,
+) -> Vector2<T> {
+    let as_drawn = slope.simd_eq(T::splat(0.0));
+    if as_drawn.all() {
         return across;
     }
     // dP/ds = −e' e_t + (1 + e') s/r_b e_r.
-    unit((1.0 + slope) * s / r_b * across + slope * radial)
+    let along = (T::splat(1.0) + slope) * s / T::splat(r_b);
+    let inclined = unit(across * along + radial * slope);
+    across.zip_map(&inclined, |across, inclined| {
+        across.select(as_drawn, inclined)
+    })
 }
 
 /// `v` over its length.
-pub(super) fn unit(v: Vector) -> Vector {
-    v * v.norm().recip()
+#[inline(always)]
+pub(super) fn unit<T: Numbers>(v: Vector2<T>) -> Vector2<T> {
+    v * (T::splat(1.0) / v.norm())
 }
 
 /// `v`, turned by a quarter counter-clockwise.
-pub(super) fn quarter_turned(v: Vector) -> Vector {
-    Vector::new(-v.y, v.x)
+#[inline(always)]
+pub(super) fn quarter_turned<T: Numbers>(v: Vector2<T>) -> Vector2<T> {
+    Vector2::new(-v.y, v.x)
 }
 
 /// The mesh position at which the teeth of a pair that has `phase` are turned as they are: the angle of each tooth's centerline.

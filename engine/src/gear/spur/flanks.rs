@@ -57,22 +57,28 @@ impl SpurGear {
 
     /// [`SpurGear::removed`] and [`SpurGear::inclination`] at once; where nothing is removed that costs nothing.
     pub fn removed_and_inclination(&self, s: f64) -> (f64, f64) {
-        let half = ROUNDED * self.data.rack.module;
         let [from, to] = self.untouched;
-        if from + half < s && s + half < to {
+        if from < s && s < to {
             return (0.0, 0.0);
         }
         (self.removed(s), self.inclination(s))
     }
 
-    /// The roll lengths between which nothing is removed.
+    /// The roll lengths between which nothing is removed, and no kink is near.
+    pub fn untouched(&self) -> [f64; 2] {
+        self.untouched
+    }
+
     pub(super) fn untouched_roll_lengths(&self) -> [f64; 2] {
+        let half = ROUNDED * self.data.rack.module;
         let below_edge = self.broken_edge.map_or(f64::INFINITY, |edge| edge.from);
         let each = self.modifications.iter();
-        each.map(|each| each.untouched(&self.flank))
+        let [from, to] = each
+            .map(|each| each.untouched(&self.flank))
             .fold([0.0, below_edge], |[from, to], [low, high]| {
                 [from.max(low), to.min(high)]
-            })
+            });
+        [from + half, to - half]
     }
 
     fn edge_slope(&self, s: f64) -> f64 {
