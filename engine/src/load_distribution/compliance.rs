@@ -142,7 +142,7 @@ impl<'a> PairFormulas<'a> {
     ) -> Result<f64, FormulaError> {
         let gear = self.pair.gear(member);
         let tooth = ToothCompliance::new(
-            |y| profile.half_thickness(y),
+            profile.half_thicknesses(),
             load,
             gear.face_width(),
             gear.material(),

@@ -30,14 +30,16 @@ impl ToothProfile {
         }
     }
 
-    /// Half the thickness of the tooth at the height `y` (m) above the root circle.
-    pub(super) fn half_thickness(&self, y: f64) -> f64 {
-        let after = self
-            .points
-            .partition_point(|point| point.0 < y)
-            .clamp(1, self.points.len() - 1);
-        let ((y_0, x_0), (y_1, x_1)) = (self.points[after - 1], self.points[after]);
-        x_0 + (x_1 - x_0) * (y - y_0) / (y_1 - y_0)
+    /// Half the thickness of the tooth at heights (m) above the root circle, which are asked for in rising order.
+    pub(super) fn half_thicknesses(&self) -> impl FnMut(f64) -> f64 {
+        let mut after = 1;
+        move |y| {
+            while self.points[after].0 < y && after + 1 < self.points.len() {
+                after += 1;
+            }
+            let ((y_0, x_0), (y_1, x_1)) = (self.points[after - 1], self.points[after]);
+            x_0 + (x_1 - x_0) * (y - y_0) / (y_1 - y_0)
+        }
     }
 }
 
@@ -59,7 +61,7 @@ mod tests {
             for point in [gear.flank().point(s), gear.fillet().point(gamma)] {
                 // Chords of 1/200 of either curve lie off it by some 1e-8 m, where the fillet turns into the root
                 // circle by five times as much.
-                let x = profile.half_thickness(point.x - gear.root_radius());
+                let x = profile.half_thicknesses()(point.x - gear.root_radius());
                 assert!((x - point.y).abs() < 6e-8, "{x} beside {}", point.y);
             }
         }

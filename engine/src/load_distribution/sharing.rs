@@ -4,7 +4,6 @@
 //! flanks and their reliefs e, so that H of eq. 4 is diagonal. The F_n follow from δ pair by pair, and δ from their sum.
 
 use super::approach::LineContact;
-use crate::root_finding::bisect;
 
 /// A pair of teeth on the line of contact.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,13 +43,33 @@ impl LinePair {
     }
 
     /// The force, at most `most`, that deflects the pair by `deflection` (m).
+    ///
+    /// The deflection grows slower than the force: it lies above its chords from 0 and below its tangents. A force on the chord is too
+    /// large, and from one that is too small Newton's steps rise without going too far, until rounding ends them.
     fn force(&self, deflection: f64, most: f64) -> f64 {
         if deflection <= 0.0 {
-            0.0
-        } else if self.with_approach {
-            bisect(most, 0.0, |force| self.deflection(force) >= deflection)
-        } else {
-            deflection / self.compliance
+            return 0.0;
+        }
+        if !self.with_approach {
+            return deflection / self.compliance;
+        }
+        let chord = most.min(deflection / self.deflection(most) * most);
+        let newton =
+            |force: f64| force + (deflection - self.deflection(force)) * self.stiffness(force);
+        let mut force = newton(chord);
+        if force <= 0.0 {
+            force = chord;
+            while self.deflection(force) > deflection {
+                force /= 2.0;
+            }
+        }
+        loop {
+            let next = newton(force);
+            // A step that does not lead up, or is no number, ends it.
+            if next.is_nan() || next <= force {
+                return force.min(most);
+            }
+            force = next;
         }
     }
 }

@@ -35,10 +35,10 @@ impl ToothCompliance {
     /// The compliance of a tooth of `face_width` (m) under `load`.
     ///
     /// `half_thickness` is x(y): half the tooth's thickness across its centerline at the height y above the root circle,
-    /// both in m, asked for on 0 < y < u only. It may start with a vertical tangent in y, as a fillet does that ends on the
+    /// both in m, asked for on 0 < y < u only, in rising order. It may start with a vertical tangent in y, as a fillet does that ends on the
     /// root circle, and may have kinks.
     pub(super) fn new(
-        half_thickness: impl Fn(f64) -> f64,
+        mut half_thickness: impl FnMut(f64) -> f64,
         load: &ToothLoad,
         face_width: f64,
         material: &Material,
