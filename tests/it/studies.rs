@@ -239,6 +239,16 @@ async fn equal_designs_are_computed_once() {
     let again = submit(&bench, &study).await;
     assert_eq!(bench.job(&again).await["status"], "successful");
     assert!(engine.is_idle());
+    // Of a third one only what is new waits.
+    let mut more = study;
+    more["designs"][1]["changes"] = json!({ "/output_torques_n_m/0": 20.0 });
+    let more = submit(&bench, &more).await;
+    let work = engine.next().await;
+    let now = bench.job(&more).await;
+    assert_eq!((&now["successful"], &now["done"]), (&json!(2), &json!(2)));
+    assert_eq!(torque(&work), 20.0);
+    work.finish();
+    assert_eq!(bench.ended(&more).await["successful"], 3);
 }
 
 #[tokio::test]

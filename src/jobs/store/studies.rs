@@ -10,7 +10,7 @@ use uuid::Uuid;
 use super::documents::forget_document;
 use super::endings::note_study;
 use super::statement::{Connection, list, query, query_as, query_scalar};
-use super::submit::{QueueBounds, insert_known, insert_submissions, insert_waiting, words};
+use super::submit::{QueueBounds, find_known, insert_jobs, insert_submissions, words};
 use super::{NewJob, Store, StoreError, column, dialect, micros, shares};
 use crate::wire::Status;
 use crate::wire::warning::GearName;
@@ -426,17 +426,23 @@ async fn append(
         .fetch_all(&mut *connection)
         .await?;
     let computed: BTreeSet<&str> = computed.iter().map(String::as_str).collect();
-    let mut waits = false;
+    let mut listed = Vec::with_capacity(jobs.len());
     for new in &jobs {
-        let is_known = computed.contains(new.input_hash.as_str())
-            && insert_known(connection, new, bounds.solver_version)
-                .await?
-                .is_some();
-        if !is_known {
-            insert_waiting(connection, new).await?;
-            waits = true;
-        }
+        let known = if computed.contains(new.input_hash.as_str()) {
+            find_known(
+                connection,
+                client,
+                &new.input_hash,
+                new.keep,
+                bounds.solver_version,
+            )
+            .await?
+        } else {
+            None
+        };
+        listed.push((*new, known));
     }
+    let made = insert_jobs(connection, &listed, bounds.solver_version).await?;
     insert_submissions(connection, &jobs).await?;
     let unbuildable = rows.len() - jobs.len();
     let of_study: Vec<_> = (expanded..)
@@ -456,30 +462,35 @@ async fn append(
         .bind(study.to_string())
         .execute(&mut *connection)
         .await?;
+    // They are counted here, all at once and late: whoever claims or ends a job of the study waits from here on.
+    let ends = made.iter().filter_map(|job| job.finished_at);
+    let (successful, last_end) = (ends.clone().count(), ends.max());
+    let waiting = made.len() - successful;
     let id = study.to_string();
     let updated = query(
-        "update studies set expanded = $2, unbuildable = unbuildable + $3, version = version + 1
+        "update studies set expanded = $2, unbuildable = unbuildable + $3, accepted = accepted + $5, successful = successful + $6,
+                last_end = max(coalesce(last_end, $7), coalesce($7, last_end)), version = version + 1
          where id = $1 and expanded = $4 and cancelled_at is null",
     )
     .bind(&id)
     .bind(column(expanded + rows.len() as u64))
     .bind(column(unbuildable as u64))
     .bind(column(expanded))
+    .bind(column(waiting as u64))
+    .bind(column(successful as u64))
+    .bind(last_end.map(Timestamp::as_microsecond))
     .execute(&mut *connection)
     .await?;
     if updated == 0 {
         return Ok(false);
     }
-    query(dialect::count_designs())
-        .execute(&mut *connection)
-        .await?;
     query(dialect::expanding())
         .bind(&id)
         .bind(bounds.steady.as_microsecond())
         .bind(micros(EXPANDING_FOR))
         .execute(&mut *connection)
         .await?;
-    if waits {
+    if waiting > 0 {
         shares::activate(connection, client, Some(study)).await?;
     }
     Ok(true)

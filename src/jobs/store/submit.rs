@@ -163,15 +163,22 @@ async fn submit_one(
         return Ok(outcome);
     }
 
-    let outcome = if let Some(job) = insert_known(connection, new, bounds.solver_version).await? {
-        tell_end(connection, &job, new.submitted_at).await?;
-        Outcome::Known(job)
-    } else {
-        let taken = room.take(connection, &new.client, new.client_limit);
+    let (client, input) = (&new.client, &new.input_hash);
+    let known = find_known(connection, client, input, new.keep, bounds.solver_version).await?;
+    let is_known = known.is_some();
+    if !is_known {
+        let taken = room.take(connection, client, new.client_limit);
         if let Err(full) = taken.await? {
             return Ok(full);
         }
-        Outcome::Queued(insert_waiting(connection, new).await?)
+    }
+    let made = insert_jobs(connection, &[(new, known)], bounds.solver_version).await?;
+    let job = made.into_iter().next().ok_or(sqlx::Error::RowNotFound)?;
+    let outcome = if is_known {
+        tell_end(connection, &job, new.submitted_at).await?;
+        Outcome::Known(job)
+    } else {
+        Outcome::Queued(job)
     };
 
     insert_submissions(connection, &[new]).await?;
@@ -251,65 +258,44 @@ pub(super) async fn find_known(
     }))
 }
 
-/// A job that is successful at once and has no submission yet, if the client has had the same input computed by this version.
-pub(super) async fn insert_known(
+/// New jobs without their submissions, in their order: those of which something is known are successful at once, the others wait. Lanes in
+/// which one waits are to be activated behind it.
+pub(super) async fn insert_jobs(
     connection: &mut Connection,
-    new: &NewJob,
+    jobs: &[(&NewJob, Option<Known>)],
     solver_version: &str,
-) -> Result<Option<Job>, sqlx::Error> {
-    let known = find_known(
-        connection,
-        &new.client,
-        &new.input_hash,
-        new.keep,
-        solver_version,
-    )
-    .await?;
-    let Some(known) = known else {
-        return Ok(None);
-    };
-    let job: Job = query_as(dialect::insert_known())
-        .bind(new.id.to_string())
-        .bind(&new.client)
-        .bind(&new.method)
-        .bind(words(&new.tags))
-        .bind(&new.input_hash)
-        .bind(column(new.cost))
-        .bind(known.positions)
-        .bind(new.submitted_at.as_microsecond())
-        .bind(known.document)
+) -> Result<Vec<Job>, sqlx::Error> {
+    let rows: Vec<_> = jobs
+        .iter()
+        .map(|(new, known)| {
+            let known = known.as_ref();
+            json!({
+                "job": new.id,
+                "owner": new.client,
+                "method": new.method,
+                "tags": words(&new.tags),
+                "input": new.input_hash,
+                "cost": column(new.cost),
+                "positions": known.map_or(column(new.positions_total), |known| known.positions),
+                "at": new.submitted_at.as_microsecond(),
+                "results": known.map(|known| &known.document),
+                "equal": known.map(|known| &known.job),
+                "study": new.study,
+                "keep": new.keep.as_str(),
+                "version": new.document_version,
+            })
+        })
+        .collect();
+    let mut made: Vec<Job> = query_as(dialect::insert_jobs())
+        .bind(list(&rows))
         .bind(solver_version)
-        .bind(known.job)
-        .bind(new.study.map(|study| study.to_string()))
-        .bind(new.keep.as_str())
-        .bind(new.document_version)
-        .fetch_one(&mut *connection)
+        .fetch_all(&mut *connection)
         .await?;
-    insert_tags(connection, new, job.sequence).await?;
-    Ok(Some(job))
-}
-
-/// A job that waits and has no submission yet. Its lane is to be activated behind it.
-pub(super) async fn insert_waiting(
-    connection: &mut Connection,
-    new: &NewJob,
-) -> Result<Job, sqlx::Error> {
-    let job: Job = query_as(dialect::insert_waiting())
-        .bind(new.id.to_string())
-        .bind(&new.client)
-        .bind(&new.method)
-        .bind(words(&new.tags))
-        .bind(&new.input_hash)
-        .bind(column(new.cost))
-        .bind(column(new.positions_total))
-        .bind(new.submitted_at.as_microsecond())
-        .bind(new.study.map(|study| study.to_string()))
-        .bind(new.keep.as_str())
-        .bind(new.document_version)
-        .fetch_one(&mut *connection)
-        .await?;
-    insert_tags(connection, new, job.sequence).await?;
-    Ok(job)
+    made.sort_by_key(|job| job.sequence);
+    for ((new, _), job) in jobs.iter().zip(&made) {
+        insert_tags(connection, new, job.sequence).await?;
+    }
+    Ok(made)
 }
 
 /// The submissions of new jobs.

@@ -3,30 +3,24 @@
 //! Lists are parameters as JSON, so that one statement does for many jobs. Everything else in this folder is one text for both. [`sqlite`] and [`postgres`] have the same names in the same order;
 //! what one of them has no need of is `None`.
 
-/// A job that is successful at once; how the next place in the order of arrival is found differs.
-macro_rules! insert_known {
-    ($next:literal) => {
+/// New jobs: those that have a document are successful at once, the others wait. How a list is read and how the next places in the order
+/// of arrival are found differs.
+macro_rules! insert_jobs {
+    ($next:literal, $list:literal) => {
         concat!(
             "insert into jobs (id, sequence, client, method, tags, input_hash, cost, status, positions_done, positions_total,
                                submitted_at, started_at, finished_at, elapsed, document, solver_version, same_as, study, keep, document_version)
-             values ($1, ",
+             select made.job, ",
             $next,
-            ", $2, $3, $4, $5, $6, 'successful', $7, $7, $8, $8, $8, 0, $9, $10, $11, $12, $13, $14)
-             returning ",
-            $crate::jobs::store::rows::job_columns!()
-        )
-    };
-}
-
-/// A job that waits.
-macro_rules! insert_waiting {
-    ($next:literal) => {
-        concat!(
-            "insert into jobs (id, sequence, client, method, tags, input_hash, cost, status, positions_total, submitted_at, study, keep, document_version)
-             values ($1, ",
-            $next,
-            ", $2, $3, $4, $5, $6, 'accepted', $7, $8, $9, $10, $11)
-             returning ",
+            ", made.owner, made.method, made.tags, made.input, made.cost,
+                    case when made.results is null then 'accepted' else 'successful' end,
+                    case when made.results is null then 0 else made.positions end, made.positions, made.at,
+                    case when made.results is not null then made.at end, case when made.results is not null then made.at end,
+                    case when made.results is not null then 0 end, made.results, case when made.results is not null then $2 end,
+                    made.equal, made.study, made.keep, made.version
+             from ",
+            $list,
+            " returning ",
             $crate::jobs::store::rows::job_columns!()
         )
     };
@@ -143,12 +137,8 @@ pairs! {
     /// The jobs that run: id, process, and whether the lease is over (1), and since another one (2). $1: the steady clock, $2:
     /// how long a lease lasts.
     running = RUNNING;
-    /// A job at once successful. $1 to $14: see `insert_known`.
-    insert_known = INSERT_KNOWN;
-    /// A job that waits. $1 to $11: see `insert_waiting`.
-    insert_waiting = INSERT_WAITING;
-    /// Counts the new jobs of studies now, for those who look before the end of the transaction.
-    count_designs = COUNT_DESIGNS;
+    /// New jobs. $1: a list, $2: the solver's version for those that have results. See `insert_jobs`.
+    insert_jobs = INSERT_JOBS;
     /// A study. $1 to $10: see `insert_study`.
     insert_study = INSERT_STUDY;
     /// Keeps documents, unless they are kept already. $1: a list of them, $2: their bodies, one behind the other.

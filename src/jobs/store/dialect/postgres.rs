@@ -132,15 +132,12 @@ pub(in crate::jobs::store) const RUNNING: Words = Some(
      from jobs where status = 'running' order by study, id for update skip locked",
 );
 
-pub(in crate::jobs::store) const INSERT_KNOWN: Words =
-    Some(insert_known!("nextval('jobs_arrived')"));
-
-pub(in crate::jobs::store) const INSERT_WAITING: Words =
-    Some(insert_waiting!("nextval('jobs_arrived')"));
-
-// A chunk of designs takes a while; were the study locked from the first of them, claims of its jobs would wait.
-pub(in crate::jobs::store) const COUNT_DESIGNS: Words =
-    Some("set constraints job_of_study_made immediate");
+pub(in crate::jobs::store) const INSERT_JOBS: Words = Some(insert_jobs!(
+    "nextval('jobs_arrived')",
+    "json_to_recordset(cast($1 as json))
+       as made(job text, owner text, method text, tags text, input text, cost bigint, positions bigint, at bigint, results text, equal text,
+               study text, keep text, version bigint)"
+));
 
 pub(in crate::jobs::store) const INSERT_STUDY: Words =
     Some(insert_study!("nextval('studies_arrived')"));

@@ -106,16 +106,15 @@ pub(in crate::jobs::store) const RUNNING: Words = Some(
     "select id, '', (lease_until < $1) + (lease_until + $2 < $1) from jobs indexed by jobs_running where status = 'running'",
 );
 
-pub(in crate::jobs::store) const INSERT_KNOWN: Words = Some(insert_known!(
-    "(select coalesce(max(sequence), 0) + 1 from jobs)"
+pub(in crate::jobs::store) const INSERT_JOBS: Words = Some(insert_jobs!(
+    "latest.place + 1 + made.behind",
+    "(select coalesce(max(sequence), 0) as place from jobs) as latest,
+     (select key as behind, value ->> 'job' as job, value ->> 'owner' as owner, value ->> 'method' as method, value ->> 'tags' as tags,
+             value ->> 'input' as input, value ->> 'cost' as cost, value ->> 'positions' as positions, value ->> 'at' as at,
+             value ->> 'results' as results, value ->> 'equal' as equal, value ->> 'study' as study, value ->> 'keep' as keep,
+             value ->> 'version' as version
+      from json_each($1)) as made"
 ));
-
-pub(in crate::jobs::store) const INSERT_WAITING: Words = Some(insert_waiting!(
-    "(select coalesce(max(sequence), 0) + 1 from jobs)"
-));
-
-// The triggers count at once.
-pub(in crate::jobs::store) const COUNT_DESIGNS: Words = None;
 
 pub(in crate::jobs::store) const INSERT_STUDY: Words = Some(insert_study!(
     "(select coalesce(max(sequence), 0) + 1 from studies)"
