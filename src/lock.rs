@@ -111,7 +111,8 @@ fn warn_of_other_names(path: &Path, file: &File) {
     let _ = (path, file);
 }
 
-fn beside(path: &Path, ending: &str) -> PathBuf {
+/// The file that stands beside another one, its name longer by this ending.
+pub(crate) fn beside(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(ending);
     name.into()

@@ -172,22 +172,39 @@ async fn a_database_that_cannot_be_written_is_refused_with_a_reason_and_an_exit_
         "{told}"
     );
 
-    // Of another program: its bytes are the same afterwards, to the last one.
-    let path = folder.path().join("other.db");
-    let options = SqliteConnectOptions::new()
-        .filename(&path)
-        .create_if_missing(true);
-    let mut other = options.connect().await.unwrap();
-    let tables = "create table jobs (id integer); create table letters (id integer)";
-    sqlx::raw_sql(tables).execute(&mut other).await.unwrap();
-    other.close().await.unwrap();
-    let before = fs::read(&path).unwrap();
-    let (code, told) = serve(&path);
-    assert!(
-        code == Some(3) && told.contains("another program"),
-        "{code:?} {told}"
-    );
-    assert_eq!(fs::read(&path).unwrap(), before);
+    // Of another program, which has it open: its bytes are the same afterwards, to the last one.
+    for (number, made) in [
+        "create table jobs (id integer); create table letters (id integer)",
+        "create table _sqlx_migrations (version integer); create table jobs (id integer)",
+        "create view letters as select 1",
+        "pragma user_version = 3",
+        "pragma journal_mode = wal; create table letters (id integer)",
+        "pragma journal_mode = wal; pragma application_id = 77",
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let path = folder.path().join(format!("other-{number}.db"));
+        let options = SqliteConnectOptions::new()
+            .filename(&path)
+            .create_if_missing(true);
+        let mut other = options.connect().await.unwrap();
+        sqlx::raw_sql(made).execute(&mut other).await.unwrap();
+        let bytes = || {
+            (
+                fs::read(&path).unwrap(),
+                fs::read(path.with_extension("db-wal")).ok(),
+            )
+        };
+        let before = bytes();
+        let (code, told) = serve(&path);
+        assert!(
+            code == Some(3) && told.contains("another program"),
+            "{made}: {code:?} {told}"
+        );
+        assert_eq!(bytes(), before, "{made}");
+        other.close().await.unwrap();
+    }
 
     let Some(disk) = Small::mount(12) else {
         println!("NOT SHOWN: this user may not mount a file system.");

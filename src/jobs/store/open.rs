@@ -20,6 +20,7 @@ use super::ground::Ground;
 use super::statement::{Dialect, LONGEST_STATEMENT, Pool, Renewal};
 use super::write::Health;
 use super::{Place, Store, StoreError};
+use crate::lock::beside;
 use crate::private::open_or_make;
 
 /// What brings the tables up to date. Those of a later version may be there already.
@@ -391,26 +392,32 @@ fn refuse_other_files(path: &Path) -> Result<(), OpenError> {
     }
 }
 
-/// A database that is there says that it is ours, or has our tables, or none yet. It is only read for that, not so much as
-/// its journal: what cannot be read so is told by SQLite when it is opened.
+/// A database that is there says that it is ours, or has our tables, or nothing yet. It is only read for that; what cannot be read so is
+/// told by SQLite when it is opened.
 async fn refuse_other_programs(path: &Path) -> Result<(), OpenError> {
+    // What its program has written last may stand in the journal alone. Without one not even that is made.
+    let journal = path
+        .canonicalize()
+        .and_then(|path| std::fs::metadata(beside(&path, "-wal")));
     let options = SqliteConnectOptions::new()
         .filename(path)
         .read_only(true)
-        .immutable(true);
+        .immutable(journal.map_or(true, |journal| journal.len() == 0));
     let Ok(mut connection) = options.connect().await else {
         return Ok(());
     };
-    let said: Result<(i64, i64, i64), _> = sqlx::query_as(
-        "select (select application_id from pragma_application_id),
-                count(*), coalesce(sum(name in ('_sqlx_migrations', 'jobs')), 0) from sqlite_master where type = 'table'",
+    let said: Result<(i64, i64, i64, i64), _> = sqlx::query_as(
+        "select (select application_id from pragma_application_id), (select user_version from pragma_user_version), count(*),
+                coalesce(sum(type = 'table' and name in ('_sqlx_migrations', 'documents', 'idempotency_keys', 'jobs')), 0)
+         from sqlite_master",
     )
     .fetch_one(&mut connection)
     .await;
     // Of a connection that has only read there is nothing to lose.
     let _ = connection.close().await;
     match said {
-        Ok((APPLICATION, ..) | (0, 0, _) | (0, _, 2)) | Err(_) => Ok(()),
+        // The first versions did not say that a file is theirs.
+        Ok((APPLICATION, ..) | (0, 0, 0, _) | (0, 0, _, 4)) | Err(_) => Ok(()),
         Ok(_) => Err(OpenError::AnotherProgram),
     }
 }
@@ -482,7 +489,11 @@ async fn migrate_file(
                 .fetch_all(&mut *connection)
                 .await?
         }
-        None => Vec::new(),
+        None => {
+            // Whoever comes after a start that was cut off finds something in the file, and is to know that it is ours.
+            mark(connection).await?;
+            Vec::new()
+        }
     };
     let least = async {
         let least = sqlx::query_scalar(LEAST_MIGRATION);
