@@ -17,11 +17,16 @@ const COLUMNS = ["mesh_position", "driving_angle_deg", "driven_angle_deg", "tran
 const PLACES = ["root", "root_tension", "root_compression", "hole"];
 const STRESSES = ["driving", "driven"].flatMap((gear) => PLACES.flatMap((place) => ["mpa", "angle_deg", "z_mm"].map((unit) => `stress.${gear}.${place}_${unit}`)));
 
+// What may not be seen before the sign that makes a formula, as in the tables of the service: whatever is neither a letter or figure (fillers stand for
+// none) nor a sign of ASCII.
+const UNSEEN = /^(?:(?![!-~＝＋－＠])[^\p{Alphabetic}\p{Number}]|[\u115f\u1160\u3164\uffa0])+/u;
+const FORMULA = /^[=+\-@＝＋－＠]/;
+
 /** Lines of values as CSV; texts with commas in quotes, and none that a spreadsheet takes for a formula. */
 export function csvOf(lines) {
   const cell = (value) => {
     if (typeof value !== "string") return String(value ?? "");
-    const safe = /^[=+\-@\t\r]/.test(value) ? `'${value}` : value;
+    const safe = FORMULA.test(value.replace(UNSEEN, "")) || /^[\t\r\n]/.test(value) ? `'${value}` : value;
     return /[",\r\n]/.test(safe) ? `"${safe.replace(/"/g, '""')}"` : safe;
   };
   return `${lines.map((line) => line.map(cell).join(",")).join("\r\n")}\r\n`;

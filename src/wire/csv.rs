@@ -60,14 +60,16 @@ impl CsvWriter {
     }
 }
 
-/// A text that spreadsheets take for text. They take one that begins with these characters for a formula, which may call
-/// programs and addresses, some of them also behind what cannot be seen; an apostrophe before it prevents that. A number may keep
-/// its sign.
+/// What a spreadsheet takes for the beginning of a formula.
+const BEGIN_A_FORMULA: [char; 8] = ['=', '+', '-', '@', '＝', '＋', '－', '＠'];
+
+/// A text that spreadsheets take for text. They take one that begins with certain signs for a formula, which may call programs and
+/// addresses, some of them also behind what cannot be seen; an apostrophe before it prevents that. A number may keep its sign.
 fn neutral(text: &str) -> Cow<'_, str> {
-    const BEGIN_A_FORMULA: [char; 8] = ['=', '+', '-', '@', '＝', '＋', '－', '＠'];
     let is_number = text.parse::<f64>().is_ok_and(f64::is_finite);
-    let seen = text.trim_start_matches(cannot_be_seen);
-    let is_formula = seen.starts_with(BEGIN_A_FORMULA) || text.starts_with(['\t', '\r', '\n']);
+    let first = text.chars().find(|letter| can_be_seen(*letter));
+    let is_formula = first.is_some_and(|first| BEGIN_A_FORMULA.contains(&first))
+        || text.starts_with(['\t', '\r', '\n']);
     if is_formula && !is_number {
         format!("'{text}").into()
     } else {
@@ -75,12 +77,14 @@ fn neutral(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// Blanks of every width, controls, and marks of direction and joining.
-fn cannot_be_seen(letter: char) -> bool {
-    letter.is_whitespace()
-        || letter.is_control()
-        || matches!(letter, '\u{ad}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}'
-            | '\u{2060}'..='\u{206f}' | '\u{feff}')
+/// Letters, figures and the signs of ASCII can. Of all others (blanks, marks of direction, of joining and of variants, some of which no list
+/// has) it is not relied upon.
+fn can_be_seen(letter: char) -> bool {
+    /// Letters of Hangul that stand for one that is not there.
+    const FILLERS: [char; 4] = ['\u{115f}', '\u{1160}', '\u{3164}', '\u{ffa0}'];
+    letter.is_ascii_graphic()
+        || BEGIN_A_FORMULA.contains(&letter)
+        || letter.is_alphanumeric() && !FILLERS.contains(&letter)
 }
 
 #[cfg(test)]
@@ -102,6 +106,13 @@ mod tests {
             ("\u{200b}=1", "'\u{200b}=1"),
             ("\u{feff} \u{200b}@x", "'\u{feff} \u{200b}@x"),
             ("\0=1", "'\0=1"),
+            ("\u{61c}=1", "'\u{61c}=1"),
+            ("\u{34f}=1", "'\u{34f}=1"),
+            ("\u{fe0f}=1", "'\u{fe0f}=1"),
+            ("\u{3164}=1", "'\u{3164}=1"),
+            ("\u{2800}\u{e0020}＝1", "'\u{2800}\u{e0020}＝1"),
+            ("é=1", "é=1"),
+            ("10°-20°", "10°-20°"),
             (" a=1", " a=1"),
             ("-1.5", "-1.5"),
             ("+1e3", "+1e3"),

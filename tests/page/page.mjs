@@ -39,6 +39,16 @@ await step("a dragged hole changes the curve, and the hole stays where the hand 
   assert.equal(await page.locator("#start").inputValue(), "");
 });
 
+await step("no text of a table becomes a formula, also behind what cannot be seen", service, async (page) => {
+  await open(page, service);
+  const texts = ["=1", "\u00a0=1", "\u3164@x", "\u061c＝1", "\tx", "a=1", "10°-20°"];
+  const cells = await page.evaluate(async (texts) => {
+    const { csvOf } = await import(new URL("web/download.js", document.baseURI));
+    return texts.map((text) => csvOf([[text]]).replace(/\r\n$/, ""));
+  }, texts);
+  assert.deepEqual(cells, [...texts.slice(0, 5).map((text) => `'${text}`), ...texts.slice(5)]);
+});
+
 await step("a field that is wrong says so, keeps the curve, and is mended by its button", service, async (page) => {
   await open(page, service);
   const mean = await answer(page, "mean");
