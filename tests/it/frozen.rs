@@ -73,6 +73,29 @@ async fn ask(client: &Client, process: &Process, torque: f64) -> [(u16, Duration
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn whichever_table_of_a_submission_is_locked_ready_says_so() {
+    let address = server::database().await;
+    let client = meshwright::client().timeout(ANSWERED).build().unwrap();
+    let process = Process::start(&Place::Postgres(address.clone()));
+    let mut lock = server::connect(&address).await;
+    for words in [
+        "lock table jobs in access exclusive mode",
+        "lock table submissions in access exclusive mode",
+        "lock table documents in access exclusive mode",
+        "lock table studies in access exclusive mode",
+        "lock table study_rows in access exclusive mode",
+        "lock table shares in access exclusive mode",
+        "lock table keys in access exclusive mode",
+    ] {
+        sqlx::raw_sql("begin").execute(&mut lock).await.unwrap();
+        sqlx::raw_sql(words).execute(&mut lock).await.unwrap();
+        until(&client, &process, 503).await;
+        sqlx::raw_sql("rollback").execute(&mut lock).await.unwrap();
+        until(&client, &process, 200).await;
+    }
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 #[ignore = "takes a minute, and wants the machine for itself: ./chaos"]
 async fn a_server_that_answers_nothing_holds_up_no_request_and_no_end() {
     let (address, folder) = tokio::task::spawn_blocking(server::start).await.unwrap();

@@ -15,9 +15,15 @@ pub(in crate::jobs::store) const BEGIN_RELAXED: Words =
 
 pub(in crate::jobs::store) const COMMIT_RELAXED: Words = Some("commit");
 
+// Who has locked one of the tables that a submission needs keeps everybody from submitting.
 pub(in crate::jobs::store) const PROBE: Words = Some(
-    // Who has locked the jobs keeps everybody from submitting.
-    "with nothing as (update jobs set attempt = attempt where false)
+    "with no_jobs as (update jobs set attempt = attempt where false),
+          no_submissions as (update submissions set body = body where false),
+          no_documents as (update documents set size = size where false),
+          no_studies as (update studies set version = version where false),
+          no_rows as (update study_rows set label = label where false),
+          no_shares as (update shares set due = due where false),
+          no_keys as (select 1 from keys where false)
      update probed set number = number + 1",
 );
 
