@@ -73,6 +73,20 @@ impl Client {
     pub(super) fn name(&self) -> &str {
         &self.0.client
     }
+
+    /// Refuses who has waited and would not get in now.
+    ///
+    /// # Errors
+    ///
+    /// `unauthorized`.
+    pub(super) async fn check_again(&self, app: &App) -> Result<(), Problem> {
+        if self.1.holds(app).await {
+            Ok(())
+        } else {
+            let detail = "The key was revoked or has expired while the request waited.";
+            Err(unauthorized(detail))
+        }
+    }
 }
 
 /// The same for a handler that changes nothing whatever its method is.

@@ -192,7 +192,11 @@ pub(super) async fn show(
     let id = job_id(&id)?;
     let wait = wait.grant(&app.door, client.name());
     let job = match wait.patience() {
-        Some(patience) => app.jobs.wait(client.name(), id, patience).await?,
+        Some(patience) => {
+            let job = app.jobs.wait(client.name(), id, patience).await?;
+            client.check_again(&app).await?;
+            job
+        }
         None => app.jobs.find(client.name(), id).await?,
     };
 

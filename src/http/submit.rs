@@ -57,7 +57,9 @@ pub(super) async fn submit(
         if let Ok(now) = app.jobs.wait(client.name(), job.id, patience).await {
             job = now;
         }
-        results = results_of(&app, &job).await;
+        if client.check_again(&app).await.is_ok() {
+            results = results_of(&app, &job).await;
+        }
     }
     let has_waited = wait.patience().is_some();
     let view = JobView::with_results(&job, results, &app.edge).to_json();

@@ -463,6 +463,24 @@ async fn a_stream_ends_with_its_key() {
 }
 
 #[tokio::test]
+async fn who_waits_gets_no_results_once_its_key_is_revoked() {
+    let (bench, mut engine) = Bench::steered().await;
+    let key = key_of(&bench, "portal").await;
+    let request = bench.post("/v1/jobs", &submission(1.0)).bearer_auth(&key);
+    let request = request.header("prefer", "wait=60").send();
+    let waiting = tokio::spawn(request);
+    let work = engine.next().await;
+    let store = Store::open(&bench.config.database).await.unwrap();
+    let id = key.split('_').nth(1).unwrap();
+    assert!(store.revoke_key(id, jiff::Timestamp::now()).await.unwrap());
+    store.close().await;
+    work.finish();
+    let answer: Value = waiting.await.unwrap().unwrap().json().await.unwrap();
+    assert_eq!(answer["status"], "successful");
+    assert!(answer["results"].is_null(), "{answer}");
+}
+
+#[tokio::test]
 async fn those_without_a_key_are_refused_when_they_ask_too_often_and_those_with_one_are_not() {
     let (bench, _engine) = Bench::steered_with(|config| {
         config.door.keys = Some(KeysRule::Required);

@@ -169,7 +169,11 @@ pub(in crate::http) async fn show(
     let id = study_id(&id)?;
     let wait = wait.grant(&app.door, client.name());
     let study = match wait.patience() {
-        Some(patience) => app.jobs.wait_for_study(client.name(), id, patience).await?,
+        Some(patience) => {
+            let study = app.jobs.wait_for_study(client.name(), id, patience).await?;
+            client.check_again(&app).await?;
+            study
+        }
         None => app.jobs.find_study(client.name(), id).await?,
     };
     // What has not changed is answered without reading the document.
