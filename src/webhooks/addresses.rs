@@ -54,7 +54,7 @@ impl HookRules {
             .any(|target| target.takes(scheme, host, port))
         {
             return Err(format!(
-                "{scheme}://{host}:{port} is not among the hosts that this service sends to; ask its operator."
+                "This service does not send to {scheme}://{host}:{port}; ask its operator."
             ));
         }
         let literal = host.trim_start_matches('[').trim_end_matches(']');
