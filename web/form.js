@@ -19,9 +19,6 @@ const MULTIPLES = { addendum_mm: 1, dedendum_mm: 1.25, rack_tip_radius_mm: 0.38 
 
 const MEMBERS = ["driving", "driven"];
 
-/** The unit at the end of a field's name. */
-const UNIT_OF_NAME = /_(mm|um|deg|mpa|rpm)$/;
-
 /** The angle that diameters and the center distance go with. */
 const HELIX = "/pair/helix_angle_deg";
 
@@ -128,15 +125,21 @@ export class Form {
     return detail.replace(/\/(?:pair|population|resolution|output_torques_n_m|force_table|dynamics|face_load)[\w/]*/g, (pointer) => `“${this.named(pointer)}”`).replace(/\b(three_dimensional_projected|three_dimensional|projected_decomposition|load_distribution)\b/g, (method) => method.replace(/_/g, " "));
   }
 
-  /** The numbers, words and flags of the form: `{ pointer, title, value, kind }`, with the gear that they belong to. */
+  /** The numbers, words and flags of the form: `{ pointer, title, kind }`. */
   fields() {
-    // What both gears have alike cannot be changed by one field.
-    return [...this.#fields.values()].filter(({ kind, pointer }) => kind && ["number", "choice", "flag"].includes(kind.kind) && !this.#isAlike(pointer)).map(({ pointer, schema, kind }) => {
-      const place = /^\/pair\/(driving|driven)/.exec(pointer)?.[1];
-      const inner = pointer.split("/").slice(place ? 3 : 1, -1).filter((part) => !["pair", "blank"].includes(part)).map((part) => (/^\d+$/.test(part) ? Number(part) + 1 : part.replace(UNIT_OF_NAME, ""))).join(" ").replace(/_/g, " ");
-      const printed = unit(schema["x-unit"]);
-      return { pointer, kind, value: this.design.get(pointer) ?? schema.default, title: `${place ? `${place}: ` : ""}${inner ? `${inner}, ` : ""}${schema.title}${printed ? ` (${printed})` : ""}` };
-    });
+    // What both gears have alike cannot be changed by one field, and what stands in place of another not beside it.
+    const stands = ({ pointer }) => {
+      const [, holder, name] = /^(.*\/)([^/]+)$/.exec(pointer);
+      return !(INSTEAD[name] ?? []).some((other) => this.design.get(holder + other) !== undefined && this.design.get(pointer) === undefined);
+    };
+    return [...this.#fields.values()].filter(({ kind, pointer }) => kind && ["number", "choice", "flag"].includes(kind.kind) && !this.#isAlike(pointer)).filter(stands).map(({ pointer, kind }) => ({ pointer, kind, title: this.titled(pointer) }));
+  }
+
+  /** What the field at a pointer is called, with its gear and its unit. */
+  titled(pointer) {
+    const schema = this.#fields.get(pointer)?.schema ?? schemaAt(this.api, pointer);
+    const printed = unit(schema?.["x-unit"] ?? schema?.items?.["x-unit"]);
+    return `${this.named(pointer)}${printed ? ` (${printed})` : ""}`;
   }
 
   /** Whether the field at a pointer stands for both gears. */

@@ -1,10 +1,11 @@
 // How good the pairs will be that are made by a design: members drawn from laws and classes of accuracy, and what they come to.
 
-import { follow, hasEnded, json, lines, post, ProblemError, request } from "./api.js";
+import { json, lines, post, ProblemError } from "./api.js";
 import { at, nameOf } from "./design.js";
 import { debounced, h, s, fixed, number, timeLeft, timeOf } from "./dom.js";
 import { figure } from "./figure.js";
-import { outdated } from "./outdated.js";
+import { offer } from "./offer.js";
+import { Question } from "./question.js";
 
 /** What has come so far is fetched so often at most while members are computed, in milliseconds. */
 const PAUSE = 1000;
@@ -38,24 +39,21 @@ export function population(place, design, form, onOpen) {
   const torques = h("input", { type: "text", id: "population-torques", spellcheck: false, on: { input: () => { torques.dataset.typed = "yes"; } } });
   const classes = ["driving", "driven"].map((gear) => h("select", { id: `population-${gear}` }, h("option", { value: "" }, "as designed"), ...CLASSES.map((each) => h("option", { value: each, selected: each === 6 }, `class ${each}`))));
   const laws = FIRST.map((_, i) => law(i, design, form));
-  const run = h("button", { type: "submit", className: "primary" }, "Draw them");
-  const cancel = h("button", { type: "button", hidden: true }, "Cancel");
+  const question = new Question(design, { id: "population", words: "Draw them", inWords: (detail) => form.inWords(detail) });
   const ahead = h("p", { className: "note" });
-  const state = h("p", { className: "note", role: "status" });
   const quantity = h("select", { id: "population-quantity", on: { change: () => last && draw() } }, ...Object.entries(QUANTITIES).map(([name, [words, unit]]) => h("option", { value: name }, `${words} in ${unit}`)));
   const torque = h("select", { id: "population-torque", on: { change: () => last && draw() } });
   const picker = h("div", { className: "line", hidden: true }, h("label", { htmlFor: quantity.id }, "Look at"), quantity, h("label", { htmlFor: torque.id }, "at"), torque, h("span", { className: "unit" }, "N m"));
   const missing = h("p", { className: "outdated", role: "status", hidden: true });
   const out = h("div", { className: "out" });
-  const of = outdated(design);
   place.replaceChildren(
     h("p", { className: "note" }, "Every member has teeth of its own, drawn within the class of ISO 1328-1 in place of those that the design may give, and fields that vary by a law. ", h("a", { href: "guides/how-good-will-they-be" }, "How good will they be?")),
     h("form", { on: { submit: (event) => { event.preventDefault(); start(); }, input: () => foresee() } },
       h("div", { className: "line" }, h("label", { htmlFor: size.id }, "Members"), size, ...classes.flatMap((each, i) => [h("label", { htmlFor: each.id }, `teeth of the ${["driving", "driven"][i]} gear`), each])),
       ...laws.map((each) => each.element),
       h("div", { className: "line" }, h("label", { htmlFor: torques.id }, "Torques"), torques, h("span", { className: "unit" }, "N m")),
-      h("div", { className: "line" }, run, cancel)),
-    ahead, state, of.element, missing, picker, out);
+      h("div", { className: "line" }, question.run, question.cancel)),
+    ahead, question.state, question.of.element, missing, picker, out);
   let last = null;
   let refusals = null;
 
@@ -97,42 +95,16 @@ export function population(place, design, form, onOpen) {
     return { base, keep: "statistics", name: `${nameOf(design.submission)} as made`, population: { size: Number(size.value), vary, accuracy: Object.keys(accuracy).length ? accuracy : null } };
   }
 
-  async function start() {
-    run.disabled = true;
-    of.renew();
+  function start() {
+    [last, refusals] = [null, null];
     missing.hidden = true;
     out.replaceChildren();
-    try {
-      await watch(await post("v1/studies", asked()));
-    } catch (error) {
-      if (!(error instanceof ProblemError)) throw error;
-      const details = error.problem.errors?.map(({ detail }) => detail) ?? [error.message];
-      state.replaceChildren(...details.map((detail) => h("span", { className: "field-error" }, detail, " ")));
-    } finally {
-      run.disabled = false;
-      cancel.hidden = true;
-    }
-  }
-
-  /** Shows a population as its members come. */
-  async function watch(made) {
-    const address = `v1/studies/${made.id}`;
-    cancel.hidden = false;
-    cancel.onclick = () => request(`${address}/cancel`, { method: "POST" }).catch(() => {});
-    const begun = performance.now();
-    let shown = begun;
-    [last, refusals] = [null, null];
-    const told = (_, data) => {
+    return question.study(asked(), {
+      part: "/results/population", pause: PAUSE, show,
       // Those that cannot be built are known at once, and tell nothing of the time that the others take.
-      if (data.total) state.textContent = `${data.done} of ${data.total} members${last ? timeLeft(begun, data.done - last.results.failed, data.total - last.results.failed) : ""}`;
-      if (performance.now() - shown < PAUSE) return;
-      shown = performance.now();
-      json(`${address}/results/population`).then((results) => hasEnded(last?.results.status) || show(results, address), () => {});
-    };
-    if (!hasEnded(made.status)) await follow(address, told);
-    const results = await json(`${address}/results/population`);
-    show(results, address);
-    state.textContent = `${results.done} of ${results.size} members, ${results.status}`;
+      progress: (done, total, begun) => `${done} of ${total} members${last ? timeLeft(begun, done - last.results.failed, total - last.results.failed) : ""}`,
+      ended: ({ done, size: all, status }) => `${done} of ${all} members, ${status}`,
+    });
   }
 
   /** Says how many members are none, and why most of these. */
@@ -222,7 +194,7 @@ function law(index, design, form) {
   const kind = h("select", { id: `${id}-kind`, ariaLabel: "Law" }, h("option", { value: "normal" }, "normal, standard deviation"), h("option", { value: "uniform" }, "uniform, plus or minus"), h("option", { value: "triangular" }, "triangular, plus or minus"));
   const spread = h("input", { type: "number", id: `${id}-spread`, min: 0, step: "any", ariaLabel: "Spread" });
   const element = h("div", { className: "line" }, h("label", { htmlFor: id }, index ? "and" : "Vary"), field, h("label", { htmlFor: kind.id }, "by"), kind, spread);
-  const valueOf = () => at(design.submission, field.value) ?? form.fields().find(({ pointer }) => pointer === field.value)?.value;
+  const valueOf = () => at(design.submission, field.value);
   const suggested = () => {
     const usual = FIRST.find(([path]) => path === field.value)?.[1];
     const value = valueOf();
@@ -240,11 +212,9 @@ function law(index, design, form) {
 
   /** Only fields that have a number in this design can vary. */
   function refresh() {
-    const chosen = element.dataset.begun ? field.value : FIRST[index][0];
+    offer(field, "nothing else", form.fields().filter(({ pointer }) => typeof at(design.submission, pointer) === "number"));
+    if (!element.dataset.begun && [...field.options].some(({ value }) => value === FIRST[index][0])) field.value = FIRST[index][0];
     element.dataset.begun = "yes";
-    const fields = form.fields().filter(({ pointer }) => typeof at(design.submission, pointer) === "number");
-    field.replaceChildren(h("option", { value: "" }, "nothing else"), ...fields.map(({ pointer, title }) => h("option", { value: pointer }, title)));
-    field.value = fields.some(({ pointer }) => pointer === chosen) ? chosen : "";
     if (!spread.value) spread.value = suggested();
   }
   return { element, read, refresh };

@@ -1,30 +1,34 @@
 // A search: fields that may differ, what is to be small and what has to hold; the service chooses which designs to compute.
 
-import { follow, hasEnded, json, post, ProblemError, request } from "./api.js";
+import { json, ProblemError, request } from "./api.js";
 import { at, nameOf } from "./design.js";
 import { h, fixed, number, timeLeft } from "./dom.js";
 import { figure } from "./figure.js";
-import { outdated } from "./outdated.js";
+import { offer } from "./offer.js";
 import { preview } from "./preview.js";
+import { Question } from "./question.js";
 import { DASHES } from "./series.js";
 
 /** How a search stands is fetched so often at most, in milliseconds. */
 const PAUSE = 500;
 
-/** What can be made small or bounded: words, unit, and what it is multiplied by to be shown. */
+/** What can be made small or bounded: words and unit. */
 const QUANTITIES = {
-  "transmission_error_um.peak_to_peak": ["STE peak-to-peak", "µm", 1],
-  "transmission_error_um.mean": ["STE mean", "µm", 1],
-  face_load_factor: ["K_Hβ", "", 1],
-  mesh_order_um: ["H_Z2", "µm", 1],
-  hole_order_um: ["H_N", "µm", 1],
-  peak_contact_pressure_mpa: ["contact pressure", "MPa", 1],
-  "mass_kg.driving": ["mass of the driving gear", "kg", 1],
-  "mass_kg.driven": ["mass of the driven gear", "kg", 1],
-  "mass_removed_percent.driven": ["removed by holes of the driven gear", "%", 1],
-  "least_ligament_mm.driven": ["least material around its holes", "mm", 1],
-  contact_ratio: ["contact ratio", "", 1],
-  backlash_mm: ["backlash", "mm", 1],
+  "transmission_error_um.peak_to_peak": ["STE peak-to-peak", "µm"],
+  "transmission_error_um.mean": ["STE mean", "µm"],
+  face_load_factor: ["K_Hβ", ""],
+  mesh_order_um: ["H_Z2", "µm"],
+  hole_order_um: ["H_N", "µm"],
+  peak_contact_pressure_mpa: ["contact pressure", "MPa"],
+  "stress.driving.root_mpa": ["root stress of the driving gear", "MPa"],
+  "stress.driven.root_mpa": ["root stress of the driven gear", "MPa"],
+  "stress.driven.hole_mpa": ["stress at the holes of the driven gear", "MPa"],
+  "mass_kg.driving": ["mass of the driving gear", "kg"],
+  "mass_kg.driven": ["mass of the driven gear", "kg"],
+  "mass_removed_percent.driven": ["removed by holes of the driven gear", "%"],
+  "least_ligament_mm.driven": ["least material around its holes", "mm"],
+  contact_ratio: ["contact ratio", ""],
+  backlash_mm: ["backlash", "mm"],
 };
 
 /** Fields that are searched first, as far as a design has them: each variable begins with the first that no other has. */
@@ -42,93 +46,63 @@ const quantities = (id, label, none) => h("select", { id, ariaLabel: label }, ..
 export function search(place, design, form, onOpen) {
   const variables = Array.from({ length: VARIABLES }, (_, i) => variable(i, design, form));
   const goals = [quantities("search-goal", "What is to be small", null), quantities("search-goal-2", "And what besides", "nothing else")];
-  const bounded = quantities("search-bounded", "What has to hold", "nothing");
-  const side = h("select", { id: "search-side", ariaLabel: "Side of the bound" }, h("option", { value: "at_least" }, "at least"), h("option", { value: "at_most" }, "at most"));
-  const bound = h("input", { type: "number", id: "search-bound", step: "any", ariaLabel: "Bound" });
+  const conditions = ["", "-2"].map(condition);
   const evaluations = h("input", { type: "number", id: "search-evaluations", value: 150, min: 2, max: 20000, step: 1 });
-  const run = h("button", { type: "button", className: "primary", id: "search-run", on: { click: () => start() } }, "Search");
-  const cancel = h("button", { type: "button", hidden: true }, "Cancel");
-  const state = h("p", { className: "note", role: "status", id: "search-state" });
+  const question = new Question(design, { id: "search", words: "Search", inWords: (detail) => form.inWords(detail) });
   const out = h("div", { className: "out", id: "search-out" });
   /** The design that the search began with and the best one, drawn beside each other; which row that is. */
   const beside = h("div", { className: "beside", id: "search-beside" });
   let drawn = null;
-  const of = outdated(design);
   place.replaceChildren(
     h("p", { className: "note" }, "Each generation of designs is chosen by what came of those before; it begins with this design. ", h("a", { href: "guides/find-a-design" }, "Find a design")),
-    ...variables.map((each) => each.element),
-    h("div", { className: "line" }, h("label", { htmlFor: goals[0].id }, "for the least"), goals[0], h("label", { htmlFor: goals[1].id }, "and"), goals[1]),
-    h("div", { className: "line" }, h("label", { htmlFor: bounded.id }, "with"), bounded, side, bound),
-    h("div", { className: "line" }, h("label", { htmlFor: evaluations.id }, "Designs"), evaluations, run, cancel),
-    state, of.element, out);
+    h("form", { on: { submit: (event) => { event.preventDefault(); start(); } } },
+      ...variables.map((each) => each.element),
+      h("div", { className: "line" }, h("label", { htmlFor: goals[0].id }, "for the least"), goals[0], h("label", { htmlFor: goals[1].id }, "and"), goals[1]),
+      ...conditions.map((each) => each.element),
+      h("div", { className: "line" }, h("label", { htmlFor: evaluations.id }, "Designs"), evaluations, question.run, question.cancel)),
+    question.state, question.of.element, out);
 
   function asked() {
     const minimize = goals.map(({ value }) => value).filter(Boolean).map((quantity) => ({ quantity }));
-    const subject_to = bounded.value && bound.value ? [{ quantity: bounded.value, [side.value]: Number(bound.value) }] : [];
-    return { base: design.submission, name: `${nameOf(design.submission)}, searched`, search: { variables: variables.flatMap((each) => each.read()), minimize, subject_to, evaluations: Number(evaluations.value) } };
+    const subject_to = conditions.flatMap((each) => each.read());
+    // Stresses are told where they are asked for.
+    const stressed = [...minimize, ...subject_to].some(({ quantity }) => quantity.startsWith("stress."));
+    return { base: stressed ? { ...design.submission, stress: true } : design.submission, name: `${nameOf(design.submission)}, searched`, search: { variables: variables.flatMap((each) => each.read()), minimize, subject_to, evaluations: Number(evaluations.value) } };
   }
 
-  async function start() {
-    run.disabled = true;
-    of.renew();
+  function start() {
     out.replaceChildren();
     beside.replaceChildren();
     drawn = null;
-    try {
-      const question = asked();
-      await watch(await post("v1/studies", question), question);
-    } catch (error) {
-      if (!(error instanceof ProblemError)) throw error;
-      const details = error.problem.errors?.map(({ detail }) => detail) ?? [error.message];
-      state.replaceChildren(...details.map((detail) => h("span", { className: "field-error" }, detail, " ")));
-    } finally {
-      run.disabled = false;
-      cancel.hidden = true;
-    }
+    const about = asked();
+    return question.study(about, {
+      pause: PAUSE, show: (study, address) => show(study.search, address, about),
+      progress: (done, total, begun) => `${done} of at most ${total} designs${timeLeft(begun, done, total)}`,
+      ended: (study) => study.problem?.detail ?? `${study.search.evaluations} designs looked at, ${study.status}`,
+    });
   }
 
-  /** Shows a search as its generations come. */
-  async function watch(made, question) {
-    const address = `v1/studies/${made.id}`;
-    cancel.hidden = false;
-    cancel.onclick = () => request(`${address}/cancel`, { method: "POST" }).catch(() => {});
-    let [shown, ended] = [performance.now(), false];
-    const begun = performance.now();
-    const told = (_, { done, total }) => {
-      if (total) state.textContent = `${done} of at most ${total} designs${timeLeft(begun, done, total)}`;
-      if (performance.now() - shown < PAUSE) return;
-      shown = performance.now();
-      json(address).then((study) => ended || show(study, question), () => {});
-    };
-    if (!hasEnded(made.status)) await follow(address, told);
-    const study = await json(address);
-    ended = true;
-    show(study, question);
-    state.textContent = study.problem?.detail ?? `${study.search.evaluations} designs looked at, ${study.status}`;
-  }
-
-  function show({ id, search: found }, question) {
-    const address = `v1/studies/${id}`;
-    const parts = question.search.minimize.map(({ quantity }) => QUANTITIES[quantity]);
-    const conditions = question.search.subject_to.map(({ quantity }) => QUANTITIES[quantity]);
-    const told = (values, names) => names.map(([words, unit, factor], i) => `${words} ${values?.[i] === null || values?.[i] === undefined ? "?" : number(values[i] * factor, 4)} ${unit}`.trim()).join(", ");
+  function show(found, address, about) {
+    const parts = about.search.minimize.map(({ quantity }) => QUANTITIES[quantity]);
+    const held = about.search.subject_to.map(({ quantity }) => QUANTITIES[quantity]);
+    const told = (values, names) => names.map(([words, unit], i) => `${words} ${values?.[i] === null || values?.[i] === undefined ? "?" : number(values[i], 4)} ${unit}`.trim()).join(", ");
     const { best, front, confirmed, generations } = found;
     if (!best) return out.replaceChildren();
-    const rows = Object.entries(best.values).map(([path, value]) => h("tr", {}, h("th", { scope: "row" }, form.named(path)), h("td", {}, number(at(question.base, path) ?? null, 5)), h("td", {}, number(value, 5))));
+    const rows = Object.entries(best.values).map(([path, value]) => h("tr", {}, h("th", { scope: "row" }, form.named(path)), h("td", {}, number(at(about.base, path) ?? null, 5)), h("td", {}, number(value, 5))));
     const table = h("table", {}, h("thead", {}, h("tr", {}, ...["Field", "Begun with", "Best so far"].map((words) => h("th", { scope: "col" }, words)))), h("tbody", {}, ...rows));
-    const atEnd = question.search.variables.filter(({ path, low, high }) => [low, high].includes(best.values[path])).map(({ path }) => form.named(path));
+    const atEnd = about.search.variables.filter(({ path, low, high }) => [low, high].includes(best.values[path])).map(({ path }) => form.named(path));
     const open = async (row) => onOpen(await json(`${address}/designs/${row}`), null);
     const use = (row, words) => h("button", { type: "button", on: { click: () => open(row) } }, words);
-    drawBeside(address, best.row, question.base);
+    drawBeside(address, best.row, about.base);
     const reached = generations.map((each, i) => [i + 1, each.best]).filter(([, value]) => value !== null);
     const pictures = front.length > 1
-      ? [figure({ points: front.map(({ goals: [x, y], row }) => ({ x: x * parts[0][2], y: y * parts[1][2], label: `design ${row}`, strong: row === best.row, open: () => open(row) })), x: inUnit(parts[0]), y: inUnit(parts[1]), title: "The front: no design found is better in both; the large point is the best compromise. Press a point to open its design" }), frontOf(front, parts, use)]
-      : reached.length > 1 ? [figure({ lines: [{ x: reached.map(([i]) => i), y: reached.map(([, value]) => value * parts[0][2]) }], x: "generation", y: inUnit(parts[0]), title: "The best so far, generation by generation" })] : [];
+      ? [figure({ points: front.map(({ goals: [x, y], row }) => ({ x, y, label: `design ${row}`, strong: row === best.row, open: () => open(row) })), x: inUnit(parts[0]), y: inUnit(parts[1]), title: "The front: no design found is better in both; the large point is the best compromise. Press a point to open its design" }), frontOf(front, parts, use)]
+      : reached.length > 1 ? [figure({ lines: [{ x: reached.map(([i]) => i), y: reached.map(([, value]) => value) }], x: "generation", y: inUnit(parts[0]), title: "The best so far, generation by generation" })] : [];
     const fine = confirmed && (confirmed.error_estimate
       ? `By the flexible method on the fine grid: ${told(confirmed.goals, parts)}; another grid level changes the peak-to-peak value by ${fixed(confirmed.error_estimate.transmission_error_peak_to_peak_um, 4)} µm.`
       : `It could not be confirmed: ${confirmed.problem?.detail ?? "there are no results"}`);
     out.replaceChildren(
-      h("p", {}, h("strong", {}, told(best.goals, parts)), conditions.length ? `, with ${told(best.conditions, conditions)}` : "", best.feasible ? "" : ". No design so far keeps the condition; this one comes nearest to it"),
+      h("p", {}, h("strong", {}, told(best.goals, parts)), held.length ? `, with ${told(best.conditions, held)}` : "", best.feasible ? "" : ". No design so far keeps what has to hold; this one comes nearest to it"),
       h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Best design of the search" }, table),
       ...(atEnd.length && parts.length === 1 ? [h("p", { className: "note" }, `At an end of its range: ${atEnd.join("; ")}. A wider one may find better.`)] : []),
       h("div", { className: "buttons" }, use(best.row, "Use this design")),
@@ -161,13 +135,23 @@ export function search(place, design, form, onOpen) {
   /** The designs of a front, each to be used. */
   function frontOf(front, parts, use) {
     const head = [...parts.map(inUnit), ""].map((words) => h("th", { scope: "col" }, words || h("span", { className: "visually-hidden" }, "Actions")));
-    const rows = front.map(({ row, goals }) => h("tr", {}, ...goals.map((value, i) => h("td", {}, number(value * parts[i][2], 4))), h("td", {}, use(row, "Use"))));
+    const rows = front.map(({ row, goals }) => h("tr", {}, ...goals.map((value) => h("td", {}, number(value, 4))), h("td", {}, use(row, "Use"))));
     return h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Designs of the front" }, h("table", {}, h("thead", {}, h("tr", {}, ...head)), h("tbody", {}, ...rows)));
   }
 
   const refresh = () => variables.forEach((each) => each.refresh());
   refresh();
   return { refresh };
+}
+
+/** A quantity and the bound that it has to keep. */
+function condition(end, index) {
+  const bounded = quantities(`search-bounded${end}`, "What has to hold", index ? "nothing else" : "nothing");
+  const side = h("select", { id: `search-side${end}`, ariaLabel: "Side of the bound" }, h("option", { value: "at_least" }, "at least"), h("option", { value: "at_most" }, "at most"));
+  const bound = h("input", { type: "number", id: `search-bound${end}`, step: "any", ariaLabel: "Bound" });
+  const element = h("div", { className: "line" }, h("label", { htmlFor: bounded.id }, index ? "and" : "with"), bounded, side, bound);
+  const read = () => (bounded.value && bound.value ? [{ quantity: bounded.value, [side.value]: Number(bound.value) }] : []);
+  return { element, read };
 }
 
 /** A field and the range that is searched, around the value that the design has. */
@@ -193,10 +177,9 @@ function variable(index, design, form) {
   function refresh() {
     const fields = form.fields().filter(({ pointer }) => typeof at(design.submission, pointer) === "number");
     const offered = FIRST.filter((first) => fields.some(({ pointer }) => pointer === first)).slice(0, BEGUN);
-    const chosen = field.dataset.chosen ? field.value : (offered[index] ?? "");
     const before = field.value;
-    field.replaceChildren(h("option", { value: "" }, index ? "nothing else" : "a field"), ...fields.map(({ pointer, title }) => h("option", { value: pointer }, title)));
-    field.value = fields.some(({ pointer }) => pointer === chosen) ? chosen : "";
+    offer(field, index ? "nothing else" : "a field", fields);
+    if (!field.dataset.chosen) field.value = offered[index] ?? "";
     if (low.value === "" || field.value !== before) suggest();
   }
   return { element, read, refresh };

@@ -1,12 +1,14 @@
 // Many designs at once: axes of values over any fields, a table, a picture of two of its columns, and which designs no other beats; or a search
 // that chooses the values itself.
 
-import { follow, hasEnded, json, post, ProblemError, request } from "./api.js";
+import { json, request } from "./api.js";
 import { h, fixed, number, timeLeft } from "./dom.js";
 import { at, nameOf, withValue } from "./design.js";
 import { save } from "./download.js";
 import { figure } from "./figure.js";
-import { outdated } from "./outdated.js";
+import { offer } from "./offer.js";
+import { Question } from "./question.js";
+import { usualAt } from "./schema.js";
 import { search } from "./search.js";
 
 /** A table is fetched so often at most while a study runs, in milliseconds. */
@@ -24,14 +26,13 @@ const QUANTITIES = {
   ligament: ["least material around holes", "mm", (row) => row.least_ligament_mm],
 };
 
-/** Fields that are looked for first. */
-const FIRST = ["/pair/driven/blank/holes/count", "/pair/driven/blank/holes/circle_radius_mm", "/pair/driven/blank/holes/radius_mm", "/pair/driven/tip_relief/amount_um"];
+const TORQUE = "/output_torques_n_m";
+/** With which field an axis begins, and its values. */
+const [COUNT, COUNTS] = ["/pair/driven/blank/holes/count", "6, 8, 10"];
 
-/** The blanks' parts that a design may lack and an axis may change all the same. */
-const PART = /^(\/pair\/\w+\/blank\/(?:holes|web))\//;
-const WEBS = ["driving", "driven"].flatMap((gear) => ["thickness_mm", "inner_radius_mm", "outer_radius_mm"].map((name) => `/pair/${gear}/blank/web/${name}`));
-
-const COUNT = { "/pair/driven/blank/holes/count": "6, 8, 10" };
+/** The parts of gears that a design may lack and an axis may change all the same, and their fields. */
+const PART = /^(\/pair\/\w+\/(?:blank\/holes|blank\/web|tip_relief))\//;
+const LACKING = ["driving", "driven"].flatMap((gear) => ["tip_relief/amount_um", "blank/holes/count", "blank/holes/circle_radius_mm", "blank/holes/radius_mm", "blank/web/thickness_mm", "blank/web/inner_radius_mm", "blank/web/outer_radius_mm"].map((name) => `/pair/${gear}/${name}`));
 
 /** The study of `design` in `place`; `form` knows the fields, `onOpen` opens the design of a row. */
 export function study(place, design, form, onOpen) {
@@ -39,41 +40,32 @@ export function study(place, design, form, onOpen) {
   const constant = h("input", { type: "checkbox", id: "study-mass" });
   const gear = h("select", { id: "study-gear", ariaLabel: "Gear of the same mass" }, h("option", { value: "driven" }, "driven"), h("option", { value: "driving" }, "driving"));
   const removed = h("input", { type: "number", id: "study-removed", value: 25, min: 0.01, max: 99, step: "any", ariaLabel: "Mass removed in percent" });
-  const run = h("button", { type: "submit", className: "primary" }, "Run the study");
-  const cancel = h("button", { type: "button", hidden: true }, "Cancel");
+  const question = new Question(design, { id: "study", words: "Run the study", inWords: (detail) => form.inWords(detail) });
   const [across, up] = ["mass", "p_p"].map((chosen, i) => h("select", { id: `study-${i ? "up" : "across"}`, on: { change: () => last && draw(last) } }, ...Object.entries(QUANTITIES).map(([name, [words, unit]]) => h("option", { value: name, selected: name === chosen }, `${words} in ${unit}`))));
   const picture = h("div", {});
   const picker = h("div", { className: "line", hidden: true }, h("label", { htmlFor: up.id }, "Picture:"), up, h("label", { htmlFor: across.id }, "over"), across);
   const out = h("div", { className: "out" });
-  const state = h("p", { className: "note", role: "status" });
   const searched = h("div", {});
-  const of = outdated(design);
   const formOf = h("form", { on: { submit: (event) => { event.preventDefault(); start(); } } },
     ...axes.map((each) => each.element),
-    h("div", { className: "line" }, constant, h("label", { htmlFor: "study-mass" }, "Same mass: holes remove"), removed, h("span", { className: "unit" }, "% of the"), gear, h("span", {}, "blank, by their radius")),
-    h("div", { className: "line" }, run, cancel));
-  place.replaceChildren(h("p", { className: "note" }, "Every combination of these values is computed from the design; values are separated by commas. “Best” is a design that no other beats: none is at least as good in mass, peak-to-peak and mean stiffness, and better in one."), formOf, state, of.element, picker, picture, out, h("details", { id: "search" }, h("summary", {}, "Let a search choose the values"), searched));
-  axes[0].choose(FIRST[0]);
+    h("div", { className: "line" }, constant, h("label", { htmlFor: "study-mass" }, "Same mass: holes remove"), removed, h("span", { className: "unit" }, "% of the"), gear, h("span", {}, "blank, by their radius and the width of slots, alike in all patterns")),
+    h("div", { className: "line" }, question.run, question.cancel));
+  place.replaceChildren(h("p", { className: "note" }, "Every combination of these values is computed from the design; values are separated by commas. “Best” is a design that no other beats: none is at least as good in mass, peak-to-peak and mean stiffness, and better in one."), formOf, question.state, question.of.element, picker, picture, out, h("details", { id: "search" }, h("summary", {}, "Let a search choose the values"), searched));
+  axes[0].choose(COUNT);
   const seeker = search(searched, design, form, onOpen);
   let last = null;
 
-  async function start() {
-    run.disabled = true;
-    of.renew();
+  function start() {
+    last = null;
     picture.replaceChildren();
     out.replaceChildren();
-    try {
-      const asked = { base: base(), axes: axes.flatMap((each) => each.read()), name: nameOf(design.submission) };
-      if (constant.checked) asked.constant_mass = { gear: gear.value, mass_removed_percent: Number(removed.value) };
-      await watch(await post("v1/studies", asked));
-    } catch (error) {
-      if (!(error instanceof ProblemError)) throw error;
-      const details = error.problem.errors?.map(({ detail }) => detail) ?? [error.message];
-      state.replaceChildren(...details.map((detail) => h("span", { className: "field-error" }, detail, " ")));
-    } finally {
-      run.disabled = false;
-      cancel.hidden = true;
-    }
+    const asked = { base: base(), axes: axes.flatMap((each) => each.read()), name: nameOf(design.submission) };
+    if (constant.checked) asked.constant_mass = { gear: gear.value, mass_removed_percent: Number(removed.value) };
+    return question.study(asked, {
+      part: "/results", pause: PAUSE, show,
+      progress: (done, total, begun) => `${done} of ${total} designs${timeLeft(begun, done, total)}`,
+      ended: ({ done, total, status }) => `${done} of ${total} designs, ${status}`,
+    });
   }
 
   /** The design, with holes or a web to begin with where an axis changes what it lacks. */
@@ -82,26 +74,6 @@ export function study(place, design, form, onOpen) {
     let submission = design.submission;
     for (const pointer of touched) if (!at(submission, pointer)) submission = withValue(submission, pointer, form.beginnings.object(pointer, null));
     return submission;
-  }
-
-  /** Shows a study as its events tell of it. */
-  async function watch(made) {
-    const address = `v1/studies/${made.id}`;
-    cancel.hidden = false;
-    cancel.onclick = () => request(`${address}/cancel`, { method: "POST" }).catch(() => {});
-    let shown = 0;
-    const begun = performance.now();
-    const told = (_, { done, total }) => {
-      if (total) state.textContent = `${done} of ${total} designs${timeLeft(begun, done, total)}`;
-      if (performance.now() - shown < PAUSE) return;
-      shown = performance.now();
-      json(`${address}/results`).then((results) => hasEnded(last?.status) || show(results, address), () => {});
-    };
-    last = null;
-    if (!hasEnded(made.status)) await follow(address, told);
-    const results = await json(`${address}/results`);
-    show(results, address);
-    state.textContent = `${results.done} of ${results.total} designs, ${results.status}`;
   }
 
   function show(results, address) {
@@ -159,11 +131,11 @@ function axis(index, design, form) {
 
   /** Values around the one that the design has. */
   function suggested() {
-    if (COUNT[field.value]) return COUNT[field.value];
+    if (field.value === COUNT) return COUNTS;
     const known = form.fields().find(({ pointer }) => pointer === field.value);
     const [, part] = PART.exec(field.value) ?? [];
     const begun = part && !at(design.submission, part) ? at(form.beginnings.object(part, null), field.value.slice(part.length)) : undefined;
-    const value = at(design.submission, field.value) ?? known?.value ?? begun;
+    const value = at(design.submission, field.value) ?? usualAt(form.api, design.submission, field.value) ?? begun;
     if (known?.kind.kind === "choice") return known.kind.schema.enum.join(", ");
     if (typeof value !== "number") return "";
     if (value === 0) return known?.kind.whole ? "0, 1, 2" : "0, 0.1, 0.2";
@@ -175,22 +147,15 @@ function axis(index, design, form) {
 
   /** A field within a list is changed by its place; the torque as the list that it is. */
   function pathOf(path, list) {
-    return path === "/output_torques_n_m" ? { path, values: list.map((value) => [value]) } : { path, values: list };
+    return path === TORQUE ? { path, values: list.map((value) => [value]) } : { path, values: list };
   }
 
   function refresh() {
-    const chosen = field.value;
     const fields = form.fields().filter(({ pointer }) => pointer !== "/tags");
     // Several patterns have fields of their own, and none of one pattern.
-    const first = FIRST.filter((pointer) => !(pointer.includes("/holes/") && Array.isArray(design.get("/pair/driven/blank/holes"))));
-    const known = (pointer) => fields.find((each) => each.pointer === pointer) ?? { pointer, title: form.named(pointer) };
-    const listed = [...first.map(known), ...fields.filter(({ pointer }) => !FIRST.includes(pointer)), ...WEBS.filter((pointer) => !fields.some((each) => each.pointer === pointer)).map(known)];
-    field.replaceChildren(h("option", { value: "" }, "none"), ...listed.map(({ pointer, title }) => h("option", { value: pointer }, title)), h("option", { value: "/output_torques_n_m" }, "Output torque (N m)"));
-    field.value = chosen;
-    if (field.value === chosen) return;
-    // The field that was chosen is not there any more.
-    field.value = "";
-    values.value = "";
+    const absent = LACKING.filter((pointer) => !fields.some((each) => each.pointer === pointer) && !(pointer.includes("/holes/") && Array.isArray(design.get("/pair/driven/blank/holes"))));
+    // The field that was chosen may not be there any more.
+    if (!offer(field, "none", [...absent, TORQUE].map((pointer) => ({ pointer, title: form.titled(pointer) })).concat(fields))) values.value = "";
   }
 
   const choose = (path) => {

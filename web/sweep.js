@@ -1,10 +1,10 @@
 // The peak-to-peak transmission error over the torque, and where it is least.
 
-import { hasEnded, ProblemError, request } from "./api.js";
+import { hasEnded, request } from "./api.js";
 import { h, fixed, number, timeLeft } from "./dom.js";
 import { figure } from "./figure.js";
-import { outdated } from "./outdated.js";
 import { resultsOf } from "./preview.js";
+import { Question } from "./question.js";
 
 const MOST_TORQUES = 24;
 
@@ -12,19 +12,15 @@ const MOST_TORQUES = 24;
 export function sweep(place, design, limits, positionsOf) {
   const from = h("input", { type: "number", id: "sweep-from", step: "any", min: 0 });
   const to = h("input", { type: "number", id: "sweep-to", step: "any", min: 0 });
-  const run = h("button", { type: "submit", className: "primary" }, "Sweep");
-  const cancel = h("button", { type: "button", hidden: true, on: { click: () => stop?.abort() } }, "Cancel");
-  const state = h("p", { className: "note", role: "status" });
+  const question = new Question(design, { id: "sweep", words: "Sweep", ignored: ["/output_torques_n_m"] });
   const out = h("div", { className: "out" });
-  let stop = null;
   /** The last job that computed torques, where a preview does not. */
   let job = null;
-  const of = outdated(design, ["/output_torques_n_m"]);
   for (const input of [from, to]) input.addEventListener("input", () => { input.dataset.typed = "yes"; });
   const form = h("form", { className: "line", on: { submit: (event) => { event.preventDefault(); start(); } } },
     h("label", { htmlFor: "sweep-from" }, "Torque from"), from, h("span", { className: "unit" }, "N m"),
-    h("label", { htmlFor: "sweep-to" }, "to"), to, h("span", { className: "unit" }, "N m"), run, cancel);
-  place.replaceChildren(h("p", { className: "note" }, "At which torque is the transmission error flattest? A tip relief suits one torque; this shows which."), form, state, of.element, out);
+    h("label", { htmlFor: "sweep-to" }, "to"), to, h("span", { className: "unit" }, "N m"), question.run, question.cancel);
+  place.replaceChildren(h("p", { className: "note" }, "At which torque is the transmission error flattest? A tip relief suits one torque; this shows which."), form, question.state, question.of.element, out);
 
   /** From a tenth of the design's torque to twice as much, until somebody types other ones. */
   const suggest = () => {
@@ -33,33 +29,29 @@ export function sweep(place, design, limits, positionsOf) {
     if (!to.dataset.typed || !to.value) to.value = number(torque * 2, 2);
   };
 
-  async function start() {
+  function start() {
     const [low, high] = [Number(from.value), Number(to.value)];
-    if (!(low > 0 && high > low)) return state.replaceChildren(h("span", { className: "field-error" }, "The torques have to be positive, the second larger than the first."));
-    [stop, job] = [new AbortController(), null];
-    [run.disabled, cancel.hidden] = [true, false];
-    of.renew();
+    if (!(low > 0 && high > low)) return question.refuse("The torques have to be positive, the second larger than the first.");
+    job = null;
     out.replaceChildren();
-    state.textContent = "Computing";
-    const points = [];
-    try {
-      await fill(points, low, high);
-      state.textContent = "";
-      out.replaceChildren(...shown(points));
-    } catch (error) {
-      if (error.name === "AbortError") {
-        state.textContent = `Cancelled after ${points.length} torques.`;
+    question.say("Computing");
+    return question.ask(async (cancelling) => {
+      const [stop, points] = [new AbortController(), []];
+      cancelling(() => stop.abort());
+      try {
+        await fill(points, low, high, stop.signal);
+        question.say("");
+        out.replaceChildren(...shown(points));
+      } catch (error) {
+        if (error.name !== "AbortError") throw error;
+        question.say(`Cancelled after ${points.length} torques.`);
         if (job && !hasEnded(job.status)) request(`v1/jobs/${job.id}/cancel`, { method: "POST" }).catch(() => {});
       }
-      else if (error instanceof ProblemError) state.replaceChildren(h("span", { className: "field-error" }, error.problem.errors?.[0]?.detail ?? error.message));
-      else throw error;
-    } finally {
-      [run.disabled, cancel.hidden] = [false, true];
-    }
+    });
   }
 
   /** Adds the points of a sweep, which are seen as they come: as many torques in one request as a preview may have, and the rest in further ones. */
-  async function fill(points, low, high) {
+  async function fill(points, low, high, signal) {
     const begun = performance.now();
     const torques = Array.from({ length: MOST_TORQUES }, (_, i) => Number((low + ((high - low) * i) / (MOST_TORQUES - 1)).toPrecision(6)));
     const each = Math.max(1, Math.floor(limits.previews.positions / Math.max(1, positionsOf())));
@@ -67,10 +59,10 @@ export function sweep(place, design, limits, positionsOf) {
     const { force_table: table, dynamics, stress, face_load: load, ...submission } = design.submission;
     for (let i = 0; i < torques.length; i += each) {
       if (points.length) {
-        state.textContent = `${i} of ${torques.length} torques${timeLeft(begun, i, torques.length)}`;
+        question.say(`${i} of ${torques.length} torques${timeLeft(begun, i, torques.length)}`);
         out.replaceChildren(pictureOf(points));
       }
-      const results = await resultsOf({ ...submission, output_torques_n_m: torques.slice(i, i + each) }, { signal: stop.signal, told: (event, data) => { if (event === "status") job = data; } });
+      const results = await resultsOf({ ...submission, output_torques_n_m: torques.slice(i, i + each) }, { signal, told: (event, data) => { if (event === "status") job = data; } });
       for (const curve of results.curves) points.push({ x: curve.output_torque_n_m, y: curve.statistics.transmission_error_um.peak_to_peak, label: `${number(curve.output_torque_n_m)} N m` });
     }
   }

@@ -111,7 +111,7 @@ export async function hourSteps(service) {
     await tab(page, "study");
     await page.locator("#axis-0").selectOption(`${blank}/web/thickness_mm`);
     await typed(page.locator("#axis-0-values"), "6, 8, 10");
-    await page.locator("#study button[type=submit]").click();
+    await page.locator("#study-run").click();
     await page.waitForFunction(() => /3 of 3 designs, successful/.test(document.querySelector("#study [role=status]").innerText));
     for (const row of [0, 2]) await answered(await page.locator("#study tbody tr").nth(row).evaluate((line) => `${line.children[0].textContent}: ${line.children[2].textContent} kg, p-p ${line.children[6].textContent} µm, H_N ${line.children[8].textContent} µm`));
     await page.locator("#search summary").click();

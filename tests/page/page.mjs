@@ -165,7 +165,7 @@ await step("a study runs and shows its table and its front", service, async (pag
   await open(page, service);
   await tab(page, "study");
   await page.locator("#axis-0-values").fill("6, 10, 40");
-  await page.locator("#study button[type=submit]").click();
+  await page.locator("#study-run").click();
   await page.waitForFunction(() => /3 of 3 designs, successful/.test(document.querySelector("#study [role=status]").innerText));
   assert.equal(await page.locator("#study tbody tr").count(), 3);
   assert.match(await page.locator("#study tbody").innerText(), /yes/);

@@ -178,11 +178,11 @@ export async function solidSteps(service) {
     await tab(page, "study");
     await page.locator("#search summary").click();
     const [first, second, third] = await Promise.all([0, 1, 2].map((i) => page.locator(`#variable-${i}`).evaluate((select) => [select.value, select.selectedOptions[0].textContent])));
-    assert.deepEqual(first, ["/pair/driving/lead_modifications/0/amount_um", "driving: lead modifications 1, Amount of the lead slope (µm)"]);
+    assert.deepEqual(first, ["/pair/driving/lead_modifications/0/amount_um", "Amount of the lead slope (1), driving gear (µm)"]);
     assert.deepEqual([second[0], third[0]], ["/pair/driven/blank/holes/radius_mm", ""]);
     assert.deepEqual(await Promise.all(["low", "high"].map((end) => page.locator(`#variable-0-${end}`).inputValue())), ["3.2", "16"]);
     const words = await page.locator("#variable-0 option").allInnerTexts();
-    assert.ok(words.includes("misalignment, Misalignment in the plane of the axes (µm)") && !words.some((each) => /\b(um|mm|deg)\b,/.test(each)), words.join("\n"));
+    assert.ok(words.includes("Misalignment in the plane of the axes (µm)") && !words.some((each) => /\b(um|mm|deg)\b,/.test(each)), words.join("\n"));
     assert.equal(await page.locator("#search-goal option[value=face_load_factor]").innerText(), "K_Hβ");
     for (const line of await page.locator("#search .line:visible").all()) {
       const heights = await line.evaluate((element) => new Set([...element.children].filter((each) => !each.hidden).map((each) => Math.round(each.getBoundingClientRect().top + each.getBoundingClientRect().height / 2))).size);
