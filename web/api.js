@@ -4,13 +4,19 @@ const KEY = "meshwright-key";
 const listeners = new Set();
 let key = sessionStorage.getItem(KEY) ?? "";
 
-/** A problem document (RFC 9457) that the service answered with. */
+/** A problem document (RFC 9457) that the service answered with, and after how many milliseconds it may be asked again. */
 export class ProblemError extends Error {
-  constructor(problem) {
+  constructor(problem, after = AGAIN) {
     super(problem.detail ?? problem.title ?? "The service gave no reason.");
-    this.problem = problem;
+    Object.assign(this, { problem, after });
   }
 }
+
+/** So long it takes until a service that did not answer, or had no room, is asked again, in milliseconds. */
+const AGAIN = 1500;
+
+/** What a request or an answer that broke off is told as; one that was given up stays that. */
+const broken = (error) => (error.name === "AbortError" ? error : new ProblemError({ code: "unreachable", title: "No answer", detail: "The service does not answer. The page asks again until it does." }));
 
 /** Calls `listener` when a request was refused for want of a key. */
 export function onKeyNeeded(listener) {
@@ -34,17 +40,29 @@ export async function request(path, { method = "GET", body, headers = {}, signal
   if (body !== undefined) all["content-type"] ??= "application/json";
   const init = { method, headers: all, signal, cache: "no-cache", credentials: "same-origin" };
   if (body !== undefined) init.body = typeof body === "string" ? body : JSON.stringify(body);
-  let response;
-  try {
-    response = await fetch(new URL(path, document.baseURI), init);
-  } catch (error) {
-    if (error.name === "AbortError") throw error;
-    throw new ProblemError({ code: "unreachable", title: "No answer", detail: "The service does not answer. The page tries again when you change something." });
-  }
+  const response = await fetch(new URL(path, document.baseURI), init).catch((error) => { throw broken(error); });
   if (response.ok) return response;
   const problem = await response.json().catch(() => ({ status: response.status, title: response.statusText, code: "unknown" }));
   if (response.status === 401) for (const listener of listeners) listener(problem);
-  throw new ProblemError(problem);
+  throw new ProblemError(problem, Math.max(AGAIN, 1000 * Number(response.headers.get("retry-after"))));
+}
+
+/** Whether an error goes away by itself: the service does not answer, starts, or has too much to do. */
+export const isPassing = (error) => error instanceof ProblemError && (error.problem.code === "unreachable" || [429, 502, 503, 504].includes(error.problem.status));
+
+const rest = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
+
+/** What `work` gives once the service answers; until then `told` hears why it does not. */
+export async function patiently(work, told = () => {}) {
+  for (;;) {
+    try {
+      return await work();
+    } catch (error) {
+      if (!isPassing(error)) throw error;
+      told(error.problem);
+      await rest(error.after);
+    }
+  }
 }
 
 /** The JSON of an answer. */
@@ -60,7 +78,7 @@ async function* pieces(response, end) {
   let text = "";
   try {
     for (;;) {
-      const { value, done } = await reader.read();
+      const { value, done } = await reader.read().catch((error) => { throw broken(error); });
       if (done) return;
       const found = (text + value.replace(/\r/g, "")).split(end);
       text = found.pop();
@@ -93,18 +111,16 @@ export const hasEnded = (status) => ENDED.includes(status);
 
 /**
  * Follows a job or a study at `path` by its events until it has ended, and gives how it stands then. `told` is called with each event; a stream that
- * breaks off is taken up again.
+ * breaks off is taken up again, also after the service has been away.
  */
 export async function follow(path, told = () => {}, signal = undefined) {
   for (;;) {
-    try {
+    const state = await patiently(async () => {
       for await (const { event, data } of events(`${path}/events`, signal)) told(event, data);
-    } catch (error) {
-      if (error.name === "AbortError" || (error instanceof ProblemError && error.problem.code !== "unreachable" && error.problem.status !== 429)) throw error;
-    }
-    const state = await json(path, { signal });
+      return json(path, { signal });
+    });
     if (hasEnded(state.status)) return state;
-    await new Promise((resolve) => setTimeout(resolve, 1000));
+    await rest(AGAIN);
   }
 }
 

@@ -112,6 +112,13 @@ export class Design {
     this.#change({ kept }, "kept", null);
   }
 
+  /** Designs that were kept before the page was opened: they were there all along. */
+  restore(kept) {
+    if (!kept.length) return;
+    for (const state of [this, ...this.#past, ...this.#future]) state.kept = [...kept, ...state.kept];
+    this.#tell("kept");
+  }
+
   get canUndo() {
     return this.#past.length > 0;
   }

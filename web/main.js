@@ -1,6 +1,6 @@
 // The page: one design, drawn and computed while it changes, and the views that show it.
 
-import { hasKey, json, onKeyNeeded, post, ProblemError, setKey } from "./api.js";
+import { hasKey, json, onKeyNeeded, patiently, post, ProblemError, setKey } from "./api.js";
 import { Brush } from "./brush.js";
 import { byId, debounced, fixed, h, number, timeLeft } from "./dom.js";
 import { Charts } from "./charts.js";
@@ -17,6 +17,7 @@ import { Form } from "./form.js";
 import { Geometry } from "./geometry.js";
 import { Headline } from "./headline.js";
 import { jobs } from "./jobs.js";
+import { remember, remembered } from "./kept.js";
 import { Pattern } from "./pattern.js";
 import { population } from "./population.js";
 import { Follower, resultsOf } from "./preview.js";
@@ -54,6 +55,8 @@ let problem = null;
 let computed = null;
 let position = 0;
 let against = null;
+/** The kept designs as they are remembered. */
+let keptAs = design.kept;
 let form = null;
 let panels = {};
 let tab = "curves";
@@ -276,7 +279,8 @@ design.onChange((by) => {
   byId("notice").querySelector(".undo")?.remove();
   byId("undo").disabled = !design.canUndo;
   byId("redo").disabled = !design.canRedo;
-  if (by === "kept") return showDesigns();
+  if (design.kept !== keptAs) remember((keptAs = design.kept));
+  if (by === "kept") return shown && showDesigns();
   // For those who test: the address carries this change once its state has the number.
   document.body.dataset.changes = design.changes;
   if (by === "undo" && shown && same(shown.submission, design.submission) && !problem) showDesigns();
@@ -565,15 +569,23 @@ async function openFile(file) {
   }
 }
 
+/** An address that carries no design, because it is cut or leads to a place of the page, carries the one that is shown from now on. */
+function unreadable() {
+  if (/^#design/.test(location.hash)) notify("The address carries a design that cannot be read: it may have been cut.", false);
+  carry();
+}
+
 async function begin() {
   setUpButtons();
   setUpTheme();
   setUpKey();
   const lay = setUpTabs();
-  const [given, { items: examples }] = await Promise.all([fromFragment(location.hash), json("v1/examples")]);
+  const fetched = (work) => patiently(work, onProblem);
+  const [given, { items: examples }] = await Promise.all([fromFragment(location.hash), fetched(() => json("v1/examples"))]);
+  if (!given) unreadable();
   setUpStart(examples, given);
   design.replace(given ?? examples.find(({ name }) => name === FIRST_EXAMPLE).submission, "start");
-  const [api, limits] = await Promise.all([openapi(), json("v1/limits")]);
+  const [api, limits] = await fetched(() => Promise.all([openapi(), json("v1/limits")]));
   form = new Form(byId("form"), api, design, { notify, limits, results: () => shown?.results });
   lay();
   showProblem();
@@ -595,8 +607,10 @@ async function begin() {
   };
   addEventListener("hashchange", async () => {
     const other = await fromFragment(location.hash);
-    if (other && !same(other, design.submission)) design.replace(other, "open");
+    if (!other) return unreadable();
+    if (!same(other, design.submission)) design.replace(other, "open");
   });
+  design.restore(await remembered(follower.settled()));
 }
 
 begin().catch((error) => {

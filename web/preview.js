@@ -1,6 +1,6 @@
 // Results while the design changes: one request at a time, always the newest design next.
 
-import { hasEnded, json, post, ProblemError, request, solved } from "./api.js";
+import { hasEnded, isPassing, json, post, ProblemError, request, solved } from "./api.js";
 import { isSolid } from "./dimensions.js";
 
 /** In a mesh period, where a design does not say it. */
@@ -56,6 +56,8 @@ export class Follower {
   #interrupt = null;
   #settled = Promise.resolve();
   #known = new Map();
+  /** Asks again for what could not be answered. */
+  #again = null;
 
   constructor({ onResults, onOutline, onProblem, onBusy, onProgress }) {
     Object.assign(this, { onResults, onOutline, onProblem, onBusy, onProgress });
@@ -63,6 +65,7 @@ export class Follower {
 
   /** Takes the newest design; `period` is that of its last results, in mesh periods, while a hand changes it. */
   follow(submission, period = null) {
+    clearTimeout(this.#again);
     this.#next = { submission, period, since: performance.now() };
     this.#interrupt?.abort();
     if (!this.#running) this.#settled = this.#run();
@@ -131,7 +134,7 @@ export class Follower {
       const results = await json(`v1/jobs/${done.id}/results`, { signal });
       this.#show(results, submission, { took: performance.now() - begun, since, draft: false });
     } catch (error) {
-      if (error instanceof ProblemError) this.onProblem(error.problem, submission);
+      if (error instanceof ProblemError) this.#refused(error, submission);
       else if (error.name !== "AbortError") throw error;
       if (job && !hasEnded(job.status)) request(`v1/jobs/${job.id}/cancel`, { method: "POST" }).catch(() => {});
       if (signal.aborted && !this.#next) this.onProblem({ code: "cancelled", title: "The job was cancelled", detail: "Nothing was computed for this design.", errors: [] }, submission);
@@ -171,9 +174,15 @@ export class Follower {
       if (error.problem.code === "preview_superseded") return "left";
       // What cannot be projected may be computed as it is asked for.
       if (asked.method !== submission.method) return this.#results({ submission, asked: { ...asked, method: submission.method }, since, signal });
-      this.onProblem(error.problem, submission);
+      this.#refused(error, submission);
       return "refused";
     }
+  }
+
+  /** Says why there are no results. What goes away by itself is waited for, unless the design changes meanwhile. */
+  #refused(error, submission) {
+    this.onProblem(error.problem, submission);
+    if (isPassing(error)) this.#again = setTimeout(() => this.follow(submission), error.after);
   }
 
   #show(results, submission, how) {

@@ -5,9 +5,12 @@ import { at } from "./design.js";
 
 let documentOf = null;
 
-/** The OpenAPI document; asked for once. */
+/** The OpenAPI document; asked for once, and again where it did not come. */
 export function openapi() {
-  documentOf ??= json("openapi.json");
+  documentOf ??= json("openapi.json").catch((error) => {
+    documentOf = null;
+    throw error;
+  });
   return documentOf;
 }
 

@@ -785,6 +785,50 @@ export async function benchSteps(service) {
     assert.equal((await designOf(page)).stress, undefined, "the design itself stays");
   });
 
+  await step("a service that was away is asked again, a job goes on, and a reload keeps the kept designs", service, async (page, context) => {
+    await open(page, service);
+    const before = await answer(page, "p-p");
+    await page.locator("#pin").click();
+    await tab(page, "compare");
+    await page.locator("#name-1").fill("as built");
+    await page.locator("#name-1").press("Enter");
+    await context.setOffline(true);
+    await (await field(page, `${HOLES}/count`)).fill("8");
+    await page.locator("#problem", { hasText: "The service does not answer" }).waitFor();
+    assert.equal(await answer(page, "p-p"), before);
+    await context.setOffline(false);
+    // Nobody presses anything.
+    const after = await changed(page, "p-p", before);
+    assert.ok(await page.locator("#problem").isHidden());
+    // What was asked for after a reload is what was asked for before.
+    await page.reload();
+    await named(page, "8×");
+    await tab(page, "compare");
+    await page.waitForFunction(() => document.querySelector("#name-1")?.value === "as built");
+    assert.deepEqual([await answer(page, "p-p"), (await page.locator("#answer-p-p .change").innerText()).slice(0, 1)], [after, after > before ? "+" : "−"]);
+    assert.match(await page.locator("#differences").innerText(), /Number of holes, driven gear\s+8\s+10/);
+    assert.ok(await page.locator("#undo").isDisabled(), "to keep it again is no change");
+    // A taken away one stays away, and undo brings it back.
+    await page.locator("#table button", { hasText: "×" }).click();
+    await page.locator("#undo").click();
+    await page.reload();
+    await page.waitForFunction(() => document.querySelector("#name-1")?.value === "as built");
+    // A job that is on its way ends while nobody can ask for it.
+    await openDesign(page, service, { ...LONG, force_table: { loads: 6 } });
+    await page.locator("#progress").waitFor();
+    await context.setOffline(true);
+    await page.waitForTimeout(2000);
+    await context.setOffline(false);
+    await settled(page);
+    assert.ok(await page.locator("#problem").isHidden(), await page.locator("#problem").innerText());
+    assert.equal(await page.locator("#position").getAttribute("max"), "61");
+    // An address that was cut says so, and carries what is shown.
+    await page.evaluate(() => { location.hash = location.hash.slice(0, 60); });
+    await page.locator("#notice", { hasText: "cannot be read" }).waitFor();
+    await page.waitForFunction(() => location.hash.length > 100);
+    assert.equal((await designOf(page)).pair.driven.tooth_count, 61);
+  });
+
   await step("what a sweep or a study found is marked once the design is another one, and begins with the torque of the design", service, async (page) => {
     await open(page, service);
     await (await field(page, "/output_torques_n_m")).fill("150");

@@ -20,8 +20,8 @@ export async function step(name, service, work, options = {}, others = []) {
   const page = await context.newPage();
   const faults = [];
   page.on("console", (message) => {
-    // The browser itself logs a refusal; the page shows it at its field.
-    if (message.type() === "error" && !/status of 4(01|22)/.test(message.text())) faults.push(message.text());
+    // The browser itself logs a refusal and a service that is away; the page shows both.
+    if (message.type() === "error" && !/status of 4(01|22)|ERR_INTERNET_DISCONNECTED/.test(message.text())) faults.push(message.text());
   });
   page.on("pageerror", (error) => faults.push(error.stack));
   page.on("request", (request) => {
