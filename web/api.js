@@ -111,14 +111,14 @@ export const hasEnded = (status) => ENDED.includes(status);
 
 /**
  * Follows a job or a study at `path` by its events until it has ended, and gives how it stands then. `told` is called with each event; a stream that
- * breaks off is taken up again, also after the service has been away.
+ * breaks off is taken up again; while the service does not answer the event is `away`.
  */
 export async function follow(path, told = () => {}, signal = undefined) {
   for (;;) {
     const state = await patiently(async () => {
       for await (const { event, data } of events(`${path}/events`, signal)) told(event, data);
       return json(path, { signal });
-    });
+    }, () => told("away", {}));
     if (hasEnded(state.status)) return state;
     await rest(AGAIN);
   }

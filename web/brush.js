@@ -25,9 +25,9 @@ export class Brush {
     this.svg.addEventListener("pointerdown", (event) => this.#draw(event));
   }
 
-  /** Shows the live design's transmission error. */
-  show(live) {
-    const [line] = linesOf(PANELS[0], [live]);
+  /** Shows the transmission error of the live design, which stands first, over the longest period of all that are shown. */
+  show(designs) {
+    const [line] = linesOf(PANELS[0], designs);
     this.#whole = line.span;
     this.place.hidden = line.span < LEAST_PERIODS;
     if (this.place.hidden) return;

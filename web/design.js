@@ -205,6 +205,11 @@ export function nameOf(submission) {
   return `${submission.pair?.driving?.tooth_count}/${submission.pair?.driven?.tooth_count}, ${holes}`;
 }
 
+/** A submission without what goes on from its curves and takes longer than they do, and that. */
+export function apart({ force_table, dynamics, stress, face_load, ...curves }) {
+  return { curves, further: Object.fromEntries(Object.entries({ force_table, dynamics, stress, face_load }).filter(([, value]) => value !== undefined)) };
+}
+
 /** The fields in which submissions differ: each pointer with the value of every submission. */
 export function differences(submissions) {
   const flat = submissions.map((submission) => flattened(submission));

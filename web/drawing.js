@@ -130,7 +130,7 @@ export class Drawing {
       s("path", { d: `M${driving.center_mm.join(" ")}L${driven.center_mm.join(" ")}`, class: "centers" }),
       ...line.points.map((point) => s("circle", { cx: point.at_mm[0], cy: point.at_mm[1], r: size / 16, class: "mark" })),
       ...line.points.map((point) => text(point.name, [point.at_mm[0] + size * 0.12, point.at_mm[1] + size * 0.03], size / 4.5, "letter")),
-      text(`a = ${number(driven.center_mm[0], 7)} mm`, [driving.circles.pitch_mm, -0.94 * Math.min(driving.circles.tip_mm, driven.circles.tip_mm)], driven.center_mm[0] / 20, "dimension"),
+      dimension(driving.circles, driven.circles, driven.center_mm[0]),
     );
   }
 
@@ -252,6 +252,14 @@ function ringPath({ inner_radius_mm: inner, outer_radius_mm: outer }) {
 function text(words, [x, y], size, name) {
   const element = s("text", { transform: `translate(${x} ${y}) scale(1 -1)`, "font-size": size, class: name });
   element.textContent = words;
+  return element;
+}
+
+/** The center distance where it is over neither gear: below the smaller one, or between two that are about alike. */
+function dimension({ tip_mm: r1, pitch_mm: pitch }, { tip_mm: r2 }, a) {
+  const [x, y, anchor] = r1 < 0.8 * r2 ? [-r1, -0.94 * r2, "start"] : r2 < 0.8 * r1 ? [a + r2, -0.94 * r1, "end"] : [pitch, -0.94 * Math.min(r1, r2), "middle"];
+  const element = text(`a = ${number(a, 7)} mm`, [x, y], (r1 + r2) / 16, "dimension");
+  element.setAttribute("text-anchor", anchor);
   return element;
 }
 

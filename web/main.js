@@ -198,9 +198,9 @@ function onProgress(job) {
   if (!job) return;
   byId("progress").value = job.progress_percent ?? 0;
   byId("stop").onclick = job.cancel;
-  const { progress_percent: done = 0, elapsed, status } = job;
+  const { progress_percent: done = 0, elapsed, status, away } = job;
   const left = timeLeft(performance.now() - elapsed, done, 100);
-  byId("state").textContent = `${status === "accepted" ? "A job waits for its turn" : `A job: ${done} %${left}`}.${shown ? " Shown is the design before." : ""}`;
+  byId("state").textContent = `${away ? "The service does not answer; a job goes on" : status === "accepted" ? "A job waits for its turn" : `A job: ${done} %${left}`}.${shown ? " Shown is the design before." : ""}`;
 }
 
 /** The last good curve stays; what is wrong stands above it and at its field. */
@@ -234,7 +234,7 @@ function showDesigns(moving = false) {
   headline.show(curve, against && { name: against.name, curve: atTorqueOf(curve, against.results) }, moving);
   // Numbers that change with every move cannot be read, and a new table lays the page out.
   if (moving) return;
-  brush.show(shown);
+  brush.show(seen);
   pattern.show(shown);
   compare.show(designs);
   geometry.show(shown);
@@ -601,7 +601,7 @@ async function begin() {
     "run-up": runUp,
     sweep: sweep(byId("sweep"), design, limits, positions),
     study: study(byId("study"), design, form, openFilled),
-    population: population(byId("population"), design, form, openFilled),
+    population: population(byId("population"), design, form, limits, openFilled),
     jobs: jobs(byId("jobs"), design, form, openFilled),
     export: exporting(byId("export"), { current, designs: () => besideKept(live), drawing, charts, position: () => position }),
   };

@@ -1,7 +1,7 @@
 // How good the pairs will be that are made by a design: members drawn from laws and classes of accuracy, and what they come to.
 
 import { json, lines, post, ProblemError } from "./api.js";
-import { at, nameOf } from "./design.js";
+import { apart, at, nameOf } from "./design.js";
 import { debounced, h, s, fixed, number, timeLeft, timeOf } from "./dom.js";
 import { figure } from "./figure.js";
 import { offer } from "./offer.js";
@@ -22,10 +22,13 @@ const QUANTITIES = {
 /** A member has at most so many positions in a mesh period: what many members tell settles long before one curve does. */
 const POSITIONS = 10;
 
+/** Of how many torques, as parts of that of the design, a member has curves where it has room for them. */
+const TORQUES = [[1], [0.6, 1], [0.6, 1, 1.4], [0.4, 0.7, 1, 1.4]];
+
 /** What the members will take is asked for so long after the last change, in milliseconds. */
 const REST = 400;
 
-/** What most often cannot be made is looked for among so many members. */
+/** What most often cannot be computed is looked for among so many members. */
 const LOOKED_AT = 500;
 
 const CLASSES = Array.from({ length: 11 }, (_, i) => i + 1);
@@ -33,8 +36,8 @@ const CLASSES = Array.from({ length: 11 }, (_, i) => i + 1);
 /** The fields that are offered first, with what they usually vary by. */
 const FIRST = [["/pair/center_distance_mm", 0.02], ["/pair/driving/tip_relief/amount_um", 1.5]];
 
-/** The population of `design` in `place`; `form` knows the fields, `onOpen` opens a member as a design. */
-export function population(place, design, form, onOpen) {
+/** The population of `design` in `place`; `form` knows the fields, `limits` are those of the service, `onOpen` opens a member as a design. */
+export function population(place, design, form, limits, onOpen) {
   const size = h("input", { type: "number", id: "population-size", value: 200, min: 2, max: 100000, step: 1 });
   const torques = h("input", { type: "text", id: "population-torques", spellcheck: false, on: { input: () => { torques.dataset.typed = "yes"; } } });
   const classes = ["driving", "driven"].map((gear) => h("select", { id: `population-${gear}` }, h("option", { value: "" }, "as designed"), ...CLASSES.map((each) => h("option", { value: each, selected: each === 6 }, `class ${each}`))));
@@ -59,10 +62,17 @@ export function population(place, design, form, onOpen) {
 
   const suggest = () => {
     laws.forEach((each) => each.refresh());
-    const own = design.get("/output_torques_n_m") ?? [100];
-    if (!torques.dataset.typed || !torques.value) torques.value = (own.length > 1 ? own : [0.4, 0.7, 1, 1.4].map((part) => Number((part * own[0]).toPrecision(3)))).join(", ");
+    suggestTorques(TORQUES.length);
     foresee();
   };
+
+  /** So many torques about that of the design, or its own, until somebody types other ones. */
+  function suggestTorques(most) {
+    if (torques.dataset.typed && torques.value) return;
+    const own = design.get("/output_torques_n_m") ?? [100];
+    const about = own.length > 1 ? own : TORQUES[Math.min(most, TORQUES.length) - 1].map((part) => Number((part * own[0]).toPrecision(3)));
+    torques.value = about.slice(0, most).join(", ");
+  }
 
   /** Says what the members will take: one whose teeth all differ repeats only when every tooth has met every other. */
   const foresee = debounced(REST, async () => {
@@ -70,17 +80,21 @@ export function population(place, design, form, onOpen) {
     const { base, population: { size: count, accuracy } } = asked();
     for (const member of Object.keys(accuracy ?? {})) base.pair[member].tooth_deviations = { pitch_cumulative_um: Array.from({ length: base.pair[member].tooth_count }, (_, i) => Number(i === 1)) };
     try {
-      const { estimate: { seconds, positions } } = await post("v1/validate", base);
-      ahead.textContent = `A member has ${number(positions)} positions, all torques together, and takes a core ${timeOf(1000 * seconds)} at most, by a rough estimate: ${timeOf(1000 * seconds * count)} for all ${number(count)}.`;
+      const { estimate: { seconds, positions } } = await post("v1/validate", { ...base, output_torques_n_m: base.output_torques_n_m.slice(0, 1) });
+      const most = Math.floor(limits.positions / positions);
+      suggestTorques(most);
+      const { length } = asked().base.output_torques_n_m;
+      ahead.textContent = length > most ? `A member has ${number(positions)} positions for each torque, which leaves room for ${most} of them.`
+        : `A member has ${number(length * positions)} positions, all torques together, and takes a core ${timeOf(1000 * length * seconds)} at most, by a rough estimate: ${timeOf(1000 * length * seconds * count)} for all ${number(count)}.`;
     } catch (error) {
-      // Who draws them is told what is wrong.
       if (!(error instanceof ProblemError)) throw error;
-      ahead.textContent = "";
+      // What is wrong with the design is told beside it.
+      ahead.textContent = error.problem.code === "too_large" ? `${form.inWords(error.problem.errors[0].detail)} Teeth of one gear as designed leave room too: the pair repeats after fewer mesh periods then.` : "";
     }
   });
 
   function asked() {
-    const base = structuredClone(design.submission);
+    const base = structuredClone(apart(design.submission).curves);
     base.output_torques_n_m = torques.value.split(/[\s,;]+/).filter(Boolean).map(Number);
     base.resolution = { ...base.resolution, positions_per_mesh_period: Math.min(POSITIONS, base.resolution?.positions_per_mesh_period ?? POSITIONS) };
     // The span of the drawing is not that of teeth that all differ.
@@ -121,7 +135,7 @@ export function population(place, design, form, onOpen) {
       if (!(error instanceof ProblemError)) throw error;
     }
     const [[title, { detail }] = ["", {}]] = [...told].sort(([, one], [, other]) => other.count - one.count);
-    const words = `${failed} of ${size} members cannot be made${title ? `, most often because ${title[0].toLowerCase()}${title.slice(1)} (${form.inWords(detail).replace(/\.$/, "")})` : ""}. What stands below is of the others alone.`;
+    const words = `${failed === size ? "None of the members can be computed" : `${failed} of ${size} members cannot be computed`}${title ? `, most often because ${title[0].toLowerCase()}${title.slice(1)} (${form.inWords(detail).replace(/\.$/, "")})` : ""}.${failed === size ? "" : " What stands below is of the others alone."}`;
     if (refusals?.failed !== failed) return;
     refusals.words = words;
     missing.textContent = words;
@@ -174,7 +188,7 @@ export function population(place, design, form, onOpen) {
   }
 
   async function open(address, member) {
-    onOpen(await json(`${address}/designs/${member}`), null);
+    onOpen({ ...(await json(`${address}/designs/${member}`)), ...apart(design.submission).further }, null);
   }
 
   suggest();

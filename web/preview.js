@@ -125,7 +125,7 @@ export class Follower {
     const told = (event, data) => {
       if (event === "status") job = data;
       if (job?.status !== "accepted") computed ??= performance.now();
-      this.onProgress({ ...job, ...data, elapsed: performance.now() - (computed ?? performance.now()), cancel: () => this.#interrupt?.abort() });
+      this.onProgress({ ...job, ...data, away: event === "away", elapsed: performance.now() - (computed ?? performance.now()), cancel: () => this.#interrupt?.abort() });
     };
     try {
       await rest(signal, LONG_REST);

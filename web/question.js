@@ -53,7 +53,8 @@ export class Question {
       cancelling(() => request(`${address}/cancel`, { method: "POST" }).catch(() => {}));
       const begun = performance.now();
       let [shown, whole] = [begun, false];
-      const told = (_, { done, total }) => {
+      const told = (event, { done, total }) => {
+        if (event === "away") this.say("The service does not answer; it is asked again until it does.");
         if (total) this.say(progress(done, total, begun));
         if (performance.now() - shown < pause) return;
         shown = performance.now();

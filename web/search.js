@@ -1,7 +1,7 @@
 // A search: fields that may differ, what is to be small and what has to hold; the service chooses which designs to compute.
 
 import { json, ProblemError, request } from "./api.js";
-import { at, nameOf } from "./design.js";
+import { apart, at, nameOf } from "./design.js";
 import { h, fixed, number, timeLeft } from "./dom.js";
 import { figure } from "./figure.js";
 import { offer } from "./offer.js";
@@ -53,6 +53,8 @@ export function search(place, design, form, onOpen) {
   /** The design that the search began with and the best one, drawn beside each other; which row that is. */
   const beside = h("div", { className: "beside", id: "search-beside" });
   let drawn = null;
+  /** What the design has beside its curves: no design that is looked at needs it, and the one that is opened has it again. */
+  let further = {};
   place.replaceChildren(
     h("p", { className: "note" }, "Each generation of designs is chosen by what came of those before; it begins with this design. ", h("a", { href: "guides/find-a-design" }, "Find a design")),
     h("form", { on: { submit: (event) => { event.preventDefault(); start(); } } },
@@ -67,10 +69,12 @@ export function search(place, design, form, onOpen) {
     const subject_to = conditions.flatMap((each) => each.read());
     // Stresses are told where they are asked for.
     const stressed = [...minimize, ...subject_to].some(({ quantity }) => quantity.startsWith("stress."));
-    return { base: stressed ? { ...design.submission, stress: true } : design.submission, name: `${nameOf(design.submission)}, searched`, search: { variables: variables.flatMap((each) => each.read()), minimize, subject_to, evaluations: Number(evaluations.value) } };
+    const { curves } = apart(design.submission);
+    return { base: stressed ? { ...curves, stress: true } : curves, name: `${nameOf(design.submission)}, searched`, search: { variables: variables.flatMap((each) => each.read()), minimize, subject_to, evaluations: Number(evaluations.value) } };
   }
 
   function start() {
+    ({ further } = apart(design.submission));
     out.replaceChildren();
     beside.replaceChildren();
     drawn = null;
@@ -91,7 +95,7 @@ export function search(place, design, form, onOpen) {
     const rows = Object.entries(best.values).map(([path, value]) => h("tr", {}, h("th", { scope: "row" }, form.named(path)), h("td", {}, number(at(about.base, path) ?? null, 5)), h("td", {}, number(value, 5))));
     const table = h("table", {}, h("thead", {}, h("tr", {}, ...["Field", "Begun with", "Best so far"].map((words) => h("th", { scope: "col" }, words)))), h("tbody", {}, ...rows));
     const atEnd = about.search.variables.filter(({ path, low, high }) => [low, high].includes(best.values[path])).map(({ path }) => form.named(path));
-    const open = async (row) => onOpen(await json(`${address}/designs/${row}`), null);
+    const open = async (row) => onOpen({ ...(await json(`${address}/designs/${row}`)), ...further }, null);
     const use = (row, words) => h("button", { type: "button", on: { click: () => open(row) } }, words);
     drawBeside(address, best.row, about.base);
     const reached = generations.map((each, i) => [i + 1, each.best]).filter(([, value]) => value !== null);

@@ -48,7 +48,7 @@ export function study(place, design, form, onOpen) {
   const searched = h("div", {});
   const formOf = h("form", { on: { submit: (event) => { event.preventDefault(); start(); } } },
     ...axes.map((each) => each.element),
-    h("div", { className: "line" }, constant, h("label", { htmlFor: "study-mass" }, "Same mass: holes remove"), removed, h("span", { className: "unit" }, "% of the"), gear, h("span", {}, "blank, by their radius and the width of slots, alike in all patterns")),
+    h("div", { className: "line" }, constant, h("label", { htmlFor: "study-mass" }, "Same mass: holes remove"), removed, h("span", { className: "unit" }, "% of the"), gear, h("span", {}, "blank, all equally wide")),
     h("div", { className: "line" }, question.run, question.cancel));
   place.replaceChildren(h("p", { className: "note" }, "Every combination of these values is computed from the design; values are separated by commas. “Best” is a design that no other beats: none is at least as good in mass, peak-to-peak and mean stiffness, and better in one."), formOf, question.state, question.of.element, picker, picture, out, h("details", { id: "search" }, h("summary", {}, "Let a search choose the values"), searched));
   axes[0].choose(COUNT);

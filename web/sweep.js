@@ -1,6 +1,7 @@
 // The peak-to-peak transmission error over the torque, and where it is least.
 
 import { hasEnded, request } from "./api.js";
+import { apart } from "./design.js";
 import { h, fixed, number, timeLeft } from "./dom.js";
 import { figure } from "./figure.js";
 import { resultsOf } from "./preview.js";
@@ -55,8 +56,7 @@ export function sweep(place, design, limits, positionsOf) {
     const begun = performance.now();
     const torques = Array.from({ length: MOST_TORQUES }, (_, i) => Number((low + ((high - low) * i) / (MOST_TORQUES - 1)).toPrecision(6)));
     const each = Math.max(1, Math.floor(limits.previews.positions / Math.max(1, positionsOf())));
-    // What goes on from a curve is not shown, and takes longer than the curve.
-    const { force_table: table, dynamics, stress, face_load: load, ...submission } = design.submission;
+    const { curves: submission } = apart(design.submission);
     for (let i = 0; i < torques.length; i += each) {
       if (points.length) {
         question.say(`${i} of ${torques.length} torques${timeLeft(begun, i, torques.length)}`);
