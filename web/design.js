@@ -226,7 +226,7 @@ export function told(value) {
 }
 
 /** Every value of a document by its pointer; a list of numbers is one value. */
-function flattened(document, pointer = "", found = new Map()) {
+export function flattened(document, pointer = "", found = new Map()) {
   for (const [name, value] of Object.entries(document ?? {})) {
     const place = `${pointer}/${name}`;
     const nested = value !== null && typeof value === "object" && !(Array.isArray(value) && typeof value[0] !== "object");

@@ -7,13 +7,13 @@ import { csv, drawingOf, ordersCsv, save } from "./download.js";
 import { h } from "./dom.js";
 import { fileOf, pictureOf, stacked } from "./figure.js";
 import { filesOf, saveFile } from "./files.js";
-import { inLight, sheetOf } from "./sheet.js";
+import { inLight } from "./sheet.js";
 import { copied, snippets } from "./snippets.js";
 
 const LANGUAGES = { curl: "curl", python: "Python", typescript: "TypeScript" };
 
-/** The exports in `place`. `current` waits for the live design and gives it, or null where it cannot be computed; `designs` gives all that are shown. */
-export function exporting(place, { current, designs, drawing, charts, position }) {
+/** The exports in `place`. `current` waits for the live design and gives it, or null where it cannot be computed; `designs` gives all that are shown, and `sheet` the page of one. */
+export function exporting(place, { current, designs, drawing, charts, position, sheet }) {
   const state = h("p", { className: "note", role: "status" });
   const kinds = {
     json: ["Submission and results, JSON", (live) => save("meshwright.json", "application/json", JSON.stringify({ submission: live.submission, results: live.results }, null, 1))],
@@ -23,7 +23,7 @@ export function exporting(place, { current, designs, drawing, charts, position }
     svg: ["Curves, SVG", () => save("meshwright-curves.svg", "image/svg+xml", fileOf(curves()))],
     png: ["Curves, PNG", async () => save("meshwright-curves.png", "image/png", await pictureOf(curves()))],
     pair: ["Drawing, SVG", () => save("meshwright-pair.svg", "image/svg+xml", fileOf(inLight(() => drawingOf(drawing.element))))],
-    page: ["Report page, SVG", (live) => save("meshwright-report.svg", "image/svg+xml", fileOf(sheetOf({ live, drawing: drawing.element, charts })))],
+    page: ["Report page, SVG", (live) => save("meshwright-report.svg", "image/svg+xml", fileOf(sheet(live)))],
   };
   const buttons = Object.entries(kinds).map(([kind, [name, work]]) => h("button", { type: "button", data: { download: kind }, on: { click: () => run(work) } }, name));
   const ofJob = h("div", { className: "buttons wrap" });

@@ -137,9 +137,13 @@ export class Form {
 
   /** What the field at a pointer is called, with its gear and its unit. */
   titled(pointer) {
-    const schema = this.#fields.get(pointer)?.schema ?? schemaAt(this.api, pointer);
-    const printed = unit(schema?.["x-unit"] ?? schema?.items?.["x-unit"]);
+    const printed = this.unitOf(pointer);
     return `${this.named(pointer)}${printed ? ` (${printed})` : ""}`;
+  }
+
+  unitOf(pointer) {
+    const schema = this.#fields.get(pointer)?.schema ?? schemaAt(this.api, pointer);
+    return unit(schema?.["x-unit"] ?? schema?.items?.["x-unit"]);
   }
 
   /** Whether the field at a pointer stands for both gears. */

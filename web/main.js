@@ -358,10 +358,12 @@ async function compareMethods() {
   }
 }
 
+const sheet = (one) => sheetOf({ live: one, drawing: drawing.element, charts, form });
+
 async function report() {
   const base = await current();
   if (!base) notify("This design cannot be computed, so there is no report of it.", false);
-  return base && sheetOf({ live: base, drawing: drawing.element, charts });
+  return base && sheet(base);
 }
 
 async function print() {
@@ -603,7 +605,7 @@ async function begin() {
     study: study(byId("study"), design, form, openFilled),
     population: population(byId("population"), design, form, limits, openFilled),
     jobs: jobs(byId("jobs"), design, form, openFilled),
-    export: exporting(byId("export"), { current, designs: () => besideKept(live), drawing, charts, position: () => position }),
+    export: exporting(byId("export"), { current, designs: () => besideKept(live), drawing, charts, position: () => position, sheet }),
   };
   addEventListener("hashchange", async () => {
     const other = await fromFragment(location.hash);

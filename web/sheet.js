@@ -1,5 +1,6 @@
 // One page of paper: the drawing, the answers, the geometry, the curves, warnings and evidence. It is printed, and saved as a picture.
 
+import { flattened, told } from "./design.js";
 import { number, s } from "./dom.js";
 import { drawingOf } from "./download.js";
 import { rowsOf } from "./geometry.js";
@@ -9,6 +10,10 @@ import { ANSWERS } from "./headline.js";
 const [WIDTH, HEIGHT] = [840, 1188];
 const MARGIN = 48;
 const FONT = "system-ui, sans-serif";
+/** Fields that stand in the tables, and names of what stands beside them. */
+const IN_TABLES = /\/(tooth_count|module_mm|profile_shift|face_width_mm|center_distance_mm|helix_angle_deg|method|kind|tags)$/;
+/** So many letters have room in a line of the right column, and of the left one. */
+const [SIDE, LEFT] = [60, 92];
 
 const words = (text, x, y, more = {}) => Object.assign(s("text", { x, y, "font-family": FONT, "font-size": 11, fill: "#1d2229", ...more }), { textContent: text });
 
@@ -20,6 +25,20 @@ function wrapped(text, most) {
     lines[lines.length - 1] = `${lines.at(-1)} ${word}`.trim();
   }
   return lines;
+}
+
+/** As many of `lines` as there is room for; that some were left out is said in place of the last. */
+const fitting = (lines, most) => (lines.length > most ? [...lines.slice(0, most - 1), `… and ${lines.length - most + 1} lines more, in the results`] : lines);
+
+/** What a submission gives that no table of the sheet has, a text for each gear and one for the rest. */
+function givenOf(submission, form) {
+  const fields = [...flattened(submission)].filter(([pointer]) => !IN_TABLES.test(pointer));
+  const parts = [["Driving gear", ", driving gear"], ["Driven gear", ", driven gear"], ["Pair and method", ""]];
+  const partOf = (pointer) => parts.findIndex(([, end]) => form.named(pointer).endsWith(end));
+  return parts.flatMap(([title, end], i) => {
+    const own = fields.filter(([pointer]) => partOf(pointer) === i).map(([pointer, value]) => `${form.named(pointer).slice(0, -end.length || undefined)} ${told(value)} ${form.unitOf(pointer)}`.trim());
+    return own.length ? [`${title}: ${own.join("; ")}.`] : [];
+  });
 }
 
 /** Does `work` while the page has its light colors, which paper has. */
@@ -35,8 +54,8 @@ export function inLight(work) {
   }
 }
 
-/** The page of the live design: `drawing` is its element, `charts` give the curves. */
-export function sheetOf({ live, drawing, charts }) {
+/** The page of the live design: `drawing` is its element, `charts` give the curves, `form` knows the fields by their names. */
+export function sheetOf({ live, drawing, charts, form }) {
   const { results, submission, name } = live;
   const [curve] = results.curves;
   const page = s("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, width: WIDTH, height: HEIGHT, role: "img", "aria-label": `Report of ${name}`, xmlns: "http://www.w3.org/2000/svg" }, s("rect", { width: WIDTH, height: HEIGHT, fill: "#fff" }));
@@ -63,7 +82,7 @@ export function sheetOf({ live, drawing, charts }) {
     y += 13.5;
   }
 
-  let told = Math.max(352, y + 14);
+  let down = Math.max(352, y + 14);
   y = 352;
   page.append(words("Driving", 330, y, { "text-anchor": "end", "font-weight": 600 }), words("Driven", 420, y, { "text-anchor": "end", "font-weight": 600 }));
   for (const [row, symbol, unit, driving, driven] of gears) {
@@ -71,23 +90,29 @@ export function sheetOf({ live, drawing, charts }) {
     page.append(words(`${row}${symbol ? `, ${symbol}` : ""}`, MARGIN, y, { "font-size": 10 }), words(driving, 330, y, { "text-anchor": "end", "font-size": 10 }), words(driven, 420, y, { "text-anchor": "end", "font-size": 10 }), words(unit, 428, y, { "font-size": 10, fill: "#5b6470" }));
   }
 
-  page.append(words("Warnings", 510, told, { "font-weight": 600 }));
-  const warnings = results.warnings.length ? results.warnings.map(({ detail }) => detail) : ["None."];
-  for (const line of warnings.flatMap((warning) => wrapped(warning, 52)).slice(0, 14)) page.append(words(line, 510, (told += 13), { "font-size": 9.5 }));
-  told += 22;
-  page.append(words("Evidence", 510, told, { "font-weight": 600 }));
+  page.append(words("Warnings", 510, down, { "font-weight": 600 }));
+  const warnings = results.warnings.length ? results.warnings.map(({ detail }) => form.inWords(detail)) : ["None."];
+  for (const line of fitting(warnings.flatMap((warning) => wrapped(warning, SIDE)), 18)) page.append(words(line, 510, (down += 11.5), { "font-size": 8.5 }));
+  down += 20;
+  page.append(words("Evidence", 510, down, { "font-weight": 600 }));
   const { evidence } = results;
   const lines = [
     `degrees of freedom ${evidence.degrees_of_freedom}`, `equilibrium residual ${number(evidence.equilibrium_residual, 2)}`,
     `largest penetration ${number(evidence.largest_penetration_um, 2)} µm`,
-    ...wrapped(`input ${evidence.input_hash}`.replace(/([0-9a-f]{32})/g, "$1 "), 52),
-    ...wrapped(`does not see: ${(evidence.does_not_see ?? []).join("; ")}`, 52).slice(0, 8),
+    ...wrapped(`input ${evidence.input_hash}`.replace(/([0-9a-f]{32})/g, "$1 "), SIDE),
+    ...fitting(wrapped(`does not see: ${(evidence.does_not_see ?? []).join("; ")}`, SIDE), 16),
   ];
-  for (const line of lines) page.append(words(line, 510, (told += 13), { "font-size": 9.5 }));
+  for (const line of lines) page.append(words(line, 510, (down += 11.5), { "font-size": 8.5 }));
 
-  const top = Math.max(y, told) + 24;
+  y += 20;
+  page.append(words("Given besides", MARGIN, y, { "font-weight": 600 }));
+  for (const line of fitting(givenOf(submission, form).flatMap((part) => wrapped(part, LEFT)), 10)) page.append(words(line, MARGIN, (y += 11.5), { "font-size": 8.5 }));
+
+  const top = Math.max(y, down) + 20;
   const [w, h] = [(WIDTH - 2 * MARGIN) / 2, (HEIGHT - top - 40) / 2];
-  const figures = inLight(() => charts.figures({ width: 520, height: Math.round((520 * h) / w), ids: ["ste", curve.face ? "face" : "stiffness", "pressure", "spectrum"] }));
+  const pressed = curve.peak_contact_pressure_mpa.some((value) => value !== null);
+  const ids = ["ste", curve.face ? "face" : "stiffness", pressed ? "pressure" : curve.face ? "stiffness" : "share", "spectrum"];
+  const figures = inLight(() => charts.figures({ width: 520, height: Math.round((520 * h) / w), ids }));
   figures.forEach((figure, i) => {
     for (const [attribute, value] of Object.entries({ x: MARGIN + (i % 2) * w, y: top + Math.floor(i / 2) * h, width: w - 8, height: h - 6 })) figure.setAttribute(attribute, value);
     page.append(figure);

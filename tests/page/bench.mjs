@@ -576,6 +576,13 @@ export async function benchSteps(service) {
     const svg = (await downloaded(page, () => page.locator("#geometry button", { hasText: "SVG" }).click())).bytes.toString();
     for (const words of ["Contact ratio, ε_α", "Transmission error in µm", "Warnings", "Evidence", "STE p-p", "input "]) assert.ok(svg.includes(words), words);
     assert.doesNotMatch(svg, /NaN|undefined/);
+    // What the design gives beside the tables, and all that the method does not see: nothing is cut without a word.
+    const said = [...svg.matchAll(/<text[^>]*>([^<]*)/g)].map(([, words]) => words).join(" ");
+    assert.match(said, /Driven gear: .*Number of holes 10; Radius of the hole circle 34 mm; Radius of a hole 7\.5 mm/);
+    assert.match(said, /Driving gear: .*Amount of tip relief 5 µm/);
+    const unseen = await page.evaluate(async () => (await (await fetch("v1/preview", { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify((await (await fetch("v1/examples")).json()).items.find(({ name }) => name === "test-case-2").submission) })).json()).evidence.does_not_see);
+    assert.ok(unseen.length > 3);
+    for (const each of unseen) assert.ok(said.includes(each), each);
     const png = (await downloaded(page, () => page.locator("#geometry button", { hasText: "PNG" }).click())).bytes;
     assert.deepEqual([...png.subarray(1, 4)].map((byte) => String.fromCharCode(byte)).join(""), "PNG");
     await page.evaluate(() => { window.print = () => {}; });
