@@ -50,7 +50,7 @@ export class Beginnings {
     if (pointer.endsWith("/profile_modifications")) return this.#modification(pointer, kindOf(this.api, kind.items.kind === "variants" ? kind.items.variants[0] : kind.items.schema));
     if (pointer.endsWith("/lead_modifications")) return { kind: "crowning", amount_um: 5 };
     if (!pointer.endsWith("/holes")) return this.#begin(kind.items);
-    return values.length ? between(values.at(-1)) : this.object(pointer, kind);
+    return values.length ? between(values.at(-1), 1.2 * this.limits.least_ligament_mm) : this.object(pointer, kind);
   }
 
   #gear(pointer) {
@@ -212,9 +212,11 @@ function slotOf(pattern) {
   return { width_mm: twoDigits(pattern.radius_mm ?? pattern.circle_radius_mm / 10), angle_deg: twoDigits(180 / Math.max(numberOf(pattern), 3)) };
 }
 
-/** A further pattern: small round holes midway between those of `pattern`. */
-function between(pattern) {
+/** A further pattern: small round holes midway between those of `pattern`, so small that `left` mm of material stay between them. */
+function between(pattern, left) {
   const half = 180 / numberOf(pattern);
   const places = pattern.at_deg ? { at_deg: pattern.at_deg.map((angle) => angle + half) } : { count: pattern.count, phase_deg: (pattern.phase_deg ?? 0) + half };
-  return { ...places, circle_radius_mm: pattern.circle_radius_mm, radius_mm: twoDigits(0.4 * (pattern.radius_mm ?? pattern.slot?.width_mm / 2)) };
+  const radius = pattern.radius_mm ?? pattern.slot?.width_mm / 2;
+  const room = 2 * pattern.circle_radius_mm * Math.sin((0.5 * half - 0.25 * (pattern.slot?.angle_deg ?? 0)) * TURN) - radius;
+  return { ...places, circle_radius_mm: pattern.circle_radius_mm, radius_mm: twoDigits(Math.max(0.1, Math.min(0.4 * radius, room - left))) };
 }

@@ -1,5 +1,6 @@
 // The holes of a gear: seen, dragged and moved by keys.
 
+import { at } from "./design.js";
 import { s, number } from "./dom.js";
 
 const TURN = Math.PI / 180;
@@ -51,7 +52,7 @@ export class HoleHandles {
     const first = index === 0;
     const handle = s("path", {
       class: "hole", tabindex: first ? 0 : undefined, role: first ? "slider" : undefined,
-      "aria-label": first ? `Holes of the ${this.member} gear: arrow keys up and down move the circle, left and right the phase, plus and minus change the radius, brackets the number` : undefined,
+      "aria-label": first ? `Holes ${/\d+$/.test(pointer) ? `${Number(/\d+$/.exec(pointer)[0]) + 1} ` : ""}of the ${this.member} gear: arrow keys up and down move the circle, left and right the phase, plus and minus change the radius, or the width of slots, brackets the number` : undefined,
     });
     handle.append(s("title"));
     handle.addEventListener("pointerdown", (event) => this.#drag(event, pointer, index));
@@ -95,14 +96,15 @@ export class HoleHandles {
 
   #press(event, pointer) {
     const pattern = this.design.get(pointer);
-    const add = (field, by, least) => this.design.set(`${pointer}/${field}`, Math.max(least, Number(((pattern[field] ?? 0) + by).toFixed(6))), "drag");
+    const add = (field, by, least) => this.design.set(`${pointer}/${field}`, Math.max(least, Number(((at(pattern, `/${field}`) ?? 0) + by).toFixed(6))), "drag");
+    const size = pattern.slot ? "slot/width_mm" : "radius_mm";
     const actions = {
       ArrowUp: () => add("circle_radius_mm", 0.25, 0.1),
       ArrowDown: () => add("circle_radius_mm", -0.25, 0.1),
       ArrowRight: () => pattern.count && add("phase_deg", 1, -360),
       ArrowLeft: () => pattern.count && add("phase_deg", -1, -360),
-      "+": () => pattern.radius_mm && add("radius_mm", 0.1, 0.05),
-      "-": () => pattern.radius_mm && add("radius_mm", -0.1, 0.05),
+      "+": () => add(size, 0.1, 0.05),
+      "-": () => add(size, -0.1, 0.05),
       "]": () => pattern.count && add("count", 1, 1),
       "[": () => pattern.count && add("count", -1, 1),
     };

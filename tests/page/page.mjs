@@ -298,6 +298,16 @@ await step("keys alone do: a hole moves by arrows", service, async (page) => {
   await page.waitForFunction((pointer) => document.getElementById(`field-${pointer}`).value === "33", `${HOLES}/circle_radius_mm`);
   // Between the bore and the root circle.
   assert.deepEqual(await Promise.all(["min", "max", "now"].map((name) => hole.getAttribute(`aria-value${name}`))), ["16", "47.5", "33"]);
+  // Of several patterns each has a name of its own, and kidneys grow in width.
+  await (await field(page, HOLES)).selectOption({ label: "Several patterns" });
+  await changing(page, async () => (await field(page, `${HOLES}/0/slot`)).check());
+  await changing(page, () => page.locator("#form button:visible", { hasText: "Add to several patterns" }).click());
+  const names = await page.locator(".rotor.driven .hole[role=slider]").evaluateAll((all) => all.map((each) => each.getAttribute("aria-label").slice(0, 26)));
+  assert.deepEqual(names, ["Holes 1 of the driven gear", "Holes 2 of the driven gear"]);
+  const { width_mm: width } = (await designOf(page)).pair.driven.blank.holes[0].slot;
+  await page.locator(".rotor.driven .hole[role=slider]").first().focus();
+  await changing(page, () => page.keyboard.press("-"));
+  assert.equal((await designOf(page)).pair.driven.blank.holes[0].slot.width_mm, Number((width - 0.1).toFixed(6)));
 });
 
 await step("200 drags are followed in order", service, async (page) => {
