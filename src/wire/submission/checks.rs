@@ -132,10 +132,11 @@ impl Document {
         if total > MOST_PERIODS_RUN {
             let fits = MOST_PERIODS_RUN / each;
             let detail = format!(
-                "{} speeds of {} mesh periods at {} torques are {total} mesh periods; the limit is {MOST_PERIODS_RUN}. What would fit: {fits} speeds.",
-                range.count,
-                pair.period(),
-                self.output_torques_n_m.len()
+                "{} of {} at {} are {total} mesh periods; the limit is {MOST_PERIODS_RUN}. What would fit: {}.",
+                counted(u64::from(range.count), "speed"),
+                counted(u64::from(pair.period()), "mesh period"),
+                counted(self.output_torques_n_m.len() as u64, "torque"),
+                counted(fits, "speed")
             );
             let pointer = format!("{within}/{}", SpeedRange::count.name);
             let nearest = (fits >= 2).then_some(fits as f64);
@@ -201,7 +202,7 @@ impl Document {
             ways.push(format!("{fitting_positions} positions in a mesh period"));
         }
         if fitting_torques >= 1 {
-            ways.push(format!("{fitting_torques} torques"));
+            ways.push(counted(fitting_torques, "torque"));
         }
         let (fewest_loads, _) = ForceTableQuestion::loads.spec.bounds;
         let fitting_loads =
@@ -210,7 +211,7 @@ impl Document {
             ways.push(format!("{fitting_loads} loads"));
         }
         if fitting_span >= 1 && of_table == 0 {
-            ways.push(format!("a span of {fitting_span} mesh periods"));
+            ways.push(format!("a span of {}", counted(fitting_span, "mesh period")));
         }
         if ways.is_empty() {
             ways.push("less of more than one of them".to_owned());
@@ -233,12 +234,19 @@ impl Document {
             String::new()
         };
         let detail = format!(
-            "{span} mesh periods of {positions} positions at {torques} torques{table} are {total} positions; {said}. What would fit: {}.",
+            "{} of {positions} positions at {}{table} are {total} positions; {said}. What would fit: {}.",
+            counted(span, "mesh period"),
+            counted(torques, "torque"),
             ways.join(", or ")
         );
         let pointer = format!("/resolution/{name}");
         errors.push(FieldError::new(pointer, Code::TooLarge, detail).nearest(nearest));
     }
+}
+
+/// So many of what is called `one`, in words.
+fn counted(count: u64, one: &str) -> String {
+    format!("{count} {one}{}", if count == 1 { "" } else { "s" })
 }
 
 /// Refuses a `torque`, which stands at `pointer`, that would deflect the teeth of `pair` by more than about a quarter of a module.
