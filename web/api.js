@@ -4,6 +4,9 @@ const KEY = "meshwright-key";
 const listeners = new Set();
 let key = sessionStorage.getItem(KEY) ?? "";
 
+/** So long it takes until a service that did not answer, or had no room, is asked again, in milliseconds. */
+const AGAIN = 1500;
+
 /** A problem document (RFC 9457) that the service answered with, and after how many milliseconds it may be asked again. */
 export class ProblemError extends Error {
   constructor(problem, after = AGAIN) {
@@ -11,9 +14,6 @@ export class ProblemError extends Error {
     Object.assign(this, { problem, after });
   }
 }
-
-/** So long it takes until a service that did not answer, or had no room, is asked again, in milliseconds. */
-const AGAIN = 1500;
 
 /** What a request or an answer that broke off is told as; one that was given up stays that. */
 const broken = (error) => (error.name === "AbortError" ? error : new ProblemError({ code: "unreachable", title: "No answer", detail: "The service does not answer. The page asks again until it does." }));

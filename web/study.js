@@ -27,8 +27,8 @@ const QUANTITIES = {
 };
 
 const TORQUE = "/output_torques_n_m";
-/** With which field an axis begins, and its values. */
-const [COUNT, COUNTS] = ["/pair/driven/blank/holes/count", "6, 8, 10"];
+/** With which field the first axis begins until somebody chooses another one, and the values of such a field. */
+const [COUNT, COUNTS] = [/^\/pair\/driven\/blank\/holes\/(0\/)?count$/, "6, 8, 10"];
 
 /** The parts of gears that a design may lack and an axis may change all the same, and their fields. */
 const PART = /^(\/pair\/\w+\/(?:blank\/holes|blank\/web|tip_relief))\//;
@@ -51,7 +51,6 @@ export function study(place, design, form, onOpen) {
     h("div", { className: "line" }, constant, h("label", { htmlFor: "study-mass" }, "Same mass: holes remove"), removed, h("span", { className: "unit" }, "% of the"), gear, h("span", {}, "blank, all equally wide")),
     h("div", { className: "line" }, question.run, question.cancel));
   place.replaceChildren(h("p", { className: "note" }, "Every combination of these values is computed from the design; values are separated by commas. “Best” is a design that no other beats: none is at least as good in mass, peak-to-peak and mean stiffness, and better in one."), formOf, question.state, question.of.element, picker, picture, out, h("details", { id: "search" }, h("summary", {}, "Let a search choose the values"), searched));
-  axes[0].choose(COUNT);
   const seeker = search(searched, design, form, onOpen);
   let last = null;
 
@@ -126,12 +125,12 @@ export function study(place, design, form, onOpen) {
 function axis(index, design, form) {
   const id = `axis-${index}`;
   const values = h("input", { type: "text", id: `${id}-values`, ariaLabel: `Values of axis ${index + 1}`, spellcheck: false });
-  const field = h("select", { id, on: { change: () => { values.value = suggested(); } } });
+  const field = h("select", { id, on: { change: () => { field.dataset.chosen = "yes"; values.value = suggested(); } } });
   const element = h("div", { className: "line" }, h("label", { htmlFor: id }, index ? "and" : "Vary"), field, h("label", { htmlFor: values.id }, "over"), values);
 
   /** Values around the one that the design has. */
   function suggested() {
-    if (field.value === COUNT) return COUNTS;
+    if (COUNT.test(field.value)) return COUNTS;
     const known = form.fields().find(({ pointer }) => pointer === field.value);
     const [, part] = PART.exec(field.value) ?? [];
     const begun = part && !at(design.submission, part) ? at(form.beginnings.object(part, null), field.value.slice(part.length)) : undefined;
@@ -153,16 +152,15 @@ function axis(index, design, form) {
   function refresh() {
     const fields = form.fields().filter(({ pointer }) => pointer !== "/tags");
     // Several patterns have fields of their own, and none of one pattern.
-    const absent = LACKING.filter((pointer) => !fields.some((each) => each.pointer === pointer) && !(pointer.includes("/holes/") && Array.isArray(design.get("/pair/driven/blank/holes"))));
+    const absent = LACKING.filter((pointer) => !fields.some((each) => each.pointer === pointer) && !Array.isArray(design.get(PART.exec(pointer)[1])));
+    const all = [...absent, TORQUE].map((pointer) => ({ pointer, title: form.titled(pointer) })).concat(fields);
+    const before = field.value;
     // The field that was chosen may not be there any more.
-    if (!offer(field, "none", [...absent, TORQUE].map((pointer) => ({ pointer, title: form.titled(pointer) })).concat(fields))) values.value = "";
+    if (!offer(field, "none", all)) values.value = "";
+    if (index === 0 && !field.dataset.chosen) field.value = all.find(({ pointer }) => COUNT.test(pointer))?.pointer ?? "";
+    if (field.value && field.value !== before) values.value = suggested();
   }
 
-  const choose = (path) => {
-    refresh();
-    field.value = path;
-    field.dispatchEvent(new Event("change"));
-  };
   refresh();
-  return { element, read, choose, refresh };
+  return { element, read, refresh };
 }

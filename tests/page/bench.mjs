@@ -745,6 +745,7 @@ export async function benchSteps(service) {
     await settled(page);
     await tab(page, "study");
     const offered = await page.locator("#axis-0 option").evaluateAll((options) => options.map(({ value }) => value));
+    assert.deepEqual([await page.locator("#axis-0").inputValue(), await page.locator("#axis-0-values").inputValue()], [`${HOLES}/0/count`, "6, 8, 10"]);
     assert.ok(offered.includes(`${HOLES}/0/slot/width_mm`) && !offered.includes(`${HOLES}/0/radius_mm`), "a slot has no radius");
     assert.deepEqual(await page.locator("#axis-0 optgroup").evaluateAll((groups) => groups.map(({ label }) => label)), ["Pair", "Driving gear", "Driven gear", "Load and method"]);
     await page.locator("#axis-0").selectOption(`${HOLES}/0/slot/angle_deg`);
