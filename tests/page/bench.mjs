@@ -217,7 +217,7 @@ export async function benchSteps(service) {
       await settled(page);
       const wrong = await page.locator("#problem").evaluate((place) => (place.hidden ? "" : place.innerText));
       // What has an extent along the axis says that this method does not know it, and which one does.
-      if (!/is not known to the plane, .*three_dimensional knows it/s.test(wrong)) assert.equal(wrong, "", what);
+      if (!/is not known to the plane, .*three dimensional knows it/s.test(wrong)) assert.equal(wrong, "", what);
     };
     /** Tries everything that can be asked for at a control, and what is asked for there in turn. */
     const tryAll = async (id, depth = 0) => {

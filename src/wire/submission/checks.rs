@@ -211,7 +211,10 @@ impl Document {
             ways.push(format!("{fitting_loads} loads"));
         }
         if fitting_span >= 1 && of_table == 0 {
-            ways.push(format!("a span of {}", counted(fitting_span, "mesh period")));
+            ways.push(format!(
+                "a span of {}",
+                counted(fitting_span, "mesh period")
+            ));
         }
         if ways.is_empty() {
             ways.push("less of more than one of them".to_owned());
