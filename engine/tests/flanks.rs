@@ -379,3 +379,51 @@ fn the_second_period_is_the_first() {
         assert!((one / other - 1.0).abs() < 1e-9, "{one} {other}");
     }
 }
+
+#[test]
+fn a_light_load_of_eccentric_gears_is_carried_by_the_pair_that_touches_first() {
+    // Gears that run out meet elsewhere than they are laid: the pair that touches first is told by flanks as they stand, so that the curve of a light
+    // load goes on from that of none, and grows with the load.
+    let made = |amount: f64, relief: f64| {
+        let of = |teeth, bore, removed, eccentricity: f64| {
+            let mut data = gear(teeth, bore);
+            data.modifications = vec![ModificationData::TipRelief(ReliefData {
+                amount: relief * removed,
+                shape: ReliefShape::Linear,
+                start: ReliefStart::RadialLength(0.9e-3),
+            })];
+            data.deviations.eccentricity = (eccentricity > 0.0).then_some(Eccentricity {
+                amount: eccentricity,
+                direction: 33_f64.to_radians(),
+            });
+            data
+        };
+        pair(
+            of(23, 8e-3, 6e-6, 0.0),
+            of(41, 14e-3, 3e-6, amount),
+            64.3e-3,
+        )
+    };
+    for (amount, relief) in [(20e-6, 0.0), (60e-6, 1.0), (100e-6, 1.0)] {
+        let model = model(&made(amount, relief));
+        for i in 0..48 {
+            let eta = f64::from(i) / 8.0 + 0.1;
+            let touch = delta(&model, eta, 0.0);
+            let mut last = touch;
+            for torque in [1e-4, 1e-2, 0.1, 1.0] {
+                let next = delta(&model, eta, torque);
+                assert!(
+                    next > last - 2e-3,
+                    "{amount}, {eta}, {torque} N m: {last} {next}"
+                );
+                // 0.13 µm in a round pair without relief.
+                let deflection = next - touch;
+                assert!(
+                    deflection < 0.015 + 0.25 * torque,
+                    "{amount}, {eta}, {torque} N m: {deflection}"
+                );
+                last = next;
+            }
+        }
+    }
+}

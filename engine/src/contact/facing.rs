@@ -101,10 +101,20 @@ impl Facing {
         n: i64,
         lag: f64,
     ) -> Option<Self> {
+        let seat = nearer_tip(gears, eta - n as f64);
+        Self::real_on((gears, deviations), eta, n, lag, seat)
+    }
+
+    /// As [`Facing::real`], told on the flank of `seat`.
+    pub(super) fn real_on(
+        (gears, deviations): (&GearPair, &PairDeviations),
+        eta: f64,
+        n: i64,
+        lag: f64,
+        seat: Member,
+    ) -> Option<Self> {
         let placement = Placement::real(gears, deviations, eta, n, lag);
-        let phase = eta - n as f64;
-        let seat = nearer_tip(gears, phase);
-        View { placement, seat }.facing(phase)
+        View { placement, seat }.facing(eta - n as f64)
     }
 
     /// About how much memory it takes beside itself, in bytes.

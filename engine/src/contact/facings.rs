@@ -18,6 +18,10 @@ const PHASES: f64 = 64.0;
 /// the most.
 const MOST_RUNOUT: f64 = 2.0;
 
+/// Where eccentricities come to more than this part of a phase together, pairs are looked at as they stand: what the hollow of a pair as laid tells
+/// of its touch is off by the square of the way from there, and by much more across a kink or beside a corner.
+const LOOKED_AT: f64 = 0.125;
+
 /// The pairs whose flanks face each other at one fraction of the mesh period; numbered from the reference pair of the
 /// period. They are looked for outward from the path of contact, as far as is asked.
 pub(super) struct Facings<'a> {
@@ -25,8 +29,8 @@ pub(super) struct Facings<'a> {
     fraction: f64,
     /// Whether nothing deviates.
     as_drawn: bool,
-    /// Whether eccentric gears move contacts by more than a phase.
-    runs_out_far: bool,
+    /// How far the gears run out together, in phases.
+    runout: f64,
     /// Every pair looked at, and the δ at which it touches as drawn.
     found: Vec<(i64, f64)>,
     frontier: [Frontier; 2],
@@ -50,6 +54,8 @@ pub(super) struct Near {
     pub(super) drawn: DrawnPair,
     /// By how many mesh periods farther it has gone on than it is laid.
     ahead: f64,
+    /// How far from its first hollow as laid, towards the seat's tip, that hollow is found as it stands; `None` where it was not looked for.
+    away: Option<f64>,
     /// The δ at which each of its hollows touches.
     touches: Vec<f64>,
 }
@@ -76,6 +82,9 @@ impl Near {
             return 0;
         };
         let hollow = &facing.hollows[0];
+        if let Some(away) = self.away {
+            return Extent::moved(pair, hollow, load, (away, 0.0));
+        }
         // Arc over roll length.
         let growth = |member: Member| {
             let r_b = pair.gear(member).base_radius();
@@ -129,7 +138,7 @@ impl<'a> Facings<'a> {
             made,
             fraction,
             as_drawn: made.deviations.are_none(),
-            runs_out_far: MOST_RUNOUT * runout > gears.base_pitch() / PHASES,
+            runout: runout / gears.base_pitch() * PHASES,
             found: Vec::new(),
             frontier: [frontier(first - 1, -1), frontier(last + 1, 1)],
             known: (0, Vec::new()),
@@ -220,13 +229,14 @@ impl<'a> Facings<'a> {
             return Some(Near {
                 pair: n,
                 ahead: 0.0,
+                away: None,
                 touches,
                 drawn,
             });
         }
         let [by_tooth, shift] = shifts(self.made, phase, period + n);
         // Along a curve a tooth keeps its own deviation, and so what was laid for it. A gear that runs out far stands elsewhere at every position.
-        let laid = if self.runs_out_far {
+        let laid = if MOST_RUNOUT * self.runout > 1.0 {
             shift
         } else {
             (by_tooth * PHASES).round() / PHASES
@@ -234,6 +244,7 @@ impl<'a> Facings<'a> {
         let mut near = Near {
             pair: n,
             ahead: shift - laid,
+            away: None,
             touches: Vec::new(),
             drawn: model.drawn.pair(model, phase + laid),
         };
@@ -243,7 +254,28 @@ impl<'a> Facings<'a> {
             meeting.gap / meeting.arms[1]
         };
         near.touches = near.drawn.facing()?.hollows.iter().map(touch).collect();
+        if self.runout > LOOKED_AT {
+            self.look_at_real(&mut near, period);
+        }
         Some(near)
+    }
+
+    /// Looks where and when the flanks of `near` touch first in mesh period `period`, as they stand.
+    fn look_at_real(&self, near: &mut Near, period: i64) -> Option<()> {
+        let pair = (&self.made.model.pair, self.made.deviations);
+        let (eta, n) = (self.fraction + period as f64, period + near.pair);
+        let hollows = &near.drawn.facing()?.hollows;
+        let real = Facing::real_on(pair, eta, n, 0.0, near.drawn.facing()?.seat)?;
+        let first = &real.hollows[0];
+        let away = |hollow: &Hollow| first.arc - hollow.arc;
+        let nearest = |a: &&Hollow, b: &&Hollow| away(a).abs().total_cmp(&away(b).abs());
+        let (i, hollow) = hollows
+            .iter()
+            .enumerate()
+            .min_by(|a, b| nearest(&a.1, &b.1))?;
+        near.touches[i] = first.touch;
+        near.away = (i == 0).then(|| away(hollow));
+        Some(())
     }
 
     /// Finds the pairs that touch as drawn before δ is `reach`.
