@@ -196,6 +196,34 @@ fn teeth_renumbered_by_one_move_the_curve_by_one_mesh_period() {
 }
 
 #[test]
+fn teeth_keep_their_numbers_when_the_other_gear_drives() {
+    // The same flanks touch when the pair runs backward and driver and driven are exchanged: numbers and directions are those of each gear by itself.
+    let deviating = |teeth: u32, step: u32, direction: f64| {
+        let mut data = gear(teeth, 8e-3);
+        let arcs = (0..teeth).map(|i| 1e-6 * f64::from(i * step % 11));
+        data.deviations.cumulative_pitch = arcs.collect();
+        data.deviations.eccentricity = Some(Eccentricity {
+            amount: 7e-6,
+            direction,
+        });
+        data
+    };
+    let (one, other) = (deviating(25, 7, 0.7), deviating(31, 5, -1.9));
+    let (here, there) = (pair(one.clone(), other.clone()), pair(other, one));
+    let touch = |pair: &GearPair, eta: f64| {
+        light_contact(pair, &pair.deviations(), eta)
+            .expect("contact")
+            .transmission_error
+    };
+    for i in 0..25 {
+        let eta = 0.37 + f64::from(i);
+        let delta = touch(&here, eta);
+        let back = touch(&there, delta / here.base_pitch() - eta);
+        assert!((delta - back).abs() < 1e-10, "{eta}: {delta:e} {back:e}");
+    }
+}
+
+#[test]
 fn deviations_of_all_teeth_alike_are_a_turn_of_the_gear() {
     let plain = pair(gear(25, 8e-3), gear(31, 8e-3));
     let mut data = gear(25, 8e-3);
@@ -247,12 +275,19 @@ fn formulas_on_the_line_of_contact_see_deviations_as_rigid_flanks_do() {
     let [light, formula] = &analysis.curves[..] else {
         panic!("two curves")
     };
+    // The curve at no load is the limit of that route.
+    for i in 0..light.mesh_position.len() {
+        let apart = formula.transmission_error[i] - light.transmission_error[i];
+        // What that load deflects.
+        assert!(apart.abs() < 1e-12, "{i}: {apart:e}");
+    }
     // Tips that touch beside the line of contact are not seen by formulas: look where one pair alone is on it.
     let mut seen = 0;
-    for (i, eta) in light.mesh_position.iter().enumerate() {
+    for (eta, delta) in light.mesh_position.iter().zip(&light.transmission_error) {
         let fraction = eta - eta.floor();
         if !(0.15..=0.85).contains(&fraction) {
-            let apart = formula.transmission_error[i] - light.transmission_error[i];
+            let rigid = light_contact(&case.pair, &case.pair.deviations(), *eta).expect("contact");
+            let apart = rigid.transmission_error - delta;
             assert!(apart.abs() < 2e-8, "{eta}: {apart:e}");
             seen += 1;
         }

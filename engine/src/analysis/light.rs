@@ -1,11 +1,13 @@
-//! Curves at torque 0: the limit as the load vanishes, in which nothing is elastic and every method agrees.
+//! Curves at torque 0: the limit as the load vanishes, in which nothing is elastic. All methods agree on it but the load distribution, which sees
+//! contact on the line of contact alone.
 
 use super::curve_parts::CurveParts;
 use super::evidence::Evidence;
 use super::warning::warnings;
-use super::{Analysis, AnalysisError, Case, Curve};
+use super::{Analysis, AnalysisError, Case, Curve, Method, load_distribution};
 use crate::contact::face::light_face;
 use crate::contact::light_contact;
+use crate::load_distribution::PairFormulas;
 
 /// `case` without its torques of zero.
 pub(super) fn without_torque_zero(case: &Case) -> Case {
@@ -38,13 +40,16 @@ pub(super) fn alone(case: &Case) -> Result<Analysis, AnalysisError> {
 
 fn curve(case: &Case) -> Result<Curve, AnalysisError> {
     let deviations = case.pair.deviations();
+    let formulas = (case.method == Method::LoadDistribution)
+        .then(|| PairFormulas::new(&case.pair, case.resolution.formulas));
     let contacts = case
         .repeating_positions()
         .into_iter()
         .map(|eta| {
-            let contact = match &case.faces {
-                None => light_contact(&case.pair, &deviations, eta),
-                Some(faces) => light_face(&faces.pair, faces.slices, eta),
+            let contact = match (&formulas, &case.faces) {
+                (Some(formulas), _) => return load_distribution::light(formulas, eta),
+                (None, Some(faces)) => light_face(&faces.pair, faces.slices, eta),
+                (None, None) => light_contact(&case.pair, &deviations, eta),
             };
             contact.map_err(|error| AnalysisError::at_position(error, eta))
         })

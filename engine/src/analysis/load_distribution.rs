@@ -5,7 +5,8 @@ use super::curve::LoadShare;
 use super::curve_parts::CurveParts;
 use super::warning::warnings;
 use super::{Analysis, AnalysisError, Evidence};
-use crate::load_distribution::{FormulaRange, LinePair, PairFormulas, Shared, rise, share};
+use crate::contact::MeshContact;
+use crate::load_distribution::{FormulaRange, LinePair, PairFormulas, Shared, rise, share, touch};
 use crate::run::Run;
 
 /// Computes `case` by the load distribution.
@@ -35,6 +36,15 @@ pub(super) fn solve(case: &Case, run: &Run) -> Result<Analysis, AnalysisError> {
         evidence,
         warnings: warnings(case),
     })
+}
+
+/// The contact of `formulas` at the mesh position `eta` as the load vanishes: what this route does not see of tips beside the line of contact does
+/// not touch here either.
+pub(super) fn light(formulas: &PairFormulas, eta: f64) -> Result<MeshContact, AnalysisError> {
+    let (transmission_error, offsets) = touch(&formulas.pairs_at(eta)?);
+    let pair = |offset: i32| (i64::from(offset) + eta.floor() as i64, None);
+    let touching = offsets.into_iter().map(pair).collect();
+    Ok(MeshContact::unloaded(transmission_error, touching))
 }
 
 /// What of `case` lies outside the ranges of the formulas that it asks for.

@@ -20,7 +20,7 @@ const MOST_RUNOUT: f64 = 2.0;
 
 /// Where eccentricities come to more than this part of a phase together, pairs are looked at as they stand: what the hollow of a pair as laid tells
 /// of its touch is off by the square of the way from there, and by much more across a kink or beside a corner.
-const LOOKED_AT: f64 = 0.125;
+const LOOKED_AT: f64 = 0.25;
 
 /// The pairs whose flanks face each other at one fraction of the mesh period; numbered from the reference pair of the
 /// period. They are looked for outward from the path of contact, as far as is asked.

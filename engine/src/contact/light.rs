@@ -3,7 +3,7 @@
 use super::cells::{MeshContact, PairContact};
 use super::facing::Facing;
 use super::model::PositionError;
-use crate::gear::{GearPair, PairDeviations};
+use crate::gear::{GearPair, Member, PairDeviations};
 
 /// Gaps that differ by less than this part of the module close together: rounding of coordinates.
 const TOGETHER: f64 = 1e-9;
@@ -45,24 +45,34 @@ pub fn light_contact(
         }
     }
     facing.retain(|(_, facing)| facing.touch() <= rounding);
-    let share = 1.0 / facing.len() as f64;
-    let pairs = facing.iter().map(|(n, facing)| PairContact {
-        pair: *n,
-        share,
-        tip_corner: facing.off_path.then_some(facing.seat),
-        fillet: None,
-    });
-    Ok(MeshContact {
-        transmission_error: lag,
-        stiffness: 0.0,
-        driving_load: 0.0,
-        pairs: pairs.collect(),
-        peak_pressure: Some(0.0),
-        equilibrium: 0.0,
-        complementarity: 0.0,
-        penetration: 0.0,
-        iterations: 0,
-    })
+    let touching = facing
+        .iter()
+        .map(|(n, facing)| (*n, facing.off_path.then_some(facing.seat)));
+    Ok(MeshContact::unloaded(lag, touching.collect()))
+}
+
+impl MeshContact {
+    /// That of pairs which just touch at `transmission_error`, each perhaps with the tip corner of a gear.
+    pub fn unloaded(transmission_error: f64, touching: Vec<(i64, Option<Member>)>) -> Self {
+        let share = 1.0 / touching.len() as f64;
+        let pairs = touching.into_iter().map(|(pair, tip_corner)| PairContact {
+            pair,
+            share,
+            tip_corner,
+            fillet: None,
+        });
+        Self {
+            transmission_error,
+            stiffness: 0.0,
+            driving_load: 0.0,
+            pairs: pairs.collect(),
+            peak_pressure: Some(0.0),
+            equilibrium: 0.0,
+            complementarity: 0.0,
+            penetration: 0.0,
+            iterations: 0,
+        }
+    }
 }
 
 /// The pairs one of which touches first, whatever its teeth deviate, rising.

@@ -38,7 +38,7 @@ mod weber_banaschek;
 
 pub use compliance::PairFormulas;
 pub use range::{Formula, FormulaQuantity, FormulaRange};
-pub use sharing::{LinePair, Shared, rise, share};
+pub use sharing::{LinePair, Shared, rise, share, touch};
 
 use crate::gear::{GearPair, Member, PlaneState};
 use sainsot::Ring;

@@ -135,6 +135,15 @@ fn first_gap(pairs: &[LinePair]) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
+/// Where `pairs`, of which there is at least one, touch under no load: δ in m, and the offsets of those that do, as far as gaps of fractions of an
+/// atom are told apart.
+pub fn touch(pairs: &[LinePair]) -> (f64, Vec<i32>) {
+    const TOGETHER: f64 = 1e-12;
+    let first = first_gap(pairs);
+    let touching = pairs.iter().filter(|pair| pair.gap - first <= TOGETHER);
+    (first, touching.map(|pair| pair.offset).collect())
+}
+
 /// How far δ rises, in m, from the first touch until Σ F_n(δ) is `load`; by Newton's method.
 ///
 /// The deflections grow slower than the forces, so each F_n(δ) is convex: from above, where one pair carries the whole load

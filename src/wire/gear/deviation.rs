@@ -11,7 +11,9 @@ use crate::wire::units::{from_um, plain, to_um};
 const CLOSURE: f64 = 0.01;
 
 document! {
-    /// What the teeth of a gear deviate from each other by. Positive is towards the mate, so that contact is earlier.
+    /// What the teeth of a gear deviate from each other by. Positive is towards the mate, so that contact is earlier. Teeth are counted as angles are:
+    /// tooth 1 stands next to tooth 0 on the side of its loaded flank. So the teeth of a driven gear mesh in rising, those of a driving gear in falling
+    /// order, and both keep their numbers when the other gear drives.
     pub struct DeviationsDocument as "ToothDeviations", "Tooth deviations" {
         /// How far the loaded flank of each tooth, tooth 0 first, stands from its place towards its mate, as a transverse arc on the
         /// reference circle (ISO 1328-1). Along the base tangent it is times the cosine of the pressure angle.
