@@ -5,6 +5,7 @@ use super::{expected, expected_positions};
 use crate::assembly::blank::blank_grid;
 use crate::assembly::interface::{harmonics, interface_radius, orders_of_blank};
 use crate::assembly::pair::cells_per_patch;
+use crate::assembly::{FaceResolution, FaceYieldSpec};
 use crate::contact::facing::Facing;
 use crate::contact::{ContactSolver, default_penalty};
 use crate::gear::{GearPair, Member, gcd};
@@ -116,6 +117,11 @@ const EVENING: u64 = 16;
 /// Bytes of one gear along its face at the order 8 while it is made, and of its web besides.
 const FACE_MEMORY: [f64; 2] = [110e6, 60e6];
 
+/// Seconds of one core for the cube of the unknowns to which a web with holes is condensed, and bytes for their square: some are condensed as a
+/// whole, with thousands of unknowns around them. Measured as [`SECONDS`].
+const HOLED_SECONDS: f64 = 1.2e-11;
+const HOLED_MEMORY: f64 = 24.0;
+
 /// Nodes of a tooth and its rim in a section, about.
 const SECTION_NODES: f64 = 330.0;
 
@@ -136,6 +142,16 @@ fn of_faces(case: &Case, faces: &Faces, alone: Estimate) -> Estimate {
         estimate.seconds += (2.0 * per_gear + webs * per_web) * growth.powf(2.5);
         let bytes = 2.0 * FACE_MEMORY[0] + webs * FACE_MEMORY[1];
         estimate.memory += (bytes * growth.powi(2)) as u64;
+        let resolution = FaceResolution {
+            face_order: faces.resolution.face_order + 2 * run,
+            ..faces.resolution
+        };
+        for member in Member::BOTH {
+            let spec = FaceYieldSpec::new(faces.pair.gear(member), resolution);
+            let unknowns = spec.condensed_unknowns() as f64;
+            estimate.seconds += HOLED_SECONDS * unknowns.powi(3);
+            estimate.memory += (HOLED_MEMORY * unknowns.powi(2)) as u64;
+        }
         if run == 0 {
             let teeth = Member::BOTH.map(|member| case.pair.gear(member).tooth_count());
             let unknowns = 3.0 * functions * SECTION_NODES * f64::from(teeth[0] + teeth[1]);

@@ -6,7 +6,7 @@ use faer::{Mat, c64};
 
 use super::carrier::{Carrier, Stack};
 use super::flank_fit::{FlankFit, OWN_DEGREE, smoothed, smoothed_rows, up_the_flank};
-use super::holed::{HoledChange, SeenWeb};
+use super::holed::{HoledChange, SeenWeb, condensed_unknowns};
 use super::{MakeAll, PartError, Parts};
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::{entries, symmetrize};
@@ -101,6 +101,11 @@ impl FaceYieldSpec {
     /// The orders of the outer circle of the web in which its holes are seen; `None` without holes.
     pub fn hole_orders(&self) -> Option<usize> {
         self.stack().hole_orders
+    }
+
+    /// The unknowns to which a sector of the web is condensed that has its holes; 0 without holes.
+    pub fn condensed_unknowns(&self) -> usize {
+        condensed_unknowns(&self.stack(), self.gear.section())
     }
 
     /// The parts of the gear.

@@ -13,7 +13,7 @@ use super::carrier::{Stack, WebPorts};
 use crate::fem::FemError;
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::entries;
-use crate::fem::prism::Prism;
+use crate::fem::prism::{COMPONENTS, Prism};
 use crate::gear::{BlankRegion, Material, SpurGear, gcd};
 use crate::grid::{BlankGrid, GridLevel};
 use crate::ring::solid::gear::ClassAnswers;
@@ -304,27 +304,13 @@ impl HoledSection {
         section: &SpurGear,
         largest: usize,
     ) -> Result<Self, PartError> {
-        let layer = &stack.layers[1];
-        let region = BlankRegion {
-            bore_radius: layer.inner_radius,
-            web: None,
-            ..section.data().blank.clone()
-        };
-        let z = section.tooth_count();
-        let grid = BlankGrid::of_region(
-            &region,
-            section.face_width(),
-            layer.outer_radius,
-            z,
-            ELEMENTS_PER_ORDER * largest as f64 / f64::from(z),
-            GridLevel::Coarse,
-        )?;
+        let (grid, phase) = holed_grid(stack, section, largest)?;
         let hub = (0..=largest)
             .map(|order| stack.below(1, order, 0.0))
             .collect::<Result<Option<Vec<_>>, _>>()?;
         Ok(Self {
             grid,
-            phase: region.phase(),
+            phase,
             hub,
             material: *section.material(),
             axial: stack.across[1].clone(),
@@ -345,6 +331,44 @@ impl HoledSection {
     pub(super) fn ring(&self, told: &[u32]) -> Result<HoledRing<'_>, FemError> {
         HoledRing::new(&self.grid, &self.prism(), self.hub.as_deref(), told)
     }
+}
+
+/// The grid of the web of `section` for the orders up to `largest`, and where hole 0 of a pattern stands.
+fn holed_grid(
+    stack: &Stack,
+    section: &SpurGear,
+    largest: usize,
+) -> Result<(BlankGrid, f64), PartError> {
+    let layer = &stack.layers[1];
+    let region = BlankRegion {
+        bore_radius: layer.inner_radius,
+        web: None,
+        ..section.data().blank.clone()
+    };
+    let z = section.tooth_count();
+    let grid = BlankGrid::of_region(
+        &region,
+        section.face_width(),
+        layer.outer_radius,
+        z,
+        ELEMENTS_PER_ORDER * largest as f64 / f64::from(z),
+        GridLevel::Coarse,
+    )?;
+    Ok((grid, region.phase()))
+}
+
+/// The unknowns to which a sector of the web of `section` is condensed, whose gear is otherwise that of `stack`; 0 without holes.
+pub(crate) fn condensed_unknowns(stack: &Stack, section: &SpurGear) -> usize {
+    let grid = stack
+        .hole_orders
+        .and_then(|largest| holed_grid(stack, section, largest).ok());
+    grid.map_or(0, |(grid, _)| {
+        let (right, left) = &grid.side_nodes;
+        let carried = stack.layers.len() > 2;
+        let bore = if carried { grid.bore_nodes.len() } else { 0 };
+        let nodes = right.len() + left.len() + bore + grid.arc_nodes.len();
+        COMPONENTS * stack.across[1].len() * nodes
+    })
 }
 
 /// Where the cosine of an order stands, in blocks; the sine follows.
