@@ -8,9 +8,8 @@ use faer::Mat;
 use rayon::prelude::*;
 
 use super::balance::{Balance, balance};
-use super::compliance::compliance;
-use super::slice::{self, Slice};
-use super::{FaceModel, add_to_strips, beyond};
+use super::slice::Slice;
+use super::{Balanced, FaceModel, add_to_strips, beyond};
 use crate::fem::dense::Cholesky;
 use crate::gear::{LeadModification, Member};
 use crate::run::{Run, Stopped};
@@ -141,7 +140,11 @@ impl FaceModel {
     }
 
     fn stand(&self, eta: f64, load: f64, phases: [f64; 2]) -> Option<Stand> {
-        let slices = slice::lay(self, eta, phases, Some(load));
+        let Balanced {
+            slices,
+            compliance: h,
+            ..
+        } = self.balanced(eta, load, phases).ok()?;
         let width = self.pair.gear(Member::Driving).face_width();
         let opened = |lead: &LeadModification| -> Vec<f64> {
             let removed = slices.iter().map(|slice| {
@@ -154,10 +157,10 @@ impl FaceModel {
             opened(&LeadModification::Slope { amount: 1.0 }),
             opened(&LeadModification::Crowning { amount: 1.0 }),
         ];
-        (!slices.is_empty()).then(|| Stand {
+        Some(Stand {
             gaps: slices.iter().map(|slice| slice.gap).collect(),
             openings,
-            h: compliance(self, &slices),
+            h,
             slices,
         })
     }

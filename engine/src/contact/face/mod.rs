@@ -25,12 +25,12 @@ use rayon::prelude::*;
 
 use super::facing::Facing;
 use super::positions::PositionsError;
-use super::{MeshContact, PairContact, PairLoads, PositionError};
+use super::{ContactError, MeshContact, PairContact, PairLoads, PositionError};
 use crate::gear::{GearPair, Member, PairDeviations, SolidPair};
 use crate::run::Run;
 use balance::{Balance, balance};
 use compliance::compliance;
-use slice::Slice;
+use slice::{Loading, Slice};
 
 /// How the flanks of one gear give way, smoothly, to forces normal to them.
 ///
@@ -56,6 +56,10 @@ pub const SLICES: usize = 40;
 /// How far beyond δ pairs are looked for, as a part of how far the flanks are pressed.
 const BEYOND: f64 = 0.3;
 
+/// How many times the mean load slices are first laid for, and how many times at most.
+const HEAVIER: f64 = 2.5;
+const HEAVIEST: f64 = 200.0;
+
 /// Matrices of smooth yields that are kept.
 const MOST_KEPT: usize = 256;
 
@@ -79,6 +83,14 @@ struct Teeth {
     gear: usize,
     first: usize,
     count: usize,
+}
+
+/// Slices in balance.
+struct Balanced {
+    slices: Vec<Slice>,
+    /// Their compliance without springs.
+    compliance: Mat<f64>,
+    balance: Balance,
 }
 
 /// What is found among the flanks within a reach.
@@ -346,19 +358,46 @@ impl FaceModel {
         load: f64,
         phases: [f64; 2],
     ) -> Result<FaceContact, PositionError> {
-        let slices = slice::lay(self, eta, phases, Some(load));
-        let (Some(first), Some(last)) = (slices.first(), slices.last()) else {
-            return Err(PositionError::NoContact);
-        };
-        let apart = first.pair.abs_diff(last.pair) as usize;
-        if apart > self.coupled {
-            return Err(PositionError::TooFarApart {
-                apart,
-                coupled: self.coupled,
-            });
-        }
-        let balance = balance(compliance(self, &slices), &slices, load)?;
+        let Balanced {
+            slices, balance, ..
+        } = self.balanced(eta, load, phases)?;
         Ok(self.told(&slices, &balance, load))
+    }
+
+    /// The balance at the position `eta` under `load` of sections in `phases`.
+    ///
+    /// A spring that is shorter than its contact is wide is none, and where few of many slices carry they press wider than was thought: then they
+    /// are laid anew, longer.
+    fn balanced(&self, eta: f64, load: f64, phases: [f64; 2]) -> Result<Balanced, PositionError> {
+        let mut heavier = HEAVIER;
+        loop {
+            let slices = slice::lay(self, eta, phases, Some(Loading { load, heavier }));
+            let (Some(first), Some(last)) = (slices.first(), slices.last()) else {
+                return Err(PositionError::NoContact);
+            };
+            let apart = first.pair.abs_diff(last.pair) as usize;
+            if apart > self.coupled {
+                return Err(PositionError::TooFarApart {
+                    apart,
+                    coupled: self.coupled,
+                });
+            }
+            let compliance = compliance(self, &slices);
+            match balance(compliance.clone(), &slices, load) {
+                Err(PositionError::Contact(ContactError::NotPositiveDefinite { .. }))
+                    if heavier < HEAVIEST =>
+                {
+                    heavier *= HEAVIER;
+                }
+                balance => {
+                    return Ok(Balanced {
+                        balance: balance?,
+                        slices,
+                        compliance,
+                    });
+                }
+            }
+        }
     }
 
     /// The smooth compliance of the teeth of `member` in the pairs from `first` on.

@@ -7,9 +7,6 @@ use crate::contact::half_plane::{hertz, logarithm_factor};
 use crate::contact::placement::Placement;
 use crate::gear::{ContactLine, Member};
 
-/// The load for each length of a contact line, over that of the mean, under which an edge is looked for beside it.
-const HEAVIER: f64 = 2.5;
-
 /// No slice is shorter than so many half-widths of its contact: a line that short is none.
 const SHORTEST: f64 = 2.0;
 
@@ -33,19 +30,34 @@ pub(super) struct Slice {
     pub(super) spring: Spring,
 }
 
-/// The slices of all lines of `model` at the position `eta` on which sections are in `phases`; with the springs that they have under `load`, or
+/// What slices are laid for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Loading {
+    /// The load.
+    pub(super) load: f64,
+    /// How many times the mean may stand on each length of a contact line: so heavy an edge is looked for beside it, and so heavy no slice is
+    /// shorter than its contact is wide.
+    pub(super) heavier: f64,
+}
+
+/// The slices of all lines of `model` at the position `eta` on which sections are in `phases`; with the springs that they have under a load, or
 /// Hertz's alone.
 ///
 /// Slices of one line are equally long, so that they move with it.
-pub(super) fn lay(model: &FaceModel, eta: f64, phases: [f64; 2], load: Option<f64>) -> Vec<Slice> {
+pub(super) fn lay(
+    model: &FaceModel,
+    eta: f64,
+    phases: [f64; 2],
+    loading: Option<Loading>,
+) -> Vec<Slice> {
     let lines = model.pair.lines(eta, phases);
     let total: f64 = lines
         .iter()
         .map(|line| line.heights[1] - line.heights[0])
         .sum();
     // For each length along a contact line.
-    let density = load.map(|load| HEAVIER * load / total);
-    let layer = Layer::new(model, density);
+    let densities = loading.map(|of| [1.0, of.heavier].map(|times| times * of.load / total));
+    let layer = Layer::new(model, densities);
     lines
         .iter()
         .flat_map(|line| layer.line(eta, line))
@@ -57,11 +69,12 @@ struct Layer<'a> {
     model: &'a FaceModel,
     cosine: f64,
     factor: f64,
-    density: Option<f64>,
+    /// In the mean, and at most.
+    densities: Option<[f64; 2]>,
 }
 
 impl<'a> Layer<'a> {
-    fn new(model: &'a FaceModel, density: Option<f64>) -> Self {
+    fn new(model: &'a FaceModel, densities: Option<[f64; 2]>) -> Self {
         let factors = Member::BOTH.map(|member| {
             let modulus = model.long.gear(member).material().youngs_modulus;
             logarithm_factor(modulus, 1.0)
@@ -70,7 +83,7 @@ impl<'a> Layer<'a> {
             model,
             cosine: model.pair.base_helix_angle().cos(),
             factor: factors[0] + factors[1],
-            density,
+            densities,
         }
     }
 
@@ -78,7 +91,7 @@ impl<'a> Layer<'a> {
         let [from, to] = line.heights;
         let pair = &self.model.pair;
         let regular = pair.common_face_width() / self.model.slices as f64;
-        let half_width = self.density.map_or(0.0, |density| {
+        let half_width = self.densities.map_or(0.0, |[_, density]| {
             let s = 0.5 * pair.section().line_of_action();
             hertz(density, 0.5 * s / self.cosine, self.factor, 1.0).0
         });
@@ -118,15 +131,12 @@ impl<'a> Layer<'a> {
             let [one, other] = hollow.roll_lengths.map(|s| s / self.cosine);
             one * other / (one + other)
         };
-        let (spring, section_gap) = match self.density {
-            Some(density) if self.is_crowded(facing, density, radius) => Spring::patch(
-                &view,
-                facing,
-                (along, self.cosine, self.factor),
-                density / HEAVIER,
-            ),
-            _ => (
-                Spring::hertz(along, radius, self.factor, self.density.unwrap_or(1.0)),
+        let (spring, section_gap) = match self.densities {
+            Some([mean, most]) if self.is_crowded(facing, most, radius) => {
+                Spring::patch(&view, facing, (along, self.cosine, self.factor), mean)
+            }
+            of => (
+                Spring::hertz(along, radius, self.factor, of.map_or(1.0, |[_, most]| most)),
                 hollow.touch * weights[1],
             ),
         };
