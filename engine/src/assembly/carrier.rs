@@ -16,8 +16,6 @@ use crate::run::Run;
 const DECAY: f64 = 4.5;
 /// Orders on it for each tooth, at most: beyond, the grids do not follow.
 const MOST_ORDERS_PER_TOOTH: usize = 8;
-/// The degree of the pieces of a rim that is broken at the faces of its web.
-const PIECE_DEGREE: usize = 4;
 /// A web whose face is nearer to that of the rim, as a part of its width, is flush with it.
 const FLUSH: f64 = 0.02;
 /// How much of the way from holes that stand in the rim itself to the interface circle belongs to the holed part.
@@ -165,7 +163,7 @@ fn face_basis(gear: &SolidGear, layers: &[Layer], resolution: FaceResolution) ->
     if breaks.len() == 2 {
         AxialBasis::new(&breaks, resolution.face_order)
     } else {
-        AxialBasis::new(&breaks, PIECE_DEGREE.min(resolution.face_order / 2))
+        AxialBasis::new(&breaks, resolution.piece_order())
     }
 }
 

@@ -42,6 +42,11 @@ impl FaceResolution {
         web_order: 3,
         web_harmonics: 10,
     };
+
+    /// The degree of the pieces across a rim that is broken at the faces of its web: what half of the whole face asks for.
+    pub fn piece_order(self) -> usize {
+        self.face_order / 2 + 1
+    }
 }
 
 /// What the yield of a face depends on.
