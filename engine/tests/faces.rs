@@ -81,6 +81,10 @@ impl FlankYield for Manufactured {
     fn repeats_after(&self) -> usize {
         1
     }
+
+    fn at_ends(&self, _: (f64, f64), _: (f64, f64), _: f64) -> f64 {
+        0.0
+    }
 }
 
 #[derive(Clone)]

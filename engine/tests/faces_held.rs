@@ -218,6 +218,34 @@ fn a_straight_gear_is_stiffer_than_the_plane_has_it_by_the_strain_along_its_face
 }
 
 #[test]
+fn a_narrow_straight_pair_is_in_plane_stress() {
+    // A tenth and half of a module wide. Near the contact a narrow face is still in plane strain, which makes it stiffer by a percent.
+    let of_width = |width: f64| {
+        let narrow = |data: &mut GearData| {
+            data.face_width = width;
+            data.modifications = vec![ModificationData::TipRelief(ReliefData {
+                amount: 8e-6,
+                shape: ReliefShape::Linear,
+                start: ReliefStart::RadialLength(1e-3),
+            })];
+        };
+        let pair = reference_pair(0.0, [Vec::new(), Vec::new()], narrow);
+        let solid = case(pair, &[100.0 * width / 20e-3], 8);
+        let plane = Case {
+            faces: None,
+            method: Method::Flexible,
+            ..solid.clone()
+        };
+        let mean = |case: &Case| solve(case).curves[0].transmission_error_statistics.mean;
+        mean(&solid) / mean(&plane)
+    };
+    for width in [0.2e-3, 1e-3] {
+        let part = of_width(width);
+        assert!((0.975..1.005).contains(&part), "{width}: {part}");
+    }
+}
+
+#[test]
 fn a_few_slices_that_carry_all_of_the_load_press_as_one_line() {
     // 180 µm over a face of 1.6 mm on a web that is a quarter of it: a dozen of 40 slices carry, shorter than their contact is wide.
     let gear = |teeth: u32, width: f64, beta: f64, web: bool| {

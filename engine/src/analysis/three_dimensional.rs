@@ -296,6 +296,10 @@ impl FlankYield for FaceYield {
     fn repeats_after(&self) -> usize {
         self.repeats_after()
     }
+
+    fn at_ends(&self, point: (f64, f64), loaded: (f64, f64), along: f64) -> f64 {
+        self.at_ends(point, loaded, along)
+    }
 }
 
 /// The load along the face in `contacts` at the positions of `case`, or at those after which it repeats.

@@ -47,6 +47,7 @@ impl Stack {
     pub fn new(gear: &SolidGear, resolution: FaceResolution) -> Self {
         let section = gear.section();
         let (root, module) = (section.root_radius(), gear.normal_rack().module);
+        let resolution = resolution.of_width(gear.face_width() / module);
         let mut layers = gear.layers();
         let interface_above = |radius: f64| (root - module).max(f64::midpoint(root, radius));
         let mut interface_radius = interface_above(layers[0].inner_radius);

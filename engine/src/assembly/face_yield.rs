@@ -5,6 +5,7 @@ use std::sync::Arc;
 use faer::{Mat, c64};
 
 use super::carrier::{Carrier, Stack};
+use super::flank_ends::FlankEnds;
 use super::flank_fit::{FlankFit, OWN_DEGREE, smoothed, smoothed_rows, up_the_flank};
 use super::holed::{HoledChange, SeenWeb, condensed_unknowns};
 use super::{MakeAll, PartError, Parts};
@@ -16,6 +17,10 @@ use crate::ring::solid::gear::{ClassAnswers, answers, between_teeth};
 use crate::ring::solid::tooth::{SolidTooth, flank_compliance_alone};
 use crate::ring::teeth::FARTHEST_COUPLED;
 use crate::run::Run;
+
+/// The width in modules from which a face has all of its polynomials, and the degree that any has.
+const WIDE: f64 = 2.0;
+const LEAST_ORDER: usize = 3;
 
 /// How finely the yield of a face is resolved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -43,6 +48,15 @@ impl FaceResolution {
         web_harmonics: 10,
     };
 
+    /// What a face of so many `modules` is resolved by: one that is narrower than its teeth are high has no polynomials finer than their grid.
+    pub(super) fn of_width(self, modules: f64) -> Self {
+        let order = (self.face_order as f64 * (modules / WIDE).min(1.0)).ceil() as usize;
+        Self {
+            face_order: order.max(LEAST_ORDER),
+            ..self
+        }
+    }
+
     /// The degree of the pieces across a rim that is broken at the faces of its web: what half of the whole face asks for.
     pub fn piece_order(self) -> usize {
         self.face_order / 2 + 1
@@ -61,6 +75,8 @@ pub struct FaceYieldSpec {
 pub struct PlainFace {
     /// The squares of the roll lengths at which the flank begins and ends.
     squares: [f64; 2],
+    /// What it yields beside a half space where it ends.
+    ends: FlankEnds,
     /// What tooth d yields to tooth 0, d = 0 … [`FARTHEST_COUPLED`].
     blocks: Vec<Mat<f64>>,
     /// The stiffness of each order of the interface circle.
@@ -75,7 +91,7 @@ pub struct PlainFace {
 ///
 /// ```text
 /// u_i(s, z) = Σ over the forces N on (j, s', z') of  basis(s, z)ᵀ smooth[i, j] basis(s', z') N
-///           + Σ over those on tooth i itself of  (1 − ν²)/(π E) N / √(perp² + gen²)
+///           + Σ over those on tooth i itself of  (1 − ν²)/(π E) N / √(perp² + gen²) + what flanks yield at their ends
 /// perp = (s² − s'²)/(2 r_b) − τ (s + s')/2 (z − z'),   gen = (z − z')/cos β_b
 /// ```
 ///
@@ -173,6 +189,7 @@ impl PlainFace {
         let own = tooth.grid_nodes - tooth.sector.side_nodes - 1;
         Ok(Self {
             squares: flank.squares,
+            ends: FlankEnds::new(gear),
             blocks: blocks(&tooth, &classes, &flank),
             carriers: carrier.stiffness,
             web,
@@ -231,6 +248,7 @@ impl FaceYield {
         let degrees_of_freedom = 3 * axial.len() * (grid.grid.nodes.len() - grid.arc_nodes.len());
         let plain = PlainFace {
             squares: flank.squares,
+            ends: FlankEnds::new(gear),
             blocks: vec![flank.own(&compliance)],
             carriers: Vec::new(),
             web: None,
@@ -279,6 +297,12 @@ impl FaceYield {
                 *value = up * across;
             }
         }
+    }
+
+    /// What a unit force moves a point on the same flank, a roll length and a height, by its ends: beside the smooth compliance and a half
+    /// space; the force spread over a piece of a contact line of the length `along` about another such point.
+    pub fn at_ends(&self, point: (f64, f64), loaded: (f64, f64), along: f64) -> f64 {
+        self.plain.ends.of_piece(point, loaded, along)
     }
 
     /// What the functions of the listed teeth yield to each other, in m/N: symmetric, a block for each two of them. Teeth count

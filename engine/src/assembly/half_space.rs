@@ -1,9 +1,11 @@
-//! What a half space yields between lines along a flank: the singular part of what a tooth yields under its own load.
+//! What a half space yields between lines along a flank, and what it does at the ends of one: the singular part of what a tooth yields under its
+//! own load.
 
 use std::f64::consts::PI;
 
 use faer::Mat;
 
+use super::flank_ends::{FlankEnds, Lines};
 use super::flank_fit::projecting;
 use crate::fem::axial::AxialBasis;
 use crate::gear::{Material, SolidGear};
@@ -20,9 +22,10 @@ pub(super) struct HalfSpace {
     /// Places and weights between two distances, of −1 … 1.
     rule: Vec<(f64, f64)>,
     scale: f64,
-    twist: f64,
     base_radius: f64,
-    along: f64,
+    ends: FlankEnds,
+    /// ∫ f_p dz.
+    even: Vec<f64>,
 }
 
 /// ∫ f_p(z) f_q(z − Δ) dz between two distances Δ, where it is a polynomial: so much of each Legendre polynomial.
@@ -43,21 +46,35 @@ impl HalfSpace {
             products: Products::all(axial),
             rule: gauss_legendre(POINTS),
             scale: (1.0 - nu * nu) / (PI * e),
-            twist: gear.twist(),
             base_radius: section.base_radius(),
-            along: 1.0 / gear.base_helix_angle().cos(),
+            ends: FlankEnds::new(gear),
+            even: axial.even(),
         }
     }
 
-    /// Between the displacement at roll length `s` and the load at `loaded`, another one.
-    ///
-    /// The distance squared, (level − slope Δ)² + (along Δ)², is (κ (Δ − Δ_0))² + e², and Δ = Δ_0 + e/κ sinh v makes dΔ/distance = dv/κ.
+    /// Between the displacement at roll length `s` and the load at `loaded`, another one; with the ends of the flank.
     fn between(&self, s: f64, loaded: f64) -> Mat<f64> {
-        let level = (s * s - loaded * loaded) / (2.0 * self.base_radius);
-        let slope = self.twist * f64::midpoint(s, loaded);
-        let kappa = slope.hypot(self.along);
-        let nearest = level * slope / (kappa * kappa);
-        let reach = (level * self.along / kappa).abs() / kappa;
+        let mut sum = self.along(self.ends.direct(s, loaded), self.scale);
+        let (lines, factor) = self.ends.beyond_tip(s, loaded);
+        sum += self.along(lines, factor);
+        let of_plate = self.ends.of_plate(s, loaded);
+        for (q, g) in self.even.iter().enumerate() {
+            for (p, f) in self.even.iter().enumerate() {
+                sum[(p, q)] += of_plate * f * g;
+            }
+        }
+        sum
+    }
+
+    /// `factor` times ∫∫ f_p f_q / distance between two lines.
+    ///
+    /// The distance is κ √((Δ − Δ_0)² + ε²), and Δ = Δ_0 + ε sinh v makes dΔ/distance = dv/κ.
+    fn along(&self, lines: Lines, factor: f64) -> Mat<f64> {
+        let Lines {
+            stretch: kappa,
+            nearest,
+            reach,
+        } = lines;
         let m = self.products[0].shares[0].nrows();
         let mut sum = Mat::zeros(m, m);
         for Products { ends, shares } in &self.products {
@@ -77,7 +94,7 @@ impl HalfSpace {
                 }
             }
             for (share, integral) in shares.iter().zip(integrals) {
-                sum += share * faer::Scale(self.scale * integral);
+                sum += share * faer::Scale(factor * integral);
             }
         }
         sum
@@ -85,9 +102,19 @@ impl HalfSpace {
 
     /// Its nearest of products of the polynomials [`up_the_flank`] and functions along the axis, over the flank between the squares of two roll
     /// lengths.
-    ///
-    /// Its logarithm of the distance d of two lines becomes smooth by d = L u³.
     pub(super) fn over_flank(&self, squares: [f64; 2], degree: usize) -> Mat<f64> {
+        self.nearest(squares, degree, |s, loaded| self.between(s, loaded))
+    }
+
+    /// The same of what is `between` two lines, symmetric, with a logarithm of their distance.
+    ///
+    /// The logarithm of the distance d becomes smooth by d = L u³.
+    fn nearest(
+        &self,
+        squares: [f64; 2],
+        degree: usize,
+        between: impl Fn(f64, f64) -> Mat<f64>,
+    ) -> Mat<f64> {
         let length = (squares[1] - squares[0]) / (2.0 * self.base_radius);
         let m = self.products[0].shares[0].nrows();
         let count = degree + 1;
@@ -102,7 +129,7 @@ impl HalfSpace {
                 let arcs = [0.5, -0.5].map(|side| 0.5 * length + half * y + side * apart);
                 let [s, loaded] =
                     arcs.map(|arc| (squares[0] + 2.0 * self.base_radius * arc).sqrt());
-                let near = self.between(s, loaded);
+                let near = between(s, loaded);
                 let [at, of] = [s, loaded].map(|s| projecting(squares, s, degree));
                 for a in 0..count {
                     for b in 0..count {
@@ -191,8 +218,19 @@ fn product(axial: &AxialBasis, apart: f64) -> Mat<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::tip_softness;
     use crate::gear::Helix;
     use crate::gear::spur::tests::paper_gear;
+
+    /// κ where lines lean by `slope`.
+    fn slope_of(slope: f64, cos: f64) -> f64 {
+        slope.hypot(1.0 / cos)
+    }
+
+    /// What the level of two lines has to be multiplied by for their distance over κ.
+    fn lean_of(slope: f64, cos: f64) -> f64 {
+        1.0 / cos / slope_of(slope, cos).powi(2)
+    }
 
     fn gear(beta: f64) -> SolidGear {
         let mut data = paper_gear(30);
@@ -210,8 +248,20 @@ mod tests {
         ] {
             let space = HalfSpace::new(&gear, &axial);
             for [s, loaded] in [[9e-3, 8.4e-3], [7e-3, 10e-3], [10e-3, 7e-3]] {
-                let level = (s * s - loaded * loaded) / (2.0 * space.base_radius);
-                let slope = space.twist * f64::midpoint(s, loaded);
+                let section = gear.section();
+                let (r_b, tip) = (section.base_radius(), section.tip_roll_length());
+                let (tau, cos) = (gear.twist(), gear.base_helix_angle().cos());
+                let level = (s * s - loaded * loaded) / (2.0 * r_b);
+                let slope = tau * f64::midpoint(s, loaded);
+                // Beyond the tip: along it and away from it, of the flank unrolled there.
+                let lean = (tau * tip * cos).atan();
+                let away = (2.0 * tip * tip - s * s - loaded * loaded) / (2.0 * r_b) * lean.cos();
+                let softness = tip_softness(section);
+                // The mean over the face of what a half space knows, as for straight teeth.
+                let (b, d) = (20e-3, (level * lean_of(slope, cos)).abs());
+                let plate = -2.0 / (PI * 210e9 * b)
+                    * slope_of(slope, cos).recip()
+                    * (((b + b.hypot(d)) / 2e-3).ln() - (b.hypot(d) - d) / b);
                 let rule: Vec<(f64, Vec<f64>)> = axial
                     .rule(500)
                     .into_iter()
@@ -221,10 +271,14 @@ mod tests {
                 for (z, f) in &rule {
                     for (y, g) in &rule {
                         let across = level - slope * (z - y);
-                        let distance = across.hypot(space.along * (z - y));
+                        let distance = across.hypot((z - y) / cos);
+                        let along = (z - y) / (cos * lean.cos()) - level * lean.sin();
+                        let image = away.hypot(along).hypot(0.02 * 2e-3);
+                        let inverse = 1.0 / distance + softness / image;
+                        let of_both = space.scale * inverse + plate;
                         for (q, g) in g.iter().enumerate() {
                             for (p, f) in f.iter().enumerate() {
-                                sum[(p, q)] += space.scale * f * g / distance;
+                                sum[(p, q)] += of_both * f * g;
                             }
                         }
                     }
@@ -255,7 +309,9 @@ mod tests {
         let logarithms = 3.0 * a * b * (a * (b / a).asinh() + b * (a / b).asinh());
         let whole = 2.0 / 3.0 * (logarithms + a.powi(3) + b.powi(3) - a.hypot(b).powi(3));
         let expected = space.scale * whole / (a * a * b);
-        let found = space.over_flank(squares, 6);
+        let found = space.nearest(squares, 6, |s, loaded| {
+            space.along(space.ends.direct(s, loaded), space.scale)
+        });
         assert!(
             (found[(0, 0)] / expected - 1.0).abs() < 1e-6,
             "{} {expected}",

@@ -2,7 +2,7 @@
 //!
 //! In reading order: [`interface`] (the circle on which teeth and blank meet), [`teeth`] (all teeth of a gear down to it),
 //! [`blank`] (what carries them), [`gear`] (both joined), [`pair`] (two gears and the rules of their contact);
-//! along faces [`face_yield`] (what carries the teeth and what holes change: `carrier`, `holed`; how it becomes polynomials: `flank_fit`, `half_space`), [`face_roots`] and [`face_holes`] (how it is stressed at its roots and at its holes), [`face_inside`] (how all of it moves);
+//! along faces [`face_yield`] (what carries the teeth and what holes change: `carrier`, `holed`; how it becomes polynomials: `flank_fit`, `half_space`, `flank_ends`), [`face_roots`] and [`face_holes`] (how it is stressed at its roots and at its holes), [`face_inside`] (how all of it moves);
 //! beside them [`cut`] (a gear parted at that circle again) and [`inside`] (what goes on in a gear whose flanks are loaded).
 //!
 //! Each part is a pure function of its *spec*, a value that says all that the part depends on. Equal specs are equal parts;
@@ -15,6 +15,7 @@ pub mod face_holes;
 pub mod face_inside;
 pub mod face_roots;
 pub mod face_yield;
+mod flank_ends;
 mod flank_fit;
 mod flank_forces;
 pub mod gear;

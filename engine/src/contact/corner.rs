@@ -10,6 +10,7 @@ use std::f64::consts::LN_2;
 
 use faer::Mat;
 
+use super::half_plane::logarithm_factor;
 use crate::gear::{SpurGear, Vector, radial, tangential};
 
 /// Nodes between the corner and the distance d from which the table is trusted: seven elements.
@@ -104,6 +105,12 @@ fn cubic(place: f64) -> (usize, [f64; 4]) {
         z * (z - 1.0) * (z - 2.0) / 6.0,
     ];
     (first, weights)
+}
+
+/// (C − c)/c: by how much more than the half plane the sharp tip corner of `gear` gives way along the normal of its flank.
+pub(crate) fn tip_softness(gear: &SpurGear) -> f64 {
+    let factor = logarithm_factor(gear.material().youngs_modulus, gear.face_width());
+    apex_compliance(gear)[0][0] / factor - 1.0
 }
 
 /// C: how the apex of the tip corner gives way, u = −C F ln r + constant, on (normal, towards the tip) of the flank.

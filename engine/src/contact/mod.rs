@@ -62,6 +62,7 @@ pub use augmented_lagrangian::{AugmentedLagrangian, default_penalty, solve_augme
 pub use cells::{
     ContactCells, FlankLoad, MeshCells, MeshContact, PairContact, PairInfluence, PairLoads,
 };
+pub(crate) use corner::tip_softness;
 pub use light::light_contact;
 pub use model::{ContactSolver, GearModel, MadePair, PairModel, PositionError, WarmStart};
 pub use problem::{ContactError, ContactProblem, ContactQuantity, ContactSolution};

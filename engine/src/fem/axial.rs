@@ -98,6 +98,17 @@ impl AxialBasis {
             .collect()
     }
 
+    /// ∫ f_p dz.
+    pub fn even(&self) -> Vec<f64> {
+        let mut even = vec![0.0; self.len()];
+        for (z, w) in self.rule(self.degree + 1) {
+            for (even, f) in even.iter_mut().zip(self.values(z)) {
+                *even += w * f;
+            }
+        }
+        even
+    }
+
     /// C and D.
     pub fn matrices(&self) -> AxialMatrices {
         let count = self.len();

@@ -12,7 +12,7 @@ pub(super) fn does_not_see(case: &Case, forces: Option<&ForcesRequest>) -> Vec<&
     ];
     const PLANE: &str = "anything that varies across the face width: misalignment, lead crowning, helix; the model is plane";
     const ALONG_FACES: [&str; 2] = [
-        "that a flank yields more near a sharp tip edge than a half space does: within a tenth of a millimeter of it",
+        "that a sharp tip edge has no limit to its yield: within a fiftieth of a module it is taken to be blunt",
         "how far shafts and bearings bend under the load: misalignment is what the submission says",
     ];
     const BEYOND_FIRST_ORDER: &str = "what the fluctuation of the holed blanks changes in the load sharing between pairs, beyond first order";

@@ -15,6 +15,7 @@ pub(super) fn compliance(model: &FaceModel, slices: &[Slice]) -> Mat<f64> {
         add_smooth(model, member, slices, &mut h);
     }
     add_half_space(slices, &mut h);
+    add_ends(model, slices, &mut h);
     // What is above the diagonal mirrors what is below.
     for column in 1..count {
         for row in 0..column {
@@ -80,6 +81,27 @@ fn add_half_space(slices: &[Slice], h: &mut Mat<f64>) {
         let after = slices.iter().enumerate().skip(column + 1);
         for (row, slice) in after.take_while(|(_, slice)| slice.pair == loaded.pair) {
             h[(row, column)] += half_space(loaded, slice.z);
+        }
+    }
+}
+
+/// Adds what both flanks yield at their ends.
+fn add_ends(model: &FaceModel, slices: &[Slice], h: &mut Mat<f64>) {
+    for member in Member::BOTH {
+        let yields = &model.yields[member.index()];
+        let place = |slice: &Slice| {
+            let z = model.pair.own_height(member, slice.z);
+            (slice.roll_lengths[member.index()], z)
+        };
+        for (column, one) in slices.iter().enumerate() {
+            let after = slices.iter().enumerate().skip(column);
+            for (row, other) in after.take_while(|(_, slice)| slice.pair == one.pair) {
+                // Of what each of them does to the other, which is the same but for where in a slice it is told.
+                let (one_at, other_at) = (place(one), place(other));
+                let both = yields.at_ends(other_at, one_at, one.along)
+                    + yields.at_ends(one_at, other_at, other.along);
+                h[(row, column)] += 0.5 * both;
+            }
         }
     }
 }

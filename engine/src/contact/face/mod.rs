@@ -35,7 +35,8 @@ use slice::{Loading, Slice};
 /// How the flanks of one gear give way, smoothly, to forces normal to them.
 ///
 /// z runs from the middle of the gear's own face. The displacement of tooth i at (s, z) into the tooth, under the force N on tooth j at (s', z'), is
-/// basis(s, z)ᵀ smooth_ij basis(s', z') N, and of one tooth besides what a half space yields, which is left to the contact.
+/// basis(s, z)ᵀ smooth_ij basis(s', z') N, and of one tooth besides what a half space yields, which is left to the contact, and what a
+/// flank yields at its ends.
 pub trait FlankYield: Send + Sync {
     /// The number of functions over a flank.
     fn basis_len(&self) -> usize;
@@ -48,6 +49,10 @@ pub trait FlankYield: Send + Sync {
 
     /// The number of teeth after which all that they yield repeats.
     fn repeats_after(&self) -> usize;
+
+    /// What a point of a tooth, a roll length and a height, is moved by a unit force on the same tooth beside that of the smooth compliance and of a
+    /// half space, if it is spread over a piece of a contact line of the length `along` about another such point.
+    fn at_ends(&self, point: (f64, f64), loaded: (f64, f64), along: f64) -> f64;
 }
 
 /// How many slices the whole face is cut into, unless a case says otherwise.
@@ -603,6 +608,10 @@ impl FlankYield for Rigid {
     fn repeats_after(&self) -> usize {
         1
     }
+
+    fn at_ends(&self, _: (f64, f64), _: (f64, f64), _: f64) -> f64 {
+        0.0
+    }
 }
 
 /// Adds the force on a piece of a common face of `width` to the equal strips that it lies in.
@@ -707,6 +716,10 @@ mod tests {
 
         fn repeats_after(&self) -> usize {
             self.of[1].repeats_after()
+        }
+
+        fn at_ends(&self, point: (f64, f64), loaded: (f64, f64), along: f64) -> f64 {
+            self.of[0].at_ends(point, loaded, along)
         }
     }
 
