@@ -3,6 +3,7 @@
 pub(crate) mod backup;
 mod chart;
 mod demo;
+mod document;
 pub(crate) mod health;
 pub(crate) mod keys;
 pub(crate) mod migrate;

@@ -9,7 +9,7 @@ use meshwright::exchange::rexs::{Choices, Import, export, import};
 use meshwright::wire::Submission;
 use serde_json::Value;
 
-use super::solve::{EXIT_PROBLEM, read, told, told_with, write};
+use super::document::{EXIT_PROBLEM, read, told, told_with, write};
 
 /// Take a pair out of a REXS model, or write one.
 #[derive(Debug, clap::Subcommand)]

@@ -1,13 +1,10 @@
 //! `meshwright solve`: one submission, or one pair of a REXS model, from a file, computed here and now.
 
-use std::fs;
-use std::io::{Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
 use meshwright::exchange::rexs::is_xml;
 use meshwright::wire::results::{CurveDocument, GearPeakStress, PeakStressDocument, Results};
@@ -15,13 +12,11 @@ use meshwright::wire::{Problem, Submission, solve};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
+use super::document::{EXIT_PROBLEM, is_dash, read, told, write};
 use super::rexs::ModelChoices;
 
 /// What the substructures of one submission may take; it is never reached by one pair.
 const LIBRARY_BYTES: usize = 512 << 20;
-
-/// The exit code for a submission that cannot be computed.
-pub(super) const EXIT_PROBLEM: u8 = 2;
 
 /// Compute one submission, or one pair of a REXS model.
 #[derive(Debug, clap::Args)]
@@ -85,33 +80,6 @@ impl Solve {
     }
 }
 
-/// Writes a document as a line of its own.
-pub(super) fn write(path: &Path, text: &str) -> anyhow::Result<()> {
-    if is_dash(path) {
-        writeln!(std::io::stdout(), "{text}").context("standard output cannot be written")
-    } else {
-        fs::write(path, format!("{text}\n"))
-            .with_context(|| format!("{} cannot be written", path.display()))
-    }
-}
-
-/// The document at `path`, or from standard input.
-pub(super) fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
-    if is_dash(path) {
-        let mut document = Vec::new();
-        std::io::stdin()
-            .read_to_end(&mut document)
-            .context("standard input cannot be read")?;
-        Ok(document)
-    } else {
-        fs::read(path).with_context(|| format!("{} cannot be read", path.display()))
-    }
-}
-
-fn is_dash(path: &Path) -> bool {
-    path.as_os_str() == "-"
-}
-
 /// Computes `submission` behind a progress bar, which hides itself where there is no terminal.
 fn compute(submission: &Submission) -> Result<Results, Problem> {
     let bar = ProgressBar::new(submission.positions_total());
@@ -127,33 +95,6 @@ fn compute(submission: &Submission) -> Result<Results, Problem> {
     let results = solve(submission, &Library::with_capacity(LIBRARY_BYTES), &run);
     bar.finish_and_clear();
     results
-}
-
-/// A problem as a person reads it.
-pub(super) fn told(problem: &Problem) -> String {
-    told_with(problem, |_| None)
-}
-
-/// The same, with where each field is from.
-pub(super) fn told_with<'a>(problem: &Problem, origin: impl Fn(&str) -> Option<&'a str>) -> String {
-    let mut text = format!("{} ({}).\n", problem.title, code_word(problem));
-    if problem.errors.is_empty() {
-        text.push_str(&format!("  {}\n", problem.detail));
-    }
-    for error in &problem.errors {
-        text.push_str(&format!("  {}\n    {}\n", error.pointer, error.detail));
-        if let Some(place) = origin(&error.pointer) {
-            text.push_str(&format!("    from {place}\n"));
-        }
-        if let Some(nearest) = error.nearest {
-            text.push_str(&format!("    nearest: {nearest}\n"));
-        }
-    }
-    text
-}
-
-fn code_word(problem: &Problem) -> String {
-    problem.code.slug().replace('-', "_")
 }
 
 /// The statistics of every torque, the hole and mesh lines, warnings and the time.

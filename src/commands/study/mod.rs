@@ -20,7 +20,7 @@ use self::compute::{compute, search};
 use self::folder::ResultFolder;
 use self::picture::picture;
 use self::tables::{search_table, short_table, spread_table};
-use super::solve::{EXIT_PROBLEM, read, told};
+use super::document::{EXIT_PROBLEM, read, told};
 
 /// Compute a study: many variants of one submission, and their table.
 #[derive(Debug, clap::Args)]

@@ -1,0 +1,66 @@
+//! Documents from files and into them, and problems as a person reads them.
+
+use std::fs;
+use std::io::{Read, Write};
+use std::path::Path;
+
+use anyhow::Context;
+use meshwright::wire::Problem;
+
+/// The exit code for a submission that cannot be computed.
+pub(super) const EXIT_PROBLEM: u8 = 2;
+
+/// Writes a document as a line of its own.
+pub(super) fn write(path: &Path, text: &str) -> anyhow::Result<()> {
+    if is_dash(path) {
+        writeln!(std::io::stdout(), "{text}").context("standard output cannot be written")
+    } else {
+        fs::write(path, format!("{text}\n"))
+            .with_context(|| format!("{} cannot be written", path.display()))
+    }
+}
+
+/// The document at `path`, or from standard input.
+pub(super) fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
+    if is_dash(path) {
+        let mut document = Vec::new();
+        std::io::stdin()
+            .read_to_end(&mut document)
+            .context("standard input cannot be read")?;
+        Ok(document)
+    } else {
+        fs::read(path).with_context(|| format!("{} cannot be read", path.display()))
+    }
+}
+
+/// Whether a path stands for standard input or output.
+pub(super) fn is_dash(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// A problem as a person reads it.
+pub(super) fn told(problem: &Problem) -> String {
+    told_with(problem, |_| None)
+}
+
+/// The same, with where each field is from.
+pub(super) fn told_with<'a>(problem: &Problem, origin: impl Fn(&str) -> Option<&'a str>) -> String {
+    let mut text = format!("{} ({}).\n", problem.title, code_word(problem));
+    if problem.errors.is_empty() {
+        text.push_str(&format!("  {}\n", problem.detail));
+    }
+    for error in &problem.errors {
+        text.push_str(&format!("  {}\n    {}\n", error.pointer, error.detail));
+        if let Some(place) = origin(&error.pointer) {
+            text.push_str(&format!("    from {place}\n"));
+        }
+        if let Some(nearest) = error.nearest {
+            text.push_str(&format!("    nearest: {nearest}\n"));
+        }
+    }
+    text
+}
+
+fn code_word(problem: &Problem) -> String {
+    problem.code.slug().replace('-', "_")
+}
