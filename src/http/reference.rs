@@ -16,8 +16,9 @@ use super::batch::MOST_IN_BATCH;
 use super::client::Onlooker;
 use super::document::Document;
 use super::standing::Standing;
+use crate::jobs::{PreviewRules, Rules};
 use crate::webhooks::most_webhooks;
-use crate::wire::{self, Limits, Problem, Submission, Validation};
+use crate::wire::{self, Limits, Problem, Submission, Validation, view};
 
 /// Check a submission
 ///
@@ -93,44 +94,44 @@ fn all_examples() -> Examples {
     }
 }
 
-/// The limits of every submission, and those of this service.
-#[derive(Serialize, ToSchema)]
-#[schema(title = "Limits")]
-pub(super) struct ServiceLimits {
-    #[serde(flatten)]
-    submission: Limits,
+view! {
+    /// The limits of every submission, and those of this service.
+    pub(super) struct ServiceLimits as ServiceLimits, "Limits" of (app: &App) {
+        #[serde(flatten)]
+        submission: Limits = Limits::of(),
+        /// What previews are allowed.
+        previews: PreviewLimits = PreviewLimits::of(app.previews.rules()),
+        /// What one client is allowed.
+        client: ClientLimits = ClientLimits::of(app.jobs.rules()),
+    }
+}
+
+view! {
+    /// What one client is allowed, unless its key says otherwise.
+    pub(super) struct ClientLimits as ClientLimits, "ClientLimits" of (rules: &Rules) {
+        /// The most jobs that may wait, those of studies aside.
+        jobs_waiting: u32 = rules.client_queue_limit,
+        /// The most designs of studies that may wait.
+        designs_waiting: i64 = rules.client_design_limit,
+        /// The most memory that one job may take, in MB.
+        job_memory_mb: u64 = rules.job_memory_mb,
+        /// The most submissions of a batch.
+        batch: usize = MOST_IN_BATCH,
+        /// The most webhooks.
+        webhooks: i64 = most_webhooks(),
+    }
+}
+
+view! {
     /// What previews are allowed.
-    previews: PreviewLimits,
-    /// What one client is allowed.
-    client: ClientLimits,
-}
-
-/// What one client is allowed, unless its key says otherwise.
-#[derive(Serialize, ToSchema)]
-#[schema(title = "ClientLimits")]
-struct ClientLimits {
-    /// The most jobs that may wait, those of studies aside.
-    jobs_waiting: u32,
-    /// The most designs of studies that may wait.
-    designs_waiting: i64,
-    /// The most memory that one job may take, in MB.
-    job_memory_mb: u64,
-    /// The most submissions of a batch.
-    batch: usize,
-    /// The most webhooks.
-    webhooks: i64,
-}
-
-/// What previews are allowed.
-#[derive(Serialize, ToSchema)]
-#[schema(title = "PreviewLimits")]
-struct PreviewLimits {
-    /// The most positions times torques of one.
-    positions: u64,
-    /// The most at once.
-    at_once: usize,
-    /// From the request to its answer, in seconds.
-    time_limit_seconds: u64,
+    pub(super) struct PreviewLimits as PreviewLimits, "PreviewLimits" of (rules: PreviewRules) {
+        /// The most positions times torques of one.
+        positions: u64 = rules.most_positions,
+        /// The most at once.
+        at_once: usize = rules.at_once,
+        /// From the request to its answer, in seconds.
+        time_limit_seconds: u64 = rules.time_limit.as_secs(),
+    }
 }
 
 /// Get limits
@@ -142,20 +143,5 @@ struct PreviewLimits {
     responses((status = 200, description = "The limits.", body = ServiceLimits)),
 )]
 pub(super) async fn limits(State(app): State<App>) -> Json<ServiceLimits> {
-    let rules = app.previews.rules();
-    Json(ServiceLimits {
-        submission: wire::limits(),
-        previews: PreviewLimits {
-            positions: rules.most_positions,
-            at_once: rules.at_once,
-            time_limit_seconds: rules.time_limit.as_secs(),
-        },
-        client: ClientLimits {
-            jobs_waiting: app.jobs.rules().client_queue_limit,
-            designs_waiting: app.jobs.rules().client_design_limit,
-            job_memory_mb: app.jobs.rules().job_memory_mb,
-            batch: MOST_IN_BATCH,
-            webhooks: most_webhooks(),
-        },
-    })
+    Json(ServiceLimits::of(&app))
 }

@@ -15,7 +15,7 @@ use super::document::Document;
 use super::parameters::IdempotencyKey;
 use crate::jobs::EventKind;
 use crate::webhooks::{Delivery, Webhook};
-use crate::wire::{Code, Problem};
+use crate::wire::{Code, Problem, view};
 
 /// A webhook to be made.
 #[derive(Deserialize, ToSchema)]
@@ -27,7 +27,7 @@ pub(super) struct NewWebhookDocument {
     url: String,
     /// What is told; everything unless it is said.
     #[serde(default = "all_events")]
-    #[schema(min_items = 1)]
+    #[schema(min_items = 1, default = all_events)]
     events: Vec<EventKind>,
 }
 
@@ -35,33 +35,32 @@ fn all_events() -> Vec<EventKind> {
     EventKind::ALL.to_vec()
 }
 
-/// A webhook.
-#[derive(Serialize, ToSchema)]
-#[schema(as = Webhook, title = "Webhook")]
-pub(super) struct WebhookView {
-    /// The id of the webhook.
-    #[schema(value_type = String, format = "uuid")]
-    id: Uuid,
-    /// Where messages are sent.
-    url: String,
-    /// What is told.
-    events: Vec<EventKind>,
-    /// When it was made (UTC).
-    #[schema(value_type = String, format = DateTime)]
-    created_at: Timestamp,
-    /// When it was given up because nobody took its messages (UTC), from when on nothing is sent to it; null while it works.
-    #[schema(value_type = Option<String>, format = DateTime)]
-    disabled_at: Option<Timestamp>,
-    /// Attempts that have failed since the last one that did not.
-    failures: u32,
-    /// When it is tried again (UTC), because the last attempt has failed; null while it works.
-    #[schema(value_type = Option<String>, format = DateTime)]
-    retry_at: Option<Timestamp>,
-    /// Why the last message that was not taken was not.
-    problem: Option<String>,
-    /// What messages are signed with: HMAC-SHA-256 as Standard Webhooks has it. Told once, when the webhook is made or gets another one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    secret: Option<String>,
+view! {
+    /// A webhook.
+    pub(super) struct WebhookView as Webhook, "Webhook" of (webhook: Webhook, secret: Option<String>) {
+        /// The id of the webhook.
+        #[schema(value_type = String, format = "uuid")]
+        id: Uuid = webhook.id,
+        /// Where messages are sent.
+        url: String = webhook.url,
+        /// What is told.
+        events: Vec<EventKind> = webhook.events,
+        /// When it was made (UTC).
+        #[schema(value_type = String, format = DateTime)]
+        created_at: Timestamp = webhook.created_at,
+        /// When it was given up because nobody took its messages (UTC), from when on nothing is sent to it; null while it works.
+        #[schema(value_type = Option<String>, format = DateTime)]
+        disabled_at: Option<Timestamp> = webhook.disabled_at,
+        /// Attempts that have failed since the last one that did not.
+        failures: u32 = webhook.failures,
+        /// When it is tried again (UTC), because the last attempt has failed; null while it works.
+        #[schema(value_type = Option<String>, format = DateTime)]
+        retry_at: Option<Timestamp> = webhook.retry_at.filter(|_| webhook.disabled_at.is_none()),
+        /// Why the last message that was not taken was not.
+        problem: Option<String> = webhook.problem,
+        /// What messages are signed with: HMAC-SHA-256 as Standard Webhooks has it. Told once, when the webhook is made or gets another one.
+        secret?: String = secret,
+    }
 }
 
 /// The webhooks of a client.
@@ -72,55 +71,42 @@ pub(super) struct WebhookListView {
     items: Vec<WebhookView>,
 }
 
-impl WebhookView {
-    fn new(webhook: Webhook, secret: Option<String>) -> Self {
-        Self {
-            id: webhook.id,
-            url: webhook.url,
-            events: webhook.events,
-            created_at: webhook.created_at,
-            disabled_at: webhook.disabled_at,
-            failures: webhook.failures,
-            retry_at: webhook.retry_at.filter(|_| webhook.disabled_at.is_none()),
-            problem: webhook.problem,
-            secret,
-        }
+view! {
+    /// A message to a webhook, and what has come of it so far.
+    pub(super) struct DeliveryView as Delivery, "Delivery" of (delivery: Delivery) {
+        /// The id of the message, which its header `webhook-id` bears at every attempt.
+        #[schema(value_type = String, format = "uuid")]
+        id: Uuid = delivery.id,
+        /// What it tells: `job.ended`, `study.ended`, or `webhook.ping`, which tells nothing.
+        #[serde(rename = "type")]
+        kind: String = delivery.kind,
+        /// Whose end it tells: the id of a job or a study; of a ping that of the webhook.
+        #[schema(value_type = Option<String>, format = "uuid")]
+        subject: Option<Uuid> = delivery.subject,
+        /// Where it stands.
+        status: DeliveryStatus = match delivery.arrived_at {
+            Some(_) => DeliveryStatus::Arrived,
+            None => DeliveryStatus::Waiting,
+        },
+        /// When what it tells happened (UTC).
+        #[schema(value_type = String, format = DateTime)]
+        created_at: Timestamp = delivery.created_at,
+        /// Attempts so far.
+        attempts: u32 = delivery.attempts,
+        /// When it was last sent (UTC).
+        #[schema(value_type = Option<String>, format = DateTime)]
+        attempted_at: Option<Timestamp> = delivery.attempted_at,
+        /// What the receiver answered last, an HTTP status; null if it gave no answer.
+        answered: Option<u32> = delivery.answered,
+        /// Why it was not taken.
+        problem: Option<String> = delivery.problem,
     }
-}
-
-/// A message to a webhook, and what has come of it so far.
-#[derive(Serialize, ToSchema)]
-#[schema(as = Delivery, title = "Delivery")]
-pub(super) struct DeliveryView {
-    /// The id of the message, which its header `webhook-id` bears at every attempt.
-    #[schema(value_type = String, format = "uuid")]
-    id: Uuid,
-    /// What it tells: `job.ended`, `study.ended`, or `webhook.ping`, which tells nothing.
-    #[serde(rename = "type")]
-    kind: String,
-    /// Whose end it tells: the id of a job or a study; of a ping that of the webhook.
-    #[schema(value_type = Option<String>, format = "uuid")]
-    subject: Option<Uuid>,
-    /// Where it stands.
-    status: DeliveryStatus,
-    /// When what it tells happened (UTC).
-    #[schema(value_type = String, format = DateTime)]
-    created_at: Timestamp,
-    /// Attempts so far.
-    attempts: u32,
-    /// When it was last sent (UTC).
-    #[schema(value_type = Option<String>, format = DateTime)]
-    attempted_at: Option<Timestamp>,
-    /// What the receiver answered last, an HTTP status; null if it gave no answer.
-    answered: Option<u32>,
-    /// Why it was not taken.
-    problem: Option<String>,
 }
 
 /// Where a message stands.
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
-enum DeliveryStatus {
+pub(super) enum DeliveryStatus {
     /// It is sent when its turn comes.
     Waiting,
     /// It was answered with 2xx.
@@ -133,26 +119,6 @@ enum DeliveryStatus {
 pub(super) struct DeliveryListView {
     /// The messages, the newest first.
     items: Vec<DeliveryView>,
-}
-
-impl DeliveryView {
-    fn new(delivery: Delivery) -> Self {
-        let status = match delivery.arrived_at {
-            Some(_) => DeliveryStatus::Arrived,
-            None => DeliveryStatus::Waiting,
-        };
-        Self {
-            id: delivery.id,
-            kind: delivery.kind,
-            subject: delivery.subject,
-            status,
-            created_at: delivery.created_at,
-            attempts: delivery.attempts,
-            attempted_at: delivery.attempted_at,
-            answered: delivery.answered,
-            problem: delivery.problem,
-        }
-    }
 }
 
 /// The id in a path. What is no id names no webhook.
@@ -206,7 +172,7 @@ pub(super) async fn make(
     } else {
         StatusCode::CREATED
     };
-    let view = WebhookView::new(made.webhook, Some(made.secret));
+    let view = WebhookView::of(made.webhook, Some(made.secret));
     Ok((status, Json(view)).into_response())
 }
 
@@ -224,7 +190,7 @@ pub(super) async fn list(
     let webhooks = app.webhooks.list(client.name()).await?.into_iter();
     Ok(Json(WebhookListView {
         items: webhooks
-            .map(|webhook| WebhookView::new(webhook, None))
+            .map(|webhook| WebhookView::of(webhook, None))
             .collect(),
     }))
 }
@@ -264,7 +230,7 @@ pub(super) async fn show(
     Path(id): Path<String>,
 ) -> Result<Json<WebhookView>, Problem> {
     let webhook = app.webhooks.find(client.name(), webhook_id(&id)?).await?;
-    Ok(Json(WebhookView::new(webhook, None)))
+    Ok(Json(WebhookView::of(webhook, None)))
 }
 
 /// Ping a webhook
@@ -284,7 +250,7 @@ pub(super) async fn ping(
     Path(id): Path<String>,
 ) -> Result<Response, Problem> {
     let ping = app.webhooks.ping(client.name(), webhook_id(&id)?).await?;
-    Ok((StatusCode::ACCEPTED, Json(DeliveryView::new(ping))).into_response())
+    Ok((StatusCode::ACCEPTED, Json(DeliveryView::of(ping))).into_response())
 }
 
 /// List deliveries
@@ -306,7 +272,7 @@ pub(super) async fn deliveries(
         .webhooks
         .deliveries(client.name(), webhook_id(&id)?)
         .await?;
-    let items = deliveries.into_iter().map(DeliveryView::new).collect();
+    let items = deliveries.into_iter().map(DeliveryView::of).collect();
     Ok(Json(DeliveryListView { items }))
 }
 
@@ -328,7 +294,7 @@ pub(super) async fn enable(
     Path(id): Path<String>,
 ) -> Result<Json<WebhookView>, Problem> {
     let webhook = app.webhooks.enable(client.name(), webhook_id(&id)?).await?;
-    Ok(Json(WebhookView::new(webhook, None)))
+    Ok(Json(WebhookView::of(webhook, None)))
 }
 
 /// Rotate the secret of a webhook
@@ -348,8 +314,5 @@ pub(super) async fn rotate(
     Path(id): Path<String>,
 ) -> Result<Json<WebhookView>, Problem> {
     let rotated = app.webhooks.rotate(client.name(), webhook_id(&id)?).await?;
-    Ok(Json(WebhookView::new(
-        rotated.webhook,
-        Some(rotated.secret),
-    )))
+    Ok(Json(WebhookView::of(rotated.webhook, Some(rotated.secret))))
 }

@@ -5,7 +5,7 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::declare::{
-    Document as _, Errors, Node, Number, ObjectReader, Place, document, flag, nested, number,
+    EACH, Errors, Kind as _, Node, Number, Place, answer, document, flag, nested, number,
 };
 use super::gear::{DeviationsDocument, GearDocument};
 use super::problem::Problem;
@@ -56,10 +56,8 @@ impl DrawDocument {
             .gear
             .without_deviations()
             .to_gear("/gear", Helix::right(self.helix_angle_deg.to_radians()));
-        let faults = made.as_ref().err().into_iter().flatten();
-        faults.for_each(|fault| errors.push(fault.clone()));
         Some(Draw {
-            gear: made.ok()?,
+            gear: errors.report(made)?,
             class: self.iso_1328_class,
             capability: self.capability,
             seed: u64::from(self.seed),
@@ -68,22 +66,22 @@ impl DrawDocument {
     }
 }
 
-/// The tolerances of ISO 1328-1:2013 for a gear and a class, unrounded, in um.
-#[derive(Debug, Serialize, ToSchema)]
-#[schema(as = Tolerances, title = "Tolerances")]
-pub struct TolerancesDocument {
-    /// f_pT: of a single pitch.
-    single_pitch: f64,
-    /// F_pT: of the cumulative pitch around the gear.
-    total_pitch: f64,
-    /// f_HaT: of the slope of a profile.
-    profile_slope: f64,
-    /// f_faT: of the form of a profile.
-    profile_form: f64,
-    /// F_rT: of the runout.
-    runout: f64,
-    /// f_HbT: of the slope of a helix.
-    helix_slope: f64,
+answer! {
+    /// The tolerances of ISO 1328-1:2013 for a gear and a class, unrounded, in um.
+    pub struct TolerancesDocument as Tolerances, "Tolerances" of (tolerances: &Tolerances) {
+        /// f_pT: of a single pitch.
+        single_pitch: f64 = told(tolerances.single_pitch),
+        /// F_pT: of the cumulative pitch around the gear.
+        total_pitch: f64 = told(tolerances.total_pitch),
+        /// f_HaT: of the slope of a profile.
+        profile_slope: f64 = told(tolerances.profile_slope),
+        /// f_faT: of the form of a profile.
+        profile_form: f64 = told(tolerances.profile_form),
+        /// F_rT: of the runout.
+        runout: f64 = told(tolerances.runout),
+        /// f_HbT: of the slope of a helix.
+        helix_slope: f64 = told(tolerances.helix_slope),
+    }
 }
 
 /// Teeth drawn at random.
@@ -98,6 +96,10 @@ pub struct DrawnDeviations {
     tolerances_um: TolerancesDocument,
 }
 
+fn told(value: f64) -> f64 {
+    significant(to_um(value), 10)
+}
+
 impl Draw {
     /// Reads and checks what is asked.
     ///
@@ -108,12 +110,9 @@ impl Draw {
         refuse_many_values(document, MOST_VALUES)?;
         let node = Node::parse(document)?;
         let errors = Errors::default();
-        let asked =
-            ObjectReader::new(&node, Place::root(&errors)).and_then(DrawDocument::read_whole);
-        match asked.and_then(|asked| asked.made(&errors)) {
-            Some(draw) if errors.count() == 0 => Ok(draw),
-            _ => Err(errors.into_problem()),
-        }
+        let asked = DrawDocument::read(&node, &Place::root(&errors), &EACH);
+        let draw = asked.and_then(|asked| asked.made(&errors));
+        errors.settle(draw)
     }
 
     /// The teeth.
@@ -126,18 +125,10 @@ impl Draw {
             let normals = Normals::new(self.seed, 1);
             teeth.lead_slope = tolerances.draw_lead_slopes(count, capability, normals);
         }
-        let told = |value: f64| significant(to_um(value), 10);
         DrawnDeviations {
             total_pitch_deviation_um: told(total_pitch_deviation(&teeth)),
             tooth_deviations: DeviationsDocument::of(&teeth),
-            tolerances_um: TolerancesDocument {
-                single_pitch: told(tolerances.single_pitch),
-                total_pitch: told(tolerances.total_pitch),
-                profile_slope: told(tolerances.profile_slope),
-                profile_form: told(tolerances.profile_form),
-                runout: told(tolerances.runout),
-                helix_slope: told(tolerances.helix_slope),
-            },
+            tolerances_um: TolerancesDocument::of(&tolerances),
         }
     }
 }
@@ -147,14 +138,11 @@ mod tests {
     use serde_json::{Value, json};
 
     use super::*;
-    use crate::wire::{Code, Submission, examples};
+    use crate::wire::Code;
+    use crate::wire::testing::{and, example, parse};
 
     fn standard_pair() -> Value {
-        let example = examples()
-            .iter()
-            .find(|example| example.name == "standard-pair")
-            .expect("ships");
-        serde_json::from_str(example.json).expect("JSON")
+        example("standard-pair")
     }
 
     fn drawn(document: &Value) -> Result<Value, Problem> {
@@ -179,7 +167,7 @@ mod tests {
                 < 1e-8
         );
         submission["pair"]["driven"]["tooth_deviations"] = answer["tooth_deviations"].clone();
-        let parsed = Submission::parse(submission.to_string().as_bytes()).expect("it closes");
+        let parsed = parse(&submission).expect("it closes");
         assert_eq!(parsed.case().pair.period(), 50);
         let teeth = parsed.case().pair.driven().deviations();
         let total = answer["total_pitch_deviation_um"]
@@ -195,10 +183,8 @@ mod tests {
     fn lead_slopes_come_where_they_are_asked_for_and_change_no_other_number() {
         let gear = standard_pair()["pair"]["driven"].clone();
         let asked = |more: Value| {
-            let mut asked = json!({ "gear": gear, "iso_1328_class": 6, "seed": 3 });
-            let fields = more.as_object().expect("fields").clone();
-            asked.as_object_mut().expect("fields").extend(fields);
-            drawn(&asked).expect("drawn")
+            let asked = json!({ "gear": gear, "iso_1328_class": 6, "seed": 3 });
+            drawn(&and(asked, &more)).expect("drawn")
         };
         let without = asked(json!({}));
         assert!(without["tooth_deviations"]["lead_slope_um"].is_null());
@@ -210,7 +196,7 @@ mod tests {
         solid["method"] = json!("three_dimensional");
         solid["pair"]["driven"]["tooth_deviations"] =
             asked(json!({ "lead_slopes": true }))["tooth_deviations"].take();
-        assert!(Submission::parse(solid.to_string().as_bytes()).is_ok());
+        assert!(parse(&solid).is_ok());
         // The reference diameter of a helical gear is larger, its normal module the same.
         let helical = asked(json!({ "helix_angle_deg": -30 }));
         let told =

@@ -3,9 +3,8 @@
 use std::collections::{HashMap, HashSet};
 
 use meshwright_engine::analysis::fields::{Fields, GearField};
-use serde::Serialize;
-use utoipa::ToSchema;
 
+use super::declare::answer;
 use super::units::{rounded_json, significant, to_mm, to_mpa, to_um};
 
 /// Digits of a place, and of what happens there: more than a drawing shows at any scale.
@@ -14,60 +13,60 @@ const DIGITS: (usize, usize) = (6, 4);
 /// A point or a displacement.
 type Plane = [f64; 2];
 
-/// Where both gears end, how far their edges move under load and how stressed they are. The driving axis is the origin, the driven one
-/// lies on the x axis, and both gears stand as at this mesh position without load.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-#[schema(title = "Edges under load")]
-pub struct LoadedEdges {
-    /// The mesh position in mesh periods.
-    pub mesh_position: f64,
-    /// The output torque, in N m.
-    pub output_torque_n_m: f64,
-    /// The static transmission error, in um: turned back by it about its axis, the driven gear touches the driving one.
-    pub transmission_error_um: f64,
-    /// Gear 1.
-    pub driving: GearEdges,
-    /// Gear 2.
-    pub driven: GearEdges,
+answer! {
+    /// Where both gears end, how far their edges move under load and how stressed they are. The driving axis is the origin, the driven one
+    /// lies on the x axis, and both gears stand as at this mesh position without load.
+    pub struct LoadedEdges as LoadedEdges, "Edges under load"
+    of (fields: &Fields, output_torque_n_m: f64, mesh_position: f64) with {
+        let [driving, driven] = &fields.gears;
+    } {
+        /// The mesh position in mesh periods.
+        mesh_position: f64 = mesh_position,
+        /// The output torque, in N m.
+        output_torque_n_m: f64 = output_torque_n_m,
+        /// The static transmission error, in um: turned back by it about its axis, the driven gear touches the driving one.
+        transmission_error_um: f64 = significant(to_um(fields.transmission_error), DIGITS.0),
+        /// Gear 1.
+        driving: GearEdges = GearEdges::of(driving),
+        /// Gear 2.
+        driven: GearEdges = GearEdges::of(driven),
+    }
 }
 
-/// The edges of one gear.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-#[schema(title = "Edges of a gear")]
-pub struct GearEdges {
-    /// The edge around the teeth, counter-clockwise, in a piece for each tooth; only the corners of elements.
-    pub teeth: Vec<Edge>,
-    /// The edges of the holes and of the bore, closed; the bore is missing where the blank has no grid of its own.
-    pub openings: Vec<Edge>,
+answer! {
+    /// The edges of one gear.
+    pub struct GearEdges as GearEdges, "Edges of a gear" of (field: &GearField) with {
+        let (closed, open): (Vec<_>, Vec<_>) =
+            chains(&field.edges).into_iter().partition(|chain| chain.first() == chain.last());
+    } {
+        /// The edge around the teeth, counter-clockwise, in a piece for each tooth; only the corners of elements.
+        // Flanks are divided so finely that their corners are enough.
+        teeth: Vec<Edge> = open.iter().map(|chain| Edge::of(field, chain.iter().step_by(2).copied().collect())).collect(),
+        /// The edges of the holes and of the bore, closed; the bore is missing where the blank has no grid of its own.
+        openings: Vec<Edge> = closed.into_iter().map(|chain| Edge::of(field, chain)).collect(),
+    }
 }
 
-/// An edge, node by node with the material on its left.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
-#[schema(title = "Edge")]
-pub struct Edge {
-    /// Where its nodes lie before loading, in mm.
-    #[schema(value_type = Vec<Vec<f64>>)]
-    pub at_mm: Vec<Plane>,
-    /// How far each moves against the hub of its gear, in um.
-    #[schema(value_type = Vec<Vec<f64>>)]
-    pub displacement_um: Vec<Plane>,
-    /// The von Mises stress at each, in MPa. Near a contact it is that of the grid, which does not resolve the pressure.
-    pub von_mises_mpa: Vec<f64>,
+answer! {
+    /// An edge, node by node with the material on its left.
+    pub struct Edge as Edge, "Edge" of (field: &GearField, nodes: Vec<u32>) with {
+        let nodes = || nodes.iter().map(|node| *node as usize);
+        let rounded = |value: f64| significant(value, DIGITS.1);
+        let placed = |value: f64| significant(to_mm(value), DIGITS.0);
+    } {
+        /// Where its nodes lie before loading, in mm.
+        #[schema(value_type = Vec<Vec<f64>>)]
+        at_mm: Vec<Plane> = nodes().map(|i| field.nodes[i]).map(|at| [at.x, at.y].map(placed)).collect(),
+        /// How far each moves against the hub of its gear, in um.
+        #[schema(value_type = Vec<Vec<f64>>)]
+        displacement_um: Vec<Plane> =
+            nodes().map(|i| field.displacements[i]).map(|moved| [moved.x, moved.y].map(to_um).map(rounded)).collect(),
+        /// The von Mises stress at each, in MPa. Near a contact it is that of the grid, which does not resolve the pressure.
+        von_mises_mpa: Vec<f64> = nodes().map(|i| rounded(to_mpa(field.von_mises[i]))).collect(),
+    }
 }
 
 impl LoadedEdges {
-    /// The edges of `fields`, found at this torque and place.
-    pub fn of(fields: &Fields, output_torque_n_m: f64, mesh_position: f64) -> Self {
-        let [driving, driven] = &fields.gears;
-        Self {
-            mesh_position,
-            output_torque_n_m,
-            transmission_error_um: significant(to_um(fields.transmission_error), DIGITS.0),
-            driving: GearEdges::of(driving),
-            driven: GearEdges::of(driven),
-        }
-    }
-
     /// The document, rounded as results are.
     ///
     /// # Errors
@@ -75,37 +74,6 @@ impl LoadedEdges {
     /// Where a number is not finite, which no solution has.
     pub fn to_json(&self) -> serde_json::Result<String> {
         rounded_json(self)
-    }
-}
-
-impl GearEdges {
-    fn of(field: &GearField) -> Self {
-        let von_mises = &field.von_mises;
-        let along = |nodes: &Vec<u32>| {
-            let mut edge = Edge::default();
-            for &node in nodes {
-                let i = node as usize;
-                let (at, moved) = (field.nodes[i], field.displacements[i]);
-                let rounded = |value: f64| significant(value, DIGITS.1);
-                let placed = |value: f64| significant(to_mm(value), DIGITS.0);
-                edge.at_mm.push([at.x, at.y].map(placed));
-                edge.displacement_um
-                    .push([moved.x, moved.y].map(to_um).map(rounded));
-                edge.von_mises_mpa.push(rounded(to_mpa(von_mises[i])));
-            }
-            edge
-        };
-        let (closed, open): (Vec<_>, Vec<_>) = chains(&field.edges)
-            .into_iter()
-            .partition(|chain| chain.first() == chain.last());
-        Self {
-            // Flanks are divided so finely that their corners are enough.
-            teeth: open
-                .into_iter()
-                .map(|chain| along(&chain.into_iter().step_by(2).collect()))
-                .collect(),
-            openings: closed.iter().map(along).collect(),
-        }
     }
 }
 

@@ -62,6 +62,7 @@ pub fn examples() -> &'static [Example] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::wire::testing::{filled_in, submission};
     use crate::wire::{Code, Submission};
 
     #[test]
@@ -74,48 +75,56 @@ mod tests {
 
     #[test]
     fn the_examples_of_real_drawings_say_what_their_names_say() {
-        for (name, place) in [
-            ("tip-diameter", "/pair/driving/tip_diameter_mm"),
-            ("tip-diameter", "/pair/driven/tooth_thickness_deviation_um"),
-            ("tip-edges", "/pair/driving/tip_rounding_mm"),
-            ("tip-edges", "/pair/driven/tip_chamfer_mm"),
+        let (driving, driven) = ("/pair/driving", "/pair/driven");
+        for (name, within, place) in [
+            ("tip-diameter", driving, "/tip_diameter_mm"),
+            ("tip-diameter", driven, "/tooth_thickness_deviation_um"),
+            ("tip-edges", driving, "/tip_rounding_mm"),
+            ("tip-edges", driven, "/tip_chamfer_mm"),
             (
                 "profile-modifications",
-                "/pair/driving/profile_modifications/2/amount_um",
+                driving,
+                "/profile_modifications/2/amount_um",
             ),
             (
                 "profile-modifications",
-                "/pair/driven/profile_modifications/0/removed_um/5",
+                driven,
+                "/profile_modifications/0/removed_um/5",
             ),
             (
                 "pitch-deviations",
-                "/pair/driving/tooth_deviations/pitch_single_um/49",
+                driving,
+                "/tooth_deviations/pitch_single_um/49",
             ),
             (
                 "pitch-deviations",
-                "/pair/driven/tooth_deviations/pitch_cumulative_um/49",
+                driven,
+                "/tooth_deviations/pitch_cumulative_um/49",
             ),
             (
                 "pitch-deviations",
-                "/pair/driven/tooth_deviations/profile_slope_um/49",
+                driven,
+                "/tooth_deviations/profile_slope_um/49",
             ),
             (
                 "eccentricity",
-                "/pair/driven/tooth_deviations/eccentricity/amount_um",
+                driven,
+                "/tooth_deviations/eccentricity/amount_um",
             ),
-            ("light-load", "/output_torques_n_m/2"),
-            ("web", "/pair/driven/blank/web/thickness_mm"),
-            ("unequal-holes", "/pair/driven/blank/holes/1/at_deg/1"),
-            ("unequal-spacing", "/pair/driven/blank/holes/at_deg/1"),
-            ("slots", "/pair/driven/blank/holes/slot/width_mm"),
-            ("interface-radii", "/resolution/interface_radius_mm/driving"),
-            ("run-up", "/dynamics/driving_speed_rpm/to"),
+            ("light-load", "", "/output_torques_n_m/2"),
+            ("web", driven, "/blank/web/thickness_mm"),
+            ("unequal-holes", driven, "/blank/holes/1/at_deg/1"),
+            ("unequal-spacing", driven, "/blank/holes/at_deg/1"),
+            ("slots", driven, "/blank/holes/slot/width_mm"),
+            (
+                "interface-radii",
+                "",
+                "/resolution/interface_radius_mm/driving",
+            ),
+            ("run-up", "", "/dynamics/driving_speed_rpm/to"),
         ] {
-            let example = examples().iter().find(|example| example.name == name);
-            let json = example.expect("ships").json;
-            let submission = Submission::parse(json.as_bytes()).expect("valid");
-            let echo: serde_json::Value =
-                serde_json::from_str(&submission.canonical_json()).expect("JSON");
+            let place = &format!("{within}{place}");
+            let echo = filled_in(name);
             let said = echo.pointer(place).and_then(serde_json::Value::as_f64);
             assert!(
                 said.is_some_and(|said| said != 0.0),
@@ -132,12 +141,7 @@ mod tests {
             ("test-case-2", 200),
             ("test-case-3", 3400),
         ] {
-            let example = examples()
-                .iter()
-                .find(|example| example.name == name)
-                .expect("ships");
-            let submission = Submission::parse(example.json.as_bytes()).expect("valid");
-            assert_eq!(submission.positions_total(), positions);
+            assert_eq!(submission(name).positions_total(), positions);
         }
     }
 
@@ -183,9 +187,6 @@ mod tests {
 
     #[test]
     fn the_example_of_stresses_asks_for_them() {
-        let example = examples().iter().find(|example| example.name == "stress");
-        let json = example.expect("ships").json;
-        let submission = Submission::parse(json.as_bytes()).expect("valid");
-        assert!(submission.case().stress);
+        assert!(submission("stress").case().stress);
     }
 }

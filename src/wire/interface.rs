@@ -5,8 +5,7 @@ use serde::Serializer;
 use serde_json::{Value, json};
 
 use super::declare::{
-    Choice, Kind, Named, Nested, Node, Number, ObjectReader, Optional, Place, absent, document,
-    nested, number,
+    Choice, EACH, Kind, Named, Node, Number, Optional, Place, absent, document, number,
 };
 use super::problem::{Code, FieldError};
 use super::units::{Side, from_mm, plain, rounded_inward, to_mm};
@@ -25,8 +24,6 @@ const RADIUS: Optional<Number> = absent(
     number("Interface radius of holed gears", "mm", 0.1, 7_500.0),
     "for each holed gear one module below its root circle, or halfway to the holes where they come closer",
 );
-
-const EACH: Nested = nested("");
 
 /// The interface radii of both gears, in mm.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,12 +45,8 @@ impl Kind for InterfaceRadii {
         }
     }
 
-    fn absent(_: &mut ObjectReader<'_>, _: &'static str, _: &()) -> Option<Self> {
+    fn usual(_: &()) -> Option<Self> {
         Some(Self::Common(None))
-    }
-
-    fn is_needed(_: &()) -> bool {
-        false
     }
 
     fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

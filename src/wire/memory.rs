@@ -51,6 +51,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
+    use crate::wire::testing::parse;
 
     /// A pair with as many teeth as a usual one may have, on the standard grid.
     fn largest_usual(holes: u32, positions: u32) -> Submission {
@@ -67,7 +68,7 @@ mod tests {
             "output_torques_n_m": [200.0],
             "resolution": { "positions_per_mesh_period": positions },
         });
-        Submission::parse(document.to_string().as_bytes()).expect("valid")
+        parse(&document).expect("valid")
     }
 
     #[test]

@@ -13,6 +13,8 @@ mod declare;
 mod edit;
 mod pointer;
 mod size;
+#[cfg(test)]
+pub(crate) mod testing;
 mod units;
 
 mod kept;
@@ -46,6 +48,7 @@ pub mod study;
 pub mod study_table;
 
 pub use contact_pattern::ContactPatternDocument;
+pub(crate) use declare::{answer, view};
 pub use draw::{Draw, DrawnDeviations};
 pub use edges::LoadedEdges;
 pub use examples::{Example, examples};
@@ -57,7 +60,7 @@ pub use preview::Preview;
 pub use problem::{Code, FieldError, Problem};
 pub use results::Results;
 pub use search::{SearchState, Searching};
-pub use solve::{Limits, Validation, limits, solve, validate};
+pub use solve::{Limits, Validation, solve, validate};
 pub use status::Status;
 pub use study::{Design, Study};
 pub use study_table::{RowState, StudyResults, Summary};

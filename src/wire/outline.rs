@@ -1,10 +1,9 @@
 //! The outline of a pair, for those who draw it: teeth, holes, webs, circles and the line of action, in one frame.
 
 use meshwright_engine::gear::{GearPair, Hole, HoleShape, Member, Vector, Web, radial, tangential};
-use serde::Serialize;
-use utoipa::ToSchema;
 
-use super::geometry::PathOfContact;
+use super::declare::answer;
+use super::geometry::{PathOfContact, PathPoint};
 use super::units::{rounded_json, to_mm};
 
 /// No point of a profile is farther from the outline, in meters.
@@ -13,140 +12,135 @@ const TOLERANCE: f64 = 0.5e-6;
 /// A point, in mm.
 type Point = [f64; 2];
 
-/// The outline of a pair as it is cut. The driving gear has its center at the origin, the driven one at the center distance on the x
-/// axis. A gear at mesh position eta stands at `angle_deg` + eta times `angle_per_mesh_period_deg`, counter-clockwise.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-#[schema(title = "Pair outline")]
-pub struct PairOutline {
-    /// Gear 1, which drives and turns counter-clockwise.
-    pub driving: GearOutline,
-    /// Gear 2, which is driven and turns clockwise.
-    pub driven: GearOutline,
-    /// The line on which loaded flanks touch.
-    pub line_of_action: LineOfAction,
+answer! {
+    /// The outline of a pair as it is cut. The driving gear has its center at the origin, the driven one at the center distance on the x
+    /// axis. A gear at mesh position eta stands at `angle_deg` + eta times `angle_per_mesh_period_deg`, counter-clockwise.
+    pub struct PairOutline as PairOutline, "Pair outline" of (pair: &GearPair) {
+        /// Gear 1, which drives and turns counter-clockwise.
+        driving: GearOutline = GearOutline::of(pair, Member::Driving),
+        /// Gear 2, which is driven and turns clockwise.
+        driven: GearOutline = GearOutline::of(pair, Member::Driven),
+        /// The line on which loaded flanks touch.
+        line_of_action: LineOfAction = LineOfAction::of(pair),
+    }
 }
 
-/// The outline of a gear in its own frame: its center is the origin, the centerline of tooth 0 the x axis, and the loaded flank of
-/// each tooth lies on its counter-clockwise side.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-#[schema(title = "Gear outline")]
-pub struct GearOutline {
-    /// Where its center stands, in mm.
-    #[schema(value_type = Vec<f64>, min_items = 2, max_items = 2)]
-    pub center_mm: Point,
-    /// The angle of the centerline of tooth 0 at mesh position 0, counter-clockwise from the x axis, in degrees.
-    pub angle_deg: f64,
-    /// How far it turns in a mesh period, counter-clockwise, in degrees.
-    pub angle_per_mesh_period_deg: f64,
-    /// The number of teeth Z. Tooth i is tooth 0 turned by 360 i/Z degrees.
-    pub tooth_count: u32,
-    /// Tooth 0 counter-clockwise, in mm: from the middle of the space before it to the middle of the space behind it. The points lie
-    /// on the true profile, and no point of the profile is more than a micrometer from the line through them.
-    #[schema(value_type = Vec<Vec<f64>>)]
-    pub tooth_mm: Vec<Point>,
-    /// The radius of the bore, in mm.
-    pub bore_radius_mm: f64,
-    /// The holes.
-    pub holes: Vec<HoleOutline>,
-    /// The web, where the blank has one that is not as thick as the face is wide.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub web: Option<WebOutline>,
-    /// The radii of its circles.
-    pub circles: Circles,
+answer! {
+    /// The outline of a gear in its own frame: its center is the origin, the centerline of tooth 0 the x axis, and the loaded flank of
+    /// each tooth lies on its counter-clockwise side.
+    pub struct GearOutline as GearOutline, "Gear outline" of (pair: &GearPair, member: Member) with {
+        let gear = pair.gear(member);
+        // At mesh position 0 the loaded flanks of tooth 0 touch at the pitch point, which lies on the line of centers.
+        let half_angle = gear.flank().half_angle(pair.working_radius(member)).to_degrees();
+        let (center, towards_mate, sense) = match member {
+            Member::Driving => (0.0, 0.0, 1.0),
+            Member::Driven => (pair.center_distance(), 180.0, -1.0),
+        };
+    } {
+        /// Where its center stands, in mm.
+        #[schema(value_type = Vec<f64>, min_items = 2, max_items = 2)]
+        center_mm: Point = point(Vector::new(center, 0.0)),
+        /// The angle of the centerline of tooth 0 at mesh position 0, counter-clockwise from the x axis, in degrees.
+        angle_deg: f64 = towards_mate - half_angle,
+        /// How far it turns in a mesh period, counter-clockwise, in degrees.
+        angle_per_mesh_period_deg: f64 = sense * gear.pitch_angle().to_degrees(),
+        /// The number of teeth Z. Tooth i is tooth 0 turned by 360 i/Z degrees.
+        tooth_count: u32 = gear.tooth_count(),
+        /// Tooth 0 counter-clockwise, in mm: from the middle of the space before it to the middle of the space behind it. The points lie
+        /// on the true profile, and no point of the profile is more than a micrometer from the line through them.
+        #[schema(value_type = Vec<Vec<f64>>)]
+        tooth_mm: Vec<Point> = gear.tooth_outline(TOLERANCE).into_iter().map(point).collect(),
+        /// The radius of the bore, in mm.
+        bore_radius_mm: f64 = to_mm(gear.bore_radius()),
+        /// The holes.
+        holes: Vec<HoleOutline> = gear.holes().iter().map(HoleOutline::of).collect(),
+        /// The web, where the blank has one that is not as thick as the face is wide.
+        web?: WebOutline = gear.data().blank.web_in(gear.face_width()).map(WebOutline::of),
+        /// The radii of its circles.
+        circles: Circles = Circles::of(pair, member),
+    }
 }
 
-/// A hole: round, or a slot along its circle with round ends.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-#[schema(title = "Hole outline")]
-pub struct HoleOutline {
-    /// Its center, in mm.
-    #[schema(value_type = Vec<f64>, min_items = 2, max_items = 2)]
-    pub at_mm: Point,
-    /// The radius of a round hole, or of the ends of a slot, in mm.
-    pub radius_mm: f64,
-    /// The angle between the centers of the ends of a slot, about the center of the gear, in degrees; absent for a round hole.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub slot_angle_deg: Option<f64>,
+answer! {
+    /// A hole: round, or a slot along its circle with round ends.
+    pub struct HoleOutline as HoleOutline, "Hole outline" of (hole: &Hole) {
+        /// Its center, in mm.
+        #[schema(value_type = Vec<f64>, min_items = 2, max_items = 2)]
+        at_mm: Point = point(hole.circle_radius * radial(hole.angle)),
+        /// The radius of a round hole, or of the ends of a slot, in mm.
+        radius_mm: f64 = to_mm(hole.half_width()),
+        /// The angle between the centers of the ends of a slot, about the center of the gear, in degrees; absent for a round hole.
+        slot_angle_deg?: f64 = match hole.shape {
+            HoleShape::Round { .. } => None,
+            HoleShape::Slot { angle, .. } => Some(angle.to_degrees()),
+        },
+    }
 }
 
-/// A web: a ring of its own thickness. Its edges are those two circles, less what the holes take of them.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-#[schema(title = "Web outline")]
-pub struct WebOutline {
-    /// The radius at which it begins, in mm.
-    pub inner_radius_mm: f64,
-    /// The radius at which it ends, in mm.
-    pub outer_radius_mm: f64,
+answer! {
+    /// A web: a ring of its own thickness. Its edges are those two circles, less what the holes take of them.
+    pub struct WebOutline as WebOutline, "Web outline" of (web: Web) {
+        /// The radius at which it begins, in mm.
+        inner_radius_mm: f64 = to_mm(web.inner_radius),
+        /// The radius at which it ends, in mm.
+        outer_radius_mm: f64 = to_mm(web.outer_radius),
+    }
 }
 
-/// The circles of a gear, in mm.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-#[schema(title = "Circles")]
-pub struct Circles {
-    /// The tip circle's radius.
-    pub tip_mm: f64,
-    /// The radius of the reference circle.
-    pub reference_mm: f64,
-    /// The radius of the working pitch circle.
-    pub pitch_mm: f64,
-    /// The radius of the base circle.
-    pub base_mm: f64,
-    /// The radius of the root circle.
-    pub root_mm: f64,
+answer! {
+    /// The circles of a gear, in mm.
+    pub struct Circles as Circles, "Circles" of (pair: &GearPair, member: Member) with {
+        let gear = pair.gear(member);
+    } {
+        /// The tip circle's radius.
+        tip_mm: f64 = to_mm(gear.tip_radius()),
+        /// The radius of the reference circle.
+        reference_mm: f64 = to_mm(gear.reference_radius()),
+        /// The radius of the working pitch circle.
+        pitch_mm: f64 = to_mm(pair.working_radius(member)),
+        /// The radius of the base circle.
+        base_mm: f64 = to_mm(gear.base_radius()),
+        /// The radius of the root circle.
+        root_mm: f64 = to_mm(gear.root_radius()),
+    }
 }
 
-/// The line of action of the loaded flanks, in the frame of the pair.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-#[schema(title = "Line of action")]
-pub struct LineOfAction {
-    /// Where it touches the base circle of the driving gear, in mm.
-    #[schema(value_type = Vec<f64>, min_items = 2, max_items = 2)]
-    pub from_mm: Point,
-    /// Where it touches the base circle of the driven gear, in mm.
-    #[schema(value_type = Vec<f64>, min_items = 2, max_items = 2)]
-    pub to_mm: Point,
-    /// A, B, C, D and E, in this order.
-    pub points: Vec<LinePoint>,
+answer! {
+    /// The line of action of the loaded flanks, in the frame of the pair.
+    pub struct LineOfAction as LineOfAction, "Line of action" of (pair: &GearPair) with {
+        // The driving gear turns counter-clockwise and pushes upward: the line leaves its base circle below the line of centers.
+        let angle = -pair.working_pressure_angle();
+        let foot = pair.driving().base_radius() * radial(angle);
+        let at = |s: f64| point(foot + s * tangential(angle));
+        let PathOfContact { point_a, point_b, point_c, point_d, point_e, .. } = PathOfContact::of(pair);
+        let points = [("A", point_a), ("B", point_b), ("C", point_c), ("D", point_d), ("E", point_e)];
+    } {
+        /// Where it touches the base circle of the driving gear, in mm.
+        #[schema(value_type = Vec<f64>, min_items = 2, max_items = 2)]
+        from_mm: Point = at(0.0),
+        /// Where it touches the base circle of the driven gear, in mm.
+        #[schema(value_type = Vec<f64>, min_items = 2, max_items = 2)]
+        to_mm: Point = at(pair.line_of_action()),
+        /// A, B, C, D and E, in this order.
+        points: Vec<LinePoint> =
+            points.map(|(name, place)| LinePoint::of(name, at(place.driving_roll_length_mm * 1e-3), &place)).into(),
+    }
 }
 
-/// A named point of the line of action.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-#[schema(title = "Point of the line of action")]
-pub struct LinePoint {
-    /// `A` to `E`.
-    pub name: &'static str,
-    /// Where, in mm.
-    #[schema(value_type = Vec<f64>, min_items = 2, max_items = 2)]
-    pub at_mm: Point,
-    /// The mesh position at which the reference pair touches there.
-    pub mesh_position: f64,
+answer! {
+    /// A named point of the line of action.
+    pub struct LinePoint as LinePoint, "Point of the line of action" of (name: &str, at_mm: Point, place: &PathPoint) {
+        /// `A` to `E`.
+        name: String = name.to_owned(),
+        /// Where, in mm.
+        #[schema(value_type = Vec<f64>, min_items = 2, max_items = 2)]
+        at_mm: Point = at_mm,
+        /// The mesh position at which the reference pair touches there.
+        mesh_position: f64 = place.mesh_position,
+    }
 }
 
 impl PairOutline {
-    /// The outline of `pair`.
-    pub fn of(pair: &GearPair) -> Self {
-        let half_angle = |member| {
-            let flank = pair.gear(member).flank();
-            flank.half_angle(pair.working_radius(member)).to_degrees()
-        };
-        // At mesh position 0 the loaded flanks of tooth 0 touch at the pitch point, which lies on the line of centers.
-        let driving = Stand {
-            center: Vector::zeros(),
-            angle_deg: -half_angle(Member::Driving),
-            sense: 1.0,
-        };
-        let driven = Stand {
-            center: Vector::new(pair.center_distance(), 0.0),
-            angle_deg: 180.0 - half_angle(Member::Driven),
-            sense: -1.0,
-        };
-        Self {
-            driving: GearOutline::of(pair, Member::Driving, driving),
-            driven: GearOutline::of(pair, Member::Driven, driven),
-            line_of_action: LineOfAction::of(pair),
-        }
-    }
-
     /// The document, rounded as results are.
     ///
     /// # Errors
@@ -157,102 +151,23 @@ impl PairOutline {
     }
 }
 
-/// Where a gear stands at mesh position 0, and which way it turns.
-struct Stand {
-    center: Vector,
-    angle_deg: f64,
-    sense: f64,
-}
-
-impl GearOutline {
-    fn of(pair: &GearPair, member: Member, stand: Stand) -> Self {
-        let gear = pair.gear(member);
-        let outline = gear.tooth_outline(TOLERANCE);
-        Self {
-            center_mm: point(stand.center),
-            angle_deg: stand.angle_deg,
-            angle_per_mesh_period_deg: stand.sense * gear.pitch_angle().to_degrees(),
-            tooth_count: gear.tooth_count(),
-            tooth_mm: outline.into_iter().map(point).collect(),
-            bore_radius_mm: to_mm(gear.bore_radius()),
-            holes: gear.holes().iter().map(hole).collect(),
-            web: gear.data().blank.web_in(gear.face_width()).map(web),
-            circles: Circles {
-                tip_mm: to_mm(gear.tip_radius()),
-                reference_mm: to_mm(gear.reference_radius()),
-                pitch_mm: to_mm(pair.working_radius(member)),
-                base_mm: to_mm(gear.base_radius()),
-                root_mm: to_mm(gear.root_radius()),
-            },
-        }
-    }
-}
-
-fn hole(hole: &Hole) -> HoleOutline {
-    let slot_angle_deg = match hole.shape {
-        HoleShape::Round { .. } => None,
-        HoleShape::Slot { angle, .. } => Some(angle.to_degrees()),
-    };
-    HoleOutline {
-        at_mm: point(hole.circle_radius * radial(hole.angle)),
-        radius_mm: to_mm(hole.half_width()),
-        slot_angle_deg,
-    }
-}
-
-fn web(web: Web) -> WebOutline {
-    WebOutline {
-        inner_radius_mm: to_mm(web.inner_radius),
-        outer_radius_mm: to_mm(web.outer_radius),
-    }
-}
-
-impl LineOfAction {
-    fn of(pair: &GearPair) -> Self {
-        // The driving gear turns counter-clockwise and pushes upward: the line leaves its base circle below the line of centers.
-        let angle = -pair.working_pressure_angle();
-        let foot = pair.driving().base_radius() * radial(angle);
-        let at = |s: f64| point(foot + s * tangential(angle));
-        let path = PathOfContact::of(pair);
-        let named = [
-            ("A", &path.point_a),
-            ("B", &path.point_b),
-            ("C", &path.point_c),
-            ("D", &path.point_d),
-            ("E", &path.point_e),
-        ];
-        Self {
-            from_mm: at(0.0),
-            to_mm: at(pair.line_of_action()),
-            points: named
-                .map(|(name, place)| LinePoint {
-                    name,
-                    at_mm: at(place.driving_roll_length_mm * 1e-3),
-                    mesh_position: place.mesh_position,
-                })
-                .into(),
-        }
-    }
-}
-
 fn point(p: Vector) -> Point {
     [to_mm(p.x), to_mm(p.y)]
 }
 
 #[cfg(test)]
 mod tests {
+    use serde_json::Value;
+
     use super::*;
-    use crate::wire::{Submission, examples};
+    use crate::wire::Submission;
+    use crate::wire::testing::{example, parse, with};
 
     /// A test case without its reliefs: masses and conjugate flanks are those of the plain profile.
     fn plain_case(name: &str) -> Submission {
-        let example = examples().iter().find(|example| example.name == name);
-        let json = example.expect("ships").json;
-        let mut document: serde_json::Value = serde_json::from_str(json).expect("JSON");
-        for member in ["driving", "driven"] {
-            document["pair"][member]["tip_relief"] = serde_json::Value::Null;
-        }
-        Submission::parse(document.to_string().as_bytes()).expect("valid")
+        let plain = ["driving", "driven"].map(|gear| format!("/pair/{gear}/tip_relief"));
+        let plain = plain.each_ref().map(|place| (&**place, Value::Null));
+        parse(&with(example(name), &plain)).expect("valid")
     }
 
     fn world(gear: &GearOutline, local: Point, mesh_position: f64) -> Vector {
@@ -283,13 +198,10 @@ mod tests {
 
     #[test]
     fn a_web_is_drawn_where_it_is_thinner_than_the_face() {
-        let example = examples().iter().find(|example| example.name == "web");
-        let json = example.expect("ships").json;
         let outline = |thickness_mm: f64| {
-            let mut document: serde_json::Value = serde_json::from_str(json).expect("JSON");
-            document["pair"]["driven"]["blank"]["web"]["thickness_mm"] = thickness_mm.into();
-            let submission = Submission::parse(document.to_string().as_bytes()).expect("valid");
-            PairOutline::of(&submission.case().pair)
+            let place = "/pair/driven/blank/web/thickness_mm";
+            let document = with(example("web"), &[(place, thickness_mm.into())]);
+            PairOutline::of(&parse(&document).expect("valid").case().pair)
         };
         let outlined = outline(8.0);
         let web = outlined.driven.web.expect("as the example has it");

@@ -79,23 +79,9 @@ impl PairDocument {
 
     /// The pair along its faces, if its gears can be made and mesh; what prevents it is reported to `errors`.
     pub(super) fn to_solid_pair(&self, errors: &Errors) -> Option<SolidPair> {
-        let mismatches = self.mismatches();
-        let matched = mismatches.is_empty();
-        mismatches
-            .into_iter()
-            .for_each(|mismatch| errors.push(mismatch));
-        let [driving, driven] = [
-            (&self.driving, Member::Driving),
-            (&self.driven, Member::Driven),
-        ]
-        .map(|(gear, member)| {
-            let made = gear.to_solid(&format!("/pair/{member}"), self.helix(member));
-            made.map_err(|faults| faults.into_iter().for_each(|fault| errors.push(fault)))
-        });
-        let (driving, driven) = (driving.ok()?, driven.ok()?);
-        if !matched {
-            return None;
-        }
+        let [driving, driven] = self.made(errors, |gear, member| {
+            gear.to_solid(&format!("/pair/{member}"), self.helix(member))
+        })?;
         let sections = [driving.section().clone(), driven.section().clone()];
         let askew = self.misalignment_um.as_ref();
         let alignment = Alignment {
@@ -138,45 +124,35 @@ impl PairDocument {
             // Both hands come from one angle.
             Err(SolidPairError::HelixMismatch { .. }) => None,
         };
-        told.into_iter().for_each(|told| errors.push(told));
-        None
+        errors.report(Err(told))
     }
 
     /// The pair, if its gears can be made and mesh; what prevents it is reported to `errors`.
     pub(super) fn to_pair(&self, errors: &Errors) -> Option<GearPair> {
-        let made = |gear: &GearDocument, member: Member| match gear
-            .to_gear(&format!("/pair/{member}"), Helix::STRAIGHT)
-        {
-            Ok(gear) => Some(gear),
-            Err(faults) => {
-                faults.into_iter().for_each(|fault| errors.push(fault));
-                None
-            }
-        };
+        let [driving, driven] = self.made(errors, |gear, member| {
+            gear.to_gear(&format!("/pair/{member}"), Helix::STRAIGHT)
+        })?;
+        let (one, other) = (driving.clone(), driven.clone());
+        let pair = GearPair::new(one, other, from_mm(self.center_distance_mm));
+        errors.report(pair.map_err(|error| self.told(&driving, &driven, &error)))
+    }
+
+    /// Both gears, if they can be made and could mesh; what prevents that is reported to `errors`.
+    fn made<G>(
+        &self,
+        errors: &Errors,
+        make: impl Fn(&GearDocument, Member) -> Result<G, Vec<FieldError>>,
+    ) -> Option<[G; 2]> {
         let mismatches = self.mismatches();
-        let matched = mismatches.is_empty();
-        mismatches
-            .into_iter()
-            .for_each(|mismatch| errors.push(mismatch));
-        let driving = made(&self.driving, Member::Driving);
-        let driven = made(&self.driven, Member::Driven);
-        let (driving, driven) = (driving?, driven?);
-        if !matched {
-            return None;
-        }
-        match GearPair::new(
-            driving.clone(),
-            driven.clone(),
-            from_mm(self.center_distance_mm),
-        ) {
-            Ok(pair) => Some(pair),
-            Err(error) => {
-                self.told(&driving, &driven, &error)
-                    .into_iter()
-                    .for_each(|told| errors.push(told));
-                None
-            }
-        }
+        let matched = errors.report(if mismatches.is_empty() {
+            Ok(())
+        } else {
+            Err(mismatches)
+        });
+        let driving = errors.report(make(&self.driving, Member::Driving));
+        let driven = errors.report(make(&self.driven, Member::Driven));
+        matched?;
+        Some([driving?, driven?])
     }
 
     fn told(

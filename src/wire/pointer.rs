@@ -4,8 +4,7 @@ use std::sync::LazyLock;
 
 use serde_json::{Map, Value};
 
-use super::declare::{Document as _, Named};
-use super::population::PopulationDocument;
+use super::declare;
 use super::problem::Code;
 use super::submission::Document;
 
@@ -106,26 +105,12 @@ impl Pointer {
         self.number_kind_in(&SCHEMA, &self.steps)
     }
 
-    /// What kind of number the field takes that is a variable of a search: one of the submission, or one of its population.
+    /// What kind of number `schema` says that the field behind these last steps takes.
     ///
     /// # Errors
     ///
     /// As [`number_kind`](Self::number_kind).
-    pub(super) fn number_kind_of_variable(&self) -> Result<NumberKind, (Code, String)> {
-        match self.steps.as_slice() {
-            [first, rest @ ..] if first == "population" => match rest {
-                // The members are what designs are compared by.
-                [only] if only == "size" || only == "seed" => {
-                    let detail = format!("{} has to be the same for all designs.", self.text);
-                    Err((Code::OutOfRange, detail))
-                }
-                rest => self.number_kind_in(&POPULATION, rest),
-            },
-            steps => self.number_kind_in(&SCHEMA, steps),
-        }
-    }
-
-    fn number_kind_in(
+    pub(super) fn number_kind_in(
         &self,
         schema: &'static Schema,
         steps: &[String],
@@ -203,32 +188,25 @@ fn is_within(inner: &str, outer: &str) -> bool {
 }
 
 /// The schema of a document, with those that it refers to.
-struct Schema {
+pub(super) struct Schema {
     /// What it is of.
     of: &'static str,
     root: Value,
     named: Map<String, Value>,
 }
 
-static SCHEMA: LazyLock<Schema> = LazyLock::new(|| {
-    let mut named = Vec::new();
-    Document::name_fields(&mut named);
-    Schema::new("a submission", Document::json_schema(), named)
-});
-
-static POPULATION: LazyLock<Schema> = LazyLock::new(|| {
-    let mut named = Vec::new();
-    PopulationDocument::name_fields(&mut named);
-    Schema::new("a population", PopulationDocument::json_schema(), named)
-});
+static SCHEMA: LazyLock<Schema> = LazyLock::new(|| Schema::of::<Document>("a submission"));
 
 impl Schema {
-    fn new(of: &'static str, root: Value, named: Named) -> Self {
+    /// That of a document, which is called so.
+    pub(super) fn of<D: declare::Document>(of: &'static str) -> Self {
+        let mut named = Vec::new();
+        D::name_fields(&mut named);
         let named = named.into_iter();
         let named = named.map(|(name, schema)| (name.to_owned(), schema));
         Self {
             of,
-            root,
+            root: D::json_schema(),
             named: named.collect(),
         }
     }

@@ -62,10 +62,8 @@ impl Preview {
                 id: id?,
             })
         };
-        match read() {
-            Some(preview) if errors.count() == 0 => Ok(preview),
-            _ => Err(errors.into_problem()),
-        }
+        let read = read();
+        errors.settle(read)
     }
 }
 
@@ -74,15 +72,11 @@ mod tests {
     use serde_json::{Value, json};
 
     use super::*;
-    use crate::wire::examples;
     use crate::wire::problem::Code;
+    use crate::wire::testing::{self, example};
 
     fn case_2() -> Value {
-        let example = examples()
-            .iter()
-            .find(|example| example.name == "test-case-2")
-            .expect("ships");
-        serde_json::from_str(example.json).expect("JSON")
+        example("test-case-2")
     }
 
     fn parse(document: &Value, most_positions: u64) -> Result<Preview, Problem> {
@@ -92,7 +86,7 @@ mod tests {
     #[test]
     fn an_id_stands_beside_the_submission_and_does_not_change_it() {
         let mut document = case_2();
-        let submission = Submission::parse(document.to_string().as_bytes()).expect("valid");
+        let submission = testing::parse(&document).expect("valid");
         for (id, read) in [
             (Value::Null, None),
             (json!("form 7"), Some("form 7".to_owned())),
@@ -104,7 +98,7 @@ mod tests {
             assert_eq!(preview.submission.input_hash(), submission.input_hash());
         }
         // A job has no use for it.
-        let problem = Submission::parse(document.to_string().as_bytes()).expect_err("unknown");
+        let problem = testing::parse(&document).expect_err("unknown");
         assert_eq!(problem.errors[0].pointer, "/preview_id");
     }
 

@@ -10,8 +10,8 @@ use serde::ser::SerializeMap;
 use serde_json::{Value, json};
 
 use super::declare::{
-    Document, Kind, Named, Nested, Node, ObjectReader, Place, absent, document, flag, nested,
-    number, word, words,
+    Document, EACH, Kind, Named, Node, ObjectReader, Place, absent, document, flag, nested, number,
+    word, words,
 };
 use super::interface::InterfaceRadii;
 use super::problem::Code;
@@ -195,8 +195,6 @@ impl ResolutionDocument {
     }
 }
 
-const EACH: Nested = nested("");
-
 impl Kind for ContactSolverDocument {
     type Spec = ();
 
@@ -224,12 +222,8 @@ impl Kind for ContactSolverDocument {
         }
     }
 
-    fn absent(_: &mut ObjectReader<'_>, _: &'static str, _: &()) -> Option<Self> {
+    fn usual(_: &()) -> Option<Self> {
         Some(Self::ActiveSet)
-    }
-
-    fn is_needed(_: &()) -> bool {
-        false
     }
 
     fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -273,12 +267,8 @@ impl Kind for StiffnessDocument {
         }
     }
 
-    fn absent(_: &mut ObjectReader<'_>, _: &'static str, _: &()) -> Option<Self> {
+    fn usual(_: &()) -> Option<Self> {
         Some(Self::Tangent)
-    }
-
-    fn is_needed(_: &()) -> bool {
-        false
     }
 
     fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

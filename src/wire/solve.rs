@@ -5,18 +5,20 @@ use meshwright_engine::analysis::fields::{Fields, fields};
 use meshwright_engine::analysis::forces::run_up_seconds;
 use meshwright_engine::analysis::{self, AnalysisError, face_fields};
 use meshwright_engine::fem::volume::Volume;
+use meshwright_engine::gear::data::LEAST_LIGAMENT;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use serde::Serialize;
 use utoipa::ToSchema;
 
+use super::declare::{answer, view};
 use super::gear::{GearDocument, MOST_ENTRIES, MOST_HOLES, MOST_MODIFICATIONS};
 use super::geometry::PairGeometry;
 use super::problem::{Code, FieldError, Problem};
 use super::resolution::ResolutionDocument;
 use super::results::Results;
 use super::submission::{MOST_POSITIONS, MOST_TAGS, MOST_TORQUES, SOLVER_VERSION, Submission};
-use super::units::{plain, to_um};
+use super::units::{plain, to_mm, to_um};
 use super::warning::WarningDocument;
 
 /// Computes `submission`.
@@ -33,7 +35,7 @@ pub fn solve(submission: &Submission, library: &Library, run: &Run) -> Result<Re
         }
     };
     match answer {
-        Ok((analysis, forces)) => Ok(Results::new(submission, &analysis, forces.as_ref())),
+        Ok((analysis, forces)) => Ok(Results::of(submission, &analysis, forces.as_ref())),
         Err(error) => Err(problem_of(&error)),
     }
 }
@@ -200,95 +202,69 @@ pub struct Validation {
     pub estimate: EstimateDocument,
 }
 
-/// What a computation will cost.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-#[schema(as = Estimate, title = "Estimate")]
-pub struct EstimateDocument {
-    /// Unknowns of both gears before condensation.
-    pub degrees_of_freedom: u64,
-    /// Memory, in MB.
-    pub memory_mb: u64,
-    /// Time on one core, in seconds.
-    pub seconds: f64,
-    /// Positions times torques.
-    pub positions: u64,
+answer! {
+    /// What a computation will cost.
+    pub struct EstimateDocument as Estimate, "Estimate" of (submission: &Submission) with {
+        let case = submission.case();
+        let estimate = analysis::estimate(&submission.costed_case());
+        let dynamics = submission.forces().and_then(|forces| forces.dynamics.as_ref());
+        let of_run_ups = dynamics.map_or(0.0, |dynamics| run_up_seconds(case, dynamics));
+    } {
+        /// Unknowns of both gears before condensation.
+        degrees_of_freedom: u64 = estimate.degrees_of_freedom,
+        /// Memory, in MB.
+        memory_mb: u64 = estimate.memory.div_ceil(1_000_000),
+        /// Time on one core, in seconds.
+        seconds: f64 = estimate.seconds + of_run_ups,
+        /// Positions times torques.
+        positions: u64 = submission.positions_total(),
+    }
 }
 
 /// What `submission` would be computed as, and what that would cost.
 pub fn validate(submission: &Submission) -> Validation {
     let case = submission.case();
-    let estimate = analysis::estimate(&submission.costed_case());
-    let dynamics = submission
-        .forces()
-        .and_then(|forces| forces.dynamics.as_ref());
-    let of_run_ups = dynamics.map_or(0.0, |dynamics| run_up_seconds(case, dynamics));
+    let warnings = analysis::warnings(case);
     Validation {
         valid: true,
         submission: submission.clone(),
         pair: PairGeometry::of(case),
-        warnings: analysis::warnings(case)
-            .iter()
-            .map(WarningDocument::of)
-            .collect(),
-        estimate: EstimateDocument {
-            degrees_of_freedom: estimate.degrees_of_freedom,
-            memory_mb: estimate.memory.div_ceil(1_000_000),
-            seconds: estimate.seconds + of_run_ups,
-            positions: submission.positions_total(),
-        },
+        warnings: warnings.iter().map(WarningDocument::of).collect(),
+        estimate: EstimateDocument::of(submission),
     }
 }
 
-/// The limits of a submission. Those of the service stand beside them.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-#[schema(title = "Limits of a submission")]
-pub struct Limits {
-    /// The version of the solver.
-    pub solver_version: &'static str,
-    /// The most output torques.
-    pub torques: usize,
-    /// The most positions times torques.
-    pub positions: u64,
-    /// The most positions in a mesh period.
-    pub positions_per_mesh_period: u32,
-    /// The most holes in a gear.
-    pub holes: usize,
-    /// The fewest and the most teeth.
-    pub tooth_count: [u32; 2],
-    /// The smallest and the largest module, in mm.
-    pub module_mm: [f64; 2],
-    /// The most profile modifications of a gear, beside its tip relief.
-    pub profile_modifications: usize,
-    /// The most entries of a profile table.
-    pub table_entries: usize,
-    /// The most tags.
-    pub tags: usize,
-    /// The most characters of a tag.
-    pub tag_length: usize,
-    /// The most designs of a study.
-    pub designs: usize,
-    /// The least material around a hole, in mm.
-    pub least_ligament_mm: f64,
-}
-
-/// The limits that every submission keeps.
-pub fn limits() -> Limits {
-    let counts = |(least, most): (f64, f64)| [least as u32, most as u32];
-    Limits {
-        solver_version: SOLVER_VERSION,
-        torques: MOST_TORQUES,
-        positions: MOST_POSITIONS,
-        positions_per_mesh_period: counts(
-            ResolutionDocument::positions_per_mesh_period.spec.bounds,
-        )[1],
-        holes: MOST_HOLES,
-        tooth_count: counts(GearDocument::tooth_count.spec.bounds),
-        module_mm: GearDocument::module_mm.spec.bounds.into(),
-        profile_modifications: MOST_MODIFICATIONS,
-        table_entries: MOST_ENTRIES,
-        tags: MOST_TAGS.0,
-        tag_length: MOST_TAGS.1,
-        designs: super::study::MOST_DESIGNS,
-        least_ligament_mm: super::units::to_mm(meshwright_engine::gear::data::LEAST_LIGAMENT),
+view! {
+    /// The limits of a submission. Those of the service stand beside them.
+    pub struct Limits as Limits, "Limits of a submission" of () with {
+        let counts = |(least, most): (f64, f64)| [least as u32, most as u32];
+        let positions = ResolutionDocument::positions_per_mesh_period.spec.bounds;
+    } {
+        /// The version of the solver.
+        solver_version: &'static str = SOLVER_VERSION,
+        /// The most output torques.
+        torques: usize = MOST_TORQUES,
+        /// The most positions times torques.
+        positions: u64 = MOST_POSITIONS,
+        /// The most positions in a mesh period.
+        positions_per_mesh_period: u32 = counts(positions)[1],
+        /// The most holes in a gear.
+        holes: usize = MOST_HOLES,
+        /// The fewest and the most teeth.
+        tooth_count: [u32; 2] = counts(GearDocument::tooth_count.spec.bounds),
+        /// The smallest and the largest module, in mm.
+        module_mm: [f64; 2] = GearDocument::module_mm.spec.bounds.into(),
+        /// The most profile modifications of a gear, beside its tip relief.
+        profile_modifications: usize = MOST_MODIFICATIONS,
+        /// The most entries of a profile table.
+        table_entries: usize = MOST_ENTRIES,
+        /// The most tags.
+        tags: usize = MOST_TAGS.0,
+        /// The most characters of a tag.
+        tag_length: usize = MOST_TAGS.1,
+        /// The most designs of a study.
+        designs: usize = super::study::MOST_DESIGNS,
+        /// The least material around a hole, in mm.
+        least_ligament_mm: f64 = to_mm(LEAST_LIGAMENT),
     }
 }

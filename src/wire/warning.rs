@@ -102,160 +102,150 @@ impl From<Member> for GearName {
 impl WarningDocument {
     /// The document of `warning`.
     pub fn of(warning: &Warning) -> Self {
-        let new = |code, detail: String| Self {
-            code,
-            detail,
-            gear: None,
-            value: None,
-            unit: None,
-            guide: None,
-        };
-        match *warning {
-            Warning::ZeroBacklash => new(
-                WarningCode::ZeroBacklash,
+        use WarningCode as Code;
+        let (code, gear, number, detail) = match *warning {
+            Warning::ZeroBacklash => (
+                Code::ZeroBacklash,
+                None,
+                None,
                 "The nominal backlash is zero; only the loaded flanks are solved.".to_owned(),
             ),
-            Warning::ThinLigament { member, ligament } => Self {
-                gear: Some(member.into()),
-                value: Some(to_mm(ligament)),
-                unit: Some("mm".into()),
-                ..new(
-                    WarningCode::ThinLigament,
-                    format!(
-                        "The holes of the {member} gear leave {} mm, less than one module; stresses there are high.",
-                        plain(to_mm(ligament))
-                    ),
-                )
-            },
-            Warning::WebOutsidePlaneModel { member, web, rim } => Self {
-                gear: Some(member.into()),
-                value: Some(web),
-                unit: Some("1".into()),
-                guide: Some("/guides/is-my-thin-web-all-right".into()),
-                ..new(
-                    WarningCode::WebOutsidePlaneModel,
-                    outside_plane(member, web, rim),
-                )
-            },
+            Warning::ThinLigament { member, ligament } => (
+                Code::ThinLigament,
+                Some(member),
+                Some((to_mm(ligament), "mm")),
+                format!(
+                    "The holes of the {member} gear leave {} mm, less than one module; stresses there are high.",
+                    plain(to_mm(ligament))
+                ),
+            ),
+            Warning::WebOutsidePlaneModel { member, web, rim } => (
+                Code::WebOutsidePlaneModel,
+                Some(member),
+                Some((web, "1")),
+                outside_plane(member, web, rim),
+            ),
             Warning::MotionUnbounded { speeds } => {
                 let [low, high] = speeds.map(|speed| plain((60.0 * speed).round()));
-                Self {
-                    guide: Some("/guides/will-it-rattle-or-whine".into()),
-                    ..new(
-                        WarningCode::MotionUnbounded,
-                        format!(
-                            "Between {low} and {high} 1/min the motion grows without bound: the mesh stiffness pumps it more than damping takes from it. It is told until it is a thousand times the static deflection. More damping, more relief or some backlash limits it."
-                        ),
-                    )
-                }
+                let detail = format!(
+                    "Between {low} and {high} 1/min the motion grows without bound: the mesh stiffness pumps it more than damping takes from it. It is told until it is a thousand times the static deflection. More damping, more relief or some backlash limits it."
+                );
+                (Code::MotionUnbounded, None, None, detail)
             }
             Warning::TipCornerContact {
                 member,
                 largest_share,
-            } => Self {
-                gear: Some(member.into()),
-                value: Some(100.0 * largest_share),
-                unit: Some("%".into()),
-                ..new(
-                    WarningCode::TipCornerContact,
-                    format!(
-                        "The tip corner of the {member} gear touches off the line of action and carries up to {} % of the load; more tip relief avoids it.",
-                        plain((1000.0 * largest_share).round() / 10.0)
-                    ),
-                )
-            },
-            Warning::ContactReachesFillet { member } => Self {
-                gear: Some(member.into()),
-                ..new(
-                    WarningCode::ContactReachesFillet,
-                    format!(
-                        "The contact reaches the fillet of the {member} gear, where it is not followed; a larger center distance or a smaller torque avoids it."
-                    ),
-                )
-            },
-            Warning::FaceWidthsDiffer { ratio } => Self {
-                value: Some(ratio),
-                unit: Some("1".into()),
-                ..new(
-                    WarningCode::FaceWidthsDiffer,
-                    format!(
-                        "One face is {} times as wide as the other: away from the contact each gear is taken for a plate of its own width, which makes the wider one too stiff.",
-                        plain(ratio)
-                    ),
-                )
-            },
+            } => (
+                Code::TipCornerContact,
+                Some(member),
+                Some((100.0 * largest_share, "%")),
+                format!(
+                    "The tip corner of the {member} gear touches off the line of action and carries up to {} % of the load; more tip relief avoids it.",
+                    plain((1000.0 * largest_share).round() / 10.0)
+                ),
+            ),
+            Warning::ContactReachesFillet { member } => (
+                Code::ContactReachesFillet,
+                Some(member),
+                None,
+                format!(
+                    "The contact reaches the fillet of the {member} gear, where it is not followed; a larger center distance or a smaller torque avoids it."
+                ),
+            ),
+            Warning::FaceWidthsDiffer { ratio } => (
+                Code::FaceWidthsDiffer,
+                None,
+                Some((ratio, "1")),
+                format!(
+                    "One face is {} times as wide as the other: away from the contact each gear is taken for a plate of its own width, which makes the wider one too stiff.",
+                    plain(ratio)
+                ),
+            ),
             Warning::ContactBeyondElasticity {
                 pressure,
                 youngs_modulus,
-            } => Self {
-                value: Some(to_mpa(pressure)),
-                unit: Some("MPa".into()),
-                ..new(
-                    WarningCode::ContactBeyondElasticity,
-                    format!(
-                        "The contact pressure comes to {} MPa, {} % of Young's modulus: no material stays elastic there.",
-                        plain(to_mpa(pressure).round()),
-                        plain((1000.0 * pressure / youngs_modulus).round() / 10.0)
-                    ),
+            } => (
+                Code::ContactBeyondElasticity,
+                None,
+                Some((to_mpa(pressure), "MPa")),
+                format!(
+                    "The contact pressure comes to {} MPa, {} % of Young's modulus: no material stays elastic there.",
+                    plain(to_mpa(pressure).round()),
+                    plain((1000.0 * pressure / youngs_modulus).round() / 10.0)
+                ),
+            ),
+            Warning::PartialSpan { span, period } => (
+                Code::PartialSpan,
+                None,
+                Some((f64::from(span), "mesh periods")),
+                format!(
+                    "The span of {span} mesh periods is not whole true periods of {period}: statistics are partial, and there is no spectrum."
+                ),
+            ),
+            Warning::FormulaRange(found) => {
+                let (value, unit, detail) = out_of_range(&found);
+                (
+                    Code::FormulaRange,
+                    found.member,
+                    Some((value, unit)),
+                    detail,
                 )
-            },
-            Warning::PartialSpan { span, period } => Self {
-                value: Some(f64::from(span)),
-                unit: Some("mesh periods".into()),
-                ..new(
-                    WarningCode::PartialSpan,
-                    format!(
-                        "The span of {span} mesh periods is not whole true periods of {period}: statistics are partial, and there is no spectrum."
-                    ),
-                )
-            },
-            Warning::FormulaRange(found) => Self::of_range(&found),
-            Warning::HolesNotSeen => new(
-                WarningCode::HolesNotSeen,
+            }
+            Warning::HolesNotSeen => (
+                Code::HolesNotSeen,
+                None,
+                None,
                 "This method does not see holes: its curves are those of solid blanks.".to_owned(),
             ),
             Warning::ProjectionDoubtful {
                 error,
                 part_of_mean,
                 part_of_peak_to_peak,
-            } => Self {
-                value: Some(to_um(error)),
-                unit: Some("um".into()),
-                ..new(
-                    WarningCode::ProjectionDoubtful,
-                    format!(
-                        "Where the holes let teeth touch earlier or later the projected decomposition is up to {} um off the exact transmission error, {} % of its mean and {} % of its peak-to-peak; the flexible method is exact.",
-                        plain(significant(to_um(error), 3)),
-                        plain(significant(100.0 * part_of_mean, 2)),
-                        plain(significant(100.0 * part_of_peak_to_peak, 2))
-                    ),
-                )
-            },
-        }
-    }
-
-    fn of_range(found: &FormulaRange) -> Self {
-        let (to_unit, unit): (fn(f64) -> f64, _) = match found.quantity {
-            FormulaQuantity::RootHalfAngle => (f64::to_degrees, "deg"),
-            FormulaQuantity::LineLoad => (to_n_per_mm, "N/mm"),
-            _ => (|value| value, "1"),
+            } => (
+                Code::ProjectionDoubtful,
+                None,
+                Some((to_um(error), "um")),
+                format!(
+                    "Where the holes let teeth touch earlier or later the projected decomposition is up to {} um off the exact transmission error, {} % of its mean and {} % of its peak-to-peak; the flexible method is exact.",
+                    plain(significant(to_um(error), 3)),
+                    plain(significant(100.0 * part_of_mean, 2)),
+                    plain(significant(100.0 * part_of_peak_to_peak, 2))
+                ),
+            ),
         };
-        // Four digits are more than a formula's range has.
-        let [value, least, greatest] =
-            [found.value, found.least, found.greatest].map(|value| significant(to_unit(value), 4));
         Self {
-            code: WarningCode::FormulaRange,
-            detail: out_of_range(found, [value, least, greatest].map(plain)),
-            gear: found.member.map(GearName::from),
-            value: Some(value),
-            unit: Some(unit.into()),
-            guide: None,
+            code,
+            detail,
+            gear: gear.map(GearName::from),
+            value: number.map(|(value, _)| value),
+            unit: number.map(|(_, unit)| unit.into()),
+            guide: code.guide().map(Cow::from),
         }
     }
 }
 
-/// The sentence about `found`, whose value and range are told in the reader's unit.
-fn out_of_range(found: &FormulaRange, [value, least, greatest]: [String; 3]) -> String {
+impl WarningCode {
+    /// Where the service says more of it.
+    fn guide(self) -> Option<&'static str> {
+        match self {
+            Self::WebOutsidePlaneModel => Some("/guides/is-my-thin-web-all-right"),
+            Self::MotionUnbounded => Some("/guides/will-it-rattle-or-whine"),
+            _ => None,
+        }
+    }
+}
+
+/// The value of `found` in the reader's unit, that unit, and the sentence about it.
+fn out_of_range(found: &FormulaRange) -> (f64, &'static str, String) {
+    let (to_unit, unit): (fn(f64) -> f64, _) = match found.quantity {
+        FormulaQuantity::RootHalfAngle => (f64::to_degrees, "deg"),
+        FormulaQuantity::LineLoad => (to_n_per_mm, "N/mm"),
+        _ => (|value| value, "1"),
+    };
+    // Four digits are more than a formula's range has.
+    let told =
+        [found.value, found.least, found.greatest].map(|value| significant(to_unit(value), 4));
+    let [value, least, greatest] = told.map(plain);
     let whose = found
         .member
         .map_or("the pair".to_owned(), |member| format!("the {member} gear"));
@@ -283,7 +273,8 @@ fn out_of_range(found: &FormulaRange, [value, least, greatest]: [String; 3]) -> 
     };
     let formula = found.quantity.formula().to_string();
     let (first, rest) = formula.split_at(1);
-    format!("{}{rest} was published for {range}.", first.to_uppercase())
+    let sentence = format!("{}{rest} was published for {range}.", first.to_uppercase());
+    (told[0], unit, sentence)
 }
 
 /// What to make of a web so many times as thick as the face is wide, under a rim of so many modules.
@@ -304,6 +295,7 @@ fn outside_plane(member: Member, web: f64, rim: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::wire::testing::{example, parse, with};
 
     fn document(quantity: FormulaQuantity, member: Option<Member>, value: f64) -> WarningDocument {
         let [least, greatest] = match quantity {
@@ -335,16 +327,15 @@ mod tests {
     #[test]
     fn a_web_that_a_plane_does_not_stand_for_is_told_with_the_figures_of_the_guide() {
         let warned = |thickness_mm: f64, outer_radius_mm: f64| {
-            let example = crate::wire::examples()
-                .iter()
-                .find(|example| example.name == "web");
-            let mut document: serde_json::Value =
-                serde_json::from_str(example.expect("ships").json).expect("JSON");
-            let blank = &mut document["pair"]["driven"]["blank"];
-            blank["holes"] = serde_json::Value::Null;
-            blank["web"]["thickness_mm"] = thickness_mm.into();
-            blank["web"]["outer_radius_mm"] = outer_radius_mm.into();
-            let submission = crate::wire::Submission::parse(document.to_string().as_bytes());
+            let changes = [
+                ("/pair/driven/blank/holes", serde_json::Value::Null),
+                ("/pair/driven/blank/web/thickness_mm", thickness_mm.into()),
+                (
+                    "/pair/driven/blank/web/outer_radius_mm",
+                    outer_radius_mm.into(),
+                ),
+            ];
+            let submission = parse(&with(example("web"), &changes));
             let warnings = crate::wire::validate(&submission.expect("valid")).warnings;
             let found = warnings
                 .into_iter()

@@ -32,7 +32,20 @@ impl Errors {
         self.0.into_inner()
     }
 
-    pub(in crate::wire) fn into_problem(self) -> Problem {
-        Problem::of_fields(self.into_errors())
+    /// The value of `made`, if it could be made; else its faults are told.
+    pub(in crate::wire) fn report<T>(
+        &self,
+        made: Result<T, impl IntoIterator<Item = FieldError>>,
+    ) -> Option<T> {
+        made.map_err(|faults| faults.into_iter().for_each(|fault| self.push(fault)))
+            .ok()
+    }
+
+    /// What was read, if nothing is wrong.
+    pub(in crate::wire) fn settle<T>(self, read: Option<T>) -> Result<T, Problem> {
+        match read {
+            Some(read) if self.count() == 0 => Ok(read),
+            _ => Err(Problem::of_fields(self.into_errors())),
+        }
     }
 }

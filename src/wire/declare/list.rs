@@ -127,13 +127,12 @@ impl<T: Kind + PartialEq> Kind for Vec<T> {
         let node = reader.get(name);
         match node.filter(|node| !(spec.or_null && **node == Node::Null)) {
             Some(node) => Self::read(node, &reader.place_of(name), spec),
-            None if spec.or_empty => Some(Self::new()),
-            None => reader.missing(name),
+            None => Self::absent(reader, name, spec),
         }
     }
 
-    fn is_needed(spec: &Self::Spec) -> bool {
-        !spec.or_empty
+    fn usual(spec: &Self::Spec) -> Option<Self> {
+        spec.or_empty.then(Self::new)
     }
 
     fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

@@ -3,8 +3,9 @@
 //! A [`document!`] says of each field its name, its type, a sentence, and a specification such as `number("Module", "mm", 0.1, 50.0)`:
 //! title, unit, bounds, and what stands for the field where it is absent. What a specification can say depends on the type
 //! of the field, which is a [`Kind`]. The declaration of a field is a constant of its object, named as the field, for
-//! those who look up its unit or its bounds.
+//! those who look up its unit or its bounds. An [`answer!`] says of each field what it is filled from.
 
+mod answer;
 mod errors;
 mod list;
 mod nested;
@@ -17,10 +18,11 @@ mod words;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::Value;
 
+pub(crate) use answer::{answer, view};
 pub(super) use errors::Errors;
 pub(super) use list::{List, list};
 pub(super) use nested::{
-    Document, Nested, Property, document, nested, object, tagged, utoipa_schema,
+    Document, EACH, Nested, Property, document, nested, object, tagged, utoipa_schema,
 };
 pub(super) use node::{Node, escaped};
 pub(super) use number::{Number, number};
@@ -54,14 +56,23 @@ pub(super) trait Kind: Sized {
         }
     }
 
-    /// What stands for the field `name` where it is absent.
-    fn absent(reader: &mut ObjectReader<'_>, name: &'static str, _: &Self::Spec) -> Option<Self> {
-        reader.missing(name)
+    /// What stands for it where it is absent; nothing if it has to be given.
+    fn usual(_: &Self::Spec) -> Option<Self> {
+        None
+    }
+
+    /// What stands for the field `name`, which is absent.
+    fn absent(
+        reader: &mut ObjectReader<'_>,
+        name: &'static str,
+        spec: &Self::Spec,
+    ) -> Option<Self> {
+        Self::usual(spec).or_else(|| reader.missing(name))
     }
 
     /// Whether it has to be given.
-    fn is_needed(_: &Self::Spec) -> bool {
-        true
+    fn is_needed(spec: &Self::Spec) -> bool {
+        Self::usual(spec).is_none()
     }
 
     /// Whether its field is not written.

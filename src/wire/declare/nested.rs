@@ -53,6 +53,9 @@ pub(in crate::wire) const fn nested(title: &'static str) -> Nested {
     Nested { title, or_defaults }
 }
 
+/// An object that has to be given, of which there is nothing to say beside what it says itself.
+pub(in crate::wire) const EACH: Nested = nested("");
+
 impl Nested {
     /// Absent or null, it has the default of every field.
     pub(in crate::wire) const fn or_defaults(self) -> Self {

@@ -211,52 +211,19 @@ impl Number {
     }
 }
 
-impl Kind for f64 {
-    type Spec = Number;
-    const MANY: [&'static str; 2] = ["numbers", "numbers"];
-
-    fn read(node: &Node, place: &Place<'_>, spec: &Number) -> Option<Self> {
-        spec.read(node, place, false)
-    }
-
-    fn read_field(
-        reader: &mut ObjectReader<'_>,
-        name: &'static str,
-        spec: &Number,
-    ) -> Option<Self> {
-        spec.read_field(reader, name, false)
-    }
-
-    fn absent(reader: &mut ObjectReader<'_>, name: &'static str, spec: &Number) -> Option<Self> {
-        spec.absent(reader, name)
-    }
-
-    fn is_needed(spec: &Number) -> bool {
-        spec.preset == Preset::Needed
-    }
-
-    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_f64(*self)
-    }
-
-    fn describe(about: &str, spec: &Number) -> Value {
-        spec.describe(about, false)
-    }
-}
-
 /// Whole numbers are read as numbers, within the bounds that their type can hold.
-macro_rules! whole_numbers {
-    ($($whole:ty, $write:ident;)*) => {$(
-        impl Kind for $whole {
+macro_rules! numbers {
+    ($($number:ty, $whole:literal, $write:ident;)*) => {$(
+        impl Kind for $number {
             type Spec = Number;
             const MANY: [&'static str; 2] = ["numbers", "numbers"];
 
             fn read(node: &Node, place: &Place<'_>, spec: &Number) -> Option<Self> {
-                spec.read(node, place, true).map(|value| value as Self)
+                spec.read(node, place, $whole).map(|value| value as Self)
             }
 
             fn read_field(reader: &mut ObjectReader<'_>, name: &'static str, spec: &Number) -> Option<Self> {
-                spec.read_field(reader, name, true).map(|value| value as Self)
+                spec.read_field(reader, name, $whole).map(|value| value as Self)
             }
 
             fn absent(reader: &mut ObjectReader<'_>, name: &'static str, spec: &Number) -> Option<Self> {
@@ -272,14 +239,15 @@ macro_rules! whole_numbers {
             }
 
             fn describe(about: &str, spec: &Number) -> Value {
-                spec.describe(about, true)
+                spec.describe(about, $whole)
             }
         }
     )*};
 }
 
-whole_numbers! {
-    u32, serialize_u32;
+numbers! {
+    f64, false, serialize_f64;
+    u32, true, serialize_u32;
 }
 
 #[cfg(test)]

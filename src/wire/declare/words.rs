@@ -38,7 +38,7 @@ pub(in crate::wire) trait Choice: Copy + PartialEq + 'static {
 #[derive(Debug, Clone, Copy)]
 pub(in crate::wire) struct OneWord<C> {
     title: &'static str,
-    preset: Option<C>,
+    pub(in crate::wire) preset: Option<C>,
 }
 
 /// One of several words, that has to be given.
@@ -78,10 +78,6 @@ impl<C: Copy> OneWord<C> {
             let detail = format!("{place} is needed: one of {}.", C::words());
             place.wrong(Code::MissingField, detail, None)
         })
-    }
-
-    pub(in crate::wire) fn is_needed(&self) -> bool {
-        self.preset.is_none()
     }
 
     pub(in crate::wire) fn describe(&self, about: &str) -> Value
@@ -133,8 +129,8 @@ macro_rules! words {
                 spec.absent(reader, name)
             }
 
-            fn is_needed(spec: &Self::Spec) -> bool {
-                spec.is_needed()
+            fn usual(spec: &Self::Spec) -> Option<Self> {
+                spec.preset
             }
 
             fn write<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -172,12 +168,8 @@ impl Kind for bool {
         }
     }
 
-    fn absent(_: &mut ObjectReader<'_>, _: &'static str, spec: &Flag) -> Option<Self> {
+    fn usual(spec: &Flag) -> Option<Self> {
         Some(spec.preset)
-    }
-
-    fn is_needed(_: &Flag) -> bool {
-        false
     }
 
     fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

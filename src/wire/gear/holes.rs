@@ -6,10 +6,9 @@ use meshwright_engine::gear::{Hole, HolePattern, HoleShape};
 use serde::Serializer;
 use serde_json::{Value, json};
 
-use super::EACH;
 use crate::wire::declare::{
-    Declared, Kind, List, Named, Nested, Node, Number, ObjectReader, Place, absent, document, list,
-    nested, number, unless,
+    Declared, EACH, Kind, List, Named, Nested, Node, Number, Place, absent, document, list, nested,
+    number, unless,
 };
 use crate::wire::problem::{Code, FieldError};
 use crate::wire::units::from_mm;
@@ -83,12 +82,8 @@ impl Kind for HolesDocument {
         }
     }
 
-    fn absent(_: &mut ObjectReader<'_>, _: &'static str, _: &()) -> Option<Self> {
+    fn usual(_: &()) -> Option<Self> {
         Some(Self::None)
-    }
-
-    fn is_needed(_: &()) -> bool {
-        false
     }
 
     fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -127,14 +122,6 @@ impl HolesDocument {
             Self::None => &[],
             Self::One(pattern) => std::slice::from_ref(pattern),
             Self::Several(patterns) => patterns,
-        }
-    }
-
-    pub(super) fn pattern_mut(&mut self, index: usize) -> Option<&mut PatternDocument> {
-        match self {
-            Self::None => None,
-            Self::One(pattern) => Some(pattern),
-            Self::Several(patterns) => patterns.get_mut(index),
         }
     }
 
@@ -241,13 +228,6 @@ impl PatternDocument {
         match &self.slot {
             None => self.radius_mm.unwrap_or(0.0),
             Some(slot) => slot.width_mm,
-        }
-    }
-
-    pub(super) fn set_width(&mut self, value: f64) {
-        match &mut self.slot {
-            None => self.radius_mm = Some(value),
-            Some(slot) => slot.width_mm = value,
         }
     }
 

@@ -2,11 +2,11 @@
 
 use meshwright_engine::gear::{FaceEnds, LeadError, LeadModification};
 
-use crate::wire::declare::{List, Number, document, list, number, tagged, word, words};
+use crate::wire::declare::{document, number, tagged, word, words};
 use crate::wire::problem::{Code, FieldError};
 use crate::wire::units::{Side, from_mm, from_um, plain, rounded_inward, to_mm};
 
-use super::modification::MOST_ENTRIES;
+use super::modification::entries;
 
 words! {
     FaceEnds {
@@ -67,10 +67,6 @@ document! {
         /// The material taken off at each entry; linear between entries, the first and the last held beyond them. Negative adds.
         removed_um: Vec<f64> = entries("Material removed", number("", "um", -1_000.0, 1_000.0)),
     }
-}
-
-const fn entries(title: &'static str, each: Number) -> List<Number> {
-    list(title, each, MOST_ENTRIES)
 }
 
 impl LeadModificationDocument {

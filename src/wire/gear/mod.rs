@@ -35,8 +35,8 @@ pub use modification::{CrowningDocument, ModificationDocument, SlopeDocument, Ta
 pub use relief::{ReliefEnd, RootReliefDocument, StartDocument, StartWay, TipReliefDocument};
 
 use super::declare::{
-    Document as _, Errors, Nested, Node, ObjectReader, Place, absent, document, list, nested,
-    number, unless,
+    EACH, Errors, Kind as _, Node, ObjectReader, Place, absent, document, list, nested, number,
+    unless,
 };
 use super::units::{Side, from_mm, from_um, rounded_inward};
 
@@ -104,9 +104,6 @@ document! {
     }
 }
 
-/// An object that has to be there, of which there is nothing to say beside what it says itself.
-const EACH: Nested = nested("");
-
 /// The rounding of a rack's tip where none is given: `usual`, or the largest that fits between its flanks. In mm.
 fn usual_tip_radius(usual: f64, gear: &ObjectReader<'_>) -> f64 {
     let read = |name| gear.number(name);
@@ -149,8 +146,8 @@ impl GearDocument {
     /// The gear that `node` is, if it can be read.
     pub(super) fn at(node: &Node) -> Option<Self> {
         let errors = Errors::default();
-        let read = Self::read_whole(ObjectReader::new(node, Place::root(&errors))?)?;
-        (errors.count() == 0).then_some(read)
+        let read = Self::read(node, &Place::root(&errors), &EACH);
+        errors.settle(read).ok()
     }
 
     /// The radius from which the addendum counts, in mm: the reference radius plus the profile shift.

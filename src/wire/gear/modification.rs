@@ -2,7 +2,7 @@
 
 use meshwright_engine::gear::{ModificationData, TablePlaces};
 
-use super::relief::{Relief, RootReliefDocument, StartDocument, TipReliefDocument};
+use super::relief::{Relief, RootReliefDocument, TipReliefDocument};
 use crate::wire::declare::{List, Number, document, list, number, or_else, tagged};
 use crate::wire::problem::{Code, FieldError};
 use crate::wire::units::{Side, from_mm, from_um, plain, rounded_inward};
@@ -65,7 +65,8 @@ document! {
     }
 }
 
-const fn entries(title: &'static str, each: Number) -> List<Number> {
+/// Entries of a table, for each of which there is one in another list.
+pub(super) const fn entries(title: &'static str, each: Number) -> List<Number> {
     list(title, each, MOST_ENTRIES)
 }
 
@@ -75,15 +76,6 @@ impl ModificationDocument {
         match self {
             Self::TipRelief(relief) => Some(relief.relief()),
             Self::RootRelief(relief) => Some(relief.relief()),
-            _ => None,
-        }
-    }
-
-    /// Where it starts, if it is a relief.
-    pub(super) fn start_mut(&mut self) -> Option<&mut StartDocument> {
-        match self {
-            Self::TipRelief(relief) => Some(&mut relief.start),
-            Self::RootRelief(relief) => Some(&mut relief.start),
             _ => None,
         }
     }

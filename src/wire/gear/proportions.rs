@@ -96,7 +96,8 @@ impl GearDocument {
     ) -> Result<(), Fault> {
         // What was computed from the other numbers is so up to the last bits.
         const ROUNDING: f64 = 1e-12;
-        let value = self.value(field);
+        let number = self.found(field).number;
+        let (value, unit) = number.map_or((0.0, "mm"), |(value, number)| (value, number.unit));
         let bound = if value < least - ROUNDING * least.abs() {
             (least, Side::AtLeast)
         } else if value > most + ROUNDING * most.abs() {
@@ -104,7 +105,6 @@ impl GearDocument {
         } else {
             return Ok(());
         };
-        let unit = self.declared(field).map_or("mm", |field| field.spec.unit);
         let detail = format!("{} {unit} is outside {said}.", plain(value));
         Err(Fault::new(field, Code::OutOfRange, detail, Some(bound)))
     }

@@ -64,31 +64,13 @@ pub(super) struct Relief {
 
 impl TipReliefDocument {
     pub(super) fn relief(&self) -> Relief {
-        let &Self {
-            amount_um,
-            shape,
-            start,
-        } = self;
-        Relief {
-            amount_um,
-            shape,
-            start,
-        }
+        Relief::of(self.amount_um, self.shape, self.start)
     }
 }
 
 impl RootReliefDocument {
     pub(super) fn relief(&self) -> Relief {
-        let &Self {
-            amount_um,
-            shape,
-            start,
-        } = self;
-        Relief {
-            amount_um,
-            shape,
-            start,
-        }
+        Relief::of(self.amount_um, self.shape, self.start)
     }
 }
 
@@ -246,6 +228,14 @@ impl Kind for StartDocument {
 }
 
 impl Relief {
+    fn of(amount_um: f64, shape: ReliefShape, start: StartDocument) -> Self {
+        Self {
+            amount_um,
+            shape,
+            start,
+        }
+    }
+
     /// Whether it takes anything off.
     pub(super) fn is_there(&self) -> bool {
         self.amount_um != 0.0

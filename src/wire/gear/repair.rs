@@ -55,8 +55,8 @@ impl GearDocument {
                     faults.push(fault.clone());
                 }
             }
-            match cure {
-                Some(value) => repaired.set(fault.field, value),
+            match cure.and_then(|value| repaired.with_value(fault.field, value)) {
+                Some(gear) => repaired = gear,
                 None => break,
             }
         }
@@ -77,21 +77,17 @@ impl GearDocument {
     }
 
     pub(super) fn told(&self, pointer: &str, faults: Vec<Fault>) -> Vec<FieldError> {
-        faults
-            .into_iter()
-            .map(|fault| {
-                let advice = fault.cure.map_or_else(String::new, |cure| {
-                    format!(
-                        " {} would do.",
-                        self.declared(fault.field)
-                            .map_or_else(|| plain(cure), |field| spoken(cure, field.spec.unit))
-                    )
-                });
-                let place = format!("{pointer}/{}", self.pointer_within(fault.field));
-                FieldError::new(place, fault.code, format!("{}{advice}", fault.detail))
-                    .nearest(fault.cure)
-            })
-            .collect()
+        let told = faults.into_iter().map(|fault| {
+            let found = self.found(fault.field);
+            let unit = found.number.map_or("1", |(_, number)| number.unit);
+            let advice = fault
+                .cure
+                .map(|cure| format!(" {} would do.", spoken(cure, unit)));
+            let detail = fault.detail + &advice.unwrap_or_default();
+            let place = format!("{pointer}/{}", found.pointer);
+            FieldError::new(place, fault.code, detail).nearest(fault.cure)
+        });
+        told.collect()
     }
 }
 

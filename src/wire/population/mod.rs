@@ -1,9 +1,10 @@
 //! A population: members of a design as they are made, each drawn from laws.
 //!
-//! A member is known by its number alone: `document` says what is drawn, `Population` draws it, and `results` is what the results of
+//! A member is known by its number alone: `document` says what is drawn, and `reading` what is wrong with it; `Population` draws it, and `results` is what the results of
 //! the members tell of all.
 
 mod document;
+mod reading;
 mod results;
 #[cfg(test)]
 mod tests;
@@ -83,6 +84,9 @@ enum Source<'a> {
 
 const GEARS: [Member; 2] = [Member::Driving, Member::Driven];
 
+/// The gear's number among two.
+const _: () = assert!(Member::Driving as usize == 0 && Member::Driven as usize == 1);
+
 impl Population {
     /// The number of members.
     pub(super) fn size(&self) -> usize {
@@ -124,20 +128,13 @@ impl Population {
                 Member::Driven => &mut pair.driven,
             };
             let made = document.clone().without_deviations();
-            match made.to_gear(&format!("/pair/{gear}"), helix) {
-                Ok(made) => {
-                    let gauge = Gauge::of(&made, accuracy);
-                    let mut teeth = self.teeth(member, gear, accuracy, &gauge);
-                    if method.sees_faces() {
-                        teeth.lead_slope = self.lead_slopes(member, gear, accuracy, &gauge);
-                    }
-                    document.set_deviations(DeviationsDocument::of(&teeth));
-                }
-                Err(faults) => {
-                    faults.into_iter().for_each(|fault| errors.push(fault));
-                    return None;
-                }
+            let made = errors.report(made.to_gear(&format!("/pair/{gear}"), helix))?;
+            let gauge = Gauge::of(&made, accuracy);
+            let mut teeth = self.teeth(member, gear, accuracy, &gauge);
+            if method.sees_faces() {
+                teeth.lead_slope = self.lead_slopes(member, gear, accuracy, &gauge);
             }
+            document.set_deviations(DeviationsDocument::of(&teeth));
         }
         Some(())
     }

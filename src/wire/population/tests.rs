@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 use super::*;
 use crate::wire::results::STUB;
 use crate::wire::study_table::{RowState, Summary};
+use crate::wire::testing::{self, and, refused};
 use crate::wire::{Code, Design, Problem, Results, Status, Study};
 
 fn base() -> Value {
@@ -31,12 +32,8 @@ fn study(population: Value) -> Study {
     parse(&document(population)).expect("a population")
 }
 
-fn refused(document: &Value) -> Vec<(String, Code, Option<f64>)> {
-    let problem = parse(document).expect_err("refused");
-    let errors = problem.errors.iter();
-    errors
-        .map(|error| (error.pointer.clone(), error.code, error.nearest))
-        .collect()
+fn refusal(document: &Value) -> Vec<(String, Code, Option<f64>)> {
+    testing::told(parse(document).expect_err("refused"))
 }
 
 fn distance() -> Value {
@@ -174,125 +171,51 @@ fn members_follow_their_laws() {
 fn what_cannot_be_drawn_is_refused_with_its_place_and_the_nearest() {
     let vary = |law: Value| document(json!({ "size": 10, "vary": [law] }));
     let field = |path: &str| vary(json!({ "path": path, "kind": "uniform", "low": 1, "high": 2 }));
-    for (document, expected) in [
-        (
-            document(json!({ "size": 10 })),
-            vec![("/population/vary", Code::MissingField, None)],
-        ),
-        (
-            document(json!({ "vary": [distance()] })),
-            vec![("/population/size", Code::MissingField, None)],
-        ),
-        (
-            document(json!({ "size": 1, "vary": [distance()] })),
-            vec![("/population/size", Code::OutOfRange, Some(2.0))],
-        ),
-        (
-            document(json!({ "size": 1_000_000, "vary": [distance()] })),
-            vec![("/population/size", Code::OutOfRange, Some(100_000.0))],
-        ),
-        (
-            document(json!({ "size": 10, "vary": [distance()], "sampling": "halton" })),
-            vec![("/population/sampling", Code::WrongType, None)],
-        ),
-        (
-            document(json!({ "size": 10, "vary": [distance(), distance()] })),
-            vec![("/population/vary/1/path", Code::OutOfRange, None)],
-        ),
-        (
-            document(json!({ "size": 10, "accuracy": { "driven": { "iso_1328_class": 12 } } })),
-            vec![(
-                "/population/accuracy/driven/iso_1328_class",
-                Code::OutOfRange,
-                Some(11.0),
-            )],
-        ),
-        (
-            document(json!({ "size": 10, "accuracy": {} })),
-            vec![("/population/vary", Code::MissingField, None)],
-        ),
-        (
-            field("/pair/driven/blank/hole/radius_mm"),
-            vec![("/population/vary/0/path", Code::UnknownField, None)],
-        ),
-        (
-            field("/method"),
-            vec![("/population/vary/0/path", Code::WrongType, None)],
-        ),
-        (
-            field("/pair/driven"),
-            vec![("/population/vary/0/path", Code::WrongType, None)],
-        ),
-        (
-            field("/output_torques_n_m/3"),
-            vec![("/population/vary/0/path", Code::UnknownField, None)],
-        ),
+    let path = "/population/vary/0/path";
+    let of_distance = |law: Value| vary(and(json!({ "path": "/pair/center_distance_mm" }), &law));
+    for (document, place, code, nearest) in refused! {
+        document(json!({ "size": 10 })) => "/population/vary", MissingField;
+        document(json!({ "vary": [distance()] })) => "/population/size", MissingField;
+        document(json!({ "size": 1, "vary": [distance()] })) => "/population/size", OutOfRange, 2.0;
+        document(json!({ "size": 1_000_000, "vary": [distance()] })) => "/population/size", OutOfRange, 100_000.0;
+        document(json!({ "size": 10, "vary": [distance()], "sampling": "halton" })) => "/population/sampling", WrongType;
+        document(json!({ "size": 10, "vary": [distance(), distance()] })) => "/population/vary/1/path", OutOfRange;
+        document(json!({ "size": 10, "accuracy": { "driven": { "iso_1328_class": 12 } } }))
+            => "/population/accuracy/driven/iso_1328_class", OutOfRange, 11.0;
+        document(json!({ "size": 10, "accuracy": {} })) => "/population/vary", MissingField;
+        field("/pair/driven/blank/hole/radius_mm") => path, UnknownField;
+        field("/method") => path, WrongType;
+        field("/pair/driven") => path, WrongType;
+        field("/output_torques_n_m/3") => path, UnknownField;
         // There is no relief, and one has more than an amount.
-        (
-            field("/pair/driven/tip_relief/amount_um"),
-            vec![("/population/vary/0/path", Code::MissingField, None)],
-        ),
+        field("/pair/driven/tip_relief/amount_um") => path, MissingField;
         // No number in the middle of the law would be taken.
-        (
-            vary(
-                json!({ "path": "/pair/driven/material/poisson_ratio", "kind": "uniform", "low": 1, "high": 3 }),
-            ),
-            vec![("/population/vary/0/path", Code::OutOfRange, Some(0.49))],
-        ),
-        (
-            vary(
-                json!({ "path": "/pair/center_distance_mm", "kind": "uniform", "low": 41, "high": 40 }),
-            ),
-            vec![("/population/vary/0/high", Code::OutOfRange, None)],
-        ),
-        (
-            vary(
-                json!({ "path": "/pair/center_distance_mm", "kind": "normal", "mean": 41, "standard_deviation": 1, "low": 39, "high": 40 }),
-            ),
-            vec![("/population/vary/0/mean", Code::OutOfRange, Some(40.0))],
-        ),
-        (
-            vary(
-                json!({ "path": "/pair/center_distance_mm", "kind": "triangular", "low": 39, "mode": 38, "high": 40 }),
-            ),
-            vec![("/population/vary/0/mode", Code::OutOfRange, Some(39.0))],
-        ),
-        (
-            vary(
-                json!({ "path": "/pair/center_distance_mm", "kind": "normal", "mean": 41, "standard_deviation": 0 }),
-            ),
-            vec![(
-                "/population/vary/0/standard_deviation",
-                Code::OutOfRange,
-                Some(1e-12),
-            )],
-        ),
-        (
-            vary(json!({ "path": "/pair/center_distance_mm", "kind": "lognormal" })),
-            vec![("/population/vary/0/kind", Code::WrongType, None)],
-        ),
-        (
-            vary(
-                json!({ "path": "/pair/center_distance_mm", "kind": "uniform", "low": 40, "high": 41, "mean": 40 }),
-            ),
-            vec![("/population/vary/0/mean", Code::UnknownField, None)],
-        ),
-    ] {
-        let expected: Vec<_> = expected
-            .into_iter()
-            .map(|(place, code, nearest)| (place.to_owned(), code, nearest))
-            .collect();
-        assert_eq!(refused(&document), expected, "{document}");
+        vary(json!({ "path": "/pair/driven/material/poisson_ratio", "kind": "uniform", "low": 1, "high": 3 }))
+            => path, OutOfRange, 0.49;
+        of_distance(json!({ "kind": "uniform", "low": 41, "high": 40 })) => "/population/vary/0/high", OutOfRange;
+        of_distance(json!({ "kind": "normal", "mean": 41, "standard_deviation": 1, "low": 39, "high": 40 }))
+            => "/population/vary/0/mean", OutOfRange, 40.0;
+        of_distance(json!({ "kind": "triangular", "low": 39, "mode": 38, "high": 40 })) => "/population/vary/0/mode", OutOfRange, 39.0;
+        of_distance(json!({ "kind": "normal", "mean": 41, "standard_deviation": 0 }))
+            => "/population/vary/0/standard_deviation", OutOfRange, 1e-12;
+        of_distance(json!({ "kind": "lognormal" })) => "/population/vary/0/kind", WrongType;
+        of_distance(json!({ "kind": "uniform", "low": 40, "high": 41, "mean": 40 })) => "/population/vary/0/mean", UnknownField;
+    } {
+        assert_eq!(
+            refusal(&document),
+            [(place.to_owned(), code, nearest)],
+            "{document}"
+        );
     }
     let mut both = document(json!({ "size": 10, "vary": [distance()] }));
     both["designs"] = json!([{ "label": "a" }]);
-    assert_eq!(refused(&both)[0].0, "/population");
+    assert_eq!(refusal(&both)[0].0, "/population");
     let mut measured =
         document(json!({ "size": 10, "accuracy": { "driving": { "iso_1328_class": 6 } } }));
     measured["base"]["pair"]["driving"]["tooth_deviations"] =
         json!({ "eccentricity": { "amount_um": 3 } });
     assert_eq!(
-        refused(&measured),
+        refusal(&measured),
         [(
             "/population/accuracy/driving".to_owned(),
             Code::ConflictingFields,
@@ -303,7 +226,7 @@ fn what_cannot_be_drawn_is_refused_with_its_place_and_the_nearest() {
         json!({ "size": 10, "accuracy": { "driving": { "iso_1328_class": 6 } },
         "vary": [{ "path": "/pair/driving/tooth_deviations/eccentricity/amount_um", "kind": "uniform", "low": 1, "high": 2 }] }),
     );
-    assert_eq!(refused(&drawn)[0].1, Code::ConflictingFields);
+    assert_eq!(refusal(&drawn)[0].1, Code::ConflictingFields);
 }
 
 /// A row with results in which the peak-to-peak value is this.

@@ -4,72 +4,48 @@ use std::borrow::Cow;
 
 use meshwright_engine::analysis::Analysis;
 use meshwright_engine::analysis::ErrorEstimate;
-use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
-use utoipa::ToSchema;
 
+use super::all;
 use super::unseen::does_not_see;
+use crate::wire::declare::answer;
 use crate::wire::submission::{SOLVER_VERSION, Submission};
 use crate::wire::units::to_um;
 
-/// How well the equations are satisfied, what they are, and what they leave out.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-#[schema(as = Evidence, title = "Evidence")]
-pub struct EvidenceDocument {
-    /// The version of the solver.
-    pub solver_version: Cow<'static, str>,
-    /// SHA-256 of what decides the result: the filled-in submission without its tags, and the solver's version.
-    pub input_hash: String,
-    /// Unknowns of both gears before condensation; zero for formulas.
-    pub degrees_of_freedom: u64,
-    /// The largest difference between the output torque by cross products and the one asked for, over the latter.
-    pub equilibrium_residual: f64,
-    /// The largest product of contact force and gap, over load times largest transmission error.
-    pub complementarity_residual: f64,
-    /// The largest penetration left, in um.
-    pub largest_penetration_um: f64,
-    /// Iterations of the contact solver over all positions and torques.
-    pub contact_iterations: u64,
-    /// The largest difference of the projected decomposition to exact solutions at a few positions of each torque where it is least
-    /// sure, in um; absent for other methods.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub projection_error_um: Option<f64>,
-    /// How the tangent stiffness was obtained.
-    pub stiffness_rule: String,
-    /// How it was computed, with every default filled in.
-    #[schema(value_type = crate::wire::resolution::ResolutionDocument)]
-    pub resolution: Map<String, Value>,
-    /// What the numbers mean.
-    pub definitions: Vec<Definition>,
-    /// What the method leaves out.
-    pub does_not_see: Vec<Cow<'static, str>>,
-    /// What a second grid level changes, where it was asked for.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub error_estimate: Option<ErrorEstimateDocument>,
-}
-
-impl EvidenceDocument {
-    pub(super) fn of(submission: &Submission, analysis: &Analysis) -> Self {
+answer! {
+    /// How well the equations are satisfied, what they are, and what they leave out.
+    pub struct EvidenceDocument as Evidence, "Evidence" of (submission: &Submission, analysis: &Analysis) with {
         let evidence = &analysis.evidence;
         let unseen = does_not_see(submission.case(), submission.forces());
-        Self {
-            solver_version: SOLVER_VERSION.into(),
-            input_hash: submission.input_hash(),
-            degrees_of_freedom: evidence.degrees_of_freedom,
-            equilibrium_residual: evidence.equilibrium_residual,
-            complementarity_residual: evidence.complementarity_residual,
-            largest_penetration_um: to_um(evidence.largest_penetration),
-            contact_iterations: evidence.contact_iterations,
-            projection_error_um: evidence.projection_error.map(to_um),
-            stiffness_rule: submission.resolution().stiffness_in_words(),
-            resolution: resolution_of(submission),
-            definitions: DEFINITIONS.map(Definition::of).into(),
-            does_not_see: unseen.into_iter().map(Cow::from).collect(),
-            error_estimate: evidence
-                .error_estimate
-                .as_ref()
-                .map(ErrorEstimateDocument::of),
-        }
+    } {
+        /// The version of the solver.
+        solver_version: Cow<'static, str> = SOLVER_VERSION.into(),
+        /// SHA-256 of what decides the result: the filled-in submission without its tags, and the solver's version.
+        input_hash: String = submission.input_hash(),
+        /// Unknowns of both gears before condensation; zero for formulas.
+        degrees_of_freedom: u64 = evidence.degrees_of_freedom,
+        /// The largest difference between the output torque by cross products and the one asked for, over the latter.
+        equilibrium_residual: f64 = evidence.equilibrium_residual,
+        /// The largest product of contact force and gap, over load times largest transmission error.
+        complementarity_residual: f64 = evidence.complementarity_residual,
+        /// The largest penetration left, in um.
+        largest_penetration_um: f64 = to_um(evidence.largest_penetration),
+        /// Iterations of the contact solver over all positions and torques.
+        contact_iterations: u64 = evidence.contact_iterations,
+        /// The largest difference of the projected decomposition to exact solutions at a few positions of each torque where it is least
+        /// sure, in um; absent for other methods.
+        projection_error_um?: f64 = evidence.projection_error.map(to_um),
+        /// How the tangent stiffness was obtained.
+        stiffness_rule: String = submission.resolution().stiffness_in_words(),
+        /// How it was computed, with every default filled in.
+        #[schema(value_type = crate::wire::resolution::ResolutionDocument)]
+        resolution: Map<String, Value> = resolution_of(submission),
+        /// What the numbers mean.
+        definitions: Vec<Definition> = all(&DEFINITIONS, Definition::of),
+        /// What the method leaves out.
+        does_not_see: Vec<Cow<'static, str>> = unseen.into_iter().map(Cow::from).collect(),
+        /// What a second grid level changes, where it was asked for.
+        error_estimate?: ErrorEstimateDocument = evidence.error_estimate.as_ref().map(ErrorEstimateDocument::of),
     }
 }
 
@@ -89,20 +65,13 @@ fn resolution_of(submission: &Submission) -> Map<String, Value> {
     }
 }
 
-/// A term and what it means here.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[schema(title = "Definition")]
-pub struct Definition {
-    /// The term.
-    pub term: Cow<'static, str>,
-    /// What it means.
-    pub meaning: Cow<'static, str>,
-}
-
-impl Definition {
-    fn of((term, meaning): (&'static str, &'static str)) -> Self {
-        let [term, meaning] = [term, meaning].map(Cow::from);
-        Self { term, meaning }
+answer! {
+    /// A term and what it means here.
+    pub struct Definition as Definition, "Definition" of ((term, meaning): &(&'static str, &'static str)) {
+        /// The term.
+        term: Cow<'static, str> = Cow::from(*term),
+        /// What it means.
+        meaning: Cow<'static, str> = Cow::from(*meaning),
     }
 }
 
@@ -134,40 +103,30 @@ const DEFINITIONS: [(&str, &str); 7] = [
     ),
 ];
 
-/// What a second grid level changes, the largest over the torques.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-#[schema(as = ErrorEstimate, title = "Error estimate")]
-pub struct ErrorEstimateDocument {
-    /// In the mean transmission error, in um.
-    pub transmission_error_mean_um: f64,
-    /// In the peak-to-peak transmission error, in um.
-    pub transmission_error_peak_to_peak_um: f64,
-    /// In the mean tangent stiffness, in N/m.
-    pub mesh_stiffness_tangent_mean_n_per_m: f64,
-}
-
-impl ErrorEstimateDocument {
-    fn of(estimate: &ErrorEstimate) -> Self {
-        Self {
-            transmission_error_mean_um: to_um(estimate.mean),
-            transmission_error_peak_to_peak_um: to_um(estimate.peak_to_peak),
-            mesh_stiffness_tangent_mean_n_per_m: estimate.mean_stiffness,
-        }
+answer! {
+    /// What a second grid level changes, the largest over the torques.
+    pub struct ErrorEstimateDocument as ErrorEstimate, "Error estimate" of (estimate: &ErrorEstimate) {
+        /// In the mean transmission error, in um.
+        transmission_error_mean_um: f64 = to_um(estimate.mean),
+        /// In the peak-to-peak transmission error, in um.
+        transmission_error_peak_to_peak_um: f64 = to_um(estimate.peak_to_peak),
+        /// In the mean tangent stiffness, in N/m.
+        mesh_stiffness_tangent_mean_n_per_m: f64 = estimate.mean_stiffness,
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wire::examples;
+    use crate::wire::testing::{example, parse, with};
 
     #[test]
     fn what_is_left_to_a_gear_s_own_default_is_left_out_of_the_evidence() {
-        let mut examples = examples().iter();
-        let example = examples.find(|example| example.name == "interface-radii");
-        let mut document: Value = serde_json::from_str(example.expect("ships").json).expect("JSON");
-        document["resolution"]["interface_radius_mm"]["driving"] = Value::Null;
-        let submission = Submission::parse(document.to_string().as_bytes()).expect("valid");
+        let own = (
+            "/resolution/interface_radius_mm/driving",
+            serde_json::Value::Null,
+        );
+        let submission = parse(&with(example("interface-radii"), &[own])).expect("valid");
         let resolution = resolution_of(&submission);
         let radii = resolution["interface_radius_mm"]
             .as_object()

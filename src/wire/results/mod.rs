@@ -15,8 +15,6 @@ use std::borrow::Cow;
 
 use meshwright_engine::analysis::Analysis;
 use meshwright_engine::analysis::forces::Forces;
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
 
 pub use curve::{
     CurveDocument, FaceDocument, LeadCureDocument, LoadShareDocument, StatisticsDocument,
@@ -33,57 +31,41 @@ pub use forces::{
 pub use spectrum::{NamedOrderDocument, OrderKindName, SpectrumDocument};
 pub use stress::{GearPeakStress, GearStressDocument, PeakStressDocument, StressDocument};
 
+use super::declare::answer;
 use super::geometry::{Frequencies, PairGeometry};
 use super::problem::{Code, Problem};
 use super::submission::Submission;
 use super::units::{known, rounded_json};
 use super::warning::WarningDocument;
 
-/// What a submission comes to. It is bit-identical for the same input and version.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-#[schema(title = "Results")]
-pub struct Results {
-    /// How the curves were computed.
-    #[schema(schema_with = crate::wire::method_schema)]
-    pub method: Cow<'static, str>,
-    /// The derived geometry.
-    pub pair: PairGeometry,
-    /// The frequencies at the speed given; absent without a speed.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub frequencies: Option<Frequencies>,
-    /// What to know beside the numbers.
-    #[serde(deserialize_with = "known")]
-    pub warnings: Vec<WarningDocument>,
-    /// One curve for each output torque, in the order of the submission.
-    pub curves: Vec<CurveDocument>,
-    /// The force over mesh position and approach; absent unless the submission asks for it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub force_table: Option<ForceTableDocument>,
-    /// How good the numbers are, and what they mean.
-    pub evidence: EvidenceDocument,
+answer! {
+    /// What a submission comes to. It is bit-identical for the same input and version.
+    pub struct Results as Results, "Results"
+    of (submission: &Submission, analysis: &Analysis, forces: Option<&Forces>) with {
+        let case = submission.case();
+        let dynamics = |i: usize| forces.and_then(|forces| forces.dynamics.get(i));
+    } {
+        /// How the curves were computed.
+        #[schema(schema_with = crate::wire::method_schema)]
+        method: Cow<'static, str> = submission.method().into(),
+        /// The derived geometry.
+        pair: PairGeometry = PairGeometry::of(case),
+        /// The frequencies at the speed given; absent without a speed.
+        frequencies?: Frequencies = Frequencies::of_case(case),
+        /// What to know beside the numbers.
+        #[serde(deserialize_with = "known")]
+        warnings: Vec<WarningDocument> = all(&analysis.warnings, WarningDocument::of),
+        /// One curve for each output torque, in the order of the submission.
+        curves: Vec<CurveDocument> =
+            analysis.curves.iter().enumerate().map(|(i, curve)| CurveDocument::of(case, curve, dynamics(i))).collect(),
+        /// The force over mesh position and approach; absent unless the submission asks for it.
+        force_table?: ForceTableDocument = forces.map(|forces| ForceTableDocument::of(&forces.table)),
+        /// How good the numbers are, and what they mean.
+        evidence: EvidenceDocument = EvidenceDocument::of(submission, analysis),
+    }
 }
 
 impl Results {
-    /// The results of `submission`.
-    pub fn new(submission: &Submission, analysis: &Analysis, forces: Option<&Forces>) -> Self {
-        let case = submission.case();
-        let dynamics = |i: usize| forces.and_then(|forces| forces.dynamics.get(i));
-        Self {
-            method: submission.method().into(),
-            pair: PairGeometry::of(case),
-            frequencies: Frequencies::of(case),
-            warnings: analysis.warnings.iter().map(WarningDocument::of).collect(),
-            curves: analysis
-                .curves
-                .iter()
-                .enumerate()
-                .map(|(i, curve)| CurveDocument::of(case, curve, dynamics(i)))
-                .collect(),
-            force_table: forces.map(|forces| ForceTableDocument::of(&forces.table)),
-            evidence: EvidenceDocument::of(submission, analysis),
-        }
-    }
-
     /// Reads a document that this version wrote, or another one: members that it does not know are passed over.
     ///
     /// # Errors
@@ -109,4 +91,8 @@ pub(crate) const STUB: &str = include_str!("../../../tests/it/results.json");
 
 fn each(values: &[f64], convert: impl Fn(f64) -> f64) -> Vec<f64> {
     values.iter().copied().map(convert).collect()
+}
+
+fn all<'a, F, T>(found: &'a [F], tell: impl Fn(&'a F) -> T) -> Vec<T> {
+    found.iter().map(tell).collect()
 }

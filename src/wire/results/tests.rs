@@ -12,17 +12,13 @@ use meshwright_engine::run::Run;
 use serde_json::{Value, json};
 
 use super::*;
+use crate::wire::testing::{and, example, parse, with};
 use crate::wire::warning::WarningCode;
 use crate::wire::{examples, solve};
 
 fn submission(name: &str, speed: Option<f64>) -> Submission {
-    let example = examples()
-        .iter()
-        .find(|example| example.name == name)
-        .expect("ships");
-    let mut document: Value = serde_json::from_str(example.json).expect("JSON");
-    document["driving_speed_rpm"] = json!(speed);
-    Submission::parse(document.to_string().as_bytes()).expect("valid")
+    let turned = with(example(name), &[("/driving_speed_rpm", json!(speed))]);
+    parse(&turned).expect("valid")
 }
 
 /// An analysis whose curves are a mean and two cosines, with digits down to the last bit as a real one has.
@@ -126,7 +122,7 @@ fn peaks(stresses: &[f64]) -> Vec<PeakStress> {
 #[test]
 fn the_document_speaks_the_units_of_its_names() {
     let submission = submission("test-case-2", Some(600.0));
-    let text = Results::new(&submission, &analysis(submission.case()), None)
+    let text = Results::of(&submission, &analysis(submission.case()), None)
         .to_json()
         .expect("finite");
     let document: Value = serde_json::from_str(&text).expect("JSON");
@@ -194,7 +190,7 @@ fn the_document_speaks_the_units_of_its_names() {
 #[test]
 fn all_lists_of_a_curve_have_one_entry_a_position() {
     let submission = submission("standard-pair", None);
-    let text = Results::new(&submission, &analysis(submission.case()), None)
+    let text = Results::of(&submission, &analysis(submission.case()), None)
         .to_json()
         .expect("finite");
     let document: Value = serde_json::from_str(&text).expect("JSON");
@@ -220,7 +216,7 @@ fn all_lists_of_a_curve_have_one_entry_a_position() {
 #[test]
 fn the_results_of_case_3_stay_below_a_megabyte_and_a_half() {
     let submission = submission("test-case-3", Some(1000.0));
-    let text = Results::new(&submission, &analysis(submission.case()), None)
+    let text = Results::of(&submission, &analysis(submission.case()), None)
         .to_json()
         .expect("finite");
     assert!(text.len() < 1_500_000, "{} bytes", text.len());
@@ -230,7 +226,7 @@ fn the_results_of_case_3_stay_below_a_megabyte_and_a_half() {
 fn the_same_numbers_give_the_same_bytes_and_a_number_that_is_not_finite_gives_none() {
     let submission = submission("test-case-2", None);
     let mut analysis = analysis(submission.case());
-    let write = |analysis: &Analysis| Results::new(&submission, analysis, None).to_json();
+    let write = |analysis: &Analysis| Results::of(&submission, analysis, None).to_json();
     assert_eq!(write(&analysis), write(&analysis));
     analysis.curves[0].mesh_stiffness_secant[3] = f64::INFINITY;
     assert_eq!(
@@ -241,11 +237,7 @@ fn the_same_numbers_give_the_same_bytes_and_a_number_that_is_not_finite_gives_no
 
 #[test]
 fn an_interface_radius_that_is_left_to_one_gear_s_default_has_results() {
-    let example = examples()
-        .iter()
-        .find(|example| example.name == "test-case-2")
-        .expect("ships");
-    let mut document: Value = serde_json::from_str(example.json).expect("JSON");
+    let mut document = example("test-case-2");
     for radii in [
         serde_json::json!({ "driving": null }),
         serde_json::json!({ "driving": null, "driven": 44.5 }),
@@ -253,8 +245,8 @@ fn an_interface_radius_that_is_left_to_one_gear_s_default_has_results() {
         serde_json::json!({}),
     ] {
         document["resolution"]["interface_radius_mm"] = radii;
-        let submission = Submission::parse(document.to_string().as_bytes()).expect("valid");
-        let written = Results::new(&submission, &analysis(submission.case()), None).to_json();
+        let submission = parse(&document).expect("valid");
+        let written = Results::of(&submission, &analysis(submission.case()), None).to_json();
         let written: Value = serde_json::from_str(&written.expect("finite")).expect("JSON");
         let radii = &written["evidence"]["resolution"]["interface_radius_mm"];
         assert!(radii.get("driving").is_none(), "{radii}");
@@ -275,8 +267,8 @@ fn the_results_of_every_example_read_back_to_the_same_bytes() {
         let mut document: Value = serde_json::from_str(example.json).expect("JSON");
         document["driving_speed_rpm"] = json!(600.0);
         // Those that are no submission are studies.
-        if let Ok(submission) = Submission::parse(document.to_string().as_bytes()) {
-            let results = Results::new(&submission, &analysis(submission.case()), None);
+        if let Ok(submission) = parse(&document) {
+            let results = Results::of(&submission, &analysis(submission.case()), None);
             reads_back(&results.to_json().expect("finite"));
             read += 1;
         }
@@ -287,11 +279,7 @@ fn the_results_of_every_example_read_back_to_the_same_bytes() {
 #[test]
 fn computed_results_read_back_with_all_that_they_may_have() {
     let computed = |name: &str, change: Value| {
-        let example = examples().iter().find(|example| example.name == name);
-        let mut document: Value = serde_json::from_str(example.expect("ships").json).expect("JSON");
-        let changes = change.as_object().expect("an object").clone();
-        document.as_object_mut().expect("an object").extend(changes);
-        let submission = Submission::parse(document.to_string().as_bytes()).expect("valid");
+        let submission = parse(&and(example(name), &change)).expect("valid");
         let results = solve(&submission, &Library::default(), &Run::unattended());
         let results = results.expect("results");
         reads_back(&results.to_json().expect("finite"))

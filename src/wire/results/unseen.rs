@@ -142,15 +142,11 @@ fn formulas_do_not_see(formulas: Formulas) -> Vec<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wire::{Submission, examples};
+    use crate::wire::testing::submission;
 
     #[test]
     fn the_load_distribution_says_what_each_of_its_formulas_does_not_see() {
-        let example = examples()
-            .iter()
-            .find(|example| example.name == "test-case-2");
-        let json = example.expect("ships").json;
-        let any = Submission::parse(json.as_bytes()).expect("valid");
+        let any = submission("test-case-2");
         let unseen = |tooth, body| {
             let mut case = any.case().clone();
             case.method = Method::LoadDistribution;

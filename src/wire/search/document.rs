@@ -1,15 +1,17 @@
 //! The document of a search, and what is wrong with one.
 
+use std::sync::LazyLock;
+
 use meshwright_engine::analysis::Method;
 use meshwright_search::space::Axis;
 
-use super::{Condition, Goal, MOST_EVALUATIONS, Measure, Search, Torques, Variable};
+use super::{Condition, Goal, MOST_EVALUATIONS, Measure, OF_POPULATION, Search, Torques, Variable};
 use crate::wire::declare::{
-    Choice as _, Errors, Kind, Nested, Node, Number, Place, Text, absent, document, list, nested,
+    Choice as _, EACH, Errors, Kind, Node, Number, Place, Text, absent, document, list, nested,
     number, or_else, text, word, words,
 };
 use crate::wire::draw::SEED;
-use crate::wire::pointer::{NumberKind, Pointer};
+use crate::wire::pointer::{NumberKind, Pointer, Schema};
 use crate::wire::population::{Population, PopulationDocument};
 use crate::wire::problem::Code;
 use crate::wire::study::MOST_DESIGNS;
@@ -21,8 +23,6 @@ const MOST: usize = 50;
 
 /// A field of the submission, or of the population.
 const PATH: Text = text("Path", 300);
-
-const EACH: Nested = nested("");
 
 words! {
     Torques {
@@ -259,10 +259,26 @@ fn variables(
     variables
 }
 
+static POPULATION: LazyLock<Schema> =
+    LazyLock::new(|| Schema::of::<PopulationDocument>("a population"));
+
+/// What kind of number the field takes that is a variable: one of the submission, or one of the population.
+fn number_kind(pointer: &Pointer) -> Result<NumberKind, (Code, String)> {
+    match pointer.steps() {
+        // The members are what designs are compared by.
+        [first, only] if first == OF_POPULATION && (only == "size" || only == "seed") => {
+            let detail = format!("{} has to be the same for all designs.", pointer.text());
+            Err((Code::OutOfRange, detail))
+        }
+        [first, rest @ ..] if first == OF_POPULATION => pointer.number_kind_in(&POPULATION, rest),
+        _ => pointer.number_kind(),
+    }
+}
+
 impl VariableDocument {
     fn made(&self, place: &Place<'_>) -> Option<Variable> {
         let named = Pointer::parse(&self.path).and_then(|pointer| {
-            let kind = pointer.number_kind_of_variable()?;
+            let kind = number_kind(&pointer)?;
             Ok((pointer, kind == NumberKind::Whole))
         });
         let (path, whole) = match named {

@@ -297,10 +297,9 @@ impl Search {
             }
         }
         let place = Place::root(&errors).of(OF_POPULATION);
-        match Population::read(&node, Some(base), &place, &errors) {
-            Some(population) if errors.count() == 0 => Ok(Some(population)),
-            _ => Err(errors.into_errors()),
-        }
+        let population = Population::read(&node, Some(base), &place, &errors);
+        let population = errors.settle(population);
+        population.map(Some).map_err(|problem| problem.errors)
     }
 
     /// Every variable at an end of its range, the others in the middle of theirs: the variable, the name of the end, and the changes.

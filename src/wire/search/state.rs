@@ -4,12 +4,12 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
-use crate::wire::problem::Problem;
+use crate::wire::problem::{Code, Problem};
 use crate::wire::results::ErrorEstimateDocument;
 
 /// How far a search has come, as of its last generation that has ended.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-#[schema(as = SearchState, title = "Search progress")]
+#[schema(as = SearchProgress, title = "Search progress")]
 pub struct SearchState {
     /// Designs that have been looked at.
     pub evaluations: u64,
@@ -51,7 +51,7 @@ pub struct FoundDesign {
 
 /// A generation of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
-#[schema(title = "Generation")]
+#[schema(as = Generation, title = "Generation")]
 pub struct GenerationState {
     /// The least of the first goal among all designs up to its end that keep every condition; null while there are none.
     pub best: Option<f64>,
@@ -61,9 +61,10 @@ pub struct GenerationState {
 
 /// Why some designs could not be had.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-#[schema(title = "Refusal")]
+#[schema(as = Refusal, title = "Refusal")]
 pub struct RefusalState {
     /// The code of their problem.
+    #[schema(value_type = Code)]
     pub code: String,
     /// So many designs.
     pub count: u64,

@@ -5,6 +5,7 @@ use meshwright_engine::run::Run;
 
 use super::*;
 use crate::wire::study_table::{Of, RowState, Summary};
+use crate::wire::testing::{self, and, echo, example, refused, told};
 use crate::wire::warning::GearName;
 use crate::wire::{Design, Problem, Status, Study, solve};
 
@@ -46,15 +47,6 @@ fn parse(document: &Value) -> Result<Study, Problem> {
 fn searching(search: Value) -> Searching {
     let study = parse(&document(search)).expect("a search");
     Searching::new(study).expect("it is one")
-}
-
-/// Pointers and codes of what is wrong.
-fn refused(document: &Value) -> Vec<(String, Code, Option<f64>)> {
-    let problem = parse(document).expect_err("it is refused");
-    let errors = problem.errors.into_iter();
-    errors
-        .map(|error| (error.pointer, error.code, error.nearest))
-        .collect()
 }
 
 /// A row as it is once its design has been computed.
@@ -214,16 +206,7 @@ fn a_row_is_told_from_its_label_and_its_changes() {
             Some(&*design.label)
         );
     }
-    let value = |design: &Design| -> Value {
-        serde_json::from_str(
-            &design
-                .submission
-                .as_ref()
-                .expect("it can be built")
-                .canonical_json(),
-        )
-        .expect("JSON")
-    };
+    let value = |design: &Design| echo(design.submission.as_ref().expect("it can be built"));
     // As it is drawn, it has the middle of the law and no deviations; members have both.
     let (drawn, member) = (value(&designs[0]), value(&designs[1]));
     assert_eq!(drawn["pair"]["center_distance_mm"], 40.2);
@@ -343,7 +326,7 @@ fn the_best_design_is_confirmed_by_the_flexible_method_on_the_fine_grid() {
     let design = search.confirmation().expect("a best one");
     assert!(Searching::is_confirmation(&design.label));
     let submission = design.submission.as_ref().expect("it can be built");
-    let told: Value = serde_json::from_str(&submission.canonical_json()).expect("JSON");
+    let told = echo(submission);
     assert_eq!(
         (
             &told["method"],
@@ -363,9 +346,7 @@ fn the_best_design_is_confirmed_by_the_flexible_method_on_the_fine_grid() {
 fn what_is_wrong_with_a_search_is_refused_with_its_place() {
     let variable = |change: Value| {
         let mut search = reliefs();
-        for (name, value) in change.as_object().expect("fields") {
-            search["variables"][0][name] = value.clone();
-        }
+        search["variables"][0] = and(search["variables"][0].take(), &change);
         document(search)
     };
     let with = |name: &str, value: Value| {
@@ -381,259 +362,68 @@ fn what_is_wrong_with_a_search_is_refused_with_its_place() {
     let class =
         json!([{ "path": "/population/accuracy/driven/iso_1328_class", "low": 1, "high": 8 }]);
     let population = json!({ "size": 4, "accuracy": { "driven": { "iso_1328_class": 6 } } });
-    let of_members = |change: &dyn Fn(&mut Value)| {
+    let of_members = |changes: &[(&str, Value)]| {
         let mut search = reliefs();
         search["population"] = population.clone();
         search["minimize"][0]["percent"] = json!(95);
-        change(&mut search);
-        document(search)
+        document(testing::with(search, changes))
     };
     let path = "/search/variables/0/path";
-    let cases: Vec<(Value, &str, Code, Option<f64>)> = vec![
-        (
-            variable(json!({ "path": "/pair/driving/tip_relief/depth_um" })),
-            path,
-            Code::UnknownField,
-            None,
-        ),
-        (
-            variable(json!({ "path": "/pair/driving/tip_relief" })),
-            path,
-            Code::WrongType,
-            None,
-        ),
-        (
-            variable(json!({ "path": "/method" })),
-            path,
-            Code::WrongType,
-            None,
-        ),
-        (
-            variable(json!({ "path": "/population/size" })),
-            path,
-            Code::OutOfRange,
-            None,
-        ),
-        (
-            variable(json!({ "path": "/population/vary/0/height" })),
-            path,
-            Code::UnknownField,
-            None,
-        ),
-        (
-            with("variables", class.clone()),
-            path,
-            Code::MissingField,
-            None,
-        ),
-        (
-            with("variables", json!([])),
-            "/search/variables",
-            Code::MissingField,
-            None,
-        ),
-        (
-            variable(json!({ "low": 31 })),
-            "/search/variables/0/high",
-            Code::OutOfRange,
-            None,
-        ),
-        (
-            variable(json!({ "low": 30 })),
-            "/search/variables/0/high",
-            Code::OutOfRange,
-            None,
-        ),
-        (
-            variable(json!({ "low": -4 })),
-            "/search/variables/0/low",
-            Code::OutOfRange,
-            Some(0.0),
-        ),
-        (
-            variable(json!({ "low": 0, "step": 7 })),
-            "/search/variables/0/step",
-            Code::OutOfRange,
-            Some(7.5),
-        ),
-        (
-            variable(json!({ "low": 10, "step": 40 })),
-            "/search/variables/0/step",
-            Code::OutOfRange,
-            Some(20.0),
-        ),
-        (
-            variable(
-                json!({ "path": "/pair/driving/tooth_count", "low": 20, "high": 24, "step": 0.5 }),
-            ),
-            "/search/variables/0/step",
-            Code::WrongType,
-            Some(1.0),
-        ),
-        (
-            variable(json!({ "path": "/pair/driven/tip_relief/amount_um" })),
-            "/search/variables/1/path",
-            Code::OutOfRange,
-            None,
-        ),
-        (
-            with("minimize", json!([{ "quantity": "noise" }])),
-            "/search/minimize/0/quantity",
-            Code::WrongType,
-            None,
-        ),
-        (
-            with("minimize", json!([])),
-            "/search/minimize",
-            Code::MissingField,
-            None,
-        ),
-        (
-            with("minimize", json!([{}])),
-            "/search/minimize/0",
-            Code::MissingField,
-            None,
-        ),
-        (
-            with(
-                "minimize",
-                json!([{ "quantity": "stress.driven.root_mpa" }]),
-            ),
-            "/search/minimize/0/quantity",
-            Code::MissingField,
-            None,
-        ),
-        (
-            with("minimize", json!([{ "quantity": "face_load_factor" }])),
-            "/search/minimize/0/quantity",
-            Code::NeedsThreeDimensions,
-            None,
-        ),
-        (
-            with(
-                "subject_to",
-                json!([{ "quantity": "face_load_factor", "at_most": 1.2 }]),
-            ),
-            "/search/subject_to/0/quantity",
-            Code::NeedsThreeDimensions,
-            None,
-        ),
-        (
-            with("minimize", json!([{ "quantity": RANGE, "percent": 95 }])),
-            "/search/minimize/0/percent",
-            Code::MissingField,
-            None,
-        ),
-        (
-            with(
-                "minimize",
-                json!([{ "cost": [{ "path": "/pair/center_distance_mm", "weight": 1 }] }]),
-            ),
-            "/search/minimize/0/cost/0/path",
-            Code::UnknownField,
-            None,
-        ),
-        (
-            with(
-                "minimize",
-                json!([{ "quantity": RANGE }, { "quantity": RANGE }, { "quantity": RANGE }]),
-            ),
-            "/search/minimize",
-            Code::TooLarge,
-            Some(2.0),
-        ),
-        (
-            with("subject_to", json!([{ "quantity": "contact_ratio" }])),
-            "/search/subject_to/0",
-            Code::MissingField,
-            None,
-        ),
-        (
-            with(
-                "subject_to",
-                json!([{ "quantity": "contact_ratio", "at_least": 1.5, "at_most": 1.4 }]),
-            ),
-            "/search/subject_to/0/at_most",
-            Code::OutOfRange,
-            None,
-        ),
-        (
-            with(
-                "subject_to",
-                json!([{ "quantity": "contact_ratio", "at_most": 1.4 }, { "quantity": "contact_ratio", "at_least": 1.5 }]),
-            ),
-            "/search/subject_to/1/at_least",
-            Code::OutOfRange,
-            None,
-        ),
-        (
-            with("evaluations", json!(1)),
-            "/search/evaluations",
-            Code::OutOfRange,
-            Some(2.0),
-        ),
-        (
-            with("evaluations", json!(100_000)),
-            "/search/evaluations",
-            Code::OutOfRange,
-            Some(20_000.0),
-        ),
-        (
-            with("seconds", json!(0)),
-            "/search/seconds",
-            Code::OutOfRange,
-            Some(1.0),
-        ),
-        (
-            with("budget", json!(3)),
-            "/search/budget",
-            Code::UnknownField,
-            None,
-        ),
-        (
-            with("population", population.clone()),
-            "/search/population",
-            Code::ConflictingFields,
-            None,
-        ),
-        (both, "/search", Code::OutOfRange, None),
-        (
-            of_members(&|search| {
-                search["evaluations"] = json!(3000);
-                search["population"]["size"] = json!(50);
-            }),
-            "/search/evaluations",
-            Code::TooLarge,
-            Some(1960.0),
-        ),
-        (
-            of_members(&|search| {
-                search["population"]["vary"] = json!([{ "path": "/pair/driving/tip_relief/amount_um", "kind": "uniform", "low": 4, "high": 6 }]);
-            }),
-            path,
-            Code::ConflictingFields,
-            None,
-        ),
-        (
-            of_members(&|search| {
-                search["variables"] = json!([{ "path": "/population/accuracy/driven/iso_1328_class", "low": 1, "high": 12 }]);
-            }),
-            "/search/variables/0/high",
-            Code::OutOfRange,
-            Some(11.0),
-        ),
-        (
-            of_members(&|search| {
-                search["population"]["accuracy"]["driven"]["iso_1328_class"] = json!(0)
-            }),
-            "/search/population/accuracy/driven/iso_1328_class",
-            Code::OutOfRange,
-            Some(1.0),
-        ),
-    ];
+    let front = |quantity: &str| with("minimize", json!([{ "quantity": quantity }]));
+    let bounds = |bounds: Value| with("subject_to", bounds);
+    let cases = refused! {
+        variable(json!({ "path": "/pair/driving/tip_relief/depth_um" })) => path, UnknownField;
+        variable(json!({ "path": "/pair/driving/tip_relief" })) => path, WrongType;
+        variable(json!({ "path": "/method" })) => path, WrongType;
+        variable(json!({ "path": "/population/size" })) => path, OutOfRange;
+        variable(json!({ "path": "/population/vary/0/height" })) => path, UnknownField;
+        with("variables", class.clone()) => path, MissingField;
+        with("variables", json!([])) => "/search/variables", MissingField;
+        variable(json!({ "low": 31 })) => "/search/variables/0/high", OutOfRange;
+        variable(json!({ "low": 30 })) => "/search/variables/0/high", OutOfRange;
+        variable(json!({ "low": -4 })) => "/search/variables/0/low", OutOfRange, 0.0;
+        variable(json!({ "low": 0, "step": 7 })) => "/search/variables/0/step", OutOfRange, 7.5;
+        variable(json!({ "low": 10, "step": 40 })) => "/search/variables/0/step", OutOfRange, 20.0;
+        variable(json!({ "path": "/pair/driving/tooth_count", "low": 20, "high": 24, "step": 0.5 }))
+            => "/search/variables/0/step", WrongType, 1.0;
+        variable(json!({ "path": "/pair/driven/tip_relief/amount_um" })) => "/search/variables/1/path", OutOfRange;
+        front("noise") => "/search/minimize/0/quantity", WrongType;
+        with("minimize", json!([])) => "/search/minimize", MissingField;
+        with("minimize", json!([{}])) => "/search/minimize/0", MissingField;
+        front("stress.driven.root_mpa") => "/search/minimize/0/quantity", MissingField;
+        front("face_load_factor") => "/search/minimize/0/quantity", NeedsThreeDimensions;
+        bounds(json!([{ "quantity": "face_load_factor", "at_most": 1.2 }])) => "/search/subject_to/0/quantity", NeedsThreeDimensions;
+        with("minimize", json!([{ "quantity": RANGE, "percent": 95 }])) => "/search/minimize/0/percent", MissingField;
+        with("minimize", json!([{ "cost": [{ "path": "/pair/center_distance_mm", "weight": 1 }] }]))
+            => "/search/minimize/0/cost/0/path", UnknownField;
+        with("minimize", json!([{ "quantity": RANGE }, { "quantity": RANGE }, { "quantity": RANGE }]))
+            => "/search/minimize", TooLarge, 2.0;
+        bounds(json!([{ "quantity": "contact_ratio" }])) => "/search/subject_to/0", MissingField;
+        bounds(json!([{ "quantity": "contact_ratio", "at_least": 1.5, "at_most": 1.4 }]))
+            => "/search/subject_to/0/at_most", OutOfRange;
+        bounds(json!([{ "quantity": "contact_ratio", "at_most": 1.4 }, { "quantity": "contact_ratio", "at_least": 1.5 }]))
+            => "/search/subject_to/1/at_least", OutOfRange;
+        with("evaluations", json!(1)) => "/search/evaluations", OutOfRange, 2.0;
+        with("evaluations", json!(100_000)) => "/search/evaluations", OutOfRange, 20_000.0;
+        with("seconds", json!(0)) => "/search/seconds", OutOfRange, 1.0;
+        with("budget", json!(3)) => "/search/budget", UnknownField;
+        with("population", population.clone()) => "/search/population", ConflictingFields;
+        both => "/search", OutOfRange;
+        of_members(&[("/evaluations", json!(3000)), ("/population/size", json!(50))])
+            => "/search/evaluations", TooLarge, 1960.0;
+        of_members(&[("/population/vary", json!([
+            { "path": "/pair/driving/tip_relief/amount_um", "kind": "uniform", "low": 4, "high": 6 },
+        ]))]) => path, ConflictingFields;
+        of_members(&[("/variables", json!([
+            { "path": "/population/accuracy/driven/iso_1328_class", "low": 1, "high": 12 },
+        ]))]) => "/search/variables/0/high", OutOfRange, 11.0;
+        of_members(&[("/population/accuracy/driven/iso_1328_class", json!(0))])
+            => "/search/population/accuracy/driven/iso_1328_class", OutOfRange, 1.0;
+    };
     for (study, pointer, code, nearest) in cases {
+        let problem = parse(&study).expect_err("it is refused");
         assert_eq!(
-            refused(&study),
+            told(problem),
             [(pointer.to_owned(), code, nearest)],
             "{study}"
         );
@@ -652,13 +442,8 @@ fn a_law_is_moved_by_its_mean_and_refused_where_it_does_not_go_with_its_cuts() {
     }));
     let designs = asked(&mut search);
     let amount = |design: &Design| -> f64 {
-        let submission = design
-            .submission
-            .as_ref()
-            .expect("it can be built")
-            .canonical_json();
-        let submission: Value = serde_json::from_str(&submission).expect("JSON");
-        submission["pair"]["driving"]["tip_relief"]["amount_um"]
+        echo(design.submission.as_ref().expect("it can be built"))["pair"]["driving"]["tip_relief"]
+            ["amount_um"]
             .as_f64()
             .expect("a number")
     };
@@ -740,19 +525,11 @@ fn a_front_of_mass_and_noise_beats_designs_of_the_paper() {
 
 #[test]
 fn a_search_along_the_face_bounds_and_minimizes_how_even_the_load_is() {
-    let base = crate::wire::examples()
-        .iter()
-        .find(|example| example.name == "helical-pair");
-    let base: Value = serde_json::from_str(base.expect("ships").json).expect("JSON");
-    let study = json!({ "base": base, "search": {
+    let study = json!({ "base": example("helical-pair"), "search": {
         "variables": [{ "path": "/pair/misalignment_um/in_plane_um", "low": -20, "high": 20 }],
         "minimize": [{ "quantity": "face_load_factor", "torques": "largest" }],
         "subject_to": [{ "quantity": "face_load_factor", "at_most": 3, "torques": "mean" }],
         "evaluations": 8,
     } });
-    assert_eq!(refused_of(&study), None);
-}
-
-fn refused_of(study: &Value) -> Option<Problem> {
-    Study::parse(study.to_string().as_bytes(), &Run::unattended()).err()
+    assert_eq!(parse(&study).err(), None);
 }

@@ -110,17 +110,11 @@ impl Study {
         let value: Value = serde_json::from_slice(document)
             .map_err(|error| Problem::new(Code::MalformedJson, error.to_string()))?;
         let errors = Errors::default();
-        let Some(study) = document::read(node, value, &errors) else {
-            return Err(errors.into_problem());
-        };
-        if errors.count() == 0 {
+        let study = document::read(node, value, &errors);
+        if let (Some(study), 0) = (&study, errors.count()) {
             study.refuse_faults(&errors, run)?;
         }
-        if errors.count() == 0 {
-            Ok(study)
-        } else {
-            Err(errors.into_problem())
-        }
+        errors.settle(study)
     }
 
     /// The number of designs; of a search the most that it may come to.

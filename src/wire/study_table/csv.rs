@@ -1,6 +1,7 @@
 //! The table as CSV: one line for each row and torque, a row without curves having one line.
 
-use super::{RowCurve, TableRow, Told};
+use super::pareto::Told;
+use super::row::{RowCurve, TableRow};
 use crate::wire::csv::CsvWriter;
 
 /// The columns behind the label and the changes.

@@ -3,8 +3,8 @@
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, HashSet};
 
-use super::RowState;
-use super::summary::Summary;
+use super::row::RowState;
+use super::summary::{Conditions, Summary};
 
 /// What has to be known of all rows before one of them can be shown: which are best, and what they change. It keeps three
 /// numbers of each row, so that a table of any length is made row by row.
@@ -25,9 +25,6 @@ pub struct Told {
     /// How even the load is along the face.
     pub faces: bool,
 }
-
-/// Method and torques: what has to be the same for a comparison to mean something.
-pub(super) type Conditions = (Option<String>, Vec<u64>);
 
 impl Outline {
     /// Looks at the next row.

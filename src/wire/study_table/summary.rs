@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::pareto::Conditions;
 use crate::wire::geometry::GearGeometry;
 use crate::wire::problem::{Code, Problem};
 use crate::wire::results::{CurveDocument, ErrorEstimateDocument, Results, StatisticsDocument};
@@ -63,6 +62,9 @@ pub(in crate::wire) struct CurveSummary {
     /// Amplitudes of the transmission error, in um, by the names of their orders.
     pub(super) orders: BTreeMap<String, f64>,
 }
+
+/// Method and torques: what has to be the same for a comparison to mean something.
+pub(super) type Conditions = (Option<String>, Vec<u64>);
 
 /// The names of orders that a table shows.
 const ORDERS: [&str; 4] = [

@@ -1,6 +1,6 @@
 //! What a table shows, and which designs are best.
 
-use serde_json::json;
+use serde_json::{Map, json};
 
 use super::*;
 use crate::wire::Code;

@@ -150,7 +150,7 @@ impl Document {
             ResolutionDocument::interface_radius_mm.name
         );
         let faults = self.resolution.interface_radius_mm.faults(pair, &pointer);
-        faults.into_iter().for_each(|fault| errors.push(fault));
+        errors.report::<()>(Err(faults));
     }
 
     pub(super) fn check_span(&self, pair: &GearPair, errors: &Errors) {

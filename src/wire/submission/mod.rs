@@ -18,7 +18,7 @@ pub(super) use document::{MOST_TAGS, MOST_TORQUES, TAGS};
 pub(super) use document::Document;
 
 use super::declare::{
-    Choice, Document as _, Errors, Kind, Node, ObjectReader, Place, utoipa_schema, word,
+    Choice, Document as _, EACH, Errors, Kind, Node, ObjectReader, Place, utoipa_schema, word,
 };
 use super::forces::DynamicsQuestion;
 use super::pair::PairDocument;
@@ -175,17 +175,13 @@ impl Submission {
         finish: impl FnOnce(&mut PairDocument, Method, &Errors) -> Option<()>,
     ) -> Result<Self, Problem> {
         let errors = Errors::default();
-        let document = ObjectReader::new(node, Place::root(&errors))
-            .and_then(Document::read_whole)
-            .filter(|_| errors.count() == 0);
+        let document = Document::read(node, &Place::root(&errors), &EACH);
+        let document = document.filter(|_| errors.count() == 0);
         let read = document.and_then(|mut document| {
             finish(&mut document.pair, document.method, &errors)?;
             document.checked(Purpose::Job, &errors)
         });
-        match read {
-            Some(submission) if errors.count() == 0 => Ok(submission),
-            _ => Err(errors.into_problem()),
-        }
+        errors.settle(read)
     }
 
     /// What is wrong with the fields of a submission, each by itself.
@@ -200,9 +196,7 @@ impl Submission {
     /// What is wrong with the fields of a submission, each by itself. Whether they go together is not looked at.
     pub(super) fn wrong_fields(node: &Node) -> Vec<FieldError> {
         let errors = Errors::default();
-        if let Some(reader) = ObjectReader::new(node, Place::root(&errors)) {
-            Document::read_whole(reader);
-        }
+        Document::read(node, &Place::root(&errors), &EACH);
         errors.into_errors()
     }
 

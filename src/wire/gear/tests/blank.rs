@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use super::{fault, faults, mended, near, told};
 use crate::wire::Code;
+use crate::wire::testing::{and, refused};
 
 /// The driving gear with these holes, bore 15 mm, root circle 47.5 mm.
 fn holes(holes: &Value) -> Value {
@@ -65,54 +66,18 @@ fn holes_that_do_not_fit_are_told_in_their_pattern_with_what_would_do() {
     let first = json!({ "count": 2, "circle_radius_mm": 30.0, "radius_mm": 6.0 });
     let slot = |circle: f64, width: f64, angle: f64, count: u32| json!({ "count": count, "circle_radius_mm": circle, "slot": { "width_mm": width, "angle_deg": angle } });
     let round = |circle: f64, radius: f64, at: Value| json!({ "at_deg": at, "circle_radius_mm": circle, "radius_mm": radius });
-    for (document, place, code) in [
+    for (document, place, code, _) in refused! {
         // The second pattern gives way to the first.
-        (
-            json!([first, round(32.0, 5.0, json!([20]))]),
-            "1/radius_mm",
-            Code::HolesOverlap,
-        ),
-        (
-            json!([first, round(40.0, 8.0, json!([90]))]),
-            "1/radius_mm",
-            Code::HolesBreachRim,
-        ),
-        (
-            json!([first, round(20.0, 6.0, json!([90]))]),
-            "1/radius_mm",
-            Code::HolesBreachBore,
-        ),
-        (
-            json!([slot(30.0, 6.0, 100.0, 4)]),
-            "0/slot/angle_deg",
-            Code::HolesOverlap,
-        ),
-        (
-            json!([slot(30.0, 6.0, 348.0, 1)]),
-            "0/slot/angle_deg",
-            Code::HolesOverlap,
-        ),
-        (
-            json!([slot(40.0, 16.0, 20.0, 3)]),
-            "0/slot/width_mm",
-            Code::HolesBreachRim,
-        ),
-        (
-            slot(30.0, 24.0, 0.0, 8),
-            "slot/width_mm",
-            Code::HolesOverlap,
-        ),
-        (
-            round(30.0, 6.0, json!([0, 20, 180])),
-            "radius_mm",
-            Code::HolesOverlap,
-        ),
-        (
-            round(47.0, 6.0, json!([0])),
-            "circle_radius_mm",
-            Code::HolesBreachRim,
-        ),
-    ] {
+        json!([first, round(32.0, 5.0, json!([20]))]) => "1/radius_mm", HolesOverlap;
+        json!([first, round(40.0, 8.0, json!([90]))]) => "1/radius_mm", HolesBreachRim;
+        json!([first, round(20.0, 6.0, json!([90]))]) => "1/radius_mm", HolesBreachBore;
+        json!([slot(30.0, 6.0, 100.0, 4)]) => "0/slot/angle_deg", HolesOverlap;
+        json!([slot(30.0, 6.0, 348.0, 1)]) => "0/slot/angle_deg", HolesOverlap;
+        json!([slot(40.0, 16.0, 20.0, 3)]) => "0/slot/width_mm", HolesBreachRim;
+        slot(30.0, 24.0, 0.0, 8) => "slot/width_mm", HolesOverlap;
+        round(30.0, 6.0, json!([0, 20, 180])) => "radius_mm", HolesOverlap;
+        round(47.0, 6.0, json!([0])) => "circle_radius_mm", HolesBreachRim;
+    } {
         let fields = holes(&document);
         let found = &faults(&fields)[0];
         let expected = format!("/pair/driving/blank/holes/{place}");
@@ -134,43 +99,17 @@ fn holes_that_do_not_fit_are_told_in_their_pattern_with_what_would_do() {
 
 #[test]
 fn a_pattern_says_where_and_how_its_holes_are_in_one_way() {
-    let pattern = |fields: Value| {
-        let mut pattern = json!({ "circle_radius_mm": 30.0 });
-        for (name, value) in fields.as_object().expect("fields") {
-            pattern[name] = value.clone();
-        }
-        holes(&pattern)
-    };
+    let pattern = |fields: Value| holes(&and(json!({ "circle_radius_mm": 30.0 }), &fields));
     let slot = json!({ "width_mm": 5, "angle_deg": 10 });
-    for (fields, place, code) in [
-        (
-            json!({ "count": 3, "at_deg": [0], "radius_mm": 5 }),
-            "at_deg",
-            Code::ConflictingFields,
-        ),
-        (
-            json!({ "phase_deg": 3, "at_deg": [0], "radius_mm": 5 }),
-            "at_deg",
-            Code::ConflictingFields,
-        ),
-        (
-            json!({ "count": 3, "radius_mm": 5, "slot": slot }),
-            "slot",
-            Code::ConflictingFields,
-        ),
-        (json!({ "count": 3 }), "radius_mm", Code::MissingField),
-        (json!({ "radius_mm": 5 }), "count", Code::MissingField),
-        (
-            json!({ "at_deg": [], "radius_mm": 5 }),
-            "at_deg",
-            Code::WrongLength,
-        ),
-        (
-            json!({ "at_deg": 7, "radius_mm": 5 }),
-            "at_deg",
-            Code::WrongType,
-        ),
-    ] {
+    for (fields, place, code, _) in refused! {
+        json!({ "count": 3, "at_deg": [0], "radius_mm": 5 }) => "at_deg", ConflictingFields;
+        json!({ "phase_deg": 3, "at_deg": [0], "radius_mm": 5 }) => "at_deg", ConflictingFields;
+        json!({ "count": 3, "radius_mm": 5, "slot": slot }) => "slot", ConflictingFields;
+        json!({ "count": 3 }) => "radius_mm", MissingField;
+        json!({ "radius_mm": 5 }) => "count", MissingField;
+        json!({ "at_deg": [], "radius_mm": 5 }) => "at_deg", WrongLength;
+        json!({ "at_deg": 7, "radius_mm": 5 }) => "at_deg", WrongType;
+    } {
         fault(&pattern(fields), &format!("blank/holes/{place}"), code);
     }
     let many = json!([
@@ -187,27 +126,15 @@ fn a_web_lies_between_bore_and_rim() {
         (told.inner_radius, told.outer_radius, told.thickness),
         (20e-3, 44e-3, 6e-3)
     );
-    for (fields, name, code) in [
-        (
-            web(14.0, 44.0, 6.0),
-            "inner_radius_mm",
-            Code::WebOutsideBlank,
-        ),
-        (
-            web(20.0, 47.0, 6.0),
-            "outer_radius_mm",
-            Code::WebOutsideBlank,
-        ),
-        (
-            web(30.0, 20.0, 6.0),
-            "outer_radius_mm",
-            Code::WebOutsideBlank,
-        ),
-        (web(15.01, 44.0, 6.0), "inner_radius_mm", Code::OutOfRange),
-        (web(20.0, 20.1, 6.0), "outer_radius_mm", Code::OutOfRange),
-        (web(20.0, 44.0, 0.1), "thickness_mm", Code::OutOfRange),
-        (web(20.0, 44.0, 90.0), "thickness_mm", Code::OutOfRange),
-    ] {
+    for (fields, name, code, _) in refused! {
+        web(14.0, 44.0, 6.0) => "inner_radius_mm", WebOutsideBlank;
+        web(20.0, 47.0, 6.0) => "outer_radius_mm", WebOutsideBlank;
+        web(30.0, 20.0, 6.0) => "outer_radius_mm", WebOutsideBlank;
+        web(15.01, 44.0, 6.0) => "inner_radius_mm", OutOfRange;
+        web(20.0, 20.1, 6.0) => "outer_radius_mm", OutOfRange;
+        web(20.0, 44.0, 0.1) => "thickness_mm", OutOfRange;
+        web(20.0, 44.0, 90.0) => "thickness_mm", OutOfRange;
+    } {
         let found = fault(&fields, &format!("blank/web/{name}"), code);
         assert!(found.nearest.is_some(), "{found:?}");
         mended(&fields);

@@ -6,7 +6,7 @@ mod teeth;
 use meshwright_engine::gear::GearData;
 use serde_json::{Value, json};
 
-use crate::wire::submission::Submission;
+use crate::wire::testing::{and, echo, parse, put};
 use crate::wire::{Code, FieldError};
 
 /// The pair of the least submission, its driving gear with these fields too.
@@ -14,31 +14,28 @@ fn with(fields: &Value) -> Value {
     let gear = json!({
         "tooth_count": 50, "module_mm": 2.0, "face_width_mm": 20.0, "blank": { "bore_radius_mm": 15.0 }
     });
-    let mut driving = gear.clone();
-    for (name, value) in fields.as_object().expect("fields") {
-        driving[name] = value.clone();
-    }
     json!({
         "method": "flexible",
-        "pair": { "center_distance_mm": 100.5, "driving": driving, "driven": gear },
+        "pair": { "center_distance_mm": 100.5, "driving": and(gear.clone(), fields), "driven": gear },
         "output_torques_n_m": [115.0]
     })
 }
 
 /// What the engine is told of the driving gear with these fields.
 fn told(fields: &Value) -> GearData {
-    let submission = Submission::parse(with(fields).to_string().as_bytes());
+    let submission = parse(&with(fields));
     let submission = submission.unwrap_or_else(|problem| panic!("{fields}: {problem:?}"));
-    let echo = submission.canonical_json();
-    let again = Submission::parse(echo.as_bytes()).expect("an echo is valid");
+    let echo = echo(&submission);
+    let again = parse(&echo).expect("an echo is valid");
     assert_eq!(again, submission, "an echo is its own echo: {echo}");
     submission.case().pair.driving().data().clone()
 }
 
 /// The faults of the driving gear with these fields.
 fn faults(fields: &Value) -> Vec<FieldError> {
-    let read = Submission::parse(with(fields).to_string().as_bytes());
-    let problem = read.err().unwrap_or_else(|| panic!("{fields} is taken"));
+    let problem = parse(&with(fields))
+        .err()
+        .unwrap_or_else(|| panic!("{fields} is taken"));
     assert_eq!(problem.status, 422);
     problem.errors
 }
@@ -63,14 +60,12 @@ fn mended(fields: &Value) -> Value {
     const MOST_ROUNDS: usize = 6;
     let mut document = with(fields);
     for _ in 0..MOST_ROUNDS {
-        let Err(problem) = Submission::parse(document.to_string().as_bytes()) else {
+        let Err(problem) = parse(&document) else {
             return document;
         };
         for error in &problem.errors {
-            let place = document.pointer_mut(&error.pointer);
-            let place = place.unwrap_or_else(|| panic!("{error:?}"));
             let nearest = error.nearest.unwrap_or_else(|| panic!("{error:?}"));
-            *place = json!(nearest);
+            put(&mut document, &error.pointer, json!(nearest));
         }
     }
     panic!("{document}")

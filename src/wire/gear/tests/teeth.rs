@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::{fault, faults, near, told, with};
 use crate::wire::Code;
-use crate::wire::submission::Submission;
+use crate::wire::testing::{parse, refused};
 
 #[test]
 fn a_tip_diameter_says_the_addendum() {
@@ -66,33 +66,13 @@ fn thickness_and_edges_reach_the_engine_in_meters() {
 
 #[test]
 fn teeth_and_edges_that_do_not_fit_are_answered_with_those_that_do() {
-    for (fields, place, code) in [
-        (
-            json!({ "tooth_thickness_deviation_um": 900 }),
-            "tooth_thickness_deviation_um",
-            Code::TeethTooThick,
-        ),
-        (
-            json!({ "tooth_thickness_deviation_um": -1100 }),
-            "tooth_thickness_deviation_um",
-            Code::OutOfRange,
-        ),
-        (
-            json!({ "tip_rounding_mm": 3.0 }),
-            "tip_rounding_mm",
-            Code::TipEdgeTooLarge,
-        ),
-        (
-            json!({ "tip_chamfer_mm": 3.0 }),
-            "tip_chamfer_mm",
-            Code::TipEdgeTooLarge,
-        ),
-        (
-            json!({ "tip_chamfer_mm": 0.01 }),
-            "tip_chamfer_mm",
-            Code::OutOfRange,
-        ),
-    ] {
+    for (fields, place, code, _) in refused! {
+        json!({ "tooth_thickness_deviation_um": 900 }) => "tooth_thickness_deviation_um", TeethTooThick;
+        json!({ "tooth_thickness_deviation_um": -1100 }) => "tooth_thickness_deviation_um", OutOfRange;
+        json!({ "tip_rounding_mm": 3.0 }) => "tip_rounding_mm", TipEdgeTooLarge;
+        json!({ "tip_chamfer_mm": 3.0 }) => "tip_chamfer_mm", TipEdgeTooLarge;
+        json!({ "tip_chamfer_mm": 0.01 }) => "tip_chamfer_mm", OutOfRange;
+    } {
         let found = faults(&fields);
         assert_eq!(
             (&*found[0].pointer, found[0].code),
@@ -337,7 +317,7 @@ fn deviations_that_stand_out_take_the_backlash() {
     let mut document =
         with(&json!({ "tooth_deviations": { "eccentricity": { "amount_um": 10 } } }));
     document["pair"]["center_distance_mm"] = json!(100.0);
-    let problem = Submission::parse(document.to_string().as_bytes()).expect_err("jams");
+    let problem = parse(&document).expect_err("jams");
     let [error] = problem.errors.as_slice() else {
         panic!("{problem:?}")
     };
@@ -347,5 +327,5 @@ fn deviations_that_stand_out_take_the_backlash() {
     );
     assert!(error.detail.contains("deviations"), "{}", error.detail);
     document["pair"]["center_distance_mm"] = json!(error.nearest);
-    assert!(Submission::parse(document.to_string().as_bytes()).is_ok());
+    assert!(parse(&document).is_ok());
 }

@@ -2,7 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::{Submission, filled_in, parse, put};
+use super::Submission;
+use crate::wire::testing::{filled_in, parse, put};
 
 /// A xorshift generator: the same numbers in every run.
 struct Chance(u64);

@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 
 use super::*;
 use crate::wire::examples;
+use crate::wire::testing::{echo, example, parse, put};
 
 /// Every needed field and nothing else.
 pub(super) fn least() -> Value {
@@ -24,44 +25,13 @@ pub(super) fn least() -> Value {
 }
 
 pub(super) fn case_2() -> Value {
-    let example = examples()
-        .iter()
-        .find(|example| example.name == "test-case-2")
-        .expect("ships");
-    serde_json::from_str(example.json).expect("JSON")
-}
-
-/// The example of this name with everything that is filled in.
-pub(super) fn filled_in(name: &str) -> Value {
-    let example = examples().iter().find(|example| example.name == name);
-    let submission = Submission::parse(example.expect("ships").json.as_bytes()).expect("valid");
-    serde_json::from_str(&submission.canonical_json()).expect("JSON")
-}
-
-pub(super) fn parse(document: &Value) -> Result<Submission, Problem> {
-    Submission::parse(document.to_string().as_bytes())
-}
-
-/// Puts `value` where `pointer` says, in objects that are there.
-pub(super) fn put(document: &mut Value, pointer: &str, value: Value) {
-    let (parent, key) = pointer.rsplit_once('/').expect("a pointer");
-    match document.pointer_mut(parent) {
-        Some(Value::Object(fields)) => {
-            fields.insert(key.to_owned(), value);
-        }
-        Some(Value::Array(items)) => {
-            if let Some(item) = key.parse::<usize>().ok().and_then(|i| items.get_mut(i)) {
-                *item = value;
-            }
-        }
-        _ => panic!("{pointer} has no parent"),
-    }
+    example("test-case-2")
 }
 
 #[test]
 fn the_least_submission_is_echoed_with_every_default() {
     let submission = parse(&least()).expect("valid");
-    let echo: Value = serde_json::from_str(&submission.canonical_json()).expect("JSON");
+    let echo = echo(&submission);
     // The defaults are API.md's: ISO 53 rack, steel, 40 positions; the standard pair repeats every mesh period.
     for gear in ["driving", "driven"] {
         assert_eq!(
@@ -163,7 +133,7 @@ fn the_choices_of_the_resolution_reach_the_engine() {
         (case.driving_speed, case.span()),
         (Some(RotationSpeed(10.0)), 3)
     );
-    let echo: Value = serde_json::from_str(&submission.canonical_json()).expect("JSON");
+    let echo = echo(&submission);
     for choice in ["contact_solver", "stiffness", "load_distribution"] {
         assert_eq!(echo["resolution"][choice], document["resolution"][choice]);
     }

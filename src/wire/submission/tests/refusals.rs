@@ -3,8 +3,9 @@
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use super::{case_2, parse, put};
+use super::case_2;
 use crate::wire::Code;
+use crate::wire::testing::{echo, parse, put, refused, with};
 
 /// A value that is refused: where it is sent, and what is told.
 #[derive(Deserialize)]
@@ -66,10 +67,7 @@ fn the_nearest_values_together_make_a_submission() {
         &[("/pair/center_distance_mm", json!(1e9))],
     ];
     for change in changes {
-        let mut document = case_2();
-        for (pointer, value) in *change {
-            put(&mut document, pointer, value.clone());
-        }
+        let mut document = with(case_2(), change);
         assert!(parse(&document).is_err());
         // What the first answer cannot know, because it needs a whole pair, comes with a later one.
         for _ in 0..4 {
@@ -93,15 +91,13 @@ fn the_nearest_values_together_make_a_submission() {
 
 #[test]
 fn the_wrong_fields_of_both_gears_are_told_together() {
-    let mut document = case_2();
-    for (pointer, value) in [
+    let wrong = [
         ("/pair/driving/tooth_count", json!(3)),
         ("/pair/driven/face_width_mm", json!("wide")),
         ("/resolution/grids", json!("fine")),
         ("/method", json!(7)),
-    ] {
-        put(&mut document, pointer, value);
-    }
+    ];
+    let document = with(case_2(), &wrong);
     let problem = parse(&document).expect_err("four fields");
     let mut pointers: Vec<_> = problem.errors.iter().map(|error| &*error.pointer).collect();
     pointers.sort_unstable();
@@ -115,18 +111,11 @@ fn the_wrong_fields_of_both_gears_are_told_together() {
         ]
     );
 
-    let mut document = case_2();
-    put(
-        &mut document,
-        "/pair/driving/blank/bore_radius_mm",
-        json!(50),
-    );
-    put(
-        &mut document,
-        "/pair/driven/blank/holes/radius_mm",
-        json!(15),
-    );
-    let problem = parse(&document).expect_err("both gears");
+    let wrong = [
+        ("/pair/driving/blank/bore_radius_mm", json!(50)),
+        ("/pair/driven/blank/holes/radius_mm", json!(15)),
+    ];
+    let problem = parse(&with(case_2(), &wrong)).expect_err("both gears");
     assert_eq!(problem.errors.len(), 2, "{problem:?}");
 }
 
@@ -149,54 +138,14 @@ fn what_is_too_large_is_told_with_what_would_fit() {
     assert_eq!(problem.errors[0].nearest, Some(333.0));
 }
 
-/// Case 2 with a run-up, and `changes` to it, has to be refused at `pointer`; with the nearest there it is not.
-fn refused_run_up(changes: &[(&str, Value)], pointer: &str, code: Code) {
-    let mut document = case_2();
-    let speeds = json!({ "from": 0, "to": 20_000, "count": 400 });
-    put(
-        &mut document,
-        "/dynamics",
-        json!({ "driving_speed_rpm": speeds }),
-    );
-    assert!(parse(&document).is_ok());
-    for (at, value) in changes {
-        put(&mut document, at, value.clone());
-    }
-    let problem = parse(&document).expect_err(pointer);
-    let error = &problem.errors[0];
-    assert_eq!(
-        (&*error.pointer, error.code),
-        (pointer, code),
-        "{problem:?}"
-    );
-    let nearest = error.nearest.expect("a nearest value");
-    put(&mut document, pointer, json!(nearest));
-    let again = parse(&document);
-    assert!(again.is_ok(), "{nearest:?}: {again:?}");
-}
-
 #[test]
 fn a_run_up_is_refused_where_it_has_no_table_or_no_load_and_the_nearest_will_do() {
-    refused_run_up(
-        &[("/output_torques_n_m", json!([115, 0]))],
-        "/output_torques_n_m/1",
-        Code::TorqueNotPositive,
+    let speeds = json!({ "from": 0, "to": 20_000, "count": 400 });
+    let run_up = with(
+        case_2(),
+        &[("/dynamics", json!({ "driving_speed_rpm": speeds }))],
     );
-    refused_run_up(
-        &[("/resolution", json!({ "span_mesh_periods": 2 }))],
-        "/resolution/span_mesh_periods",
-        Code::OutOfRange,
-    );
-    refused_run_up(
-        &[("/force_table", json!({ "largest_output_torque_n_m": 50 }))],
-        "/force_table/largest_output_torque_n_m",
-        Code::OutOfRange,
-    );
-    refused_run_up(
-        &[("/resolution", json!({ "positions_per_mesh_period": 400 }))],
-        "/resolution/positions_per_mesh_period",
-        Code::TooLarge,
-    );
+    assert!(parse(&run_up).is_ok());
     let speeds = json!({ "driving_speed_rpm": { "from": 0, "to": 100, "count": 4000 } });
     let torques: Vec<u32> = (1..=20).collect();
     let many = [
@@ -204,7 +153,24 @@ fn a_run_up_is_refused_where_it_has_no_table_or_no_load_and_the_nearest_will_do(
         ("/output_torques_n_m", json!(torques)),
         ("/resolution", json!({ "positions_per_mesh_period": 8 })),
     ];
-    refused_run_up(&many, "/dynamics/driving_speed_rpm/count", Code::TooLarge);
+    for (changes, place, code, _) in refused! {
+        vec![("/output_torques_n_m", json!([115, 0]))] => "/output_torques_n_m/1", TorqueNotPositive;
+        vec![("/resolution", json!({ "span_mesh_periods": 2 }))] => "/resolution/span_mesh_periods", OutOfRange;
+        vec![("/force_table", json!({ "largest_output_torque_n_m": 50 }))]
+            => "/force_table/largest_output_torque_n_m", OutOfRange;
+        vec![("/resolution", json!({ "positions_per_mesh_period": 400 }))]
+            => "/resolution/positions_per_mesh_period", TooLarge;
+        many.to_vec() => "/dynamics/driving_speed_rpm/count", TooLarge;
+    } {
+        let mut document = with(run_up.clone(), &changes);
+        let problem = parse(&document).expect_err(place);
+        let error = &problem.errors[0];
+        assert_eq!((&*error.pointer, error.code), (place, code), "{problem:?}");
+        let nearest = error.nearest.expect("a nearest value");
+        put(&mut document, place, json!(nearest));
+        let again = parse(&document);
+        assert!(again.is_ok(), "{nearest:?}: {again:?}");
+    }
 }
 
 #[test]
@@ -236,7 +202,7 @@ fn a_run_up_brings_the_usual_table_and_both_count() {
         json!({ "driving_speed_rpm": { "from": 0, "to": 20_000 } }),
     );
     let submission = parse(&document).expect("valid");
-    let echo: Value = serde_json::from_str(&submission.canonical_json()).expect("JSON");
+    let echo = echo(&submission);
     assert_eq!(
         echo["force_table"],
         json!({ "loads": 12, "largest_output_torque_n_m": null })

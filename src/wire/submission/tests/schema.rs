@@ -4,11 +4,12 @@ use std::collections::{BTreeSet, HashMap};
 
 use serde_json::Value;
 
-use super::{DOCUMENT_VERSION, Document, filled_in, least, parse};
+use super::{DOCUMENT_VERSION, Document, least};
 use crate::hash::sha256_hex;
 use crate::wire::declare::Document as _;
 use crate::wire::examples;
 use crate::wire::pointer::Pointer;
+use crate::wire::testing::{filled_in, parse};
 
 #[test]
 fn every_field_of_the_schema_has_a_title_and_the_defaults_are_those_that_are_filled_in() {

@@ -4,82 +4,37 @@ use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use serde_json::{Value, json};
 
-use super::{filled_in, least, parse, put};
+use super::least;
+use crate::wire::contact_pattern::{PatternCurveDocument, PatternFlank, PatternPressure};
+use crate::wire::results::FaceDocument;
 use crate::wire::solve::contact_pattern;
-use crate::wire::{Code, ContactPatternDocument, Submission, solve};
+use crate::wire::testing::{filled_in, parse, refused, with};
+use crate::wire::{Code, ContactPatternDocument, Results, Submission, solve};
 
 /// A straight pair that three dimensions take.
 fn solid() -> Value {
-    let mut document = least();
-    put(&mut document, "/method", json!("three_dimensional"));
-    document
-}
-
-fn with(mut document: Value, changes: &[(&str, Value)]) -> Value {
-    for (pointer, value) in changes {
-        put(&mut document, pointer, value.clone());
-    }
-    document
+    with(least(), &[("/method", json!("three_dimensional"))])
 }
 
 /// Values, and where they are put.
 type Changes<'a> = Vec<(&'a str, Value)>;
 
-/// Everything that the plane does not know, with what it takes instead.
-fn beyond_the_plane() -> Vec<(&'static str, Value, &'static str, Option<f64>)> {
+#[test]
+fn planes_refuse_what_they_do_not_know_and_three_dimensions_take_it() {
     let web =
         json!({ "inner_radius_mm": 20, "outer_radius_mm": 42, "thickness_mm": 6, "offset_mm": 2 });
     let hub = json!({ "outer_radius_mm": 20, "width_mm": 24 });
     let slopes = json!({ "lead_slope_um": vec![3.0; 50] });
-    vec![
-        (
-            "/pair/helix_angle_deg",
-            json!(10),
-            "/pair/helix_angle_deg",
-            Some(0.0),
-        ),
-        (
-            "/pair/axial_offset_mm",
-            json!(-1),
-            "/pair/axial_offset_mm",
-            Some(0.0),
-        ),
-        (
-            "/pair/misalignment_um",
-            json!({ "out_of_plane_um": 5 }),
-            "/pair/misalignment_um",
-            None,
-        ),
-        (
-            "/pair/driving/lead_modifications",
-            json!([{ "kind": "crowning", "amount_um": 5 }]),
-            "/pair/driving/lead_modifications",
-            None,
-        ),
-        (
-            "/pair/driven/tooth_deviations",
-            slopes,
-            "/pair/driven/tooth_deviations/lead_slope_um",
-            None,
-        ),
-        (
-            "/pair/driven/blank/web",
-            web,
-            "/pair/driven/blank/web/offset_mm",
-            Some(0.0),
-        ),
-        (
-            "/pair/driving/blank/hub",
-            hub,
-            "/pair/driving/blank/hub",
-            None,
-        ),
-    ]
-}
-
-#[test]
-fn planes_refuse_what_they_do_not_know_and_three_dimensions_take_it() {
-    for (pointer, value, told_at, nearest) in beyond_the_plane() {
+    let crowned = json!([{ "kind": "crowning", "amount_um": 5 }]);
+    for ((pointer, value), told_at, code, nearest) in refused! {
+        ("/pair/helix_angle_deg", json!(10)) => "/pair/helix_angle_deg", NeedsThreeDimensions, 0.0;
+        ("/pair/axial_offset_mm", json!(-1)) => "/pair/axial_offset_mm", NeedsThreeDimensions, 0.0;
+        ("/pair/misalignment_um", json!({ "out_of_plane_um": 5 })) => "/pair/misalignment_um", NeedsThreeDimensions;
+        ("/pair/driving/lead_modifications", crowned) => "/pair/driving/lead_modifications", NeedsThreeDimensions;
+        ("/pair/driven/tooth_deviations", slopes) => "/pair/driven/tooth_deviations/lead_slope_um", NeedsThreeDimensions;
+        ("/pair/driven/blank/web", web) => "/pair/driven/blank/web/offset_mm", NeedsThreeDimensions, 0.0;
+        ("/pair/driving/blank/hub", hub) => "/pair/driving/blank/hub", NeedsThreeDimensions;
+    } {
         for method in [
             "flexible",
             "decomposition",
@@ -95,7 +50,7 @@ fn planes_refuse_what_they_do_not_know_and_three_dimensions_take_it() {
             assert_eq!(problem.errors.len(), 1, "{problem:?}");
             assert_eq!(
                 (error.pointer.as_str(), error.code, error.nearest),
-                (told_at, Code::NeedsThreeDimensions, nearest)
+                (told_at, code, nearest)
             );
         }
         let mut changes = vec![(pointer, value)];
@@ -139,7 +94,6 @@ fn each_fault_along_the_axis_is_told_with_a_value_that_would_do() {
     let relief =
         |length: f64| json!([{ "kind": "end_relief", "amount_um": 5, "length_mm": length }]);
     let table = json!([{ "kind": "table", "z_mm": [0, 0], "removed_um": [0, 1] }]);
-    let blank = "/pair/driven/blank";
     let holed = |circle: f64, radius: f64| -> Changes<'_> {
         let holes = json!({ "count": 3, "circle_radius_mm": circle, "radius_mm": radius });
         vec![
@@ -147,78 +101,32 @@ fn each_fault_along_the_axis_is_told_with_a_value_that_would_do() {
             ("/pair/driven/blank/holes", holes),
         ]
     };
-    let cases: Vec<(Changes<'_>, &str, Code)> = vec![
-        (
-            vec![("/pair/axial_offset_mm", json!(19))],
-            "/pair/axial_offset_mm",
-            Code::FacesDoNotOverlap,
-        ),
-        (
-            vec![("/pair/axial_offset_mm", json!(-40))],
-            "/pair/axial_offset_mm",
-            Code::FacesDoNotOverlap,
-        ),
-        (
-            vec![("/pair/driven/blank/web", web(9.0))],
-            "/pair/driven/blank/web/offset_mm",
-            Code::WebBeyondFace,
-        ),
-        (
-            vec![
-                ("/pair/driven/blank/web", web(0.0)),
-                ("/pair/driven/blank/hub", hub(5.0, 20.0)),
-            ],
-            "/pair/driven/blank/hub/width_mm",
-            Code::HubDoesNotFit,
-        ),
-        (
-            vec![("/pair/driven/blank/hub", hub(24.0, 60.0))],
-            "/pair/driven/blank/hub/outer_radius_mm",
-            Code::HubDoesNotFit,
-        ),
-        (
-            holed(24.0, 5.0),
-            "/pair/driven/blank/holes/circle_radius_mm",
-            Code::HoleAcrossEdge,
-        ),
-        (
-            holed(39.0, 5.0),
-            "/pair/driven/blank/holes/circle_radius_mm",
-            Code::HoleAcrossEdge,
-        ),
-        (
-            holed(31.0, 12.0),
-            "/pair/driven/blank/holes/radius_mm",
-            Code::HoleAcrossEdge,
-        ),
-        (
-            vec![("/pair/driven/lead_modifications", relief(11.0))],
-            "/pair/driven/lead_modifications/0/length_mm",
-            Code::OutOfRange,
-        ),
-        (
-            vec![("/pair/driven/lead_modifications", table)],
-            "/pair/driven/lead_modifications/0/z_mm",
-            Code::TableDoesNotRise,
-        ),
-        (
-            vec![("/pair/helix_angle_deg", json!(46))],
-            "/pair/helix_angle_deg",
-            Code::OutOfRange,
-        ),
-        (
-            // In the transverse section the teeth are undercut below fewer than in the normal one.
-            vec![
-                ("/pair/helix_angle_deg", json!(20)),
-                ("/pair/driving/tooth_count", json!(10)),
-                ("/pair/center_distance_mm", json!(64.5)),
-                ("/pair/driving/blank/bore_radius_mm", json!(4)),
-            ],
-            "/pair/driving/profile_shift",
-            Code::Undercut,
-        ),
+    // In the transverse section the teeth are undercut below fewer than in the normal one.
+    let undercut = vec![
+        ("/pair/helix_angle_deg", json!(20)),
+        ("/pair/driving/tooth_count", json!(10)),
+        ("/pair/center_distance_mm", json!(64.5)),
+        ("/pair/driving/blank/bore_radius_mm", json!(4)),
     ];
-    for (changes, told_at, code) in cases {
+    let narrow_hub = vec![
+        ("/pair/driven/blank/web", web(0.0)),
+        ("/pair/driven/blank/hub", hub(5.0, 20.0)),
+    ];
+    for (changes, told_at, code, _) in refused! {
+        vec![("/pair/axial_offset_mm", json!(19))] => "/pair/axial_offset_mm", FacesDoNotOverlap;
+        vec![("/pair/axial_offset_mm", json!(-40))] => "/pair/axial_offset_mm", FacesDoNotOverlap;
+        vec![("/pair/driven/blank/web", web(9.0))] => "/pair/driven/blank/web/offset_mm", WebBeyondFace;
+        narrow_hub => "/pair/driven/blank/hub/width_mm", HubDoesNotFit;
+        vec![("/pair/driven/blank/hub", hub(24.0, 60.0))] => "/pair/driven/blank/hub/outer_radius_mm", HubDoesNotFit;
+        holed(24.0, 5.0) => "/pair/driven/blank/holes/circle_radius_mm", HoleAcrossEdge;
+        holed(39.0, 5.0) => "/pair/driven/blank/holes/circle_radius_mm", HoleAcrossEdge;
+        holed(31.0, 12.0) => "/pair/driven/blank/holes/radius_mm", HoleAcrossEdge;
+        vec![("/pair/driven/lead_modifications", relief(11.0))]
+            => "/pair/driven/lead_modifications/0/length_mm", OutOfRange;
+        vec![("/pair/driven/lead_modifications", table)] => "/pair/driven/lead_modifications/0/z_mm", TableDoesNotRise;
+        vec![("/pair/helix_angle_deg", json!(46))] => "/pair/helix_angle_deg", OutOfRange;
+        undercut => "/pair/driving/profile_shift", Undercut;
+    } {
         let document = with(solid(), &changes);
         let problem = parse(&document).expect_err(told_at);
         let error = &problem.errors[0];
@@ -239,7 +147,8 @@ fn each_fault_along_the_axis_is_told_with_a_value_that_would_do() {
             "{left:?}"
         );
     }
-    assert!(parse(&with(solid(), &[(blank, json!({ "bore_radius_mm": 15 }))])).is_ok());
+    let plain = ("/pair/driven/blank", json!({ "bore_radius_mm": 15 }));
+    assert!(parse(&with(solid(), &[plain])).is_ok());
 }
 
 #[test]
@@ -289,35 +198,24 @@ fn forces_and_run_ups_are_told_along_faces_too() {
         let document = with(document.clone(), &[("/method", json!(method))]);
         let submission = parse(&document).expect("valid");
         assert_eq!(submission.positions_total(), 8 + 16 * 6);
-        let (case, forces) = (submission.case(), submission.forces());
-        let (run, library) = (Run::unattended(), Library::default());
-        let results = solve(&submission, &library, &run).expect("solves");
-        let results = serde_json::to_value(results).expect("JSON");
-        let table = &results["force_table"];
-        let rows = table["transmission_error_um"].as_array().expect("rows");
-        let row = |j: usize| rows[j].as_array().expect("a row");
-        assert_eq!((rows.len(), row(0).len()), (6, 16));
-        let stiffness = table["mesh_stiffness_tangent_n_per_m"].as_array();
-        assert_eq!(stiffness.map(Vec::len), Some(6));
-        assert!((0..16).all(|i| row(5)[i].as_f64() > row(4)[i].as_f64()));
-        let dynamics = &results["curves"][0]["dynamics"];
-        assert_eq!(
-            dynamics["up"]["dynamic_load_factor"]
-                .as_array()
-                .map(Vec::len),
-            Some(5)
-        );
+        let pair = &submission.case().pair;
+        let results = solved(&submission);
+        let table = results.force_table.as_ref().expect("asked for");
+        let rows = &table.transmission_error_um;
+        assert_eq!((rows.len(), rows[0].len()), (6, 16));
+        assert_eq!(table.mesh_stiffness_tangent_n_per_m.len(), 6);
+        assert!((0..16).all(|i| rows[5][i] > rows[4][i]));
+        let dynamics = results.curves[0].dynamics.as_ref().expect("asked for");
+        let up = dynamics.up.as_ref().expect("asked for");
+        assert_eq!(up.dynamic_load_factor.len(), 5);
         // The hub turns with its gear.
-        let [j_1, j_2] = ["driving", "driven"].map(|gear| {
-            results["pair"][gear]["polar_inertia_kg_m2"]
-                .as_f64()
-                .expect("a number")
-        });
-        let [r_1, r_2] = [case.pair.driving(), case.pair.driven()].map(|gear| gear.base_radius());
+        let gears = [&results.pair.driving, &results.pair.driven];
+        let [j_1, j_2] = gears.map(|gear| gear.polar_inertia_kg_m2);
+        let [r_1, r_2] = [pair.driving(), pair.driven()].map(|gear| gear.base_radius());
         let mass = 1.0 / (r_1 * r_1 / j_1 + r_2 * r_2 / j_2);
-        let told = dynamics["equivalent_mass_kg"].as_f64().expect("a number");
+        let told = dynamics.equivalent_mass_kg;
         assert!((told / mass - 1.0).abs() < 1e-8, "{told} {mass}");
-        assert!(forces.is_some());
+        assert!(submission.forces().is_some());
     }
 }
 
@@ -336,41 +234,29 @@ fn the_projection_tells_what_the_whole_solution_does_and_how_far_it_is_off() {
             ("/face_load", json!("positions")),
         ],
     );
-    let solved = |document: &Value| -> Value {
-        let submission = parse(document).expect("valid");
-        let results = solve(&submission, &Library::default(), &Run::unattended());
-        serde_json::to_value(results.expect("solves")).expect("JSON")
-    };
-    let projected = solved(&document);
-    let whole = solved(&with(document, &[("/method", json!("three_dimensional"))]));
-    let names = |value: &Value, place: &str| -> Vec<String> {
+    let whole = with(document.clone(), &[("/method", json!("three_dimensional"))]);
+    let [projected, whole] =
+        [document, whole].map(|document| solved(&parse(&document).expect("valid")));
+    let names = |results: &Results, place: &str| -> Vec<String> {
+        let value = serde_json::to_value(results).expect("JSON");
         let object = value.pointer(place).and_then(Value::as_object);
         object.expect("an object").keys().cloned().collect()
     };
     for place in ["", "/pair", "/curves/0", "/curves/0/face"] {
         assert_eq!(names(&projected, place), names(&whole, place), "{place}");
     }
-    let rows = |of: &Value, name: &str| {
-        let rows = of
-            .pointer(&format!("/curves/0{name}"))
-            .and_then(Value::as_array);
-        rows.expect(name).len()
-    };
-    for name in [
-        "/transmission_error_um",
-        "/face/load_n_per_mm",
-        "/face/load_centroid_mm",
-    ] {
+    for results in [&projected, &whole] {
+        let (curve, face) = (&results.curves[0], face_of(results, 0));
+        assert_eq!(curve.transmission_error_um.len(), 80);
         assert_eq!(
-            (rows(&projected, name), rows(&whole, name)),
-            (80, 80),
-            "{name}"
+            (face.load_n_per_mm.len(), face.load_centroid_mm.len()),
+            (80, 80)
         );
     }
-    assert_eq!(projected["method"], "three_dimensional_projected");
-    let error = projected["evidence"]["projection_error_um"].as_f64();
+    assert_eq!(projected.method, "three_dimensional_projected");
+    let error = projected.evidence.projection_error_um;
     assert!(error.expect("it is told") < 0.1, "{error:?}");
-    let unseen = projected["evidence"]["does_not_see"].to_string();
+    let unseen = projected.evidence.does_not_see.join("; ");
     assert!(unseen.contains("beyond first order"), "{unseen}");
 }
 
@@ -385,39 +271,43 @@ fn results_tell_the_load_along_the_face() {
             ("/face_load", json!("positions")),
         ],
     );
-    let submission = parse(&document).expect("valid");
-    let results = solve(&submission, &Library::default(), &Run::unattended()).expect("solves");
-    let results = serde_json::to_value(results).expect("JSON");
-    let (curve, face) = (&results["curves"][0], &results["curves"][0]["face"]);
-    let rows = face["load_n_per_mm"].as_array().expect("rows");
-    let heights = face["z_mm"].as_array().expect("heights");
-    assert_eq!((rows.len(), heights.len()), (8, 40));
+    let results = solved(&parse(&document).expect("valid"));
+    let (curve, face) = (&results.curves[0], face_of(&results, 0));
+    assert_eq!((face.load_n_per_mm.len(), face.z_mm.len()), (8, 40));
     let strip = 20.0 / 40.0;
-    for row in rows {
-        let row = row
-            .as_array()
-            .expect("numbers")
-            .iter()
-            .filter_map(Value::as_f64);
-        let load = row.sum::<f64>() * strip;
-        assert!((load / curve["load_n"].as_f64().expect("a load") - 1.0).abs() < 1e-6);
+    for row in &face.load_n_per_mm {
+        let load = row.iter().sum::<f64>() * strip;
+        assert!((load / curve.load_n - 1.0).abs() < 1e-6);
     }
-    let factor = face["face_load_factor"].as_f64().expect("a factor");
+    let factor = face.face_load_factor;
     assert!(factor > 1.0 && factor < 10.0, "{factor}");
-    assert_eq!(face["load_centroid_mm"].as_array().map(Vec::len), Some(8));
-    assert!(
-        results["curves"][1].get("face").is_none(),
+    assert_eq!(face.load_centroid_mm.len(), 8);
+    assert_eq!(
+        results.curves[1].face, None,
         "no load, no load along the face"
     );
-    let pair = &results["pair"];
-    let number = |name: &str| pair[name].as_f64().expect("a number");
-    let total = number("contact_ratio") + number("overlap_ratio");
-    assert!((number("total_contact_ratio") - total).abs() < 1e-8);
-    assert!((number("helix_angle_base_deg") - 18.7472).abs() < 1e-4);
-    assert!((number("transverse_module_mm") - 2.12836).abs() < 1e-5);
-    assert!((number("transverse_pressure_angle_deg") - 21.1728).abs() < 1e-4);
-    let unseen = results["evidence"]["does_not_see"].to_string();
+    let pair = &results.pair;
+    let near = |told: Option<f64>, expected: f64, within: f64| {
+        assert!(
+            (told.expect("along faces") - expected).abs() < within,
+            "{told:?} {expected}"
+        );
+    };
+    let overlap = pair.overlap_ratio.expect("along faces");
+    near(pair.total_contact_ratio, pair.contact_ratio + overlap, 1e-8);
+    near(pair.helix_angle_base_deg, 18.7472, 1e-4);
+    near(pair.transverse_module_mm, 2.12836, 1e-5);
+    near(pair.transverse_pressure_angle_deg, 21.1728, 1e-4);
+    let unseen = results.evidence.does_not_see.join("; ");
     assert!(!unseen.contains("the model is plane"), "{unseen}");
+}
+
+fn solved(submission: &Submission) -> Results {
+    solve(submission, &Library::default(), &Run::unattended()).expect("solves")
+}
+
+fn face_of(results: &Results, curve: usize) -> &FaceDocument {
+    results.curves[curve].face.as_ref().expect("along faces")
 }
 
 /// A helical pair of few teeth and slices, with no web in the way of a mirror.
@@ -435,21 +325,32 @@ fn pattern_pair(changes: &[(&str, Value)]) -> Submission {
     parse(&with(document, changes)).expect("valid")
 }
 
-fn pattern(submission: &Submission) -> Value {
+fn pattern(submission: &Submission) -> ContactPatternDocument {
     let torques = &submission.case().output_torques;
     let found = contact_pattern(submission, torques, &Library::default(), &Run::unattended());
-    let document = ContactPatternDocument::of(&found.expect("a pattern"));
-    serde_json::from_str(&document.to_json().expect("finite")).expect("JSON")
+    ContactPatternDocument::of(&found.expect("a pattern"))
 }
 
-fn numbers(list: &Value) -> Vec<f64> {
-    let list = list.as_array().expect("a list").iter();
-    list.map(|each| each.as_f64().unwrap_or(f64::NAN)).collect()
+/// The flanks of both gears with their pressures, NaN where there is no limit.
+fn flanks<'a>(
+    pattern: &'a ContactPatternDocument,
+    curve: &PatternCurveDocument,
+) -> [(&'a PatternFlank, Vec<Vec<f64>>); 2] {
+    let map = |pressure: &PatternPressure| {
+        let rows = pressure.pressure_mpa.iter();
+        rows.map(|row| unlimited(&row.0)).collect()
+    };
+    [
+        (&pattern.driving, map(&curve.driving)),
+        (&pattern.driven, map(&curve.driven)),
+    ]
 }
 
-fn map(curve: &Value, gear: &str) -> Vec<Vec<f64>> {
-    let rows = curve[gear]["pressure_mpa"].as_array().expect("rows");
-    rows.iter().map(numbers).collect()
+fn unlimited(pressures: &[Option<f64>]) -> Vec<f64> {
+    pressures
+        .iter()
+        .map(|each| each.unwrap_or(f64::NAN))
+        .collect()
 }
 
 #[test]
@@ -457,72 +358,59 @@ fn a_contact_pattern_tells_every_line_and_the_largest_pressure_of_all() {
     let torques = json!([100, 30]);
     let submission = pattern_pair(&[("/output_torques_n_m", torques)]);
     let pattern = pattern(&submission);
-    let z = numbers(&pattern["z_mm"]);
+    let z = &pattern.z_mm;
     assert!((z[0] + 9.75).abs() < 1e-9 && z.len() == 40);
-    let results = solve(&submission, &Library::default(), &Run::unattended()).expect("solves");
-    let results = serde_json::to_value(results).expect("JSON");
-    let curves = pattern["curves"].as_array().expect("curves");
-    assert_eq!(curves.len(), 2);
-    for (curve, solved) in curves
-        .iter()
-        .zip(results["curves"].as_array().expect("curves"))
-    {
-        assert_eq!(curve["output_torque_n_m"], solved["output_torque_n_m"]);
-        let positions = curve["positions"].as_array().expect("positions");
-        assert_eq!(positions.len(), 8);
-        let peaks = numbers(&solved["peak_contact_pressure_mpa"]);
-        let load = solved["load_n"].as_f64().expect("a load");
+    let results = solved(&submission);
+    assert_eq!(pattern.curves.len(), 2);
+    for (curve, solved) in pattern.curves.iter().zip(&results.curves) {
+        assert_eq!(curve.output_torque_n_m, solved.output_torque_n_m);
+        assert_eq!(curve.positions.len(), 8);
+        let peaks = unlimited(&solved.peak_contact_pressure_mpa);
+        let load = solved.load_n;
         let mut largest: f64 = 0.0;
-        for (i, position) in positions.iter().enumerate() {
-            assert_eq!(position["mesh_position"], solved["mesh_position"][i]);
+        for (i, position) in curve.positions.iter().enumerate() {
+            assert!((position.mesh_position - solved.mesh_position[i]).abs() < 1e-9);
             let (mut carried, mut peak) = (0.0, 0.0_f64);
-            for line in position["lines"].as_array().expect("lines") {
-                let (z, loads) = (numbers(&line["z_mm"]), numbers(&line["load_n_per_mm"]));
-                let pressures = numbers(&line["pressure_mpa"]);
-                for (gear, teeth) in [("driving", 25.0), ("driven", 30.0)] {
-                    let diameters = numbers(&line[format!("{gear}_diameter_mm")]);
+            for line in &position.lines {
+                let (z, loads) = (&line.z_mm, &line.load_n_per_mm);
+                for (flank, diameters, teeth) in [
+                    (&pattern.driving, &line.driving_diameter_mm, 25.0),
+                    (&pattern.driven, &line.driven_diameter_mm, 30.0),
+                ] {
                     assert_eq!(diameters.len(), z.len());
-                    let flank = &pattern[gear];
-                    let ends = ["form_diameter_mm", "tip_diameter_mm"]
-                        .map(|name| flank[name].as_f64().expect("a diameter"));
-                    assert!(
-                        diameters
-                            .iter()
-                            .all(|d| (ends[0]..=ends[1] + 1e-9).contains(d))
-                    );
-                    assert!(ends[1] > 2.0 * teeth);
+                    let ends = flank.form_diameter_mm..=flank.tip_diameter_mm + 1e-9;
+                    assert!(diameters.iter().all(|d| ends.contains(d)));
+                    assert!(flank.tip_diameter_mm > 2.0 * teeth);
                 }
                 // Slices of one line are equally long.
                 let length = if z.len() > 1 { z[1] - z[0] } else { 0.0 };
                 carried += loads.iter().sum::<f64>() * length;
-                peak = pressures
-                    .into_iter()
-                    .filter(|p| p.is_finite())
+                peak = line
+                    .pressure_mpa
+                    .iter()
+                    .flatten()
+                    .copied()
                     .fold(peak, f64::max);
             }
             assert!((carried / load - 1.0).abs() < 0.02, "{carried} {load}");
             assert!((peak / peaks[i] - 1.0).abs() < 1e-4, "{peak} {}", peaks[i]);
             largest = largest.max(peak);
         }
-        let told = curve["largest_pressure_mpa"].as_f64().expect("a pressure");
+        let told = curve.largest_pressure_mpa;
         // A slice that no middle of a strip lies in is told as a line alone.
         assert!(
             told <= largest * (1.0 + 1e-4) && told > 0.9 * largest,
             "{told} {largest}"
         );
-        for gear in ["driving", "driven"] {
-            let map = map(curve, gear);
+        for (_, map) in flanks(&pattern, curve) {
             assert_eq!((map.len(), map[0].len()), (32, 40));
             let touched = map.iter().flatten().filter(|p| **p > 0.0).count();
             // A light load does not reach all of the flank, which begins where no mate comes.
-            assert!(touched > 32 * 40 / 2, "{gear}: {touched}");
+            assert!(touched > 32 * 40 / 2, "{touched}");
             for strip in 0..40 {
                 let column: Vec<bool> = map.iter().map(|row| row[strip] > 0.0).collect();
                 let edges = column.windows(2).filter(|pair| pair[0] != pair[1]).count();
-                assert!(
-                    edges <= 2,
-                    "{gear}, strip {strip}: positions leave no stripes"
-                );
+                assert!(edges <= 2, "strip {strip}: positions leave no stripes");
             }
         }
     }
@@ -542,8 +430,8 @@ fn the_pattern_of_the_other_hand_under_the_other_lead_is_the_mirror_image() {
             ])
         };
         let [one, other] = [1.0, -1.0].map(|hand| pattern(&of(hand)));
-        for gear in ["driving", "driven"] {
-            let [one, other] = [&one, &other].map(|pattern| map(&pattern["curves"][0], gear));
+        let [one, other] = [&one, &other].map(|pattern| flanks(pattern, &pattern.curves[0]));
+        for ((_, one), (_, other)) in one.into_iter().zip(other) {
             let most = one.iter().flatten().copied().fold(0.0, f64::max);
             let mut halves = [0.0; 2];
             for (row, mirrored) in one.iter().zip(&other) {
@@ -564,9 +452,9 @@ fn the_pattern_of_a_misaligned_pair_stands_where_its_face_is_closed() {
     for (slope, closed) in [(12.0, 0), (-12.0, 1)] {
         let askew = json!({ "out_of_plane_um": slope });
         let pattern = pattern(&pattern_pair(&[("/pair/misalignment_um", askew)]));
-        for gear in ["driving", "driven"] {
+        for (_, map) in flanks(&pattern, &pattern.curves[0]) {
             let mut halves = [0.0; 2];
-            for row in map(&pattern["curves"][0], gear) {
+            for row in map {
                 for (strip, pressure) in row.into_iter().enumerate() {
                     halves[strip / 20] += pressure;
                 }
@@ -595,10 +483,10 @@ fn a_pattern_over_several_periods_tells_a_bounded_number_of_positions_and_the_la
         ])
     };
     let [short, long] = [1, 30].map(|span| pattern(&of(span)));
-    let positions = |pattern: &Value| pattern["curves"][0]["positions"].as_array().map(Vec::len);
-    assert_eq!((positions(&short), positions(&long)), (Some(8), Some(120)));
-    let sum = |pattern: &Value, half: usize| -> f64 {
-        let map = map(&pattern["curves"][0], "driven");
+    let positions = |pattern: &ContactPatternDocument| pattern.curves[0].positions.len();
+    assert_eq!((positions(&short), positions(&long)), (8, 120));
+    let sum = |pattern: &ContactPatternDocument, half: usize| -> f64 {
+        let [_, (_, map)] = flanks(pattern, &pattern.curves[0]);
         map.iter()
             .flat_map(|row| &row[20 * half..20 * (half + 1)])
             .sum()
@@ -616,39 +504,22 @@ fn pressure_at_a_sharp_edge_is_null_in_the_pattern_and_in_the_curve() {
     let sharp = sharp.map(|pointer| (pointer, Value::Null)).to_vec();
     for (changes, is_sharp) in [(Vec::new(), false), (sharp, true)] {
         let submission = pattern_pair(&changes);
-        let results = solve(&submission, &Library::default(), &Run::unattended()).expect("solves");
-        let results = serde_json::to_value(results).expect("JSON");
-        let peaks = numbers(&results["curves"][0]["peak_contact_pressure_mpa"]);
+        let results = solved(&submission);
+        let peaks = &results.curves[0].peak_contact_pressure_mpa;
+        assert_eq!(peaks.contains(&None), is_sharp, "{peaks:?}");
         let pattern = pattern(&submission);
-        let curve = &pattern["curves"][0];
-        let bands = |gear: &str| -> Vec<usize> {
-            let map = map(curve, gear);
+        let curve = &pattern.curves[0];
+        for (_, map) in flanks(&pattern, curve) {
             let has_none = |band: &usize| map[*band].iter().any(|pressure| pressure.is_nan());
-            (0..32).filter(has_none).collect()
-        };
-        assert_eq!(
-            peaks.iter().any(|peak| peak.is_nan()),
-            is_sharp,
-            "{peaks:?}"
-        );
-        for gear in ["driving", "driven"] {
-            let bands = bands(gear);
-            assert_eq!(
-                bands.contains(&31),
-                is_sharp,
-                "{gear}: at its own tip, {bands:?}"
-            );
+            let bands: Vec<usize> = (0..32).filter(has_none).collect();
+            assert_eq!(bands.contains(&31), is_sharp, "at its own tip: {bands:?}");
             let at_root = bands.iter().any(|band| *band < 16);
             assert_eq!(
                 at_root, is_sharp,
-                "{gear}: where the edge of its mate digs, {bands:?}"
+                "where the edge of its mate digs: {bands:?}"
             );
         }
-        assert!(
-            curve["largest_pressure_mpa"]
-                .as_f64()
-                .is_some_and(|most| most > 100.0)
-        );
+        assert!(curve.largest_pressure_mpa > 100.0);
     }
 }
 
@@ -672,20 +543,14 @@ fn a_plane_method_has_no_pattern_and_says_which_has() {
 
 /// K_Hbeta of each curve, and what would lower it.
 fn cures(submission: &Submission) -> Vec<(f64, [f64; 3])> {
-    let results = solve(submission, &Library::default(), &Run::unattended()).expect("solves");
-    let results = serde_json::to_value(results).expect("JSON");
-    let curves = results["curves"].as_array().expect("curves").iter();
-    curves
-        .map(|curve| {
-            let face = &curve["face"];
-            let of_cure = ["lead_slope_um", "crowning_um", "face_load_factor"]
-                .map(|name| face["cure"][name].as_f64().expect("a number"));
-            (
-                face["face_load_factor"].as_f64().expect("a factor"),
-                of_cure,
-            )
-        })
-        .collect()
+    let results = solved(submission);
+    let faces = (0..results.curves.len()).map(|curve| face_of(&results, curve));
+    let told = faces.map(|face| {
+        let cure = face.cure.as_ref().expect("a cure");
+        let of_cure = [cure.lead_slope_um, cure.crowning_um, cure.face_load_factor];
+        (face.face_load_factor, of_cure)
+    });
+    told.collect()
 }
 
 /// A pattern pair with this on its driving leads.
