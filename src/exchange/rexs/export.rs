@@ -7,15 +7,12 @@ use serde_json::Value;
 use super::gear::{GENERATED_SHIFT, ROOT, ReliefNames, TIP};
 use super::import::HELIX_ANGLE;
 use super::own;
-use super::unit::{DEG, KG_PER_DM3, MM, MPA, N_M, NONE, PER_MINUTE, mm_of_um};
+use super::unit::{DEG, KG_PER_DM3, MM, MPA, MUM, N_M, N_PER_MM, NONE, PER_MINUTE, Unit, mm_of_um};
 use crate::wire::geometry::{GearGeometry, PairGeometry};
 use crate::wire::{Submission, significant};
 
 /// The version whose names are written.
 const VERSION: &str = "2.0.0";
-
-const N_PER_MM: &str = "N / mm";
-const MUM: &str = "mum";
 
 /// The digits that the standard keeps of a number.
 const DIGITS: usize = 15;
@@ -56,15 +53,11 @@ pub fn export(submission: &Submission, results: Option<&Value>, date: &str) -> S
     components.close();
     components.open(STAGE, "cylindrical_stage");
     let pair = &document["pair"];
-    components.number(
-        "center_distance",
-        MM.name,
-        number(pair, "center_distance_mm"),
-    );
-    components.number("radial_contact_ratio", NONE.name, geometry.contact_ratio);
+    components.number("center_distance", MM, number(pair, "center_distance_mm"));
+    components.number("radial_contact_ratio", NONE, geometry.contact_ratio);
     components.word(own::METHOD, submission.method());
     if let Some(offset) = number_of(pair, "axial_offset_mm").filter(|offset| *offset != 0.0) {
-        components.number(own::AXIAL_OFFSET, MM.name, offset);
+        components.number(own::AXIAL_OFFSET, MM, offset);
     }
     if !pair["misalignment_um"].is_null() {
         components.word(own::MISALIGNMENT, &pair["misalignment_um"].to_string());
@@ -132,7 +125,7 @@ fn load_cases(document: &Value, results: Option<&Value>, ids: &[Ids; 2]) -> Stri
             ),
             (own::SECANT, N_PER_MM, "mesh_stiffness_secant_n_per_m", 1e3),
             (own::TRANSMISSION_ERROR, MUM, "transmission_error_um", 1.0),
-            (own::MESH_POSITION, NONE.name, "mesh_position", 1.0),
+            (own::MESH_POSITION, NONE, "mesh_position", 1.0),
         ] {
             if let Some(values) = list(name) {
                 case.list(
@@ -150,10 +143,10 @@ fn load_cases(document: &Value, results: Option<&Value>, ids: &[Ids; 2]) -> Stri
         {
             case.open(ids.data, "cylindrical_stage_gear_data");
             if member == 1 {
-                case.number("torque", N_M.name, torque);
+                case.number("torque", N_M, torque);
             }
             if let Some(values) = list(name) {
-                case.list("rotational_meshing_position", DEG.name, values.into_iter());
+                case.list("rotational_meshing_position", DEG, values.into_iter());
             }
             case.close();
         }
@@ -216,28 +209,24 @@ impl Gear<'_> {
         let shift = self.number("profile_shift");
         let blank = &self.document["blank"];
         out.open(ids.gear, "cylindrical_gear");
-        out.number("number_of_teeth", NONE.name, self.number("tooth_count"));
-        out.number("normal_module", MM.name, module);
-        out.number(HELIX_ANGLE, DEG.name, self.helix_angle_deg);
-        out.number("face_width", MM.name, self.number("face_width_mm"));
+        out.number("number_of_teeth", NONE, self.number("tooth_count"));
+        out.number("normal_module", MM, module);
+        out.number(HELIX_ANGLE, DEG, self.helix_angle_deg);
+        out.number("face_width", MM, self.number("face_width_mm"));
         let tip = number_of(self.document, "tip_diameter_mm");
         out.number(
             "tip_diameter",
-            MM.name,
+            MM,
             tip.unwrap_or(2.0 * geometry.tip_radius_mm),
         );
-        out.number("root_diameter", MM.name, 2.0 * geometry.root_radius_mm);
-        out.number("base_diameter", MM.name, 2.0 * geometry.base_radius_mm);
-        out.number(
-            "inner_diameter",
-            MM.name,
-            2.0 * number(blank, "bore_radius_mm"),
-        );
+        out.number("root_diameter", MM, 2.0 * geometry.root_radius_mm);
+        out.number("base_diameter", MM, 2.0 * geometry.base_radius_mm);
+        out.number("inner_diameter", MM, 2.0 * number(blank, "bore_radius_mm"));
         if let Some(speed) = speed.filter(|_| drives) {
-            out.number("rotational_speed", PER_MINUTE.name, speed);
+            out.number("rotational_speed", PER_MINUTE, speed);
         }
         if let Some(rounding) = number_of(self.document, "tip_rounding_mm") {
-            out.number(own::TIP_ROUNDING, MM.name, rounding);
+            out.number(own::TIP_ROUNDING, MM, rounding);
         }
         for (attribute, value) in [
             (own::HOLES, &blank["holes"]),
@@ -252,19 +241,19 @@ impl Gear<'_> {
             out.open(flank, "cylindrical_gear_flank");
             out.number(
                 "normal_pressure_angle",
-                DEG.name,
+                DEG,
                 self.number("pressure_angle_deg"),
             );
-            out.number("addendum_modification_coefficient", NONE.name, shift);
+            out.number("addendum_modification_coefficient", NONE, shift);
             if let Some(addendum) = number_of(self.document, "addendum_mm") {
                 out.number(
                     "addendum_coefficient_basic_profile",
-                    NONE.name,
+                    NONE,
                     addendum / module,
                 );
             }
             let chamfer = number_of(self.document, "tip_chamfer_mm");
-            out.number("tooth_tip_chamfer", MM.name, chamfer.unwrap_or(0.0));
+            out.number("tooth_tip_chamfer", MM, chamfer.unwrap_or(0.0));
             let tables = self.tables();
             if !tables.is_empty() {
                 out.word(own::TABLES, &Value::Array(tables).to_string());
@@ -283,68 +272,56 @@ impl Gear<'_> {
         out.word("is_driving_gear", if drives { "true" } else { "false" });
         out.close();
         out.open(ids.tool, "rack_shaped_tool");
-        out.number("normal_module", MM.name, module);
+        out.number("normal_module", MM, module);
         out.number(
             "normal_pressure_angle",
-            DEG.name,
+            DEG,
             self.number("pressure_angle_deg"),
         );
         let reach = self.number("dedendum_mm") / module + self.generated_shift() - shift;
-        out.number("addendum_coefficient_reference_profile", NONE.name, reach);
+        out.number("addendum_coefficient_reference_profile", NONE, reach);
         let rounding = self.number("rack_tip_radius_mm") / module;
-        out.number(
-            "tip_corner_radius_factor_reference_profile",
-            NONE.name,
-            rounding,
-        );
+        out.number("tip_corner_radius_factor_reference_profile", NONE, rounding);
         out.close();
         out.open(ids.settings, "cylindrical_gear_manufacturing_settings");
-        out.number(GENERATED_SHIFT, NONE.name, self.generated_shift());
+        out.number(GENERATED_SHIFT, NONE, self.generated_shift());
         out.close();
         let material = &self.document["material"];
         out.open(ids.material, "material");
         out.number(
             "elastic_modulus",
-            MPA.name,
+            MPA,
             number(material, "youngs_modulus_gpa") * 1e3,
         );
-        out.number(
-            "poisson_ratio",
-            NONE.name,
-            number(material, "poisson_ratio"),
-        );
+        out.number("poisson_ratio", NONE, number(material, "poisson_ratio"));
         out.number(
             "density",
-            KG_PER_DM3.name,
+            KG_PER_DM3,
             number(material, "density_kg_m3") / 1e3,
         );
         out.close();
         out.open(ids.body, "gear_body");
-        out.number(
-            "inner_diameter",
-            MM.name,
-            2.0 * number(blank, "bore_radius_mm"),
-        );
-        out.number("outer_diameter", MM.name, 2.0 * geometry.root_radius_mm);
+        out.number("inner_diameter", MM, 2.0 * number(blank, "bore_radius_mm"));
+        out.number("outer_diameter", MM, 2.0 * geometry.root_radius_mm);
         if let Some(outer) = number_of(&blank["web"], "outer_radius_mm") {
             out.number(
                 "gear_body_rim_thickness",
-                MM.name,
+                MM,
                 geometry.root_radius_mm - outer,
             );
             out.number(
                 "gear_body_web_thickness",
-                MM.name,
+                MM,
                 number(&blank["web"], "thickness_mm"),
             );
             out.number(
                 own::WEB_INNER_RADIUS,
-                MM.name,
+                MM,
                 number(&blank["web"], "inner_radius_mm"),
             );
             let offset = number_of(&blank["web"], "offset_mm");
             if let Some(offset) = offset.filter(|offset| *offset != 0.0) {
-                out.number(own::WEB_OFFSET, MM.name, offset);
+                out.number(own::WEB_OFFSET, MM, offset);
             }
         }
         if !blank["hub"].is_null() {
@@ -359,11 +336,11 @@ impl Gear<'_> {
             let amount = mm_of_um(number(lead, "amount_um"));
             if kind(lead) == "slope" {
                 out.open(*id, "helix_slope");
-                out.number("helix_slope", MM.name, amount);
+                out.number("helix_slope", MM, amount);
             } else {
                 out.open(*id, "helix_crowning");
-                out.number("helix_crowning_amount_datum_face", MM.name, amount);
-                out.number("helix_crowning_amount_non_datum_face", MM.name, amount);
+                out.number("helix_crowning_amount_datum_face", MM, amount);
+                out.number("helix_crowning_amount_non_datum_face", MM, amount);
             }
             out.close();
         }
@@ -400,11 +377,11 @@ impl Gear<'_> {
         out.open(id, component_of(kind(modification)));
         match kind(modification) {
             "crowning" => {
-                out.number("profile_crowning_at_tip", MM.name, amount);
-                out.number("profile_crowning_at_root", MM.name, amount);
+                out.number("profile_crowning_at_tip", MM, amount);
+                out.number("profile_crowning_at_root", MM, amount);
                 out.word("shape_of_profile_crowning", "parabolic");
             }
-            "slope" => out.number("profile_slope", MM.name, amount),
+            "slope" => out.number("profile_slope", MM, amount),
             "root_relief" => self.write_relief(&ROOT, amount, modification, out),
             _ => self.write_relief(&TIP, amount, modification, out),
         }
@@ -413,13 +390,13 @@ impl Gear<'_> {
 
     fn write_relief(&self, names: &ReliefNames, amount: f64, relief: &Value, out: &mut Xml) {
         let (start, geometry) = (&relief["start"], self.geometry);
-        out.number(names.depth, MM.name, amount);
+        out.number(names.depth, MM, amount);
         out.word(
             "shape_of_relief",
             relief["shape"].as_str().unwrap_or("linear"),
         );
         if let Some(length) = number_of(start, names.roll_length) {
-            out.number(names.length, MM.name, length);
+            out.number(names.length, MM, length);
             return;
         }
         let from_radial = |length: f64| {
@@ -434,7 +411,7 @@ impl Gear<'_> {
             .or_else(|| number_of(start, "radial_length_mm").map(from_radial))
             .or_else(|| number_of(start, "roll_angle_deg").map(from_angle));
         if let Some(diameter) = diameter {
-            out.number(names.diameter, MM.name, diameter);
+            out.number(names.diameter, MM, diameter);
         }
     }
 
@@ -536,23 +513,23 @@ impl Xml {
         let _ = writeln!(self.text, "{}</component>", self.indent);
     }
 
-    fn number(&mut self, id: &str, unit: &str, value: f64) {
+    fn number(&mut self, id: &str, unit: Unit, value: f64) {
         self.attribute(id, unit, &written(value));
     }
 
     fn word(&mut self, id: &str, word: &str) {
-        self.attribute(id, NONE.name, &escaped(word));
+        self.attribute(id, NONE, &escaped(word));
     }
 
-    fn attribute(&mut self, id: &str, unit: &str, content: &str) {
+    fn attribute(&mut self, id: &str, unit: Unit, content: &str) {
         let _ = writeln!(
             self.text,
-            "{}  <attribute id=\"{id}\" unit=\"{unit}\">{content}</attribute>",
-            self.indent
+            "{}  <attribute id=\"{id}\" unit=\"{}\">{content}</attribute>",
+            self.indent, unit.name
         );
     }
 
-    fn list(&mut self, id: &str, unit: &str, values: impl Iterator<Item = f64>) {
+    fn list(&mut self, id: &str, unit: Unit, values: impl Iterator<Item = f64>) {
         let cells: String = values
             .map(|value| format!("<c>{}</c>", written(value)))
             .collect();

@@ -3,8 +3,8 @@
 use serde_json::{Map, Value, json};
 
 use super::file::Component;
-use super::import::Reading;
 use super::own;
+use super::reading::Reading;
 use super::unit::{DEG, KG_PER_DM3, MM, MPA, NONE, Unit, um_of_mm};
 use crate::wire::significant;
 

@@ -1,7 +1,8 @@
 //! The torques and the speed of a stage.
 
 use super::file::{Component, LoadCase};
-use super::import::{Reading, Stage};
+use super::import::Stage;
+use super::reading::Reading;
 use super::unit::{N_M, NONE, PER_MINUTE, Unit};
 
 impl<'a> Reading<'a> {

@@ -1,7 +1,7 @@
 //! REXS, the gearbox exchange format of the FVA: a pair of cylindrical gears out of a model, and a pair with its curves as a model.
 //!
 //! A model is a list of components with attributes, relations between components, and load cases. Read in this order: `file` (the
-//! XML as such), `unit` (what its numbers are in), `fault` (what is wrong with a model), `import` with `gear` and `load`, and `export`.
+//! XML as such), `unit` (what its numbers are in), `fault` (what is wrong with a model), `reading`, `import` with `gear` and `load`, and `export`.
 //!
 //! Names are those of versions 1.4 to 2.0. What the format has no words for stands in attributes `custom_meshwright_...`.
 
@@ -12,13 +12,15 @@ mod gear;
 mod import;
 mod load;
 mod markup;
+mod reading;
 #[cfg(test)]
 mod tests;
 mod unit;
 
 pub use export::export;
 pub use fault::{Fault, Refused};
-pub use import::{Choices, Import, NotRead, import, stages};
+pub use import::{Import, NotRead, import, stages};
+pub use reading::Choices;
 
 /// Whether a document is XML rather than JSON, by its first character.
 pub fn is_xml(document: &[u8]) -> bool {

@@ -5,8 +5,8 @@ use meshwright_engine::run::Run;
 use serde_json::{Value, json};
 
 use super::{Choices, Import, Refused, export, import, is_xml};
-use crate::wire::solve;
-use crate::wire::{Submission, examples};
+use crate::wire::testing::{self, example, parse, submission};
+use crate::wire::{Submission, examples, solve};
 
 const CASE_2: &str = include_str!("../../../api/examples/test-case-2.rexs");
 
@@ -51,14 +51,11 @@ fn field(imported: &Import, pointer: &str) -> Value {
 #[test]
 fn the_model_of_test_case_2_is_its_submission() {
     let imported = taken(CASE_2);
-    let of_model = Submission::parse(imported.submission.to_string().as_bytes()).expect("valid");
-    let example = examples()
-        .iter()
-        .find(|example| example.name == "test-case-2");
-    let json = example.expect("ships").json;
+    let of_model = parse(&imported.submission).expect("valid");
     // The relief of the model begins at a diameter, that of the submission at a depth: the same place.
-    let json = json.replace(r#""radial_length_mm": 1.75"#, r#""diameter_mm": 100.5"#);
-    let json = json.replace(r#""addendum_mm": 2.0"#, r#""tip_diameter_mm": 104.0"#);
+    let json = example("test-case-2").to_string();
+    let json = json.replace(r#""radial_length_mm":1.75"#, r#""diameter_mm":100.5"#);
+    let json = json.replace(r#""addendum_mm":2.0"#, r#""tip_diameter_mm":104.0"#);
     let by_hand = Submission::parse(json.as_bytes()).expect("valid");
     assert_eq!(of_model.canonical_json(), by_hand.canonical_json());
     let said = &imported.remarks;
@@ -448,7 +445,7 @@ fn a_problem_of_the_submission_leads_back_to_the_model() {
         r#""center_distance" unit="mm">105"#,
     );
     let imported = taken(&apart);
-    let problem = Submission::parse(imported.submission.to_string().as_bytes()).expect_err("apart");
+    let problem = parse(&imported.submission).expect_err("apart");
     let origin = imported.origin(&problem.errors[0].pointer);
     assert_eq!(
         origin,
@@ -479,15 +476,13 @@ fn every_valid_example_comes_back_as_the_same_pair() {
         document["stress"] = json!(false);
         document["dynamics"] = Value::Null;
         document["force_table"] = Value::Null;
-        let gone = Submission::parse(document.to_string().as_bytes()).expect("valid");
+        let gone = parse(&document).expect("valid");
         let there = solved(&gone);
         let imported = taken(&export(&gone, Some(&there), DATE));
         let mut submission = imported.submission.clone();
         submission["resolution"] = quick.clone();
-        let back = match Submission::parse(submission.to_string().as_bytes()) {
-            Ok(back) => back,
-            Err(problem) => panic!("{}: {problem:?}", example.name),
-        };
+        let back = parse(&submission);
+        let back = back.unwrap_or_else(|problem| panic!("{}: {problem:?}", example.name));
         assert_eq!(gone.method(), back.method());
         let again = solved(&back);
         assert_alike(&there["pair"], &again["pair"], example.name);
@@ -497,15 +492,7 @@ fn every_valid_example_comes_back_as_the_same_pair() {
 }
 
 fn helical(changes: &[(&str, Value)]) -> Value {
-    let example = examples()
-        .iter()
-        .find(|example| example.name == "helical-pair");
-    let mut document: Value = serde_json::from_str(example.expect("ships").json).expect("JSON");
-    for (pointer, value) in changes {
-        let (parent, name) = pointer.rsplit_once('/').expect("a pointer");
-        document.pointer_mut(parent).expect("a place")[name] = value.clone();
-    }
-    document
+    testing::with(example("helical-pair"), changes)
 }
 
 #[test]
@@ -530,10 +517,10 @@ fn helices_leads_and_what_stands_askew_come_back_as_they_went() {
             ("/pair/driven/tooth_thickness_deviation_um", json!(-40)),
             ("/pair/driven/tip_diameter_mm", json!(131.5)),
         ]);
-        let gone = Submission::parse(gone.to_string().as_bytes()).expect("valid");
+        let gone = parse(&gone).expect("valid");
         let text = export(&gone, None, DATE);
         let imported = taken(&text);
-        let back = Submission::parse(imported.submission.to_string().as_bytes()).expect("valid");
+        let back = parse(&imported.submission).expect("valid");
         let [gone, back] = [&gone, &back].map(|pair| serde_json::to_value(pair).expect("JSON"));
         assert_eq!(gone["method"], back["method"]);
         for field in ["helix_angle_deg", "axial_offset_mm", "misalignment_um"] {
@@ -587,7 +574,7 @@ fn helices_leads_and_what_stands_askew_come_back_as_they_went() {
 
 #[test]
 fn a_helix_crowning_that_differs_at_the_ends_is_refused() {
-    let gone = Submission::parse(helical(&[]).to_string().as_bytes()).expect("valid");
+    let gone = parse(&helical(&[])).expect("valid");
     let text = export(&gone, None, DATE);
     let name = "\"helix_crowning_amount_non_datum_face\" unit=\"mm\">";
     let uneven = text.replace(&format!("{name}0.004"), &format!("{name}0.006"));
@@ -630,10 +617,7 @@ fn assert_alike(one: &Value, other: &Value, place: &str) {
 
 #[test]
 fn the_curves_stand_at_the_stage_in_the_units_of_the_standard() {
-    let example = examples()
-        .iter()
-        .find(|example| example.name == "standard-pair");
-    let submission = Submission::parse(example.expect("ships").json.as_bytes()).expect("valid");
+    let submission = submission("standard-pair");
     let library = Library::with_capacity(64 << 20);
     let solved = solve(&submission, &library, &Run::unattended()).expect("computed");
     let results = serde_json::to_value(&solved).expect("JSON");
@@ -739,7 +723,7 @@ fn damaged_models_are_taken_or_refused_and_never_panic() {
         match import(&bytes, &Choices::default()) {
             Ok(imported) => {
                 taken += 1;
-                Submission::parse(imported.submission.to_string().as_bytes()).ok();
+                parse(&imported.submission).ok();
             }
             Err(Refused(faults)) => {
                 refused += 1;

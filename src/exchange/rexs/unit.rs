@@ -65,6 +65,14 @@ pub(super) const PER_MINUTE: Unit = Unit {
     ],
 };
 
+/// Of curves, which are written alone.
+pub(super) const N_PER_MM: Unit = written_alone("N / mm");
+pub(super) const MUM: Unit = written_alone("mum");
+
+const fn written_alone(name: &'static str) -> Unit {
+    Unit { name, others: &[] }
+}
+
 impl Unit {
     /// `value` in this unit, if `said` is one that is known here. An attribute that says none has the unit of the standard.
     pub(super) fn convert(self, value: f64, said: Option<&str>) -> Option<f64> {
