@@ -3,11 +3,11 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
 
-use axum::http::header::HeaderValue;
 use meshwright_engine::library::Library;
 
 use super::door::Door;
-use super::health::Readings;
+use super::edge::Edge;
+use super::readings::Readings;
 use crate::jobs::{Budget, Jobs, Previews};
 use crate::tokens::Tokens;
 use crate::webhooks::Webhooks;
@@ -37,19 +37,4 @@ pub struct App {
     pub reading: Budget,
     /// What the last look at the database said.
     pub readings: Arc<Readings>,
-}
-
-/// How the service looks from outside.
-#[derive(Debug, Clone, Default)]
-pub struct Edge {
-    /// What stands before the path in every link: nothing, or the public address without a slash at its end.
-    pub public_url: String,
-    /// The origins whose pages may call the service; `*` for all.
-    pub cors_origins: Vec<HeaderValue>,
-    /// Whether keys are needed from the start, for the OpenAPI document.
-    pub asks_for_keys: bool,
-    /// Whose tokens open the door as keys do, for the same.
-    pub issuer: Option<String>,
-    /// Whether the numbers of the service are served beside everything else.
-    pub metrics_here: bool,
 }

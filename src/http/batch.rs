@@ -100,7 +100,7 @@ pub(super) async fn submit(
     let items: Vec<BatchItem<'_>> = outcomes
         .iter()
         .map(|(job, problem)| BatchItem {
-            job: job.as_ref().map(|job| JobView::new(job, &app.edge)),
+            job: job.as_ref().map(|job| JobView::of(job, &app.edge)),
             problem: problem.as_ref().map(|problem| {
                 let problem = serde_json::to_value(problem).expect("a problem is plain data");
                 with_public_type(problem, &app.edge.public_url)

@@ -3,18 +3,17 @@
 use std::sync::Arc;
 
 use axum::extract::FromRequestParts;
-use axum::http::header::AUTHORIZATION;
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, Method};
 use jiff::Timestamp;
 
 use super::app::App;
+use super::credential::{Credential, bearer, no_credential, unauthorized};
 use super::guests::Guest;
 use super::problem::Refusal;
-use crate::hash::sha256_hex;
 use crate::jobs::{JobError, KeyRecord, Member, Role};
-use crate::keys::{self, Key};
-use crate::tokens::{self, Bearer, TokenError};
+use crate::keys::Key;
+use crate::tokens::{Bearer, TokenError};
 use crate::wire::{Code, Problem};
 
 /// The client of requests without a key, where none is needed.
@@ -46,24 +45,6 @@ impl Pass {
             Self::Key(key) => !matches!(key.find(app.jobs.store(), now).await, Ok(None)),
             Self::Until(end) => now < *end,
             Self::Open => true,
-        }
-    }
-}
-
-/// What a request has with it to get in by.
-pub(super) enum Credential {
-    /// A key of the service.
-    Key(Key),
-    /// A token, not looked at yet.
-    Token(String),
-}
-
-impl Credential {
-    /// What tells it from others and does not tell it to anybody.
-    pub(super) fn fingerprint(&self) -> String {
-        match self {
-            Self::Key(key) => key.secret_hash(),
-            Self::Token(token) => sha256_hex(token),
         }
     }
 }
@@ -231,35 +212,6 @@ impl Caller {
     }
 }
 
-/// What a request has with it to get in by. What a proxy may have left there for itself is none.
-pub(super) fn bearer(headers: &HeaderMap) -> Result<Option<Credential>, Problem> {
-    let mut found = None;
-    for header in headers.get_all(AUTHORIZATION) {
-        let text = header.to_str().unwrap_or_default();
-        let (scheme, text) = text.split_once(' ').unwrap_or((text, ""));
-        if !scheme.eq_ignore_ascii_case("bearer") {
-            continue;
-        }
-        let text = text.trim();
-        let credential = if keys::has_prefix(text) {
-            Key::parse(text).map(Credential::Key)
-        } else {
-            tokens::has_form(text).then(|| Credential::Token(text.to_owned()))
-        };
-        match (credential, &found) {
-            (Some(credential), None) => found = Some(credential),
-            _ => return Err(no_credential()),
-        }
-    }
-    Ok(found)
-}
-
-fn no_credential() -> Problem {
-    unauthorized(
-        "What Authorization has is no key; it has the form Bearer mw_ID_SECRET, or is a token of the identity provider where there is one, and stands once.",
-    )
-}
-
 async fn recognize(app: &App, key: &Key) -> Result<KeyRecord, Problem> {
     let found = key.find(app.jobs.store(), app.jobs.clock().now()).await;
     let found = found.map_err(|error| Problem::from(JobError::from(error)))?;
@@ -277,10 +229,6 @@ async fn asks_for_keys(app: &App, headers: &HeaderMap) -> Result<bool, Problem> 
         app.door.found_keys();
     }
     Ok(has_keys)
-}
-
-fn unauthorized(detail: &str) -> Problem {
-    Problem::new(Code::Unauthorized, detail)
 }
 
 fn forbidden(detail: &str) -> Problem {

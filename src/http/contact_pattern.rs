@@ -53,12 +53,7 @@ pub(super) async fn json(
         let document = ContactPatternDocument::of(pattern);
         Ok(document.to_json().map_err(|_| internal())?.into_bytes())
     };
-    let file = File {
-        name: "contact-pattern.json",
-        media_type: "application/json",
-        saved: false,
-        has_volumes: false,
-    };
+    let file = File::shown("contact-pattern.json", "application/json");
     answer(&app, &client, &id, &which, &request, file, write).await
 }
 
@@ -84,12 +79,7 @@ pub(super) async fn svg(
     request: HeaderMap,
 ) -> Result<Response, Problem> {
     let write = |pattern: &ContactPattern| Ok(pictures::contact_pattern(pattern)?.into_bytes());
-    let file = File {
-        name: "contact-pattern.svg",
-        media_type: "image/svg+xml",
-        saved: false,
-        has_volumes: false,
-    };
+    let file = File::shown("contact-pattern.svg", "image/svg+xml");
     answer(&app, &client, &id, &which, &request, file, write).await
 }
 

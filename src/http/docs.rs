@@ -18,7 +18,6 @@ use utoipa::openapi::{
 
 use super::app::App;
 use super::events::ProgressView;
-use super::router::routes;
 use super::standing::{Folder, Standing, files};
 use super::studies::StudyProgressView;
 use crate::wire::{Code, Problem};
@@ -196,14 +195,6 @@ pub(super) fn say_whether_keys_are_needed(
     openapi.security = Some(security);
 }
 
-/// The OpenAPI document of the service, as it is without a public address.
-pub fn openapi() -> Value {
-    let mut openapi = routes().into_openapi();
-    add_common_answers(&mut openapi);
-    openapi.servers = Some(vec![server("")]);
-    finished(&openapi)
-}
-
 /// Gives pages of a list a name that a person would: utoipa names a generic type and its parameter, `Page_Job`.
 fn name_lists(value: &mut Value) {
     const LISTS: [(&str, &str); 2] = [
@@ -232,7 +223,7 @@ fn name_lists(value: &mut Value) {
 }
 
 /// The document with the schemas of what is declared, of which utoipa knows the names alone.
-fn finished(openapi: &OpenApi) -> Value {
+pub(super) fn finished(openapi: &OpenApi) -> Value {
     fn put_declared(value: &mut Value) {
         if let Some(declared) = value.get_mut("x-declared").map(Value::take) {
             *value = declared;

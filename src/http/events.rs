@@ -191,7 +191,7 @@ impl Watching for Watch {
             let job = self.app.jobs.find(&self.client, self.id).await.ok()?;
             if self.status != Some(job.status) {
                 self.status = Some(job.status);
-                return told(EventName::Status, &JobView::new(&job, &self.app.edge));
+                return told(EventName::Status, &JobView::of(&job, &self.app.edge));
             }
             if job.status == Status::Running && self.progress != Some(job.progress) {
                 self.pause().await?;

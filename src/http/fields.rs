@@ -77,12 +77,7 @@ pub(super) async fn vtu(
             internal()
         })
     };
-    let file = File {
-        name: "fields.vtu",
-        media_type: "text/xml",
-        saved: true,
-        has_volumes: true,
-    };
+    let file = File::grids("fields.vtu", "text/xml");
     answer(app, client, &id, &place, &request, file, work).await
 }
 
@@ -116,12 +111,7 @@ pub(super) async fn edges(
         let text = edges.to_json().map_err(|_| internal())?;
         Ok(text.into_bytes())
     };
-    let file = File {
-        name: "edges.json",
-        media_type: "application/json",
-        saved: false,
-        has_volumes: false,
-    };
+    let file = File::shown("edges.json", "application/json");
     answer(app, client, &id, &place, &request, file, work).await
 }
 
@@ -164,6 +154,27 @@ pub(super) struct File {
     pub(super) saved: bool,
     /// Whether it has volumes of gears that are seen along their faces.
     pub(super) has_volumes: bool,
+}
+
+impl File {
+    /// One that a browser shows.
+    pub(super) fn shown(name: &'static str, media_type: &'static str) -> Self {
+        Self {
+            name,
+            media_type,
+            saved: false,
+            has_volumes: false,
+        }
+    }
+
+    /// The grids of both gears.
+    fn grids(name: &'static str, media_type: &'static str) -> Self {
+        Self {
+            saved: true,
+            has_volumes: true,
+            ..Self::shown(name, media_type)
+        }
+    }
 }
 
 /// What `work` makes of job `id` at a torque and a mesh position of it, `place`.

@@ -1,43 +1,16 @@
 //! Whether the service lives, and whether it can work.
 
 use std::sync::atomic::Ordering;
-use std::time::Duration;
 
 use axum::Json;
 use axum::extract::State;
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
-use tokio::sync::Mutex;
-use tokio::time::Instant;
 use utoipa::ToSchema;
 
 use super::app::App;
 use super::problem::Plain;
-
-/// A look at the database is good for so long: to look is to write, and anybody may ask.
-const GOOD_FOR: Duration = Duration::from_secs(1);
-
-/// When the database took a write, the last time that somebody asked.
-#[derive(Debug, Default)]
-pub struct Readings(Mutex<Option<Instant>>);
-
-impl Readings {
-    /// Whether the database takes writes. Those who ask at the same time share one look.
-    pub(super) async fn database_works(&self, app: &App) -> bool {
-        let mut last = self.0.lock().await;
-        if app.jobs.store().fault().is_some() {
-            *last = None;
-            return false;
-        }
-        if last.is_some_and(|last| last.elapsed() < GOOD_FOR) {
-            return true;
-        }
-        let works = app.jobs.check().await.is_ok();
-        *last = works.then(Instant::now);
-        works
-    }
-}
 
 /// Whether the service can work.
 #[derive(Serialize, ToSchema)]
@@ -76,7 +49,7 @@ pub(super) async fn live() -> &'static str {
     ),
 )]
 pub(super) async fn ready(State(app): State<App>) -> Response {
-    let database = app.readings.database_works(&app).await;
+    let database = app.readings.database_works(&app.jobs).await;
     let workers = app.workers_alive.load(Ordering::Relaxed);
     let shutting_down = app.jobs.stop().is_cancelled();
     let ready = database && (workers > 0 || !app.computes) && !shutting_down;

@@ -165,7 +165,7 @@ pub(super) async fn list(
         .await?;
     let limit = limit.to_string();
     let pairs = parameters.pairs(&limit);
-    let view = |job| JobView::new(job, &app.edge);
+    let view = |job| JobView::of(job, &app.edge);
     Ok(page::answer(&app.edge, "/v1/jobs", &pairs, &found, view))
 }
 
@@ -201,7 +201,7 @@ pub(super) async fn show(
     };
 
     // The submission never changes; what has not changed is answered without reading it.
-    let small = JobView::new(&job, &app.edge).to_json();
+    let small = JobView::of(&job, &app.edge).to_json();
     let tag = Tag::of(&["job", &String::from_utf8_lossy(&small)]);
     let whole = async {
         let submission = app.jobs.submission(id).await?;
@@ -232,7 +232,7 @@ pub(super) async fn cancel(
     Path(id): Path<String>,
 ) -> Result<Response, Problem> {
     let job = app.jobs.cancel(client.name(), job_id(&id)?).await?;
-    Ok((StatusCode::ACCEPTED, Json(JobView::new(&job, &app.edge))).into_response())
+    Ok((StatusCode::ACCEPTED, Json(JobView::of(&job, &app.edge))).into_response())
 }
 
 /// Delete a job

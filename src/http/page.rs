@@ -7,7 +7,7 @@ use jiff::Timestamp;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::app::Edge;
+use super::edge::Edge;
 use super::parameters::invalid;
 use crate::jobs::{Cursor, Listed, Span};
 use crate::wire::Problem;

@@ -383,8 +383,9 @@ mod tests {
     use serde_json::json;
 
     use super::*;
+    use crate::wire::Results;
     use crate::wire::results::STUB;
-    use crate::wire::{Results, Submission, examples};
+    use crate::wire::testing::submission;
 
     /// The first of the stub, with a run-up.
     fn curve() -> CurveDocument {
@@ -443,10 +444,7 @@ mod tests {
 
     #[test]
     fn a_pair_is_drawn_with_its_holes() {
-        let example = examples()
-            .iter()
-            .find(|example| example.name == "test-case-2");
-        let submission = Submission::parse(example.expect("ships").json.as_bytes()).expect("valid");
+        let submission = submission("test-case-2");
         let svg = pair(&submission.case().pair).expect("drawn");
         // A bore each and ten holes, each a filled disk.
         assert!(

@@ -13,7 +13,7 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use tracing::error;
 
-use super::app::Edge;
+use super::edge::Edge;
 use crate::jobs::{JobError, PreviewError};
 use crate::webhooks::WebhookError;
 use crate::wire::{Code, Problem, Status, too_much_memory};

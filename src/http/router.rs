@@ -12,6 +12,7 @@ use axum::http::header::{
 use axum::http::{Method, StatusCode, Uri};
 use axum::middleware::{from_fn, from_fn_with_state};
 use axum::routing::get;
+use serde_json::Value;
 use tower::ServiceBuilder;
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::cors::{AllowOrigin, CorsLayer};
@@ -102,8 +103,16 @@ pub fn router_of_metrics(app: App) -> Router {
         .with_state(app)
 }
 
+/// The OpenAPI document of the service, as it is without a public address.
+pub fn openapi() -> Value {
+    let mut openapi = routes().into_openapi();
+    docs::add_common_answers(&mut openapi);
+    openapi.servers = Some(vec![docs::server("")]);
+    docs::finished(&openapi)
+}
+
 /// The routes that the OpenAPI document describes.
-pub(super) fn routes() -> OpenApiRouter<App> {
+fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::with_openapi(docs::introduction())
         .routes(routes!(submit::submit, jobs::list))
         .routes(routes!(jobs::show, jobs::delete))

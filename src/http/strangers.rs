@@ -11,7 +11,7 @@ use governor::clock::{Clock as _, DefaultClock};
 use governor::state::keyed::HashMapStateStore;
 use governor::{DefaultDirectRateLimiter, NotUntil, Quota, RateLimiter};
 
-use super::client::{Credential, bearer};
+use super::credential::{Credential, bearer};
 use super::guests::Origin;
 
 /// An origin may send so many times its requests of a second at once: the page alone takes thirty.

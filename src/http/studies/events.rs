@@ -80,7 +80,7 @@ impl Watching for Watch {
             let now = (study.status(), study.done());
             let before = self.known.replace(now);
             if before.map(|(status, _)| status) != Some(now.0) {
-                return told(EventName::Status, &StudyView::new(&study, &self.app.edge));
+                return told(EventName::Status, &StudyView::of(&study, &self.app.edge));
             }
             if before != Some(now) {
                 let view = StudyProgressView {

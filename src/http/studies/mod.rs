@@ -15,11 +15,12 @@ use utoipa::IntoParams;
 use uuid::Uuid;
 
 use super::answer::{self, json, tell_when_to_return};
-use super::app::{App, Edge};
+use super::app::App;
 use super::aside::aside;
 use super::client::Client;
 use super::conditional::{Keep, Tag};
 use super::document::Document;
+use super::edge::Edge;
 use super::page::{self, Page, USUAL_LIMIT};
 use super::parameters::{IdempotencyKey, IfNoneMatch, Parameters};
 use super::prefer::Wait;
@@ -73,7 +74,7 @@ pub(in crate::http) async fn submit(
     let study = aside(client.name(), move |run| Study::parse(&document, run)).await??;
     let submitted = app.jobs.submit_study(&client.0, study, key).await?;
     let study = &submitted.record;
-    let view = StudyView::new(study, &app.edge).to_json();
+    let view = StudyView::of(study, &app.edge).to_json();
     let (address, has_ended) = (app.edge.study(study.id), study.status().has_ended());
     Ok(answer::submitted(
         view,
@@ -142,7 +143,7 @@ pub(in crate::http) async fn list(
         ("submitted_before", before.as_deref()),
         ("limit", Some(&*limit.to_string())),
     ];
-    let view = |study| StudyView::new(study, &app.edge);
+    let view = |study| StudyView::of(study, &app.edge);
     Ok(page::answer(&app.edge, "/v1/studies", &pairs, &found, view))
 }
 
@@ -238,7 +239,7 @@ pub(in crate::http) async fn cancel(
     Path(id): Path<String>,
 ) -> Result<Response, Problem> {
     let study = app.jobs.cancel_study(client.name(), study_id(&id)?).await?;
-    let view = StudyView::new(&study, &app.edge);
+    let view = StudyView::of(&study, &app.edge);
     Ok((StatusCode::ACCEPTED, Json(view)).into_response())
 }
 
