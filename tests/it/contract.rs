@@ -4,6 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use serde_json::Value;
+
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
@@ -21,6 +23,29 @@ fn the_committed_openapi_document_is_the_generated_one() {
         committed == generated,
         "api/openapi.json is stale: run MESHWRIGHT_WRITE_OPENAPI=1 ./test contract"
     );
+}
+
+#[test]
+fn schemas_bear_the_names_that_a_person_would_give_and_enumerate_their_words() {
+    fn check(schema: &Value, here: &str) {
+        for (name, field) in schema["properties"].as_object().into_iter().flatten() {
+            let is_text = field["type"] == "string";
+            if is_text && ["method", "status", "code"].contains(&name.as_str()) {
+                assert!(field["enum"].is_array(), "{here}.{name} is any text");
+            }
+        }
+        let parts = schema.as_object().map(|parts| parts.values().collect());
+        let items = schema.as_array().map(|items| items.iter().collect());
+        let within: Vec<&Value> = parts.or(items).unwrap_or_default();
+        within.into_iter().for_each(|part| check(part, here));
+    }
+    let document = meshwright::http::openapi();
+    for (name, schema) in document["components"]["schemas"].as_object().unwrap() {
+        let of_the_program = ["Document", "View", "State"];
+        let is_artefact = of_the_program.iter().any(|end| name.ends_with(end));
+        assert!(!is_artefact && !name.contains('_'), "{name}");
+        check(schema, name);
+    }
 }
 
 #[test]
