@@ -235,35 +235,29 @@ impl PairDocument {
 
     /// What has to be the same in both gears and is not.
     fn mismatches(&self) -> Vec<FieldError> {
-        let (driving, driven) = (&self.driving, &self.driven);
-        let mut errors = Vec::new();
-        if driving.module_mm != driven.module_mm {
+        let of_both = |value: fn(&GearDocument) -> f64| (value(&self.driving), value(&self.driven));
+        let same = [
+            (
+                ("module", "mm", Code::ModuleMismatch),
+                GearDocument::module_mm.name,
+                of_both(|gear| gear.module_mm),
+            ),
+            (
+                ("pressure angle", "deg", Code::PressureAngleMismatch),
+                GearDocument::pressure_angle_deg.name,
+                of_both(|gear| gear.pressure_angle_deg),
+            ),
+        ];
+        let different = same.into_iter().filter(|(.., (one, other))| one != other);
+        let told = different.map(|((what, unit, code), name, (driving, driven))| {
             let detail = format!(
-                "The driven gear has module {} mm, the driving gear {} mm; gears that mesh have the same.",
-                plain(driven.module_mm),
-                plain(driving.module_mm)
+                "The driven gear has {what} {} {unit}, the driving gear {} {unit}; gears that mesh have the same.",
+                plain(driven),
+                plain(driving)
             );
-            errors.push(
-                FieldError::new("/pair/driven/module_mm", Code::ModuleMismatch, detail)
-                    .nearest(driving.module_mm),
-            );
-        }
-        if driving.pressure_angle_deg != driven.pressure_angle_deg {
-            let detail = format!(
-                "The driven gear has pressure angle {} deg, the driving gear {} deg; gears that mesh have the same.",
-                plain(driven.pressure_angle_deg),
-                plain(driving.pressure_angle_deg)
-            );
-            errors.push(
-                FieldError::new(
-                    "/pair/driven/pressure_angle_deg",
-                    Code::PressureAngleMismatch,
-                    detail,
-                )
-                .nearest(driving.pressure_angle_deg),
-            );
-        }
-        errors
+            FieldError::new(format!("/pair/driven/{name}"), code, detail).nearest(driving)
+        });
+        told.collect()
     }
 }
 

@@ -99,12 +99,9 @@ impl Study {
         let mut submission = self.base.clone();
         for (i, design) in designs.iter().enumerate() {
             look_around(i, run)?;
-            let place = |path: &Pointer| format!("/designs/{i}/changes/{}", escaped(path.text()));
-            let changes: Vec<_> = design
-                .changes
-                .iter()
-                .map(|(path, value)| (path, value, place(path)))
-                .collect();
+            let changes = design.changes.iter();
+            let changes = changes.map(|(path, value)| (path, value, place_of_change(i, path)));
+            let changes: Vec<_> = changes.collect();
             check_changes(&mut submission, &changes, errors);
         }
         Ok(())
@@ -166,53 +163,56 @@ impl Study {
         let Some(rule) = &self.constant_mass else {
             return;
         };
-        let refuse = |place: String, radius: &str| {
-            let detail = format!(
-                "{radius} is set by /constant_mass in every design that has holes; it cannot be changed as well."
-            );
-            errors.push(FieldError::new(place, Code::OutOfRange, detail));
-        };
-        match &self.plan {
-            Plan::Axes(axes) => {
-                for (i, axis) in axes.iter().enumerate() {
-                    let path = axis.path.text();
-                    if rule.sets(path) {
-                        refuse(format!("/axes/{i}/path"), path);
-                    }
-                }
-            }
-            Plan::Population(population) => {
-                for (i, varied) in population.varied().iter().enumerate() {
-                    let path = varied.path.text();
-                    if rule.sets(path) {
-                        refuse(format!("/population/vary/{i}/path"), path);
-                    }
-                }
-            }
-            Plan::Search(search) => {
-                for (i, path) in search.paths_of_variables().enumerate() {
-                    if rule.sets(path.text()) {
-                        refuse(format!("/search/variables/{i}/path"), path.text());
-                    }
-                }
-                let varied = search.population().into_iter().flat_map(Population::varied);
-                for (i, varied) in varied.enumerate() {
-                    let path = varied.path.text();
-                    if rule.sets(path) {
-                        refuse(format!("/search/population/vary/{i}/path"), path);
-                    }
-                }
-            }
-            Plan::Designs(designs) => {
-                for (i, design) in designs.iter().enumerate() {
-                    let paths = design.changes.iter().map(|(path, _)| path.text());
-                    for path in paths.filter(|path| rule.sets(path)) {
-                        refuse(format!("/designs/{i}/changes/{}", escaped(path)), path);
-                    }
-                }
+        for (place, path) in self.places() {
+            let radius = path.text();
+            if rule.sets(radius) {
+                let detail = format!(
+                    "{radius} is set by /constant_mass in every design that has holes; it cannot be changed as well."
+                );
+                errors.push(FieldError::new(place, Code::OutOfRange, detail));
             }
         }
     }
+
+    /// Every place of the study that names what designs change, and what it names.
+    fn places(&self) -> Vec<(String, &Pointer)> {
+        fn numbered<'a>(
+            at: &str,
+            paths: impl Iterator<Item = &'a Pointer>,
+        ) -> Vec<(String, &'a Pointer)> {
+            let paths = paths.enumerate();
+            paths
+                .map(|(i, path)| (format!("{at}/{i}/path"), path))
+                .collect()
+        }
+        fn varied<'a>(at: &str, population: &'a Population) -> Vec<(String, &'a Pointer)> {
+            numbered(at, population.varied().iter().map(|varied| &varied.path))
+        }
+        match &self.plan {
+            Plan::Axes(axes) => numbered("/axes", axes.iter().map(|axis| &axis.path)),
+            Plan::Population(population) => varied("/population/vary", population),
+            Plan::Search(search) => {
+                let mut places = numbered("/search/variables", search.paths_of_variables());
+                if let Some(population) = search.population() {
+                    places.extend(varied("/search/population/vary", population));
+                }
+                places
+            }
+            Plan::Designs(designs) => {
+                let numbered = designs.iter().enumerate();
+                let changes = numbered.flat_map(|(i, design)| {
+                    let paths = design.changes.iter().map(|(path, _)| path);
+                    paths.map(move |path| (place_of_change(i, path), path))
+                });
+                changes.collect()
+            }
+        }
+    }
+}
+
+/// Where a design of the list names what it changes.
+fn place_of_change(design: usize, path: &Pointer) -> String {
+    format!("/designs/{design}/changes/{}", escaped(path.text()))
 }
 
 fn look_around(round: usize, run: &Run) -> Result<(), Problem> {

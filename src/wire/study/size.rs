@@ -1,9 +1,7 @@
 //! How large a study may be, found before anything of it is kept or expanded.
 
-use std::fmt;
-
 use serde::Deserialize;
-use serde::de::{Deserializer, IgnoredAny, SeqAccess, Visitor};
+use serde::de::IgnoredAny;
 
 use crate::wire::problem::{Code, FieldError, Problem};
 use crate::wire::size::{MOST_VALUES, Values, refuse_many_values};
@@ -21,6 +19,7 @@ const MOST_WORK: u64 = 20_000_000;
 /// Refuses a document with too many designs or values, or too much work. It keeps none, so that ten million of them cost no
 /// memory, and a bomb costs no more than to read it once.
 pub(super) fn refuse_too_many(document: &[u8]) -> Result<(), Problem> {
+    // What is ignored has no size, and a list of it takes no memory.
     #[derive(Deserialize)]
     struct Counted {
         #[serde(default)]
@@ -28,22 +27,25 @@ pub(super) fn refuse_too_many(document: &[u8]) -> Result<(), Problem> {
         #[serde(default)]
         axes: Vec<CountedAxis>,
         #[serde(default)]
-        designs: Count,
+        designs: Vec<IgnoredAny>,
     }
     #[derive(Deserialize)]
     struct CountedAxis {
         #[serde(default)]
-        values: Count,
+        values: Vec<IgnoredAny>,
     }
 
     impl Counted {
         /// That the base is too large for what is to be made of it.
         fn work(&self) -> Option<FieldError> {
-            let lengths = || self.axes.iter().map(|axis| axis.values.0);
+            let lengths = || self.axes.iter().map(|axis| axis.values.len());
             let combined = lengths().fold(1, |total: usize, values| {
                 total.saturating_mul(values.max(1))
             });
-            let variants = lengths().sum::<usize>().max(self.designs.0).max(combined);
+            let variants = lengths()
+                .sum::<usize>()
+                .max(self.designs.len())
+                .max(combined);
             // Too many combinations are told by their number, when the axes are read.
             let variants = if combined > MOST_DESIGNS { 1 } else { variants };
             too_much_work(self.base.0, variants as u64)
@@ -55,16 +57,16 @@ pub(super) fn refuse_too_many(document: &[u8]) -> Result<(), Problem> {
         let long = counted
             .axes
             .iter()
-            .position(|axis| axis.values.0 > MOST_DESIGNS);
+            .position(|axis| axis.values.len() > MOST_DESIGNS);
         let error = match long {
             Some(i) => Some(too_many(
                 counted.axes.iter().fold(1, |total: u128, axis| {
-                    total.saturating_mul(axis.values.0.max(1) as u128)
+                    total.saturating_mul(axis.values.len().max(1) as u128)
                 }),
                 &format!("/axes/{i}/values"),
             )),
-            None if counted.designs.0 > MOST_DESIGNS => {
-                Some(too_many(counted.designs.0 as u128, "/designs"))
+            None if counted.designs.len() > MOST_DESIGNS => {
+                Some(too_many(counted.designs.len() as u128, "/designs"))
             }
             None => counted.work(),
         };
@@ -99,30 +101,4 @@ fn too_much_work(values: u64, variants: u64) -> Option<FieldError> {
         );
         FieldError::new("/base", Code::TooLarge, detail).nearest(fitting as f64)
     })
-}
-
-/// The length of a list.
-#[derive(Default)]
-struct Count(usize);
-
-impl<'de> Deserialize<'de> for Count {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Counter;
-        impl<'de> Visitor<'de> for Counter {
-            type Value = Count;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a list")
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Count, A::Error> {
-                let mut count = 0;
-                while items.next_element::<IgnoredAny>()?.is_some() {
-                    count += 1;
-                }
-                Ok(Count(count))
-            }
-        }
-        deserializer.deserialize_seq(Counter)
-    }
 }
