@@ -8,8 +8,9 @@ use axum::http::{HeaderValue, Uri};
 use jiff::SignedDuration;
 use jsonwebtoken::Algorithm;
 
+use crate::compute::{Cores, PreviewRules};
 use crate::http::{Bounds, DoorRules, KeysRule};
-use crate::jobs::{Cores, Keep, Migrate, Pace, Place, PreviewRules, Rules};
+use crate::jobs::{Keep, Migrate, Pace, Place, Rules};
 use crate::machine;
 use crate::tokens::{self, Claim, ClaimValue, IssuerUrl, TokenRules};
 use crate::webhooks::HookTarget;

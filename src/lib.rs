@@ -5,13 +5,14 @@
 mod client;
 mod hash;
 mod machine;
-mod private;
 
 pub mod spans;
 
 pub mod wire;
 
 pub mod exchange;
+
+pub mod compute;
 
 pub mod jobs;
 
@@ -24,8 +25,6 @@ pub mod tokens;
 pub mod http;
 
 pub mod config;
-
-mod lock;
 
 pub mod serve;
 

@@ -11,10 +11,11 @@ use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
 use tracing::{info, warn};
 
+use crate::compute::{Budget, Previews, Solve};
 use crate::config::{Config, Part};
 use crate::http::{App, Door, Edge, KeysRule, Readings, Server, router, router_of_metrics};
-use crate::jobs::{Budget, Clock, Jobs, Keeper, OpenError, Place, Previews, Solve, Store, Workers};
-use crate::lock::{DatabaseLock, LockError};
+use crate::jobs::store::lock::{DatabaseLock, LockError};
+use crate::jobs::{Clock, Jobs, Keeper, OpenError, Place, Store, Workers};
 use crate::tokens::Tokens;
 use crate::webhooks::{Deliveries, HookRules, Webhooks};
 use crate::wire::{Problem, Results, Submission};

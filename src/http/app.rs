@@ -8,7 +8,8 @@ use meshwright_engine::library::Library;
 use super::door::Door;
 use super::edge::Edge;
 use super::readings::Readings;
-use crate::jobs::{Budget, Jobs, Previews};
+use crate::compute::{Budget, Previews};
+use crate::jobs::Jobs;
 use crate::tokens::Tokens;
 use crate::webhooks::Webhooks;
 

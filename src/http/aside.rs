@@ -7,7 +7,7 @@ use std::thread;
 use meshwright_engine::run::Run;
 
 use super::problem::internal;
-use crate::jobs::{Budget, Part};
+use crate::compute::{Budget, Part};
 use crate::wire::Problem;
 
 /// So many pieces of such work are done at the same time; others wait for their turn, which clients take one after the other.

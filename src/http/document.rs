@@ -17,7 +17,7 @@ use utoipa::openapi::{RefOr, Response};
 
 use super::app::App;
 use super::client::ClientName;
-use crate::jobs::Part;
+use crate::compute::Part;
 use crate::wire::{Code, Problem};
 
 /// So many times the limit is read and thrown away, because a client that is still sending does not see the answer.

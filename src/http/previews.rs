@@ -7,7 +7,7 @@ use axum::response::{IntoResponse, Response};
 use super::app::App;
 use super::client::Client;
 use super::document::Document;
-use crate::jobs::Previewed;
+use crate::compute::Previewed;
 use crate::wire::{Preview, Problem};
 
 /// See the results at once

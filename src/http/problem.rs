@@ -14,7 +14,8 @@ use axum::response::{IntoResponse, Response};
 use tracing::error;
 
 use super::edge::Edge;
-use crate::jobs::{JobError, PreviewError};
+use crate::compute::PreviewError;
+use crate::jobs::JobError;
 use crate::webhooks::WebhookError;
 use crate::wire::{Code, Problem, Status, too_much_memory};
 

@@ -16,7 +16,8 @@ use super::batch::MOST_IN_BATCH;
 use super::client::Onlooker;
 use super::document::Document;
 use super::standing::Standing;
-use crate::jobs::{PreviewRules, Rules};
+use crate::compute::PreviewRules;
+use crate::jobs::Rules;
 use crate::webhooks::most_webhooks;
 use crate::wire::{self, Limits, Problem, Submission, Validation, view};
 

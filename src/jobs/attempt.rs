@@ -18,11 +18,11 @@ use tokio::time::{Instant, MissedTickBehavior, interval_at, sleep};
 use tracing::{error, info, warn};
 use uuid::Uuid;
 
-use super::budget::Budget;
 use super::job::{Job, Progress};
 use super::live::Entered;
 use super::store::{Came, Claim, End, Ended, Lease, Packed, Started, StoreError};
-use super::worker::{Shop, Solve};
+use super::worker::Shop;
+use crate::compute::{Budget, Solve, message_of};
 use crate::spans::{self, Span};
 use crate::wire::{Code, Kept, Problem, SOLVER_VERSION, Submission, Summary, memory_of};
 
@@ -477,12 +477,4 @@ fn internal_problem() -> Problem {
         Code::InternalError,
         "The service failed while it computed this job. The failure has been logged.",
     )
-}
-
-pub(super) fn message_of(panic: &(dyn Any + Send)) -> &str {
-    panic
-        .downcast_ref::<&str>()
-        .copied()
-        .or_else(|| panic.downcast_ref::<String>().map(String::as_str))
-        .unwrap_or("no message")
 }

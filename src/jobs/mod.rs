@@ -2,34 +2,28 @@
 //!
 //! In reading order: the two [`Clock`]s; what a [`Job`] and a [`StudyRecord`] are; the [`Store`] that keeps them and the
 //! transitions between their states; what of a running job lives in memory only (`live`); the [`Jobs`] that handlers speak
-//! to (`queue`, `studies`, and in `resource` what both have in common); the [`Workers`] that compute; and the keeper that removes what is old. What clients share is a [`Budget`].
-//! [`Previews`] are computed in the same way, but are no jobs: a request waits for each, and nothing is kept.
+//! to (`queue`, `studies`, and in `resource` what both have in common); the [`Workers`] that compute; and the keeper that removes what is old.
 
 mod attempt;
-mod budget;
 mod clock;
 mod error;
 mod job;
 mod keeper;
 mod live;
 mod others;
-mod previews;
 mod queue;
 mod resource;
 mod searches;
 pub(crate) mod store;
 mod studies;
 mod study;
-mod threads;
 mod worker;
 
-pub use budget::{Budget, Part};
 pub use clock::Clock;
 pub use error::JobError;
 pub use job::{Job, Progress};
 pub use keeper::{Keep, Keeper};
 pub use live::News;
-pub use previews::{Computed, PreviewError, PreviewRules, Previewed, Previews};
 pub(crate) use queue::KEY_LIFETIME;
 pub use queue::{Jobs, Member, Rules};
 pub use resource::{Listed, Submitted};
@@ -40,5 +34,4 @@ pub use store::{
 };
 pub use studies::DocumentLine;
 pub use study::StudyRecord;
-pub use threads::Cores;
-pub use worker::{Pace, Solve, StartError, Workers};
+pub use worker::{Pace, StartError, Workers};

@@ -9,7 +9,6 @@ use tokio::sync::{Notify, broadcast, mpsc, oneshot};
 use tokio_util::sync::CancellationToken;
 use uuid::Uuid;
 
-use super::budget::Budget;
 use super::clock::Clock;
 use super::error::JobError;
 use super::job::Job;
@@ -17,6 +16,7 @@ use super::live::{Live, News};
 use super::others;
 use super::resource::{Listed, Submitted};
 use super::store::{Depth, Document, Filter, NewJob, Outcome, QueueBounds, Store, StoreError};
+use crate::compute::Budget;
 use crate::wire::{DOCUMENT_VERSION, Kept, SOLVER_VERSION, Status, Submission};
 
 /// So long a repeated request is recognized by its key.

@@ -13,11 +13,8 @@ use uuid::Uuid;
 
 use super::queue::Jobs;
 use super::store::{Claimed, Lease, Lost, Reader, Started, StoreError};
-use super::threads::{Cores, Work, engine_threads};
+use crate::compute::{Cores, NoThreads, Solve, Work, engine_threads};
 use crate::wire::{Code, DOCUMENT_VERSION, Problem, Results, SOLVER_VERSION, Submission};
-
-/// The computation of a submission: long work that fills a core, reports to the run and obeys its stop.
-pub type Solve = Arc<dyn Fn(&Submission, &Run) -> Result<Results, Problem> + Send + Sync>;
 
 /// How the workers keep time.
 #[derive(Debug, Clone, Copy)]
@@ -129,7 +126,7 @@ impl Workers {
             let shop = Arc::clone(&shop);
             let name = move |index| format!("engine-{worker}-{index}");
             let threads = engine_threads(name, Work::Job, Cores::here().for_each_of(count));
-            let threads = threads.map_err(StartError::Threads)?;
+            let threads = threads?;
             tasks.spawn(async move {
                 let _alive = alive;
                 shop.work(&threads).await;
@@ -158,9 +155,9 @@ impl Workers {
 /// Why workers cannot start.
 #[derive(Debug, thiserror::Error)]
 pub enum StartError {
-    /// The engine's threads cannot be started.
-    #[error("the engine's threads cannot be started")]
-    Threads(#[source] rayon::ThreadPoolBuildError),
+    /// The engine has no threads.
+    #[error(transparent)]
+    Threads(#[from] NoThreads),
     /// The jobs of an earlier process cannot be recovered.
     #[error("the jobs of an earlier process cannot be recovered")]
     Database(#[source] StoreError),

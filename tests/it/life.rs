@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use meshwright::jobs::Solve;
+use meshwright::compute::Solve;
 use meshwright::wire::{Code, Problem, Submission};
 use meshwright_engine::run::Run;
 use reqwest::StatusCode;

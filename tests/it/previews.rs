@@ -3,7 +3,7 @@
 use std::sync::{Arc, mpsc as blocking};
 use std::time::Duration;
 
-use meshwright::jobs::{Budget, PreviewError, PreviewRules, Previews, Solve};
+use meshwright::compute::{Budget, PreviewError, PreviewRules, Previews, Solve};
 use meshwright::wire::{Code, Preview, Problem};
 use meshwright_engine::run::Run;
 use reqwest::{Response, StatusCode};

@@ -57,7 +57,7 @@ impl Store {
 
 async fn copy(database: &Path, partial: &Path) -> Result<(), BackupError> {
     // SQLite takes an empty file for none, and keeps its rights.
-    crate::private::open_or_make(partial).map_err(BackupError::Place)?;
+    super::private::open_or_make(partial).map_err(BackupError::Place)?;
     let options = SqliteConnectOptions::new().filename(database);
     let mut source = options.connect().await.map_err(BackupError::Copy)?;
     let copied = sqlx::query("vacuum into ?1")

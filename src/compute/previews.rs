@@ -18,10 +18,9 @@ use tokio::time::{Instant, sleep_until};
 use tokio_util::sync::CancellationToken;
 use tracing::error;
 
-use super::attempt::message_of;
 use super::budget::{Budget, Part};
-use super::threads::{Cores, Work, engine_threads};
-use super::worker::{Solve, StartError};
+use super::threads::{Cores, NoThreads, Work, engine_threads};
+use super::{Solve, message_of};
 use crate::wire::{Code, Preview, Problem, memory_of};
 
 /// Rooms that there are at least, so that a newer preview begins while the one that it replaces winds down.
@@ -171,7 +170,7 @@ impl Previews {
         rules: PreviewRules,
         memory: Budget,
         stop: CancellationToken,
-    ) -> Result<Self, StartError> {
+    ) -> Result<Self, NoThreads> {
         let cores = Cores::here();
         let rooms = rules.at_once.min(cores.rooms().max(FEWEST_ROOMS));
         let free: Result<_, _> = (0..rooms)
@@ -187,7 +186,7 @@ impl Previews {
             memory,
             wanted: Mutex::default(),
             rooms: Budget::of(rooms as u64),
-            free: Mutex::new(free.map_err(StartError::Threads)?),
+            free: Mutex::new(free?),
         })))
     }
 

@@ -39,7 +39,7 @@ impl Cores {
     }
 
     /// The threads of each of so many workers.
-    pub(super) fn for_each_of(self, workers: usize) -> usize {
+    pub(crate) fn for_each_of(self, workers: usize) -> usize {
         let threads = THREADS_A_CORE * self.available;
         self.for_one().min(threads / workers.max(1)).max(1)
     }
@@ -55,9 +55,14 @@ impl Cores {
     }
 }
 
+/// The system gives no threads.
+#[derive(Debug, thiserror::Error)]
+#[error("the engine's threads cannot be started")]
+pub struct NoThreads(#[source] ThreadPoolBuildError);
+
 /// What threads compute, by who waits for it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Work {
+pub(crate) enum Work {
     /// A preview: somebody drags a hole and waits.
     Preview,
     /// A job: its client comes back for it.
@@ -84,16 +89,17 @@ impl Work {
 /// them for as long as it lasts: without a difference a request waits for the end of a time slice of every engine's
 /// thread, which under full load is longer than everything else that it waits for. The computation loses what requests
 /// take, no more.
-pub(super) fn engine_threads(
+pub(crate) fn engine_threads(
     name: impl Fn(usize) -> String + 'static,
     work: Work,
     count: usize,
-) -> Result<ThreadPool, ThreadPoolBuildError> {
+) -> Result<ThreadPool, NoThreads> {
     ThreadPoolBuilder::new()
         .thread_name(name)
         .num_threads(count)
         .start_handler(move |_| give_way(work.niceness()))
         .build()
+        .map_err(NoThreads)
 }
 
 #[cfg(target_os = "linux")]

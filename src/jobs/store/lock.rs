@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use tracing::warn;
 
-use crate::private::open_or_make;
+use super::private::open_or_make;
 
 /// What the note says while a process works, and after it has ended in order. They are of the same length, so that the
 /// second fits on a disk that is full.

@@ -1,0 +1,32 @@
+//! What runs the engine: threads of its own, what clients share of the machine, and computations that are no jobs.
+//!
+//! In reading order: the [`Cores`] of the machine and the threads on them; the [`Budget`] of what clients share; and [`Previews`], for each of
+//! which a request waits, and of which nothing is kept. Jobs are computed by their workers in the same way.
+
+mod budget;
+mod previews;
+mod threads;
+
+use std::any::Any;
+use std::sync::Arc;
+
+use meshwright_engine::run::Run;
+
+use crate::wire::{Problem, Results, Submission};
+
+pub use budget::{Budget, Part};
+pub use previews::{Computed, PreviewError, PreviewRules, Previewed, Previews};
+pub use threads::{Cores, NoThreads};
+pub(crate) use threads::{Work, engine_threads};
+
+/// The computation of a submission: long work that fills a core, reports to the run and obeys its stop.
+pub type Solve = Arc<dyn Fn(&Submission, &Run) -> Result<Results, Problem> + Send + Sync>;
+
+/// What a panic of the engine says.
+pub(crate) fn message_of(panic: &(dyn Any + Send)) -> &str {
+    panic
+        .downcast_ref::<&str>()
+        .copied()
+        .or_else(|| panic.downcast_ref::<String>().map(String::as_str))
+        .unwrap_or("no message")
+}
