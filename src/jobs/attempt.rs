@@ -1,7 +1,6 @@
 //! An attempt at a job, or at several small ones: they are computed on their worker's threads, watched over, and what comes of them is
 //! written down.
 
-use std::any::Any;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::pin::pin;

@@ -4,7 +4,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-use meshwright_engine::run::Run;
 use rayon::ThreadPool;
 use tokio::task::JoinSet;
 use tokio::time::{Instant, MissedTickBehavior, interval, interval_at, sleep};
@@ -14,7 +13,7 @@ use uuid::Uuid;
 use super::queue::Jobs;
 use super::store::{Claimed, Lease, Lost, Reader, Started, StoreError};
 use crate::compute::{Cores, NoThreads, Solve, Work, engine_threads};
-use crate::wire::{Code, DOCUMENT_VERSION, Problem, Results, SOLVER_VERSION, Submission};
+use crate::wire::{Code, DOCUMENT_VERSION, Problem, SOLVER_VERSION};
 
 /// How the workers keep time.
 #[derive(Debug, Clone, Copy)]
@@ -331,8 +330,8 @@ mod tests {
     use super::super::queue::{Member, Rules};
     use super::super::store::{Place, Store};
     use super::*;
-    use crate::wire::Status;
     use crate::wire::results::STUB;
+    use crate::wire::{Results, Status, Submission};
 
     const RULES: Rules = Rules {
         queue_limit: 100,

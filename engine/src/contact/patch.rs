@@ -23,6 +23,10 @@ const CELLS_A_KINK: usize = 6;
 const MANY_KINKS: usize = 4;
 const MOST_REFINED: usize = 4;
 
+/// So many cells lie on the cores of a pair at most. Under a light load the core of a corner may be thousands of times as narrow as that of another
+/// hollow, which is not covered as densely then.
+const MOST_ON_CORES: f64 = 2048.0;
+
 /// By how much each cell beside the core is wider than the one before.
 const GROWTH: f64 = 1.3;
 
@@ -362,6 +366,7 @@ fn chains(
     let width = (to - from) / count as f64;
     // Moved by whole cells too.
     let half = (0.5 * count as f64 / (2.0 * CORE)).round() * width;
+    let width = width.max(covered_by(&cores) / MOST_ON_CORES);
     let by = f64::from(extent.moved) * half;
     let moved = [from + by, to + by].map(|end| end.clamp(range.from, range.to));
     let [from, to] = if moved[0] + half < moved[1] {
@@ -394,6 +399,19 @@ fn chains(
         .collect();
     widen(&mut chains, facing, width, extent.widened);
     chains
+}
+
+/// How long `cores` are together where they overlap or not.
+fn covered_by(cores: &[[f64; 2]]) -> f64 {
+    let mut rising = cores.to_vec();
+    rising.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut covered = f64::NEG_INFINITY;
+    let lengths = rising.into_iter().map(|[from, to]| {
+        let length = (to - from.max(covered)).max(0.0);
+        covered = covered.max(to);
+        length
+    });
+    lengths.sum()
 }
 
 /// The stretch about `hollow` that the contact may take under the whole load, and a quarter beside it.
