@@ -3,8 +3,9 @@
 use std::sync::{Arc, mpsc as blocking};
 use std::time::Duration;
 
+use meshwright::compute::Solve;
 use meshwright::config::Config;
-use meshwright::jobs::{Clock, Place, Solve};
+use meshwright::jobs::{Clock, Place};
 use meshwright::serve::{Compute, Service, World, serve};
 use meshwright::webhooks::HookRules;
 use meshwright::wire::{self, Code, Problem, Results, Submission};

@@ -5,9 +5,8 @@ use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
 use jiff::Timestamp;
-use meshwright::jobs::{
-    Clock, Filter, Job, Jobs, Member, Pace, Place, Rules, Solve, Store, Workers,
-};
+use meshwright::compute::Solve;
+use meshwright::jobs::{Clock, Filter, Job, Jobs, Member, Pace, Place, Rules, Store, Workers};
 use meshwright::wire::{Code, Problem, Results, Status, Submission};
 use tempfile::TempDir;
 use tokio_util::sync::CancellationToken;
