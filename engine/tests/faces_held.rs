@@ -219,7 +219,8 @@ fn a_straight_gear_is_stiffer_than_the_plane_has_it_by_the_strain_along_its_face
 
 #[test]
 fn a_narrow_straight_pair_is_in_plane_stress() {
-    // A tenth and half of a module wide. Near the contact a narrow face is still in plane strain, which makes it stiffer by a percent.
+    // A tenth and half of a module wide. Near the contact a narrow face is in plane strain, and what is fitted of its yield errs by a percent: a
+    // face that did not know that it is a plate was stiffer by 4.9 and 1.7 %.
     let of_width = |width: f64| {
         let narrow = |data: &mut GearData| {
             data.face_width = width;
@@ -241,7 +242,7 @@ fn a_narrow_straight_pair_is_in_plane_stress() {
     };
     for width in [0.2e-3, 1e-3] {
         let part = of_width(width);
-        assert!((0.975..1.005).contains(&part), "{width}: {part}");
+        assert!((part - 1.0).abs() < 0.012, "{width}: {part}");
     }
 }
 
