@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use meshwright_engine::dynamics::orbit::{Scale, multipliers};
 use meshwright_engine::dynamics::oscillator::Step;
 use meshwright_engine::dynamics::{
-    ForceTable, Ladder, Laws, Orbit, Oscillator, ResonanceKind, RunUp, RunUpData, State,
+    FlankRows, ForceTable, Ladder, Laws, Orbit, Oscillator, ResonanceKind, RunUp, RunUpData, State,
 };
 use meshwright_engine::run::Run;
 
@@ -197,7 +197,8 @@ fn with_backlash_of(
             })
             .collect()
     };
-    ForceTable::new(1, ladder, rows(0.0, 1.0), rows(-apart, -1.0))
+    let flanks = [rows(0.0, 1.0), rows(-apart, -1.0)];
+    ForceTable::new(1, ladder, flanks.map(FlankRows::of_delta))
 }
 
 fn data(speeds: Vec<f64>, load: f64, orders: &[f64]) -> RunUpData {

@@ -8,7 +8,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-use meshwright_engine::dynamics::{ForceTable, Ladder};
+use meshwright_engine::dynamics::{FlankRows, ForceTable, Ladder};
 
 use crate::wire::Results;
 
@@ -61,20 +61,23 @@ impl MeshForces {
             let row = |row: &Vec<f64>| row.iter().copied().map(convert).collect();
             rows.iter().map(row).collect::<Vec<Vec<f64>>>()
         };
-        let meters = |um: f64| um * 1e-6;
-        let mut forces = ForceTable::new(
-            pair.period_mesh_periods,
-            ladder,
-            rows(&table.transmission_error_um, meters),
-            rows(&table.other_flank_transmission_error_um, meters),
-        );
-        if !table.mesh_stiffness_tangent_n_per_m.is_empty() {
-            let compliance = |k: f64| if k > 0.0 { 1.0 / k } else { 0.0 };
-            forces =
-                forces.with_compliance(rows(&table.mesh_stiffness_tangent_n_per_m, compliance));
-        }
+        let flank = |delta: &[Vec<f64>], stiffness: &[Vec<f64>]| FlankRows {
+            delta: rows(delta, |um| um * 1e-6),
+            compliance: (!stiffness.is_empty())
+                .then(|| rows(stiffness, |k| if k > 0.0 { 1.0 / k } else { 0.0 })),
+        };
+        let flanks = [
+            flank(
+                &table.transmission_error_um,
+                &table.mesh_stiffness_tangent_n_per_m,
+            ),
+            flank(
+                &table.other_flank_transmission_error_um,
+                &table.other_flank_mesh_stiffness_tangent_n_per_m,
+            ),
+        ];
         Some(Self {
-            table: forces,
+            table: ForceTable::new(pair.period_mesh_periods, ladder, flanks),
             base_radii,
             tooth_count: (TAU * base_radii[0] / (pair.base_pitch_mm * 1e-3)).round(),
             method: results.method.to_string(),
@@ -116,8 +119,8 @@ impl MeshForces {
         let mut text = self.head("#");
         text.push_str("flank,load_n,mesh_position,driving_angle_rad,transmission_error_m\n");
         let flanks = [
-            ("loaded", 1.0, self.table.rows()),
-            ("other", -1.0, self.table.rows_of_other_flank()),
+            ("loaded", 1.0, &self.table.loaded().delta),
+            ("other", -1.0, &self.table.other().delta),
         ];
         for (flank, sign, rows) in flanks {
             for (load, row) in self.table.loads().iter().zip(rows) {
@@ -133,7 +136,7 @@ impl MeshForces {
 
     /// Approaches at which a table over angle and approach has columns.
     fn approaches(&self) -> Vec<f64> {
-        let (one, other) = (self.table.rows(), self.table.rows_of_other_flank());
+        let (one, other) = (&self.table.loaded().delta, &self.table.other().delta);
         let fold = |row: &Vec<f64>, of: fn(f64, f64) -> f64| {
             row.iter().copied().reduce(of).unwrap_or_default()
         };
@@ -247,7 +250,7 @@ impl MeshForces {
             r_1,
             r_2,
         ];
-        let rows = fine.rows().iter().chain(fine.rows_of_other_flank());
+        let rows = fine.loaded().delta.iter().chain(&fine.other().delta);
         head.iter()
             .chain(fine.loads())
             .chain(rows.flatten())
@@ -337,7 +340,8 @@ pub(super) mod tests {
         results.force_table = Some(ForceTableDocument {
             mesh_position: vec![0.0, 0.5],
             transmission_error_um: rows(1.0, 0.0),
-            mesh_stiffness_tangent_n_per_m: stiffness,
+            mesh_stiffness_tangent_n_per_m: stiffness.clone(),
+            other_flank_mesh_stiffness_tangent_n_per_m: stiffness,
             backlash_um: vec![100.0; 2],
             other_flank_transmission_error_um: rows(-1.0, -100.0),
             load_n: loads,

@@ -153,6 +153,7 @@ impl ResolutionDocument {
     pub(super) fn data(&self) -> Resolution {
         Resolution {
             positions_per_mesh_period: self.positions_per_mesh_period,
+            first_position: 0.0,
             span_mesh_periods: self.span_mesh_periods,
             grid: self.grid,
             contact_solver: match &self.contact_solver {

@@ -51,6 +51,8 @@ pub enum StiffnessRule {
 pub struct Resolution {
     /// Positions in one mesh period.
     pub positions_per_mesh_period: u32,
+    /// The first mesh position.
+    pub first_position: f64,
     /// Mesh periods computed; `None` for the true period.
     pub span_mesh_periods: Option<u32>,
     /// The grid level.
@@ -121,10 +123,13 @@ impl Case {
         self.span() as usize * self.resolution.positions_per_mesh_period as usize
     }
 
-    /// The mesh positions of one curve: the span in equal steps from 0, its end excluded.
+    /// The mesh positions of one curve: the span in equal steps from the first, its end excluded.
     pub(super) fn mesh_positions(&self) -> Vec<f64> {
+        let first = self.resolution.first_position;
         let steps = f64::from(self.resolution.positions_per_mesh_period);
-        (0..self.positions()).map(|i| i as f64 / steps).collect()
+        (0..self.positions())
+            .map(|i| first + i as f64 / steps)
+            .collect()
     }
 
     /// The mesh positions after which contact on blanks that are alike all around repeats: those of one mesh period, or of the whole

@@ -5,8 +5,7 @@ use super::estimate::usual_stiffness;
 use super::warning::warn_of_motions;
 use super::{Analysis, AnalysisError, Case, Faces, OrderKind, StiffnessRule, analyze, expected};
 use crate::assembly::Parts;
-use crate::dynamics::table::between_closed;
-use crate::dynamics::{ForceTable, Ladder, Resonance, RunUp, RunUpData};
+use crate::dynamics::{FlankRows, ForceTable, Ladder, Resonance, RunUp, RunUpData};
 use crate::gear::{GearPair, Member, involute_function};
 use crate::run::Run;
 
@@ -89,17 +88,15 @@ pub fn analyze_with_forces(
 
 /// Contact solutions that the table needs.
 fn table_positions(case: &Case, request: ForceTableRequest) -> u64 {
-    let loaded = rows_case(case, &request.ladder(case).loads());
-    let other = of_other_flank(&loaded);
-    let again = if other == loaded { 0 } else { expected(&other) };
-    expected(&loaded) + again
+    let loads = request.ladder(case).loads();
+    2 * expected(&rows_case(case, &loads))
 }
 
 /// `case` with the loads of a table beside its torques: what both cost together.
 pub fn with_table(case: &Case, request: ForceTableRequest) -> Case {
     let mut both = case.clone();
     let rows = rows_case(case, &request.ladder(case).loads());
-    for _ in 0..MORE_POSITIONS {
+    for _ in 0..2 * MORE_POSITIONS {
         both.output_torques.extend(&rows.output_torques);
     }
     both
@@ -126,24 +123,64 @@ fn rows_case(case: &Case, loads: &[f64]) -> Case {
     rows
 }
 
-/// The case whose rows are those of the other flanks of `rows`, passed the other way round: the drawing, and along faces the drawing seen
-/// from its other side.
-fn of_other_flank(rows: &Case) -> Case {
-    let faces = rows.faces.clone().map(|faces| Faces {
-        pair: faces.pair.as_drawn().turned_over(),
-        ..faces
-    });
-    Case {
-        pair: rows.pair.as_drawn(),
-        faces,
-        ..rows.clone()
+/// The other flanks of the case of a table: those of the drawing, without deviations.
+///
+/// A pair of gears whose teeth are alike to both sides touches on them as its mirror image does on the loaded ones, which passes the same
+/// positions the other way round; along faces that is the drawing seen from its other side.
+struct OtherFlank {
+    /// The case whose curves are those of the mirror image.
+    mirrored: Case,
+    /// The place of position 0 in its curves.
+    zero: i64,
+}
+
+impl OtherFlank {
+    /// Those of `rows`.
+    fn of(rows: &Case) -> Self {
+        let pair = rows.pair.as_drawn();
+        // The other flank of a tooth passes the pitch point later, by the thickness of the tooth.
+        let gear = pair.gear(Member::Driving);
+        let half_angle =
+            gear.flank().base_half_angle() - involute_function(pair.working_pressure_angle());
+        let per_period = f64::from(rows.resolution.positions_per_mesh_period);
+        let later = 2.0 * half_angle / gear.pitch_angle() * per_period;
+        let faces = rows.faces.clone().map(|faces| Faces {
+            pair: faces.pair.as_drawn().turned_over(),
+            ..faces
+        });
+        let mut mirrored = Case {
+            pair,
+            faces,
+            ..rows.clone()
+        };
+        // So that the positions of the mirror image are those of the table.
+        mirrored.resolution.first_position = later.fract() / per_period;
+        Self {
+            mirrored,
+            zero: later.trunc() as i64,
+        }
+    }
+
+    /// What the other flanks yield at the first `count` positions of the table, of what the mirror image does.
+    fn turned(&self, mirrored: &FlankRows, count: usize) -> FlankRows {
+        let turned = |rows: &[Vec<f64>], value: &dyn Fn(f64) -> f64| -> Vec<Vec<f64>> {
+            let row = |row: &Vec<f64>| {
+                (0..count as i64)
+                    .map(|i| value(row[(self.zero - i).rem_euclid(row.len() as i64) as usize]))
+                    .collect()
+            };
+            rows.iter().map(row).collect()
+        };
+        let backlash = self.mirrored.pair.backlash();
+        let compliance = mirrored.compliance.as_ref();
+        FlankRows {
+            delta: turned(&mirrored.delta, &|delta| -backlash - delta),
+            compliance: compliance.map(|rows| turned(rows, &|compliance| compliance)),
+        }
     }
 }
 
 /// F(θ, δ) of `case` over its true period, by its method.
-///
-/// The other flanks are those of the drawing, without deviations: a pair of gears whose teeth are alike to both sides touches on them as its
-/// mirror image does on the loaded ones, which passes the same positions the other way round.
 ///
 /// # Errors
 ///
@@ -156,8 +193,8 @@ pub fn force_table(
 ) -> Result<ForceTable, AnalysisError> {
     let ladder = request.ladder(case);
     let loaded = rows_case(case, &ladder.loads());
-    let other = of_other_flank(&loaded);
-    let rows_of = |case: &Case| -> Result<(Vec<_>, Vec<_>), AnalysisError> {
+    let other = OtherFlank::of(&loaded);
+    let rows_of = |case: &Case| -> Result<FlankRows, AnalysisError> {
         let curves = analyze(case, parts, run)?.curves.into_iter();
         let compliance = |curve: &Curve| -> Vec<f64> {
             let stiffness = curve.mesh_stiffness_tangent.iter();
@@ -167,35 +204,18 @@ pub fn force_table(
                 .collect()
         };
         let rows = curves.map(|curve| (curve.transmission_error.clone(), compliance(&curve)));
-        Ok(rows.unzip())
+        let (delta, compliance) = rows.unzip();
+        Ok(FlankRows {
+            delta,
+            compliance: Some(compliance),
+        })
     };
-    let (rows, compliance) = rows_of(&loaded)?;
-    let other = if other == loaded {
-        of_mirror(&loaded, &rows)
-    } else {
-        of_mirror(&loaded, &rows_of(&other)?.0)
-    };
-    let table = ForceTable::new(case.pair.period(), ladder, rows, other);
-    Ok(table.with_compliance(compliance))
-}
-
-/// δ of the other flank at the positions of the table that is made of `case`, from the `rows` of its mirror image.
-fn of_mirror(case: &Case, rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let pair = &case.pair;
-    let per_period = f64::from(case.resolution.positions_per_mesh_period);
-    let count = pair.period() as usize * case.resolution.positions_per_mesh_period as usize;
-    // The other flank of a tooth passes the pitch point later, by the thickness of the tooth.
-    let gear = pair.gear(Member::Driving);
-    let half_angle =
-        gear.flank().base_half_angle() - involute_function(pair.working_pressure_angle());
-    let later = 2.0 * half_angle / gear.pitch_angle();
-    let backlash = pair.backlash();
-    let mirrored = |row: &Vec<f64>| -> Vec<f64> {
-        (0..count)
-            .map(|i| -backlash - between_closed(row, later * per_period - i as f64))
-            .collect()
-    };
-    rows.iter().map(mirrored).collect()
+    let mirrored = rows_of(&other.mirrored)?;
+    let flanks = [
+        rows_of(&loaded)?,
+        other.turned(&mirrored, loaded.positions()),
+    ];
+    Ok(ForceTable::new(case.pair.period(), ladder, flanks))
 }
 
 /// The run-up that is asked for.
@@ -280,10 +300,19 @@ pub fn dynamics(
         orders,
         sweeps: request.sweeps,
     };
+    let mut run_up = data.run_up(table, run)?;
+    if data.speeds.first() == Some(&0.0) {
+        // The curve as it is told, at its own positions.
+        let still = &curve.transmission_error_statistics;
+        for branch in [&mut run_up.up, &mut run_up.down].into_iter().flatten() {
+            branch.rms[0] = still.rms;
+            branch.peak_to_peak[0] = still.peak_to_peak;
+        }
+    }
     Ok(CurveDynamics {
         equivalent_mass: data.mass,
         speeds: data.speeds.clone(),
-        run_up: data.run_up(table, run)?,
+        run_up,
         labels,
         resonances: data.resonances(),
     })

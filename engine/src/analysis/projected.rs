@@ -224,6 +224,7 @@ mod tests {
             output_torques: vec![115.0],
             resolution: Resolution {
                 positions_per_mesh_period: 8,
+                first_position: 0.0,
                 span_mesh_periods: None,
                 grid: GridLevel::Coarse,
                 contact_solver: ContactSolver::ActiveSet,

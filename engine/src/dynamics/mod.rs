@@ -28,4 +28,4 @@ pub use law::Laws;
 pub use orbit::{Orbit, State};
 pub use oscillator::Oscillator;
 pub use run_up::{Branch, Resonance, ResonanceKind, RunUp, RunUpData};
-pub use table::{ForceTable, Ladder};
+pub use table::{FlankRows, ForceTable, Ladder};

@@ -195,8 +195,12 @@ impl<'a> Mesh<'a> {
             let next = (i + 1) % count;
             let middle = |row: &[f64]| f64::midpoint(row[i], row[next]);
             let rest = middle(&deflection);
-            let other = table.rows_of_other_flank().iter().rev();
-            knots.extend(other.chain(table.rows()).map(|row| middle(row) - rest));
+            let other = table.other().delta.iter().rev();
+            knots.extend(
+                other
+                    .chain(&table.loaded().delta)
+                    .map(|row| middle(row) - rest),
+            );
         }
         let per_period = count as f64 / f64::from(table.period());
         let wave = |order: &f64| {

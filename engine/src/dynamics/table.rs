@@ -36,12 +36,28 @@ pub struct ForceTable {
     period: u32,
     ladder: Ladder,
     loads: Vec<f64>,
-    /// δ in m at equally spaced positions, a row each load.
-    loaded: Vec<Vec<f64>>,
-    /// δ at minus the loads.
-    other: Vec<Vec<f64>>,
-    /// dδ/dF of the loaded flank, a row each load, where it is known; that of the load 0, which is infinite, is not looked at.
-    compliance: Option<Vec<Vec<f64>>>,
+    loaded: FlankRows,
+    /// At minus the loads.
+    other: FlankRows,
+}
+
+/// What one flank yields at equally spaced positions, a row each load.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct FlankRows {
+    /// δ in m.
+    pub delta: Vec<Vec<f64>>,
+    /// dδ/dF in m/N, where it is known. That of the load 0, which is infinite, is not looked at.
+    pub compliance: Option<Vec<Vec<f64>>>,
+}
+
+impl FlankRows {
+    /// Rows of which δ alone is known.
+    pub fn of_delta(delta: Vec<Vec<f64>>) -> Self {
+        Self {
+            delta,
+            compliance: None,
+        }
+    }
 }
 
 /// What the gears exert at a position and an approach.
@@ -56,38 +72,29 @@ pub struct Forces {
 }
 
 impl ForceTable {
-    /// A table over `period` mesh periods whose rows are δ of the loaded and of the other flank, a row each load of the `ladder`.
+    /// A table over `period` mesh periods with these rows of the loaded and of the other flank, a row each load of the `ladder`.
     ///
     /// Each row has to lie beyond the one before; where rounding has it otherwise, it is put there.
-    pub fn new(
-        period: u32,
-        ladder: Ladder,
-        mut loaded: Vec<Vec<f64>>,
-        mut other: Vec<Vec<f64>>,
-    ) -> Self {
-        set_apart(&mut loaded, |a, b| a.max(b + APART));
-        set_apart(&mut other, |a, b| a.min(b - APART));
+    pub fn new(period: u32, ladder: Ladder, [mut loaded, mut other]: [FlankRows; 2]) -> Self {
+        set_apart(&mut loaded.delta, |a, b| a.max(b + APART));
+        set_apart(&mut other.delta, |a, b| a.min(b - APART));
         Self {
             period,
             ladder,
             loads: ladder.loads(),
             loaded,
             other,
-            compliance: None,
         }
     }
 
-    /// The same whose loaded flank has this dδ/dF in m/N, a row each load. That of the load 0 is not looked at.
-    pub fn with_compliance(self, compliance: Vec<Vec<f64>>) -> Self {
-        Self {
-            compliance: Some(compliance),
-            ..self
-        }
+    /// The loaded flank.
+    pub fn loaded(&self) -> &FlankRows {
+        &self.loaded
     }
 
-    /// dδ/dF of the loaded flank in m/N, a row each load, where it is known; that of the load 0 means nothing.
-    pub fn compliance(&self) -> Option<&[Vec<f64>]> {
-        self.compliance.as_deref()
+    /// The other flank, at minus the loads.
+    pub fn other(&self) -> &FlankRows {
+        &self.other
     }
 
     /// Mesh periods after which it repeats.
@@ -97,7 +104,7 @@ impl ForceTable {
 
     /// Its positions over the period.
     pub fn positions(&self) -> usize {
-        self.loaded[0].len()
+        self.loaded.delta[0].len()
     }
 
     /// Its mesh positions, from 0, the end excluded.
@@ -115,19 +122,9 @@ impl ForceTable {
         &self.loads
     }
 
-    /// δ in m under each load, position by position.
-    pub fn rows(&self) -> &[Vec<f64>] {
-        &self.loaded
-    }
-
-    /// δ in m at which the other flanks carry each load, position by position.
-    pub fn rows_of_other_flank(&self) -> &[Vec<f64>] {
-        &self.other
-    }
-
     /// The backlash along the line of action in m, position by position.
     pub fn backlash(&self) -> Vec<f64> {
-        let (one, other) = (&self.loaded[0], &self.other[0]);
+        let (one, other) = (&self.loaded.delta[0], &self.other.delta[0]);
         one.iter().zip(other).map(|(a, b)| a - b).collect()
     }
 
@@ -137,7 +134,7 @@ impl ForceTable {
             .map(|i| {
                 let place = self.row_below(|j| self.loads[j] <= load);
                 let part = (load - self.loads[place]) / (self.loads[place + 1] - self.loads[place]);
-                let (low, high) = (self.loaded[place][i], self.loaded[place + 1][i]);
+                let [low, high] = [place, place + 1].map(|j| self.loaded.delta[j][i]);
                 low + part * (high - low)
             })
             .collect()
@@ -172,10 +169,11 @@ impl ForceTable {
             part: place - first as f64,
             step: self.step(),
         };
-        if delta > between.value(&self.loaded[0]) {
-            self.of_flank(&self.loaded, between, delta, 1.0)
-        } else if delta < between.value(&self.other[0]) {
-            self.of_flank(&self.other, between, delta, -1.0)
+        let (loaded, other) = (&self.loaded.delta, &self.other.delta);
+        if delta > between.value(&loaded[0]) {
+            self.of_flank(loaded, between, delta, 1.0)
+        } else if delta < between.value(&other[0]) {
+            self.of_flank(other, between, delta, -1.0)
         } else {
             Forces {
                 load: 0.0,
@@ -216,50 +214,54 @@ impl ForceTable {
             count: (self.ladder.count - 1) * by_load + 1,
             ..self.ladder
         };
+        let loads = ladder.loads();
         // The other flanks have their kinks upside down.
-        let along_loads = |rows: &[Vec<f64>], sign: f64| -> Vec<Vec<f64>> {
-            let loads = ladder.loads().into_iter().enumerate();
-            loads
-                .map(|(j, load)| {
-                    let part = (j % by_load) as f64 / by_load as f64;
-                    let place = (j / by_load, part);
-                    let at =
-                        |i: usize| between_open(&self.loads, |j| sign * rows[j][i], place, load);
-                    (0..self.positions()).map(|i| sign * at(i)).collect()
-                })
-                .collect()
-        };
-        let along_positions = |rows: Vec<Vec<f64>>, sign: f64| -> Vec<Vec<f64>> {
-            let rows = rows.into_iter().map(|row| {
-                let row: Vec<f64> = row.iter().map(|delta| sign * delta).collect();
+        let flank = |rows: &FlankRows, sign: f64| {
+            let turned = |row: &Vec<f64>| row.iter().map(|delta| sign * delta).collect();
+            let delta: Vec<Vec<f64>> = rows.delta.iter().map(turned).collect();
+            let between_loads = match &rows.compliance {
+                Some(compliance) => self.met(&delta, compliance, &loads, by_load),
+                None => self.along_loads(&delta, &loads, by_load),
+            };
+            let along_positions = between_loads.iter().map(|row| {
                 (0..row.len() * by_position)
-                    .map(|i| sign * between_closed(&row, i as f64 / by_position as f64))
+                    .map(|i| sign * between_closed(row, i as f64 / by_position as f64))
                     .collect()
             });
-            rows.collect()
+            FlankRows::of_delta(along_positions.collect())
         };
-        let loaded = match &self.compliance {
-            Some(compliance) => self.met(compliance, &ladder.loads(), by_load),
-            None => along_loads(&self.loaded, 1.0),
-        };
-        Self::new(
-            self.period,
-            ladder,
-            along_positions(loaded, 1.0),
-            along_positions(along_loads(&self.other, -1.0), -1.0),
-        )
+        let flanks = [flank(&self.loaded, 1.0), flank(&self.other, -1.0)];
+        Self::new(self.period, ladder, flanks)
     }
 
-    /// δ at its positions under `loads`, of which every `by_load`-th is its own.
-    fn met(&self, compliance: &[Vec<f64>], loads: &[f64], by_load: usize) -> Vec<Vec<f64>> {
+    /// `delta` at its positions under `loads`, of which every `by_load`-th is its own.
+    fn along_loads(&self, delta: &[Vec<f64>], loads: &[f64], by_load: usize) -> Vec<Vec<f64>> {
+        let loads = loads.iter().enumerate();
+        loads
+            .map(|(j, &load)| {
+                let place = (j / by_load, (j % by_load) as f64 / by_load as f64);
+                let at = |i: usize| between_open(&self.loads, |j| delta[j][i], place, load);
+                (0..self.positions()).map(at).collect()
+            })
+            .collect()
+    }
+
+    /// The same, so that `compliance` is met too.
+    fn met(
+        &self,
+        delta: &[Vec<f64>],
+        compliance: &[Vec<f64>],
+        loads: &[f64],
+        by_load: usize,
+    ) -> Vec<Vec<f64>> {
         let mut rows = vec![vec![0.0; self.positions()]; loads.len()];
         for i in 0..self.positions() {
             let at = |rows: &[Vec<f64>]| rows.iter().map(|row| row[i]).collect::<Vec<f64>>();
-            let stretches = Stretch::all(&self.loads, &at(&self.loaded), &at(compliance));
+            let stretches = Stretch::all(&self.loads, &at(delta), &at(compliance));
             for (j, &load) in loads.iter().enumerate() {
                 let stretch = &stretches[(j / by_load).min(stretches.len() - 1)];
                 rows[j][i] = if j % by_load == 0 {
-                    self.loaded[j / by_load][i]
+                    delta[j / by_load][i]
                 } else {
                     stretch.delta(load)
                 };
@@ -426,7 +428,7 @@ impl Between {
 }
 
 /// What stands at `place` of a closed row, in steps of the row.
-pub(crate) fn between_closed(row: &[f64], place: f64) -> f64 {
+fn between_closed(row: &[f64], place: f64) -> f64 {
     let first = place.floor();
     let value = |k: i64| row[(first as i64 + k).rem_euclid(row.len() as i64) as usize];
     let part = place - first;
@@ -530,15 +532,19 @@ pub(super) mod tests {
             };
             (0..positions).map(at).collect()
         });
-        let table = ForceTable::new(1, ladder, rows(1.0, 0.0), rows(-1.0, -3.0));
-        table.with_compliance(compliance.collect())
+        let loaded = FlankRows {
+            delta: rows(1.0, 0.0),
+            compliance: Some(compliance.collect()),
+        };
+        let other = FlankRows::of_delta(rows(-1.0, -3.0));
+        ForceTable::new(1, ladder, [loaded, other])
     }
 
     #[test]
     fn no_load_acts_in_the_backlash_and_loads_rise_on_both_sides_of_it() {
         let table = wavy(40, 9);
         for eta in [0.0, 0.21, 0.5, 0.999, 3.4, -0.2] {
-            let touch = table.refined(1, 1).loaded[0].clone();
+            let touch = table.refined(1, 1).loaded.delta[0].clone();
             let here = between_closed(&touch, eta * 40.0);
             for inside in [0.01, 1.0, 2.5] {
                 assert_eq!(table.load(eta, here - inside), 0.0);
@@ -563,9 +569,9 @@ pub(super) mod tests {
         let table = wavy(24, 9);
         for (j, load) in table.loads().iter().enumerate() {
             for (i, eta) in table.mesh_positions().into_iter().enumerate() {
-                let found = table.load(eta, table.rows()[j][i]);
+                let found = table.load(eta, table.loaded.delta[j][i]);
                 assert!((found - load).abs() < 1e-12, "{found} {load}");
-                let found = table.load(eta, table.rows_of_other_flank()[j][i]);
+                let found = table.load(eta, table.other.delta[j][i]);
                 assert!((found + load).abs() < 1e-12, "{found} {load}");
             }
         }
@@ -631,9 +637,9 @@ pub(super) mod tests {
     fn refining_keeps_what_was_computed_and_comes_near_what_was_not() {
         let coarse = wavy(48, 9);
         let fine = coarse.refined(4, 4);
-        for (j, row) in coarse.rows().iter().enumerate() {
+        for (j, row) in coarse.loaded.delta.iter().enumerate() {
             for (i, value) in row.iter().enumerate() {
-                assert_eq!(fine.rows()[4 * j][4 * i], *value);
+                assert_eq!(fine.loaded.delta[4 * j][4 * i], *value);
             }
         }
         let true_one = wavy(192, 33);
@@ -644,9 +650,9 @@ pub(super) mod tests {
                 }
             }
         };
-        near(fine.rows(), true_one.rows(), 2e-3);
+        near(&fine.loaded.delta, &true_one.loaded.delta, 2e-3);
         // Without compliances nothing says how soft the first stretch begins.
-        let [found, expected] = [&fine, &true_one].map(ForceTable::rows_of_other_flank);
+        let [found, expected] = [&fine, &true_one].map(|table| &table.other.delta);
         near(found, expected, 1e-2);
     }
 
@@ -679,16 +685,28 @@ pub(super) mod tests {
                     .map(|load| row(load).iter().map(|d| sign * d).collect())
                     .collect()
             };
-            let table = ForceTable::new(1, ladder, rows(1.0), rows(-1.0));
             let compliance = ladder
                 .loads()
                 .into_iter()
-                .map(|load| vec![at(load, kink).1; 8]);
-            let table = table.with_compliance(compliance.collect()).refined(1, 16);
-            let missed = table.loads().iter().zip(table.rows()).map(|(load, row)| {
-                (table.load(0.2, at(*load, kink).0) - load)
-                    .abs()
-                    .max((row[0] - at(*load, kink).0).abs())
+                .map(|load| vec![at(load, kink).1; 8])
+                .collect::<Vec<_>>();
+            let flanks = [1.0, -1.0].map(|sign| FlankRows {
+                delta: rows(sign),
+                compliance: Some(compliance.clone()),
+            });
+            let table = ForceTable::new(1, ladder, flanks).refined(1, 16);
+            let both = table.loaded.delta.iter().zip(&table.other.delta);
+            let missed = table.loads().iter().zip(both).map(|(load, (row, other))| {
+                let delta = at(*load, kink).0;
+                let loads = [
+                    table.load(0.2, delta) - load,
+                    table.load(0.2, -delta) + load,
+                ];
+                let deltas = [row[0] - delta, other[0] + delta];
+                loads
+                    .into_iter()
+                    .chain(deltas)
+                    .fold(0.0_f64, |most, d| most.max(d.abs()))
             });
             let missed = missed.fold(0.0, f64::max);
             assert!(missed < 1e-3 * 1000.0, "{kink}: {missed}");

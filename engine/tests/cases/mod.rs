@@ -150,6 +150,7 @@ pub(crate) fn case(pair: GearPair, output_torques: &[f64]) -> Case {
         output_torques: output_torques.to_vec(),
         resolution: Resolution {
             positions_per_mesh_period: 40,
+            first_position: 0.0,
             span_mesh_periods: None,
             grid: GridLevel::Standard,
             contact_solver: ContactSolver::ActiveSet,

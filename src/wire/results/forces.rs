@@ -1,7 +1,7 @@
 //! The table of force, and the motion over speed.
 
 use meshwright_engine::analysis::forces::CurveDynamics;
-use meshwright_engine::dynamics::{Branch, ForceTable, Resonance, ResonanceKind};
+use meshwright_engine::dynamics::{Branch, FlankRows, ForceTable, Resonance, ResonanceKind};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -14,22 +14,28 @@ answer! {
     pub struct ForceTableDocument as ForceTable, "Force table" of (table: &ForceTable) with {
         let in_um = |row: &Vec<f64>| each(row, to_um);
         let stiffness = |row: &Vec<f64>| each(row, |compliance| if compliance > 0.0 { 1.0 / compliance } else { 0.0 });
+        let stiffnesses = |flank: &FlankRows| all(flank.compliance.as_deref().unwrap_or_default(), stiffness);
+        let (loaded, other) = (table.loaded(), table.other());
     } {
         /// The mesh position, in mesh periods, end excluded.
         mesh_position: Vec<f64> = table.mesh_positions(),
         /// The loads on the line of action, in N, rising from 0.
         load_n: Vec<f64> = table.loads().to_vec(),
         /// The approach under each load, in um: one row a load, one number a position. Positive where the driven gear lags.
-        transmission_error_um: Vec<Vec<f64>> = all(table.rows(), in_um),
+        transmission_error_um: Vec<Vec<f64>> = all(&loaded.delta, in_um),
         /// The stiffness dF/d(approach) under each load, in N/m: one row a load, that of the load 0 being 0. With it tables need fewer loads.
         #[serde(default)]
         #[schema(required)]
-        mesh_stiffness_tangent_n_per_m: Vec<Vec<f64>> = all(table.compliance().unwrap_or_default(), stiffness),
+        mesh_stiffness_tangent_n_per_m: Vec<Vec<f64>> = stiffnesses(loaded),
         /// The backlash along the line of action at each position, in um: no force acts while the approach is less than that of load 0 by up to
         /// this much.
         backlash_um: Vec<f64> = each(&table.backlash(), to_um),
         /// The approach at which the other flanks, as drawn, carry each load: one row a load.
-        other_flank_transmission_error_um: Vec<Vec<f64>> = all(table.rows_of_other_flank(), in_um),
+        other_flank_transmission_error_um: Vec<Vec<f64>> = all(&other.delta, in_um),
+        /// The stiffness of the other flanks under each load, in N/m, in the same order.
+        #[serde(default)]
+        #[schema(required)]
+        other_flank_mesh_stiffness_tangent_n_per_m: Vec<Vec<f64>> = stiffnesses(other),
     }
 }
 
