@@ -4,9 +4,8 @@ use std::hint::black_box;
 
 use criterion::{BatchSize, Bencher, Criterion, criterion_group, criterion_main};
 use meshwright_benches::group;
-use meshwright_engine::analysis::forces::{
-    DynamicsRequest, ForceTableRequest, dynamics, force_table,
-};
+use meshwright_engine::analysis::at_speed::{DynamicsRequest, dynamics};
+use meshwright_engine::analysis::forces::{ForceTableRequest, force_table};
 use meshwright_engine::analysis::{Case, Faces, Method, analyze, pair_model};
 use meshwright_engine::assembly::FaceResolution;
 use meshwright_engine::assembly::interface::default_interface_radius;

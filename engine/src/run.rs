@@ -18,7 +18,6 @@ pub struct Run {
     stop: Arc<AtomicBool>,
     done: Arc<AtomicU64>,
     total: Arc<AtomicU64>,
-    announced: Arc<AtomicU64>,
     observer: Arc<dyn Fn(u64, u64) + Send + Sync>,
 }
 
@@ -35,7 +34,6 @@ impl Run {
             stop,
             done: Arc::default(),
             total: Arc::default(),
-            announced: Arc::default(),
             observer: Arc::new(observer),
         }
     }
@@ -45,22 +43,9 @@ impl Run {
         Self::new(Arc::default(), |_, _| {})
     }
 
-    /// Announces `count` more positions of work, unless they were announced as part of the whole.
+    /// Announces `count` more positions of work.
     pub fn expect(&self, count: u64) {
-        let before = self
-            .announced
-            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| {
-                Some(left.saturating_sub(count))
-            })
-            .unwrap_or(0);
-        self.total
-            .fetch_add(count.saturating_sub(before), Ordering::Relaxed);
-    }
-
-    /// Announces the whole of some work, `count` positions, whose parts will be announced one after the other.
-    pub fn expect_whole(&self, count: u64) {
         self.total.fetch_add(count, Ordering::Relaxed);
-        self.announced.fetch_add(count, Ordering::Relaxed);
     }
 
     /// Reports `count` more positions as solved, and asks whether to go on.

@@ -88,7 +88,7 @@ fn an_estimate_is_within_a_factor_of_two_of_what_was_measured() {
         ("case 3", test_case(3), 0.31, 71.0),
         ("kidneys along the face", kidneys, 34.0, 5_200.0),
     ] {
-        let told = estimate(&case);
+        let told = estimate(&case, None);
         let parts = [told.seconds / seconds, told.memory as f64 * 1e-6 / memory];
         println!(
             "{name}: {:.2} s, {} MB, {parts:.2?} of what was measured",

@@ -3,13 +3,16 @@
 mod cases;
 
 use std::f64::consts::PI;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use cases::{case, gear, helical, holed, pair, relieved, standard_pair, test_case};
-use meshwright_engine::analysis::forces::{
-    CurveDynamics, DynamicsRequest, ForceTableRequest, dynamics, equivalent_mass, force_table,
+use meshwright_engine::analysis::at_speed::{
+    CurveDynamics, DynamicsRequest, dynamics, equivalent_mass,
 };
-use meshwright_engine::analysis::{Case, Faces, Method, analyze, pair_model};
+use meshwright_engine::analysis::forces::{
+    ForceTableRequest, ForcesRequest, analyze_with_forces, force_table,
+};
+use meshwright_engine::analysis::{Case, Faces, Method, StiffnessRule, analyze, pair_model};
 use meshwright_engine::assembly::{FaceResolution, FaceYield};
 use meshwright_engine::contact::face::{FaceModel, FlankYield};
 use meshwright_engine::contact::{MadePair, WarmStart};
@@ -18,6 +21,7 @@ use meshwright_engine::gear::{
     Alignment, Eccentricity, Helix, LeadModification, Member, PairDeviations, SolidGear, SolidPair,
     Web,
 };
+use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
@@ -408,4 +412,66 @@ fn without_holes_and_relief_at_any_torque_a_run_up_ends_and_is_finite() {
             assert!(lists.into_iter().flatten().all(|value| value.is_finite()));
         }
     }
+}
+
+/// Positions done, and positions in all, when `work` has ended.
+fn progress(work: impl FnOnce(&Run)) -> (u64, u64) {
+    let seen = Arc::new(Mutex::new((0, 0)));
+    let told = Arc::clone(&seen);
+    // Threads tell theirs in any order.
+    work(&Run::new(Arc::default(), move |done, all| {
+        let mut known = told.lock().expect("nobody panics");
+        *known = (known.0.max(done), all);
+    }));
+    *seen.lock().expect("nobody panics")
+}
+
+#[test]
+fn all_that_is_announced_is_done_and_no_more() {
+    let coarse = |mut case: Case, method: Method| {
+        case.method = method;
+        case.output_torques = vec![0.0, 40.0, 20.0];
+        case.resolution.positions_per_mesh_period = 8;
+        case.resolution.span_mesh_periods = Some(2);
+        case.resolution.grid = GridLevel::Coarse;
+        case
+    };
+    for method in [
+        Method::Flexible,
+        Method::Decomposition,
+        Method::ProjectedDecomposition,
+        Method::LoadDistribution,
+    ] {
+        let mut case = coarse(test_case(2), method);
+        case.resolution.error_estimate = true;
+        for stiffness in [
+            StiffnessRule::Tangent,
+            StiffnessRule::TorqueStep { fraction: 0.01 },
+        ] {
+            case.resolution.stiffness = stiffness;
+            let (done, all) = progress(|run| {
+                analyze(&case, &Library::default(), run).expect("curves");
+            });
+            assert!(done > 0 && done == all, "{method:?}: {done} of {all}");
+        }
+    }
+    for method in [Method::ThreeDimensional, Method::ThreeDimensionalProjected] {
+        let mut case = coarse(along_faces(0.0), method);
+        case.faces.as_mut().expect("along its faces").cure = true;
+        case.resolution.error_estimate = true;
+        let (done, all) = progress(|run| {
+            analyze(&case, &Library::default(), run).expect("curves");
+        });
+        assert!(done > 0 && done == all, "{method:?}: {done} of {all}");
+    }
+    let mut case = coarse(case(standard_pair(true), &[1.0]), Method::Flexible);
+    case.resolution.span_mesh_periods = None;
+    let forces = ForcesRequest {
+        table: TWELVE,
+        dynamics: None,
+    };
+    let (done, all) = progress(|run| {
+        analyze_with_forces(&case, &forces, &Library::default(), run).expect("a table");
+    });
+    assert!(done > 0 && done == all, "{done} of {all}");
 }

@@ -1,6 +1,7 @@
 //! What is asked beside the curves: a table of force, and the motion over speed.
 
-use meshwright_engine::analysis::forces::{DynamicsRequest, ForceTableRequest};
+use meshwright_engine::analysis::at_speed::DynamicsRequest;
+use meshwright_engine::analysis::forces::ForceTableRequest;
 
 use super::declare::{absent, document, nested, number, word, words};
 

@@ -18,7 +18,7 @@ const USUAL_MB: u64 = 400;
 ///
 /// The estimate divides the gears into elements, which takes milliseconds; a usual pair is let through without.
 pub fn memory_above(submission: &Submission, limit_mb: u64) -> Option<u64> {
-    let case = submission.costed_case();
+    let case = submission.case();
     let teeth: u32 = Member::BOTH
         .into_iter()
         .map(|member| case.pair.gear(member).tooth_count())
@@ -27,7 +27,9 @@ pub fn memory_above(submission: &Submission, limit_mb: u64) -> Option<u64> {
     if usual && limit_mb >= USUAL_MB {
         return None;
     }
-    let needed_mb = analysis::estimate(&case).memory.div_ceil(1_000_000);
+    let needed_mb = analysis::estimate(case, submission.forces())
+        .memory
+        .div_ceil(1_000_000);
     (needed_mb > limit_mb).then_some(needed_mb)
 }
 
@@ -74,7 +76,7 @@ mod tests {
     #[test]
     fn no_usual_pair_takes_more_than_is_said() {
         for (holes, positions) in [(4, 40), (7, 40), (20, 40), (60, 40), (60, 200), (59, 20)] {
-            let memory = analysis::estimate(largest_usual(holes, positions).case()).memory;
+            let memory = analysis::estimate(largest_usual(holes, positions).case(), None).memory;
             assert!(memory <= USUAL_MB * 1_000_000, "{holes} holes: {memory}");
         }
     }

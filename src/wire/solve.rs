@@ -2,7 +2,6 @@
 
 use meshwright_engine::analysis::contact_pattern::ContactPattern;
 use meshwright_engine::analysis::fields::{Fields, fields};
-use meshwright_engine::analysis::forces::run_up_seconds;
 use meshwright_engine::analysis::{self, AnalysisError, face_fields};
 use meshwright_engine::fem::volume::Volume;
 use meshwright_engine::gear::data::LEAST_LIGAMENT;
@@ -205,17 +204,14 @@ pub struct Validation {
 answer! {
     /// What a computation will cost.
     pub struct EstimateDocument as Estimate, "Estimate" of (submission: &Submission) with {
-        let case = submission.case();
-        let estimate = analysis::estimate(&submission.costed_case());
-        let dynamics = submission.forces().and_then(|forces| forces.dynamics.as_ref());
-        let of_run_ups = dynamics.map_or(0.0, |dynamics| run_up_seconds(case, dynamics));
+        let estimate = analysis::estimate(submission.case(), submission.forces());
     } {
         /// Unknowns of both gears before condensation.
         degrees_of_freedom: u64 = estimate.degrees_of_freedom,
         /// Memory, in MB.
         memory_mb: u64 = estimate.memory.div_ceil(1_000_000),
         /// Time on one core, in seconds.
-        seconds: f64 = estimate.seconds + of_run_ups,
+        seconds: f64 = estimate.seconds,
         /// Positions times torques.
         positions: u64 = submission.positions_total(),
     }

@@ -89,7 +89,7 @@ pub fn contact_pattern(
     let Some(faces) = &case.faces else {
         return Ok(None);
     };
-    let model = face_model(faces, &yields(faces, false, parts, run)?);
+    let model = face_model(faces, &yields(faces, faces.resolution, parts, run)?);
     let positions = case.mesh_positions();
     let flanks = Member::BOTH.map(|member| FlankBands::of(&faces.pair, member));
     let map = Map {

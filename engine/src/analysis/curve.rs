@@ -1,9 +1,7 @@
 //! What comes out: curves over mesh position.
 
-use super::evidence::Evidence;
 use super::spectrum::Spectrum;
 use super::stress::GearStresses;
-use super::warning::Warning;
 use crate::contact::face::even::EvenLead;
 use crate::gear::Member;
 
@@ -171,15 +169,4 @@ pub struct Curve {
     pub face: Option<FaceLoad>,
     /// The largest stresses in the driving and in the driven gear, where they were asked for, by a whole contact at each position, under load.
     pub stresses: Option<[GearStresses; 2]>,
-}
-
-/// The answer to a [`super::Case`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct Analysis {
-    /// One curve a torque, in the order of the case.
-    pub curves: Vec<Curve>,
-    /// How good it is.
-    pub evidence: Evidence,
-    /// What a reader should know.
-    pub warnings: Vec<Warning>,
 }

@@ -3,50 +3,30 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::case::{Case, StiffnessRule};
+use super::case::Case;
 use super::curve::{BlankFit, BlankSample, Curve, DecompositionParts};
 use super::curve_parts::CurveParts;
 use super::evidence::Evidence;
+use super::plan::{Pass, Sweep, unlike_holes};
 use super::rigid_blank::RigidBlank;
 use super::setup::Setup;
 use super::warning::{warn_of_tips, warnings};
 use super::{Analysis, AnalysisError};
 use crate::assembly::interface::interface_radius;
-use crate::assembly::{Blanks, CutGear, PartError};
+use crate::assembly::{CutGear, PartError};
 use crate::contact::positions::contacts_keeping;
 use crate::contact::{MeshContact, PairModel};
 use crate::fem::FemError;
-use crate::gear::{Member, SpurGear};
+use crate::gear::Member;
 use crate::ring::annulus::{Annulus, Imposed};
 use crate::ring::motion::InterfaceMotion;
-
-/// The torque step to either side, over the torque, with which the paper's route differentiates.
-const TORQUE_STEP: f64 = 0.01;
-
-/// Contact solutions that the decomposition of `case` needs.
-pub(super) fn expected_positions(case: &Case) -> u64 {
-    let samples: u64 = case
-        .holed()
-        .into_iter()
-        .map(|member| 2 * u64::from(blank_samples(case, member)))
-        .sum();
-    3 * case.output_torques.len() as u64 * (case.repeating_positions().len() as u64 + samples)
-}
-
-/// Holes that no turn of the blank takes to each other: 1 for a pattern.
-fn unlike_holes(gear: &SpurGear) -> u32 {
-    gear.holes().len() as u32 / gear.hole_repeats().max(1)
-}
-
-/// Samples of the rotation of a holed blank. Unlike holes make more than one harmonic, and need as many more.
-fn blank_samples(case: &Case, member: Member) -> u32 {
-    case.resolution.blank_positions * unlike_holes(case.pair.gear(member)).max(1)
-}
 
 /// One holed gear of the decomposition: the model in which its blank is flexible and the other holed one is not, and its blank by
 /// itself.
 struct HoledBlank<'a> {
     member: Member,
+    /// Where its turn is sampled.
+    positions: &'a [f64],
     model: &'a PairModel,
     cut: &'a CutGear,
     /// How the interface circle moves in the whole gear.
@@ -58,7 +38,7 @@ struct HoledBlank<'a> {
 }
 
 /// Eqs. 9 to 15: δ = δ_wh + Σ over holed gears of A + B cos(N θ + phase), fitted to samples of the holed blank's rotation.
-pub(super) fn solve(setup: Setup<'_>) -> Result<Analysis, AnalysisError> {
+pub(super) fn solve(setup: Setup<'_>, plan: &Pass) -> Result<Analysis, AnalysisError> {
     let case = setup.case;
     let rigid = RigidBlank::new(setup)?;
     // How a blank turns under its hub is fitted as drawn: what teeth deviate is in δ_wh.
@@ -74,19 +54,15 @@ pub(super) fn solve(setup: Setup<'_>) -> Result<Analysis, AnalysisError> {
     let apart = apart.transpose()?;
     let rigid_as_drawn = apart.as_ref().unwrap_or(&rigid);
     let mut degrees_of_freedom = rigid.degrees_of_freedom;
-    let modeled = |member: Member| {
-        let spec = of_drawn.spec(Blanks::OnlyHoledOf(member));
+    let modeled = |(member, sweep): &(Member, Sweep)| {
+        let spec = of_drawn.spec(sweep.blanks);
         let model = spec.model(setup.parts, setup.run)?;
-        let cut = spec.cut(member, setup.parts, setup.run)?;
-        Ok::<_, AnalysisError>((member, model, cut))
+        let cut = spec.cut(*member, setup.parts, setup.run)?;
+        Ok::<_, AnalysisError>((model, cut))
     };
-    let modeled: Vec<_> = case
-        .holed()
-        .into_iter()
-        .map(modeled)
-        .collect::<Result<_, _>>()?;
+    let modeled: Vec<_> = plan.samples.iter().map(modeled).collect::<Result<_, _>>()?;
     let mut blanks = Vec::new();
-    for (member, (model, unknowns), cut) in &modeled {
+    for ((member, sweep), ((model, unknowns), cut)) in plan.samples.iter().zip(&modeled) {
         degrees_of_freedom = degrees_of_freedom.max(*unknowns);
         let of_member = |error: FemError| PartError::from(error).of(*member);
         let motion = cut.motion(setup.run).map_err(of_member)?;
@@ -97,6 +73,7 @@ pub(super) fn solve(setup: Setup<'_>) -> Result<Analysis, AnalysisError> {
         let asked = case.resolution.interface_radii[member.index()];
         blanks.push(HoledBlank {
             member: *member,
+            positions: &sweep.positions,
             model,
             cut,
             motion,
@@ -109,7 +86,7 @@ pub(super) fn solve(setup: Setup<'_>) -> Result<Analysis, AnalysisError> {
     let mut warnings = warnings(case);
     let mut curves = Vec::with_capacity(case.output_torques.len());
     for &output_torque in &case.output_torques {
-        let (curve, contacts) = curve(&rigid, &blanks, output_torque)?;
+        let (curve, contacts) = curve(&rigid, &blanks, &plan.told, output_torque)?;
         evidence.gather(&contacts, curve.load);
         warn_of_tips(&mut warnings, &contacts);
         curves.push(curve);
@@ -125,31 +102,25 @@ pub(super) fn solve(setup: Setup<'_>) -> Result<Analysis, AnalysisError> {
 fn curve(
     rigid: &RigidBlank<'_>,
     blanks: &[HoledBlank<'_>],
+    told: &Sweep,
     output_torque: f64,
 ) -> Result<(Curve, Arc<Vec<MeshContact>>), AnalysisError> {
     let case = rigid.setup.case;
-    let step = match case.resolution.stiffness {
-        StiffnessRule::Tangent => TORQUE_STEP,
-        StiffnessRule::TorqueStep { fraction } => fraction,
-    };
     let load = case.pair.load(output_torque);
-    let at = |load: f64| Terms::at(rigid, blanks, load);
-    let (middle, low, high) = (
-        at(load)?,
-        at(load * (1.0 - step))?,
-        at(load * (1.0 + step))?,
-    );
-    let (below, above) = (low.transmission_error(case), high.transmission_error(case));
-    let rises = below.iter().zip(&above).map(|(below, above)| above - below);
-    let parts = CurveParts {
-        transmission_error: middle.transmission_error(case),
-        stiffness: rises.map(|rise| 2.0 * step * load / rise).collect(),
-        decomposition: Some(DecompositionParts {
-            rigid_blank_transmission_error: middle.of_rigid_blank(case),
-            blanks: middle.fits,
-        }),
-        ..CurveParts::of_repeating(case, &middle.contacts)
-    };
+    let at = |load: f64| Terms::at(rigid, blanks, &told.positions, load);
+    let middle = at(load)?;
+    let parts =
+        CurveParts {
+            transmission_error: middle.transmission_error(case),
+            stiffness: told.stiffness(load, Vec::new, |load| {
+                Ok(at(load)?.transmission_error(case))
+            })?,
+            decomposition: Some(DecompositionParts {
+                rigid_blank_transmission_error: middle.of_rigid_blank(case),
+                blanks: middle.fits,
+            }),
+            ..CurveParts::of_repeating(case, &middle.contacts)
+        };
     Ok((parts.into_curve(case, output_torque), middle.contacts))
 }
 
@@ -163,9 +134,10 @@ impl Terms {
     fn at(
         rigid: &RigidBlank<'_>,
         blanks: &[HoledBlank<'_>],
+        positions: &[f64],
         load: f64,
     ) -> Result<Self, AnalysisError> {
-        let contacts = rigid.contacts(load, &rigid.setup.case.repeating_positions())?;
+        let contacts = rigid.contacts(load, positions)?;
         let fits = blanks
             .iter()
             .map(|blank| blank.fit(load))
@@ -205,16 +177,12 @@ impl HoledBlank<'_> {
     fn fit(&self, load: f64) -> Result<BlankFit, AnalysisError> {
         let Setup { case, run, .. } = self.rigid.setup;
         let gear = case.pair.gear(self.member);
-        let count = blank_samples(case, self.member);
-        let period = f64::from(gear.tooth_count()) / f64::from(gear.hole_repeats().max(1));
-        let positions: Vec<f64> = (0..count)
-            .map(|j| f64::from(j) * period / f64::from(count))
-            .collect();
+        let positions = self.positions;
         let made = self.model.made(self.rigid.setup.deviations);
-        let whole = contacts_keeping(made, load, &positions, run, |cells, solution| {
+        let whole = contacts_keeping(made, load, positions, run, |cells, solution| {
             cells.flank_loads(self.member, &solution.forces)
         })?;
-        let without = self.rigid.contacts(load, &positions)?;
+        let without = self.rigid.contacts(load, positions)?;
         let samples: Vec<BlankSample> = positions
             .iter()
             .zip(whole.iter().zip(without.iter()))
@@ -233,14 +201,16 @@ impl HoledBlank<'_> {
         let harmonic = |k: u32| harmonic(&rotations, k);
         let (amplitude, phase) = harmonic(1);
         let higher = if unlike_holes(gear) > 1 {
-            (2..count.div_ceil(2)).map(harmonic).collect()
+            (2..(rotations.len() as u32).div_ceil(2))
+                .map(harmonic)
+                .collect()
         } else {
             Vec::new()
         };
         Ok(BlankFit {
             member: self.member,
             interface_radius: self.interface_radius,
-            mean: rotations.iter().sum::<f64>() / f64::from(count),
+            mean: rotations.iter().sum::<f64>() / rotations.len() as f64,
             amplitude,
             phase,
             higher,

@@ -1,15 +1,17 @@
 //! What a case will cost, known before it is computed.
 
+use super::at_speed::{run_up_seconds, usual_stiffness};
 use super::case::{Case, Faces, Method};
-use super::{expected, expected_positions};
+use super::forces::{ForcesRequest, TablePlan};
+use super::plan::{Pass, Plan};
+use crate::assembly::FaceYieldSpec;
 use crate::assembly::blank::blank_grid;
 use crate::assembly::interface::{harmonics, interface_radius, orders_of_blank};
 use crate::assembly::pair::cells_per_patch;
-use crate::assembly::{FaceResolution, FaceYieldSpec};
 use crate::contact::facing::Facing;
 use crate::contact::{ContactSolver, default_penalty};
-use crate::gear::{GearPair, Member, gcd};
-use crate::grid::{GridLevel, ToothGrid};
+use crate::gear::{Member, gcd};
+use crate::grid::ToothGrid;
 
 /// Seconds of one core for the first contact solution at a fraction of the mesh period, for each further one there, and for a linear
 /// system of the augmented Lagrangian, all with the cells of [`CELLS`]; for a node of a factorized grid; and for a multiplication and
@@ -22,9 +24,6 @@ const CELLS: f64 = 80.0;
 /// How much longer a first solution takes where load brings more pairs together than the contact ratio: tips dig in, and patches are laid
 /// again, wider.
 const DIGGING: f64 = 6.0;
-
-/// The stiffness of a mesh over E b of its softer gear, about: 0.03 with large holes under a heavy load, 0.04 in the paper's case 2.
-const STIFFNESS: f64 = 0.035;
 
 /// How far from the pitch point pairs are looked for.
 const FARTHEST_PAIR: i64 = 16;
@@ -42,7 +41,7 @@ const PATTERNS: f64 = 18.0;
 const BASE_MEMORY: f64 = 56e6;
 
 /// What a case will cost.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Estimate {
     /// Unknowns of both gears before condensation.
     pub degrees_of_freedom: u64,
@@ -50,53 +49,71 @@ pub struct Estimate {
     pub memory: u64,
     /// Time on one core in seconds, nothing cached.
     pub seconds: f64,
-    /// Positions times torques.
-    pub positions: u64,
 }
 
-/// Estimates what `case` will cost; the grids are laid, nothing is solved. A gear whose grid fails counts as nothing.
-pub fn estimate(case: &Case) -> Estimate {
-    let positions = (case.positions() * case.output_torques.len()) as u64;
+/// Estimates what `case` will cost with its `forces`; the grids are laid, nothing is solved. A gear whose grid fails counts as nothing.
+pub fn estimate(case: &Case, forces: Option<&ForcesRequest>) -> Estimate {
+    let plan = Plan::of(case);
     let mut estimate = Estimate {
-        degrees_of_freedom: 0,
-        memory: (BASE_MEMORY + POSITION_MEMORY * positions as f64) as u64,
-        seconds: 0.0,
-        positions,
+        memory: BASE_MEMORY as u64,
+        ..Estimate::default()
     };
-    if case.method == Method::LoadDistribution {
-        estimate.seconds = SECONDS[0] / 10.0 * expected_positions(case) as f64;
-        return estimate;
+    match &case.faces {
+        _ if case.method == Method::LoadDistribution => {}
+        Some(faces) => add_faces(&mut estimate, &plan, faces),
+        None => add_gears(&mut estimate, &plan),
     }
-    if let Some(faces) = &case.faces {
-        return of_faces(case, faces, estimate);
-    }
-    if case.stress && case.method == Method::Flexible {
-        let teeth = Member::BOTH.map(|member| f64::from(case.pair.gear(member).tooth_count()));
-        estimate.seconds += PER_ANSWER * (teeth[0] + teeth[1]) * positions as f64;
-        // Both gears are made once more, with rows that lead inside.
-        for member in Member::BOTH {
-            let gear = of_gear(case, member, case.resolution.grid);
-            estimate.seconds += gear.seconds;
-            estimate.memory += gear.memory / 4;
+    add_contacts(&mut estimate, &plan);
+    if let Some(forces) = forces {
+        // The gears are the same.
+        for plan in TablePlan::of(case, forces.table).plans() {
+            add_contacts(&mut estimate, plan);
         }
+        let run_ups = forces.dynamics.as_ref();
+        estimate.seconds += run_ups.map_or(0.0, |request| run_up_seconds(case, request));
     }
-    let level = case.resolution.grid;
-    let mut levels = vec![level];
-    if case.resolution.error_estimate {
-        levels.push(level.neighbor());
-    }
-    for (run, &at) in levels.iter().enumerate() {
-        let gears = Member::BOTH.map(|member| of_gear(case, member, at));
-        estimate.seconds += of_contacts(case, at);
-        for gear in gears {
+    estimate
+}
+
+/// Adds what the contacts of `plan` cost.
+fn add_contacts(estimate: &mut Estimate, plan: &Plan) {
+    let case = &plan.asked;
+    let positions = (case.positions() * case.output_torques.len()) as u64;
+    estimate.memory += (POSITION_MEMORY * positions as f64) as u64;
+    estimate.seconds += match &case.faces {
+        _ if case.method == Method::LoadDistribution => SECONDS[0] / 10.0 * plan.solutions() as f64,
+        Some(faces) => {
+            estimate.memory += 8 * (positions * faces.slices as u64);
+            along_faces(plan, faces)
+        }
+        None => plan.passes.iter().map(|pass| in_plane(plan, pass)).sum(),
+    };
+}
+
+/// Adds what the plane gears of `plan` cost, and what they answer to contacts.
+fn add_gears(estimate: &mut Estimate, plan: &Plan) {
+    for (number, pass) in plan.passes.iter().enumerate() {
+        for member in Member::BOTH {
+            let gear = of_gear(&plan.loaded, member, pass);
             estimate.seconds += gear.seconds;
             estimate.memory += gear.memory;
-            if run == 0 {
+            if number == 0 {
                 estimate.degrees_of_freedom += gear.degrees_of_freedom;
+            }
+            if pass.stress {
+                // It is made once more, with rows that lead inside.
+                estimate.seconds += gear.seconds;
+                estimate.memory += gear.memory / 4;
+                let teeth = f64::from(plan.loaded.pair.gear(member).tooth_count());
+                estimate.seconds += PER_ANSWER * teeth * answers(plan, pass);
             }
         }
     }
-    estimate
+}
+
+/// Contacts that gears answer to with their stresses in a `pass` of `plan`.
+fn answers(plan: &Plan, pass: &Pass) -> f64 {
+    (pass.told.positions.len() * plan.loaded.output_torques.len()) as f64
 }
 
 /// Seconds of one core for the yield of one gear at the order 8 across the face, for its web besides, and for the contact of a slice at a
@@ -111,8 +128,8 @@ const ROOT_MEMORY: f64 = 290e6;
 /// Teeth whose roots answer at a position, about.
 const TEETH_ANSWERING: f64 = 20.0;
 
-/// Positions in whose time the lead is found that would even the load under one torque.
-const EVENING: u64 = 16;
+/// Positions in whose time a lead is tried at one, about.
+const EVENING: u64 = 2;
 
 /// Bytes of one gear along its face at the order 8 while it is made, and of its web besides.
 const FACE_MEMORY: [f64; 2] = [110e6, 60e6];
@@ -125,87 +142,70 @@ const HOLED_MEMORY: f64 = 24.0;
 /// Nodes of a tooth and its rim in a section, about.
 const SECTION_NODES: f64 = 330.0;
 
-/// What a case costs along its faces; `alone` is what any case does.
-fn of_faces(case: &Case, faces: &Faces, alone: Estimate) -> Estimate {
-    let [per_gear, per_web, per_slice] = FACE_SECONDS;
+/// Adds what the gears of `plan` cost along their `faces`, and what they answer to contacts.
+fn add_faces(estimate: &mut Estimate, plan: &Plan, faces: &Faces) {
+    let case = &plan.loaded;
+    let [per_gear, per_web, _] = FACE_SECONDS;
     let has_web = |member: &Member| {
         let gear = case.pair.gear(*member);
         gear.data().blank.web_in(gear.face_width()).is_some()
     };
     let webs = Member::BOTH.iter().filter(|member| has_web(member)).count() as f64;
-    let orders = if case.resolution.error_estimate { 2 } else { 1 };
-    let mut estimate = alone;
-    for run in 0..orders {
-        // A finer run has two orders more.
-        let functions = (faces.resolution.face_order + 2 * run + 1) as f64;
+    for (number, pass) in plan.passes.iter().enumerate() {
+        let resolution = pass.along(faces);
+        let functions = (resolution.face_order + 1) as f64;
         let growth = functions / 9.0;
         estimate.seconds += (2.0 * per_gear + webs * per_web) * growth.powf(2.5);
         let bytes = 2.0 * FACE_MEMORY[0] + webs * FACE_MEMORY[1];
         estimate.memory += (bytes * growth.powi(2)) as u64;
-        let resolution = FaceResolution {
-            face_order: faces.resolution.face_order + 2 * run,
-            ..faces.resolution
-        };
         for member in Member::BOTH {
             let spec = FaceYieldSpec::new(faces.pair.gear(member), resolution);
             let unknowns = spec.condensed_unknowns() as f64;
             estimate.seconds += HOLED_SECONDS * unknowns.powi(3);
             estimate.memory += (HOLED_MEMORY * unknowns.powi(2)) as u64;
         }
-        if run == 0 {
+        if number == 0 {
             let teeth = Member::BOTH.map(|member| case.pair.gear(member).tooth_count());
             let unknowns = 3.0 * functions * SECTION_NODES * f64::from(teeth[0] + teeth[1]);
             estimate.degrees_of_freedom = unknowns as u64;
         }
+        if pass.stress {
+            let [per_gear, per_answer] = ROOT_SECONDS;
+            let answers = 2.0 * TEETH_ANSWERING * answers(plan, pass);
+            // The edges of holes are condensed as the web is.
+            let made = 2.0 * per_gear + case.holed().len() as f64 * per_web;
+            estimate.seconds += made * growth.powf(2.5) + per_answer * growth * answers;
+            estimate.memory += (2.0 * ROOT_MEMORY * growth.powi(2)) as u64;
+        }
     }
-    if case.stress && case.method == Method::ThreeDimensional {
-        let growth = (faces.resolution.face_order + 1) as f64 / 9.0;
-        let [per_gear, per_answer] = ROOT_SECONDS;
-        let answers = 2.0 * TEETH_ANSWERING * estimate.positions as f64;
-        // The edges of holes are condensed as the web is.
-        let holed = |member: &Member| !case.pair.gear(*member).holes().is_empty();
-        let holed = Member::BOTH.iter().filter(|member| holed(member)).count() as f64;
-        let made = 2.0 * per_gear + holed * per_web;
-        estimate.seconds += made * growth.powf(2.5) + per_answer * growth * answers;
-        estimate.memory += (2.0 * ROOT_MEMORY * growth.powi(2)) as u64;
-    }
-    // Two pairs or more carry along all of the face.
-    let slices = faces.slices as f64 * (1.0 + faces.pair.total_contact_ratio());
-    let evened = if faces.cure {
-        case.output_torques.len() as u64
-    } else {
-        0
-    };
-    let positions = expected(case) + EVENING * evened;
-    estimate.seconds += per_slice * slices * positions as f64;
-    estimate.memory += 8 * (estimate.positions * faces.slices as u64);
-    estimate
 }
 
-/// Seconds that the contacts of `case` take at `level`.
-fn of_contacts(case: &Case, level: GridLevel) -> f64 {
+/// Seconds that the contacts of `plan` take along the faces.
+fn along_faces(plan: &Plan, faces: &Faces) -> f64 {
+    let [.., per_slice] = FACE_SECONDS;
+    // Two pairs or more carry along all of the face.
+    let slices = faces.slices as f64 * (1.0 + faces.pair.total_contact_ratio());
+    let evened: usize = plan.passes.iter().map(|pass| pass.evened.len()).sum();
+    let tried = EVENING * (evened * plan.loaded.output_torques.len()) as u64;
+    per_slice * slices * (plan.solutions() + tried) as f64
+}
+
+/// Seconds that the contacts of a `pass` of `plan` take in the plane.
+fn in_plane(plan: &Plan, pass: &Pass) -> f64 {
+    let case = &plan.loaded;
     let [per_first, per_further, per_system, ..] = SECONDS;
-    let solutions = expected_positions(case) as f64;
-    // Only the flexible method solves a fraction of the mesh period more than once.
-    let firsts = match case.method {
-        Method::Flexible => solutions / f64::from(case.span().max(1)),
-        _ => solutions,
-    };
+    let torques = case.output_torques.len() as f64;
+    let [solutions, firsts] =
+        [pass.solutions(), pass.first_solutions()].map(|count| torques * count as f64);
     let of_torque = |&output_torque: &f64| {
         let (pairs, digging) = pairs_together(case, output_torque);
-        let cells = (pairs * cells_per_patch(level)) as f64;
+        let cells = (pairs * cells_per_patch(pass.level)) as f64;
         let first = per_first * if digging { DIGGING } else { 1.0 };
         let solved = first * firsts + per_further * (solutions - firsts);
         (cells / CELLS).powi(3) * (solved + per_system * systems(case) * solutions)
     };
     let seconds: f64 = case.output_torques.iter().map(of_torque).sum();
-    seconds / case.output_torques.len().max(1) as f64
-}
-
-/// The mean stiffness of a mesh in N/m, about.
-pub(super) fn usual_stiffness(pair: &GearPair) -> f64 {
-    let moduli = Member::BOTH.map(|member| pair.gear(member).material().youngs_modulus);
-    STIFFNESS * moduli[0].min(moduli[1]) * pair.common_face_width()
+    seconds / torques
 }
 
 /// The tooth pairs that come together under a torque, about, and whether they are more than without load.
@@ -238,14 +238,10 @@ fn systems(case: &Case) -> f64 {
     5.0 + updates.min(2000.0)
 }
 
-/// What making one gear costs, in all models that the method needs of it.
-fn of_gear(case: &Case, member: Member, level: GridLevel) -> Estimate {
-    let mut estimate = Estimate {
-        degrees_of_freedom: 0,
-        memory: 0,
-        seconds: 0.0,
-        positions: 0,
-    };
+/// What making one gear costs, in all models that `pass` needs of it.
+fn of_gear(case: &Case, member: Member, pass: &Pass) -> Estimate {
+    let mut estimate = Estimate::default();
+    let level = pass.level;
     let [.., per_node, per_operation] = SECONDS;
     let gear = case.pair.gear(member);
     let radius = interface_radius(gear, case.resolution.interface_radii[member.index()]);
@@ -268,13 +264,8 @@ fn of_gear(case: &Case, member: Member, level: GridLevel) -> Estimate {
     // The gear repeats itself so many times, and keeps the rows of the teeth of one period.
     let repeats = f64::from(gcd(gear.tooth_count(), blank.sector_count));
     let rows = teeth as f64 / repeats;
-    // Of the decomposition's models one has this blank flexible; the projection makes another of it that is alike all around.
-    let couplings = rows
-        + if case.method == Method::Flexible {
-            0.0
-        } else {
-            17.0
-        };
+    // One model has this blank flexible; in another that stands beside it all teeth are coupled alike.
+    let couplings = rows + if pass.has_rigid_blanks() { 17.0 } else { 0.0 };
     // At the most two matrices of all orders at once: the ring of teeth, and what is factorized.
     estimate.memory = (8.0
         * (2.0 * all * all

@@ -72,7 +72,7 @@ fn of_gears<T: Send>(
     let Some(faces) = &case.faces else {
         return Ok(None);
     };
-    let yields = yields(faces, false, parts, run)?;
+    let yields = yields(faces, faces.resolution, parts, run)?;
     let contacts =
         face_model(faces, &yields).contacts(case.pair.load(output_torque), &[eta], run)?;
     let Some(contact) = contacts.first() else {

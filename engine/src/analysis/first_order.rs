@@ -57,33 +57,56 @@ pub(super) fn with_holes(
     }
 }
 
-/// The positions of a curve at which the projection is held to exact solutions.
-pub(super) fn expected_checks(case: &Case) -> u64 {
-    if case.holed().is_empty() {
-        return 0;
-    }
-    let fractions = case.resolution.positions_per_mesh_period as usize;
-    (fractions.min(CHECKED[0]) * (case.span() as usize).min(CHECKED[1])) as u64
+/// Exact solutions to which the projection is held: how many are known before where.
+#[derive(Clone, Copy)]
+pub(super) struct Checks {
+    fractions: usize,
+    periods: usize,
 }
 
-/// Those positions, by their places in the curve, of a `case` with this `round` at its repeating positions.
-pub(super) fn checked_places(case: &Case, round: &[OnRound]) -> Vec<usize> {
-    if case.holed().is_empty() {
-        return Vec::new();
-    }
-    let per_period = case.resolution.positions_per_mesh_period as usize;
-    let (span, count) = (case.span() as usize, round.len());
-    let stiffness = |i: usize| round[i % count].stiffness;
-    let change = |i: usize| {
-        let after = stiffness(i + 1) / stiffness(i);
-        let before = stiffness(i + count - 1) / stiffness(i);
-        after.ln().abs().max(before.ln().abs())
+impl Checks {
+    pub(super) const NONE: Self = Self {
+        fractions: 0,
+        periods: 0,
     };
-    let mut fractions: Vec<usize> = (0..per_period).collect();
-    fractions.sort_by(|&a, &b| change(b).total_cmp(&change(a)));
-    fractions.truncate(CHECKED[0]);
-    let periods = span.min(CHECKED[1]);
-    let of_fraction =
-        |fraction| (0..periods).map(move |j| j * span / periods * per_period + fraction);
-    fractions.into_iter().flat_map(of_fraction).collect()
+
+    /// Those of `case`: none where nothing is projected.
+    pub(super) fn of(case: &Case) -> Self {
+        if case.holed().is_empty() {
+            return Self::NONE;
+        }
+        let fractions = case.resolution.positions_per_mesh_period as usize;
+        Self {
+            fractions: fractions.min(CHECKED[0]),
+            periods: (case.span() as usize).min(CHECKED[1]),
+        }
+    }
+
+    pub(super) fn solutions(self) -> u64 {
+        (self.fractions * self.periods) as u64
+    }
+
+    /// Those that are the first at their fraction of the mesh period.
+    pub(super) fn first_solutions(self) -> u64 {
+        self.fractions as u64
+    }
+
+    /// Their places in the curve of `case`, with this `round` at its repeating positions.
+    pub(super) fn places(self, case: &Case, round: &[OnRound]) -> Vec<usize> {
+        let per_period = case.resolution.positions_per_mesh_period as usize;
+        let (span, count) = (case.span() as usize, round.len());
+        let stiffness = |i: usize| round[i % count].stiffness;
+        let change = |i: usize| {
+            let after = stiffness(i + 1) / stiffness(i);
+            let before = stiffness(i + count - 1) / stiffness(i);
+            after.ln().abs().max(before.ln().abs())
+        };
+        let mut fractions: Vec<usize> = (0..per_period).collect();
+        fractions.sort_by(|&a, &b| change(b).total_cmp(&change(a)));
+        fractions.truncate(self.fractions);
+        let periods = self.periods;
+        let of_fraction =
+            |fraction| (0..periods).map(move |j| j * span / periods * per_period + fraction);
+        fractions.into_iter().flat_map(of_fraction).collect()
+    }
 }

@@ -1,19 +1,15 @@
-//! The force table of a case, and what its mesh does at speed.
+//! The force table of a case, by its own method, and what is answered with it.
 
+use super::analyze::carried_out;
+use super::at_speed::{CurveDynamics, DynamicsRequest, dynamics};
 use super::curve::Curve;
-use super::estimate::usual_stiffness;
+use super::plan::Plan;
 use super::warning::warn_of_motions;
-use super::{Analysis, AnalysisError, Case, Faces, OrderKind, StiffnessRule, analyze, expected};
+use super::{Analysis, AnalysisError, Case, Faces, StiffnessRule};
 use crate::assembly::Parts;
-use crate::dynamics::{FlankRows, ForceTable, Ladder, Resonance, RunUp, RunUpData};
-use crate::gear::{GearPair, Member, involute_function};
+use crate::dynamics::{FlankRows, ForceTable, Ladder};
+use crate::gear::{Member, involute_function};
 use crate::run::Run;
-
-/// Harmonics of the mesh that are told at speed.
-const MESH_HARMONICS: u32 = 5;
-
-/// Orders that are told at speed, at most, and the least part of the largest static line that one of a sideband or a revolution has.
-const TOLD: (usize, f64) = (12, 0.01);
 
 /// How many times as many positions a table has as the curves: pairs that begin and cease to carry make kinks, and two of them in
 /// neighboring cells are one too many.
@@ -65,16 +61,17 @@ pub struct Forces {
 ///
 /// # Errors
 ///
-/// As for [`analyze`].
+/// As for [`analyze`](super::analyze()).
 pub fn analyze_with_forces(
     case: &Case,
     request: &ForcesRequest,
     parts: &dyn Parts,
     run: &Run,
 ) -> Result<(Analysis, Forces), AnalysisError> {
-    run.expect_whole(expected(case) + table_positions(case, request.table));
-    let mut analysis = analyze(case, parts, run)?;
-    let table = force_table(case, request.table, parts, run)?;
+    let (plan, table) = (Plan::of(case), TablePlan::of(case, request.table));
+    run.expect(plan.solutions() + table.solutions());
+    let mut analysis = carried_out(&plan, parts, run)?;
+    let table = table.table(parts, run)?;
     let curves = request.dynamics.iter().flat_map(|dynamics| {
         let curves = analysis.curves.iter();
         curves.map(move |curve| (dynamics, curve))
@@ -86,20 +83,56 @@ pub fn analyze_with_forces(
     Ok((analysis, Forces { table, dynamics }))
 }
 
-/// Contact solutions that the table needs.
-fn table_positions(case: &Case, request: ForceTableRequest) -> u64 {
-    let loads = request.ladder(case).loads();
-    2 * expected(&rows_case(case, &loads))
+/// What is computed of a table.
+pub(super) struct TablePlan {
+    ladder: Ladder,
+    /// Its rows.
+    rows: Plan,
+    /// The rows of the other flanks.
+    other: OtherFlank,
 }
 
-/// `case` with the loads of a table beside its torques: what both cost together.
-pub fn with_table(case: &Case, request: ForceTableRequest) -> Case {
-    let mut both = case.clone();
-    let rows = rows_case(case, &request.ladder(case).loads());
-    for _ in 0..2 * MORE_POSITIONS {
-        both.output_torques.extend(&rows.output_torques);
+impl TablePlan {
+    pub(super) fn of(case: &Case, request: ForceTableRequest) -> Self {
+        let ladder = request.ladder(case);
+        let rows = rows_case(case, &ladder.loads());
+        Self {
+            ladder,
+            other: OtherFlank::of(&rows),
+            rows: Plan::of(&rows),
+        }
     }
-    both
+
+    pub(super) fn plans(&self) -> [&Plan; 2] {
+        [&self.rows, &self.other.mirrored]
+    }
+
+    fn solutions(&self) -> u64 {
+        self.plans().into_iter().map(Plan::solutions).sum()
+    }
+
+    fn table(self, parts: &dyn Parts, run: &Run) -> Result<ForceTable, AnalysisError> {
+        let rows_of = |plan: &Plan| -> Result<FlankRows, AnalysisError> {
+            let curves = carried_out(plan, parts, run)?.curves.into_iter();
+            let compliance = |curve: &Curve| -> Vec<f64> {
+                let stiffness = curve.mesh_stiffness_tangent.iter();
+                // Without load there is none, and nobody looks at it.
+                stiffness
+                    .map(|k| if *k > 0.0 { 1.0 / k } else { 0.0 })
+                    .collect()
+            };
+            let rows = curves.map(|curve| (curve.transmission_error.clone(), compliance(&curve)));
+            let (delta, compliance) = rows.unzip();
+            Ok(FlankRows {
+                delta,
+                compliance: Some(compliance),
+            })
+        };
+        let case = &self.rows.asked;
+        let [loaded, mirrored] = self.plans().map(rows_of);
+        let flanks = [loaded?, self.other.turned(&mirrored?, case.positions())];
+        Ok(ForceTable::new(case.pair.period(), self.ladder, flanks))
+    }
 }
 
 /// The case whose curves are the rows of the table.
@@ -128,8 +161,8 @@ fn rows_case(case: &Case, loads: &[f64]) -> Case {
 /// A pair of gears whose teeth are alike to both sides touches on them as its mirror image does on the loaded ones, which passes the same
 /// positions the other way round; along faces that is the drawing seen from its other side.
 struct OtherFlank {
-    /// The case whose curves are those of the mirror image.
-    mirrored: Case,
+    /// The curves of the mirror image.
+    mirrored: Plan,
     /// The place of position 0 in its curves.
     zero: i64,
 }
@@ -156,7 +189,7 @@ impl OtherFlank {
         // So that the positions of the mirror image are those of the table.
         mirrored.resolution.first_position = later.fract() / per_period;
         Self {
-            mirrored,
+            mirrored: Plan::of(&mirrored),
             zero: later.trunc() as i64,
         }
     }
@@ -171,7 +204,7 @@ impl OtherFlank {
             };
             rows.iter().map(row).collect()
         };
-        let backlash = self.mirrored.pair.backlash();
+        let backlash = self.mirrored.asked.pair.backlash();
         let compliance = mirrored.compliance.as_ref();
         FlankRows {
             delta: turned(&mirrored.delta, &|delta| -backlash - delta),
@@ -184,162 +217,14 @@ impl OtherFlank {
 ///
 /// # Errors
 ///
-/// As for [`analyze`].
+/// As for [`analyze`](super::analyze()).
 pub fn force_table(
     case: &Case,
     request: ForceTableRequest,
     parts: &dyn Parts,
     run: &Run,
 ) -> Result<ForceTable, AnalysisError> {
-    let ladder = request.ladder(case);
-    let loaded = rows_case(case, &ladder.loads());
-    let other = OtherFlank::of(&loaded);
-    let rows_of = |case: &Case| -> Result<FlankRows, AnalysisError> {
-        let curves = analyze(case, parts, run)?.curves.into_iter();
-        let compliance = |curve: &Curve| -> Vec<f64> {
-            let stiffness = curve.mesh_stiffness_tangent.iter();
-            // Without load there is none, and nobody looks at it.
-            stiffness
-                .map(|k| if *k > 0.0 { 1.0 / k } else { 0.0 })
-                .collect()
-        };
-        let rows = curves.map(|curve| (curve.transmission_error.clone(), compliance(&curve)));
-        let (delta, compliance) = rows.unzip();
-        Ok(FlankRows {
-            delta,
-            compliance: Some(compliance),
-        })
-    };
-    let mirrored = rows_of(&other.mirrored)?;
-    let flanks = [
-        rows_of(&loaded)?,
-        other.turned(&mirrored, loaded.positions()),
-    ];
-    Ok(ForceTable::new(case.pair.period(), ladder, flanks))
-}
-
-/// The run-up that is asked for.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DynamicsRequest {
-    /// Speeds of the driving gear in revolutions per second, rising; 0 is the static curve.
-    pub speeds: Vec<f64>,
-    /// ζ.
-    pub damping_ratio: f64,
-    /// Polar inertias in kg m², driving and driven; `None` for the gear's own.
-    pub inertias: [Option<f64>; 2],
-    /// Whether to run up, and whether to run down.
-    pub sweeps: [bool; 2],
-}
-
-/// What the mesh does at speed under the torque of one curve.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CurveDynamics {
-    /// m_e in kg.
-    pub equivalent_mass: f64,
-    /// The speeds, in revolutions per second.
-    pub speeds: Vec<f64>,
-    /// The motion.
-    pub run_up: RunUp,
-    /// The labels of the orders that are told.
-    pub labels: Vec<String>,
-    /// Where they resonate.
-    pub resonances: Vec<Resonance>,
-}
-
-/// The mass m_e on the line of action: 1/m_e = r_b1²/J_1 + r_b2²/J_2.
-pub fn equivalent_mass(case: &Case, inertias: [Option<f64>; 2]) -> f64 {
-    let of = |member: Member| {
-        let section = case.pair.gear(member);
-        let own = || match &case.faces {
-            Some(faces) => faces.pair.gear(member).polar_inertia(),
-            None => section.polar_inertia(),
-        };
-        let inertia = inertias[member.index()].unwrap_or_else(own);
-        section.base_radius().powi(2) / inertia
-    };
-    1.0 / (of(Member::Driving) + of(Member::Driven))
-}
-
-/// Seconds of one core that the run-ups of `case` take, about: as many as there are torques.
-pub fn run_up_seconds(case: &Case, request: &DynamicsRequest) -> f64 {
-    let pair = &case.pair;
-    let data = RunUpData {
-        speeds: request.speeds.clone(),
-        tooth_count: pair.driving().tooth_count(),
-        load: 0.0,
-        mass: equivalent_mass(case, request.inertias),
-        damping_ratio: request.damping_ratio,
-        stiffness: usual_stiffness(pair),
-        orders: Vec::new(),
-        sweeps: request.sweeps,
-    };
-    case.output_torques.len() as f64 * data.seconds(pair.period())
-}
-
-/// What the mesh of `table`, which is that of `case`, does at speed under the load of `curve`, which spans whole periods and whose load is not 0.
-///
-/// # Errors
-///
-/// [`AnalysisError::Stopped`] if `run` was told to stop.
-pub fn dynamics(
-    case: &Case,
-    curve: &Curve,
-    table: &ForceTable,
-    request: &DynamicsRequest,
-    run: &Run,
-) -> Result<CurveDynamics, AnalysisError> {
-    let pair = &case.pair;
-    let (labels, orders) = told(pair, curve).into_iter().unzip();
-    let data = RunUpData {
-        speeds: request.speeds.clone(),
-        tooth_count: pair.driving().tooth_count(),
-        load: curve.load,
-        mass: equivalent_mass(case, request.inertias),
-        damping_ratio: request.damping_ratio,
-        stiffness: curve.mesh_stiffness_tangent_statistics.mean,
-        orders,
-        sweeps: request.sweeps,
-    };
-    let mut run_up = data.run_up(table, run)?;
-    if data.speeds.first() == Some(&0.0) {
-        // The curve as it is told, at its own positions.
-        let still = &curve.transmission_error_statistics;
-        for branch in [&mut run_up.up, &mut run_up.down].into_iter().flatten() {
-            branch.rms[0] = still.rms;
-            branch.peak_to_peak[0] = still.peak_to_peak;
-        }
-    }
-    Ok(CurveDynamics {
-        equivalent_mass: data.mass,
-        speeds: data.speeds.clone(),
-        run_up,
-        labels,
-        resonances: data.resonances(),
-    })
-}
-
-/// The orders that are told, with their labels and per mesh period: of the mesh, of holes, and of what else stands out.
-fn told(pair: &GearPair, curve: &Curve) -> Vec<(String, f64)> {
-    let Some(spectrum) = &curve.spectrum else {
-        return Vec::new();
-    };
-    let amplitudes = spectrum.named.iter().map(|line| line.transmission_error);
-    let least = TOLD.1 * amplitudes.fold(0.0, f64::max);
-    let mut lines: Vec<_> = spectrum
-        .named
-        .iter()
-        .filter(|line| match &line.kind {
-            OrderKind::Mesh { harmonic } => *harmonic <= MESH_HARMONICS,
-            OrderKind::Cause { cause, multiple: 1 } if cause.holes => true,
-            _ => line.transmission_error >= least,
-        })
-        .collect();
-    lines.sort_by(|a, b| b.transmission_error.total_cmp(&a.transmission_error));
-    lines.truncate(TOLD.0);
-    lines.sort_by(|a, b| a.order.total_cmp(&b.order));
-    let per_period = |order: f64| order / f64::from(pair.driven().tooth_count());
-    lines
-        .into_iter()
-        .map(|line| (line.label.clone(), per_period(line.order)))
-        .collect()
+    let plan = TablePlan::of(case, request);
+    run.expect(plan.solutions());
+    plan.table(parts, run)
 }

@@ -2,19 +2,10 @@
 //! contact on the line of contact alone.
 
 use super::curve_parts::CurveParts;
-use super::evidence::Evidence;
-use super::warning::warnings;
-use super::{Analysis, AnalysisError, Case, Curve, Method, load_distribution};
+use super::{AnalysisError, Case, Curve, Method, load_distribution};
 use crate::contact::face::light_face;
 use crate::contact::light_contact;
 use crate::load_distribution::PairFormulas;
-
-/// `case` without its torques of zero.
-pub(super) fn without_torque_zero(case: &Case) -> Case {
-    let mut loaded = case.clone();
-    loaded.output_torques.retain(|torque| *torque != 0.0);
-    loaded
-}
 
 /// The `curves` of the loaded torques of `case`, and those of its torques of zero, in its order.
 pub(super) fn with_torque_zero(
@@ -27,15 +18,6 @@ pub(super) fn with_torque_zero(
         _ => curves.next().map(Ok),
     };
     case.output_torques.iter().filter_map(of).collect()
-}
-
-/// The answer to a `case` that asks for no load at all.
-pub(super) fn alone(case: &Case) -> Result<Analysis, AnalysisError> {
-    Ok(Analysis {
-        curves: with_torque_zero(case, Vec::new())?,
-        evidence: Evidence::new(0),
-        warnings: warnings(case),
-    })
 }
 
 fn curve(case: &Case) -> Result<Curve, AnalysisError> {

@@ -1,21 +1,23 @@
 //! The load distribution ([`crate::load_distribution`]) as a method: position by position, torque by torque.
 
-use super::case::{Case, StiffnessRule};
+use super::case::Case;
 use super::curve::LoadShare;
 use super::curve_parts::CurveParts;
+use super::plan::Pass;
 use super::warning::warnings;
 use super::{Analysis, AnalysisError, Evidence};
 use crate::contact::MeshContact;
-use crate::load_distribution::{FormulaRange, LinePair, PairFormulas, Shared, rise, share, touch};
+use crate::load_distribution::{PairFormulas, Shared, rise, share, touch};
 use crate::run::Run;
 
 /// Computes `case` by the load distribution.
-pub(super) fn solve(case: &Case, run: &Run) -> Result<Analysis, AnalysisError> {
+pub(super) fn solve(case: &Case, plan: &Pass, run: &Run) -> Result<Analysis, AnalysisError> {
     let formulas = PairFormulas::new(&case.pair, case.resolution.formulas);
-    let positions = case
-        .repeating_positions()
-        .into_iter()
-        .map(|eta| formulas.pairs_at(eta))
+    let told = &plan.told;
+    let positions = told
+        .positions
+        .iter()
+        .map(|&eta| formulas.pairs_at(eta))
         .collect::<Result<Vec<_>, _>>()?;
     let mut evidence = Evidence::new(0);
     let mut curves = Vec::with_capacity(case.output_torques.len());
@@ -23,12 +25,17 @@ pub(super) fn solve(case: &Case, run: &Run) -> Result<Analysis, AnalysisError> {
         let load = case.pair.load(output_torque);
         let mut contacts = Vec::with_capacity(positions.len());
         for pairs in &positions {
-            let contact = solved(pairs, load, case.resolution.stiffness);
+            let contact = share(pairs, load);
             evidence.equilibrium_residual = evidence.equilibrium_residual.max(contact.residual);
             contacts.push(contact);
             run.reached(1)?;
         }
-        let parts = curve_parts(case, &contacts, load);
+        let of_contacts = || contacts.iter().map(|contact| contact.stiffness).collect();
+        let stiffness = told.stiffness(load, of_contacts, |load| {
+            run.reached(positions.len() as u64)?;
+            Ok(positions.iter().map(|pairs| rise(pairs, load)).collect())
+        })?;
+        let parts = curve_parts(case, &contacts, stiffness, load);
         curves.push(parts.into_curve(case, output_torque));
     }
     Ok(Analysis {
@@ -47,31 +54,7 @@ pub(super) fn light(formulas: &PairFormulas, eta: f64) -> Result<MeshContact, An
     Ok(MeshContact::unloaded(transmission_error, touching))
 }
 
-/// What of `case` lies outside the ranges of the formulas that it asks for.
-pub(super) fn out_of_range(case: &Case) -> Vec<FormulaRange> {
-    let torques = case.output_torques.iter().copied();
-    let least = torques.fold(f64::INFINITY, f64::min);
-    crate::load_distribution::out_of_range(&case.pair, case.resolution.formulas, least)
-}
-
-/// `load` shared among `pairs`, with the stiffness by `rule`.
-fn solved(pairs: &[LinePair], load: f64, rule: StiffnessRule) -> Shared {
-    let contact = share(pairs, load);
-    match rule {
-        StiffnessRule::Tangent => contact,
-        StiffnessRule::TorqueStep { fraction } => {
-            let more = rise(pairs, (1.0 + fraction) * load);
-            let less = rise(pairs, (1.0 - fraction) * load);
-            let stiffness = 2.0 * fraction * load / (more - less);
-            Shared {
-                stiffness,
-                ..contact
-            }
-        }
-    }
-}
-
-fn curve_parts(case: &Case, contacts: &[Shared], load: f64) -> CurveParts {
+fn curve_parts(case: &Case, contacts: &[Shared], stiffness: Vec<f64>, load: f64) -> CurveParts {
     let all = |value: fn(&Shared) -> f64| case.repeated(contacts.iter().map(value));
     let pairs_in_contact = contacts
         .iter()
@@ -79,7 +62,7 @@ fn curve_parts(case: &Case, contacts: &[Shared], load: f64) -> CurveParts {
     let pressures = contacts.iter().map(|contact| Some(contact.peak_pressure));
     CurveParts {
         transmission_error: all(|contact| contact.transmission_error),
-        stiffness: all(|contact| contact.stiffness),
+        stiffness: case.repeated(stiffness.into_iter()),
         // All forces act along the theoretical line of contact.
         driving_load: case.repeated(contacts.iter().map(|_| load)),
         peak_contact_pressure: case.repeated(pressures),

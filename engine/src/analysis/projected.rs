@@ -2,33 +2,23 @@
 
 use std::sync::Arc;
 
-use super::case::{Case, StiffnessRule};
 use super::curve::{Curve, DecompositionParts};
 use super::curve_parts::CurveParts;
 use super::evidence::Evidence;
-use super::first_order::{OnRound, WithHoles, checked_places, expected_checks, with_holes};
+use super::first_order::{OnRound, WithHoles, with_holes};
 use super::flexible::{self, Solved};
+use super::plan::Pass;
 use super::rigid_blank::RigidBlank;
 use super::setup::Setup;
 use super::warning::{warn_of_projection, warn_of_tips, warnings};
 use super::{Analysis, AnalysisError};
-use crate::assembly::Blanks;
 use crate::contact::positions::contacts;
 use crate::contact::{ContactCells, ContactSolution, MeshContact, PairLoads, PairModel};
 use crate::gear::{Member, teeth_on};
 
-/// Contact solutions that the projected decomposition of `case` needs.
-pub(super) fn expected_positions(case: &Case) -> u64 {
-    let solves = match case.resolution.stiffness {
-        StiffnessRule::Tangent => 1,
-        StiffnessRule::TorqueStep { .. } => 3,
-    };
-    let repeating = case.repeating_positions().len() as u64;
-    case.output_torques.len() as u64 * ((solves + 1) * repeating + expected_checks(case))
-}
-
 /// The models of a pair whose holed blanks are expanded about round ones.
 struct Expansion<'a> {
+    plan: &'a Pass,
     rigid: RigidBlank<'a>,
     /// The gears with holes.
     holed: Vec<Member>,
@@ -43,14 +33,15 @@ struct Expansion<'a> {
 /// H_0 is the mean of H over the teeth: the contact that it has repeats each mesh period and is solved over one. About the
 /// rigid blank (H_0 of wh) the same term is exact too, but what it leaves out grows with the square of the blank's whole
 /// compliance instead of its fluctuation: the peak-to-peak of cases 1 and 3 is then 8 % off.
-pub(super) fn solve(setup: Setup<'_>) -> Result<Analysis, AnalysisError> {
+pub(super) fn solve(setup: Setup<'_>, plan: &Pass) -> Result<Analysis, AnalysisError> {
     let case = setup.case;
     let rigid = RigidBlank::new(setup)?;
-    let (whole, unknowns) = setup.model(Blanks::Flexible)?;
+    let (whole, unknowns) = setup.model(plan.told.blanks)?;
     let mut evidence = Evidence::new(rigid.degrees_of_freedom.max(unknowns));
     let mut warnings = warnings(case);
     let holed = case.holed();
     let expansion = Expansion {
+        plan,
         rigid,
         round: round_average(&whole, &holed),
         holed,
@@ -91,8 +82,7 @@ impl Expansion<'_> {
         let setup = &self.rigid.setup;
         let case = setup.case;
         let load = case.pair.load(output_torque);
-        let period = case.repeating_positions();
-        let rigid = self.rigid.contacts(load, &period)?;
+        let rigid = self.rigid.contacts(load, &self.plan.rigid.positions)?;
         let keep = |cells: &ContactCells<'_>, solution: &ContactSolution| {
             cells.loads(&[&solution.forces, &solution.load_derivative])
         };
@@ -100,7 +90,7 @@ impl Expansion<'_> {
             contacts,
             kept: loads,
             stiffness,
-        } = flexible::solved(setup, &self.round, load, &period, keep)?;
+        } = flexible::solved(setup, &self.round, load, &self.plan.told, keep)?;
         let round: Vec<OnRound> = contacts
             .iter()
             .zip(&stiffness)
@@ -145,7 +135,7 @@ impl Expansion<'_> {
         transmission_error: &[f64],
     ) -> Result<f64, AnalysisError> {
         let Setup { case, run, .. } = self.rigid.setup;
-        let places = checked_places(case, round);
+        let places = self.plan.checks.places(case, round);
         let positions = case.mesh_positions();
         let positions: Vec<f64> = places.iter().map(|&place| positions[place]).collect();
         let made = self.whole.made(self.rigid.setup.deviations);
@@ -197,9 +187,10 @@ fn yielded(model: &PairModel, members: &[Member], pairs: &[PairLoads], period: i
 mod tests {
     use super::*;
     use crate::analysis::{
-        BodyFormula, ContactSolver, Formulas, Method, PlaneState, Resolution, ToothFormula,
+        BodyFormula, Case, ContactSolver, Formulas, Method, PlaneState, Resolution, StiffnessRule,
+        ToothFormula,
     };
-    use crate::assembly::MakeAll;
+    use crate::assembly::{Blanks, MakeAll};
     use crate::contact::{Stage, WarmStart};
     use crate::gear::spur::tests::paper_gear;
     use crate::gear::{GearPair, HolePattern, PairDeviations, SpurGear};

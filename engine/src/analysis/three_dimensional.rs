@@ -5,12 +5,13 @@ use std::sync::Arc;
 
 use faer::Mat;
 
-use super::case::{Faces, Method, StiffnessRule};
+use super::case::{Faces, Method};
 use super::curve::{FaceLoad, LeadCure};
 use super::curve_parts::CurveParts;
 use super::evidence::Evidence;
 use super::face_stress::FaceStressModel;
-use super::first_order::{OnRound, checked_places, with_holes};
+use super::first_order::{OnRound, with_holes};
+use super::plan::Pass;
 use super::warning::{warn_of_corner, warn_of_projection, warn_of_tips, warnings};
 use super::{Analysis, AnalysisError, Case};
 use crate::assembly::{FaceResolution, FaceYield, FaceYieldSpec, Parts};
@@ -18,20 +19,16 @@ use crate::contact::MeshContact;
 use crate::contact::face::even::{EvenLead, STRIPS, face_load_factor};
 use crate::contact::face::{FaceContact, FaceModel, FlankYield};
 use crate::gear::Member;
-use crate::grid::GridLevel;
 use crate::ring::teeth::FARTHEST_COUPLED;
 use crate::run::Run;
 
 /// A tip corner is told of from this part of the load: one of many slices touches nearly always.
 const TOLD: f64 = 0.005;
 
-/// The positions at which leads are tried that would even the load: as many as a mesh period has at least.
-const TRIED: usize = 8;
-
-/// Computes `case` along its faces; at another grid `level` than its own with other polynomials across them, which tell the error.
+/// Computes `case` along its faces; at another grid level than its own with other polynomials across them, which tell the error.
 pub(super) fn solve(
     case: &Case,
-    level: GridLevel,
+    plan: &Pass,
     parts: &dyn Parts,
     run: &Run,
 ) -> Result<Analysis, AnalysisError> {
@@ -41,16 +38,15 @@ pub(super) fn solve(
             reason: "nothing is said of its extent along the axis".to_owned(),
         });
     };
-    let yields = yields(faces, case.resolution.grid != level, parts, run)?;
+    let yields = yields(faces, plan.along(faces), parts, run)?;
     let degrees_of_freedom = yields.iter().map(|of| of.degrees_of_freedom()).sum();
     let mut evidence = Evidence::new(degrees_of_freedom);
     let mut warnings = warnings(case);
     let mut curves = Vec::with_capacity(case.output_torques.len());
-    let pair = OfFaces::new((case, faces), &yields, run);
-    // Of the run that is told, by the method that has a contact at every position.
-    let told =
-        case.stress && level == case.resolution.grid && case.method == Method::ThreeDimensional;
-    let stress = told.then(|| FaceStressModel::new(faces, &yields, parts, run));
+    let pair = OfFaces::new((case, faces), plan, &yields, run);
+    let stress = plan
+        .stress
+        .then(|| FaceStressModel::new(faces, &yields, parts, run));
     let stress = stress.transpose()?;
     for &output_torque in &case.output_torques {
         let load = case.pair.load(output_torque);
@@ -73,11 +69,7 @@ pub(super) fn solve(
             .map(|model| model.under(&solved.contacts, run));
         let stresses = stresses.transpose()?;
         let error = solved.error;
-        let even = if faces.cure && level == case.resolution.grid {
-            pair.even_lead(load, &solved)?
-        } else {
-            None
-        };
+        let even = pair.even_lead(load, &solved)?;
         let mut parts = solved.into_parts(case, faces);
         parts.stresses = stresses;
         if let Some(face) = &mut parts.face {
@@ -101,6 +93,7 @@ pub(super) fn solve(
 /// The models of a pair along its faces.
 struct OfFaces<'a> {
     case: &'a Case,
+    plan: &'a Pass,
     run: &'a Run,
     /// Both gears as drawn.
     whole: FaceModel,
@@ -122,11 +115,17 @@ struct Solved {
 }
 
 impl<'a> OfFaces<'a> {
-    fn new((case, faces): (&'a Case, &Faces), yields: &[Arc<FaceYield>; 2], run: &'a Run) -> Self {
+    fn new(
+        (case, faces): (&'a Case, &Faces),
+        plan: &'a Pass,
+        yields: &[Arc<FaceYield>; 2],
+        run: &'a Run,
+    ) -> Self {
         let round = yields.each_ref().map(|of| Arc::new(of.round_average()));
         let uneven = |member: &Member| yields[member.index()].repeats_after() > 1;
         Self {
             case,
+            plan,
             run,
             whole: face_model(faces, yields),
             round: face_model(faces, &round),
@@ -136,8 +135,7 @@ impl<'a> OfFaces<'a> {
 
     /// By a contact of the whole gears at every position.
     fn whole(&self, load: f64) -> Result<Solved, AnalysisError> {
-        let positions = self.case.mesh_positions();
-        let (contacts, stiffness) = self.contacts(&self.whole, load, &positions)?;
+        let (contacts, stiffness) = self.contacts(&self.whole, load)?;
         let each = contacts.iter();
         Ok(Solved {
             transmission_error: each.map(|each| each.mesh.transmission_error).collect(),
@@ -150,8 +148,7 @@ impl<'a> OfFaces<'a> {
     /// By the contacts of gears that are alike all around, and what holes change of them at first order.
     fn projected(&self, load: f64) -> Result<Solved, AnalysisError> {
         let case = self.case;
-        let positions = case.repeating_positions();
-        let (contacts, stiffness) = self.contacts(&self.round, load, &positions)?;
+        let (contacts, stiffness) = self.contacts(&self.round, load)?;
         let loads: Vec<_> = contacts.iter().map(|each| self.round.loads(each)).collect();
         // Where the positions of a whole span repeat only after it, they have their own pairs.
         let per_period = case.resolution.positions_per_mesh_period as usize;
@@ -172,7 +169,7 @@ impl<'a> OfFaces<'a> {
             yielded(&self.whole, at, periods - own(at))
         });
 
-        let places = checked_places(case, &round);
+        let places = self.plan.checks.places(case, &round);
         let all = case.mesh_positions();
         let positions: Vec<f64> = places.iter().map(|&place| all[place]).collect();
         let exact = self.whole.contacts(load, &positions, self.run)?;
@@ -187,7 +184,7 @@ impl<'a> OfFaces<'a> {
         })
     }
 
-    /// The lead that evens the load on the pair that was `solved` for.
+    /// The lead that evens the load on the pair that was `solved` for, where it is looked for.
     fn even_lead(&self, load: f64, solved: &Solved) -> Result<Option<EvenLead>, AnalysisError> {
         let model = match self.case.method {
             Method::ThreeDimensionalProjected => &self.round,
@@ -196,35 +193,23 @@ impl<'a> OfFaces<'a> {
         let deltas = solved.contacts.iter();
         let deltas = deltas.map(|contact| contact.mesh.transmission_error);
         let farthest = deltas.fold(f64::NEG_INFINITY, f64::max);
-        // Each stands at another fraction of the mesh period, and they are spread over all periods.
-        let per_period = self.case.resolution.positions_per_mesh_period as usize;
-        let periods = solved.contacts.len() / per_period;
-        let all = self.case.mesh_positions();
-        let place = |i: usize| i * periods / TRIED * per_period + i * per_period / TRIED;
-        let positions: Vec<f64> = (0..TRIED).map(|i| all[place(i)]).collect();
-        Ok(model.even_lead(load, &positions, farthest, self.run)?)
+        Ok(model.even_lead(load, &self.plan.evened, farthest, self.run)?)
     }
 
-    /// The contacts of `model` at `positions`, and its stiffness there by the rule of the case.
+    /// The contacts of `model` of which the curves tell, and its stiffness there.
     fn contacts(
         &self,
         model: &FaceModel,
         load: f64,
-        positions: &[f64],
     ) -> Result<(Vec<FaceContact>, Vec<f64>), AnalysisError> {
-        let contacts = model.contacts(load, positions, self.run)?;
-        let stiffness = match self.case.resolution.stiffness {
-            StiffnessRule::Tangent => contacts.iter().map(|each| each.mesh.stiffness).collect(),
-            StiffnessRule::TorqueStep { fraction } => {
-                let at = |factor: f64| model.contacts(load * factor, positions, self.run);
-                let (low, high) = (at(1.0 - fraction)?, at(1.0 + fraction)?);
-                let rises = low
-                    .iter()
-                    .zip(&high)
-                    .map(|(low, high)| high.mesh.transmission_error - low.mesh.transmission_error);
-                rises.map(|rise| 2.0 * fraction * load / rise).collect()
-            }
-        };
+        let told = &self.plan.told;
+        let at = |load: f64| model.contacts(load, &told.positions, self.run);
+        let contacts = at(load)?;
+        let of_contacts = || contacts.iter().map(|each| each.mesh.stiffness).collect();
+        let stiffness = told.stiffness(load, of_contacts, |load| {
+            let contacts = at(load)?.into_iter();
+            Ok(contacts.map(|each| each.mesh.transmission_error).collect())
+        })?;
         Ok((contacts, stiffness))
     }
 }
@@ -252,17 +237,13 @@ impl Solved {
     }
 }
 
-/// What the flanks of both gears yield, across their faces by polynomials of the order asked for, or somewhat `finer`.
+/// What the flanks of both gears yield, resolved along their faces as asked.
 pub(super) fn yields(
     faces: &Faces,
-    finer: bool,
+    resolution: FaceResolution,
     parts: &dyn Parts,
     run: &Run,
 ) -> Result<[Arc<FaceYield>; 2], AnalysisError> {
-    let resolution = FaceResolution {
-        face_order: faces.resolution.face_order + if finer { 2 } else { 0 },
-        ..faces.resolution
-    };
     let of = |member: Member| {
         let spec = FaceYieldSpec::new(faces.pair.gear(member), resolution);
         let made = parts.face_yield(&spec, run);

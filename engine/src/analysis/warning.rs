@@ -1,11 +1,10 @@
 //! What a reader of a result should know beside the numbers.
 
-use super::forces::CurveDynamics;
-use super::load_distribution::out_of_range;
+use super::at_speed::CurveDynamics;
 use super::{Case, Curve, Method, Statistics};
 use crate::contact::MeshContact;
 use crate::gear::{Member, SpurGear};
-use crate::load_distribution::FormulaRange;
+use crate::load_distribution::{FormulaRange, out_of_range};
 
 /// Backlash below this, in modules, counts as none.
 const NO_BACKLASH: f64 = 1e-6;
@@ -138,7 +137,9 @@ pub fn warnings(case: &Case) -> Vec<Warning> {
         if !case.holed().is_empty() {
             warnings.push(Warning::HolesNotSeen);
         }
-        let outside = out_of_range(case);
+        let torques = case.output_torques.iter().copied();
+        let least = torques.fold(f64::INFINITY, f64::min);
+        let outside = out_of_range(pair, case.resolution.formulas, least);
         warnings.extend(outside.into_iter().map(Warning::FormulaRange));
     }
     warnings

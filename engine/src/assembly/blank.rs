@@ -4,7 +4,7 @@ use super::PartError;
 use super::interface::orders_of_blank;
 use crate::fem::recovery::Functional;
 use crate::gear::SpurGear;
-use crate::grid::blank::ELEMENTS_PER_TOOTH;
+use crate::grid::ring_grid::ELEMENTS_PER_TOOTH;
 use crate::grid::{BlankGrid, GridError, GridLevel};
 use crate::ring::blank::{BlankRecovery, BlankSubstructure};
 use crate::ring::cyclic::Harmonics;

@@ -188,7 +188,7 @@ fn chunk_of(
 }
 
 /// Positions by their fraction of the mesh period, rising, with the places of those that have it.
-fn stages(positions: &[f64]) -> Vec<Places> {
+pub(crate) fn stages(positions: &[f64]) -> Vec<Places> {
     let fraction = |place: usize| positions[place] - positions[place].floor();
     let mut places: Vec<usize> = (0..positions.len()).collect();
     places.sort_by(|&a, &b| fraction(a).total_cmp(&fraction(b)));

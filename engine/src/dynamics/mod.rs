@@ -25,7 +25,7 @@ pub mod run_up;
 pub mod table;
 
 pub use law::Laws;
-pub use orbit::{Orbit, State};
-pub use oscillator::Oscillator;
+pub use orbit::Orbit;
+pub use oscillator::{Oscillator, State};
 pub use run_up::{Branch, Resonance, ResonanceKind, RunUp, RunUpData};
 pub use table::{FlankRows, ForceTable, Ladder};

@@ -1,6 +1,6 @@
 //! Periodic motions: Newton's method on the state after a period, stability by multipliers, and where a motion settles.
 
-use super::oscillator::{Monodromy, Oscillator};
+use super::oscillator::{Monodromy, Oscillator, State};
 
 /// Newton steps before there is taken to be no periodic motion near.
 const MOST_STEPS: u32 = 16;
@@ -28,15 +28,6 @@ const ASTRAY: f64 = 3.0 * NEAR;
 
 /// A motion that is so many times the scale has run away: the mesh pumps it more than damping takes from it.
 const RUN_AWAY: f64 = 1e3;
-
-/// A displacement and its velocity.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct State {
-    /// u.
-    pub u: f64,
-    /// u'.
-    pub v: f64,
-}
 
 /// Where a motion has come to.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,13 +1,21 @@
 //! Motion over a period, piece by piece, and its derivative to the state at the beginning.
 
 use super::law::{Laws, Piece, Response};
-use super::orbit::State;
 
 /// Knots that are crossed in one look before the motion is taken to graze one.
 const MOST_CROSSINGS: u32 = 64;
 
 /// Steps of the search for a crossing; each but the first few doubles the digits.
 const MOST_STEPS: u32 = 60;
+
+/// A displacement and its velocity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State {
+    /// u.
+    pub u: f64,
+    /// u'.
+    pub v: f64,
+}
 
 /// The derivative of a state to an earlier one, row by row.
 pub type Monodromy = [[f64; 2]; 2];

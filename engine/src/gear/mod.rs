@@ -2,7 +2,7 @@
 //!
 //! Read in this order: [`involute`] (one flank), [`rack`] (the tool and the fillet it leaves), [`modification`]
 //! and [`tip`] (what is taken off it), [`deviation`] (what teeth differ by) and [`accuracy`] (how far they may), [`blank`], [`material`], [`data`] (what a drawing says),
-//! [`spur`], `mass` and `outline` (a whole gear), [`solid`] (the same with an extent along its axis), [`pair`] (two of them at a center distance),
+//! [`spur`], `mass` and `outline` (a whole gear), [`solid`] (the same with an extent along its axis), [`member`] and [`pair`] (two of them at a center distance), [`pair_deviations`] (what their teeth differ by),
 //! [`lead`] and [`solid_pair`] (two of them along their faces).
 //!
 //! Every gear is described in its own frame: the center of the gear is the origin, the centerline of tooth 0 is the
@@ -16,9 +16,11 @@ pub mod involute;
 pub mod lead;
 mod mass;
 pub mod material;
+pub mod member;
 pub mod modification;
 mod outline;
 pub mod pair;
+pub mod pair_deviations;
 pub mod rack;
 pub mod solid;
 pub mod solid_pair;
@@ -28,17 +30,17 @@ pub mod tip;
 pub use accuracy::{Normals, Tolerances, total_pitch_deviation};
 pub use blank::{BlankRegion, Hole, HolePattern, HoleShape, Ligament, Moments, Symmetry, Web};
 pub use data::{DeviationList, GearData, GearError};
-pub use deviation::{
-    DeviationsError, Eccentricity, GearDeviations, PairDeviations, ToothDeviations,
-};
+pub use deviation::{Eccentricity, ToothDeviations};
 pub use involute::{Involute, involute_function};
 pub use lead::{FaceEnds, LeadError, LeadModification};
 pub use material::{Material, PlaneState};
+pub use member::{Member, teeth_on};
 pub use modification::{
     ModificationData, Relief, ReliefData, ReliefShape, ReliefStart, RootReliefData,
     RootReliefStart, TablePlaces,
 };
-pub use pair::{GearPair, GearPairError, Member, teeth_on};
+pub use pair::{DeviationsError, GearPair, GearPairError};
+pub use pair_deviations::{GearDeviations, PairDeviations};
 pub use rack::Rack;
 pub use solid::{Hand, Helix, Hub, Layer, SolidGear, SolidGearError};
 pub use solid_pair::{Alignment, ContactLine, SolidPair, SolidPairError};

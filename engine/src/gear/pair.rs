@@ -1,26 +1,8 @@
 //! Two spur gears in engagement.
 
 use super::involute::involute_function;
-use super::{PairDeviations, SpurGear, gcd};
+use super::{GearError, Member, PairDeviations, SpurGear, ToothDeviations, gcd, teeth_on};
 use crate::root_finding::bisect;
-
-/// One of the two gears of a pair.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Member {
-    /// Gear 1, which drives.
-    Driving,
-    /// Gear 2, which is driven.
-    Driven,
-}
-
-impl std::fmt::Display for Member {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Driving => "driving",
-            Self::Driven => "driven",
-        })
-    }
-}
 
 /// Why two gears cannot mesh. Lengths are in meters.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -83,6 +65,23 @@ pub enum GearPairError {
         /// The smallest center distance that avoids it.
         smallest: f64,
     },
+}
+
+/// Why two gears cannot deviate so.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum DeviationsError {
+    /// A list is not as long as there are teeth.
+    #[error("the deviations of the {member} gear do not fit it")]
+    Gear {
+        /// The gear.
+        member: Member,
+        /// Why.
+        #[source]
+        error: GearError,
+    },
+    /// The flanks that stand out take all of the backlash.
+    #[error(transparent)]
+    Pair(GearPairError),
 }
 
 /// Two spur gears at a center distance, the first driving the second.
@@ -332,7 +331,7 @@ impl GearPair {
     }
 
     /// Whether teeth that have these `deviations` have room.
-    pub(super) fn leaves_backlash(&self, deviations: &PairDeviations) -> Result<(), GearPairError> {
+    fn leaves_backlash(&self, deviations: &PairDeviations) -> Result<(), GearPairError> {
         let tip_radii = self.driving.tip_radius() + self.driven.tip_radius();
         // Below the base circles together there is no line of action; the backlash decides the nearest distance.
         let base_radii = self.driving.base_radius() + self.driven.base_radius();
@@ -353,7 +352,7 @@ impl GearPair {
     /// What the teeth of both gears deviate by.
     pub fn deviations(&self) -> PairDeviations {
         let teeth = Member::BOTH.map(|member| self.gear(member).deviations());
-        PairDeviations::of(self, teeth)
+        PairDeviations::of([&self.driving, &self.driven], teeth)
     }
 
     /// The number of mesh periods after which `member` stands alike again: Z/gcd(Z, N) with holes that repeat N times, 1 without, Z where its teeth
@@ -418,40 +417,26 @@ impl GearPair {
     }
 }
 
+impl PairDeviations {
+    /// What `teeth`, those of the driving and of the driven gear, do to the flanks of `pair`, whatever its own deviate by.
+    ///
+    /// # Errors
+    ///
+    /// [`DeviationsError`].
+    pub fn new(pair: &GearPair, teeth: [&ToothDeviations; 2]) -> Result<Self, DeviationsError> {
+        for member in Member::BOTH {
+            let fits = pair.gear(member).fits(teeth[member.index()]);
+            fits.map_err(|error| DeviationsError::Gear { member, error })?;
+        }
+        let deviations = Self::of([&pair.driving, &pair.driven], teeth);
+        pair.leaves_backlash(&deviations)
+            .map_err(DeviationsError::Pair)?;
+        Ok(deviations)
+    }
+}
+
 fn least_common_multiple([p_1, p_2]: [u32; 2]) -> u32 {
     p_1 / gcd(p_1, p_2) * p_2
-}
-
-/// The teeth counter-clockwise, in the frame of `member`, from the tooth of one pair to that of the pair `pairs` later.
-///
-/// The next tooth counter-clockwise of the driving gear is ahead and meshes before, that of the driven gear is behind and
-/// meshes after.
-pub fn teeth_on(member: Member, pairs: i64) -> i64 {
-    match member {
-        Member::Driving => -pairs,
-        Member::Driven => pairs,
-    }
-}
-
-impl Member {
-    /// Both, in the order in which pairs of values are kept.
-    pub const BOTH: [Self; 2] = [Self::Driving, Self::Driven];
-
-    /// The place of this gear in a pair of values: 0 driving, 1 driven.
-    pub fn index(self) -> usize {
-        match self {
-            Self::Driving => 0,
-            Self::Driven => 1,
-        }
-    }
-
-    /// The other one.
-    pub fn other(self) -> Self {
-        match self {
-            Self::Driving => Self::Driven,
-            Self::Driven => Self::Driving,
-        }
-    }
 }
 
 #[cfg(test)]

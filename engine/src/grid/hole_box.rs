@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
+use super::chart::{FIRST_LAYER, GROWTH, LARGEST, LAYERS, Ring};
 use super::division::{Grading, reversed};
-use super::sector::{FIRST_LAYER, GROWTH, LARGEST, LAYERS, Ring};
 use crate::gear::{HolePattern, Vector};
 use crate::root_finding::bisect;
 

@@ -2,10 +2,11 @@
 //!
 //! Teeth and equal round holes are divided into 8-node quadrilaterals in structured blocks, any other blank into 6-node
 //! triangles. Read in this order: [`level`] (how fine), [`element`] (the two elements), [`planar`] (what a grid is, and its
-//! quality), [`tooth`] and [`blank`] (the two sectors a gear is assembled from), [`whole`] (a blank without symmetry).
+//! quality), [`tooth`] and [`blank`] (the two sectors a gear is assembled from), [`ring_grid`] (by a sector or not), [`whole`] (a blank without symmetry).
 
 pub mod blank;
 mod block;
+mod chart;
 mod division;
 pub mod element;
 mod frame;
@@ -15,6 +16,7 @@ mod outline;
 mod outlines;
 pub mod planar;
 mod polar;
+pub mod ring_grid;
 mod root_curve;
 mod sector;
 mod sizes;
@@ -27,7 +29,7 @@ pub use blank::BlankGrid;
 pub use element::{Element, ElementKind};
 pub use level::GridLevel;
 pub use planar::{Grid, GridQuality};
-pub use tooth::ToothGrid;
+pub use tooth_plan::ToothGrid;
 
 /// The smallest corner angle of a usable grid, in radians (15 degrees).
 pub const LEAST_ANGLE: f64 = std::f64::consts::PI / 12.0;

@@ -1,30 +1,17 @@
 //! One sector of a blank in structured blocks of quadrilaterals: one pitch without holes, or the surroundings of one hole.
 //!
-//! The sector is laid out in the chart (ln(r/R_w), θ), in which it is a rectangle and a round hole is nearly round. The
-//! chart keeps angles, so that a grid with good angles there has them in the plane.
+//! The sector is laid out in the chart of its ring.
 
 use std::f64::consts::PI;
 
 use super::block::{Edge, GridBuilder, backwards};
+use super::chart::{FIRST_LAYER, GROWTH, LARGEST, LAYERS, Ring, RingWeb};
 use super::division::{Grading, reversed, uniform};
 use super::frame::Frame;
 use super::hole_box::HoleBox;
 use super::{BlankGrid, GridError, GridLevel, checked};
 use crate::gear::{HolePattern, Web};
 
-// Sizes, chosen for what the levels promise ([`GridLevel`]); none of them moves the sharpest corner of the tests' patterns by a tenth
-// of a degree when halved or doubled.
-
-/// The depth of the first layer under the interface circle, in element lengths along it: the highest orders fall within it.
-pub(super) const FIRST_LAYER: f64 = 0.5;
-/// The growth of sizes away from the interface circle and away from a hole. Half of it costs a quarter more elements.
-pub(super) const GROWTH: f64 = 0.35;
-/// The largest size along the radius, as a part of the radius: a plain ring has its closed form to 2e-9 with it.
-pub(super) const LARGEST: f64 = 0.12;
-/// The least number of layers between a hole and what is next to it, at the standard level: enough to bend.
-pub(super) const LAYERS: usize = 6;
-/// Lines nearer than this, in the chart, are one: no thickness can be told between them.
-const ON_LINE: f64 = 1e-6;
 /// The least way between a hole and the edge of a web on which its box may end, in widths of the hole: two hundredths
 /// of its radius. Whatever is nearer is divided as a whole.
 const LEAST_ROOM: f64 = 0.01;
@@ -126,45 +113,7 @@ impl<'a> Sector<'a> {
     }
 }
 
-/// The ring in its chart: from `bore` < 0 to 0 at the interface circle.
-#[derive(Debug)]
-pub(super) struct Ring {
-    pub(super) interface_radius: f64,
-    pub(super) bore: f64,
-    /// The element size on the interface circle.
-    pub(super) arc_size: f64,
-    /// As many of them stand under a tooth.
-    elements_per_tooth: f64,
-    pub(super) level: GridLevel,
-    /// The web: its ends in the chart, where they lie within the ring, and its thickness as a part of the face width.
-    pub(super) web: Option<RingWeb>,
-}
-
-/// A web in the chart of its ring.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct RingWeb {
-    ends: [f64; 2],
-    part: f64,
-}
-
 impl Ring {
-    /// The lines of equal radius between which the thickness is one, from the bore to the interface circle.
-    fn lines(&self) -> Vec<f64> {
-        let ends = self.web.iter().flat_map(|web| web.ends);
-        let inner = ends.filter(|x| *x > self.bore + ON_LINE && *x < -ON_LINE);
-        std::iter::once(self.bore)
-            .chain(inner)
-            .chain([0.0])
-            .collect()
-    }
-
-    /// The thickness between the lines `low` and `high`, as a part of the face width.
-    fn thickness(&self, low: f64, high: f64) -> f64 {
-        let middle = f64::midpoint(low, high);
-        let in_web = |web: &RingWeb| middle > web.ends[0] && middle < web.ends[1];
-        self.web.filter(in_web).map_or(1.0, |web| web.part)
-    }
-
     /// The lines next to the hole on either side, between which its box stays, and those beyond; `None` if one runs through
     /// the hole or closer to it than a box has room for.
     fn around(&self, holes: &HolePattern) -> Option<Surroundings> {
@@ -346,7 +295,7 @@ impl Ring {
 mod tests {
     use super::*;
     use crate::gear::Vector;
-    use crate::grid::blank::ELEMENTS_PER_TOOTH;
+    use crate::grid::ring_grid::ELEMENTS_PER_TOOTH;
 
     const LEVELS: [GridLevel; 3] = [GridLevel::Coarse, GridLevel::Standard, GridLevel::Fine];
 

@@ -1,35 +1,8 @@
 //! The grid of one tooth and the rim under it.
 
-use super::tooth_plan::{Plan, Sizes};
-use super::{Grid, GridError, GridLevel, checked};
+use super::tooth_plan::{Plan, Sizes, ToothGrid};
+use super::{GridError, GridLevel, checked};
 use crate::gear::SpurGear;
-
-/// The grid of tooth 0 and its part of the rim, from the interface circle outward, in the frame of its gear: the
-/// centerline is the x axis, the loaded flank lies on the side of positive y.
-///
-/// The blocks, seen with the tip on the right: the tooth itself, from the tip circle down to a point on either fillet;
-/// the core below it; and the rim under the fillet and the root land on both sides.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ToothGrid {
-    /// The elements.
-    pub grid: Grid,
-    /// The nodes of the loaded flank, corners and midsides, from the form point to the tip corner, and on a broken edge beyond the flank.
-    pub flank_nodes: Vec<u32>,
-    /// The roll length of each of these on the exact involute, or at their radius beyond it.
-    pub flank_roll_lengths: Vec<f64>,
-    /// The nodes of the fillet on the loaded side and of the root land after it, corners and midsides, from the form point to
-    /// the side at π/Z: a free edge, in tension while the flank is loaded.
-    pub fillet_nodes: Vec<u32>,
-    /// Those on the unloaded side: its mirror images, in the same order.
-    pub back_fillet_nodes: Vec<u32>,
-    /// The nodes on the interface circle, corners and midsides, from −π/Z to π/Z.
-    pub arc_nodes: Vec<u32>,
-    /// The polar angle of each of these.
-    pub arc_angles: Vec<f64>,
-    /// The nodes on the sides at −π/Z and at π/Z, from the interface circle, which is left out, to the root circle; equal
-    /// radii on both sides.
-    pub side_nodes: (Vec<u32>, Vec<u32>),
-}
 
 impl ToothGrid {
     /// Divides tooth 0 of `gear` and the rim under it, out from `interface_radius`.

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use super::block::{Edge, GridBuilder};
 use super::division::{Grading, reversed, uniform};
 use super::root_curve::RootCurve;
-use super::{GridLevel, ToothGrid};
+use super::{Grid, GridLevel};
 use crate::gear::{SpurGear, TipEdge, Vector, radial};
 
 // Sizes are chosen for what the levels promise ([`GridLevel`]): none of them moves the sharpest corner by a tenth of a degree when
@@ -117,6 +117,33 @@ impl Sizes {
         least: [8, 8, 4, 4],
         ..Self::OF_PRISM
     };
+}
+
+/// The grid of tooth 0 and its part of the rim, from the interface circle outward, in the frame of its gear: the
+/// centerline is the x axis, the loaded flank lies on the side of positive y.
+///
+/// The blocks, seen with the tip on the right: the tooth itself, from the tip circle down to a point on either fillet;
+/// the core below it; and the rim under the fillet and the root land on both sides.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ToothGrid {
+    /// The elements.
+    pub grid: Grid,
+    /// The nodes of the loaded flank, corners and midsides, from the form point to the tip corner, and on a broken edge beyond the flank.
+    pub flank_nodes: Vec<u32>,
+    /// The roll length of each of these on the exact involute, or at their radius beyond it.
+    pub flank_roll_lengths: Vec<f64>,
+    /// The nodes of the fillet on the loaded side and of the root land after it, corners and midsides, from the form point to
+    /// the side at π/Z: a free edge, in tension while the flank is loaded.
+    pub fillet_nodes: Vec<u32>,
+    /// Those on the unloaded side: its mirror images, in the same order.
+    pub back_fillet_nodes: Vec<u32>,
+    /// The nodes on the interface circle, corners and midsides, from −π/Z to π/Z.
+    pub arc_nodes: Vec<u32>,
+    /// The polar angle of each of these.
+    pub arc_angles: Vec<f64>,
+    /// The nodes on the sides at −π/Z and at π/Z, from the interface circle, which is left out, to the root circle; equal
+    /// radii on both sides.
+    pub side_nodes: (Vec<u32>, Vec<u32>),
 }
 
 /// The boundary of the sector as points on the doubled lattice, all of the half with the loaded flank.

@@ -8,7 +8,7 @@ use meshwright_engine::assembly::interface::{default_interface_radius, harmonics
 use meshwright_engine::assembly::{Parts, TeethSpec};
 use meshwright_engine::contact::{MeshCells, WarmStart, light_contact};
 use meshwright_engine::gear::{GearPair, Member, SpurGear, Vector, radial, tangential};
-use meshwright_engine::grid::blank::ELEMENTS_PER_TOOTH;
+use meshwright_engine::grid::ring_grid::ELEMENTS_PER_TOOTH;
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::library::Library;
 use meshwright_engine::quadrature::GAUSS_3;

@@ -1,7 +1,7 @@
 //! The curves at one output torque, and their statistics.
 
+use meshwright_engine::analysis::at_speed::CurveDynamics;
 use meshwright_engine::analysis::curve::{LeadCure, LoadShare};
-use meshwright_engine::analysis::forces::CurveDynamics;
 use meshwright_engine::analysis::{Case, Curve, FaceLoad, Statistics};
 
 use super::decomposition::DecompositionDocument;

@@ -1,6 +1,6 @@
 //! The table of force, and the motion over speed.
 
-use meshwright_engine::analysis::forces::CurveDynamics;
+use meshwright_engine::analysis::at_speed::CurveDynamics;
 use meshwright_engine::dynamics::{Branch, FlankRows, ForceTable, Resonance, ResonanceKind};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

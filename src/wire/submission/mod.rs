@@ -1,8 +1,6 @@
 //! A submission: what is asked, checked once, with every default filled in.
 
-use std::borrow::Cow;
-
-use meshwright_engine::analysis::forces::{ForcesRequest, MORE_POSITIONS, with_table};
+use meshwright_engine::analysis::forces::{ForcesRequest, MORE_POSITIONS};
 use meshwright_engine::analysis::spectrum::RotationSpeed;
 use meshwright_engine::analysis::{Case, Faces, Method};
 use meshwright_engine::assembly::FaceResolution;
@@ -221,14 +219,6 @@ impl Submission {
     /// What the engine is asked beside the curves.
     pub fn forces(&self) -> Option<&ForcesRequest> {
         self.forces.as_ref()
-    }
-
-    /// A case that costs what all of the submission does.
-    pub fn costed_case(&self) -> Cow<'_, Case> {
-        match &self.forces {
-            None => Cow::Borrowed(&self.case),
-            Some(forces) => Cow::Owned(with_table(&self.case, forces.table)),
-        }
     }
 
     /// The document with every default filled in.

@@ -1,0 +1,103 @@
+//! From a case to its answer: the methods carry out their plan.
+
+use super::case::{Case, Method};
+use super::evidence::{ErrorEstimate, Evidence};
+use super::plan::{Pass, Plan};
+use super::setup::Setup;
+use super::warning::{warn_of_pressures, warnings};
+use super::{
+    Analysis, AnalysisError, decomposition, flexible, light, load_distribution, projected,
+    three_dimensional,
+};
+use crate::assembly::{Blanks, Parts};
+use crate::contact::PairModel;
+use crate::gear::PairDeviations;
+use crate::ring::teeth::FARTHEST_COUPLED;
+use crate::run::Run;
+
+/// How far apart, in teeth, loaded teeth are coupled at first; heavier loads bring more pairs into contact, and then this is
+/// doubled.
+const FIRST_COUPLED: usize = 4;
+
+/// Computes `case` of what `parts` provides.
+///
+/// # Errors
+///
+/// [`AnalysisError`] says which position failed and why, or that `run` was stopped.
+pub fn analyze(case: &Case, parts: &dyn Parts, run: &Run) -> Result<Analysis, AnalysisError> {
+    let plan = Plan::of(case);
+    run.expect(plan.solutions());
+    carried_out(&plan, parts, run)
+}
+
+/// The answer to the case of `plan`.
+pub(super) fn carried_out(
+    plan: &Plan,
+    parts: &dyn Parts,
+    run: &Run,
+) -> Result<Analysis, AnalysisError> {
+    // Threads work on different bodies and positions; inside one, faer is sequential.
+    faer::set_global_parallelism(faer::Par::Seq);
+    let case = &plan.loaded;
+    let mut passes = plan.passes.iter();
+    let mut analysis = match passes.next() {
+        Some(pass) => passed(case, pass, parts, run)?,
+        None => Analysis {
+            curves: Vec::new(),
+            evidence: Evidence::new(0),
+            warnings: warnings(&plan.asked),
+        },
+    };
+    if let Some(pass) = passes.next() {
+        let other = passed(case, pass, parts, run)?;
+        let estimate = ErrorEstimate::between(&analysis.curves, &other.curves);
+        analysis.evidence.error_estimate = Some(estimate);
+    }
+    analysis.curves = light::with_torque_zero(&plan.asked, analysis.curves)?;
+    Ok(analysis)
+}
+
+/// Makes one `pass` over `case`, with teeth coupled as far apart as they turn out to be loaded together.
+fn passed(
+    case: &Case,
+    pass: &Pass,
+    parts: &dyn Parts,
+    run: &Run,
+) -> Result<Analysis, AnalysisError> {
+    let deviations = case.pair.deviations();
+    let mut farthest = FIRST_COUPLED;
+    loop {
+        let setup = Setup::new((case, &deviations), pass.level, farthest, parts, run);
+        let answer = match case.method {
+            Method::Flexible => flexible::solve(setup, pass),
+            Method::Decomposition => decomposition::solve(setup, pass),
+            Method::ProjectedDecomposition => projected::solve(setup, pass),
+            Method::ThreeDimensional | Method::ThreeDimensionalProjected => {
+                three_dimensional::solve(case, pass, parts, run)
+            }
+            Method::LoadDistribution => load_distribution::solve(case, pass, run),
+        };
+        match answer {
+            Err(AnalysisError::TooFarApart { .. }) if farthest < FARTHEST_COUPLED => farthest *= 2,
+            Ok(mut analysis) => {
+                warn_of_pressures(&mut analysis.warnings, case, &analysis.curves);
+                return Ok(analysis);
+            }
+            error => return error,
+        }
+    }
+}
+
+/// The model behind the flexible method for `case`, to be asked position by position, with as many pairs in contact as can be
+/// followed. It is that of the drawn pair, whatever its teeth deviate by.
+///
+/// # Errors
+///
+/// [`AnalysisError::Discretization`], or [`AnalysisError::Stopped`].
+pub fn pair_model(case: &Case, parts: &dyn Parts, run: &Run) -> Result<PairModel, AnalysisError> {
+    faer::set_global_parallelism(faer::Par::Seq);
+    let as_drawn = &PairDeviations::NONE;
+    let level = case.resolution.grid;
+    let setup = Setup::new((case, as_drawn), level, FARTHEST_COUPLED, parts, run);
+    setup.model(Blanks::Flexible).map(|(model, _)| model)
+}

@@ -1,0 +1,16 @@
+//! What is answered to a case: its curves, how good they are, and what a reader of them should know.
+
+use super::curve::Curve;
+use super::evidence::Evidence;
+use super::warning::Warning;
+
+/// The answer to a [`super::Case`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Analysis {
+    /// One curve a torque, in the order of the case.
+    pub curves: Vec<Curve>,
+    /// How good it is.
+    pub evidence: Evidence,
+    /// What a reader should know.
+    pub warnings: Vec<Warning>,
+}

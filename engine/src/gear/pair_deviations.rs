@@ -1,0 +1,170 @@
+//! What the flanks of two gears stand off their drawings, tooth by tooth.
+
+use std::f64::consts::PI;
+
+use super::{Eccentricity, Member, SpurGear, ToothDeviations, Vector};
+
+/// What the teeth of one gear deviate by along their normals, tooth by tooth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GearDeviations {
+    /// How far each flank is turned towards its mate, as a length on the base circle. Empty where all stand as drawn.
+    turns: Vec<f64>,
+    /// f_Hα of each flank. Empty where none is inclined.
+    profile_slopes: Vec<f64>,
+    /// What each lead slope removes. Empty where none does.
+    lead_slopes: Vec<f64>,
+    /// The roll lengths between which a profile slope deviation grows from nothing to all of it.
+    ends: [f64; 2],
+    eccentricity: Option<Eccentricity>,
+}
+
+impl GearDeviations {
+    /// Nothing deviates.
+    const NONE: Self = Self {
+        turns: Vec::new(),
+        profile_slopes: Vec::new(),
+        lead_slopes: Vec::new(),
+        ends: [0.0, 1.0],
+        eccentricity: None,
+    };
+
+    /// What `teeth`, lists of deviations that fit `gear`, do to its flanks.
+    fn of(gear: &SpurGear, teeth: &ToothDeviations) -> Self {
+        let teeth = teeth.clone().without_zeros();
+        // An arc f on the reference circle turns the flank by f/r, which is f cos α along the base tangent.
+        let cosine = gear.data().rack.pressure_angle.cos();
+        let arcs = teeth.cumulative_pitch.iter();
+        Self {
+            turns: arcs.map(|arc| arc * cosine).collect(),
+            profile_slopes: teeth.profile_slope,
+            lead_slopes: teeth.lead_slope,
+            ends: [gear.form_roll_length(), gear.tip_roll_length()],
+            eccentricity: teeth.eccentricity,
+        }
+    }
+
+    /// Whether every tooth stands as drawn, about the axis of rotation.
+    pub fn is_none(&self) -> bool {
+        self.turns.is_empty()
+            && self.profile_slopes.is_empty()
+            && self.lead_slopes.is_empty()
+            && self.eccentricity.is_none()
+    }
+
+    /// How far the loaded flank of `tooth` stands towards its mate at the roll length `s`, along the normal, beyond the drawing.
+    pub fn at(&self, tooth: usize, s: f64) -> f64 {
+        let slope = self.profile_slopes.get(tooth).map_or(0.0, |amount| {
+            let [from, to] = self.ends;
+            amount * (s - from) / (to - from)
+        });
+        self.turn(tooth) + slope
+    }
+
+    /// What the lead slope of `tooth` removes at the end at +z of the face, in proportion to the distance from the other end.
+    pub fn lead_slope(&self, tooth: usize) -> f64 {
+        self.lead_slopes.get(tooth).copied().unwrap_or(0.0)
+    }
+
+    /// What of [`GearDeviations::at`] is alike all along the flank of `tooth`.
+    pub fn turn(&self, tooth: usize) -> f64 {
+        self.turns.get(tooth).copied().unwrap_or(0.0)
+    }
+
+    /// The slope of [`GearDeviations::at`] by the roll length.
+    pub fn slope(&self, tooth: usize) -> f64 {
+        let [from, to] = self.ends;
+        let amount = self.profile_slopes.get(tooth);
+        amount.map_or(0.0, |amount| amount / (to - from))
+    }
+
+    /// How far the eccentricity moves the loaded flank of `tooth` of `gear` along its normal at the roll length `s`, to the first order in it, in
+    /// the section that is turned by `turn`.
+    pub fn runout(&self, gear: &SpurGear, tooth: usize, s: f64, turn: f64) -> f64 {
+        let tooth_angle = tooth as f64 * gear.pitch_angle() + turn;
+        let normal = tooth_angle + gear.flank().tangent_angle(s) + PI / 2.0;
+        let moved = self.displacement(0.0);
+        moved.x * normal.cos() + moved.y * normal.sin()
+    }
+
+    /// Where the gear's own axis stands from the axis of rotation while the centerline of tooth 0 points along `angle`.
+    pub fn displacement(&self, angle: f64) -> Vector {
+        self.eccentricity
+            .map_or_else(Vector::zeros, |each| each.displacement(angle))
+    }
+
+    /// How far the gear's own axis stands from the axis of rotation.
+    pub fn eccentricity(&self) -> f64 {
+        self.eccentricity.map_or(0.0, |each| each.amount)
+    }
+
+    /// How far the point that stands out most does.
+    fn farthest_out(&self) -> f64 {
+        let teeth = self.turns.len().max(self.profile_slopes.len());
+        let all = (0..teeth).flat_map(|tooth| self.ends.map(|s| self.at(tooth, s)));
+        all.fold(0.0, f64::max)
+    }
+}
+
+/// What the teeth of both gears of a pair deviate by: what one pair differs by from others made to the same drawings.
+///
+/// Contact is solved for a model of the drawn pair and these ([`crate::contact::PairModel::made`]).
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairDeviations {
+    gears: [GearDeviations; 2],
+    /// How far they may bring any two flanks nearer to each other than they are drawn, along the line of action.
+    nearest: f64,
+}
+
+impl PairDeviations {
+    /// Nothing deviates.
+    pub const NONE: Self = Self {
+        gears: [GearDeviations::NONE, GearDeviations::NONE],
+        nearest: 0.0,
+    };
+
+    /// What `teeth` that fit `gears` do to their flanks.
+    pub(super) fn of(gears: [&SpurGear; 2], teeth: [&ToothDeviations; 2]) -> Self {
+        let gears = Member::BOTH
+            .map(Member::index)
+            .map(|i| GearDeviations::of(gears[i], teeth[i]));
+        // Off the path of contact the arm differs from one; a tenth more is more than it ever makes.
+        let each = gears
+            .each_ref()
+            .map(|gear| 1.1 * (gear.farthest_out() + gear.eccentricity()));
+        Self {
+            nearest: each[0] + each[1],
+            gears,
+        }
+    }
+
+    /// What the gear `member` deviates by.
+    pub fn of_gear(&self, member: Member) -> &GearDeviations {
+        &self.gears[member.index()]
+    }
+
+    /// Whether nothing deviates: the contact on blanks that are alike all around repeats with every mesh period.
+    pub fn are_none(&self) -> bool {
+        self.gears.iter().all(GearDeviations::is_none)
+    }
+
+    /// How far they may bring any two flanks nearer to each other than they are drawn, along the line of action.
+    pub fn nearest(&self) -> f64 {
+        self.nearest
+    }
+
+    /// What they take of the backlash, where teeth are pressed together at the `working_pressure_angle`.
+    ///
+    /// Where both gears stand nearer by Σe, each flank closes up by Σe sin α_w.
+    pub(super) fn taken_backlash(&self, working_pressure_angle: f64) -> f64 {
+        let each = self.gears.iter().map(|gear| {
+            gear.farthest_out() + 2.0 * gear.eccentricity() * working_pressure_angle.sin()
+        });
+        each.sum()
+    }
+}
+
+impl Default for PairDeviations {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
