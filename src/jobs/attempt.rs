@@ -19,8 +19,8 @@ use uuid::Uuid;
 
 use super::job::{Job, Progress};
 use super::live::Entered;
-use super::store::{Came, Claim, End, Ended, Lease, Packed, Started, StoreError};
-use super::worker::Shop;
+use super::shop::Shop;
+use super::store::{Came, Claim, End, Ended, Packed, Started, StoreError};
 use crate::compute::{Budget, Solve, message_of};
 use crate::spans::{self, Span};
 use crate::wire::{Code, Kept, Problem, SOLVER_VERSION, Submission, Summary, memory_of};
@@ -372,14 +372,6 @@ impl Shop {
         }
         let answer = tokio::time::timeout(patience, answer).await;
         answer.unwrap_or_else(|_| Err(sqlx::Error::PoolTimedOut.into()))
-    }
-
-    /// A lease that is given now.
-    pub(super) fn lease(&self) -> Lease {
-        Lease {
-            steady: self.jobs.clock.steady(),
-            lasts: SignedDuration::try_from(self.pace.lease).unwrap_or(SignedDuration::MAX),
-        }
     }
 }
 

@@ -161,6 +161,19 @@ impl Jobs {
         }
     }
 
+    /// Comes back when it is worth writing again, or the service stops.
+    pub(crate) async fn wait_for_storage(&self) {
+        const PAUSE: Duration = Duration::from_millis(100);
+        let writable = async {
+            tokio::time::sleep(PAUSE).await;
+            self.store.writable().await;
+        };
+        tokio::select! {
+            () = writable => {}
+            () = self.stop().cancelled() => {}
+        }
+    }
+
     /// Refuses what would take more memory than a job may.
     ///
     /// # Errors

@@ -21,8 +21,7 @@ use tracing::{info, warn};
 use uuid::Uuid;
 
 use super::addresses::HookRules;
-use super::hooks::Webhooks;
-use super::store::{Attempt, Message, Refusal, Waiting};
+use super::store::{Attempt, Message, Refusal, Waiting, Webhooks};
 use crate::client::{bounded, told};
 use crate::jobs::StoreError;
 
