@@ -3,10 +3,11 @@
 use std::time::Duration;
 
 use jiff::SignedDuration;
+use rayon::ThreadPool;
 
 use super::queue::Jobs;
 use super::store::Lease;
-use crate::compute::Solve;
+use crate::compute::{NoThreads, Solve, Work, engine_threads};
 
 /// How the workers keep time.
 #[derive(Debug, Clone, Copy)]
@@ -54,6 +55,35 @@ impl Shop {
         Lease {
             steady: self.jobs.clock.steady(),
             lasts: SignedDuration::try_from(self.pace.lease).unwrap_or(SignedDuration::MAX),
+        }
+    }
+}
+
+/// The threads of a worker.
+pub(super) struct Threads {
+    /// For a job that is computed alone, and has all of them.
+    together: ThreadPool,
+    /// For several small ones, each on one: from a second thread a small job gains less than the two of them wait for each other.
+    apart: Vec<ThreadPool>,
+}
+
+impl Threads {
+    /// Those of a worker by this number, so many.
+    pub(super) fn of(worker: usize, count: usize) -> Result<Self, NoThreads> {
+        let name = move |index| format!("engine-{worker}-{index}");
+        let apart = (0..count)
+            .map(|place| engine_threads(move |_| format!("small-{worker}-{place}"), Work::Job, 1));
+        Ok(Self {
+            together: engine_threads(name, Work::Job, count)?,
+            apart: apart.collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// The pools for so many jobs that were claimed together: each pool computes one after the other.
+    pub(super) fn for_jobs(&self, count: usize) -> &[ThreadPool] {
+        match count {
+            0 | 1 => std::slice::from_ref(&self.together),
+            _ => &self.apart[..count.min(self.apart.len())],
         }
     }
 }

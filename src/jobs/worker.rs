@@ -4,21 +4,21 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-use rayon::ThreadPool;
 use tokio::task::JoinSet;
 use tokio::time::{Instant, MissedTickBehavior, interval, interval_at, sleep};
 use tracing::{error, info, warn};
 use uuid::Uuid;
 
 use super::queue::Jobs;
-use super::shop::{Pace, Shop};
+use super::shop::{Pace, Shop, Threads};
 use super::store::{Claimed, Lease, Lost, Reader, Started, StoreError};
-use crate::compute::{Cores, NoThreads, Solve, Work, engine_threads};
+use crate::compute::{Cores, NoThreads, Solve};
 use crate::wire::{Code, DOCUMENT_VERSION, Problem, SOLVER_VERSION};
 
-/// So much of a core is claimed at once, in microseconds by the rough estimate: many jobs of a millisecond, a few members of a
-/// population, or one that takes longer. While a claim and an end are written their worker computes nothing.
-const AT_ONCE: i64 = 50_000;
+/// So much of a core is claimed at once, in microseconds by the rough estimate: many jobs of a millisecond, some members of a
+/// population, or one ordinary design, of which two would keep others waiting. While a claim and an end are written their worker
+/// computes nothing.
+const AT_ONCE: i64 = 80_000;
 
 /// The workers of this process.
 pub struct Workers {
@@ -84,9 +84,7 @@ impl Workers {
         for worker in 0..count {
             let alive = Alive::new(&alive);
             let shop = Arc::clone(&shop);
-            let name = move |index| format!("engine-{worker}-{index}");
-            let threads = engine_threads(name, Work::Job, Cores::here().for_each_of(count));
-            let threads = threads?;
+            let threads = Threads::of(worker, Cores::here().for_each_of(count))?;
             tasks.spawn(async move {
                 let _alive = alive;
                 shop.work(&threads).await;
@@ -140,7 +138,7 @@ impl Drop for Alive {
 
 impl Shop {
     /// One worker: job after job until the stop.
-    async fn work(&self, threads: &ThreadPool) {
+    async fn work(&self, threads: &Threads) {
         let stop = self.jobs.stop();
         while !stop.is_cancelled() {
             let rung = self.jobs.live.rung();
