@@ -262,8 +262,19 @@ impl Shop {
         let store = &self.jobs.store;
         let written = self.written(|| store.end_all(&ends, SOLVER_VERSION)).await;
         let rung = self.jobs.live.rung();
-        for (i, done) in done.iter().enumerate() {
-            self.tell(done, written.as_ref().map(|held| held[i]));
+        match written {
+            Ok(ended) => {
+                for (done, job) in done.iter().zip(ended) {
+                    self.tell(done, job);
+                }
+            }
+            // The next process finds the jobs running, and begins them anew.
+            Err(error) => {
+                for Done { attempt, .. } in &done {
+                    error!(job = %attempt.job.id, error = %error, "the outcome cannot be written");
+                    self.jobs.live.changed(attempt.job.id);
+                }
+            }
         }
         rung
     }
@@ -287,18 +298,19 @@ impl Shop {
         }
     }
 
-    /// Tells those who wait, and the log.
-    fn tell(&self, done: &Done, written: Result<bool, &StoreError>) {
+    /// Tells those who wait, and the log, how a job has ended, if it has by this attempt.
+    fn tell(&self, done: &Done, ended: Option<Job>) {
         let job = &done.attempt.job;
-        match written {
-            Ok(true) => tell_end(job, done.end, &done.outcome),
-            Ok(false) => {
-                info!(job = %job.id, attempt = job.attempt, "the attempt was over before it ended");
+        match ended {
+            Some(ended) => {
+                tell_end(job, done.end, &done.outcome);
+                self.jobs.live.changed_job(&ended);
             }
-            // The next process finds the job running, and begins it anew.
-            Err(error) => error!(job = %job.id, error = %error, "the outcome cannot be written"),
+            None => {
+                info!(job = %job.id, attempt = job.attempt, "the attempt was over before it ended");
+                self.jobs.live.changed(job.id);
+            }
         }
-        self.jobs.live.changed_job(job);
     }
 
     /// Gives a job back to the queue.

@@ -25,7 +25,7 @@ pub use clock::Clock;
 pub use error::JobError;
 pub use job::{Job, Progress};
 pub use keeper::{Keep, Keeper};
-pub use live::News;
+pub use live::{Changes, News};
 pub(crate) use queue::KEY_LIFETIME;
 pub use queue::{Jobs, Member, Rules};
 pub use resource::{Listed, Submitted};

@@ -207,10 +207,22 @@ impl Jobs {
         /// Between two looks: the jobs of a study end much faster than anybody wants to know.
         const PAUSE: Duration = Duration::from_millis(50);
         let look = || self.find_study(client, id);
-        self.until_ended(id, patience, PAUSE, look, |study| {
-            study.status().has_ended()
-        })
-        .await
+        let ended = async {
+            let mut news = self.news(id);
+            loop {
+                let study = look().await?;
+                if study.status().has_ended() {
+                    return Ok(study);
+                }
+                news.changed_state().await;
+                tokio::time::sleep(PAUSE).await;
+            }
+        };
+        tokio::select! {
+            study = ended => study,
+            () = tokio::time::sleep(patience) => look().await,
+            () = self.stop().cancelled() => look().await,
+        }
     }
 
     /// At most `limit` studies, newest first.

@@ -417,6 +417,56 @@ mod tests {
         workers.ended().await;
     }
 
+    #[tokio::test]
+    async fn jobs_that_are_claimed_together_are_computed_beside_each_other_on_a_thread_each() {
+        let desk = Desk::new().await;
+        let first = desk.submit(1.0).await;
+        let ids = [first, desk.submit(2.0).await];
+        let beside = std::sync::Barrier::new(Cores::here().for_each_of(1).min(ids.len()));
+        let solve: Solve = Arc::new(move |submission, _| {
+            beside.wait();
+            assert_eq!(rayon::current_num_threads(), 1);
+            Ok(results(submission.case().output_torques[0]))
+        });
+        let pace = Pace::with_time_limit(Duration::from_secs(60));
+        let workers = Workers::beside(desk.jobs.clone(), solve, 1, pace).await;
+        let mut workers = workers.unwrap();
+        for id in ids {
+            assert_eq!(desk.ended(id).await.status, Status::Successful);
+        }
+        desk.stop.cancel();
+        workers.ended().await;
+    }
+
+    #[tokio::test]
+    async fn who_waits_for_a_job_is_told_its_end_and_does_not_look_for_it() {
+        let desk = Desk::new().await;
+        let (go, wait) = mpsc::channel::<()>();
+        let wait = std::sync::Mutex::new(wait);
+        let solve: Solve = Arc::new(move |_, _| {
+            wait.lock().unwrap().recv().unwrap();
+            Ok(results(1.0))
+        });
+        let pace = Pace::with_time_limit(Duration::from_secs(3600));
+        let workers = Workers::beside(desk.jobs.clone(), solve, 1, pace).await;
+        let mut workers = workers.unwrap();
+        let changes = desk.jobs.changes();
+        let id = desk.submit(1.0).await;
+        desk.runs(id).await;
+        let job = desk.jobs.find("portal", id).await.unwrap();
+        // From here on whoever looked would find nothing.
+        desk.jobs.store.readers.close().await;
+        go.send(()).unwrap();
+        let ended = desk.jobs.until_ended(changes, job, Duration::from_secs(60));
+        let ended = ended.await.unwrap();
+        assert_eq!(
+            (ended.status, ended.document.is_some()),
+            (Status::Successful, true)
+        );
+        desk.stop.cancel();
+        workers.ended().await;
+    }
+
     /// An equal job comes while the last one that waited is computed, which is cancelled or comes to its end.
     async fn equal_job_beside(is_cancelled: bool) -> (Job, Job) {
         let desk = Desk::new().await;

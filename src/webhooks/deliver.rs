@@ -165,7 +165,7 @@ impl Courier {
     async fn work(self: Arc<Self>) {
         let jobs = &self.webhooks.jobs;
         let stop = jobs.stop().clone();
-        let mut news = jobs.changes();
+        let mut changes = jobs.changes();
         let mut under_way = UnderWay::default();
         let mut attempts = JoinSet::new();
         if let Err(error) = self.webhooks.give_back_all().await {
@@ -187,8 +187,7 @@ impl Courier {
                         under_way.end(webhook);
                     }
                 }
-                // Whoever lags has missed news, which is news.
-                _ = news.recv() => {}
+                () = changes.end() => {}
                 () = jobs.mail().notified() => {}
                 () = sleep(wait) => {}
                 () = stop.cancelled() => {}
