@@ -46,6 +46,8 @@ pub(super) async fn submit(
     let submission = Submission::parse(&document)?;
     // What was read is small now, and its client may wait for long.
     drop((document, memory));
+    // Begun before the job is, so that its end is among them.
+    let changes = app.jobs.changes();
     let submitted = app.jobs.submit(&client.0, &submission, key).await?;
     let (mut job, repeated) = (submitted.record, submitted.repeated);
     let made = (!job.status.has_ended()).then(|| Made(vec![job.id]));
@@ -54,7 +56,7 @@ pub(super) async fn submit(
     let wait = wait.grant(&app.door, client.name());
     let mut results = None;
     if let Some(patience) = wait.patience() {
-        if let Ok(now) = app.jobs.wait(client.name(), job.id, patience).await {
+        if let Ok(now) = app.jobs.until_ended(changes, job.clone(), patience).await {
             job = now;
         }
         if client.check_again(&app).await.is_ok() {

@@ -4,14 +4,13 @@
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::pin::pin;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use jiff::{SignedDuration, Timestamp};
 use meshwright_engine::run::Run;
 use opentelemetry::KeyValue;
 use opentelemetry::trace::SpanId;
-use rayon::ThreadPool;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, MissedTickBehavior, interval_at, sleep};
 use tracing::{error, info, warn};
@@ -19,8 +18,8 @@ use uuid::Uuid;
 
 use super::job::{Job, Progress};
 use super::live::Entered;
-use super::store::{Came, Claim, End, Ended, Lease, Packed, Started, StoreError};
-use super::worker::Shop;
+use super::shop::{Shop, Threads};
+use super::store::{Came, Claim, End, Ended, Packed, Started, StoreError};
 use crate::compute::{Budget, Solve, message_of};
 use crate::spans::{self, Span};
 use crate::wire::{Code, Kept, Problem, SOLVER_VERSION, Submission, Summary, memory_of};
@@ -74,9 +73,9 @@ impl Attempt {
 }
 
 impl Shop {
-    /// Has claimed jobs computed, one after the other, and watches over them: heartbeat, time limit, shutdown. Gives back how often a
+    /// Has claimed jobs computed, and watches over them: heartbeat, time limit, shutdown. Gives back how often a
     /// worker had been told of jobs when the last of these had ended, and nobody knew yet.
-    pub(super) async fn compute(&self, started: Vec<Started>, threads: &ThreadPool) -> u64 {
+    pub(super) async fn compute(&self, started: Vec<Started>, threads: &Threads) -> u64 {
         let mut rung = self.jobs.live.rung();
         let mut work = Vec::with_capacity(started.len());
         // Those whose rows are theirs, as far as is known. What the engine still gives of others is not asked for.
@@ -97,8 +96,7 @@ impl Shop {
         // What is to be written, at that time at the latest.
         let mut done = Vec::with_capacity(held.len());
         let mut written = pin!(sleep(Duration::ZERO));
-        // The place of the one that is being computed, and since when.
-        let mut current = 0;
+        // The first one that has come to nothing is being computed, since then at the latest.
         let mut begin = self.jobs.clock.steady();
         let mut deadline = pin!(sleep(self.pace.time_limit));
         let mut look = pin!(sleep(LOOK_AFTER));
@@ -113,7 +111,6 @@ impl Shop {
                     if count == 0 {
                         break;
                     }
-                    current += count;
                     begin = self.jobs.clock.steady();
                     deadline.as_mut().reset(Instant::now() + self.pace.time_limit);
                     if done.is_empty() {
@@ -131,8 +128,9 @@ impl Shop {
                 () = &mut written, if !done.is_empty() => {
                     rung = self.settle(std::mem::take(&mut done)).await;
                 }
-                () = &mut deadline, if held.contains_key(&current) => {
-                    if let Some(attempt) = held.remove(&current) {
+                () = &mut deadline, if !held.is_empty() => {
+                    deadline.as_mut().reset(Instant::now() + self.pace.time_limit);
+                    if let Some((_, attempt)) = held.pop_first() {
                         done.push(self.beyond_limit(attempt, begin));
                         rung = self.settle(std::mem::take(&mut done)).await;
                     }
@@ -197,30 +195,41 @@ impl Shop {
         }
     }
 
-    /// Starts the computations on the worker's own threads, one after the other: they are long, so they must not sit on a thread that
-    /// answers requests. A panic in one is the engine's fault and ends this job only.
+    /// Starts the computations on the worker's own threads: they are long, so they must not sit on a thread that answers requests. A
+    /// panic in one is the engine's fault and ends this job only.
     fn launch(
         &self,
         work: Vec<(Uuid, String, Kept, String, Run)>,
-        threads: &ThreadPool,
+        threads: &Threads,
     ) -> mpsc::UnboundedReceiver<Told> {
         let (sender, receiver) = mpsc::unbounded_channel();
-        let memory = self.jobs.memory().clone();
-        let (solve, clock) = (Arc::clone(&self.solve), self.jobs.clock.clone());
-        threads.spawn(move || {
-            for (place, (id, client, keep, submission, run)) in work.into_iter().enumerate() {
-                let begin = clock.steady();
-                let work = || solved(&solve, (&memory, client.as_str()), &submission, keep, &run);
-                let result = catch_unwind(AssertUnwindSafe(work));
-                let result = result.unwrap_or_else(|panic| {
-                    error!(job = %id, panic = message_of(&*panic), "the engine panicked");
-                    Err(internal_problem())
-                });
-                let elapsed = begin.duration_until(clock.steady());
-                // The worker may have gone meanwhile; then the attempt is lost and the fence holds.
-                let _ = sender.send((place, result, elapsed));
-            }
-        });
+        let pools = threads.for_jobs(work.len());
+        let work = Arc::new(Mutex::new(work.into_iter().enumerate()));
+        for pool in pools {
+            let (work, sender) = (Arc::clone(&work), sender.clone());
+            let memory = self.jobs.memory().clone();
+            let (solve, clock) = (Arc::clone(&self.solve), self.jobs.clock.clone());
+            let next = move || {
+                work.lock()
+                    .expect("nothing panics while it holds this lock")
+                    .next()
+            };
+            pool.spawn(move || {
+                while let Some((place, (id, client, keep, submission, run))) = next() {
+                    let begin = clock.steady();
+                    let work =
+                        || solved(&solve, (&memory, client.as_str()), &submission, keep, &run);
+                    let result = catch_unwind(AssertUnwindSafe(work));
+                    let result = result.unwrap_or_else(|panic| {
+                        error!(job = %id, panic = message_of(&*panic), "the engine panicked");
+                        Err(internal_problem())
+                    });
+                    let elapsed = begin.duration_until(clock.steady());
+                    // The worker may have gone meanwhile; then the attempt is lost and the fence holds.
+                    let _ = sender.send((place, result, elapsed));
+                }
+            });
+        }
         receiver
     }
 
@@ -253,8 +262,19 @@ impl Shop {
         let store = &self.jobs.store;
         let written = self.written(|| store.end_all(&ends, SOLVER_VERSION)).await;
         let rung = self.jobs.live.rung();
-        for (i, done) in done.iter().enumerate() {
-            self.tell(done, written.as_ref().map(|held| held[i]));
+        match written {
+            Ok(ended) => {
+                for (done, job) in done.iter().zip(ended) {
+                    self.tell(done, job);
+                }
+            }
+            // The next process finds the jobs running, and begins them anew.
+            Err(error) => {
+                for Done { attempt, .. } in &done {
+                    error!(job = %attempt.job.id, error = %error, "the outcome cannot be written");
+                    self.jobs.live.changed(attempt.job.id);
+                }
+            }
         }
         rung
     }
@@ -278,18 +298,19 @@ impl Shop {
         }
     }
 
-    /// Tells those who wait, and the log.
-    fn tell(&self, done: &Done, written: Result<bool, &StoreError>) {
+    /// Tells those who wait, and the log, how a job has ended, if it has by this attempt.
+    fn tell(&self, done: &Done, ended: Option<Job>) {
         let job = &done.attempt.job;
-        match written {
-            Ok(true) => tell_end(job, done.end, &done.outcome),
-            Ok(false) => {
-                info!(job = %job.id, attempt = job.attempt, "the attempt was over before it ended");
+        match ended {
+            Some(ended) => {
+                tell_end(job, done.end, &done.outcome);
+                self.jobs.live.changed_job(&ended);
             }
-            // The next process finds the job running, and begins it anew.
-            Err(error) => error!(job = %job.id, error = %error, "the outcome cannot be written"),
+            None => {
+                info!(job = %job.id, attempt = job.attempt, "the attempt was over before it ended");
+                self.jobs.live.changed(job.id);
+            }
         }
-        self.jobs.live.changed_job(job);
     }
 
     /// Gives a job back to the queue.
@@ -372,14 +393,6 @@ impl Shop {
         }
         let answer = tokio::time::timeout(patience, answer).await;
         answer.unwrap_or_else(|_| Err(sqlx::Error::PoolTimedOut.into()))
-    }
-
-    /// A lease that is given now.
-    pub(super) fn lease(&self) -> Lease {
-        Lease {
-            steady: self.jobs.clock.steady(),
-            lasts: SignedDuration::try_from(self.pace.lease).unwrap_or(SignedDuration::MAX),
-        }
     }
 }
 

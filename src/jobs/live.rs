@@ -13,12 +13,23 @@ use super::job::{Job, Progress};
 /// Stands for every job and study.
 const ANYTHING: Uuid = Uuid::nil();
 
+/// Something that has happened.
+#[derive(Debug, Clone)]
+pub(super) enum Change {
+    /// To a job or a study, or to [`ANYTHING`]: whoever wants to know what has to look.
+    Of(Uuid),
+    /// To a job that has not ended.
+    Going(Uuid),
+    /// A job has ended, like this.
+    End(Arc<Job>),
+}
+
 /// The jobs that this process runs, and the bell for every change of state.
 #[derive(Debug)]
 pub(super) struct Live {
     // A mutex of the standard library: it is never held across an await.
     running: Mutex<HashMap<Uuid, Running>>,
-    changes: broadcast::Sender<Uuid>,
+    changes: broadcast::Sender<Change>,
     /// Rung when a job begins to wait. A worker that finds one rings again, so that one ring wakes as many as needed.
     pub(super) work: Notify,
     /// How often that was.
@@ -97,18 +108,31 @@ impl Live {
         self.lock().get(&id).cloned()
     }
 
-    /// Tells those who wait that the state of a job has changed.
+    /// Tells those who wait that something has happened to a job or a study.
     pub(super) fn changed(&self, id: Uuid) {
-        // No receiver is no error: nobody waits.
-        let _ = self.changes.send(id);
+        self.tell(Change::Of(id));
     }
 
-    /// The same, of a job and of the study that it belongs to.
+    /// The same of a job that goes on.
+    pub(super) fn goes_on(&self, id: Uuid) {
+        self.tell(Change::Going(id));
+    }
+
+    /// The same of a job as it stands now, and of the study that it belongs to.
     pub(super) fn changed_job(&self, job: &Job) {
-        self.changed(job.id);
+        if job.status.has_ended() {
+            self.tell(Change::End(Arc::new(job.clone())));
+        } else {
+            self.goes_on(job.id);
+        }
         if let Some(study) = job.study {
             self.changed(study);
         }
+    }
+
+    fn tell(&self, change: Change) {
+        // No receiver is no error: nobody waits.
+        let _ = self.changes.send(change);
     }
 
     /// Tells a worker that a job may wait.
@@ -128,8 +152,8 @@ impl Live {
         self.ring();
     }
 
-    pub(super) fn changes(&self) -> broadcast::Receiver<Uuid> {
-        self.changes.subscribe()
+    pub(super) fn changes(&self) -> Changes {
+        Changes(self.changes.subscribe())
     }
 
     fn lock(&self) -> MutexGuard<'_, HashMap<Uuid, Running>> {
@@ -159,22 +183,53 @@ impl Drop for Entered {
     }
 }
 
+/// What happens to all jobs and studies, from a time on.
+pub struct Changes(broadcast::Receiver<Change>);
+
+impl Changes {
+    async fn next(&mut self) -> Change {
+        match self.0.recv().await {
+            Ok(change) => change,
+            // One who lags has missed news.
+            Err(broadcast::error::RecvError::Lagged(_)) => Change::Of(ANYTHING),
+            Err(broadcast::error::RecvError::Closed) => std::future::pending().await,
+        }
+    }
+
+    /// Comes back when something may have ended.
+    pub(crate) async fn end(&mut self) {
+        while let Change::Going(_) = self.next().await {}
+    }
+
+    /// Comes back with a job when it has ended, or without it when that may be.
+    pub(super) async fn end_of(&mut self, id: Uuid) -> Option<Arc<Job>> {
+        loop {
+            match self.next().await {
+                Change::End(job) if job.id == id => return Some(job),
+                Change::Of(other) if other == id || other == ANYTHING => return None,
+                _ => {}
+            }
+        }
+    }
+}
+
 /// What happens to one job.
 pub struct News {
     pub(super) id: Uuid,
     pub(super) live: Arc<Live>,
-    pub(super) changes: broadcast::Receiver<Uuid>,
+    pub(super) changes: Changes,
 }
 
 impl News {
     /// Comes back when the state of the job may have changed.
     pub async fn changed_state(&mut self) {
         loop {
-            match self.changes.recv().await {
-                Ok(id) if id != self.id && id != ANYTHING => {}
-                // One who lags has missed news, perhaps of this job.
-                Ok(_) | Err(broadcast::error::RecvError::Lagged(_)) => return,
-                Err(broadcast::error::RecvError::Closed) => std::future::pending().await,
+            let id = match self.changes.next().await {
+                Change::Of(id) | Change::Going(id) => id,
+                Change::End(job) => job.id,
+            };
+            if id == self.id || id == ANYTHING {
+                return;
             }
         }
     }

@@ -6,6 +6,7 @@
 
 mod attempt;
 mod clock;
+mod designs;
 mod error;
 mod job;
 mod keeper;
@@ -14,6 +15,7 @@ mod others;
 mod queue;
 mod resource;
 mod searches;
+mod shop;
 pub(crate) mod store;
 mod studies;
 mod study;
@@ -23,15 +25,15 @@ pub use clock::Clock;
 pub use error::JobError;
 pub use job::{Job, Progress};
 pub use keeper::{Keep, Keeper};
-pub use live::News;
+pub use live::{Changes, News};
 pub(crate) use queue::KEY_LIFETIME;
 pub use queue::{Jobs, Member, Rules};
 pub use resource::{Listed, Submitted};
+pub use shop::Pace;
 pub use store::{
-    BackupError, Cursor, Damaged, Depth, Document, EventKind, Filter, KeyRecord, Membership,
-    Migrate, NoCursor, OpenError, Place, Removed, Role, Space, Span, Store, StoreError,
+    BackupError, Cursor, Damaged, Depth, Document, DocumentLine, EventKind, Filter, KeyRecord,
+    Membership, Migrate, NoCursor, OpenError, Place, Removed, Role, Space, Span, Store, StoreError,
     StudyFilter,
 };
-pub use studies::DocumentLine;
 pub use study::StudyRecord;
-pub use worker::{Pace, StartError, Workers};
+pub use worker::{StartError, Workers};

@@ -69,7 +69,11 @@ fn pass_on(told: Told, live: &Live) {
                 {
                     running.stop();
                 }
-                live.changed(id);
+                if status.has_ended() {
+                    live.changed(id);
+                } else {
+                    live.goes_on(id);
+                }
             }
         }
         Told::Message => live.mail.notify_one(),

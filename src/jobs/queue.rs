@@ -5,14 +5,14 @@ use std::time::Duration;
 
 use jiff::Timestamp;
 use meshwright_engine::analysis::Method;
-use tokio::sync::{Notify, broadcast, mpsc, oneshot};
+use tokio::sync::{Notify, mpsc, oneshot};
 use tokio_util::sync::CancellationToken;
 use uuid::Uuid;
 
 use super::clock::Clock;
 use super::error::JobError;
 use super::job::Job;
-use super::live::{Live, News};
+use super::live::{Changes, Live, News};
 use super::others;
 use super::resource::{Listed, Submitted};
 use super::store::{Depth, Document, Filter, NewJob, Outcome, QueueBounds, Store, StoreError};
@@ -161,6 +161,19 @@ impl Jobs {
         }
     }
 
+    /// Comes back when it is worth writing again, or the service stops.
+    pub(crate) async fn wait_for_storage(&self) {
+        const PAUSE: Duration = Duration::from_millis(100);
+        let writable = async {
+            tokio::time::sleep(PAUSE).await;
+            self.store.writable().await;
+        };
+        tokio::select! {
+            () = writable => {}
+            () = self.stop().cancelled() => {}
+        }
+    }
+
     /// Refuses what would take more memory than a job may.
     ///
     /// # Errors
@@ -224,11 +237,39 @@ impl Jobs {
     ///
     /// [`JobError::NotFound`], [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn wait(&self, client: &str, id: Uuid, patience: Duration) -> Result<Job, JobError> {
-        let look = || self.find(client, id);
-        self.until_ended(id, patience, Duration::ZERO, look, |job| {
-            job.status.has_ended()
-        })
-        .await
+        let changes = self.changes();
+        let job = self.find(client, id).await?;
+        self.until_ended(changes, job, patience).await
+    }
+
+    /// The same of a job that stood like this when the `changes` had begun: where its end is told nobody looks for it.
+    ///
+    /// # Errors
+    ///
+    /// [`JobError::NotFound`], [`JobError::Unavailable`], [`JobError::Database`].
+    pub async fn until_ended(
+        &self,
+        mut changes: Changes,
+        job: Job,
+        patience: Duration,
+    ) -> Result<Job, JobError> {
+        let (client, id) = (job.client.clone(), job.id);
+        let look = || self.find(&client, id);
+        let ended = async {
+            let mut job = job;
+            while !job.status.has_ended() {
+                job = match changes.end_of(id).await {
+                    Some(job) => Arc::unwrap_or_clone(job),
+                    None => look().await?,
+                };
+            }
+            Ok(job)
+        };
+        tokio::select! {
+            job = ended => job,
+            () = tokio::time::sleep(patience) => look().await,
+            () = self.stop().cancelled() => look().await,
+        }
     }
 
     /// At most `limit` jobs, newest first.
@@ -355,7 +396,7 @@ impl Jobs {
     }
 
     /// Everything that happens to jobs and studies, from now on.
-    pub(crate) fn changes(&self) -> broadcast::Receiver<Uuid> {
+    pub fn changes(&self) -> Changes {
         self.live.changes()
     }
 

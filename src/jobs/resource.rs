@@ -1,11 +1,5 @@
-//! What jobs and studies have in common as things that a client submits, lists and waits for.
+//! What jobs and studies have in common as things that a client submits and lists.
 
-use std::time::Duration;
-
-use uuid::Uuid;
-
-use super::error::JobError;
-use super::queue::Jobs;
 use super::store::Cursor;
 
 /// A job or a study that answers a submission.
@@ -34,41 +28,5 @@ impl<T> Listed<T> {
         let last = found.last().filter(|_| goes_on);
         let next = last.map(|item| Cursor(sequence(item)));
         Self { items: found, next }
-    }
-}
-
-impl Jobs {
-    /// What `look` finds of the job or study `id` once that `has_ended`, or as it stands after `patience`. It looks when there is
-    /// news, and `pause` after that.
-    pub(super) async fn until_ended<T, Look>(
-        &self,
-        id: Uuid,
-        patience: Duration,
-        pause: Duration,
-        look: impl Fn() -> Look,
-        has_ended: impl Fn(&T) -> bool,
-    ) -> Result<T, JobError>
-    where
-        Look: Future<Output = Result<T, JobError>>,
-    {
-        let ended = async {
-            let mut news = self.news(id);
-            loop {
-                let found = look().await?;
-                if has_ended(&found) {
-                    return Ok(found);
-                }
-                news.changed_state().await;
-                // A sleep of no time would take a millisecond.
-                if !pause.is_zero() {
-                    tokio::time::sleep(pause).await;
-                }
-            }
-        };
-        tokio::select! {
-            found = ended => found,
-            () = tokio::time::sleep(patience) => look().await,
-            () = self.stop().cancelled() => look().await,
-        }
     }
 }

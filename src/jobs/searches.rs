@@ -6,10 +6,10 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::designs::{CHUNK, Owner, blocking};
 use super::error::JobError;
 use super::queue::Jobs;
 use super::store::{NewRow, SearchStep};
-use super::studies::{CHUNK, Owner, blocking};
 use super::study::StudyRecord;
 use crate::wire::{Design, RowState, Searching, Study};
 

@@ -3,44 +3,20 @@
 
 use std::time::Duration;
 
-use jiff::Timestamp;
 use tracing::{error, info};
 use uuid::Uuid;
 
 use meshwright_engine::run::Run;
 
+use super::designs::{Owner, blocking, expand};
 use super::error::JobError;
-use super::queue::{Jobs, Member, rough_cost};
+use super::queue::{Jobs, Member};
 use super::resource::{Listed, Submitted};
 use super::searches;
-use super::store::{
-    Document, NewJob, NewRow, NewStudy, StoreError, StoredRow, StudyFilter, StudyOutcome,
-};
+use super::store::{NewRow, NewStudy, StoreError, StudyFilter, StudyOutcome};
 use super::study::StudyRecord;
 use crate::hash::sha256_hex;
-use crate::wire::{
-    DOCUMENT_VERSION, Design, Kept, RowState, Status, Study, memory_above, too_much_memory,
-};
-
-/// So many designs are expanded and written in one transaction. Others write in between.
-pub(super) const CHUNK: usize = 500;
-
-/// So many rows of a table are read at a time, and so many documents.
-const ROWS_AT_ONCE: u32 = 500;
-const DOCUMENTS_AT_ONCE: u32 = 8;
-
-/// The results of a design.
-#[derive(Debug, Clone)]
-pub struct DocumentLine {
-    /// Its place in the table, from 0.
-    pub position: i64,
-    /// What the design is called.
-    pub label: String,
-    /// The job that computed it.
-    pub job: String,
-    /// Its results.
-    pub document: Document,
-}
+use crate::wire::{DOCUMENT_VERSION, Study};
 
 impl Jobs {
     /// Takes a study: it and its first designs are on the disk when this comes back.
@@ -142,17 +118,6 @@ impl Jobs {
         Ok(())
     }
 
-    fn owner(&self, study: &Study, id: Uuid, client: String, submitted_at: Timestamp) -> Owner {
-        Owner {
-            study: id,
-            client,
-            submitted_at,
-            memory_mb: self.rules.job_memory_mb,
-            keep: study.keep(),
-            is_population: study.is_population(),
-        }
-    }
-
     fn continue_in_background(&self, study: Study, expanded: usize, owner: Owner) {
         let jobs = self.clone();
         tokio::spawn(async move {
@@ -216,19 +181,6 @@ impl Jobs {
         Ok(())
     }
 
-    /// Comes back when it is worth writing again, or the service stops.
-    pub(crate) async fn wait_for_storage(&self) {
-        const PAUSE: Duration = Duration::from_millis(100);
-        let writable = async {
-            tokio::time::sleep(PAUSE).await;
-            self.store.writable().await;
-        };
-        tokio::select! {
-            () = writable => {}
-            () = self.stop().cancelled() => {}
-        }
-    }
-
     /// A study as it stands now.
     ///
     /// # Errors
@@ -255,10 +207,22 @@ impl Jobs {
         /// Between two looks: the jobs of a study end much faster than anybody wants to know.
         const PAUSE: Duration = Duration::from_millis(50);
         let look = || self.find_study(client, id);
-        self.until_ended(id, patience, PAUSE, look, |study| {
-            study.status().has_ended()
-        })
-        .await
+        let ended = async {
+            let mut news = self.news(id);
+            loop {
+                let study = look().await?;
+                if study.status().has_ended() {
+                    return Ok(study);
+                }
+                news.changed_state().await;
+                tokio::time::sleep(PAUSE).await;
+            }
+        };
+        tokio::select! {
+            study = ended => study,
+            () = tokio::time::sleep(patience) => look().await,
+            () = self.stop().cancelled() => look().await,
+        }
     }
 
     /// At most `limit` studies, newest first.
@@ -293,39 +257,6 @@ impl Jobs {
     /// [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn short_study_text(&self, id: Uuid, most: u64) -> Result<Option<String>, JobError> {
         Ok(self.store.study_text(id, most).await?)
-    }
-
-    /// Some rows of a study that was found, behind the first `after` ones, with what has come of each so far. None left:
-    /// the table is at its end.
-    ///
-    /// # Errors
-    ///
-    /// [`JobError::Unavailable`], [`JobError::Database`].
-    pub async fn study_rows(&self, id: Uuid, after: u64) -> Result<Vec<RowState>, JobError> {
-        let rows = self
-            .store
-            .study_rows(id, position_before(after), ROWS_AT_ONCE)
-            .await?;
-        // Hundreds of small documents are read here, which is more than a thread that answers requests should do.
-        blocking(move || rows.into_iter().map(row_state).collect()).await
-    }
-
-    /// Some results of a study that was found, of the designs behind the position `after` that have results. None left:
-    /// there are no more now.
-    ///
-    /// # Errors
-    ///
-    /// [`JobError::Unavailable`], [`JobError::Database`].
-    pub async fn study_documents(
-        &self,
-        id: Uuid,
-        after: Option<i64>,
-    ) -> Result<Vec<DocumentLine>, JobError> {
-        let after = after.unwrap_or(-1);
-        Ok(self
-            .store
-            .study_documents(id, after, DOCUMENTS_AT_ONCE)
-            .await?)
     }
 
     /// Ends a study: what waits or runs of it is dismissed, what has results keeps them. A study that was cancelled
@@ -385,44 +316,6 @@ impl Jobs {
     }
 }
 
-/// Whose jobs the designs become.
-pub(super) struct Owner {
-    pub(super) study: Uuid,
-    pub(super) client: String,
-    submitted_at: Timestamp,
-    /// So much memory may a design take.
-    memory_mb: u64,
-    /// How much of their results is kept.
-    keep: Kept,
-    /// Whether they are members of a population, whose drawn pair is known from the first of them.
-    is_population: bool,
-}
-
-impl Owner {
-    pub(super) fn row(&self, design: Design) -> NewRow {
-        let submission = design.submission.and_then(|submission| {
-            match memory_above(&submission, self.memory_mb) {
-                None => Ok(submission),
-                Some(needed_mb) => Err(too_much_memory(needed_mb, self.memory_mb)),
-            }
-        });
-        let job = match submission {
-            Ok(submission) => Ok(NewJob {
-                study: Some(self.study),
-                keep: self.keep,
-                cost: rough_cost(&submission, self.is_population),
-                ..NewJob::of(&submission, &self.client, self.submitted_at)
-            }),
-            Err(problem) => Err(problem.to_json()),
-        };
-        NewRow {
-            label: design.label,
-            changes: serde_json::Value::Object(design.changes).to_string(),
-            job,
-        }
-    }
-}
-
 /// A study with its first rows.
 struct Expanded {
     study: Study,
@@ -453,59 +346,4 @@ async fn begun(study: Study, owner: Owner) -> Result<Expanded, JobError> {
         search: None,
         owner,
     })
-}
-
-/// The next chunk of rows behind the first `expanded` ones.
-async fn expand(
-    study: Study,
-    expanded: usize,
-    owner: Owner,
-) -> Result<(Study, Vec<NewRow>, Owner), JobError> {
-    blocking(move || {
-        let designs = (expanded..expanded + CHUNK).map_while(|row| study.design(row));
-        let rows = designs.map(|design| owner.row(design)).collect();
-        (study, rows, owner)
-    })
-    .await
-}
-
-/// Does work of some milliseconds where it holds nobody up.
-pub(super) async fn blocking<T: Send + 'static>(
-    work: impl FnOnce() -> T + Send + 'static,
-) -> Result<T, JobError> {
-    match tokio::task::spawn_blocking(work).await {
-        Ok(done) => Ok(done),
-        Err(error) => match error.try_into_panic() {
-            Ok(panic) => std::panic::resume_unwind(panic),
-            // Only a runtime that ends drops such work.
-            Err(_) => Err(JobError::ShuttingDown),
-        },
-    }
-}
-
-/// The position before the first one behind `count` rows.
-fn position_before(count: u64) -> i64 {
-    i64::try_from(count).unwrap_or(i64::MAX) - 1
-}
-
-fn row_state(row: StoredRow) -> RowState {
-    let problem: Option<serde_json::Value> = row
-        .problem
-        .and_then(|text| serde_json::from_str(&text).ok());
-    let status = match (row.status.as_deref().and_then(Status::of_word), &problem) {
-        (Some(status), _) => status,
-        (None, Some(_)) => Status::Failed,
-        // The client has deleted the job.
-        (None, None) => Status::Dismissed,
-    };
-    RowState {
-        label: row.label,
-        changes: serde_json::from_str(&row.changes).unwrap_or_default(),
-        job: row.job.and_then(|id| id.parse().ok()),
-        status,
-        summary: row
-            .summary
-            .and_then(|text| serde_json::from_str(&text).ok()),
-        problem,
-    }
 }

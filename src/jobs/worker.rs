@@ -4,65 +4,26 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-use rayon::ThreadPool;
 use tokio::task::JoinSet;
 use tokio::time::{Instant, MissedTickBehavior, interval, interval_at, sleep};
 use tracing::{error, info, warn};
 use uuid::Uuid;
 
 use super::queue::Jobs;
+use super::shop::{Pace, Shop, Threads};
 use super::store::{Claimed, Lease, Lost, Reader, Started, StoreError};
-use crate::compute::{Cores, NoThreads, Solve, Work, engine_threads};
+use crate::compute::{Cores, NoThreads, Solve};
 use crate::wire::{Code, DOCUMENT_VERSION, Problem, SOLVER_VERSION};
 
-/// How the workers keep time.
-#[derive(Debug, Clone, Copy)]
-pub struct Pace {
-    /// A worker that has not reported for so long is taken for lost.
-    pub lease: Duration,
-    /// So often a worker reports.
-    pub heartbeat: Duration,
-    /// A job that takes longer fails.
-    pub time_limit: Duration,
-    /// A job that has lost so many workers fails.
-    pub attempts_limit: u32,
-    /// What came of one job waits so long at most for the others that were claimed with it, to be written with them in one commit.
-    pub gather: Duration,
-}
-
-impl Pace {
-    /// Leases of half a minute, three attempts, and a limit for each job.
-    pub fn with_time_limit(time_limit: Duration) -> Self {
-        Self::with_lease(Duration::from_secs(30), time_limit)
-    }
-
-    /// Leases of this length, three attempts, and a limit for each job.
-    pub fn with_lease(lease: Duration, time_limit: Duration) -> Self {
-        Self {
-            lease,
-            heartbeat: (lease / 5).min(Duration::from_secs(2)),
-            time_limit,
-            attempts_limit: 3,
-            gather: Duration::from_millis(50),
-        }
-    }
-}
-
-/// So much of a core is claimed at once, in microseconds by the rough estimate: many jobs of a millisecond, a few members of a
-/// population, or one that takes longer. While a claim and an end are written their worker computes nothing.
-const AT_ONCE: i64 = 50_000;
+/// So much of a core is claimed at once, in microseconds by the rough estimate: many jobs of a millisecond, some members of a
+/// population, or one ordinary design, of which two would keep others waiting. While a claim and an end are written their worker
+/// computes nothing.
+const AT_ONCE: i64 = 80_000;
 
 /// The workers of this process.
 pub struct Workers {
     tasks: JoinSet<()>,
     alive: Arc<AtomicUsize>,
-}
-
-/// What every worker has in common.
-pub(super) struct Shop {
-    pub(super) jobs: Jobs,
-    pub(super) solve: Solve,
-    pub(super) pace: Pace,
 }
 
 impl Workers {
@@ -123,9 +84,7 @@ impl Workers {
         for worker in 0..count {
             let alive = Alive::new(&alive);
             let shop = Arc::clone(&shop);
-            let name = move |index| format!("engine-{worker}-{index}");
-            let threads = engine_threads(name, Work::Job, Cores::here().for_each_of(count));
-            let threads = threads?;
+            let threads = Threads::of(worker, Cores::here().for_each_of(count))?;
             tasks.spawn(async move {
                 let _alive = alive;
                 shop.work(&threads).await;
@@ -179,7 +138,7 @@ impl Drop for Alive {
 
 impl Shop {
     /// One worker: job after job until the stop.
-    async fn work(&self, threads: &ThreadPool) {
+    async fn work(&self, threads: &Threads) {
         let stop = self.jobs.stop();
         while !stop.is_cancelled() {
             let rung = self.jobs.live.rung();
@@ -454,6 +413,56 @@ mod tests {
             assert_eq!((ended.status, ended.attempt), (status, 1));
         }
         assert_eq!(desk.commits("yes") - before, 1);
+        desk.stop.cancel();
+        workers.ended().await;
+    }
+
+    #[tokio::test]
+    async fn jobs_that_are_claimed_together_are_computed_beside_each_other_on_a_thread_each() {
+        let desk = Desk::new().await;
+        let first = desk.submit(1.0).await;
+        let ids = [first, desk.submit(2.0).await];
+        let beside = std::sync::Barrier::new(Cores::here().for_each_of(1).min(ids.len()));
+        let solve: Solve = Arc::new(move |submission, _| {
+            beside.wait();
+            assert_eq!(rayon::current_num_threads(), 1);
+            Ok(results(submission.case().output_torques[0]))
+        });
+        let pace = Pace::with_time_limit(Duration::from_secs(60));
+        let workers = Workers::beside(desk.jobs.clone(), solve, 1, pace).await;
+        let mut workers = workers.unwrap();
+        for id in ids {
+            assert_eq!(desk.ended(id).await.status, Status::Successful);
+        }
+        desk.stop.cancel();
+        workers.ended().await;
+    }
+
+    #[tokio::test]
+    async fn who_waits_for_a_job_is_told_its_end_and_does_not_look_for_it() {
+        let desk = Desk::new().await;
+        let (go, wait) = mpsc::channel::<()>();
+        let wait = std::sync::Mutex::new(wait);
+        let solve: Solve = Arc::new(move |_, _| {
+            wait.lock().unwrap().recv().unwrap();
+            Ok(results(1.0))
+        });
+        let pace = Pace::with_time_limit(Duration::from_secs(3600));
+        let workers = Workers::beside(desk.jobs.clone(), solve, 1, pace).await;
+        let mut workers = workers.unwrap();
+        let changes = desk.jobs.changes();
+        let id = desk.submit(1.0).await;
+        desk.runs(id).await;
+        let job = desk.jobs.find("portal", id).await.unwrap();
+        // From here on whoever looked would find nothing.
+        desk.jobs.store.readers.close().await;
+        go.send(()).unwrap();
+        let ended = desk.jobs.until_ended(changes, job, Duration::from_secs(60));
+        let ended = ended.await.unwrap();
+        assert_eq!(
+            (ended.status, ended.document.is_some()),
+            (Status::Successful, true)
+        );
         desk.stop.cancel();
         workers.ended().await;
     }

@@ -21,8 +21,7 @@ use tracing::{info, warn};
 use uuid::Uuid;
 
 use super::addresses::HookRules;
-use super::hooks::Webhooks;
-use super::store::{Attempt, Message, Refusal, Waiting};
+use super::store::{Attempt, Message, Refusal, Waiting, Webhooks};
 use crate::client::{bounded, told};
 use crate::jobs::StoreError;
 
@@ -166,7 +165,7 @@ impl Courier {
     async fn work(self: Arc<Self>) {
         let jobs = &self.webhooks.jobs;
         let stop = jobs.stop().clone();
-        let mut news = jobs.changes();
+        let mut changes = jobs.changes();
         let mut under_way = UnderWay::default();
         let mut attempts = JoinSet::new();
         if let Err(error) = self.webhooks.give_back_all().await {
@@ -188,8 +187,7 @@ impl Courier {
                         under_way.end(webhook);
                     }
                 }
-                // Whoever lags has missed news, which is news.
-                _ = news.recv() => {}
+                () = changes.end() => {}
                 () = jobs.mail().notified() => {}
                 () = sleep(wait) => {}
                 () = stop.cancelled() => {}

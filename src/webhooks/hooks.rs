@@ -5,10 +5,9 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use uuid::Uuid;
 
-use super::addresses::HookRules;
-use super::store::{Delivery, NewWebhook, Outcome, Webhook};
+use super::store::{Delivery, NewWebhook, Outcome, Webhook, Webhooks};
 use crate::hash::sha256_hex_of;
-use crate::jobs::{EventKind, JobError, Jobs, StoreError};
+use crate::jobs::{EventKind, JobError, StoreError};
 
 /// So many webhooks may a client have.
 const MOST: i64 = 16;
@@ -58,19 +57,7 @@ pub struct Made {
     pub repeated: bool,
 }
 
-/// The webhooks of all clients.
-#[derive(Clone)]
-pub struct Webhooks {
-    pub(super) jobs: Jobs,
-    pub(super) rules: HookRules,
-}
-
 impl Webhooks {
-    /// Webhooks that are told of `jobs`, by these rules.
-    pub fn new(jobs: Jobs, rules: HookRules) -> Self {
-        Self { jobs, rules }
-    }
-
     /// Makes a webhook.
     ///
     /// # Errors

@@ -1,7 +1,7 @@
 //! Webhooks: where a client is told that its jobs and studies have ended.
 //!
-//! In reading order: where messages may go ([`addresses`](HookRules)); the [`Webhooks`] that handlers speak to; what of them and
-//! their messages is kept (`store`); and the task that sends (`deliver`). The messages themselves are written with the change that
+//! In reading order: where messages may go ([`addresses`](HookRules)); what is kept of [`Webhooks`] and their messages
+//! (`store`); what handlers do with them (`hooks`); and the task that sends (`deliver`). The messages themselves are written with the change that
 //! they tell, by the store of jobs.
 
 mod addresses;
@@ -11,5 +11,5 @@ mod store;
 
 pub use addresses::{HookRules, HookTarget, is_public};
 pub use deliver::Deliveries;
-pub use hooks::{Made, WebhookError, Webhooks, most_webhooks};
-pub use store::{Delivery, Webhook};
+pub use hooks::{Made, WebhookError, most_webhooks};
+pub use store::{Delivery, Webhook, Webhooks};

@@ -5,12 +5,12 @@ use jiff::{SignedDuration, Timestamp};
 use sqlx::Row;
 use uuid::Uuid;
 
-use super::hooks::Webhooks;
+use super::addresses::HookRules;
 use crate::jobs::store::outbox::NewMessage;
 use crate::jobs::store::rows::{from_row, instant, optional_instant, optional_uuid, small, uuid};
 use crate::jobs::store::statement::{query, query_as, query_scalar};
 use crate::jobs::store::{StoreError, dialect, micros};
-use crate::jobs::{EventKind, KEY_LIFETIME};
+use crate::jobs::{EventKind, Jobs, KEY_LIFETIME};
 
 /// The kind of a message that tells nothing.
 const PING: &str = "webhook.ping";
@@ -211,7 +211,19 @@ pub(super) enum Refusal<'a> {
     Never(&'a str),
 }
 
+/// The webhooks of all clients.
+#[derive(Clone)]
+pub struct Webhooks {
+    pub(super) jobs: Jobs,
+    pub(super) rules: HookRules,
+}
+
 impl Webhooks {
+    /// Webhooks that are told of `jobs`, by these rules.
+    pub fn new(jobs: Jobs, rules: HookRules) -> Self {
+        Self { jobs, rules }
+    }
+
     /// Now, by the clock that all processes on the store share.
     async fn store_now(&self) -> Result<i64, StoreError> {
         let steady = self.jobs.clock().steady();

@@ -130,12 +130,13 @@ impl Store {
     }
 
     /// Running -> successful or failed for several jobs in one commit, each with its results document and what the tables of studies show
-    /// of it, or with its problem document. For each, false if its claim holds no more; then nothing of it is kept.
+    /// of it, or with its problem document. For each, the job as it has ended; absent if its claim holds no more, and then nothing of
+    /// it is kept.
     pub(in crate::jobs) async fn end_all(
         &self,
         ends: &[Ended<'_>],
         solver_version: &str,
-    ) -> Result<Vec<bool>, StoreError> {
+    ) -> Result<Vec<Option<Job>>, StoreError> {
         let mut write = self.begin().await?;
         // Whoever keeps equal documents, or dismisses these jobs, takes them in the same order.
         let documents = ends.iter().filter_map(|ended| match ended.came {
@@ -151,25 +152,25 @@ impl Store {
             .await?;
         if jobs.is_empty() {
             write.rollback().await?;
-            return Ok(vec![false; ends.len()]);
+            return Ok(vec![None; ends.len()]);
         }
         let mut jobs: BTreeMap<Uuid, Job> = jobs.into_iter().map(|job| (job.id, job)).collect();
-        let mut held = Vec::with_capacity(ends.len());
-        let mut ended = Vec::with_capacity(jobs.len());
+        let mut ended = Vec::with_capacity(ends.len());
         for end in ends {
             let job = jobs.remove(&end.claim.id);
-            held.push(job.is_some());
-            match (job, end.came) {
-                (Some(job), _) => ended.push((job, end.end.at)),
-                (None, Came::Results { document, .. }) => {
-                    forget_document(&mut write, document.hash()).await?;
-                }
-                (None, Came::Problem(_)) => {}
+            if job.is_none()
+                && let Came::Results { document, .. } = end.came
+            {
+                forget_document(&mut write, document.hash()).await?;
             }
+            ended.push(job);
         }
-        tell_ends(&mut write, &ended).await?;
+        let times = ends.iter().map(|end| end.end.at);
+        let told = ended.iter().zip(times);
+        let told = told.filter_map(|(job, at)| Some((job.as_ref()?, at)));
+        tell_ends(&mut write, told).await?;
         write.commit().await?;
-        Ok(held)
+        Ok(ended)
     }
 
     /// Running -> accepted, because the worker shuts down: this claim does not count as an attempt.

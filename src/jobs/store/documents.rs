@@ -92,16 +92,11 @@ pub(super) async fn insert_documents(
     if rows.is_empty() {
         return Ok(());
     }
-    query(dialect::insert_documents())
-        .bind(list(&rows))
-        .bind(&*bodies)
-        .execute(&mut *connection)
-        .await?;
+    let insert = query(dialect::insert_documents()).bind(list(&rows));
+    connection.later(insert.bind(&*bodies)).await?;
     if !summaries.is_empty() {
-        query(dialect::insert_summaries())
-            .bind(list(&summaries))
-            .execute(connection)
-            .await?;
+        let insert = query(dialect::insert_summaries()).bind(list(&summaries));
+        connection.later(insert).await?;
     }
     Ok(())
 }

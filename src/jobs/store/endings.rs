@@ -31,15 +31,15 @@ pub(super) async fn tell_end(
 /// The same of several jobs with their times, the latest last: a study is looked at once.
 pub(super) async fn tell_ends(
     connection: &mut Connection,
-    ended: &[(Job, Timestamp)],
+    ended: impl Iterator<Item = (&'_ Job, Timestamp)>,
 ) -> Result<(), sqlx::Error> {
     let mut studies = BTreeMap::new();
     for (job, at) in ended {
         match job.study {
             Some(study) => {
-                studies.insert(study, *at);
+                studies.insert(study, at);
             }
-            None => tell_end(connection, job, *at).await?,
+            None => tell_end(connection, job, at).await?,
         }
     }
     for (study, at) in studies {

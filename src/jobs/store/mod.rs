@@ -28,6 +28,7 @@ mod end;
 mod endings;
 mod error;
 mod ground;
+mod health;
 mod keys;
 mod lists;
 pub(crate) mod lock;
@@ -53,8 +54,8 @@ use jiff::SignedDuration;
 use uuid::Uuid;
 
 use ground::Ground;
+use health::Health;
 use statement::Pool;
-use write::Health;
 
 pub use backup::BackupError;
 pub use documents::{Damaged, Document};
@@ -65,6 +66,7 @@ pub use open::{Migrate, OpenError};
 pub use outbox::EventKind;
 pub use place::Place;
 pub use retention::{Removed, Space};
+pub use study_tables::DocumentLine;
 
 pub(super) use attempt::{Came, Claim, End, Ended, Lease};
 pub(super) use claim::{Claimed, Reader, Started};

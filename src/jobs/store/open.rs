@@ -17,10 +17,10 @@ use uuid::Uuid;
 
 use super::error::primary_code;
 use super::ground::Ground;
+use super::health::Health;
 use super::lock::beside;
 use super::private::open_or_make;
 use super::statement::{Dialect, LONGEST_STATEMENT, Pool, Renewal};
-use super::write::Health;
 use super::{Place, Store, StoreError};
 
 /// What brings the tables up to date. Those of a later version may be there already.

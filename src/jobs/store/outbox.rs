@@ -85,7 +85,7 @@ impl NewMessage<'_> {
                 status: self.status.map(Status::as_str),
             },
         };
-        query(
+        let insert = query(
             "insert into messages (id, webhook, kind, subject, body, next_at, created_at) values ($1, $2, $3, $4, $5, 0, $6)",
         )
         .bind(id.to_string())
@@ -93,9 +93,8 @@ impl NewMessage<'_> {
         .bind(self.kind)
         .bind(self.subject.to_string())
         .bind(serde_json::to_string(&body).expect("a message is plain data"))
-        .bind(now.as_microsecond())
-        .execute(connection)
-        .await?;
+        .bind(now.as_microsecond());
+        connection.later(insert).await?;
         Ok(id)
     }
 }

@@ -52,7 +52,7 @@ pub(super) async fn activate(
     client: &str,
     study: Option<Uuid>,
 ) -> Result<(), sqlx::Error> {
-    query(
+    let activate = query(
         "insert into shares (client, lane, due, active)
            select $1, '*', (select due from served), 1
            union all select $1, $2, coalesce((select served from shares where client = $1 and lane = '*'), 0), 1
@@ -61,10 +61,8 @@ pub(super) async fn activate(
            set active = 1, due = case shares.active when 1 then shares.due else max(shares.due, excluded.due) end",
     )
     .bind(client)
-    .bind(study.map_or_else(|| ALONE.to_owned(), |study| study.to_string()))
-    .execute(connection)
-    .await?;
-    Ok(())
+    .bind(study.map_or_else(|| ALONE.to_owned(), |study| study.to_string()));
+    connection.later(activate).await
 }
 
 /// A lane with work to do.
@@ -103,6 +101,8 @@ impl Lane {
         } else {
             cost
         };
+        let serve = query("update served set due = max(due, $1)").bind(self.client_due);
+        connection.later(serve).await?;
         // One that only waits for an equal one keeps the lane its turn.
         let rows: Vec<(String, i64)> = query_as(
             "update shares
@@ -125,10 +125,6 @@ impl Lane {
         .bind(i64::from(all))
         .fetch_all(&mut *connection)
         .await?;
-        query("update served set due = max(due, $1)")
-            .bind(self.client_due)
-            .execute(&mut *connection)
-            .await?;
         let rests = rows.contains(&(self.lane.clone(), 0));
         if rests && self.lane != ALONE {
             forget(connection, &self.client).await?;

@@ -8,9 +8,12 @@ use std::io::ErrorKind;
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
+use futures_util::TryStreamExt;
 use sqlx::postgres::{PgPool, PgRow, Postgres};
 use sqlx::sqlite::{Sqlite, SqlitePool, SqliteRow};
-use sqlx::{AssertSqlSafe, Executor, FromRow, PgConnection, SqlSafeStr, SqlStr, SqliteConnection};
+use sqlx::{
+    AssertSqlSafe, Either, Executor, FromRow, PgConnection, SqlSafeStr, SqlStr, SqliteConnection,
+};
 
 /// What is kept of a database: its connections.
 #[derive(Debug, Clone)]
@@ -65,7 +68,7 @@ impl Pool {
 
     pub(crate) async fn acquire(&self) -> Result<Connection, sqlx::Error> {
         Ok(match self {
-            Self::Sqlite(pool) => Connection::Sqlite(pool.acquire().await?),
+            Self::Sqlite(pool) => Connection::Sqlite(pool.acquire().await?, Unsaid::default()),
             Self::Postgres(pool, renewal) => {
                 Connection::Postgres(in_time(pool.acquire()).await?, renewal.clone())
             }
@@ -104,31 +107,87 @@ pub(crate) enum Dialect {
 
 /// A connection that is held for a while.
 pub(crate) enum Connection {
-    Sqlite(sqlx::pool::PoolConnection<Sqlite>),
+    Sqlite(sqlx::pool::PoolConnection<Sqlite>, Unsaid),
     Postgres(sqlx::pool::PoolConnection<Postgres>, Renewal),
+}
+
+/// What is said to SQLite together with the next statement. Its connection lives on a thread of its own, and the way there and back takes
+/// longer than most statements.
+#[derive(Default)]
+pub(crate) struct Unsaid {
+    text: String,
+    values: Vec<Value>,
+}
+
+impl Unsaid {
+    /// Puts a statement behind the others. The parameters of all of them are counted through.
+    fn push(&mut self, text: &str, values: Vec<Value>) {
+        let before = self.values.len();
+        if !self.text.is_empty() {
+            self.text.push_str("; ");
+        }
+        let mut parts = text.split('$');
+        self.text.extend(parts.next());
+        for part in parts {
+            let digits = part.find(|letter: char| !letter.is_ascii_digit());
+            let (number, words) = part.split_at(digits.unwrap_or(part.len()));
+            match number.parse::<usize>() {
+                Ok(number) => self.text.push_str(&format!("${}{words}", before + number)),
+                Err(_) => self.text.extend(["$", part]),
+            }
+        }
+        self.values.extend(values);
+    }
+
+    /// The words and values of all of it, with `text` as the last one.
+    fn with(&mut self, text: SqlStr, values: Vec<Value>) -> (SqlStr, Vec<Value>) {
+        if self.text.is_empty() {
+            return (text, values);
+        }
+        self.push(text.as_str(), values);
+        let Self { text, values } = std::mem::take(self);
+        (AssertSqlSafe(text).into_sql_str(), values)
+    }
 }
 
 impl Connection {
     pub(crate) fn close_on_drop(&mut self) {
         match self {
-            Self::Sqlite(connection) => connection.close_on_drop(),
+            Self::Sqlite(connection, _) => connection.close_on_drop(),
             Self::Postgres(connection, _) => connection.close_on_drop(),
         }
     }
 
-    /// Says something that is no query, without a statement of the driver's.
+    /// Says something that is no query.
     pub(crate) async fn say(&mut self, words: impl Into<Text>) -> Result<(), sqlx::Error> {
         let words = words.into();
         match self {
-            Self::Sqlite(connection) => {
+            Self::Sqlite(connection, unsaid) => {
                 if let Some(words) = words.of(Dialect::Sqlite) {
-                    sqlx::raw_sql(words).execute(&mut **connection).await?;
+                    ask(connection, unsaid, words, Vec::new()).await?;
                 }
             }
             Self::Postgres(connection, _) => {
                 if let Some(words) = words.of(Dialect::Postgres) {
                     in_time(sqlx::raw_sql(words).execute(&mut **connection)).await?;
                 }
+            }
+        }
+        Ok(())
+    }
+
+    /// Says something of which nothing is read. SQLite hears it with the next statement, and what is wrong with it shows then.
+    pub(crate) async fn later(&mut self, statement: Statement<Nothing>) -> Result<(), sqlx::Error> {
+        match self {
+            Self::Sqlite(_, unsaid) => {
+                if let Some(text) = statement.text.of(Dialect::Sqlite) {
+                    unsaid.push(text.as_str(), statement.values);
+                }
+            }
+            // Several words at once, and such as have no parameters, need no statement of the driver's.
+            Self::Postgres(..) if statement.values.is_empty() => self.say(statement.text).await?,
+            Self::Postgres(..) => {
+                statement.execute(self).await?;
             }
         }
         Ok(())
@@ -153,7 +212,7 @@ async fn in_time<T>(work: impl Future<Output = Result<T, sqlx::Error>>) -> Resul
 
 /// What a statement is run on.
 pub(crate) enum On<'c> {
-    Sqlite(&'c mut SqliteConnection),
+    Sqlite(&'c mut SqliteConnection, &'c mut Unsaid),
     SqlitePool(&'c SqlitePool),
     Postgres(&'c mut PgConnection, &'c Renewal),
     PostgresPool(&'c PgPool, &'c Renewal),
@@ -171,7 +230,7 @@ impl<'c> From<&'c Pool> for On<'c> {
 impl<'c> From<&'c mut Connection> for On<'c> {
     fn from(connection: &'c mut Connection) -> Self {
         match connection {
-            Connection::Sqlite(connection) => Self::Sqlite(connection),
+            Connection::Sqlite(connection, unsaid) => Self::Sqlite(connection, unsaid),
             Connection::Postgres(connection, renewal) => Self::Postgres(connection, renewal),
         }
     }
@@ -291,14 +350,39 @@ pub(crate) fn query_as<T: Record>(text: impl Into<Text>) -> Statement<T> {
     }
 }
 
+/// What a statement gave: rows, or how many it has changed.
+type Given = (Vec<SqliteRow>, u64);
+
+/// Says a statement on a connection to SQLite, and before it what has not been said. What is given back is the last one's.
+async fn ask(
+    connection: &mut SqliteConnection,
+    unsaid: &mut Unsaid,
+    text: SqlStr,
+    values: Vec<Value>,
+) -> Result<Given, sqlx::Error> {
+    let (text, values) = unsaid.with(text, values);
+    // A pragma does what it does when it is read: kept by the driver, it would do nothing the next time.
+    let is_kept = !text.as_str().contains("pragma");
+    let query = bind_sqlite::<Nothing>(text, &values).persistent(is_kept);
+    let mut answers = connection.fetch_many(query);
+    let (mut rows, mut given) = (Vec::new(), Given::default());
+    while let Some(answer) = answers.try_next().await? {
+        match answer {
+            Either::Left(done) => given = (std::mem::take(&mut rows), done.rows_affected()),
+            Either::Right(row) => rows.push(row),
+        }
+    }
+    Ok(given)
+}
+
 macro_rules! run {
-    ($self:ident, $on:ident, $none:expr, |$executor:ident, $query:ident| $run:expr) => {{
+    ($self:ident, $on:ident, $none:expr, |$given:ident| $asked:expr, |$executor:ident, $query:ident| $run:expr) => {{
         let Statement { text, values, .. } = $self;
         match $on.into() {
-            On::Sqlite($executor) => match text.of(Dialect::Sqlite) {
+            On::Sqlite(connection, unsaid) => match text.of(Dialect::Sqlite) {
                 Some(text) => {
-                    let $query = bind_sqlite::<T>(text, &values);
-                    $run
+                    let $given = ask(connection, unsaid, text, values).await?;
+                    $asked
                 }
                 None => $none,
             },
@@ -390,18 +474,26 @@ impl<T: Record> Statement<T> {
     }
 
     pub(crate) async fn fetch_all<'c>(self, on: impl Into<On<'c>>) -> Result<Vec<T>, sqlx::Error> {
-        run!(self, on, Ok(Vec::new()), |executor, query| query
-            .fetch_all(executor)
-            .await)
+        run!(
+            self,
+            on,
+            Ok(Vec::new()),
+            |given| given.0.iter().map(T::from_row).collect(),
+            |executor, query| query.fetch_all(executor).await
+        )
     }
 
     pub(crate) async fn fetch_optional<'c>(
         self,
         on: impl Into<On<'c>>,
     ) -> Result<Option<T>, sqlx::Error> {
-        run!(self, on, Ok(None), |executor, query| query
-            .fetch_optional(executor)
-            .await)
+        run!(
+            self,
+            on,
+            Ok(None),
+            |given| given.0.first().map(T::from_row).transpose(),
+            |executor, query| query.fetch_optional(executor).await
+        )
     }
 
     pub(crate) async fn fetch_one<'c>(self, on: impl Into<On<'c>>) -> Result<T, sqlx::Error> {
@@ -409,16 +501,22 @@ impl<T: Record> Statement<T> {
             self,
             on,
             Err(sqlx::Error::RowNotFound),
+            |given| given
+                .0
+                .first()
+                .map_or(Err(sqlx::Error::RowNotFound), T::from_row),
             |executor, query| query.fetch_one(executor).await
         )
     }
 
     /// Runs it. Gives back how many rows it has changed.
     pub(crate) async fn execute<'c>(self, on: impl Into<On<'c>>) -> Result<u64, sqlx::Error> {
-        run!(self, on, Ok(0), |executor, query| executor
-            .execute(query)
-            .await
-            .map(|done| done.rows_affected()))
+        run!(self, on, Ok(0), |given| Ok(given.1), |executor, query| {
+            executor
+                .execute(query)
+                .await
+                .map(|done| done.rows_affected())
+        })
     }
 
     /// Whether it finds a row.
@@ -460,5 +558,49 @@ where
 
     pub(crate) async fn fetch_one<'c>(self, on: impl Into<On<'c>>) -> Result<T, sqlx::Error> {
         Ok(self.0.fetch_one(on).await?.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn what_is_said_later_is_heard_before_the_next_with_parameters_of_its_own() {
+        let pool = SqlitePool::connect("sqlite::memory:").await.unwrap();
+        let mut connection = Pool::Sqlite(pool).acquire().await.unwrap();
+        let insert = |first: i64, second: &str| {
+            let insert = query("insert into pairs (word, number) values ($2 || '$', $1)");
+            insert.bind(first).bind(second)
+        };
+        let table = query("create table pairs (number integer, word text)");
+        connection.later(table).await.unwrap();
+        for round in 0..2 {
+            connection.later(insert(round, "a")).await.unwrap();
+            connection.later(insert(round + 10, "b")).await.unwrap();
+            let changed = query("update pairs set number = number + $1 where number >= $2")
+                .bind(100_i64)
+                .bind(10 + round);
+            // Of all three the last one's.
+            assert_eq!(
+                changed.execute(&mut connection).await.unwrap(),
+                1 + round as u64
+            );
+        }
+        let select = "select number, word from pairs where word <> $1 order by number";
+        let rows: Vec<(i64, String)> = query_as(select)
+            .bind("c")
+            .fetch_all(&mut connection)
+            .await
+            .unwrap();
+        let words = rows.iter().map(|(number, word)| format!("{number}{word}"));
+        assert_eq!(words.collect::<Vec<_>>(), ["0a$", "1a$", "111b$", "210b$"]);
+
+        // What is wrong with it shows in the next one.
+        connection
+            .later(query("insert into nowhere values (1)"))
+            .await
+            .unwrap();
+        assert!(query("select 1").execute(&mut connection).await.is_err());
     }
 }

@@ -457,11 +457,8 @@ async fn append(
             })
         })
         .collect();
-    query(dialect::insert_study_rows())
-        .bind(list(&of_study))
-        .bind(study.to_string())
-        .execute(&mut *connection)
-        .await?;
+    let insert = query(dialect::insert_study_rows()).bind(list(&of_study));
+    connection.later(insert.bind(study.to_string())).await?;
     // They are counted here, all at once and late: whoever claims or ends a job of the study waits from here on.
     let ends = made.iter().filter_map(|job| job.finished_at);
     let (successful, last_end) = (ends.clone().count(), ends.max());
@@ -484,12 +481,11 @@ async fn append(
     if updated == 0 {
         return Ok(false);
     }
-    query(dialect::expanding())
+    let expanding = query(dialect::expanding())
         .bind(&id)
         .bind(bounds.steady.as_microsecond())
-        .bind(micros(EXPANDING_FOR))
-        .execute(&mut *connection)
-        .await?;
+        .bind(micros(EXPANDING_FOR));
+    connection.later(expanding).await?;
     if waiting > 0 {
         shares::activate(connection, client, Some(study)).await?;
     }

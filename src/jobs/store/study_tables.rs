@@ -4,7 +4,6 @@ use uuid::Uuid;
 
 use super::statement::query_as;
 use super::{Document, Store, StoreError};
-use crate::jobs::studies::DocumentLine;
 
 /// A row as it is read.
 #[derive(Debug, Clone, sqlx::FromRow)]
@@ -15,6 +14,19 @@ pub(in crate::jobs) struct StoredRow {
     pub(in crate::jobs) status: Option<String>,
     pub(in crate::jobs) summary: Option<String>,
     pub(in crate::jobs) problem: Option<String>,
+}
+
+/// The results of a design.
+#[derive(Debug, Clone)]
+pub struct DocumentLine {
+    /// Its place in the table, from 0.
+    pub position: i64,
+    /// What the design is called.
+    pub label: String,
+    /// The job that computed it.
+    pub job: String,
+    /// Its results.
+    pub document: Document,
 }
 
 /// Position, label, job; hash, encoding and body of its document.

@@ -80,10 +80,9 @@ impl Store {
         let mut write = self.begin().await?;
         query(dialect::lock_queue()).execute(&mut *write).await?;
         if batch.iter().any(|job| job.idempotency_key.is_some()) {
-            query("delete from idempotency_keys where created_at < $1")
-                .bind(bounds.forget_keys_before.as_microsecond())
-                .execute(&mut *write)
-                .await?;
+            let forget = query("delete from idempotency_keys where created_at < $1")
+                .bind(bounds.forget_keys_before.as_microsecond());
+            write.later(forget).await?;
         }
         let mut room = Room::new(bounds.queue_limit);
         let mut outcomes = Vec::with_capacity(batch.len());
@@ -183,14 +182,13 @@ async fn submit_one(
 
     insert_submissions(connection, &[new]).await?;
     if let Some(key) = &new.idempotency_key {
-        query("insert into idempotency_keys (client, key, body_hash, job, created_at) values ($1, $2, $3, $4, $5)")
+        let remember = query("insert into idempotency_keys (client, key, body_hash, job, created_at) values ($1, $2, $3, $4, $5)")
             .bind(&new.client)
             .bind(key)
             .bind(&body_hash)
             .bind(new.id.to_string())
-            .bind(bounds.steady.as_microsecond())
-            .execute(&mut *connection)
-            .await?;
+            .bind(bounds.steady.as_microsecond());
+        connection.later(remember).await?;
     }
     Ok(outcome)
 }
@@ -307,11 +305,8 @@ pub(super) async fn insert_submissions(
         .iter()
         .map(|new| json!({ "job": new.id, "body": new.submission }))
         .collect();
-    query(dialect::insert_submissions())
-        .bind(list(&rows))
-        .execute(connection)
-        .await?;
-    Ok(())
+    let insert = query(dialect::insert_submissions()).bind(list(&rows));
+    connection.later(insert).await
 }
 
 /// The tags of a new job.
@@ -323,15 +318,14 @@ async fn insert_tags(
     let id = new.id.to_string();
     for tag in &new.tags {
         // A tag may stand twice in a submission.
-        query(
+        let insert = query(
             "insert into job_tags (client, tag, sequence, job) values ($1, $2, $3, $4) on conflict do nothing",
         )
         .bind(&new.client)
         .bind(tag)
         .bind(sequence)
-        .bind(&id)
-        .execute(&mut *connection)
-        .await?;
+        .bind(&id);
+        connection.later(insert).await?;
     }
     Ok(())
 }

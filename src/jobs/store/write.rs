@@ -4,10 +4,8 @@ use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 use std::time::Duration;
 
-use tokio::sync::{Notify, watch};
-use tracing::{error, info};
-
 use super::ground::Ground;
+use super::health::Health;
 use super::statement::{Connection, Pool, Text, query};
 use super::{Store, StoreError, dialect};
 
@@ -16,43 +14,6 @@ const BETWEEN_TRIES: Duration = Duration::from_millis(500);
 
 /// A look that takes longer says that nothing can be stored now.
 const LOOKING: Duration = Duration::from_secs(2);
-
-/// Whether what is written arrives.
-#[derive(Debug)]
-pub(super) struct Health {
-    /// Why nothing can be stored, if so.
-    fault: watch::Sender<Option<String>>,
-    /// Rung when a transaction came to no end.
-    doubt: Notify,
-}
-
-impl Health {
-    pub(super) fn new() -> Arc<Self> {
-        Arc::new(Self {
-            fault: watch::Sender::new(None),
-            doubt: Notify::new(),
-        })
-    }
-
-    fn found(&self, result: Result<&(), &StoreError>) {
-        let now = result.err().map(cause);
-        self.fault.send_if_modified(|fault| {
-            match (&*fault, &now) {
-                (None, Some(cause)) => error!(cause, "nothing can be stored"),
-                (Some(_), None) => info!("storing works again"),
-                _ => {}
-            }
-            let changed = fault.is_some() != now.is_some();
-            *fault = now;
-            changed
-        });
-    }
-}
-
-/// The cause as the system words it.
-fn cause(error: &StoreError) -> String {
-    std::error::Error::source(error).map_or_else(|| error.to_string(), ToString::to_string)
-}
 
 /// A transaction that has the write lock. Dropped without an end, it takes its connection with it: what the
 /// database, the driver and this program believe of the transaction need not agree any more, after an error least of all.
@@ -196,7 +157,11 @@ async fn begin_with(
     }
     let mut connection = writer.acquire().await?;
     // In plain SQL, because the driver's count of open transactions survives an error that SQLite's does not.
-    if let Err(error) = connection.say(words).await {
+    let begun = match relaxed {
+        Some(_) => connection.later(query(words)).await,
+        None => connection.say(words).await,
+    };
+    if let Err(error) = begun {
         connection.close_on_drop();
         return Err(error.into());
     }

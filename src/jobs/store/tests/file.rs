@@ -80,3 +80,30 @@ async fn nobody_but_its_owner_reads_a_database_or_its_copy() {
     }
     assert!(target.exists() && folder.path().join("jobs.db-wal").exists());
 }
+
+#[tokio::test]
+async fn a_commit_waits_for_the_disk_whatever_was_committed_before() {
+    const NORMAL: i64 = 1;
+    const FULL: i64 = 2;
+    async fn waits(write: &mut super::super::write::Write) -> i64 {
+        let mode = query_scalar("select synchronous from pragma_synchronous");
+        mode.fetch_one(&mut **write).await.unwrap()
+    }
+    let (store, _folder) = store().await;
+    for _ in 0..3 {
+        let mut write = store.begin_relaxed().await.unwrap();
+        query(super::super::dialect::probe())
+            .execute(&mut *write)
+            .await
+            .unwrap();
+        assert_eq!(waits(&mut write).await, NORMAL);
+        write.commit().await.unwrap();
+        let mut write = store.begin().await.unwrap();
+        query(super::super::dialect::probe())
+            .execute(&mut *write)
+            .await
+            .unwrap();
+        assert_eq!(waits(&mut write).await, FULL);
+        write.commit().await.unwrap();
+    }
+}

@@ -40,7 +40,7 @@ impl Store {
     ) -> Result<bool, StoreError> {
         let came = Came::Results { document, summary };
         let ended = Ended { claim, end, came };
-        Ok(self.end_all(&[ended], solver_version).await?[0])
+        Ok(self.end_all(&[ended], solver_version).await?[0].is_some())
     }
 
     /// Running -> successful with empty results at a second, for one job: whether they are taken.
@@ -59,7 +59,7 @@ impl Store {
     ) -> Result<bool, StoreError> {
         let came = Came::Problem(problem);
         let ended = Ended { claim, end, came };
-        Ok(self.end_all(&[ended], VERSION).await?[0])
+        Ok(self.end_all(&[ended], VERSION).await?[0].is_some())
     }
 
     /// How far one job has come.

@@ -1,0 +1,162 @@
+//! The designs of a study: the jobs that they become, and the rows in which they stand with what has come of them.
+
+use jiff::Timestamp;
+use uuid::Uuid;
+
+use super::error::JobError;
+use super::queue::{Jobs, rough_cost};
+use super::store::{DocumentLine, NewJob, NewRow, StoredRow};
+use crate::wire::{Design, Kept, RowState, Status, Study, memory_above, too_much_memory};
+
+/// So many designs are expanded and written in one transaction. Others write in between.
+pub(super) const CHUNK: usize = 500;
+
+/// So many rows of a table are read at a time, and so many documents.
+const ROWS_AT_ONCE: u32 = 500;
+const DOCUMENTS_AT_ONCE: u32 = 8;
+
+/// Whose jobs the designs become.
+pub(super) struct Owner {
+    pub(super) study: Uuid,
+    pub(super) client: String,
+    submitted_at: Timestamp,
+    /// So much memory may a design take.
+    memory_mb: u64,
+    /// How much of their results is kept.
+    keep: Kept,
+    /// Whether they are members of a population, whose drawn pair is known from the first of them.
+    is_population: bool,
+}
+
+impl Owner {
+    pub(super) fn row(&self, design: Design) -> NewRow {
+        let submission = design.submission.and_then(|submission| {
+            match memory_above(&submission, self.memory_mb) {
+                None => Ok(submission),
+                Some(needed_mb) => Err(too_much_memory(needed_mb, self.memory_mb)),
+            }
+        });
+        let job = match submission {
+            Ok(submission) => Ok(NewJob {
+                study: Some(self.study),
+                keep: self.keep,
+                cost: rough_cost(&submission, self.is_population),
+                ..NewJob::of(&submission, &self.client, self.submitted_at)
+            }),
+            Err(problem) => Err(problem.to_json()),
+        };
+        NewRow {
+            label: design.label,
+            changes: serde_json::Value::Object(design.changes).to_string(),
+            job,
+        }
+    }
+}
+
+impl Jobs {
+    /// The owner of the designs of a study.
+    pub(super) fn owner(
+        &self,
+        study: &Study,
+        id: Uuid,
+        client: String,
+        submitted_at: Timestamp,
+    ) -> Owner {
+        Owner {
+            study: id,
+            client,
+            submitted_at,
+            memory_mb: self.rules.job_memory_mb,
+            keep: study.keep(),
+            is_population: study.is_population(),
+        }
+    }
+
+    /// Some rows of a study that was found, behind the first `after` ones, with what has come of each so far. None left:
+    /// the table is at its end.
+    ///
+    /// # Errors
+    ///
+    /// [`JobError::Unavailable`], [`JobError::Database`].
+    pub async fn study_rows(&self, id: Uuid, after: u64) -> Result<Vec<RowState>, JobError> {
+        let rows = self
+            .store
+            .study_rows(id, position_before(after), ROWS_AT_ONCE)
+            .await?;
+        // Hundreds of small documents are read here, which is more than a thread that answers requests should do.
+        blocking(move || rows.into_iter().map(row_state).collect()).await
+    }
+
+    /// Some results of a study that was found, of the designs behind the position `after` that have results. None left:
+    /// there are no more now.
+    ///
+    /// # Errors
+    ///
+    /// [`JobError::Unavailable`], [`JobError::Database`].
+    pub async fn study_documents(
+        &self,
+        id: Uuid,
+        after: Option<i64>,
+    ) -> Result<Vec<DocumentLine>, JobError> {
+        let after = after.unwrap_or(-1);
+        Ok(self
+            .store
+            .study_documents(id, after, DOCUMENTS_AT_ONCE)
+            .await?)
+    }
+}
+
+/// The next chunk of rows behind the first `expanded` ones.
+pub(super) async fn expand(
+    study: Study,
+    expanded: usize,
+    owner: Owner,
+) -> Result<(Study, Vec<NewRow>, Owner), JobError> {
+    blocking(move || {
+        let designs = (expanded..expanded + CHUNK).map_while(|row| study.design(row));
+        let rows = designs.map(|design| owner.row(design)).collect();
+        (study, rows, owner)
+    })
+    .await
+}
+
+/// Does work of some milliseconds where it holds nobody up.
+pub(super) async fn blocking<T: Send + 'static>(
+    work: impl FnOnce() -> T + Send + 'static,
+) -> Result<T, JobError> {
+    match tokio::task::spawn_blocking(work).await {
+        Ok(done) => Ok(done),
+        Err(error) => match error.try_into_panic() {
+            Ok(panic) => std::panic::resume_unwind(panic),
+            // Only a runtime that ends drops such work.
+            Err(_) => Err(JobError::ShuttingDown),
+        },
+    }
+}
+
+/// The position before the first one behind `count` rows.
+fn position_before(count: u64) -> i64 {
+    i64::try_from(count).unwrap_or(i64::MAX) - 1
+}
+
+fn row_state(row: StoredRow) -> RowState {
+    let problem: Option<serde_json::Value> = row
+        .problem
+        .and_then(|text| serde_json::from_str(&text).ok());
+    let status = match (row.status.as_deref().and_then(Status::of_word), &problem) {
+        (Some(status), _) => status,
+        (None, Some(_)) => Status::Failed,
+        // The client has deleted the job.
+        (None, None) => Status::Dismissed,
+    };
+    RowState {
+        label: row.label,
+        changes: serde_json::from_str(&row.changes).unwrap_or_default(),
+        job: row.job.and_then(|id| id.parse().ok()),
+        status,
+        summary: row
+            .summary
+            .and_then(|text| serde_json::from_str(&text).ok()),
+        problem,
+    }
+}

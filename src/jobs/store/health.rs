@@ -1,0 +1,45 @@
+//! Whether what is written arrives, and why not.
+
+use std::sync::Arc;
+
+use tokio::sync::{Notify, watch};
+use tracing::{error, info};
+
+use super::error::StoreError;
+
+/// Whether what is written arrives.
+#[derive(Debug)]
+pub(super) struct Health {
+    /// Why nothing can be stored, if so.
+    pub(super) fault: watch::Sender<Option<String>>,
+    /// Rung when a transaction came to no end.
+    pub(super) doubt: Notify,
+}
+
+impl Health {
+    pub(super) fn new() -> Arc<Self> {
+        Arc::new(Self {
+            fault: watch::Sender::new(None),
+            doubt: Notify::new(),
+        })
+    }
+
+    pub(super) fn found(&self, result: Result<&(), &StoreError>) {
+        let now = result.err().map(cause);
+        self.fault.send_if_modified(|fault| {
+            match (&*fault, &now) {
+                (None, Some(cause)) => error!(cause, "nothing can be stored"),
+                (Some(_), None) => info!("storing works again"),
+                _ => {}
+            }
+            let changed = fault.is_some() != now.is_some();
+            *fault = now;
+            changed
+        });
+    }
+}
+
+/// The cause as the system words it.
+fn cause(error: &StoreError) -> String {
+    std::error::Error::source(error).map_or_else(|| error.to_string(), ToString::to_string)
+}
