@@ -11,18 +11,19 @@ ENV CARGO_PROFILE_RELEASE_STRIP=debuginfo
 COPY Cargo.toml Cargo.lock build.rs ./
 COPY engine/Cargo.toml engine/
 COPY paper/Cargo.toml paper/build.rs paper/
+COPY exchange/Cargo.toml exchange/build.rs exchange/
 COPY plot/Cargo.toml plot/
 COPY sample/Cargo.toml sample/
 COPY search/Cargo.toml search/
 COPY migrations migrations
-RUN mkdir -p web src/http benches/load engine/src engine/benches paper/src plot/src sample/src search/src \
-    && touch src/http/docs.js src/lib.rs engine/src/lib.rs plot/src/lib.rs sample/src/lib.rs search/src/lib.rs \
+RUN mkdir -p web src/http benches/load engine/src engine/benches exchange/src paper/src plot/src sample/src search/src \
+    && touch src/http/docs.js src/lib.rs engine/src/lib.rs exchange/src/lib.rs plot/src/lib.rs sample/src/lib.rs search/src/lib.rs \
     && for file in src/main benches/load/main engine/benches/jobs engine/benches/parts paper/src/main; do \
          echo 'fn main() {}' > "$file.rs"; done \
     && cargo build --release --locked --bin meshwright
 COPY . .
 # The empty sources were newer than these.
-RUN touch src/lib.rs src/main.rs engine/src/lib.rs sample/src/lib.rs search/src/lib.rs && cargo build --release --locked --bin meshwright
+RUN touch src/lib.rs src/main.rs engine/src/lib.rs exchange/src/lib.rs plot/src/lib.rs sample/src/lib.rs search/src/lib.rs && cargo build --release --locked --bin meshwright
 
 FROM ${RUN_IMAGE}
 # The certificates are for webhooks and for a PostgreSQL elsewhere.

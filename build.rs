@@ -1,11 +1,10 @@
-//! Packs the files that are part of the program, once: those of the page, and those of the documentation. Compiles the FMU where a C compiler is. And rebuilds the
+//! Packs the files that are part of the program, once: those of the page, and those of the documentation. And rebuilds the
 //! service when a migration is added: the embedding macro sees only the files that it already knows.
 
 use std::error::Error;
 use std::fs;
 use std::io::{Cursor, Read, Write};
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
@@ -23,7 +22,7 @@ const DOCS: [&str; 7] = [
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
-    for input in ["build.rs", "migrations", "web", "src/http/docs.js", "fmu"] {
+    for input in ["build.rs", "migrations", "web", "src/http/docs.js"] {
         println!("cargo:rerun-if-changed={input}");
     }
     let out = PathBuf::from(std::env::var("OUT_DIR")?);
@@ -31,44 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         list("PAGE", &page()?, &out.join("page"))?,
         list("DOCS", &docs()?, &out.join("docs"))?,
     ];
-    fs::write(out.join("fmu.rs"), fmu(&out)?)?;
     Ok(fs::write(out.join("files.rs"), list.concat())?)
-}
-
-/// Compiles the program of the FMU for Linux, where that is what is built for, and for Windows, where its compiler is there. Without a
-/// compiler there is none.
-fn fmu(out: &Path) -> Result<String, Box<dyn Error>> {
-    let target = std::env::var("TARGET")?;
-    let is_linux = target.starts_with("x86_64-") && target.contains("-linux-");
-    let native = (is_linux && target == std::env::var("HOST")?)
-        .then(|| std::env::var("CC").unwrap_or_else(|_| "cc".to_owned()));
-    let mut items = String::new();
-    for (compiler, path) in [
-        (native, "linux64/meshwright_mesh.so"),
-        (
-            Some("x86_64-w64-mingw32-gcc".to_owned()),
-            "win64/meshwright_mesh.dll",
-        ),
-    ] {
-        let Some(compiler) = compiler else { continue };
-        let file = out.join(path.replace('/', "-"));
-        let done = Command::new(compiler)
-            .args([
-                "-O2",
-                "-std=c99",
-                "-shared",
-                "-fPIC",
-                "-fvisibility=hidden",
-                "-o",
-            ])
-            .arg(&file)
-            .args(["fmu/meshwright_mesh.c", "-lm"])
-            .output();
-        if done.is_ok_and(|done| done.status.success()) {
-            items += &format!("({path:?}, include_bytes!({file:?})), ");
-        }
-    }
-    Ok(format!("const BINARIES: &[(&str, &[u8])] = &[{items}];\n"))
 }
 
 /// A file by its name.

@@ -10,8 +10,6 @@ pub mod spans;
 
 pub mod wire;
 
-pub mod exchange;
-
 pub mod compute;
 
 pub mod jobs;

@@ -7,15 +7,13 @@
 // The documents alone, without the service around them, which would take minutes to build.
 #[path = "../../src/hash.rs"]
 mod hash;
-#[path = "../../src/exchange/rexs/mod.rs"]
-mod rexs;
 #[path = "../../src/wire/mod.rs"]
 mod wire;
 
 use libfuzzer_sys::fuzz_target;
 use meshwright_engine::run::Run;
-use rexs::{Choices, export, import, is_xml};
-use wire::{Preview, Problem, Searching, Study, Submission};
+use meshwright_exchange::rexs::{Choices, import, is_xml};
+use wire::{Preview, Problem, Searching, Study, Submission, model_of};
 
 /// So many designs of a study are expanded.
 const DESIGNS: usize = 8;
@@ -35,7 +33,7 @@ fn check_model(bytes: &[u8]) {
     };
     match Submission::parse(imported.submission.to_string().as_bytes()) {
         Ok(submission) => {
-            let model = export(&submission, None, "");
+            let model = model_of(&submission, None, "");
             import(model.as_bytes(), &Choices::default()).expect("what is written can be read");
         }
         Err(problem) => check(&problem),

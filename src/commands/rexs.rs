@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use jiff::Zoned;
-use meshwright::exchange::rexs::{Choices, Import, export, import};
-use meshwright::wire::Submission;
+use meshwright::wire::{Submission, model_of};
+use meshwright_exchange::rexs::{Choices, Import, import};
 use serde_json::Value;
 
 use super::document::{EXIT_PROBLEM, read, told, told_with, write};
@@ -147,7 +147,7 @@ impl Rexs {
                 let date = Zoned::now().strftime("%Y-%m-%dT%H:%M:%S%:z").to_string();
                 write(
                     output,
-                    export(&submission, results.as_ref(), &date).trim_end(),
+                    model_of(&submission, results.as_ref(), &date).trim_end(),
                 )?;
             }
         }

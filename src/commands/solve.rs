@@ -6,11 +6,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use meshwright::exchange::rexs::is_xml;
 use meshwright::wire::results::{CurveDocument, GearPeakStress, PeakStressDocument, Results};
 use meshwright::wire::{Problem, Submission, solve};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
+use meshwright_exchange::rexs::is_xml;
 
 use super::document::{EXIT_PROBLEM, is_dash, read, told, write};
 use super::rexs::ModelChoices;

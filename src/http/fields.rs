@@ -9,6 +9,7 @@ use axum::response::{IntoResponse, Response};
 use meshwright_engine::gear::Member;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
+use meshwright_exchange::vtu;
 use serde::Deserialize;
 use utoipa::{IntoParams, IntoResponses};
 
@@ -17,7 +18,6 @@ use super::client::Client;
 use super::conditional::{Keep, Tag};
 use super::parameters::{IfNoneMatch, Parameters, invalid, job_id};
 use super::problem::{internal, of_missing_results};
-use crate::exchange::vtu;
 use crate::jobs::Job;
 use crate::wire::solve::{Inside, inside, section};
 use crate::wire::{Code, LoadedEdges, Problem, SOLVER_VERSION, Submission, memory_of};

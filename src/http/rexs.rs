@@ -5,6 +5,7 @@ use axum::extract::{Path, State};
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
 use axum::response::{IntoResponse, Response};
 use meshwright_engine::run::Run;
+use meshwright_exchange::rexs::{Choices, Fault, Import, NotRead, import, stages};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::{IntoParams, ToSchema};
@@ -15,9 +16,8 @@ use super::client::{Client, Onlooker};
 use super::document::XmlDocument;
 use super::parameters::{Parameters, job_id};
 use super::problem::internal;
-use crate::exchange::rexs::{Choices, Fault, Import, NotRead, export, import, stages};
 use crate::jobs::JobError;
-use crate::wire::{Code, Problem, Submission};
+use crate::wire::{Code, Problem, Submission, model_of};
 
 /// Stages beyond this number are not looked at.
 const MOST_STAGES: usize = 20;
@@ -148,7 +148,7 @@ fn view(model: &[u8], parameters: &ModelParameters) -> Result<ModelView, Problem
     if view.submissions.is_empty() {
         let faults = view.refused.into_iter();
         let faults = faults.map(|RefusedView { place, detail }| Fault { place, detail });
-        let refused = crate::exchange::rexs::Refused(faults.collect());
+        let refused = meshwright_exchange::rexs::Refused(faults.collect());
         return Err(refuse(&refused));
     }
     let not_read = not_read.unwrap_or_default().into_iter();
@@ -223,7 +223,7 @@ pub(super) async fn write(
                 Some(serde_json::from_str(&text).map_err(|_| internal())?)
             }
         };
-        Ok::<_, Problem>(export(&submission, results.as_ref(), &date))
+        Ok::<_, Problem>(model_of(&submission, results.as_ref(), &date))
     });
     let model = written.await??;
     let headers = [

@@ -5,6 +5,8 @@ use axum::extract::{Path, State};
 use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE, HeaderName};
 use axum::response::{IntoResponse, Response};
+use meshwright_exchange::fmu::fmu;
+use meshwright_exchange::{force_table, look_up};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use utoipa::{IntoParams, ToSchema};
@@ -16,9 +18,6 @@ use super::conditional::{Keep, Tag};
 use super::parameters::{IfNoneMatch, Parameters, job_id};
 use super::pictures::{self, Picture};
 use super::problem::{internal, of_missing_results};
-use crate::exchange::fmu::fmu;
-use crate::exchange::force_table::{self, MeshForces};
-use crate::exchange::look_up;
 use crate::jobs::{Document, JobError};
 use crate::wire::csv::CsvWriter;
 use crate::wire::results::{
@@ -319,7 +318,7 @@ fn look_up_table(
     name: &str,
 ) -> Result<Response, Problem> {
     let first = curves.first();
-    let table = first.and_then(|curve| look_up::table(results, curve, form));
+    let table = first.and_then(|curve| results.look_up(curve)?.write(form));
     let table = table.ok_or_else(|| {
         let detail = "These results span no whole number of true periods, and a look-up table is read over and over.";
         Problem::new(Code::NotFound, detail)
@@ -338,7 +337,7 @@ fn no_forces() -> Problem {
 
 /// The force table as an FMU. What it was computed from tells it from others.
 fn packed(results: &Results, name: &str) -> Result<Response, Problem> {
-    let forces = MeshForces::of(results).ok_or_else(no_forces)?;
+    let forces = results.mesh_forces().ok_or_else(no_forces)?;
     let bytes = fmu(&forces, &results.evidence.input_hash).map_err(|error| {
         tracing::error!(%error, "an FMU could not be packed");
         internal()
@@ -348,7 +347,7 @@ fn packed(results: &Results, name: &str) -> Result<Response, Problem> {
 
 /// The force table as others read it.
 fn forces(results: &Results, form: force_table::Form, name: &str) -> Result<Response, Problem> {
-    let forces = MeshForces::of(results).ok_or_else(no_forces)?;
+    let forces = results.mesh_forces().ok_or_else(no_forces)?;
     let media_type = match form {
         force_table::Form::Csv => "text/csv; charset=utf-8",
         force_table::Form::Text | force_table::Form::Modelica => "text/plain; charset=utf-8",

@@ -1,7 +1,7 @@
 //! The JSON documents of the interface as types, in the units of those who read them.
 //!
 //! Read in this order: [`problem`] (what goes wrong), [`submission`] with its parts [`pair`], [`gear`] and
-//! [`resolution`], [`forces`] (what is asked), [`geometry`], [`outline`], [`edges`], [`contact_pattern`], [`warning`] and [`results`] (what is answered), [`solve`](mod@solve)
+//! [`resolution`], [`forces`] (what is asked), [`geometry`], [`outline`], [`edges`], [`contact_pattern`], [`warning`], [`results`] and `rexs` (what is answered), [`solve`](mod@solve)
 //! (what leads from the one to the other) and [`examples`](mod@examples); [`preview`], a submission that is answered at
 //! once; [`draw`], teeth at random; then [`study`] and [`study_table`], many submissions at once, [`population`], a study of what is made, and [`search`], a study that chooses its designs itself. `declare`, `units`, `size`, `edit` and `pointer` carry
 //! them: the one declaration of each object, conversions, how much is read at all, changes in place, and places in a submission.
@@ -33,6 +33,7 @@ pub mod edges;
 pub mod geometry;
 pub mod outline;
 pub mod results;
+mod rexs;
 pub mod warning;
 
 pub mod examples;
@@ -59,10 +60,10 @@ pub use population::{PopulationResults, PopulationSample};
 pub use preview::Preview;
 pub use problem::{Code, FieldError, Problem};
 pub use results::Results;
+pub use rexs::model_of;
 pub use search::{SearchState, Searching};
 pub use solve::{Limits, Validation, solve, validate};
 pub use status::Status;
 pub use study::{Design, Study};
 pub use study_table::{RowState, StudyResults, Summary};
 pub use submission::{DOCUMENT_VERSION, SOLVER_VERSION, Submission, method_schema};
-pub(crate) use units::significant;

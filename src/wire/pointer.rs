@@ -221,9 +221,7 @@ impl Schema {
                 open.extend(self.named.get(name));
                 continue;
             }
-            for key in ["oneOf", "anyOf", "allOf"] {
-                open.extend(schema[key].as_array().into_iter().flatten());
-            }
+            open.extend(schema["oneOf"].as_array().into_iter().flatten());
             found.push(schema);
         }
         found

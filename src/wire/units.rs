@@ -2,6 +2,7 @@
 
 use std::io;
 
+pub(super) use meshwright_exchange::significant;
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::ser::SerializeSeq;
 use serde::{Deserialize, Deserializer};
@@ -42,16 +43,6 @@ pub(super) fn to_n_per_mm(value: f64) -> f64 {
 /// Pascals to megapascals.
 pub(super) fn to_mpa(value: f64) -> f64 {
     value / 1e6
-}
-
-/// `value` rounded to `digits` significant decimal digits; a negative zero loses its sign.
-pub(crate) fn significant(value: f64, digits: usize) -> f64 {
-    if value == 0.0 || !value.is_finite() {
-        return value + 0.0;
-    }
-    format!("{value:.*e}", digits.max(1) - 1)
-        .parse()
-        .unwrap_or(value)
 }
 
 /// A number as people write it in a sentence: at most seven significant digits.

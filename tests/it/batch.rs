@@ -3,7 +3,7 @@
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
-use crate::bench::{Bench, RESULTS, problem, submission};
+use crate::bench::{Asked, Bench, RESULTS, Said, problem, submission};
 
 #[tokio::test]
 async fn each_submission_of_a_batch_is_taken_or_refused_by_itself() {
@@ -15,18 +15,18 @@ async fn each_submission_of_a_batch_is_taken_or_refused_by_itself() {
         let request = bench
             .post("/v1/jobs/batch", &batch)
             .header("idempotency-key", "b");
-        request.send().await.unwrap()
+        request.answer().await
     };
     let answer = send().await;
     assert_eq!(answer.status(), StatusCode::ACCEPTED);
-    let answer: Value = answer.json().await.unwrap();
+    let answer = answer.document().await;
     assert_eq!(answer["taken"], 2);
     assert_eq!(answer["items"][1]["problem"]["code"], "teeth_do_not_reach");
     assert_eq!(
         answer["items"][1]["problem"]["errors"][0]["pointer"],
         "/pair/center_distance_mm"
     );
-    let again: Value = send().await.json().await.unwrap();
+    let again = send().await.document().await;
     for i in [0, 2] {
         assert_eq!(
             answer["items"][i]["job"]["id"],
@@ -40,20 +40,16 @@ async fn each_submission_of_a_batch_is_taken_or_refused_by_itself() {
     assert_eq!(list["items"].as_array().unwrap().len(), 2);
     // A single submission whose key looks like that of a place in the batch is another one.
     let single = bench.post("/v1/jobs", &submission(3.0));
-    let single = single
-        .header("idempotency-key", "b/0")
-        .send()
-        .await
-        .unwrap();
+    let single = single.header("idempotency-key", "b/0").answer().await;
     assert_eq!(single.status(), StatusCode::ACCEPTED);
-    let single: Value = single.json().await.unwrap();
+    let single = single.document().await;
     assert_ne!(single["id"], answer["items"][0]["job"]["id"]);
 }
 
 #[tokio::test]
 async fn what_is_no_batch_is_refused() {
     let bench = Bench::quick().await;
-    let send = async |batch: Value| bench.post("/v1/jobs/batch", &batch).send().await.unwrap();
+    let send = async |batch: Value| bench.post("/v1/jobs/batch", &batch).answer().await;
     problem(send(json!([])).await, 422, "wrong_type").await;
     problem(send(json!({ "submission": [] })).await, 422, "wrong_type").await;
     problem(
@@ -75,14 +71,12 @@ async fn the_results_of_a_study_come_line_by_line_and_its_table_at_both_addresse
         .as_array_mut()
         .unwrap()
         .push(json!(-1));
-    let taken: Value = bench
+    let taken = bench
         .post("/v1/studies", &study)
-        .send()
+        .answer()
         .await
-        .unwrap()
-        .json()
-        .await
-        .unwrap();
+        .document()
+        .await;
     let path = taken["links"]["self"].as_str().unwrap();
     let ended = bench.ended(path).await;
     assert_eq!(
@@ -96,11 +90,10 @@ async fn the_results_of_a_study_come_line_by_line_and_its_table_at_both_addresse
 
     let answer = bench
         .get(ended["links"]["results_ndjson"].as_str().unwrap())
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     assert_eq!(answer.headers()["content-type"], "application/x-ndjson");
-    let text = answer.text().await.unwrap();
+    let text = answer.body().await;
     let lines: Vec<Value> = text
         .lines()
         .map(|line| serde_json::from_str(line).unwrap())
@@ -122,32 +115,24 @@ async fn the_results_of_a_study_come_line_by_line_and_its_table_at_both_addresse
 
     let csv = bench
         .get(ended["links"]["results_csv"].as_str().unwrap())
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     let tag = csv.headers()["etag"].clone();
-    let csv = csv.text().await.unwrap();
-    let old = bench
-        .get(&format!("{path}/results.csv"))
-        .send()
-        .await
-        .unwrap();
+    let csv = csv.body().await;
+    let old = bench.get(&format!("{path}/results.csv")).answer().await;
     assert!(old.headers().contains_key("deprecation"));
-    assert_eq!(old.text().await.unwrap(), csv);
+    assert_eq!(old.body().await, csv);
     let known = bench
         .get(ended["links"]["results_csv"].as_str().unwrap())
         .header("if-none-match", tag);
-    assert_eq!(
-        known.send().await.unwrap().status(),
-        StatusCode::NOT_MODIFIED
-    );
+    assert_eq!(known.answer().await.status(), StatusCode::NOT_MODIFIED);
     let json: Value = bench.document(&format!("{path}/results/table.json")).await;
     assert_eq!(json, bench.document(&format!("{path}/results")).await);
     assert_eq!(json["rows"].as_array().unwrap().len(), 21);
     let lines = bench.get(ended["links"]["table_ndjson"].as_str().unwrap());
-    let lines = lines.send().await.unwrap();
+    let lines = lines.answer().await;
     assert_eq!(lines.headers()["content-type"], "application/x-ndjson");
-    let lines = lines.text().await.unwrap();
+    let lines = lines.body().await;
     let rows: Vec<Value> = lines
         .lines()
         .map(|line| serde_json::from_str(line).unwrap())
@@ -160,9 +145,8 @@ async fn the_results_of_a_study_come_line_by_line_and_its_table_at_both_addresse
     problem(
         bench
             .get(&format!("{path}/results/table.xls"))
-            .send()
-            .await
-            .unwrap(),
+            .answer()
+            .await,
         404,
         "not_found",
     )
@@ -184,11 +168,7 @@ async fn the_results_of_a_study_come_line_by_line_and_its_table_at_both_addresse
         .await;
     assert_eq!(jobs["items"], json!([]));
     problem(
-        bench
-            .get("/v1/jobs?submitted_since=tuesday")
-            .send()
-            .await
-            .unwrap(),
+        bench.get("/v1/jobs?submitted_since=tuesday").answer().await,
         400,
         "invalid_parameter",
     )

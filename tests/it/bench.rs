@@ -190,40 +190,69 @@ impl Bench {
 
     /// Submits a job and gives its address.
     pub(crate) async fn submit(&self, document: &Value) -> String {
-        let response = self.post("/v1/jobs", document).send().await.unwrap();
+        let response = self.post("/v1/jobs", document).answer().await;
         assert_eq!(response.status(), StatusCode::ACCEPTED);
         response.headers()["location"].to_str().unwrap().to_owned()
     }
 
     /// The job at an address.
     pub(crate) async fn job(&self, path: &str) -> Value {
-        let response = self.get(path).send().await.unwrap();
+        let response = self.get(path).answer().await;
         assert_eq!(response.status(), StatusCode::OK);
-        response.json().await.unwrap()
+        response.document().await
     }
 
     /// The document at an address.
     pub(crate) async fn document(&self, path: &str) -> Value {
-        let answer = self.get(path).send().await.unwrap();
-        answer.json().await.unwrap()
+        let answer = self.get(path).answer().await;
+        answer.document().await
     }
 
     /// The job at an address when it has ended.
     pub(crate) async fn ended(&self, path: &str) -> Value {
-        let job: Value = self
+        let job = self
             .get(path)
             .header("prefer", "wait=15")
-            .send()
+            .answer()
             .await
-            .unwrap()
-            .json()
-            .await
-            .unwrap();
+            .document()
+            .await;
         assert!(
             ["successful", "failed", "dismissed"].contains(&job["status"].as_str().unwrap()),
             "{job}"
         );
         job
+    }
+}
+
+/// What a test asks.
+pub(crate) trait Asked {
+    /// The answer, which has to come.
+    async fn answer(self) -> Response;
+}
+
+impl Asked for RequestBuilder {
+    async fn answer(self) -> Response {
+        self.send().await.unwrap()
+    }
+}
+
+/// What is answered, which has to be read.
+pub(crate) trait Said {
+    /// The JSON of it.
+    async fn document(self) -> Value;
+
+    /// The text of it.
+    async fn body(self) -> String;
+}
+
+impl Said for Response {
+    async fn document(self) -> Value {
+        self.json().await.unwrap()
+    }
+
+    async fn body(self) -> String {
+        self.text().await.unwrap()
     }
 }
 
@@ -239,7 +268,7 @@ impl Events {
             .get(&format!("{path}/events"))
             .header("last-event-id", "7")
             .timeout(PATIENCE);
-        let response = request.send().await.unwrap();
+        let response = request.answer().await;
         assert_eq!(response.status(), StatusCode::OK);
         assert_eq!(response.headers()["content-type"], "text/event-stream");
         Self {
@@ -373,7 +402,7 @@ pub(crate) async fn problem(response: Response, status: u16, code: &str) -> Valu
         response.headers()["content-type"],
         "application/problem+json"
     );
-    let problem: Value = response.json().await.unwrap();
+    let problem = response.document().await;
     assert_eq!(
         (found, problem["status"].as_u64(), problem["code"].as_str()),
         (status, Some(status.into()), Some(code)),

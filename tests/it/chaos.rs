@@ -14,6 +14,7 @@ use reqwest::Client;
 use serde_json::{Value, json};
 use tokio::sync::Mutex;
 
+use crate::bench::{Asked, Said};
 use crate::process::Process;
 use crate::stores;
 use crate::submitters::{Bases, Submitters, Taken};
@@ -69,9 +70,8 @@ async fn round(seed: u64, jobs: u64, kills: u32, database: &Place) -> Tally {
         process = Process::start(database);
         let ready = client
             .get(format!("{}/health/ready", process.base))
-            .send()
-            .await
-            .unwrap();
+            .answer()
+            .await;
         assert_eq!(ready.status(), 200);
         tally.ready.push(start.elapsed());
         *bases.lock().await = vec![process.base.clone()];
@@ -85,22 +85,15 @@ async fn check(client: &Client, process: &Process, taken: &Taken) {
     let library = Library::with_capacity(256 << 20);
     for (number, id) in taken {
         let url = format!("{}/v1/jobs/{id}", process.base);
-        let ended = client
-            .get(&url)
-            .header("prefer", "wait=20")
-            .send()
-            .await
-            .unwrap();
-        let ended: Value = ended.json().await.unwrap();
+        let ended = client.get(&url).header("prefer", "wait=20").answer().await;
+        let ended = ended.document().await;
         assert_eq!(ended["status"], "successful", "job {number}: {ended}");
         let text = client
             .get(format!("{url}/results"))
-            .send()
+            .answer()
             .await
-            .unwrap()
-            .text()
-            .await
-            .unwrap();
+            .body()
+            .await;
         let submission = Submission::parse(job(*number).to_string().as_bytes()).unwrap();
         assert_eq!(
             text,

@@ -6,7 +6,7 @@ use meshwright::config::Config;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 
-use crate::bench::{Bench, PATIENCE, problem, results, submission};
+use crate::bench::{Asked, Bench, PATIENCE, problem, results, submission};
 
 async fn service(adjust: impl FnOnce(&mut Config)) -> Bench {
     Bench::start(adjust, std::sync::Arc::new(|_, _| Ok(results()))).await
@@ -51,7 +51,7 @@ async fn silent_connections_give_way_to_those_who_ask() {
     for _ in 0..100 {
         silent.push(connect(&bench).await);
     }
-    let answer = bench.get("/v1/jobs").send().await.unwrap();
+    let answer = bench.get("/v1/jobs").answer().await;
     assert_eq!(answer.status(), 200);
     // The first that came is the first that went.
     closed(silent.remove(0)).await;

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{ConnectOptions, Connection};
 
-use crate::bench::{Bench, problem, submission};
+use crate::bench::{Asked, Bench, Said, problem, submission};
 use crate::process::Process;
 
 /// A small file system, gone when it is dropped.
@@ -66,7 +66,7 @@ fn job(number: u32) -> Value {
 }
 
 async fn status(client: &Client, url: String) -> u16 {
-    client.get(url).send().await.unwrap().status().as_u16()
+    client.get(url).answer().await.status().as_u16()
 }
 
 #[tokio::test]
@@ -91,15 +91,15 @@ async fn a_full_disk_stops_nothing_for_longer_than_it_is_full() {
         let request = client
             .post(format!("{}/v1/jobs", process.base))
             .json(&job(number));
-        let answer = request.send().await.unwrap();
+        let answer = request.answer().await;
         match answer.status().as_u16() {
             202 => {
-                let job: Value = answer.json().await.unwrap();
+                let job = answer.document().await;
                 taken.push(job["id"].as_str().unwrap().to_owned());
             }
             503 => {
                 assert!(answer.headers().contains_key("retry-after"));
-                let problem: Value = answer.json().await.unwrap();
+                let problem = answer.document().await;
                 assert_eq!(problem["code"], "storage_unavailable");
                 // Who cannot take a submission is not ready, as often as it is asked.
                 for _ in 0..16 {
@@ -137,13 +137,8 @@ async fn a_full_disk_stops_nothing_for_longer_than_it_is_full() {
     println!("ready {:?} after there is room again", start.elapsed());
     for id in &taken {
         let url = format!("{}/v1/jobs/{id}", process.base);
-        let ended = client
-            .get(url)
-            .header("prefer", "wait=20")
-            .send()
-            .await
-            .unwrap();
-        let ended: Value = ended.json().await.unwrap();
+        let ended = client.get(url).header("prefer", "wait=20").answer().await;
+        let ended = ended.document().await;
         assert_eq!(ended["status"], "successful", "{ended}");
     }
     println!("{} jobs taken and successful", taken.len());
@@ -238,25 +233,17 @@ async fn a_file_that_was_removed_takes_nothing_more_and_says_so() {
     let file = bench.config.database.file().unwrap().to_owned();
     let aside = file.with_extension("aside");
     fs::rename(&file, &aside).unwrap();
-    let answer = bench
-        .post("/v1/jobs", &submission(2.0))
-        .send()
-        .await
-        .unwrap();
+    let answer = bench.post("/v1/jobs", &submission(2.0)).answer().await;
     problem(answer, 503, "storage_unavailable").await;
-    let ready = bench.get("/health/ready").send().await.unwrap();
+    let ready = bench.get("/health/ready").answer().await;
     assert_eq!(ready.status(), 503);
     // Another file of this name is not the one that is served.
     fs::copy(&aside, &file).unwrap();
-    let answer = bench
-        .post("/v1/jobs", &submission(2.0))
-        .send()
-        .await
-        .unwrap();
+    let answer = bench.post("/v1/jobs", &submission(2.0)).answer().await;
     problem(answer, 503, "storage_unavailable").await;
     // It is there again, and so is the service.
     fs::rename(&aside, &file).unwrap();
-    while bench.get("/health/ready").send().await.unwrap().status() != 200 {
+    while bench.get("/health/ready").answer().await.status() != 200 {
         tokio::task::yield_now().await;
     }
     bench.submit(&submission(2.0)).await;

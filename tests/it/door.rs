@@ -6,7 +6,7 @@ use meshwright::keys::Key;
 use reqwest::{Response, StatusCode};
 use serde_json::{Value, json};
 
-use crate::bench::{Bench, problem, submission};
+use crate::bench::{Asked, Bench, Said, problem, submission};
 
 /// Makes a key in the database of a service that runs, as `meshwright keys create` does.
 async fn make_key(
@@ -40,12 +40,12 @@ pub(crate) async fn key_of(bench: &Bench, client: &str) -> String {
 }
 
 async fn get(bench: &Bench, path: &str, key: &str) -> Response {
-    bench.get(path).bearer_auth(key).send().await.unwrap()
+    bench.get(path).bearer_auth(key).answer().await
 }
 
 async fn submit(bench: &Bench, key: &str, torque: f64) -> Response {
     let request = bench.post("/v1/jobs", &submission(torque)).bearer_auth(key);
-    request.send().await.unwrap()
+    request.answer().await
 }
 
 #[tokio::test]
@@ -54,7 +54,7 @@ async fn keys_are_needed_as_soon_as_there_is_one() {
     let before = bench.submit(&submission(1.0)).await;
     let key = key_of(&bench, "portal").await;
 
-    let refused = bench.get("/v1/jobs").send().await.unwrap();
+    let refused = bench.get("/v1/jobs").answer().await;
     assert!(
         refused.headers()["www-authenticate"]
             .to_str()
@@ -107,7 +107,7 @@ async fn keys_are_needed_as_soon_as_there_is_one() {
         "/",
         "/web/main.js",
     ] {
-        let answer = bench.get(public).send().await.unwrap();
+        let answer = bench.get(public).answer().await;
         assert_eq!(answer.status(), StatusCode::OK, "{public}");
     }
     for closed in [
@@ -116,14 +116,10 @@ async fn keys_are_needed_as_soon_as_there_is_one() {
         "/metrics",
         "/v1/jobs/x/results",
     ] {
-        let answer = bench.get(closed).send().await.unwrap();
+        let answer = bench.get(closed).answer().await;
         assert_eq!(answer.status(), StatusCode::UNAUTHORIZED, "{closed}");
     }
-    let validate = bench
-        .post("/v1/validate", &submission(1.0))
-        .send()
-        .await
-        .unwrap();
+    let validate = bench.post("/v1/validate", &submission(1.0)).answer().await;
     assert_eq!(validate.status(), StatusCode::UNAUTHORIZED);
 }
 
@@ -138,27 +134,21 @@ async fn a_key_that_is_revoked_opens_nothing_from_that_moment_on() {
     store.close().await;
     problem(get(&bench, "/v1/jobs", &key).await, 401, "unauthorized").await;
     // The last key that goes does not open the door to everybody.
-    problem(
-        bench.get("/v1/jobs").send().await.unwrap(),
-        401,
-        "unauthorized",
-    )
-    .await;
+    problem(bench.get("/v1/jobs").answer().await, 401, "unauthorized").await;
 }
 
 #[tokio::test]
 async fn a_client_sees_and_touches_only_its_own() {
     let bench = Bench::quick().await;
     let (mine, other) = (key_of(&bench, "a").await, key_of(&bench, "b").await);
-    let job: Value = submit(&bench, &mine, 1.0).await.json().await.unwrap();
+    let job = submit(&bench, &mine, 1.0).await.document().await;
     let study = json!({ "base": submission(1.0), "axes": [{ "path": "/output_torques_n_m/0", "values": [1, 2] }] });
     let study = bench
         .post("/v1/studies", &study)
         .bearer_auth(&mine)
-        .send()
-        .await
-        .unwrap();
-    let study: Value = study.json().await.unwrap();
+        .answer()
+        .await;
+    let study = study.document().await;
     let links = |document: &Value| -> Vec<String> {
         let links = document["links"].as_object().unwrap();
         links
@@ -171,14 +161,13 @@ async fn a_client_sees_and_touches_only_its_own() {
             bench
                 .post(&link, &json!({}))
                 .bearer_auth(&other)
-                .send()
+                .answer()
                 .await
-                .unwrap()
         } else {
             get(&bench, &link, &other).await
         };
         if link.contains('?') {
-            let list: Value = answer.json().await.unwrap();
+            let list = answer.document().await;
             assert_eq!(list["items"], json!([]), "{link}");
         } else {
             assert_eq!(answer.status(), StatusCode::NOT_FOUND, "{link}");
@@ -189,19 +178,18 @@ async fn a_client_sees_and_touches_only_its_own() {
         .client
         .delete(bench.url(&own))
         .bearer_auth(&other)
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     problem(deleted, 404, "job_not_found").await;
     // An equal submission of another client is computed for it, and tells nothing of the first.
-    let theirs: Value = submit(&bench, &other, 1.0).await.json().await.unwrap();
+    let theirs = submit(&bench, &other, 1.0).await.document().await;
     assert!(theirs["links"].get("same_as").is_none());
     for list in [
         "/v1/jobs?status=accepted,running,successful",
         "/v1/jobs",
         "/v1/studies",
     ] {
-        let list: Value = get(&bench, list, &other).await.json().await.unwrap();
+        let list = get(&bench, list, &other).await.document().await;
         let ids: Vec<&Value> = list["items"]
             .as_array()
             .unwrap()
@@ -218,21 +206,20 @@ async fn a_reader_looks_and_changes_nothing_and_numbers_are_for_operators() {
     let client = key_of(&bench, "portal").await;
     let reader = make_key(&bench, "portal", Role::Reader, |_| {}).await;
     let operator = make_key(&bench, "portal", Role::Operator, |_| {}).await;
-    let job: Value = submit(&bench, &client, 1.0).await.json().await.unwrap();
+    let job = submit(&bench, &client, 1.0).await.document().await;
     let path = job["links"]["self"].as_str().unwrap();
     assert_eq!(get(&bench, path, &reader).await.status(), StatusCode::OK);
     let validate = bench
         .post("/v1/validate", &submission(1.0))
         .bearer_auth(&reader);
-    assert_eq!(validate.send().await.unwrap().status(), StatusCode::OK);
+    assert_eq!(validate.answer().await.status(), StatusCode::OK);
     problem(submit(&bench, &reader, 2.0).await, 403, "forbidden").await;
     let deleted = bench
         .client
         .delete(bench.url(path))
         .bearer_auth(&reader)
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     problem(deleted, 403, "forbidden").await;
     for key in [&client, &reader] {
         problem(get(&bench, "/metrics", key).await, 403, "forbidden").await;
@@ -297,14 +284,7 @@ async fn a_client_fills_its_part_of_the_queue_and_not_that_of_others() {
 #[tokio::test]
 async fn a_foreign_name_of_the_service_is_refused() {
     let bench = Bench::quick().await;
-    let ask = async |host: &str| {
-        bench
-            .get("/v1/jobs")
-            .header("host", host)
-            .send()
-            .await
-            .unwrap()
-    };
+    let ask = async |host: &str| bench.get("/v1/jobs").header("host", host).answer().await;
     for host in ["localhost", "127.0.0.1:1", "[::1]:80"] {
         assert_eq!(ask(host).await.status(), StatusCode::OK, "{host}");
     }
@@ -316,22 +296,15 @@ async fn without_a_key_nobody_beyond_this_machine_gets_in() {
     let (bench, _engine) =
         Bench::steered_with(|config| config.listen = "0.0.0.0:0".parse().unwrap()).await;
     let base = bench.base.replace("0.0.0.0", "127.0.0.1");
-    let answer = bench
-        .client
-        .get(format!("{base}/v1/jobs"))
-        .send()
-        .await
-        .unwrap();
+    let answer = bench.client.get(format!("{base}/v1/jobs")).answer().await;
     problem(answer, 401, "unauthorized").await;
-    let document: Value = bench
+    let document = bench
         .client
         .get(format!("{base}/openapi.json"))
-        .send()
+        .answer()
         .await
-        .unwrap()
-        .json()
-        .await
-        .unwrap();
+        .document()
+        .await;
     assert_eq!(document["security"], json!([{ "key": [] }]));
 }
 
@@ -343,9 +316,8 @@ async fn answers_say_what_browsers_may_not_do_and_under_what_name_they_are_logge
         .get("/v1/jobs")
         .header("x-request-id", "portal-7")
         .header("traceparent", parent)
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     let header = |name: &str| answer.headers()[name].to_str().unwrap().to_owned();
     assert_eq!(header("x-content-type-options"), "nosniff");
     assert_eq!(header("x-frame-options"), "DENY");
@@ -357,9 +329,8 @@ async fn answers_say_what_browsers_may_not_do_and_under_what_name_they_are_logge
     let odd = bench
         .get("/v1/jobs")
         .header("x-request-id", "a b\" c")
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     assert_ne!(odd.headers()["x-request-id"], "a b\" c");
 }
 
@@ -369,32 +340,17 @@ async fn numbers_and_health_may_have_a_listener_of_their_own() {
         config.door.metrics_listen = Some("127.0.0.1:0".parse().unwrap());
     })
     .await;
-    problem(
-        bench.get("/metrics").send().await.unwrap(),
-        404,
-        "not_found",
-    )
-    .await;
+    problem(bench.get("/metrics").answer().await, 404, "not_found").await;
     let base = format!("http://{}", bench.service().metrics_address().unwrap());
     for path in ["/metrics", "/health/live", "/health/ready"] {
-        let answer = bench
-            .client
-            .get(format!("{base}{path}"))
-            .send()
-            .await
-            .unwrap();
+        let answer = bench.client.get(format!("{base}{path}")).answer().await;
         assert_eq!(answer.status(), StatusCode::OK, "{path}");
         // Nobody needs a key there: a page of a foreign name that leads there must not read it.
         let foreign = bench.client.get(format!("{base}{path}"));
-        let foreign = foreign.header("host", "evil.example").send().await.unwrap();
+        let foreign = foreign.header("host", "evil.example").answer().await;
         problem(foreign, 421, "host_not_allowed").await;
     }
-    let answer = bench
-        .client
-        .get(format!("{base}/v1/jobs"))
-        .send()
-        .await
-        .unwrap();
+    let answer = bench.client.get(format!("{base}/v1/jobs")).answer().await;
     assert_eq!(answer.status(), StatusCode::NOT_FOUND);
 }
 
@@ -403,7 +359,7 @@ async fn behind_a_proxy_or_under_a_public_name_a_key_is_needed_though_it_listens
     let bench = Bench::quick().await;
     let ask = async |header: &str| {
         let request = bench.get("/v1/jobs").header(header, "for=192.0.2.7");
-        request.send().await.unwrap()
+        request.answer().await
     };
     assert_eq!(ask("accept").await.status(), StatusCode::OK);
     for header in [
@@ -417,11 +373,7 @@ async fn behind_a_proxy_or_under_a_public_name_a_key_is_needed_though_it_listens
     }
     let key = key_of(&bench, "portal").await;
     let known = bench.get("/v1/jobs").bearer_auth(&key);
-    let known = known
-        .header("x-forwarded-for", "192.0.2.7")
-        .send()
-        .await
-        .unwrap();
+    let known = known.header("x-forwarded-for", "192.0.2.7").answer().await;
     assert_eq!(known.status(), StatusCode::OK);
 
     for (keys, status) in [
@@ -437,9 +389,8 @@ async fn behind_a_proxy_or_under_a_public_name_a_key_is_needed_though_it_listens
         let answer = named
             .get("/v1/jobs")
             .header("host", "gears.example")
-            .send()
-            .await
-            .unwrap();
+            .answer()
+            .await;
         assert_eq!(answer.status(), status, "{keys:?}");
     }
 }
@@ -452,7 +403,7 @@ async fn a_stream_ends_with_its_key() {
     let path = taken.headers()["location"].to_str().unwrap().to_owned();
     let _work = engine.next().await;
     let stream = bench.get(&format!("{path}/events")).bearer_auth(&key);
-    let mut stream = stream.send().await.unwrap();
+    let mut stream = stream.answer().await;
     assert!(stream.chunk().await.unwrap().is_some());
     let store = Store::open(&bench.config.database).await.unwrap();
     let id = key.split('_').nth(1).unwrap();
@@ -475,7 +426,7 @@ async fn who_waits_gets_no_results_once_its_key_is_revoked() {
     assert!(store.revoke_key(id, jiff::Timestamp::now()).await.unwrap());
     store.close().await;
     work.finish();
-    let answer: Value = waiting.await.unwrap().unwrap().json().await.unwrap();
+    let answer = waiting.await.unwrap().unwrap().document().await;
     assert_eq!(answer["status"], "successful");
     assert!(answer["results"].is_null(), "{answer}");
 }
@@ -491,7 +442,7 @@ async fn those_without_a_key_are_refused_when_they_ask_too_often_and_those_with_
     assert_eq!(get(&bench, "/v1/jobs", &key).await.status(), StatusCode::OK);
     let mut refused = None;
     for _ in 0..100 {
-        let answer = bench.get("/web/main.js").send().await.unwrap();
+        let answer = bench.get("/web/main.js").answer().await;
         if answer.status() != StatusCode::OK {
             refused = Some(answer);
             break;
@@ -504,7 +455,7 @@ async fn those_without_a_key_are_refused_when_they_ask_too_often_and_those_with_
     for _ in 0..100 {
         assert_eq!(get(&bench, "/v1/jobs", &key).await.status(), StatusCode::OK);
         assert_eq!(
-            bench.get("/health/ready").send().await.unwrap().status(),
+            bench.get("/health/ready").answer().await.status(),
             StatusCode::OK
         );
     }
@@ -524,7 +475,7 @@ async fn a_key_opens_until_it_expires() {
     bench.start_again().await;
     problem(get(&bench, "/v1/jobs", &key).await, 401, "unauthorized").await;
     // It was made, so that the door does not open to everybody.
-    let without = bench.get("/v1/jobs").send().await.unwrap();
+    let without = bench.get("/v1/jobs").answer().await;
     problem(without, 401, "unauthorized").await;
 }
 
@@ -567,7 +518,7 @@ async fn the_log_says_which_key_did_what_and_not_its_secret() {
     let answer = reqwest::Client::new()
         .delete(format!("{base}/v1/webhooks/no-id"))
         .bearer_auth(key);
-    assert!(answer.send().await.unwrap().status().is_client_error());
+    assert!(answer.answer().await.status().is_client_error());
     service.kill().unwrap();
     service.wait().unwrap();
     let log = std::fs::read_to_string(folder.path().join("log")).unwrap();

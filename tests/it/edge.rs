@@ -10,7 +10,7 @@ use meshwright::wire::Code;
 use reqwest::{Method, StatusCode};
 use serde_json::Value;
 
-use crate::bench::{Bench, RESULTS, submission};
+use crate::bench::{Asked, Bench, RESULTS, Said, submission};
 
 #[tokio::test]
 async fn every_link_bears_the_public_address() {
@@ -21,14 +21,10 @@ async fn every_link_bears_the_public_address() {
         config.door.keys = Some(KeysRule::None);
     })
     .await;
-    let response = bench
-        .post("/v1/jobs", &submission(1.0))
-        .send()
-        .await
-        .unwrap();
+    let response = bench.post("/v1/jobs", &submission(1.0)).answer().await;
     let location = response.headers()["location"].to_str().unwrap().to_owned();
     let path = location.strip_prefix(public).unwrap();
-    let job: Value = response.json().await.unwrap();
+    let job = response.document().await;
     for link in ["self", "results", "events", "cancel"] {
         assert!(
             job["links"][link]
@@ -67,9 +63,8 @@ async fn pages_of_the_given_origins_may_call() {
             .header("access-control-request-method", "POST");
         preflight
             .header("access-control-request-headers", "idempotency-key,prefer")
-            .send()
+            .answer()
             .await
-            .unwrap()
     };
     let answer = ask(origin).await;
     assert_eq!(answer.status(), StatusCode::OK);
@@ -90,9 +85,8 @@ async fn pages_of_the_given_origins_may_call() {
     let refused = bench
         .get("/v1/jobs/1")
         .header("origin", origin)
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     assert_eq!(
         refused.headers()["access-control-allow-origin"],
         origin,
@@ -112,11 +106,10 @@ async fn answers_bear_the_request_id_and_are_packed_for_who_asks() {
     let response = bench
         .get("/health/live")
         .header("x-request-id", "portal-7")
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     assert_eq!(response.headers()["x-request-id"], "portal-7");
-    let response = bench.get("/nowhere").send().await.unwrap();
+    let response = bench.get("/nowhere").answer().await;
     assert_eq!(response.headers()["x-request-id"].len(), 36);
 
     let path = bench.submit(&submission(1.0)).await;
@@ -124,9 +117,8 @@ async fn answers_bear_the_request_id_and_are_packed_for_who_asks() {
     let results = bench
         .get(&format!("{path}/results"))
         .header("accept-encoding", "gzip")
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     assert_eq!(results.headers()["content-encoding"], "gzip");
     assert!(results.bytes().await.unwrap().len() < RESULTS.len());
 }
@@ -134,22 +126,14 @@ async fn answers_bear_the_request_id_and_are_packed_for_who_asks() {
 #[tokio::test]
 async fn every_problem_has_its_page() {
     let bench = Bench::quick().await;
-    let index = bench
-        .get("/problems")
-        .send()
-        .await
-        .unwrap()
-        .text()
-        .await
-        .unwrap();
+    let index = bench.get("/problems").answer().await.body().await;
     for code in Code::ALL {
         let page = bench
             .get(&format!("/problems/{}", code.slug()))
-            .send()
-            .await
-            .unwrap();
+            .answer()
+            .await;
         assert_eq!(page.status(), StatusCode::OK);
-        assert!(page.text().await.unwrap().contains(code.explanation()));
+        assert!(page.body().await.contains(code.explanation()));
         assert!(index.contains(code.slug()));
     }
 }
@@ -157,17 +141,15 @@ async fn every_problem_has_its_page() {
 #[tokio::test]
 async fn the_documentation_needs_nothing_from_elsewhere() {
     let bench = Bench::quick().await;
-    let page = bench.get("/docs/").send().await.unwrap();
+    let page = bench.get("/docs/").answer().await;
     assert_eq!(page.status(), StatusCode::OK);
-    assert!(!page.text().await.unwrap().contains("://"));
+    assert!(!page.body().await.contains("://"));
     let script = bench
         .get("/docs/swagger-initializer.js")
-        .send()
+        .answer()
         .await
-        .unwrap()
-        .text()
-        .await
-        .unwrap();
+        .body()
+        .await;
     assert!(
         script.contains("../openapi.json") && script.contains("\"validatorUrl\": \"none\""),
         "{script}"
@@ -211,30 +193,16 @@ async fn the_documentation_needs_nothing_from_elsewhere() {
 async fn the_service_tells_its_health_and_numbers() {
     let bench = Bench::quick().await;
     assert_eq!(
-        bench
-            .get("/health/live")
-            .send()
-            .await
-            .unwrap()
-            .text()
-            .await
-            .unwrap(),
+        bench.get("/health/live").answer().await.body().await,
         "alive"
     );
-    let ready = bench.get("/health/ready").send().await.unwrap();
+    let ready = bench.get("/health/ready").answer().await;
     assert_eq!(ready.status(), StatusCode::OK);
-    assert_eq!(ready.json::<Value>().await.unwrap()["workers"], 1);
+    assert_eq!(ready.document().await["workers"], 1);
 
     let path = bench.submit(&submission(1.0)).await;
     bench.ended(&path).await;
-    let numbers = bench
-        .get("/metrics")
-        .send()
-        .await
-        .unwrap()
-        .text()
-        .await
-        .unwrap();
+    let numbers = bench.get("/metrics").answer().await.body().await;
     for name in [
         "meshwright_jobs_waiting",
         "meshwright_jobs_running",
@@ -264,14 +232,12 @@ async fn what_can_be_known_without_a_job_is_told() {
         );
     }
     assert!(bench.document("/v1/limits").await.is_object());
-    let valid: Value = bench
+    let valid = bench
         .post("/v1/validate", &submission(115.0))
-        .send()
+        .answer()
         .await
-        .unwrap()
-        .json()
-        .await
-        .unwrap();
+        .document()
+        .await;
     assert_eq!(valid["valid"], true);
     let list: Value = bench.document("/v1/jobs").await;
     assert_eq!(list["items"].as_array().unwrap().len(), 0);
@@ -292,7 +258,7 @@ async fn the_date_of_an_answer_follows_a_clock_that_is_set_back() {
     ] {
         hand.store(second, Ordering::Relaxed);
         for path in ["/health/live", "/v1/jobs", "/nowhere"] {
-            let answer = bench.get(path).send().await.unwrap();
+            let answer = bench.get(path).answer().await;
             assert_eq!(answer.headers()["date"], date, "{path}");
         }
     }
@@ -309,23 +275,17 @@ async fn files_of_the_page_and_of_the_documentation_come_packed_as_they_were_bui
         "/openapi.json",
         "/v1/examples",
     ] {
-        let plain = bench.get(path).send().await.unwrap();
+        let plain = bench.get(path).answer().await;
         assert_eq!(plain.headers().get("content-encoding"), None);
         let tag = plain.headers()["etag"].clone();
-        let known = bench
-            .get(path)
-            .header("if-none-match", &tag)
-            .send()
-            .await
-            .unwrap();
+        let known = bench.get(path).header("if-none-match", &tag).answer().await;
         assert_eq!(known.status(), StatusCode::NOT_MODIFIED, "{path}");
         let plain = plain.bytes().await.unwrap();
         let packed = bench
             .get(path)
             .header("accept-encoding", "gzip")
-            .send()
-            .await
-            .unwrap();
+            .answer()
+            .await;
         assert_eq!(packed.headers()["content-encoding"], "gzip", "{path}");
         assert_eq!(packed.headers()["vary"], "accept-encoding", "{path}");
         // Another form is another thing, as long as the tag is a strong one.

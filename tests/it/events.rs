@@ -1,8 +1,6 @@
 //! The stream of a job's events.
 
-use serde_json::Value;
-
-use crate::bench::{Bench, Events, submission};
+use crate::bench::{Asked, Bench, Events, Said, submission};
 
 impl Events {
     async fn status(&mut self) -> String {
@@ -66,9 +64,8 @@ async fn a_stream_tells_of_a_cancel() {
     bench
         .client
         .post(bench.url(&format!("{path}/cancel")))
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     loop {
         let (name, data) = events.next().await.unwrap();
         if name == "status" {
@@ -92,7 +89,7 @@ async fn a_shutdown_ends_the_stream_and_who_waits_is_answered() {
     bench.job(&path).await;
     bench.shut_down().await;
     while events.next().await.is_some() {}
-    let answer: Value = waiting.await.unwrap().unwrap().json().await.unwrap();
+    let answer = waiting.await.unwrap().unwrap().document().await;
     assert!(["running", "accepted"].contains(&answer["status"].as_str().unwrap()));
     work.stopped().await;
 }

@@ -19,6 +19,7 @@ use tokio::net::tcp::{OwnedReadHalf, OwnedWriteHalf};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{Mutex, watch};
 
+use crate::bench::{Asked, Said};
 use crate::process::Process;
 use crate::submitters::{Bases, Submitters};
 use crate::{server, stores};
@@ -454,7 +455,7 @@ async fn a_study_of_twenty_thousand_designs_through_two_processes() {
         .client
         .get(format!("{}{path}/results/table.csv", api.base))
         .timeout(Duration::from_secs(120));
-    let table = table.send().await.unwrap().text().await.unwrap();
+    let table = table.answer().await.body().await;
     assert_eq!(table.lines().count(), 20_001);
     println!(
         "20,000 designs taken after {taken:?}, done in {seconds:.1} s, {:.1} a second; the table of {} kB took {:?}; {} bytes a design; peak memory of workers {:?} MB, of the one that answers {:?} MB; shares {:?}",
@@ -615,9 +616,9 @@ async fn a_worker_cut_off_from_the_server_gives_up_its_job_and_works_again_when_
     long["output_torques_n_m"] = (0..20).map(|i| json!(50.0 + f64::from(i))).collect();
     long["resolution"] = json!({ "grid": "fine", "positions_per_mesh_period": 150, "contact_solver": "augmented_lagrangian" });
     let url = format!("{}/v1/jobs", fleet.apis[0].base);
-    let taken = fleet.client.post(&url).json(&long).send().await.unwrap();
+    let taken = fleet.client.post(&url).json(&long).answer().await;
     assert_eq!(taken.status(), 202);
-    let taken: Value = taken.json().await.unwrap();
+    let taken = taken.document().await;
     fleet
         .until(
             "select count(*) from jobs where status = 'running' and attempt = 1",
@@ -639,7 +640,7 @@ async fn a_worker_cut_off_from_the_server_gives_up_its_job_and_works_again_when_
     let cancelled = fleet
         .client
         .post(format!("{url}/{}/cancel", taken["id"].as_str().unwrap()));
-    assert!(cancelled.send().await.unwrap().status().is_success());
+    assert!(cancelled.answer().await.status().is_success());
     // What it reports late changes nothing, and what comes now has nobody else.
     fleet.workers.remove(0).kill();
     way.open.send(true).unwrap();

@@ -12,7 +12,7 @@ use tokio::io::AsyncWriteExt;
 use tokio::net::{TcpSocket, TcpStream};
 use tokio::task::JoinSet;
 
-use crate::bench::{Bench, PATIENCE, results};
+use crate::bench::{Asked, Bench, PATIENCE, results};
 use crate::process::Process;
 use crate::stores;
 
@@ -82,7 +82,7 @@ async fn eighty_sockets_that_take_nothing_lock_nobody_out_of_sixty_four_places()
     let ask = async || {
         let request = bench.get("/v1/jobs").bearer_auth(&key);
         // Each on a connection of its own, which has to find a place.
-        request.header("connection", "close").send().await.unwrap()
+        request.header("connection", "close").answer().await
     };
     // From here on the service knows that there are keys, and this one.
     assert_eq!(ask().await.status(), 200);

@@ -8,7 +8,7 @@ use meshwright::jobs::Place;
 use reqwest::Client;
 use rustix::process::{Pid, Signal, kill_process};
 
-use crate::bench::submission;
+use crate::bench::{Asked, submission};
 use crate::process::Process;
 use crate::server;
 
@@ -42,7 +42,7 @@ fn signal(folder: &str, signal: Signal) {
 
 async fn ready(client: &Client, process: &Process) -> u16 {
     let url = format!("{}/health/ready", process.base);
-    client.get(url).send().await.unwrap().status().as_u16()
+    client.get(url).answer().await.status().as_u16()
 }
 
 /// Comes back when ready says `status`. Gives back how long that took.
@@ -64,7 +64,7 @@ async fn ask(client: &Client, process: &Process, torque: f64) -> [(u16, Duration
     ];
     let answer = async |request: reqwest::RequestBuilder| {
         let start = Instant::now();
-        let answer = request.send().await.unwrap();
+        let answer = request.answer().await;
         (answer.status().as_u16(), start.elapsed())
     };
     let [look, submit] = asked;
@@ -154,6 +154,6 @@ async fn a_server_that_answers_nothing_holds_up_no_request_and_no_end() {
     }
     // What was refused was not taken, and what is taken now is.
     let taken = client.post(format!("{}/v1/jobs", process.base));
-    let taken = taken.json(&submission(3.0)).send().await.unwrap();
+    let taken = taken.json(&submission(3.0)).answer().await;
     assert_eq!(taken.status(), 202);
 }

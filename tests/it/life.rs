@@ -8,20 +8,16 @@ use meshwright_engine::run::Run;
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
-use crate::bench::{Bench, RESULTS, problem, results, submission};
+use crate::bench::{Asked, Bench, RESULTS, Said, problem, results, submission};
 
 #[tokio::test]
 async fn a_job_goes_from_submission_over_progress_to_the_very_text_of_its_results() {
     let (bench, mut engine) = Bench::steered().await;
-    let response = bench
-        .post("/v1/jobs", &submission(115.0))
-        .send()
-        .await
-        .unwrap();
+    let response = bench.post("/v1/jobs", &submission(115.0)).answer().await;
     assert_eq!(response.status(), StatusCode::ACCEPTED);
     assert!(response.headers().contains_key("retry-after"));
     let path = response.headers()["location"].to_str().unwrap().to_owned();
-    let accepted: Value = response.json().await.unwrap();
+    let accepted = response.document().await;
     assert_eq!(
         path,
         format!("/v1/jobs/{}", accepted["id"].as_str().unwrap())
@@ -36,7 +32,7 @@ async fn a_job_goes_from_submission_over_progress_to_the_very_text_of_its_result
     assert_eq!(accepted["links"]["results"], format!("{path}/results"));
 
     let work = engine.next().await;
-    let not_ready = bench.get(&format!("{path}/results")).send().await.unwrap();
+    let not_ready = bench.get(&format!("{path}/results")).answer().await;
     assert!(not_ready.headers().contains_key("retry-after"));
     problem(not_ready, 404, "result_not_ready").await;
 
@@ -58,9 +54,9 @@ async fn a_job_goes_from_submission_over_progress_to_the_very_text_of_its_result
     );
     assert!(ended["wall_time_seconds"].as_f64().unwrap() >= 0.0);
 
-    let results = bench.get(&format!("{path}/results")).send().await.unwrap();
+    let results = bench.get(&format!("{path}/results")).answer().await;
     assert_eq!(results.status(), StatusCode::OK);
-    assert_eq!(results.text().await.unwrap(), RESULTS);
+    assert_eq!(results.body().await, RESULTS);
 }
 
 #[tokio::test]
@@ -73,15 +69,14 @@ async fn what_has_not_changed_is_not_sent_again() {
         format!("{path}/results"),
         format!("{path}/results/ste.csv"),
     ] {
-        let first = bench.get(&path).send().await.unwrap();
+        let first = bench.get(&path).answer().await;
         let tag = first.headers()["etag"].clone();
         assert!(tag.to_str().unwrap().starts_with('"'), "a strong tag");
         let again = bench
             .get(&path)
             .header("if-none-match", &tag)
-            .send()
-            .await
-            .unwrap();
+            .answer()
+            .await;
         assert_eq!(
             (again.status(), &again.headers()["etag"]),
             (StatusCode::NOT_MODIFIED, &tag)
@@ -89,9 +84,8 @@ async fn what_has_not_changed_is_not_sent_again() {
         let other = bench
             .get(&path)
             .header("if-none-match", "\"other\"")
-            .send()
-            .await
-            .unwrap();
+            .answer()
+            .await;
         assert_eq!(other.status(), StatusCode::OK);
     }
 }
@@ -111,7 +105,7 @@ async fn a_failed_job_carries_its_problem_and_has_no_results() {
     );
     assert_eq!(job["problem"]["detail"], "position 7");
     let results = problem(
-        bench.get(&format!("{path}/results")).send().await.unwrap(),
+        bench.get(&format!("{path}/results")).answer().await,
         409,
         "job_failed",
     )
@@ -147,11 +141,10 @@ async fn a_waiting_job_that_is_cancelled_is_never_computed() {
     let response = bench
         .client
         .post(bench.url(&format!("{second}/cancel")))
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     assert_eq!(response.status(), StatusCode::ACCEPTED);
-    let dismissed: Value = response.json().await.unwrap();
+    let dismissed = response.document().await;
     assert_eq!(dismissed["status"], "dismissed");
     assert!(dismissed["links"].get("cancel").is_none());
 
@@ -161,11 +154,7 @@ async fn a_waiting_job_that_is_cancelled_is_never_computed() {
     assert_eq!(bench.ended(&third).await["status"], "successful");
     assert!(engine.is_idle());
     problem(
-        bench
-            .get(&format!("{second}/results"))
-            .send()
-            .await
-            .unwrap(),
+        bench.get(&format!("{second}/results")).answer().await,
         409,
         "job_dismissed",
     )
@@ -184,9 +173,8 @@ async fn a_running_job_that_is_cancelled_stops_and_frees_its_worker() {
         let response = bench
             .client
             .post(bench.url(&format!("{first}/cancel")))
-            .send()
-            .await
-            .unwrap();
+            .answer()
+            .await;
         assert_eq!(
             response.status(),
             StatusCode::ACCEPTED,
@@ -201,9 +189,8 @@ async fn a_running_job_that_is_cancelled_stops_and_frees_its_worker() {
     let response = bench
         .client
         .post(bench.url(&format!("{second}/cancel")))
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     problem(response, 409, "job_finished").await;
 }
 
@@ -212,7 +199,7 @@ async fn a_job_is_deleted_unless_it_runs() {
     let (bench, mut engine) = Bench::steered().await;
     let path = bench.submit(&submission(1.0)).await;
     let work = engine.next().await;
-    let delete = async || bench.client.delete(bench.url(&path)).send().await.unwrap();
+    let delete = async || bench.client.delete(bench.url(&path)).answer().await;
     problem(delete().await, 409, "job_running").await;
     work.finish();
     bench.ended(&path).await;
@@ -223,7 +210,7 @@ async fn a_job_is_deleted_unless_it_runs() {
         format!("{path}/results"),
         format!("{path}/events"),
     ] {
-        problem(bench.get(&path).send().await.unwrap(), 404, "job_not_found").await;
+        problem(bench.get(&path).answer().await, 404, "job_not_found").await;
     }
 }
 
@@ -240,7 +227,7 @@ async fn who_prefers_to_wait_gets_the_job_with_its_results_inside() {
     assert_eq!(response.status(), StatusCode::OK);
     assert_eq!(response.headers()["preference-applied"], "wait=15");
     let path = response.headers()["location"].to_str().unwrap().to_owned();
-    let job: Value = response.json().await.unwrap();
+    let job = response.document().await;
     assert_eq!(job["status"], "successful");
     assert!(path.ends_with(job["id"].as_str().unwrap()));
     assert_eq!(
@@ -264,7 +251,7 @@ async fn a_job_that_was_created_is_answered_with_even_if_it_fails_or_is_cancelle
     });
     let response = response.unwrap();
     assert_eq!(response.status(), StatusCode::OK);
-    let job: Value = response.json().await.unwrap();
+    let job = response.document().await;
     assert_eq!(
         (&job["status"], &job["problem"]["code"]),
         (&json!("failed"), &json!("not_converged"))
@@ -278,13 +265,13 @@ async fn a_job_that_was_created_is_answered_with_even_if_it_fails_or_is_cancelle
             "/v1/jobs/{}/cancel",
             jobs["items"][0]["id"].as_str().unwrap()
         );
-        let cancelled = bench.client.post(bench.url(&path)).send().await.unwrap();
+        let cancelled = bench.client.post(bench.url(&path)).answer().await;
         assert_eq!(cancelled.status(), StatusCode::ACCEPTED);
         work.stopped().await;
     });
     let response = response.unwrap();
     assert_eq!(response.status(), StatusCode::OK);
-    let job: Value = response.json().await.unwrap();
+    let job = response.document().await;
     assert_eq!(
         (&job["status"], job.get("results")),
         (&json!("dismissed"), None)
@@ -297,19 +284,13 @@ async fn who_waits_in_vain_gets_the_job() {
     let response = bench
         .post("/v1/jobs", &submission(1.0))
         .header("prefer", "wait=0")
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     assert_eq!(response.status(), StatusCode::ACCEPTED);
     let path = response.headers()["location"].to_str().unwrap().to_owned();
     let work = engine.next().await;
-    let response = bench
-        .get(&path)
-        .header("prefer", "wait=0")
-        .send()
-        .await
-        .unwrap();
-    assert_eq!(response.json::<Value>().await.unwrap()["status"], "running");
+    let response = bench.get(&path).header("prefer", "wait=0").answer().await;
+    assert_eq!(response.document().await["status"], "running");
     work.finish();
     bench.ended(&path).await;
 }
@@ -350,7 +331,7 @@ async fn the_engine_gives_way_to_those_who_answer() {
     bench.ended(&path).await;
     let of_job = told.recv().await.unwrap();
     let preview = bench.post("/v1/preview", &submission(115.0));
-    assert_eq!(preview.send().await.unwrap().status(), 200);
+    assert_eq!(preview.answer().await.status(), 200);
     let of_preview = told.recv().await.unwrap();
     assert!(niceness() < of_preview && of_preview < of_job);
 }
@@ -369,7 +350,7 @@ async fn of_small_jobs_that_are_computed_together_each_has_its_own_end() {
     let torques: Vec<Value> = (1..=40).map(|torque| json!([torque])).collect();
     let study =
         json!({ "base": base, "axes": [{ "path": "/output_torques_n_m", "values": torques }] });
-    let taken = bench.post("/v1/studies", &study).send().await.unwrap();
+    let taken = bench.post("/v1/studies", &study).answer().await;
     let path = taken.headers()["location"].to_str().unwrap().to_owned();
     let study = bench.ended(&path).await;
     assert_eq!(

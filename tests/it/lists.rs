@@ -1,16 +1,16 @@
 //! Lists of jobs.
 
 use reqwest::Response;
-use serde_json::{Value, json};
+use serde_json::json;
 
-use crate::bench::{Bench, problem, submission};
+use crate::bench::{Asked, Bench, Said, problem, submission};
 
 async fn list(bench: &Bench, query: &str) -> Response {
-    bench.get(&format!("/v1/jobs{query}")).send().await.unwrap()
+    bench.get(&format!("/v1/jobs{query}")).answer().await
 }
 
 async fn ids(bench: &Bench, query: &str) -> Vec<String> {
-    let list: Value = list(bench, query).await.json().await.unwrap();
+    let list = list(bench, query).await.document().await;
     list["items"]
         .as_array()
         .unwrap()
@@ -36,7 +36,7 @@ async fn pages_hold_every_job_once_newest_first_also_when_new_ones_come() {
             .headers()
             .get("link")
             .map(|link| link.to_str().unwrap().to_owned());
-        let page: Value = response.json().await.unwrap();
+        let page = response.document().await;
         for job in page["items"].as_array().unwrap() {
             assert!(job.get("submission").is_none(), "a list is small");
             found.push(job["links"]["self"].as_str().unwrap().to_owned());
@@ -121,7 +121,7 @@ async fn a_text_with_a_character_nul_is_refused_by_either_store() {
         "/v1/studies?name=%00",
         "/v1/studies?tag=%00",
     ] {
-        let answer = bench.get(query).send().await.unwrap();
+        let answer = bench.get(query).answer().await;
         problem(answer, 400, "invalid_parameter").await;
     }
 }

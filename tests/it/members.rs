@@ -3,7 +3,7 @@
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
-use super::bench::{Bench, problem};
+use crate::bench::{Asked, Bench, Said, problem};
 
 /// Members of a small pair by the quick method: a varied field, and teeth of both gears.
 fn members(size: u32, sampling: &str) -> Value {
@@ -29,7 +29,7 @@ fn members(size: u32, sampling: &str) -> Value {
 }
 
 async fn begun(bench: &Bench, study: &Value) -> String {
-    let response = bench.post("/v1/studies", study).send().await.unwrap();
+    let response = bench.post("/v1/studies", study).answer().await;
     assert_eq!(response.status(), StatusCode::ACCEPTED);
     response.headers()["location"].to_str().unwrap().to_owned()
 }
@@ -126,17 +126,16 @@ async fn a_population_comes_to_what_its_table_says_whenever_it_is_asked() {
         // A new process tells the same, to the last digit.
         let before = bench
             .get(&format!("{path}/results/population"))
-            .send()
-            .await
-            .unwrap();
+            .answer()
+            .await;
         let tag = before.headers()["etag"].clone();
-        let text = before.text().await.unwrap();
+        let text = before.body().await;
         bench.shut_down().await;
         bench.start_again().await;
         let after = bench.get(&format!("{path}/results/population"));
-        assert_eq!(after.send().await.unwrap().text().await.unwrap(), text);
+        assert_eq!(after.answer().await.body().await, text);
         let known = bench.get(&format!("{path}/results/population"));
-        let known = known.header("if-none-match", tag).send().await.unwrap();
+        let known = known.header("if-none-match", tag).answer().await;
         assert_eq!(known.status(), StatusCode::NOT_MODIFIED);
     }
 }
@@ -167,11 +166,7 @@ async fn a_design_of_a_study_is_given_as_the_submission_that_its_job_computes() 
         assert_eq!(line["label"], format!("member {row}"));
     }
     for row in ["8", "-1", "first"] {
-        let response = bench
-            .get(&format!("{path}/designs/{row}"))
-            .send()
-            .await
-            .unwrap();
+        let response = bench.get(&format!("{path}/designs/{row}")).answer().await;
         problem(response, 404, "not_found").await;
     }
     // One that cannot be built is given as it was put together.
@@ -182,9 +177,8 @@ async fn a_design_of_a_study_is_given_as_the_submission_that_its_job_computes() 
     assert_eq!(design["pair"]["center_distance_mm"], 60);
     let none = bench
         .get(&format!("{path}/results/population"))
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     problem(none, 404, "not_found").await;
 }
 
@@ -225,9 +219,8 @@ async fn a_population_tells_what_is_there_while_it_runs_and_after_it_was_cancell
     );
     let cancelled = bench
         .post(&format!("{path}/cancel"), &json!({}))
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     assert_eq!(cancelled.status(), StatusCode::ACCEPTED);
     let kept = bench.job(&format!("{path}/results/population")).await;
     assert_eq!(
@@ -241,7 +234,7 @@ async fn a_population_that_cannot_be_drawn_is_refused_with_its_place() {
     let (bench, _engine) = Bench::steered().await;
     let mut study = members(40, "random");
     study["population"]["vary"][0]["mean"] = json!(41);
-    let response = bench.post("/v1/studies", &study).send().await.unwrap();
+    let response = bench.post("/v1/studies", &study).answer().await;
     let refused = problem(response, 422, "out_of_range").await;
     assert_eq!(refused["errors"][0]["pointer"], "/population/vary/0/mean");
     assert_eq!(refused["errors"][0]["nearest"], 40.3);

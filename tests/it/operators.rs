@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
-use crate::bench::{Bench, submission};
+use crate::bench::{Asked, Bench, Said, submission};
 
 const DASHBOARD: &str = include_str!("../../deploy/grafana/meshwright.json");
 const ALERTS: &str = include_str!("../../deploy/prometheus/alerts.yaml");
@@ -24,8 +24,8 @@ async fn every_number_of_the_dashboard_and_of_the_alerts_is_told() {
     bench.ended(&job).await;
     let preview = bench.post("/v1/preview", &submission(1.0)).send().await;
     assert!(preview.unwrap().status().is_success());
-    let told = bench.get("/metrics").send().await.unwrap();
-    let told = told.text().await.unwrap();
+    let told = bench.get("/metrics").answer().await;
+    let told = told.body().await;
     let told = names(&told);
 
     let dashboard: Value = serde_json::from_str(DASHBOARD).unwrap();

@@ -4,7 +4,7 @@ use meshwright::wire::examples;
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
-use crate::bench::{Bench, problem, submission};
+use crate::bench::{Asked, Bench, Said, problem, submission};
 
 fn example(name: &str) -> Value {
     let found = examples().iter().find(|example| example.name == name);
@@ -14,34 +14,30 @@ fn example(name: &str) -> Value {
 #[tokio::test]
 async fn the_guides_are_read_in_a_browser_where_a_warning_leads_to_them() {
     let bench = Bench::quick().await;
-    let list = bench.get("/guides").send().await.unwrap();
-    let text = list.text().await.unwrap();
+    let list = bench.get("/guides").answer().await;
+    let text = list.body().await;
     assert!(
         text.contains("href=\"guides/is-my-thin-web-all-right\""),
         "{text}"
     );
     let mut thin = example("web");
     thin["pair"]["driven"]["blank"]["web"]["thickness_mm"] = json!(7.2);
-    let answer = bench.post("/v1/validate", &thin).send().await.unwrap();
-    let checked: Value = answer.json().await.unwrap();
+    let answer = bench.post("/v1/validate", &thin).answer().await;
+    let checked = answer.document().await;
     let warnings = checked["warnings"].as_array().unwrap();
     let warning = warnings
         .iter()
         .find(|warning| warning["code"] == "web_outside_plane_model")
         .unwrap();
-    let guide = bench
-        .get(warning["guide"].as_str().unwrap())
-        .send()
-        .await
-        .unwrap();
+    let guide = bench.get(warning["guide"].as_str().unwrap()).answer().await;
     assert_eq!(guide.headers()["content-type"], "text/html; charset=utf-8");
     let policy = guide.headers()["content-security-policy"].to_str().unwrap();
     assert!(policy.contains("style-src 'self'"), "{policy}");
-    assert!(guide.text().await.unwrap().contains("plane stress"));
+    assert!(guide.body().await.contains("plane stress"));
     let figure = bench.get("/guides/figures/spacing-even.svg").send().await;
     assert_eq!(figure.unwrap().headers()["content-type"], "image/svg+xml");
     for absent in ["/guides/none", "/guides/figures/none.svg"] {
-        let answer = bench.get(absent).send().await.unwrap();
+        let answer = bench.get(absent).answer().await;
         assert_eq!(answer.status(), StatusCode::NOT_FOUND, "{absent}");
     }
 }
@@ -53,14 +49,14 @@ async fn teeth_are_drawn_by_the_law_of_their_class_and_taken_by_a_job() {
     let draw = async |class: u32| {
         let asked = json!({ "gear": pair["pair"]["driven"], "iso_1328_class": class, "seed": 7 });
         let answer = bench.post("/v1/draw-deviations", &asked);
-        answer.send().await.unwrap()
+        answer.answer().await
     };
-    let drawn: Value = draw(6).await.json().await.unwrap();
+    let drawn = draw(6).await.document().await;
     let teeth = &drawn["tooth_deviations"];
     assert_eq!(teeth["pitch_single_um"].as_array().unwrap().len(), 50);
     assert_eq!(teeth["profile_slope_um"].as_array().unwrap().len(), 50);
     // Two classes coarser, twice as far: the same numbers, scaled.
-    let coarse: Value = draw(8).await.json().await.unwrap();
+    let coarse = draw(8).await.document().await;
     let ratio = coarse["tooth_deviations"]["profile_slope_um"][3]
         .as_f64()
         .unwrap()
@@ -71,14 +67,14 @@ async fn teeth_are_drawn_by_the_law_of_their_class_and_taken_by_a_job() {
     let teeth = teeth.clone();
     pair["pair"]["driven"]["tooth_deviations"] = teeth;
     let checked = bench.post("/v1/validate", &pair).send().await;
-    let checked: Value = checked.unwrap().json().await.unwrap();
+    let checked = checked.unwrap().document().await;
     assert_eq!(checked["pair"]["period_mesh_periods"], 50);
 }
 
 #[tokio::test]
 async fn the_page_and_its_files_come_with_their_types_and_a_strict_policy() {
     let bench = Bench::quick().await;
-    let page = bench.get("/").send().await.unwrap();
+    let page = bench.get("/").answer().await;
     assert_eq!(page.headers()["content-type"], "text/html; charset=utf-8");
     let policy = page.headers()["content-security-policy"].to_str().unwrap();
     assert!(
@@ -86,19 +82,14 @@ async fn the_page_and_its_files_come_with_their_types_and_a_strict_policy() {
         "{policy}"
     );
     let tag = page.headers()["etag"].clone();
-    let again = bench
-        .get("/")
-        .header("if-none-match", &tag)
-        .send()
-        .await
-        .unwrap();
+    let again = bench.get("/").header("if-none-match", &tag).answer().await;
     assert_eq!(again.status(), StatusCode::NOT_MODIFIED);
 
-    let text = page.text().await.unwrap();
+    let text = page.body().await;
     let files = text.split('"').filter(|word| word.starts_with("web/"));
     let mut seen = 0;
     for file in files {
-        let answer = bench.get(&format!("/{file}")).send().await.unwrap();
+        let answer = bench.get(&format!("/{file}")).answer().await;
         assert_eq!(answer.status(), StatusCode::OK, "{file}");
         let media_type = answer.headers()["content-type"]
             .to_str()
@@ -119,7 +110,7 @@ async fn the_page_and_its_files_come_with_their_types_and_a_strict_policy() {
         "/web/../Cargo.toml",
         "/web/%2e%2e/Cargo.toml",
     ] {
-        let answer = bench.get(absent).send().await.unwrap();
+        let answer = bench.get(absent).answer().await;
         assert_eq!(answer.status(), StatusCode::NOT_FOUND, "{absent}");
     }
 }
@@ -128,14 +119,12 @@ async fn the_page_and_its_files_come_with_their_types_and_a_strict_policy() {
 async fn the_outline_of_a_pair_comes_as_numbers_or_as_a_drawing() {
     let bench = Bench::quick().await;
     let case_2 = example("test-case-2");
-    let outline: Value = bench
+    let outline = bench
         .post("/v1/outline", &case_2)
-        .send()
+        .answer()
         .await
-        .unwrap()
-        .json()
-        .await
-        .unwrap();
+        .document()
+        .await;
     assert_eq!(outline["driven"]["holes"].as_array().unwrap().len(), 10);
     assert_eq!(outline["driven"]["center_mm"], json!([100.5, 0.0]));
     assert_eq!(outline["driving"]["angle_per_mesh_period_deg"], 7.2);
@@ -149,15 +138,14 @@ async fn the_outline_of_a_pair_comes_as_numbers_or_as_a_drawing() {
     let request = bench
         .post("/v1/outline", &case_2)
         .header("accept", "image/svg+xml");
-    let picture = request.send().await.unwrap();
+    let picture = request.answer().await;
     assert_eq!(picture.headers()["content-type"], "image/svg+xml");
-    assert!(picture.text().await.unwrap().starts_with("<svg"));
+    assert!(picture.body().await.starts_with("<svg"));
 
     let bad = bench
         .post("/v1/outline", &example("bad-case-3-as-printed"))
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     problem(bad, 422, "teeth_do_not_reach").await;
 }
 
@@ -169,15 +157,14 @@ async fn pictures_and_look_up_tables_stand_beside_the_results() {
     for picture in ["ste", "mesh-stiffness", "load-share", "spectrum"] {
         let answer = bench
             .get(&format!("{path}/results/{picture}.svg"))
-            .send()
-            .await
-            .unwrap();
+            .answer()
+            .await;
         assert_eq!(
             answer.headers()["content-type"],
             "image/svg+xml",
             "{picture}"
         );
-        let text = answer.text().await.unwrap();
+        let text = answer.body().await;
         assert!(
             text.starts_with("<svg") && !text.contains("NaN"),
             "{picture}"
@@ -187,10 +174,9 @@ async fn pictures_and_look_up_tables_stand_beside_the_results() {
     let results: Value = bench.document(&format!("{path}/results")).await;
     let table = bench
         .get(&format!("{path}/results/look-up-table.csv"))
-        .send()
-        .await
-        .unwrap();
-    let text = table.text().await.unwrap();
+        .answer()
+        .await;
+    let text = table.body().await;
     let rows: Vec<Vec<f64>> = text
         .lines()
         .filter(|line| line.starts_with(|first: char| first.is_ascii_digit()))
@@ -219,9 +205,8 @@ async fn results_without_what_a_picture_shows_say_so() {
     ] {
         let answer = bench
             .get(&format!("{path}/results/{absent}"))
-            .send()
-            .await
-            .unwrap();
+            .answer()
+            .await;
         problem(answer, 404, "not_found").await;
     }
 }

@@ -7,6 +7,7 @@ use meshwright::jobs::Place;
 use reqwest::Client;
 use serde_json::{Value, json};
 
+use crate::bench::{Asked, Said};
 use crate::process::Process;
 use crate::{server, stores};
 
@@ -36,7 +37,7 @@ async fn text(process: &Process, client: &Client, path: &str) -> String {
     let response = client.get(format!("{}{path}", process.base)).send().await;
     let response = response.unwrap();
     assert_eq!(response.status(), 200, "{path}");
-    response.text().await.unwrap()
+    response.body().await
 }
 
 /// The jobs of a study, page after page.
@@ -89,7 +90,7 @@ async fn live_and_die(place: &Place, designs: u32) {
 
     let start = Instant::now();
     let cancel = client.post(format!("{}{path}/cancel", process.base));
-    let cancelled: Value = cancel.send().await.unwrap().json().await.unwrap();
+    let cancelled = cancel.answer().await.document().await;
     let cancel = start.elapsed();
     let count = |name: &str| cancelled[name].as_u64().unwrap();
     assert_eq!(cancelled["status"], "dismissed");

@@ -12,7 +12,7 @@ use tokio::sync::mpsc;
 use tokio::task::JoinHandle;
 use tokio_util::sync::CancellationToken;
 
-use crate::bench::{Bench, PATIENCE, RESULTS, problem, results, submission};
+use crate::bench::{Asked, Bench, PATIENCE, RESULTS, Said, problem, results, submission};
 use crate::stores;
 
 fn named(id: &str, torque: f64) -> Value {
@@ -24,12 +24,12 @@ fn named(id: &str, torque: f64) -> Value {
 /// Sends a preview without waiting for its answer.
 fn ask(bench: &Bench, preview: &Value) -> JoinHandle<Response> {
     let request = bench.post("/v1/preview", preview);
-    tokio::spawn(async move { request.send().await.unwrap() })
+    tokio::spawn(async move { request.answer().await })
 }
 
 async fn text(response: Response) -> String {
     assert_eq!(response.status(), StatusCode::OK);
-    response.text().await.unwrap()
+    response.body().await
 }
 
 /// An engine that obeys no stop: a computation ends when the test lets go of it.
@@ -64,7 +64,7 @@ async fn a_preview_is_the_document_of_a_job_to_the_last_digit_and_is_not_kept() 
     let mut preview = case.clone();
     preview["preview_id"] = "form 7".into();
 
-    let cold = bench.post("/v1/preview", &preview).send().await.unwrap();
+    let cold = bench.post("/v1/preview", &preview).answer().await;
     let headers = cold.headers().clone();
     assert_eq!(headers["content-type"], "application/json");
     assert_eq!(headers["cache-control"], "no-store");
@@ -77,7 +77,7 @@ async fn a_preview_is_the_document_of_a_job_to_the_last_digit_and_is_not_kept() 
     assert!(engine > 0.0);
     assert!(!headers.contains_key("etag") && !headers.contains_key("location"));
     let cold = text(cold).await;
-    let warm = text(bench.post("/v1/preview", &preview).send().await.unwrap()).await;
+    let warm = text(bench.post("/v1/preview", &preview).answer().await).await;
 
     for count in [
         "select count(*) from jobs",
@@ -87,13 +87,13 @@ async fn a_preview_is_the_document_of_a_job_to_the_last_digit_and_is_not_kept() 
         assert_eq!(rows, 0, "{count}");
     }
     let job = bench.post("/v1/jobs", &case).header("prefer", "wait=20");
-    let answer: Value = serde_json::from_str(&text(job.send().await.unwrap()).await).unwrap();
+    let answer: Value = serde_json::from_str(&text(job.answer().await).await).unwrap();
     let path = answer["links"]["results"].as_str().unwrap();
-    let job = text(bench.get(path).send().await.unwrap()).await;
+    let job = text(bench.get(path).answer().await).await;
     assert!(cold == job && warm == job);
 
-    let numbers = bench.get("/metrics").send().await.unwrap();
-    let numbers = numbers.text().await.unwrap();
+    let numbers = bench.get("/metrics").answer().await;
+    let numbers = numbers.body().await;
     for name in ["bytes", "capacity_bytes", "entries", "evictions_total"] {
         for shelf in [
             "teeth",
@@ -241,13 +241,13 @@ async fn unknown_fields_and_ids_that_are_none_are_refused_at_their_place() {
     ] {
         let mut preview = submission(1.0);
         preview["preview_id"] = id;
-        let refused = bench.post("/v1/preview", &preview).send().await.unwrap();
+        let refused = bench.post("/v1/preview", &preview).answer().await;
         let problem = problem(refused, 422, code).await;
         assert_eq!(problem["errors"][0]["pointer"], "/preview_id");
     }
     let mut preview = named("a", 1.0);
     preview["pair"]["driven"]["blank"]["hole"] = json!({});
-    let refused = bench.post("/v1/preview", &preview).send().await.unwrap();
+    let refused = bench.post("/v1/preview", &preview).answer().await;
     let unknown = problem(refused, 422, "unknown_field").await;
     assert_eq!(unknown["errors"][0]["pointer"], "/pair/driven/blank/hole");
     let refused = bench.post("/v1/jobs", &named("a", 1.0)).send();

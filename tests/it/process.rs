@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use meshwright::jobs::Place;
 
+use crate::bench::{Asked, Said};
 use crate::stores;
 
 /// A service in a process of its own.
@@ -91,22 +92,17 @@ impl Process {
     }
 
     pub(crate) async fn get(&self, client: &Client, path: &str) -> Value {
-        let response = client
-            .get(format!("{}{path}", self.base))
-            .send()
-            .await
-            .unwrap();
+        let response = client.get(format!("{}{path}", self.base)).answer().await;
         assert_eq!(response.status(), 200, "{path}");
-        response.json().await.unwrap()
+        response.document().await
     }
 
     pub(crate) async fn submit(&self, client: &Client, study: &Value) -> String {
         let response = client
             .post(format!("{}/v1/studies", self.base))
             .json(study)
-            .send()
-            .await
-            .unwrap();
+            .answer()
+            .await;
         assert_eq!(response.status(), 202);
         response.headers()["location"].to_str().unwrap().to_owned()
     }

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use reqwest::Client;
 use serde_json::{Value, json};
 
-use crate::bench::PATIENCE;
+use crate::bench::{Asked, PATIENCE, Said};
 use crate::flood::make_key;
 use crate::process::Process;
 use crate::stores;
@@ -32,7 +32,7 @@ async fn median(client: &Client, url: &str, key: &str, more: impl Fn(usize) -> b
     let mut taken = Vec::new();
     while more(taken.len()) {
         let start = Instant::now();
-        let answer = client.get(url).bearer_auth(key).send().await.unwrap();
+        let answer = client.get(url).bearer_auth(key).answer().await;
         assert_eq!(answer.status(), 200);
         answer.bytes().await.unwrap();
         taken.push(start.elapsed());
@@ -54,23 +54,13 @@ async fn who_reads_a_large_table_on_forty_connections_leaves_the_service_to_othe
     );
     let client = meshwright::client().timeout(15 * PATIENCE).build().unwrap();
     let made = client.post(format!("{}/v1/studies", process.base));
-    let made = made
-        .bearer_auth(&reader)
-        .json(&study())
-        .send()
-        .await
-        .unwrap();
+    let made = made.bearer_auth(&reader).json(&study()).answer().await;
     assert_eq!(made.status(), 202);
     let path = made.headers()["location"].to_str().unwrap().to_owned();
     let state = format!("{}{path}", process.base);
     loop {
-        let answer = client
-            .get(&state)
-            .bearer_auth(&reader)
-            .send()
-            .await
-            .unwrap();
-        let study: Value = answer.json().await.unwrap();
+        let answer = client.get(&state).bearer_auth(&reader).answer().await;
+        let study = answer.document().await;
         if study["done"] == ROWS {
             break;
         }
@@ -85,7 +75,7 @@ async fn who_reads_a_large_table_on_forty_connections_leaves_the_service_to_othe
             let request = client.get(format!("{state}/results/table.ndjson"));
             let request = request.bearer_auth(&reader);
             tokio::spawn(async move {
-                let table = request.send().await.unwrap().text().await.unwrap();
+                let table = request.answer().await.body().await;
                 table.lines().count() as u64
             })
         })

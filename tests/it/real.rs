@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::bench::Bench;
+use crate::bench::{Asked, Bench, Said};
 
 async fn post(bench: &Bench, json: String) -> (u16, Value) {
     let request = bench.client.post(format!("{}/v1/jobs", bench.base));
@@ -10,25 +10,22 @@ async fn post(bench: &Bench, json: String) -> (u16, Value) {
         .header("content-type", "application/json")
         .header("prefer", "wait=20")
         .body(json)
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     let status = answer.status().as_u16();
-    let mut body: Value = answer.json().await.unwrap();
+    let mut body = answer.document().await;
     let results = body.get_mut("results").map(Value::take);
     (status, results.unwrap_or(body))
 }
 
 async fn example(bench: &Bench, name: &str) -> Value {
-    let examples: Value = bench
+    let examples = bench
         .client
         .get(format!("{}/v1/examples", bench.base))
-        .send()
+        .answer()
         .await
-        .unwrap()
-        .json()
-        .await
-        .unwrap();
+        .document()
+        .await;
     let items = examples["items"]
         .as_array()
         .or(examples.as_array())
@@ -151,8 +148,8 @@ async fn a_run_up_comes_back_with_its_table_and_in_the_forms_of_other_programs()
     assert_eq!(job["status"], "successful", "{job}");
     // 200 positions of one torque, twice as many of eleven loads and of none, which takes no solution, on either flank: all of them done.
     assert_eq!(job["positions_total"], 200 + 2 * 400 * 11, "{job}");
-    let results = bench.get(&format!("{path}/results")).send().await.unwrap();
-    let results: Value = results.json().await.unwrap();
+    let results = bench.get(&format!("{path}/results")).answer().await;
+    let results = results.document().await;
 
     let table = &results["force_table"];
     let loads = numbers(&table["load_n"]);
@@ -223,22 +220,16 @@ async fn a_run_up_comes_back_with_its_table_and_in_the_forms_of_other_programs()
     let unseen = results["evidence"]["does_not_see"].to_string();
     assert!(unseen.contains("shafts, bearings, housing"), "{unseen}");
 
-    let get = async |file: &str| {
-        bench
-            .get(&format!("{path}/results/{file}"))
-            .send()
-            .await
-            .unwrap()
-    };
-    let run_up = get("run-up.csv").await.text().await.unwrap();
+    let get = async |file: &str| bench.get(&format!("{path}/results/{file}")).answer().await;
+    let run_up = get("run-up.csv").await.body().await;
     assert!(
         run_up.starts_with("output_torque_n_m,driving_speed_rpm,branch,rms_um,peak_to_peak_um,"),
         "{run_up}"
     );
     assert_eq!(run_up.lines().count(), 1 + 2 * 41);
-    let drawn = get("run-up.svg").await.text().await.unwrap();
+    let drawn = get("run-up.svg").await.body().await;
     assert!(drawn.starts_with("<svg") && drawn.contains("115 N m, down"));
-    let csv = get("force-table.csv").await.text().await.unwrap();
+    let csv = get("force-table.csv").await.body().await;
     assert_eq!(
         csv.lines().filter(|line| !line.starts_with('#')).count(),
         1 + 2 * 12 * 400
@@ -246,17 +237,15 @@ async fn a_run_up_comes_back_with_its_table_and_in_the_forms_of_other_programs()
     assert!(
         get("force-table.txt")
             .await
-            .text()
+            .body()
             .await
-            .unwrap()
             .starts_with("#1\n")
     );
     assert!(
         get("force-table.mo")
             .await
-            .text()
+            .body()
             .await
-            .unwrap()
             .contains("end MeshwrightMesh;")
     );
 
@@ -271,11 +260,7 @@ async fn a_run_up_comes_back_with_its_table_and_in_the_forms_of_other_programs()
         "run-up.csv",
         "run-up.svg",
     ] {
-        let answer = bench
-            .get(&format!("{plain}/results/{file}"))
-            .send()
-            .await
-            .unwrap();
+        let answer = bench.get(&format!("{plain}/results/{file}")).answer().await;
         assert_eq!(answer.status().as_u16(), 404, "{file}");
     }
 }

@@ -1,6 +1,6 @@
 //! The service ends in mid-job, in order or not, and starts again on the same database.
 
-use crate::bench::{Bench, submission};
+use crate::bench::{Asked, Bench, submission};
 
 #[tokio::test]
 async fn a_job_whose_process_died_runs_again() {
@@ -74,9 +74,8 @@ async fn jobs_and_results_outlive_the_process() {
     assert_eq!(
         bench
             .get(&format!("{path}/results"))
-            .send()
+            .answer()
             .await
-            .unwrap()
             .status(),
         200
     );

@@ -3,7 +3,7 @@
 use reqwest::{Method, Response, StatusCode};
 use serde_json::Value;
 
-use crate::bench::{Bench, problem, submission};
+use crate::bench::{Asked, Bench, Said, problem, submission};
 
 async fn send(bench: &Bench, body: impl Into<reqwest::Body>) -> Response {
     bench
@@ -11,9 +11,8 @@ async fn send(bench: &Bench, body: impl Into<reqwest::Body>) -> Response {
         .post(bench.url("/v1/jobs"))
         .header("content-type", "application/json")
         .body(body)
-        .send()
+        .answer()
         .await
-        .unwrap()
 }
 
 #[tokio::test]
@@ -49,7 +48,7 @@ async fn bad_bodies_are_refused_and_leave_nothing_behind() {
                 .client
                 .post(bench.url(path))
                 .header("content-type", "application/json");
-            let response = request.body(body.clone()).send().await.unwrap();
+            let response = request.body(body.clone()).answer().await;
             let status = response.status();
             assert!(matches!(status.as_u16(), 400 | 422), "{shown}: {status}");
             assert_eq!(
@@ -100,7 +99,7 @@ async fn only_json_is_read() {
         if let Some(media_type) = media_type {
             request = request.header("content-type", media_type);
         }
-        problem(request.send().await.unwrap(), 415, "unsupported_media_type").await;
+        problem(request.answer().await, 415, "unsupported_media_type").await;
     }
     let packed = bench
         .client
@@ -109,16 +108,15 @@ async fn only_json_is_read() {
     let packed = packed
         .header("content-encoding", "gzip")
         .body(text.clone())
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     problem(packed, 415, "unsupported_media_type").await;
     let request = bench
         .client
         .post(bench.url("/v1/jobs"))
         .header("content-type", "application/json; charset=utf-8");
     assert_eq!(
-        request.body(text).send().await.unwrap().status(),
+        request.body(text).answer().await.status(),
         StatusCode::ACCEPTED
     );
 }
@@ -134,7 +132,7 @@ async fn what_is_not_there_is_said_so() {
         "/problems/nothing",
         "/v1/jobs/%ff",
     ] {
-        let response = bench.get(path).send().await.unwrap();
+        let response = bench.get(path).answer().await;
         assert!(matches!(response.status().as_u16(), 400 | 404), "{path}");
         assert_eq!(
             response.headers()["content-type"],
@@ -146,16 +144,16 @@ async fn what_is_not_there_is_said_so() {
         "/v1/jobs/1",
         "/v1/jobs/00000000-0000-0000-0000-000000000000",
     ] {
-        problem(bench.get(path).send().await.unwrap(), 404, "job_not_found").await;
+        problem(bench.get(path).answer().await, 404, "job_not_found").await;
         problem(
-            bench.client.delete(bench.url(path)).send().await.unwrap(),
+            bench.client.delete(bench.url(path)).answer().await,
             404,
             "job_not_found",
         )
         .await;
         for part in ["results", "events", "results/ste.csv"] {
             problem(
-                bench.get(&format!("{path}/{part}")).send().await.unwrap(),
+                bench.get(&format!("{path}/{part}")).answer().await,
                 404,
                 "job_not_found",
             )
@@ -164,9 +162,8 @@ async fn what_is_not_there_is_said_so() {
         let cancel = bench
             .client
             .post(bench.url(&format!("{path}/cancel")))
-            .send()
-            .await
-            .unwrap();
+            .answer()
+            .await;
         problem(cancel, 404, "job_not_found").await;
     }
 }
@@ -180,12 +177,7 @@ async fn a_method_that_is_not_taken_is_told_which_are() {
         (Method::GET, "/v1/preview", "POST"),
         (Method::POST, "/v1/jobs/1/results", "GET,HEAD"),
     ] {
-        let response = bench
-            .client
-            .request(method, bench.url(path))
-            .send()
-            .await
-            .unwrap();
+        let response = bench.client.request(method, bench.url(path)).answer().await;
         let mut methods: Vec<_> = response.headers()["allow"]
             .to_str()
             .unwrap()
@@ -206,23 +198,23 @@ async fn a_job_that_needs_more_memory_than_it_may_have_is_refused_wherever_it_co
     )
     .await;
     let document = submission(115.0);
-    let answer = bench.post("/v1/jobs", &document).send().await.unwrap();
+    let answer = bench.post("/v1/jobs", &document).answer().await;
     let told = problem(answer, 422, "too_large").await;
     assert!(told["detail"].as_str().unwrap().contains("1 MB"), "{told}");
 
     let batch = serde_json::json!({ "submissions": [document] });
-    let answer = bench.post("/v1/jobs/batch", &batch).send().await.unwrap();
-    let answer: Value = answer.json().await.unwrap();
+    let answer = bench.post("/v1/jobs/batch", &batch).answer().await;
+    let answer = answer.document().await;
     assert_eq!(answer["items"][0]["problem"]["code"], "too_large");
 
     let study = serde_json::json!({
         "base": document,
         "axes": [{ "path": "/pair/driven/blank/bore_radius_mm", "values": [15.0, 16.0] }],
     });
-    let answer = bench.post("/v1/studies", &study).send().await.unwrap();
+    let answer = bench.post("/v1/studies", &study).answer().await;
     let path = answer.headers()["location"].to_str().unwrap().to_owned();
-    let table = bench.get(&format!("{path}/results")).send().await.unwrap();
-    let table: Value = table.json().await.unwrap();
+    let table = bench.get(&format!("{path}/results")).answer().await;
+    let table = table.document().await;
     for row in table["rows"].as_array().unwrap() {
         assert_eq!(row["problem"]["code"], "too_large", "{row}");
     }

@@ -3,7 +3,7 @@
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
-use crate::bench::{Bench, RESULTS, problem, submission};
+use crate::bench::{Asked, Bench, RESULTS, Said, problem, submission};
 
 #[tokio::test]
 async fn a_key_gives_the_same_job_however_often_it_is_sent() {
@@ -12,9 +12,8 @@ async fn a_key_gives_the_same_job_however_often_it_is_sent() {
         bench
             .post("/v1/jobs", &submission(torque))
             .header("idempotency-key", "k-1")
-            .send()
+            .answer()
             .await
-            .unwrap()
     };
     let first = send(115.0).await;
     assert_eq!(first.status(), StatusCode::ACCEPTED);
@@ -34,7 +33,7 @@ async fn a_key_gives_the_same_job_however_often_it_is_sent() {
         (late.status(), &late.headers()["location"]),
         (StatusCode::OK, &path)
     );
-    assert_eq!(late.json::<Value>().await.unwrap()["status"], "successful");
+    assert_eq!(late.document().await["status"], "successful");
     assert!(engine.is_idle());
     let list: Value = bench.document("/v1/jobs").await;
     assert_eq!(list["items"].as_array().unwrap().len(), 1);
@@ -72,9 +71,8 @@ async fn a_key_has_1_to_255_characters() {
         let response = bench
             .post("/v1/jobs", &submission(1.0))
             .header("idempotency-key", key)
-            .send()
-            .await
-            .unwrap();
+            .answer()
+            .await;
         problem(response, 400, "invalid_parameter").await;
     }
 }
@@ -88,8 +86,8 @@ async fn an_equal_submission_is_successful_at_once() {
 
     let mut equal = submission(115.0);
     equal["tags"] = json!(["again"]);
-    let response = bench.post("/v1/jobs", &equal).send().await.unwrap();
-    let job: Value = response.json().await.unwrap();
+    let response = bench.post("/v1/jobs", &equal).answer().await;
+    let job = response.document().await;
     assert_eq!(
         (job["status"].as_str(), job["progress_percent"].as_u64()),
         (Some("successful"), Some(100))
@@ -98,10 +96,9 @@ async fn an_equal_submission_is_successful_at_once() {
     assert_eq!(job["tags"], json!(["again"]));
     let results = bench
         .get(job["links"]["results"].as_str().unwrap())
-        .send()
-        .await
-        .unwrap();
-    assert_eq!(results.text().await.unwrap(), RESULTS);
+        .answer()
+        .await;
+    assert_eq!(results.body().await, RESULTS);
 
     bench.submit(&submission(20.0)).await;
     engine.next().await.finish();
@@ -115,11 +112,7 @@ async fn a_full_queue_refuses_and_says_when_to_come_again() {
     for torque in [2.0, 3.0] {
         bench.submit(&submission(torque)).await;
     }
-    let response = bench
-        .post("/v1/jobs", &submission(4.0))
-        .send()
-        .await
-        .unwrap();
+    let response = bench.post("/v1/jobs", &submission(4.0)).answer().await;
     assert!(response.headers().contains_key("retry-after"));
     problem(response, 503, "queue_full").await;
 

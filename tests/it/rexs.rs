@@ -4,7 +4,7 @@ use std::process::{Command, Output};
 use reqwest::StatusCode;
 use serde_json::Value;
 
-use crate::bench::{Bench, problem};
+use crate::bench::{Asked, Bench, Said, problem};
 
 fn example(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -158,7 +158,7 @@ async fn a_model_is_read_and_a_job_is_written_as_one_over_http() {
     let painted = model.replacen("</component>", unread, 1);
     let read = post(painted, "application/xml").await.unwrap();
     assert_eq!(read.status(), StatusCode::OK);
-    let read: Value = read.json().await.unwrap();
+    let read = read.document().await;
     let submissions = read["submissions"].as_array().unwrap();
     assert_eq!(submissions.len(), 1);
     assert_eq!(
@@ -177,12 +177,12 @@ async fn a_model_is_read_and_a_job_is_written_as_one_over_http() {
     let job = bench.submit(&submission).await;
     assert_eq!(bench.ended(&job).await["status"], "successful");
     let written = bench.get(&format!("{job}/submission.rexs"));
-    let written = written.send().await.unwrap();
+    let written = written.answer().await;
     assert_eq!(written.headers()["content-type"], "application/xml");
-    let written = written.text().await.unwrap();
+    let written = written.body().await;
     assert!(written.contains("meshing_stiffness_characteristic"));
     let again = post(written, "text/xml").await.unwrap();
-    let again: Value = again.json().await.unwrap();
+    let again = again.document().await;
     let distance = |of: &Value| of["pair"]["center_distance_mm"].clone();
     assert_eq!(distance(&again["submissions"][0]), distance(&submission));
 

@@ -7,7 +7,7 @@ use meshwright::wire;
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
-use super::bench::{Bench, problem};
+use crate::bench::{Asked, Bench, Said, problem};
 
 /// Reliefs of a small pair by the quick method, chosen by a search.
 fn reliefs(evaluations: u32) -> Value {
@@ -36,31 +36,21 @@ fn reliefs(evaluations: u32) -> Value {
 }
 
 async fn begun(bench: &Bench, study: &Value) -> String {
-    let response = bench.post("/v1/studies", study).send().await.unwrap();
+    let response = bench.post("/v1/studies", study).answer().await;
     let status = response.status();
     let path = response
         .headers()
         .get("location")
         .map(|path| path.to_str().unwrap().to_owned());
-    assert_eq!(
-        status,
-        StatusCode::ACCEPTED,
-        "{}",
-        response.text().await.unwrap()
-    );
+    assert_eq!(status, StatusCode::ACCEPTED, "{}", response.body().await);
     path.unwrap()
 }
 
 /// The study at an address when it has ended.
 async fn ended(bench: &Bench, path: &str) -> Value {
     loop {
-        let study = bench
-            .get(path)
-            .header("prefer", "wait=15")
-            .send()
-            .await
-            .unwrap();
-        let study: Value = study.json().await.unwrap();
+        let study = bench.get(path).header("prefer", "wait=15").answer().await;
+        let study = study.document().await;
         if ["successful", "failed", "dismissed"].contains(&study["status"].as_str().unwrap()) {
             return study;
         }
@@ -148,17 +138,15 @@ async fn a_search_finds_its_best_design_confirms_it_and_gives_its_submission() {
     );
     let csv = bench
         .get(&format!("{path}/results/table.csv"))
-        .send()
+        .answer()
         .await
-        .unwrap()
-        .text()
-        .await
-        .unwrap();
+        .body()
+        .await;
     assert_eq!(csv.lines().count(), 32);
 
     let other = begun(&bench, &json!({ "base": reliefs(2)["base"], "axes": [{ "path": "/output_torques_n_m/0", "values": [1.0] }] })).await;
     problem(
-        bench.get(&format!("{other}/best")).send().await.unwrap(),
+        bench.get(&format!("{other}/best")).answer().await,
         404,
         "not_found",
     )
@@ -299,7 +287,7 @@ async fn a_search_that_is_cancelled_keeps_what_is_there() {
         (&json!(0), &Value::Null)
     );
     problem(
-        bench.get(&format!("{path}/best")).send().await.unwrap(),
+        bench.get(&format!("{path}/best")).answer().await,
         404,
         "result_not_ready",
     )
@@ -321,9 +309,8 @@ async fn a_search_that_is_cancelled_keeps_what_is_there() {
     );
     let cancelled = bench
         .post(&format!("{path}/cancel"), &json!({}))
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     assert_eq!(cancelled.status(), StatusCode::ACCEPTED);
     let kept = bench.job(&path).await;
     assert_eq!(kept["status"], "dismissed");
@@ -352,7 +339,7 @@ async fn a_search_whose_every_design_is_refused_names_the_usual_reason() {
     );
     assert_eq!(failed["search"]["refusals"][0]["count"], 20);
     problem(
-        bench.get(&format!("{path}/best")).send().await.unwrap(),
+        bench.get(&format!("{path}/best")).answer().await,
         404,
         "result_not_ready",
     )
@@ -408,7 +395,7 @@ async fn a_search_that_cannot_be_is_refused_with_its_place() {
     let mut study = reliefs(40);
     study["search"]["variables"][1]["step"] = json!(7);
     let refused = problem(
-        bench.post("/v1/studies", &study).send().await.unwrap(),
+        bench.post("/v1/studies", &study).answer().await,
         422,
         "out_of_range",
     )
@@ -416,7 +403,7 @@ async fn a_search_that_cannot_be_is_refused_with_its_place() {
     assert_eq!(refused["errors"][0]["pointer"], "/search/variables/1/step");
     study["axes"] = json!([{ "path": "/output_torques_n_m/0", "values": [1.0] }]);
     let refused = problem(
-        bench.post("/v1/studies", &study).send().await.unwrap(),
+        bench.post("/v1/studies", &study).answer().await,
         422,
         "out_of_range",
     )

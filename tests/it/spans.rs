@@ -14,7 +14,7 @@ use reqwest::Client;
 use serde_json::{Value, json};
 use tokio::net::TcpListener;
 
-use crate::bench::PATIENCE;
+use crate::bench::{Asked, PATIENCE, Said};
 use crate::process::Process;
 use crate::stores;
 
@@ -71,13 +71,13 @@ fn job(torque: f64) -> Value {
 async fn compute(client: &Client, base: &str, torque: f64, parent: &str) -> String {
     let request = client.post(format!("{base}/v1/jobs"));
     let request = request.header("traceparent", parent).json(&job(torque));
-    let answer = request.send().await.unwrap();
+    let answer = request.answer().await;
     assert_eq!(answer.status(), 202);
-    let made: Value = answer.json().await.unwrap();
+    let made = answer.document().await;
     let id = made["id"].as_str().unwrap().to_owned();
     let wait = client.get(format!("{base}/v1/jobs/{id}"));
-    let ended = wait.header("prefer", "wait=15").send().await.unwrap();
-    let ended: Value = ended.json().await.unwrap();
+    let ended = wait.header("prefer", "wait=15").answer().await;
+    let ended = ended.document().await;
     assert_eq!(ended["status"], "successful");
     id
 }

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use tokio::io::AsyncWriteExt;
 use tokio::net::TcpStream;
 
-use crate::bench::PATIENCE;
+use crate::bench::{Asked, PATIENCE, Said};
 use crate::process::Process;
 use crate::stores;
 
@@ -41,9 +41,9 @@ fn large_bomb() -> String {
 async fn refuse(client: Client, url: String, bomb: String) -> Duration {
     let start = Instant::now();
     let request = client.post(url).header("content-type", "application/json");
-    let answer = request.body(bomb).send().await.unwrap();
+    let answer = request.body(bomb).answer().await;
     let status = answer.status();
-    let problem: Value = answer.json().await.unwrap();
+    let problem = answer.document().await;
     assert_eq!(
         (status.as_u16(), &problem["code"]),
         (422, &json!("too_large"))
@@ -115,7 +115,7 @@ async fn two_thousand_silent_and_two_hundred_slow_sockets_do_not_stop_a_service_
         let start = Instant::now();
         // Each on a connection of its own, which has to find a place.
         let request = client.get(format!("{}/v1/jobs", process.base));
-        let answer = request.header("connection", "close").send().await.unwrap();
+        let answer = request.header("connection", "close").answer().await;
         assert_eq!(answer.status(), 200);
         longest = longest.max(start.elapsed());
     }

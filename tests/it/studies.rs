@@ -7,7 +7,9 @@ use meshwright::wire::{Code, Problem};
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
-use crate::bench::{Bench, Engine, Events, RESULTS, Work, problem, results, submission};
+use crate::bench::{
+    Asked, Bench, Engine, Events, RESULTS, Said, Work, problem, results, submission,
+};
 
 /// A study of torques: as many designs, all of which can be built.
 fn torques(values: &[f64]) -> Value {
@@ -16,7 +18,7 @@ fn torques(values: &[f64]) -> Value {
 
 /// Submits a study and gives its address.
 async fn submit(bench: &Bench, study: &Value) -> String {
-    let response = bench.post("/v1/studies", study).send().await.unwrap();
+    let response = bench.post("/v1/studies", study).answer().await;
     assert_eq!(response.status(), StatusCode::ACCEPTED);
     response.headers()["location"].to_str().unwrap().to_owned()
 }
@@ -50,13 +52,12 @@ async fn a_study_fills_its_table_row_by_row() {
     let (bench, mut engine) = Bench::steered().await;
     let response = bench
         .post("/v1/studies", &torques(&[20.0, 115.0]))
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     assert_eq!(response.status(), StatusCode::ACCEPTED);
     assert!(response.headers().contains_key("retry-after"));
     let path = response.headers()["location"].to_str().unwrap().to_owned();
-    let study: Value = response.json().await.unwrap();
+    let study = response.document().await;
     assert_eq!(
         path,
         format!("/v1/studies/{}", study["id"].as_str().unwrap())
@@ -104,26 +105,21 @@ async fn a_study_fills_its_table_row_by_row() {
         assert_eq!(job["links"]["study"], path);
         let results = bench
             .get(job["links"]["results"].as_str().unwrap())
-            .send()
-            .await
-            .unwrap();
-        assert_eq!(results.text().await.unwrap(), RESULTS);
+            .answer()
+            .await;
+        assert_eq!(results.body().await, RESULTS);
     }
     let jobs = bench.job(ended["links"]["jobs"].as_str().unwrap()).await;
     assert_eq!(jobs["items"].as_array().unwrap().len(), 2);
     let alone = bench.job("/v1/jobs?study=none").await;
     assert_eq!(alone["items"], json!([]));
 
-    let response = bench
-        .get(&format!("{path}/results.csv"))
-        .send()
-        .await
-        .unwrap();
+    let response = bench.get(&format!("{path}/results.csv")).answer().await;
     assert_eq!(
         response.headers()["content-type"],
         "text/csv; charset=utf-8"
     );
-    let text = response.text().await.unwrap();
+    let text = response.body().await;
     // A header, and a line for each of two rows and the stub's two torques.
     assert_eq!(text.lines().count(), 5, "{text}");
     assert!(text.starts_with("label,changes./output_torques_n_m/0,job,status,"));
@@ -154,9 +150,8 @@ async fn a_single_job_is_served_before_the_designs_of_a_study() {
     assert_eq!(rows, 1000);
     bench
         .post(&format!("{path}/cancel"), &json!({}))
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     drop(engine);
 }
 
@@ -271,7 +266,7 @@ async fn a_study_that_keeps_statistics_has_its_table_and_no_curves() {
             (&json!("successful"), &json!("statistics"))
         );
         for part in ["/results", "/results/ste.csv"] {
-            let asked = bench.get(&format!("{design}{part}")).send().await.unwrap();
+            let asked = bench.get(&format!("{design}{part}")).answer().await;
             let refused = problem(asked, 410, "results_not_kept").await;
             let detail = refused["detail"].as_str().unwrap();
             assert!(detail.contains(&design) && detail.contains("POST /v1/jobs"));
@@ -279,8 +274,8 @@ async fn a_study_that_keeps_statistics_has_its_table_and_no_curves() {
         designs.push((design, job["submission"].clone()));
     }
     let documents = bench.get(&format!("{path}/results/documents.ndjson"));
-    let documents = documents.send().await.unwrap();
-    assert_eq!(documents.text().await.unwrap(), "");
+    let documents = documents.answer().await;
+    assert_eq!(documents.body().await, "");
 
     // The numbers are there for the next study that wants no more.
     let again = submit(&bench, &study).await;
@@ -294,8 +289,8 @@ async fn a_study_that_keeps_statistics_has_its_table_and_no_curves() {
     let job = bench.ended(&single).await;
     assert!(job["links"]["same_as"].is_null() && job["keep"].is_null());
     for path in [&single, design] {
-        let results = bench.get(&format!("{path}/results")).send().await.unwrap();
-        assert_eq!(results.text().await.unwrap(), RESULTS);
+        let results = bench.get(&format!("{path}/results")).answer().await;
+        assert_eq!(results.body().await, RESULTS);
     }
 }
 
@@ -305,16 +300,15 @@ async fn a_cancelled_study_keeps_what_it_has_and_computes_no_more() {
     let path = submit(&bench, &torques(&[1.0, 2.0, 3.0])).await;
     engine.next().await.finish();
     let running = engine.next().await;
-    let refused = bench.client.delete(bench.url(&path)).send().await.unwrap();
+    let refused = bench.client.delete(bench.url(&path)).answer().await;
     problem(refused, 409, "job_running").await;
     for _ in 0..2 {
         let response = bench
             .post(&format!("{path}/cancel"), &json!({}))
-            .send()
-            .await
-            .unwrap();
+            .answer()
+            .await;
         assert_eq!(response.status(), StatusCode::ACCEPTED);
-        let study: Value = response.json().await.unwrap();
+        let study = response.document().await;
         assert_eq!(study["status"], "dismissed");
     }
     running.stopped().await;
@@ -323,20 +317,10 @@ async fn a_cancelled_study_keeps_what_it_has_and_computes_no_more() {
     assert!(engine.is_idle());
 
     let first = format!("/v1/jobs/{}", rows["rows"][0]["job"].as_str().unwrap());
-    let deleted = bench.client.delete(bench.url(&path)).send().await.unwrap();
+    let deleted = bench.client.delete(bench.url(&path)).answer().await;
     assert_eq!(deleted.status(), StatusCode::NO_CONTENT);
-    problem(
-        bench.get(&path).send().await.unwrap(),
-        404,
-        "study_not_found",
-    )
-    .await;
-    problem(
-        bench.get(&first).send().await.unwrap(),
-        404,
-        "job_not_found",
-    )
-    .await;
+    problem(bench.get(&path).answer().await, 404, "study_not_found").await;
+    problem(bench.get(&first).answer().await, 404, "job_not_found").await;
 }
 
 #[tokio::test]
@@ -346,9 +330,8 @@ async fn a_study_that_has_ended_is_not_cancelled_and_an_unknown_one_is_not_found
     bench.ended(&path).await;
     let response = bench
         .post(&format!("{path}/cancel"), &json!({}))
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     problem(response, 409, "job_finished").await;
     for path in [
         "/v1/studies/00000000-0000-0000-0000-000000000000",
@@ -357,12 +340,7 @@ async fn a_study_that_has_ended_is_not_cancelled_and_an_unknown_one_is_not_found
         "/v1/studies/x/results.csv",
         "/v1/studies/x/events",
     ] {
-        problem(
-            bench.get(path).send().await.unwrap(),
-            404,
-            "study_not_found",
-        )
-        .await;
+        problem(bench.get(path).answer().await, 404, "study_not_found").await;
     }
 }
 
@@ -373,7 +351,7 @@ async fn a_job_of_a_study_may_be_deleted_and_its_row_stays() {
     bench.ended(&path).await;
     let job = table(&bench, &path).await["rows"][0]["job"].clone();
     let job = format!("/v1/jobs/{}", job.as_str().unwrap());
-    bench.client.delete(bench.url(&job)).send().await.unwrap();
+    bench.client.delete(bench.url(&job)).answer().await;
     let table = table(&bench, &path).await;
     assert_eq!(statuses(&table), ["dismissed", "successful"]);
     assert_eq!(
@@ -385,7 +363,7 @@ async fn a_job_of_a_study_may_be_deleted_and_its_row_stays() {
 #[tokio::test]
 async fn what_is_wrong_with_a_study_is_refused_with_its_place() {
     let bench = Bench::quick().await;
-    let send = async |study: Value| bench.post("/v1/studies", &study).send().await.unwrap();
+    let send = async |study: Value| bench.post("/v1/studies", &study).answer().await;
     let typo = json!({ "base": submission(1.0), "axes": [
         { "path": "/pair/driven/blank/holes/cuont", "values": [6, 8] }] });
     let refused = problem(send(typo).await, 422, "unknown_field").await;
@@ -409,9 +387,8 @@ async fn what_is_wrong_with_a_study_is_refused_with_its_place() {
         .post(bench.url("/v1/studies"))
         .header("content-type", "application/json")
         .body(r#"{ "base": NaN }"#)
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     problem(response, 400, "malformed_json").await;
     let list = bench.job("/v1/studies").await;
     assert_eq!(list, json!({ "items": [], "next": null }));
@@ -424,9 +401,8 @@ async fn a_key_gives_the_same_study_and_lists_turn_their_pages() {
         bench
             .post("/v1/studies", &torques(&[torque]))
             .header("idempotency-key", key)
-            .send()
+            .answer()
             .await
-            .unwrap()
     };
     let first = send("a", 1.0).await.headers()["location"].clone();
     bench.ended(first.to_str().unwrap()).await;
@@ -447,11 +423,7 @@ async fn a_key_gives_the_same_study_and_lists_turn_their_pages() {
     assert_eq!(page["items"][0]["links"]["self"], first.to_str().unwrap());
     assert!(page["next"].is_null());
     for query in ["?limit=0", "?cursor=x", "?colour=red"] {
-        let response = bench
-            .get(&format!("/v1/studies{query}"))
-            .send()
-            .await
-            .unwrap();
+        let response = bench.get(&format!("/v1/studies{query}")).answer().await;
         problem(response, 400, "invalid_parameter").await;
     }
 }

@@ -3,7 +3,7 @@
 use reqwest::StatusCode;
 use serde_json::Value;
 
-use crate::bench::{Bench, problem, submission};
+use crate::bench::{Asked, Bench, Said, problem, submission};
 use crate::stores;
 
 #[tokio::test]
@@ -11,17 +11,11 @@ async fn curves_and_spectra_come_as_csv_and_json() {
     let bench = Bench::quick().await;
     let path = bench.submit(&submission(115.0)).await;
     bench.ended(&path).await;
-    let get = async |table: &str| {
-        bench
-            .get(&format!("{path}/results/{table}"))
-            .send()
-            .await
-            .unwrap()
-    };
+    let get = async |table: &str| bench.get(&format!("{path}/results/{table}")).answer().await;
 
     let csv = get("ste.csv?torque=115").await;
     assert_eq!(csv.headers()["content-type"], "text/csv; charset=utf-8");
-    let text = csv.text().await.unwrap();
+    let text = csv.body().await;
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(
         lines[0],
@@ -32,22 +26,18 @@ async fn curves_and_spectra_come_as_csv_and_json() {
         ["115.0,0.0,0.0,0.0,13.79", "115.0,0.5,3.6,3.6,14.0"]
     );
     assert_eq!(
-        get("ste.csv").await.text().await.unwrap().lines().count(),
+        get("ste.csv").await.body().await.lines().count(),
         5,
         "both torques"
     );
 
-    let json: Value = get("mesh-stiffness.json").await.json().await.unwrap();
+    let json = get("mesh-stiffness.json").await.document().await;
     assert_eq!(
         json["curves"][0]["mesh_stiffness_tangent_n_per_m"][0],
         2.2e8
     );
     assert_eq!(json["curves"][0]["output_torque_n_m"], 115.0);
-    let spectrum: Value = get("spectrum.json?torque=115.0")
-        .await
-        .json()
-        .await
-        .unwrap();
+    let spectrum = get("spectrum.json?torque=115.0").await.document().await;
     assert_eq!(spectrum["curves"][0]["named"][0]["label"], "H_N");
 
     problem(get("ste.csv?torque=116").await, 404, "not_found").await;
@@ -62,11 +52,7 @@ async fn a_table_of_a_job_that_has_not_ended_is_not_ready() {
     let path = bench.submit(&submission(115.0)).await;
     let work = engine.next().await;
     problem(
-        bench
-            .get(&format!("{path}/results/ste.csv"))
-            .send()
-            .await
-            .unwrap(),
+        bench.get(&format!("{path}/results/ste.csv")).answer().await,
         404,
         "result_not_ready",
     )
@@ -76,9 +62,8 @@ async fn a_table_of_a_job_that_has_not_ended_is_not_ready() {
     assert_eq!(
         bench
             .get(&format!("{path}/results/ste.csv"))
-            .send()
+            .answer()
             .await
-            .unwrap()
             .status(),
         StatusCode::OK
     );
@@ -91,13 +76,13 @@ async fn fields_come_as_a_grid_at_any_position_and_torque_of_the_job() {
     bench.ended(&path).await;
     let get = async |query: &str| {
         let path = format!("{path}/results/fields.vtu{query}");
-        bench.get(&path).send().await.unwrap()
+        bench.get(&path).answer().await
     };
     let answer = get("?torque=115&mesh_position=0.25").await;
     assert_eq!(answer.status(), StatusCode::OK);
     assert_eq!(answer.headers()["content-type"], "text/xml");
     let tag = answer.headers()["etag"].clone();
-    let text = answer.text().await.unwrap();
+    let text = answer.body().await;
     for name in [
         "UnstructuredGrid",
         "displacement_um",
@@ -113,9 +98,8 @@ async fn fields_come_as_a_grid_at_any_position_and_torque_of_the_job() {
             "{path}/results/fields.vtu?torque=115&mesh_position=0.25"
         ))
         .header("if-none-match", tag)
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     assert_eq!(again.status(), StatusCode::NOT_MODIFIED);
     // Another version of the solver says it otherwise, under the same address: nobody keeps it unasked.
     assert_eq!(again.headers()["cache-control"], "private, no-cache");
@@ -175,16 +159,16 @@ async fn fields_of_a_pair_along_its_faces_are_volumes_and_its_edges_those_of_a_s
     bench.ended(&path).await;
     let get = async |file: &str| {
         let path = format!("{path}/results/{file}?torque=50&mesh_position=0.25");
-        bench.get(&path).send().await.unwrap()
+        bench.get(&path).answer().await
     };
     let volumes = get("fields.vtu").await;
     assert_eq!(volumes.status(), StatusCode::OK);
-    let text = volumes.text().await.unwrap();
+    let text = volumes.body().await;
     for name in ["displacement_um", "stress_mpa", "von_mises_mpa", "gear"] {
         assert!(text.contains(&format!("Name=\"{name}\"")), "{name}");
     }
     assert!(!text.contains("thickness_mm"));
-    let edges: Value = get("edges.json").await.json().await.unwrap();
+    let edges = get("edges.json").await.document().await;
     let results = bench.document(&format!("{path}/results")).await;
     let at = |name: &str| results["curves"][2][name][2].as_f64().unwrap();
     let lag = edges["transmission_error_um"].as_f64().unwrap();
@@ -213,7 +197,7 @@ async fn the_load_along_a_face_adds_up_to_the_whole_in_the_mean_and_at_every_pos
         let load = results["curves"][2]["load_n"].as_f64().unwrap();
         let get = async |file: &str| {
             let path = format!("{path}/results/face-load.{file}");
-            bench.get(&path).send().await.unwrap().text().await.unwrap()
+            bench.get(&path).answer().await.body().await
         };
         let table = get("csv?torque=50").await;
         let lines: Vec<Vec<&str>> = table
@@ -240,7 +224,7 @@ async fn the_load_along_a_face_adds_up_to_the_whole_in_the_mean_and_at_every_pos
     bench.ended(&plane).await;
     for file in ["json", "csv", "svg"] {
         let path = format!("{plane}/results/face-load.{file}");
-        problem(bench.get(&path).send().await.unwrap(), 404, "not_found").await;
+        problem(bench.get(&path).answer().await, 404, "not_found").await;
     }
 }
 
@@ -251,7 +235,7 @@ async fn the_contact_pattern_of_a_pair_along_its_faces_comes_as_numbers_and_as_a
     bench.ended(&path).await;
     let get = async |file: &str| {
         let path = format!("{path}/results/contact-pattern.{file}");
-        bench.get(&path).send().await.unwrap()
+        bench.get(&path).answer().await
     };
     let answer = get("json").await;
     assert_eq!(answer.status(), StatusCode::OK);
@@ -261,7 +245,7 @@ async fn the_contact_pattern_of_a_pair_along_its_faces_comes_as_numbers_and_as_a
         meshwright::wire::SOLVER_VERSION
     );
     let tag = answer.headers()["etag"].clone();
-    let pattern: Value = answer.json().await.unwrap();
+    let pattern = answer.document().await;
     let torques: Vec<f64> = pattern["curves"]
         .as_array()
         .unwrap()
@@ -272,13 +256,12 @@ async fn the_contact_pattern_of_a_pair_along_its_faces_comes_as_numbers_and_as_a
     let again = bench
         .get(&format!("{path}/results/contact-pattern.json"))
         .header("if-none-match", &tag)
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     assert_eq!(again.status(), StatusCode::NOT_MODIFIED);
     let one = get("json?torque=50").await;
     assert_ne!(one.headers()["etag"], tag);
-    let one: Value = one.json().await.unwrap();
+    let one = one.document().await;
     assert_eq!(
         one["curves"][0], pattern["curves"][1],
         "to the last digit, whatever was asked beside it"
@@ -286,7 +269,7 @@ async fn the_contact_pattern_of_a_pair_along_its_faces_comes_as_numbers_and_as_a
 
     let picture = get("svg").await;
     assert_eq!(picture.headers()["content-type"], "image/svg+xml");
-    let picture = picture.text().await.unwrap();
+    let picture = picture.body().await;
     for word in [
         "driving flank, 200 N m",
         "driven flank, 50 N m",
@@ -296,7 +279,7 @@ async fn the_contact_pattern_of_a_pair_along_its_faces_comes_as_numbers_and_as_a
     ] {
         assert!(picture.contains(word), "{word}");
     }
-    let one = get("svg?torque=200").await.text().await.unwrap();
+    let one = get("svg?torque=200").await.body().await;
     assert!(!one.contains("50 N m") && one.len() < picture.len());
     problem(get("json?torque=0").await, 404, "not_found").await;
     problem(get("svg?torque=51").await, 404, "not_found").await;
@@ -306,7 +289,7 @@ async fn the_contact_pattern_of_a_pair_along_its_faces_comes_as_numbers_and_as_a
     bench.ended(&plane).await;
     for file in ["json", "svg"] {
         let path = format!("{plane}/results/contact-pattern.{file}");
-        let answer = bench.get(&path).send().await.unwrap();
+        let answer = bench.get(&path).answer().await;
         let told = problem(answer, 404, "not_found").await;
         assert!(
             told["detail"]
@@ -323,16 +306,11 @@ async fn a_contact_pattern_of_a_job_that_failed_or_is_under_way_is_told_as_its_r
     let path = bench.submit(&helical()).await;
     let work = engine.next().await;
     let pattern = format!("{path}/results/contact-pattern.json");
-    problem(
-        bench.get(&pattern).send().await.unwrap(),
-        404,
-        "result_not_ready",
-    )
-    .await;
+    problem(bench.get(&pattern).answer().await, 404, "result_not_ready").await;
     let cancel = bench.client.post(bench.url(&format!("{path}/cancel")));
-    assert!(cancel.send().await.unwrap().status().is_success());
+    assert!(cancel.answer().await.status().is_success());
     work.stopped().await;
     bench.ended(&path).await;
-    let answer = bench.get(&pattern).send().await.unwrap();
+    let answer = bench.get(&pattern).answer().await;
     assert_eq!(answer.status(), StatusCode::CONFLICT);
 }

@@ -18,7 +18,7 @@ use ring::signature::{ECDSA_P256_SHA256_FIXED_SIGNING, EcdsaKeyPair, KeyPair};
 use serde_json::{Value, json};
 use tokio::net::TcpListener;
 
-use crate::bench::{Bench, problem, submission};
+use crate::bench::{Asked, Bench, problem, submission};
 use crate::door::key_of;
 
 /// The audience of the service's tokens.
@@ -168,7 +168,7 @@ async fn trusting() -> (Bench, Provider, Signer) {
 
 async fn with(bench: &Bench, path: &str, credential: &str) -> Response {
     let request = bench.get(path).bearer_auth(credential);
-    request.send().await.unwrap()
+    request.answer().await
 }
 
 /// Clocks that a test sets forward.
@@ -198,7 +198,7 @@ async fn a_token_opens_the_door_for_its_client_beside_keys() {
         signer.token(&provider.claims("eve")),
     );
     let made = bench.post("/v1/jobs", &submission(1.0)).bearer_auth(&ada);
-    let made = made.send().await.unwrap();
+    let made = made.answer().await;
     assert_eq!(made.status(), StatusCode::ACCEPTED);
     let path = made.headers()["location"].to_str().unwrap().to_owned();
     let key = key_of(&bench, "ada").await;
@@ -209,7 +209,7 @@ async fn a_token_opens_the_door_for_its_client_beside_keys() {
         );
     }
     problem(with(&bench, &path, &eve).await, 404, "job_not_found").await;
-    problem(bench.get(&path).send().await.unwrap(), 401, "unauthorized").await;
+    problem(bench.get(&path).answer().await, 401, "unauthorized").await;
 
     let document: Value = bench.document("/openapi.json").await;
     assert_eq!(
@@ -226,7 +226,7 @@ async fn a_token_opens_the_door_for_its_client_beside_keys() {
 #[tokio::test]
 async fn who_names_an_issuer_wants_to_know_everybody() {
     let (bench, ..) = trusting().await;
-    let nobody = bench.get("/v1/jobs").send().await.unwrap();
+    let nobody = bench.get("/v1/jobs").answer().await;
     problem(nobody, 401, "unauthorized").await;
     // And without one a token is no key.
     let bench = Bench::quick().await;
@@ -447,7 +447,7 @@ async fn hostile_tokens_open_nothing_and_are_told_why() {
         .get("/v1/jobs")
         .bearer_auth(&whole)
         .bearer_auth(&whole);
-    problem(twice.send().await.unwrap(), 401, "unauthorized").await;
+    problem(twice.answer().await, 401, "unauthorized").await;
 }
 
 #[tokio::test]
@@ -536,7 +536,7 @@ async fn a_provider_that_gives_no_keys_keeps_nobody_out_who_has_one_of_the_servi
             with(&bench, "/v1/jobs", &key).await.status(),
             StatusCode::OK
         );
-        let ready = bench.get("/health/ready").send().await.unwrap();
+        let ready = bench.get("/health/ready").answer().await;
         assert_eq!(ready.status(), StatusCode::OK);
     }
     provider.give(Keys::These(good));
@@ -572,11 +572,11 @@ async fn a_stream_ends_with_its_token() {
     ahead.rule(&mut bench).await;
     let token = signer.token(&provider.claims("ada"));
     let made = bench.post("/v1/jobs", &submission(1.0)).bearer_auth(&token);
-    let made = made.send().await.unwrap();
+    let made = made.answer().await;
     let path = made.headers()["location"].to_str().unwrap().to_owned();
     let _work = engine.next().await;
     let stream = bench.get(&format!("{path}/events")).bearer_auth(&token);
-    let mut stream = stream.send().await.unwrap();
+    let mut stream = stream.answer().await;
     assert!(stream.chunk().await.unwrap().is_some());
     ahead.go(3700);
     // Nothing happens to the job meanwhile.
@@ -647,7 +647,7 @@ async fn the_program_takes_tokens_by_its_options_and_logs_whose_they_are_and_not
     let answer = reqwest::Client::new()
         .get(format!("{base}/metrics"))
         .bearer_auth(&token);
-    assert_eq!(answer.send().await.unwrap().status(), StatusCode::OK);
+    assert_eq!(answer.answer().await.status(), StatusCode::OK);
     service.kill().unwrap();
     service.wait().unwrap();
     let log = std::fs::read_to_string(folder.path().join("log")).unwrap();

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use reqwest::Client;
 use serde_json::{Value, json};
 
-use crate::bench::PATIENCE;
+use crate::bench::{Asked, PATIENCE};
 use crate::process::Process;
 use crate::stores;
 
@@ -25,7 +25,7 @@ fn large(number: usize) -> String {
 
 async fn upload(client: Client, url: String, body: String) -> u16 {
     let request = client.post(url).header("content-type", "application/json");
-    let answer = request.body(body).send().await.unwrap();
+    let answer = request.body(body).answer().await;
     answer.status().as_u16()
 }
 

@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpListener;
 
-use crate::bench::{Bench, PATIENCE, problem, results, submission};
+use crate::bench::{Asked, Bench, PATIENCE, Said, problem, results, submission};
 use crate::door::key_of;
 use crate::stores;
 
@@ -96,9 +96,9 @@ async fn the_end_of_a_job_and_of_a_study_is_told_and_signed() {
     let (port, mut received) = receiver(&["200 OK", "204 No Content"]).await;
     let bench = bench(port).await;
     let hook = json!({ "url": format!("http://localhost:{port}/hook?token=x") });
-    let made = bench.post("/v1/webhooks", &hook).send().await.unwrap();
+    let made = bench.post("/v1/webhooks", &hook).answer().await;
     assert_eq!(made.status(), StatusCode::CREATED);
-    let made: Value = made.json().await.unwrap();
+    let made = made.document().await;
     assert!(made["secret"].as_str().unwrap().starts_with("whsec_"));
     let list = bench.job("/v1/webhooks").await;
     assert!(
@@ -119,7 +119,7 @@ async fn the_end_of_a_job_and_of_a_study_is_told_and_signed() {
     assert!(message.starts_with("POST /hook?token=x "));
 
     let study = json!({ "base": submission(1.0), "axes": [{ "path": "/output_torques_n_m/0", "values": [5, 6] }] });
-    bench.post("/v1/studies", &study).send().await.unwrap();
+    bench.post("/v1/studies", &study).answer().await;
     let message = next(&mut received).await;
     assert!(
         message.contains("study.ended") && !message.contains("job.ended"),
@@ -134,20 +134,16 @@ async fn what_is_answered_from_earlier_results_has_an_end_that_is_told_at_once()
     let first = bench.submit(&submission(5.0)).await;
     bench.ended(&first).await;
     let hook = json!({ "url": format!("http://localhost:{port}/") });
-    bench.post("/v1/webhooks", &hook).send().await.unwrap();
+    bench.post("/v1/webhooks", &hook).answer().await;
 
-    let again = bench
-        .post("/v1/jobs", &submission(5.0))
-        .send()
-        .await
-        .unwrap();
-    let again: Value = again.json().await.unwrap();
+    let again = bench.post("/v1/jobs", &submission(5.0)).answer().await;
+    let again = again.document().await;
     assert_eq!(again["links"]["same_as"], first);
     let message = next(&mut received).await;
     assert!(message.contains(again["id"].as_str().unwrap()), "{message}");
     let study = json!({ "base": submission(1.0), "axes": [{ "path": "/output_torques_n_m/0", "values": [5] }] });
-    let study = bench.post("/v1/studies", &study).send().await.unwrap();
-    let study: Value = study.json().await.unwrap();
+    let study = bench.post("/v1/studies", &study).answer().await;
+    let study = study.document().await;
     let message = next(&mut received).await;
     assert!(message.contains("study.ended"), "{message}");
     assert!(message.contains(study["id"].as_str().unwrap()), "{message}");
@@ -161,7 +157,7 @@ async fn a_clients_receivers_that_hang_keep_no_other_client_waiting() {
     let (bad, good) = (key_of(&bench, "bad").await, key_of(&bench, "good").await);
     let send = async |path: &str, document: Value, key: &str| {
         let request = bench.post(path, &document).bearer_auth(key);
-        let answer = request.send().await.unwrap();
+        let answer = request.answer().await;
         assert!(answer.status().is_success(), "{}", answer.status());
     };
     for i in 0..16 {
@@ -191,12 +187,12 @@ async fn a_webhook_that_was_given_up_is_taken_up_again_with_what_waited() {
     let (port, mut received) = receiver(&["410 Gone", "200 OK", "200 OK"]).await;
     let bench = bench(port).await;
     let hook = json!({ "url": format!("http://localhost:{port}/") });
-    let made = bench.post("/v1/webhooks", &hook).send().await.unwrap();
-    let made: Value = made.json().await.unwrap();
+    let made = bench.post("/v1/webhooks", &hook).answer().await;
+    let made = made.document().await;
     let path = format!("/v1/webhooks/{}", made["id"].as_str().unwrap());
     let post = async |what: &str| {
         let request = bench.client.post(bench.url(&format!("{path}/{what}")));
-        request.send().await.unwrap()
+        request.answer().await
     };
     bench.submit(&submission(1.0)).await;
     let first = next(&mut received).await;
@@ -214,7 +210,7 @@ async fn a_webhook_that_was_given_up_is_taken_up_again_with_what_waited() {
     assert_eq!(bench.job(&list).await["items"][0]["status"], "waiting");
     problem(post("ping").await, 409, "webhook_disabled").await;
 
-    let enabled: Value = post("enable").await.json().await.unwrap();
+    let enabled = post("enable").await.document().await;
     assert_eq!(
         (&enabled["disabled_at"], &enabled["failures"]),
         (&Value::Null, &json!(0))
@@ -224,11 +220,11 @@ async fn a_webhook_that_was_given_up_is_taken_up_again_with_what_waited() {
     told(&list, "/items/0/status", &json!("arrived")).await;
 
     // Another secret, and for a day the one before, too.
-    let rotated: Value = post("rotate").await.json().await.unwrap();
+    let rotated = post("rotate").await.document().await;
     assert_ne!(rotated["secret"], made["secret"]);
     let ping = post("ping").await;
     assert_eq!(ping.status(), StatusCode::ACCEPTED);
-    let ping: Value = ping.json().await.unwrap();
+    let ping = ping.document().await;
     let message = next(&mut received).await;
     assert_eq!(header(&message, "webhook-id"), ping["id"].as_str().unwrap());
     assert!(message.contains("webhook.ping"), "{message}");
@@ -256,14 +252,14 @@ async fn a_webhook_is_made_once_under_a_key_and_its_secret_told_again() {
         let request = bench
             .post("/v1/webhooks", &json!({ "url": url }))
             .header("idempotency-key", "k");
-        request.send().await.unwrap()
+        request.answer().await
     };
     let first = make("http://localhost:1/a").await;
     assert_eq!(first.status(), StatusCode::CREATED);
-    let first: Value = first.json().await.unwrap();
+    let first = first.document().await;
     let again = make("http://localhost:1/a").await;
     assert_eq!(again.status(), StatusCode::OK);
-    let again: Value = again.json().await.unwrap();
+    let again = again.document().await;
     assert_eq!(
         (&first["id"], &first["secret"]),
         (&again["id"], &again["secret"])
@@ -281,7 +277,7 @@ async fn patience_goes_by_the_clock_that_all_processes_share() {
     let late = || Timestamp::now() - SignedDuration::from_hours(365 * 24);
     let bench = bench_of(&[port], Clock::given(late, late)).await;
     let hook = json!({ "url": format!("http://localhost:{port}/") });
-    bench.post("/v1/webhooks", &hook).send().await.unwrap();
+    bench.post("/v1/webhooks", &hook).answer().await;
     bench.submit(&submission(1.0)).await;
     next(&mut received).await;
     let retry_at = async {
@@ -303,7 +299,7 @@ async fn a_message_that_is_refused_is_sent_again_under_the_same_name() {
     let (port, mut received) = receiver(&["500 Oops", "200 OK"]).await;
     let bench = bench(port).await;
     let hook = json!({ "url": format!("http://localhost:{port}/"), "events": ["job.ended"] });
-    bench.post("/v1/webhooks", &hook).send().await.unwrap();
+    bench.post("/v1/webhooks", &hook).answer().await;
     bench.submit(&submission(1.0)).await;
     let first = next(&mut received).await;
     // Five seconds later, by the schedule.
@@ -316,7 +312,7 @@ async fn who_answers_that_it_is_gone_is_sent_nothing_more() {
     let (port, mut received) = receiver(&["410 Gone"]).await;
     let bench = bench(port).await;
     let hook = json!({ "url": format!("http://localhost:{port}/") });
-    bench.post("/v1/webhooks", &hook).send().await.unwrap();
+    bench.post("/v1/webhooks", &hook).answer().await;
     bench.submit(&submission(1.0)).await;
     next(&mut received).await;
     let disabled = async {
@@ -339,16 +335,14 @@ async fn who_answers_that_it_is_gone_is_sent_nothing_more() {
     let deleted = bench
         .client
         .delete(bench.url(&format!("/v1/webhooks/{id}")))
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     assert_eq!(deleted.status(), StatusCode::NO_CONTENT);
     let again = bench
         .client
         .delete(bench.url(&format!("/v1/webhooks/{id}")))
-        .send()
-        .await
-        .unwrap();
+        .answer()
+        .await;
     problem(again, 404, "webhook_not_found").await;
 }
 
@@ -361,7 +355,7 @@ async fn a_name_that_leads_to_a_private_address_is_sent_nothing() {
     bench.hooks = HookRules::to_public(vec![format!("http://localhost:{port}").parse().unwrap()]);
     bench.start_again().await;
     let hook = json!({ "url": format!("http://localhost:{port}/") });
-    bench.post("/v1/webhooks", &hook).send().await.unwrap();
+    bench.post("/v1/webhooks", &hook).answer().await;
     bench.submit(&submission(1.0)).await;
     let told = async {
         loop {
@@ -383,9 +377,8 @@ async fn webhooks_are_off_unless_hosts_are_allowed_and_private_addresses_never_a
     let make = async |bench: &Bench, url: &str| {
         bench
             .post("/v1/webhooks", &json!({ "url": url }))
-            .send()
+            .answer()
             .await
-            .unwrap()
     };
     let off = problem(
         make(&bench, "https://hooks.example.com/").await,

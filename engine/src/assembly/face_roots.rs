@@ -6,8 +6,9 @@
 use faer::Mat;
 
 use super::carrier::Stack;
-use super::flank_fit::{FlankFit, OTHER_DEGREE, smoothed_rows};
+use super::flank_fit::{FlankFit, smoothed_rows};
 use super::flank_forces::{FlankForces, PressedFlank};
+use super::flank_polynomials::OTHER_DEGREE;
 use super::{FaceResolution, FaceYield, PartError, PlainFace};
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::entries;

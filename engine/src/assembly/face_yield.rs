@@ -6,7 +6,8 @@ use faer::{Mat, c64};
 
 use super::carrier::{Carrier, Stack};
 use super::flank_ends::FlankEnds;
-use super::flank_fit::{FlankFit, OWN_DEGREE, smoothed, smoothed_rows, up_the_flank};
+use super::flank_fit::{FlankFit, smoothed, smoothed_rows};
+use super::flank_polynomials::{OWN_DEGREE, up_the_flank};
 use super::holed::{HoledChange, SeenWeb, condensed_unknowns};
 use super::{MakeAll, PartError, Parts};
 use crate::fem::axial::AxialBasis;

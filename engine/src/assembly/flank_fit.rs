@@ -3,37 +3,12 @@
 use faer::Mat;
 use faer::traits::ComplexField;
 
+use super::flank_polynomials::{OTHER_DEGREE, OWN_DEGREE, projecting};
 use super::half_space::HalfSpace;
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::symmetrize;
 use crate::gear::SolidGear;
-use crate::quadrature::{gauss_legendre, legendre, parabola};
-
-/// The degree up the flank of what a tooth yields under its own load, less the half space.
-pub(super) const OWN_DEGREE: usize = 6;
-/// The degree up the flank of what it yields under the loads of others.
-pub(super) const OTHER_DEGREE: usize = 5;
-
-/// The Legendre polynomials in the square of the roll length, over the flank, and their derivatives by the roll length.
-pub(super) fn up_the_flank(
-    [from, to]: [f64; 2],
-    roll_length: f64,
-    degree: usize,
-) -> (Vec<f64>, Vec<f64>) {
-    let t = (2.0 * roll_length * roll_length - from - to) / (to - from);
-    let (mut values, mut slopes) = (vec![0.0; degree + 1], vec![0.0; degree + 1]);
-    legendre(t, &mut values, &mut slopes);
-    let by_roll = 4.0 * roll_length / (to - from);
-    slopes.iter_mut().for_each(|slope| *slope *= by_roll);
-    (values, slopes)
-}
-
-/// The same values, each over its square's mean along the flank: what the nearest polynomials are found by.
-pub(super) fn projecting(squares: [f64; 2], roll_length: f64, degree: usize) -> Vec<f64> {
-    let (values, _) = up_the_flank(squares, roll_length, degree);
-    let each = values.into_iter().enumerate();
-    each.map(|(a, value)| (2 * a + 1) as f64 * value).collect()
-}
+use crate::quadrature::{gauss_legendre, parabola};
 
 /// How values at the nodes of a flank become polynomials over it: the nearest to what the grid has between its nodes, in the mean along
 /// the flank. Loads go the same way, so that what the grid makes of loads that stand on single nodes does not count.

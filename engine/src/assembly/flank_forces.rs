@@ -1,6 +1,7 @@
 //! Forces that press flanks, on the nodes of a grid and on the functions over a flank.
 
-use super::flank_fit::{OWN_DEGREE, squares, up_the_flank};
+use super::flank_fit::squares;
+use super::flank_polynomials::{OWN_DEGREE, up_the_flank};
 use crate::fem::axial::AxialBasis;
 use crate::gear::{Involute, Vector};
 use crate::quadrature::parabola;

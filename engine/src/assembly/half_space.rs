@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use faer::Mat;
 
 use super::flank_ends::{FlankEnds, Lines};
-use super::flank_fit::projecting;
+use super::flank_polynomials::projecting;
 use crate::fem::axial::AxialBasis;
 use crate::gear::{Material, SolidGear};
 use crate::quadrature::{gauss_legendre, legendre};

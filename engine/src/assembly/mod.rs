@@ -18,6 +18,7 @@ pub mod face_yield;
 mod flank_ends;
 mod flank_fit;
 mod flank_forces;
+mod flank_polynomials;
 pub mod gear;
 mod half_space;
 mod holed;

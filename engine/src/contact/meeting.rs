@@ -5,7 +5,7 @@ use std::array::from_fn;
 use nalgebra::{SimdBool, SimdValue, Vector2};
 use simba::simd::WideF64x4;
 
-use super::placement::{self, FlankPlace, Sight, inclined, quarter_turned, unit};
+use super::placement::{self, FlankPlace, Placement, Sight, inclined, quarter_turned, unit};
 use super::wide::{Loops, Numbers, wide};
 use crate::gear::{GearPair, Member, PairDeviations, SpurGear, Vector};
 
@@ -29,6 +29,14 @@ pub(super) struct Push<T = f64> {
     seat: Member,
     /// Outward from the flank of the other gear.
     pub(super) normal: Vector2<T>,
+}
+
+impl Placement<'_> {
+    /// How the flanks meet at `place` on the flank of `seat`, which sees `sight`.
+    pub(super) fn meeting(&self, seat: Member, place: &FlankPlace, sight: &Sight) -> Meeting {
+        let push = Push::new(seat, place.normal, sight.normal);
+        push.meeting(self.pair, place.point, sight.gap, self.centers)
+    }
 }
 
 impl<T: Numbers> Push<T> {

@@ -7,7 +7,6 @@ use std::f64::consts::PI;
 
 use nalgebra::{SimdBool, Vector2};
 
-use super::meeting::{Meeting, Push};
 use super::wide::Numbers;
 use crate::gear::{
     GearPair, Member, PairDeviations, SpurGear, Vector, radial, tangential, teeth_on,
@@ -18,9 +17,9 @@ use crate::gear::{
 /// The driving center is the origin, the driven one lies on the x axis; the driving gear turns counter-clockwise.
 #[derive(Debug, Clone, Copy)]
 pub struct Placement<'a> {
-    pair: &'a GearPair,
+    pub(super) pair: &'a GearPair,
     /// Where the gears' own axes stand: beside the axes of rotation where they are eccentric.
-    centers: [Vector; 2],
+    pub(super) centers: [Vector; 2],
     /// The angle of each tooth's centerline.
     angles: [f64; 2],
     /// What deviates, and the teeth that stand there; nothing of a pair as drawn.
@@ -222,12 +221,6 @@ impl<'a> Placement<'a> {
             radial: e_r,
             slope,
         })
-    }
-
-    /// How the flanks meet at `place` on the flank of `seat`, which sees `sight`.
-    pub(super) fn meeting(&self, seat: Member, place: &FlankPlace, sight: &Sight) -> Meeting {
-        let push = Push::new(seat, place.normal, sight.normal);
-        push.meeting(self.pair, place.point, sight.gap, self.centers)
     }
 
     /// The distance of `point` from the fillet on the loaded side of the tooth of `member`, positive outside.

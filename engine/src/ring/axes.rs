@@ -1,4 +1,4 @@
-//! Directions at nodes: stiffness in components other than x and y.
+//! Directions: of teeth, and at nodes, where stiffness has components other than x and y.
 
 use faer::Mat;
 
@@ -38,4 +38,9 @@ pub(super) fn rows_in_axes(rows: &Mat<f64>, axes: &[[Vector; 2]]) -> Mat<f64> {
         let node = j / 2;
         axes[node][j % 2].dot(&Vector::new(rows[(i, 2 * node)], rows[(i, 2 * node + 1)]))
     })
+}
+
+/// The angle of tooth `i` of `z` in the gear's frame.
+pub(super) fn tooth_angle(i: usize, z: usize) -> f64 {
+    2.0 * std::f64::consts::PI * i as f64 / z as f64
 }

@@ -3,6 +3,7 @@
 use faer::Mat;
 use rayon::prelude::*;
 
+use super::axes::tooth_angle;
 use super::blank::BlankSubstructure;
 use super::teeth::TeethRing;
 use crate::fem::FemError;
@@ -228,9 +229,4 @@ fn add_answers(
 /// Blocks in a row of X where teeth up to `farthest` apart are coupled.
 fn row_length(teeth: &TeethRing, farthest: usize) -> usize {
     (farthest + 1).min(teeth.held_coupling.len())
-}
-
-/// The angle of tooth `i` of `z` in the gear's frame.
-pub fn tooth_angle(i: usize, z: usize) -> f64 {
-    2.0 * std::f64::consts::PI * i as f64 / z as f64
 }

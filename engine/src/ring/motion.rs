@@ -2,8 +2,8 @@
 
 use faer::Mat;
 
+use super::axes::tooth_angle;
 use super::blank::BlankSubstructure;
-use super::body::tooth_angle;
 use super::teeth::TeethRing;
 use crate::fem::FemError;
 use crate::fem::dense::Cholesky;

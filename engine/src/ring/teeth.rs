@@ -2,8 +2,8 @@
 
 use faer::{Mat, c64};
 
+use super::axes::tooth_angle;
 use super::blank::BlankSubstructure;
-use super::body::tooth_angle;
 use super::cyclic::{Component, Harmonics};
 use super::modes::compress;
 use super::tooth::ToothSubstructure;

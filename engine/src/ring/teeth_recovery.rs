@@ -104,7 +104,7 @@ impl TeethRecovery {
         let reach = self.by_modes.len() / 2;
         let seen = self
             .harmonics
-            .turned(motion, super::body::tooth_angle(tooth, z));
+            .turned(motion, super::axes::tooth_angle(tooth, z));
         let mut values = vec![0.0; self.count()];
         let mut add = |rows: &Mat<f64>, by: &[f64]| {
             for (j, by) in by.iter().enumerate().filter(|(_, by)| **by != 0.0) {

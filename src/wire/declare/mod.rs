@@ -22,7 +22,8 @@ pub(crate) use answer::{answer, view};
 pub(super) use errors::Errors;
 pub(super) use list::{List, list};
 pub(super) use nested::{
-    Document, EACH, Nested, Property, document, nested, object, tagged, utoipa_schema,
+    Document, EACH, Exclusion, Nested, Property, document, exclusive, nested, object, tagged,
+    utoipa_schema,
 };
 pub(super) use node::{Node, escaped};
 pub(super) use number::{Number, number};
@@ -73,6 +74,11 @@ pub(super) trait Kind: Sized {
     /// Whether it has to be given.
     fn is_needed(spec: &Self::Spec) -> bool {
         Self::usual(spec).is_none()
+    }
+
+    /// The field that cannot be given together with it.
+    fn exclusion(_: &Self::Spec) -> Option<Exclusion> {
+        None
     }
 
     /// Whether its field is not written.
@@ -128,10 +134,13 @@ impl<S> Declared<S> {
         map.serialize_entry(self.name, &Written(value))
     }
 
-    /// What the schema says of the field: its name, its schema, and whether it is needed.
-    pub(super) fn property<K: Kind<Spec = S>>(&self) -> (&'static str, Value, bool) {
+    /// What the schema says of the field.
+    pub(super) fn property<K: Kind<Spec = S>>(&self) -> Property {
         let schema = K::describe(self.about.trim_start(), &self.spec);
-        (self.name, schema, K::is_needed(&self.spec))
+        Property {
+            exclusion: K::exclusion(&self.spec),
+            ..Property::new(self.name, schema, K::is_needed(&self.spec))
+        }
     }
 }
 

@@ -8,8 +8,33 @@ use utoipa::openapi::schema::{ObjectBuilder, Schema};
 
 use super::{Kind, Named, Node, ObjectReader, Place};
 
-/// A property of an object: its name, its schema, and whether it is needed.
-pub(in crate::wire) type Property = (&'static str, Value, bool);
+/// A property of an object.
+pub(in crate::wire) struct Property {
+    pub(in crate::wire) name: &'static str,
+    pub(in crate::wire) schema: Value,
+    pub(in crate::wire) is_needed: bool,
+    pub(in crate::wire) exclusion: Option<Exclusion>,
+}
+
+impl Property {
+    /// One that excludes no other.
+    pub(in crate::wire) const fn new(name: &'static str, schema: Value, is_needed: bool) -> Self {
+        Self {
+            name,
+            schema,
+            is_needed,
+            exclusion: None,
+        }
+    }
+}
+
+/// That a field cannot be given together with another one.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::wire) struct Exclusion {
+    pub(in crate::wire) other: &'static str,
+    /// Whether one of the two has to be given.
+    pub(in crate::wire) is_one_needed: bool,
+}
 
 /// An object of the wire; [`document!`] and [`tagged!`] implement it.
 pub(in crate::wire) trait Document: Sized {
@@ -120,8 +145,28 @@ impl<D: Document> Kind for D {
 pub(in crate::wire) fn object(title: &str, about: &str, properties: Vec<Property>) -> Value {
     let needed: Vec<_> = properties
         .iter()
-        .filter(|(.., needed)| *needed)
-        .map(|(name, ..)| *name)
+        .filter(|property| property.is_needed)
+        .map(|property| property.name)
+        .collect();
+    let mut pairs: Vec<([&str; 2], bool)> = Vec::new();
+    for property in &properties {
+        if let Some(Exclusion {
+            other,
+            is_one_needed,
+        }) = property.exclusion
+        {
+            // Either of the two may say so, or both.
+            if !pairs
+                .iter()
+                .any(|(pair, _)| *pair == [other, property.name])
+            {
+                pairs.push(([property.name, other], is_one_needed));
+            }
+        }
+    }
+    let exclusions: Vec<Value> = pairs
+        .iter()
+        .map(|(pair, is_one_needed)| exclusive(pair, *is_one_needed))
         .collect();
     let mut schema = json!({ "type": "object", "title": title, "description": about.trim_start() });
     if !needed.is_empty() {
@@ -129,10 +174,35 @@ pub(in crate::wire) fn object(title: &str, about: &str, properties: Vec<Property
     }
     let properties = properties
         .into_iter()
-        .map(|(name, schema, _)| (name.to_owned(), schema));
+        .map(|property| (property.name.to_owned(), property.schema));
     schema["properties"] = Value::Object(Map::from_iter(properties));
     schema["additionalProperties"] = json!(false);
+    if !exclusions.is_empty() {
+        schema["allOf"] = json!(exclusions);
+    }
     schema
+}
+
+/// What a schema says of fields that exclude each other: one alternative for each, and one for none of them unless one has to be given. Null is
+/// as good as absent.
+///
+/// It stands in an `allOf`, beside the properties: generators of clients make no types of alternatives there.
+pub(in crate::wire) fn exclusive(names: &[&str], is_one_needed: bool) -> Value {
+    let only = |given: Option<&str>| {
+        let schema = |name: &str| match given == Some(name) {
+            true => json!({ "not": { "type": "null" } }),
+            false => json!({ "type": "null" }),
+        };
+        let properties = names.iter().map(|name| (String::from(*name), schema(name)));
+        let mut alternative = json!({ "properties": Map::from_iter(properties) });
+        if let Some(given) = given {
+            alternative["required"] = json!([given]);
+        }
+        alternative
+    };
+    let none = (!is_one_needed).then_some(None);
+    let alternatives = names.iter().copied().map(Some).chain(none).map(only);
+    json!({ "oneOf": alternatives.collect::<Vec<Value>>() })
 }
 
 /// `schema` in a form that utoipa carries to the finished document, which has it instead. What utoipa knows of schemas is less than
@@ -183,7 +253,7 @@ macro_rules! document {
                 Ok(())
             }
 
-            fn properties() -> Vec<(&'static str, serde_json::Value, bool)> {
+            fn properties() -> Vec<$crate::wire::declare::Property> {
                 vec![$(Self::$field.property::<$kind>()),*]
             }
 
@@ -278,7 +348,7 @@ macro_rules! tagged {
                 }
             }
 
-            fn properties() -> Vec<(&'static str, serde_json::Value, bool)> {
+            fn properties() -> Vec<$crate::wire::declare::Property> {
                 Vec::new()
             }
 
@@ -291,7 +361,7 @@ macro_rules! tagged {
             }
 
             fn name_fields(named: &mut $crate::wire::declare::Named) {
-                use $crate::wire::declare::Document;
+                use $crate::wire::declare::{Document, Property};
                 $(
                     let kind = serde_json::json!({
                         "type": "string",
@@ -299,7 +369,7 @@ macro_rules! tagged {
                         "description": "What it is.",
                         "enum": [$word],
                     });
-                    let mut properties = vec![("kind", kind, true)];
+                    let mut properties = vec![Property::new("kind", kind, true)];
                     properties.extend(<$part as Document>::properties());
                     let schema =
                         $crate::wire::declare::object($part_title, concat!($($meaning),*), properties);

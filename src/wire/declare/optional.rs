@@ -3,7 +3,7 @@
 use serde::Serializer;
 use serde_json::{Value, json};
 
-use super::{Kind, Named, Node, ObjectReader, Place};
+use super::{Exclusion, Kind, Named, Node, ObjectReader, Place};
 
 /// What it means that a value is absent.
 #[derive(Debug, Clone, Copy)]
@@ -103,6 +103,18 @@ impl<T: Kind> Kind for Option<T> {
         self.is_none() && spec.left_out
     }
 
+    fn exclusion(spec: &Self::Spec) -> Option<Exclusion> {
+        let is_one_needed = match spec.absent {
+            Absent::Means(_) => false,
+            Absent::Unless => T::is_needed(&spec.spec),
+            Absent::OneOf => true,
+        };
+        spec.other.map(|other| Exclusion {
+            other,
+            is_one_needed,
+        })
+    }
+
     fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Some(value) => value.write(serializer),
@@ -136,10 +148,84 @@ pub(in crate::wire) fn or_null(mut schema: Value) -> Value {
     let nothing = json!({ "type": "null" });
     if schema.get("type").is_some() {
         schema["type"] = json!([schema["type"], "null"]);
+        if let Some(words) = schema.get_mut("enum").and_then(Value::as_array_mut) {
+            words.push(Value::Null);
+        }
     } else if let Some(alternatives) = schema.get_mut("oneOf").and_then(Value::as_array_mut) {
         alternatives.insert(0, nothing);
     } else {
         schema = json!({ "oneOf": [nothing, schema] });
     }
     schema
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::declare::{Document as _, EACH, Errors, document, number};
+
+    document! {
+        /// Something whose fields exclude each other.
+        struct Thing as "Thing", "Thing" {
+            /// One of the two has to be given.
+            length: Option<f64> = or_else("angle", number("Length", "m", 0.0, 9.0)),
+            /// The other one.
+            angle: Option<f64> = or_else("length", number("Angle", "rad", 0.0, 9.0)),
+            /// One of the two may be given.
+            chamfer: Option<f64> = absent(number("Chamfer", "m", 0.0, 9.0), "none").not_beside("rounding"),
+            /// The other one.
+            rounding: Option<f64> = absent(number("Rounding", "m", 0.0, 9.0), "none"),
+            /// One has a default, in whose place the other may stand.
+            width: Option<f64> = unless("share", number("Width", "m", 0.0, 9.0).or(1.0)),
+            /// The other one.
+            share: Option<f64> = absent(number("Share", "1", 0.0, 9.0), "the width decides"),
+        }
+    }
+
+    /// Whether `schema`, as far as it is about which fields are there, allows `value`.
+    fn allows(schema: &Value, value: &Value) -> bool {
+        let all = |schemas: &Value, count: fn(usize, usize) -> bool| {
+            schemas.as_array().is_none_or(|schemas| {
+                let met = schemas.iter().filter(|schema| allows(schema, value));
+                count(met.count(), schemas.len())
+            })
+        };
+        let given = |name: &Value| value.get(name.as_str().expect("a name")).is_some();
+        let required = schema["required"].as_array();
+        let properties = schema["properties"].as_object().into_iter().flatten();
+        all(&schema["allOf"], |met, all| met == all)
+            && all(&schema["oneOf"], |met, _| met == 1)
+            && required.is_none_or(|names| names.iter().all(given))
+            && (schema["type"] != "null" || value.is_null())
+            && schema.get("not").is_none_or(|not| !allows(not, value))
+            && properties
+                .filter_map(|(name, schema)| Some((schema, value.get(name)?)))
+                .all(|(schema, value)| allows(schema, value))
+    }
+
+    #[test]
+    fn the_schema_allows_together_what_the_reader_takes_together() {
+        let schema = Thing::json_schema();
+        let names = ["length", "angle", "chamfer", "rounding", "width", "share"];
+        let states = [None, Some(Value::Null), Some(json!(0.5))];
+        let mut taken = 0;
+        for number in 0..3_usize.pow(6) {
+            let state = |i: usize| states[number / 3_usize.pow(i as u32) % 3].clone();
+            let fields = names.iter().enumerate();
+            let fields = fields.filter_map(|(i, name)| Some(((*name).to_owned(), state(i)?)));
+            let document = Value::Object(fields.collect());
+            let errors = Errors::default();
+            Thing::read(&Node::of(&document), &Place::root(&errors), &EACH);
+            let is_taken = errors.count() == 0;
+            assert_eq!(allows(&schema, &document), is_taken, "{document}");
+            taken += usize::from(is_taken);
+        }
+        assert!(taken > 50, "{taken}");
+    }
+
+    #[test]
+    fn words_of_which_none_may_be_given_are_null_as_well() {
+        let words = json!({ "type": "string", "enum": ["a", "b"] });
+        assert_eq!(or_null(words)["enum"], json!(["a", "b", null]));
+    }
 }

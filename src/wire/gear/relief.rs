@@ -162,14 +162,14 @@ impl ReliefEnd {
     fn json_schema(self) -> Value {
         let ways = StartWay::ALL.map(|way| {
             let field = way.field(self);
-            let (name, schema, _) = field.property::<f64>();
+            let property = field.property::<f64>();
             // Generators of clients name types by their titles.
-            let title = schema["title"].as_str().unwrap_or_default();
+            let title = property.schema["title"].as_str().unwrap_or_default();
             let title = match self {
                 Self::Tip => title.to_owned(),
                 Self::Form => format!("{title} of a root relief"),
             };
-            object(&title, field.about, vec![(name, schema, true)])
+            object(&title, field.about, vec![property])
         });
         json!({
             "title": "Start of the relief",

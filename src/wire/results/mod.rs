@@ -3,6 +3,7 @@
 mod curve;
 mod decomposition;
 mod evidence;
+mod exchanged;
 mod forces;
 mod spectrum;
 mod stress;

@@ -67,7 +67,7 @@ pub(super) fn read(node: Node, value: Value, errors: &Errors) -> Option<Study> {
 }
 
 /// What a study may choose its designs by.
-const PLANS: [&str; 4] = ["axes", "designs", "population", "search"];
+pub(super) const PLANS: [&str; 4] = ["axes", "designs", "population", "search"];
 
 fn read_plan(reader: &mut ObjectReader<'_>, value: &Value, errors: &Errors) -> Option<Plan> {
     let given = PLANS.map(|name| reader.present(name).map(|node| (name, node)));

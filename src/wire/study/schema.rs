@@ -4,9 +4,11 @@ use serde_json::{Value, json};
 
 use super::Study;
 use super::constant_mass::ConstantMass;
-use super::document::{KEEP, LONGEST_LABEL, MOST_CHANGES, NAME};
+use super::document::{KEEP, LONGEST_LABEL, MOST_CHANGES, NAME, PLANS};
 use super::size::MOST_DESIGNS;
-use crate::wire::declare::{Document, Kind, Property, nested, object, or_null, utoipa_schema};
+use crate::wire::declare::{
+    Document, Kind, Property, exclusive, nested, object, or_null, utoipa_schema,
+};
 use crate::wire::kept::Kept;
 use crate::wire::population::PopulationDocument;
 use crate::wire::search::SearchDocument;
@@ -23,26 +25,21 @@ impl utoipa::PartialSchema for Study {
             "description": "A submission as for POST /v1/jobs. It may lack what every design gives.",
             "$ref": "#/components/schemas/Submission",
         });
+        let optional = |name, schema| Property::new(name, or_null(schema), false);
         let properties = vec![
             NAME.property::<Option<String>>(),
-            ("tags", tags, false),
+            Property::new("tags", tags, false),
             KEEP.property::<Kept>(),
-            ("base", base, true),
-            ("axes", or_null(axes()), false),
-            ("designs", or_null(designs()), false),
-            (
-                "population",
-                or_null(PopulationDocument::describe("", &nested(""))),
-                false,
-            ),
-            (
-                "search",
-                or_null(SearchDocument::describe("", &nested(""))),
-                false,
-            ),
-            ("constant_mass", or_null(ConstantMass::json_schema()), false),
+            Property::new("base", base, true),
+            optional("axes", axes()),
+            optional("designs", designs()),
+            optional("population", PopulationDocument::describe("", &nested(""))),
+            optional("search", SearchDocument::describe("", &nested(""))),
+            optional("constant_mass", ConstantMass::json_schema()),
         ];
-        utoipa_schema(object("Study", about, properties))
+        let mut schema = object("Study", about, properties);
+        schema["allOf"] = json!([exclusive(&PLANS, true)]);
+        utoipa_schema(schema)
     }
 }
 
@@ -71,7 +68,10 @@ fn axes() -> Value {
     let axis = object(
         "Axis",
         "A field and the values that it takes.",
-        vec![("path", path, true), ("values", values, true)],
+        vec![
+            Property::new("path", path, true),
+            Property::new("values", values, true),
+        ],
     );
     let about =
         "Fields and their values. Every combination is a design; the last axis changes fastest.";
@@ -94,7 +94,10 @@ fn designs() -> Value {
         "additionalProperties": true,
         "default": {},
     });
-    let properties: Vec<Property> = vec![("label", label, true), ("changes", changes, false)];
+    let properties = vec![
+        Property::new("label", label, true),
+        Property::new("changes", changes, false),
+    ];
     let design = object("Design", "A variant of the base.", properties);
     list("Designs", "The designs one by one.", design, MOST_DESIGNS)
 }

@@ -1,7 +1,7 @@
 //! The units of attributes. Each attribute has a unit of its own in the standard, and says it again; other spellings and other
 //! powers of ten are converted.
 
-use crate::wire::significant;
+use crate::significant;
 
 /// The digits that the standard keeps of a number; what lies below is noise of a conversion.
 const DIGITS: usize = 15;

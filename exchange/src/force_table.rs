@@ -1,4 +1,4 @@
-//! The force table of a results document as other programs read it: rows for a spreadsheet, tables over angle and approach for
+//! The force table of a pair as other programs read it: rows for a spreadsheet, tables over angle and approach for
 //! Modelica, and what an FMU reads.
 //!
 //! Angles are those of the gears, each growing in the sense in which its gear turns; the approach is r_b1 θ_1 − r_b2 θ_2. The force has
@@ -8,9 +8,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-use meshwright_engine::dynamics::{FlankRows, ForceTable, Ladder};
-
-use crate::wire::Results;
+use meshwright_engine::dynamics::ForceTable;
 
 /// How much finer than computed the tables are that others interpolate in straight lines: in position, and in load.
 const REFINED: (usize, usize) = (2, 4);
@@ -36,7 +34,7 @@ pub enum Form {
     Modelica,
 }
 
-/// The force table of a results document, with what turns it into torques.
+/// The force table of a pair, with what turns it into torques.
 pub struct MeshForces {
     /// The table.
     pub table: ForceTable,
@@ -49,41 +47,6 @@ pub struct MeshForces {
 }
 
 impl MeshForces {
-    /// The one of `results`; `None` if they have none.
-    pub fn of(results: &Results) -> Option<Self> {
-        let (pair, table) = (&results.pair, results.force_table.as_ref()?);
-        let ladder = Ladder {
-            count: table.load_n.len(),
-            largest: *table.load_n.last()?,
-        };
-        let base_radii = [&pair.driving, &pair.driven].map(|gear| gear.base_radius_mm * 1e-3);
-        let rows = |rows: &[Vec<f64>], convert: fn(f64) -> f64| {
-            let row = |row: &Vec<f64>| row.iter().copied().map(convert).collect();
-            rows.iter().map(row).collect::<Vec<Vec<f64>>>()
-        };
-        let flank = |delta: &[Vec<f64>], stiffness: &[Vec<f64>]| FlankRows {
-            delta: rows(delta, |um| um * 1e-6),
-            compliance: (!stiffness.is_empty())
-                .then(|| rows(stiffness, |k| if k > 0.0 { 1.0 / k } else { 0.0 })),
-        };
-        let flanks = [
-            flank(
-                &table.transmission_error_um,
-                &table.mesh_stiffness_tangent_n_per_m,
-            ),
-            flank(
-                &table.other_flank_transmission_error_um,
-                &table.other_flank_mesh_stiffness_tangent_n_per_m,
-            ),
-        ];
-        Some(Self {
-            table: ForceTable::new(pair.period_mesh_periods, ladder, flanks),
-            base_radii,
-            tooth_count: (TAU * base_radii[0] / (pair.base_pitch_mm * 1e-3)).round(),
-            method: results.method.to_string(),
-        })
-    }
-
     /// The angle of the driving gear in a mesh period.
     fn pitch_angle(&self) -> f64 {
         TAU / self.tooth_count
@@ -313,45 +276,41 @@ end MeshwrightMesh;
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub(crate) mod tests {
+    use meshwright_engine::dynamics::{FlankRows, Ladder};
+
     use super::*;
-    use crate::wire::results::{ForceTableDocument, STUB};
 
     /// Two positions a period, δ = F/k with k = 1e8 and 2e8 N/m, 100 um of backlash.
-    pub(in crate::exchange) fn results() -> Results {
-        let loads = Ladder {
+    pub(crate) fn forces() -> MeshForces {
+        let ladder = Ladder {
             count: 4,
             largest: 1000.0,
         };
-        let loads = loads.loads();
         let rows = |sign: f64, from: f64| -> Vec<Vec<f64>> {
+            let loads = ladder.loads().into_iter();
             loads
-                .iter()
-                .map(|load| vec![from + sign * load * 1e-2, from + sign * load * 0.5e-2])
+                .map(|load| vec![from + sign * load * 1e-8, from + sign * load * 0.5e-8])
                 .collect()
         };
-        let mut results = Results::read(STUB).expect("a results document");
-        results.pair.period_mesh_periods = 1;
-        results.pair.base_pitch_mm = TAU * 2.0;
-        results.pair.driving.base_radius_mm = 40.0;
-        results.pair.driven.base_radius_mm = 50.0;
-        let mut stiffness = vec![vec![1e8, 2e8]; 4];
-        stiffness[0].fill(0.0);
-        results.force_table = Some(ForceTableDocument {
-            mesh_position: vec![0.0, 0.5],
-            transmission_error_um: rows(1.0, 0.0),
-            mesh_stiffness_tangent_n_per_m: stiffness.clone(),
-            other_flank_mesh_stiffness_tangent_n_per_m: stiffness,
-            backlash_um: vec![100.0; 2],
-            other_flank_transmission_error_um: rows(-1.0, -100.0),
-            load_n: loads,
-        });
-        results
+        let mut compliance = vec![vec![1e-8, 0.5e-8]; 4];
+        compliance[0].fill(0.0);
+        let flank = |delta| FlankRows {
+            delta,
+            compliance: Some(compliance.clone()),
+        };
+        let flanks = [flank(rows(1.0, 0.0)), flank(rows(-1.0, -100e-6))];
+        MeshForces {
+            table: ForceTable::new(1, ladder, flanks),
+            base_radii: [40e-3, 50e-3],
+            tooth_count: 20.0,
+            method: "flexible".to_owned(),
+        }
     }
 
     #[test]
     fn a_line_of_the_csv_is_a_load_at_a_position() {
-        let forces = MeshForces::of(&results()).expect("has a table");
+        let forces = forces();
         let text = forces.write(Form::Csv);
         let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
         assert_eq!(lines.len(), 1 + 2 * 4 * 2);
@@ -368,7 +327,7 @@ pub(super) mod tests {
 
     #[test]
     fn the_tables_over_angle_and_approach_are_whole_and_their_last_row_is_the_first() {
-        let forces = MeshForces::of(&results()).expect("has a table");
+        let forces = forces();
         let text = forces.write(Form::Text);
         assert!(text.starts_with("#1\n"));
         for name in ["force", "torque"] {
@@ -412,7 +371,7 @@ pub(super) mod tests {
 
     #[test]
     fn the_package_has_both_tables_and_torques_of_both_gears() {
-        let forces = MeshForces::of(&results()).expect("has a table");
+        let forces = forces();
         let text = forces.write(Form::Modelica);
         for said in [
             "package MeshwrightMesh",
@@ -423,12 +382,5 @@ pub(super) mod tests {
             assert!(text.contains(said), "{said}");
         }
         assert_eq!(text.matches('[').count(), text.matches(']').count());
-    }
-
-    #[test]
-    fn results_without_a_table_have_none() {
-        let mut results = results();
-        results.force_table = None;
-        assert!(MeshForces::of(&results).is_none());
     }
 }

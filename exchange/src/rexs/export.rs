@@ -2,14 +2,15 @@
 
 use std::fmt::Write as _;
 
+use meshwright_engine::analysis::Case;
+use meshwright_engine::gear::{Member, SpurGear};
 use serde_json::Value;
 
 use super::gear::{GENERATED_SHIFT, ROOT, ReliefNames, TIP};
 use super::import::HELIX_ANGLE;
 use super::own;
 use super::unit::{DEG, KG_PER_DM3, MM, MPA, MUM, N_M, N_PER_MM, NONE, PER_MINUTE, Unit, mm_of_um};
-use crate::wire::geometry::{GearGeometry, PairGeometry};
-use crate::wire::{Submission, significant};
+use crate::significant;
 
 /// The version whose names are written.
 const VERSION: &str = "2.0.0";
@@ -36,14 +37,12 @@ struct Ids {
 const UNIT: usize = 1;
 const STAGE: usize = 2;
 
-/// The model of a submission; with its results, one load case for each torque has the curves. `date` is the time of writing, by
-/// ISO 8601 with its offset.
+/// The model of a submission, whose `document` has every default filled in and asks for `case`; with its results, one load case for each
+/// torque has the curves. `date` is the time of writing, by ISO 8601 with its offset.
 ///
 /// The curves stand at the stage: `meshing_stiffness_characteristic`, the tangent stiffness at each mesh position, and each gear
 /// says by `rotational_meshing_position` the angles at which it stands then.
-pub fn export(submission: &Submission, results: Option<&Value>, date: &str) -> String {
-    let document = serde_json::to_value(submission).expect("a submission is words and numbers");
-    let geometry = PairGeometry::of(submission.case());
+pub fn export(document: &Value, case: &Case, results: Option<&Value>, date: &str) -> String {
     let mut components = Xml {
         indent: "    ",
         ..Xml::default()
@@ -54,8 +53,8 @@ pub fn export(submission: &Submission, results: Option<&Value>, date: &str) -> S
     components.open(STAGE, "cylindrical_stage");
     let pair = &document["pair"];
     components.number("center_distance", MM, number(pair, "center_distance_mm"));
-    components.number("radial_contact_ratio", NONE, geometry.contact_ratio);
-    components.word(own::METHOD, submission.method());
+    components.number("radial_contact_ratio", NONE, case.pair.contact_ratio());
+    components.word(own::METHOD, document["method"].as_str().unwrap_or_default());
     if let Some(offset) = number_of(pair, "axial_offset_mm").filter(|offset| *offset != 0.0) {
         components.number(own::AXIAL_OFFSET, MM, offset);
     }
@@ -66,30 +65,29 @@ pub fn export(submission: &Submission, results: Option<&Value>, date: &str) -> S
     relations.add("assembly", None, &[("assembly", UNIT), ("part", STAGE)]);
     let mut next = STAGE + 1;
     let helix = number(pair, "helix_angle_deg");
-    let ids =
-        [("driving", &geometry.driving), ("driven", &geometry.driven)].map(|(member, geometry)| {
-            let gear = Gear {
-                document: &pair[member],
-                geometry,
-                helix_angle_deg: if member == "driving" { helix } else { -helix },
-            };
-            let ids = gear.ids(&mut next);
-            gear.write(
-                &ids,
-                member == "driving",
-                number_of(&document, "driving_speed_rpm"),
-                &mut components,
-            );
-            gear.relate(&ids, &mut relations);
-            ids
-        });
+    let ids = [("driving", Member::Driving), ("driven", Member::Driven)].map(|(member, of)| {
+        let gear = Gear {
+            document: &pair[member],
+            section: case.pair.gear(of),
+            helix_angle_deg: if member == "driving" { helix } else { -helix },
+        };
+        let ids = gear.ids(&mut next);
+        gear.write(
+            &ids,
+            member == "driving",
+            number_of(document, "driving_speed_rpm"),
+            &mut components,
+        );
+        gear.relate(&ids, &mut relations);
+        ids
+    });
     let gears = [
         ("stage", STAGE),
         ("gear_1", ids[0].gear),
         ("gear_2", ids[1].gear),
     ];
     relations.add("stage", None, &gears);
-    let load_cases = load_cases(&document, results, &ids);
+    let load_cases = load_cases(document, results, &ids);
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model version=\"{VERSION}\" applicationId=\"Meshwright\" applicationVersion=\"{}\" date=\"{}\" applicationLanguage=\"en\">\n  <relations>\n{}  </relations>\n  <components>\n{}  </components>\n  <load_spectrum id=\"1\">\n{load_cases}  </load_spectrum>\n</model>\n",
         env!("CARGO_PKG_VERSION"),
@@ -163,7 +161,7 @@ fn load_cases(document: &Value, results: Option<&Value>, ids: &[Ids; 2]) -> Stri
 /// A gear as the submission has it, and what follows from that.
 struct Gear<'a> {
     document: &'a Value,
-    geometry: &'a GearGeometry,
+    section: &'a SpurGear,
     /// Positive if it is right-handed.
     helix_angle_deg: f64,
 }
@@ -205,7 +203,7 @@ impl Gear<'_> {
     }
 
     fn write(&self, ids: &Ids, drives: bool, speed: Option<f64>, out: &mut Xml) {
-        let (module, geometry) = (self.number("module_mm"), self.geometry);
+        let (module, section) = (self.number("module_mm"), self.section);
         let shift = self.number("profile_shift");
         let blank = &self.document["blank"];
         out.open(ids.gear, "cylindrical_gear");
@@ -217,10 +215,10 @@ impl Gear<'_> {
         out.number(
             "tip_diameter",
             MM,
-            tip.unwrap_or(2.0 * geometry.tip_radius_mm),
+            tip.unwrap_or(2.0 * to_mm(section.tip_radius())),
         );
-        out.number("root_diameter", MM, 2.0 * geometry.root_radius_mm);
-        out.number("base_diameter", MM, 2.0 * geometry.base_radius_mm);
+        out.number("root_diameter", MM, 2.0 * to_mm(section.root_radius()));
+        out.number("base_diameter", MM, 2.0 * to_mm(section.base_radius()));
         out.number("inner_diameter", MM, 2.0 * number(blank, "bore_radius_mm"));
         if let Some(speed) = speed.filter(|_| drives) {
             out.number("rotational_speed", PER_MINUTE, speed);
@@ -302,12 +300,12 @@ impl Gear<'_> {
         out.close();
         out.open(ids.body, "gear_body");
         out.number("inner_diameter", MM, 2.0 * number(blank, "bore_radius_mm"));
-        out.number("outer_diameter", MM, 2.0 * geometry.root_radius_mm);
+        out.number("outer_diameter", MM, 2.0 * to_mm(section.root_radius()));
         if let Some(outer) = number_of(&blank["web"], "outer_radius_mm") {
             out.number(
                 "gear_body_rim_thickness",
                 MM,
-                geometry.root_radius_mm - outer,
+                to_mm(section.root_radius()) - outer,
             );
             out.number(
                 "gear_body_web_thickness",
@@ -389,7 +387,7 @@ impl Gear<'_> {
     }
 
     fn write_relief(&self, names: &ReliefNames, amount: f64, relief: &Value, out: &mut Xml) {
-        let (start, geometry) = (&relief["start"], self.geometry);
+        let (start, section) = (&relief["start"], self.section);
         out.number(names.depth, MM, amount);
         out.word(
             "shape_of_relief",
@@ -401,12 +399,13 @@ impl Gear<'_> {
         }
         let from_radial = |length: f64| {
             let radius = match names.kind {
-                "tip_relief" => geometry.tip_radius_mm - length,
-                _ => geometry.form_radius_mm + length,
+                "tip_relief" => to_mm(section.tip_radius()) - length,
+                _ => to_mm(section.form_radius()) + length,
             };
             2.0 * radius
         };
-        let from_angle = |angle: f64| 2.0 * geometry.base_radius_mm * angle.to_radians().hypot(1.0);
+        let from_angle =
+            |angle: f64| 2.0 * to_mm(section.base_radius()) * angle.to_radians().hypot(1.0);
         let diameter = number_of(start, "diameter_mm")
             .or_else(|| number_of(start, "radial_length_mm").map(from_radial))
             .or_else(|| number_of(start, "roll_angle_deg").map(from_angle));
@@ -481,6 +480,10 @@ fn component_of(kind: &str) -> &'static str {
 
 fn number_of(document: &Value, name: &str) -> Option<f64> {
     document[name].as_f64()
+}
+
+fn to_mm(meters: f64) -> f64 {
+    meters * 1e3
 }
 
 /// A number that every submission with its defaults has.

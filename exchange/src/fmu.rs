@@ -1,4 +1,4 @@
-//! The force table of a results document as an FMU 2.0, for Model Exchange and Co-Simulation.
+//! The force table of a pair as an FMU 2.0, for Model Exchange and Co-Simulation.
 //!
 //! The program of the FMU is the same for all jobs: a C file in `fmu`, compiled when this program is built where a C compiler is there. What
 //! is of the job is the table, a resource that it reads.
@@ -130,11 +130,11 @@ mod tests {
     use zip::ZipArchive;
 
     use super::*;
-    use crate::exchange::force_table::tests::results;
+    use crate::force_table::tests::forces;
 
     #[test]
     fn an_fmu_is_the_same_for_the_same_table_and_holds_its_source() {
-        let forces = MeshForces::of(&results()).expect("a table");
+        let forces = forces();
         let bytes = fmu(&forces, "one").expect("memory");
         assert_eq!(bytes, fmu(&forces, "one").expect("memory"));
         let mut archive = ZipArchive::new(Cursor::new(bytes)).expect("an archive");

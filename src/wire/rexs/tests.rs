@@ -4,7 +4,9 @@ use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use serde_json::{Value, json};
 
-use super::{Choices, Import, Refused, export, import, is_xml};
+use meshwright_exchange::rexs::{Choices, Import, Refused, import, is_xml};
+
+use super::model_of;
 use crate::wire::testing::{self, example, parse, submission};
 use crate::wire::{Submission, examples, solve};
 
@@ -478,7 +480,7 @@ fn every_valid_example_comes_back_as_the_same_pair() {
         document["force_table"] = Value::Null;
         let gone = parse(&document).expect("valid");
         let there = solved(&gone);
-        let imported = taken(&export(&gone, Some(&there), DATE));
+        let imported = taken(&model_of(&gone, Some(&there), DATE));
         let mut submission = imported.submission.clone();
         submission["resolution"] = quick.clone();
         let back = parse(&submission);
@@ -518,7 +520,7 @@ fn helices_leads_and_what_stands_askew_come_back_as_they_went() {
             ("/pair/driven/tip_diameter_mm", json!(131.5)),
         ]);
         let gone = parse(&gone).expect("valid");
-        let text = export(&gone, None, DATE);
+        let text = model_of(&gone, None, DATE);
         let imported = taken(&text);
         let back = parse(&imported.submission).expect("valid");
         let [gone, back] = [&gone, &back].map(|pair| serde_json::to_value(pair).expect("JSON"));
@@ -575,7 +577,7 @@ fn helices_leads_and_what_stands_askew_come_back_as_they_went() {
 #[test]
 fn a_helix_crowning_that_differs_at_the_ends_is_refused() {
     let gone = parse(&helical(&[])).expect("valid");
-    let text = export(&gone, None, DATE);
+    let text = model_of(&gone, None, DATE);
     let name = "\"helix_crowning_amount_non_datum_face\" unit=\"mm\">";
     let uneven = text.replace(&format!("{name}0.004"), &format!("{name}0.006"));
     assert_ne!(uneven, text);
@@ -621,7 +623,7 @@ fn the_curves_stand_at_the_stage_in_the_units_of_the_standard() {
     let library = Library::with_capacity(64 << 20);
     let solved = solve(&submission, &library, &Run::unattended()).expect("computed");
     let results = serde_json::to_value(&solved).expect("JSON");
-    let text = export(&submission, Some(&results), DATE);
+    let text = model_of(&submission, Some(&results), DATE);
     let document = roxmltree::Document::parse(&text).expect("XML");
     let lists = |id: &str| -> Vec<(String, Vec<f64>)> {
         let attributes = document

@@ -13,8 +13,6 @@ mod import;
 mod load;
 mod markup;
 mod reading;
-#[cfg(test)]
-mod tests;
 mod unit;
 
 pub use export::export;

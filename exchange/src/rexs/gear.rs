@@ -6,7 +6,7 @@ use super::file::Component;
 use super::own;
 use super::reading::Reading;
 use super::unit::{DEG, KG_PER_DM3, MM, MPA, NONE, Unit, um_of_mm};
-use crate::wire::significant;
+use crate::significant;
 
 /// What two ways to say one radius may differ by, in mm, to be the same.
 const SAME: f64 = 5e-4;

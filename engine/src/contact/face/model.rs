@@ -1,0 +1,105 @@
+//! A pair along its faces, and how its flanks give way.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use faer::Mat;
+
+use crate::gear::{GearPair, Member, PairDeviations, SolidPair};
+
+/// How the flanks of one gear give way, smoothly, to forces normal to them.
+///
+/// z runs from the middle of the gear's own face. The displacement of tooth i at (s, z) into the tooth, under the force N on tooth j at (s', z'), is
+/// basis(s, z)ᵀ smooth_ij basis(s', z') N, and of one tooth besides what a half space yields, which is left to the contact, and what a
+/// flank yields at its ends.
+pub trait FlankYield: Send + Sync {
+    /// The number of functions over a flank.
+    fn basis_len(&self) -> usize;
+
+    /// Their values at the roll length `roll_length` and the height `z`, into `row`.
+    fn basis(&self, roll_length: f64, z: f64, row: &mut [f64]);
+
+    /// The compliance in m/N between the functions of the `teeth`, one block of rows and columns a tooth; symmetric.
+    fn smooth(&self, teeth: &[usize]) -> Mat<f64>;
+
+    /// The number of teeth after which all that they yield repeats.
+    fn repeats_after(&self) -> usize;
+
+    /// What a point of a tooth, a roll length and a height, is moved by a unit force on the same tooth beside that of the smooth compliance and of a
+    /// half space, if it is spread over a piece of a contact line of the length `along` about another such point.
+    fn at_ends(&self, point: (f64, f64), loaded: (f64, f64), along: f64) -> f64;
+}
+
+/// Matrices of smooth yields that are kept.
+const MOST_KEPT: usize = 256;
+
+/// Two gears with an extent along their axes, ready for contact.
+pub struct FaceModel {
+    pub(super) pair: SolidPair,
+    pub(super) deviations: PairDeviations,
+    pub(super) yields: [Arc<dyn FlankYield>; 2],
+    /// Slices of the whole face.
+    pub(super) slices: usize,
+    /// How far apart teeth may stand that are loaded together.
+    pub(super) coupled: usize,
+    /// One meter of the flanks as drawn.
+    pub(super) long: GearPair,
+    kept: Mutex<Vec<(Teeth, Arc<Mat<f64>>)>>,
+}
+
+/// So many teeth of a gear in the order of their pairs, from `first` on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Teeth {
+    gear: usize,
+    first: usize,
+    count: usize,
+}
+
+impl FaceModel {
+    /// The `pair`, each of whose gears yields as `yields` say, with its face cut into so many `slices`, and teeth loaded together up to
+    /// `coupled` apart.
+    pub fn new(
+        pair: SolidPair,
+        yields: [Arc<dyn FlankYield>; 2],
+        slices: usize,
+        coupled: usize,
+    ) -> Self {
+        Self {
+            deviations: pair.section().deviations(),
+            long: pair.section().long_slices(),
+            pair,
+            yields,
+            slices,
+            coupled,
+            kept: Mutex::default(),
+        }
+    }
+
+    /// The pair.
+    pub fn pair(&self) -> &SolidPair {
+        &self.pair
+    }
+
+    /// The smooth compliance of the teeth of `member` in the pairs from `first` on.
+    pub(super) fn smooth(&self, member: Member, first: i64, count: usize) -> Arc<Mat<f64>> {
+        let z = self.pair.section().gear(member).tooth_count() as usize;
+        let alike = self.yields[member.index()].repeats_after();
+        let key = Teeth {
+            gear: member.index(),
+            first: self.pair.section().tooth(member, first) % alike,
+            count,
+        };
+        let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, known)) = lock().iter().find(|(teeth, _)| *teeth == key) {
+            return Arc::clone(known);
+        }
+        let step = self.pair.section().tooth(member, 1);
+        let teeth: Vec<usize> = (0..count).map(|i| (key.first + i * step) % z).collect();
+        let made = Arc::new(self.yields[member.index()].smooth(&teeth));
+        let mut kept = lock();
+        if kept.len() == MOST_KEPT {
+            kept.remove(0);
+        }
+        kept.push((key, Arc::clone(&made)));
+        made
+    }
+}
