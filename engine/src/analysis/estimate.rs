@@ -99,9 +99,12 @@ pub fn estimate(case: &Case) -> Estimate {
     estimate
 }
 
-/// Seconds of one core for the yield of one gear at the order 8 across the face, for its web besides, and for the contact of a slice at a
+/// Seconds of one core for the yield of one gear with nine functions across the face, for its web besides, and for the contact of a slice at a
 /// position. Measured as [`SECONDS`].
-const FACE_SECONDS: [f64; 3] = [0.55, 1.0, 35e-6];
+const FACE_SECONDS: [f64; 3] = [0.55, 0.2, 35e-6];
+
+/// Seconds of one core for the rows that lead to the edges of the holes of one gear. Measured as [`SECONDS`].
+const EDGE_SECONDS: f64 = 1.0;
 
 /// Seconds of one core for the rows that lead to the roots of one gear at the order 8, and for the answer of one of its teeth at a position;
 /// and bytes of such rows while they are made. Measured as [`SECONDS`].
@@ -114,11 +117,11 @@ const TEETH_ANSWERING: f64 = 20.0;
 /// Positions in whose time the lead is found that would even the load under one torque.
 const EVENING: u64 = 16;
 
-/// Bytes of one gear along its face at the order 8 while it is made, and of its web besides.
+/// Bytes of one gear with nine functions across the face while it is made, and of its web besides.
 const FACE_MEMORY: [f64; 2] = [110e6, 60e6];
 
-/// Seconds of one core for the cube of the unknowns to which a web with holes is condensed, and bytes for their square: some are condensed as a
-/// whole, with thousands of unknowns around them. Measured as [`SECONDS`].
+/// Seconds of one core for the cube of the unknowns to which a web with holes is condensed, and bytes for their square. Measured as
+/// [`SECONDS`].
 const HOLED_SECONDS: f64 = 1.2e-11;
 const HOLED_MEMORY: f64 = 24.0;
 
@@ -128,34 +131,29 @@ const SECTION_NODES: f64 = 330.0;
 /// What a case costs along its faces; `alone` is what any case does.
 fn of_faces(case: &Case, faces: &Faces, alone: Estimate) -> Estimate {
     let [per_gear, per_web, per_slice] = FACE_SECONDS;
-    let has_web = |member: &Member| {
-        let gear = case.pair.gear(*member);
-        gear.data().blank.web_in(gear.face_width()).is_some()
-    };
-    let webs = Member::BOTH.iter().filter(|member| has_web(member)).count() as f64;
     let orders = if case.resolution.error_estimate { 2 } else { 1 };
     let mut estimate = alone;
     for run in 0..orders {
         // A finer run has two orders more.
-        let functions = (faces.resolution.face_order + 2 * run + 1) as f64;
-        let growth = functions / 9.0;
-        estimate.seconds += (2.0 * per_gear + webs * per_web) * growth.powf(2.5);
-        let bytes = 2.0 * FACE_MEMORY[0] + webs * FACE_MEMORY[1];
-        estimate.memory += (bytes * growth.powi(2)) as u64;
         let resolution = FaceResolution {
             face_order: faces.resolution.face_order + 2 * run,
             ..faces.resolution
         };
         for member in Member::BOTH {
             let spec = FaceYieldSpec::new(faces.pair.gear(member), resolution);
-            let unknowns = spec.condensed_unknowns() as f64;
-            estimate.seconds += HOLED_SECONDS * unknowns.powi(3);
-            estimate.memory += (HOLED_MEMORY * unknowns.powi(2)) as u64;
-        }
-        if run == 0 {
-            let teeth = Member::BOTH.map(|member| case.pair.gear(member).tooth_count());
-            let unknowns = 3.0 * functions * SECTION_NODES * f64::from(teeth[0] + teeth[1]);
-            estimate.degrees_of_freedom = unknowns as u64;
+            let gear = case.pair.gear(member);
+            let webs = f64::from(gear.data().blank.web_in(gear.face_width()).is_some());
+            let functions = spec.functions_across() as f64;
+            let growth = functions / 9.0;
+            estimate.seconds += per_gear * growth.powf(2.5) + webs * per_web;
+            let bytes = FACE_MEMORY[0] * growth.powi(2) + webs * FACE_MEMORY[1];
+            let condensed = spec.condensed_unknowns() as f64;
+            estimate.seconds += HOLED_SECONDS * condensed.powi(3);
+            estimate.memory += (bytes + HOLED_MEMORY * condensed.powi(2)) as u64;
+            if run == 0 {
+                let teeth = f64::from(gear.tooth_count());
+                estimate.degrees_of_freedom += (3.0 * functions * SECTION_NODES * teeth) as u64;
+            }
         }
     }
     if case.stress && case.method == Method::ThreeDimensional {
@@ -165,7 +163,7 @@ fn of_faces(case: &Case, faces: &Faces, alone: Estimate) -> Estimate {
         // The edges of holes are condensed as the web is.
         let holed = |member: &Member| !case.pair.gear(*member).holes().is_empty();
         let holed = Member::BOTH.iter().filter(|member| holed(member)).count() as f64;
-        let made = 2.0 * per_gear + holed * per_web;
+        let made = 2.0 * per_gear + holed * EDGE_SECONDS;
         estimate.seconds += made * growth.powf(2.5) + per_answer * growth * answers;
         estimate.memory += (2.0 * ROOT_MEMORY * growth.powi(2)) as u64;
     }
