@@ -116,9 +116,12 @@ fn answers(plan: &Plan, pass: &Pass) -> f64 {
     (pass.told.positions.len() * plan.loaded.output_torques.len()) as f64
 }
 
-/// Seconds of one core for the yield of one gear at the order 8 across the face, for its web besides, and for the contact of a slice at a
+/// Seconds of one core for the yield of one gear with nine functions across the face, for its web besides, and for the contact of a slice at a
 /// position. Measured as [`SECONDS`].
-const FACE_SECONDS: [f64; 3] = [0.55, 1.0, 35e-6];
+const FACE_SECONDS: [f64; 3] = [0.55, 0.2, 35e-6];
+
+/// Seconds of one core for the rows that lead to the edges of the holes of one gear. Measured as [`SECONDS`].
+const EDGE_SECONDS: f64 = 1.0;
 
 /// Seconds of one core for the rows that lead to the roots of one gear at the order 8, and for the answer of one of its teeth at a position;
 /// and bytes of such rows while they are made. Measured as [`SECONDS`].
@@ -131,11 +134,11 @@ const TEETH_ANSWERING: f64 = 20.0;
 /// Positions in whose time a lead is tried at one, about.
 const EVENING: u64 = 2;
 
-/// Bytes of one gear along its face at the order 8 while it is made, and of its web besides.
+/// Bytes of one gear with nine functions across the face while it is made, and of its web besides.
 const FACE_MEMORY: [f64; 2] = [110e6, 60e6];
 
-/// Seconds of one core for the cube of the unknowns to which a web with holes is condensed, and bytes for their square: some are condensed as a
-/// whole, with thousands of unknowns around them. Measured as [`SECONDS`].
+/// Seconds of one core for the cube of the unknowns to which a web with holes is condensed, and bytes for their square. Measured as
+/// [`SECONDS`].
 const HOLED_SECONDS: f64 = 1.2e-11;
 const HOLED_MEMORY: f64 = 24.0;
 
@@ -146,34 +149,30 @@ const SECTION_NODES: f64 = 330.0;
 fn add_faces(estimate: &mut Estimate, plan: &Plan, faces: &Faces) {
     let case = &plan.loaded;
     let [per_gear, per_web, _] = FACE_SECONDS;
-    let has_web = |member: &Member| {
-        let gear = case.pair.gear(*member);
-        gear.data().blank.web_in(gear.face_width()).is_some()
-    };
-    let webs = Member::BOTH.iter().filter(|member| has_web(member)).count() as f64;
     for (number, pass) in plan.passes.iter().enumerate() {
         let resolution = pass.along(faces);
-        let functions = (resolution.face_order + 1) as f64;
-        let growth = functions / 9.0;
-        estimate.seconds += (2.0 * per_gear + webs * per_web) * growth.powf(2.5);
-        let bytes = 2.0 * FACE_MEMORY[0] + webs * FACE_MEMORY[1];
-        estimate.memory += (bytes * growth.powi(2)) as u64;
         for member in Member::BOTH {
             let spec = FaceYieldSpec::new(faces.pair.gear(member), resolution);
-            let unknowns = spec.condensed_unknowns() as f64;
-            estimate.seconds += HOLED_SECONDS * unknowns.powi(3);
-            estimate.memory += (HOLED_MEMORY * unknowns.powi(2)) as u64;
-        }
-        if number == 0 {
-            let teeth = Member::BOTH.map(|member| case.pair.gear(member).tooth_count());
-            let unknowns = 3.0 * functions * SECTION_NODES * f64::from(teeth[0] + teeth[1]);
-            estimate.degrees_of_freedom = unknowns as u64;
+            let gear = case.pair.gear(member);
+            let webs = f64::from(gear.data().blank.web_in(gear.face_width()).is_some());
+            let functions = spec.functions_across() as f64;
+            let growth = functions / 9.0;
+            estimate.seconds += per_gear * growth.powf(2.5) + webs * per_web;
+            let bytes = FACE_MEMORY[0] * growth.powi(2) + webs * FACE_MEMORY[1];
+            let condensed = spec.condensed_unknowns() as f64;
+            estimate.seconds += HOLED_SECONDS * condensed.powi(3);
+            estimate.memory += (bytes + HOLED_MEMORY * condensed.powi(2)) as u64;
+            if number == 0 {
+                let teeth = f64::from(gear.tooth_count());
+                estimate.degrees_of_freedom += (3.0 * functions * SECTION_NODES * teeth) as u64;
+            }
         }
         if pass.stress {
             let [per_gear, per_answer] = ROOT_SECONDS;
             let answers = 2.0 * TEETH_ANSWERING * answers(plan, pass);
             // The edges of holes are condensed as the web is.
-            let made = 2.0 * per_gear + case.holed().len() as f64 * per_web;
+            let made = 2.0 * per_gear + case.holed().len() as f64 * EDGE_SECONDS;
+            let growth = (resolution.face_order + 1) as f64 / 9.0;
             estimate.seconds += made * growth.powf(2.5) + per_answer * growth * answers;
             estimate.memory += (2.0 * ROOT_MEMORY * growth.powi(2)) as u64;
         }

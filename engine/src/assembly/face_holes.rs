@@ -46,7 +46,7 @@ impl FaceHoles {
         let edges: Vec<&[u32]> = holed.grid.hole_edges.iter().map(Vec::as_slice).collect();
         let edges = Surface::new(&holed.prism(), &edges, true);
         Ok(Self {
-            classes: holed.ring(&edges.nodes())?.inside(largest, run)?,
+            classes: holed.ring(&edges.nodes())?.inside(run)?,
             sector_count: holed.grid.sector_count as usize,
             phase: holed.phase,
             edges,
@@ -165,9 +165,10 @@ pub(super) mod tests {
             };
             let edges: Vec<&[u32]> = grid.hole_edges.iter().map(Vec::as_slice).collect();
             let edges = Surface::new(&prism, &edges, true);
-            let ring = HoledRing::new(&grid, &prism, None, &edges.nodes()).expect("sound");
+            let ring =
+                HoledRing::new(&grid, &prism, None, (largest, &edges.nodes())).expect("sound");
             let holes = FaceHoles {
-                classes: ring.inside(largest, &Run::unattended()).expect("sound"),
+                classes: ring.inside(&Run::unattended()).expect("sound"),
                 sector_count: 5,
                 phase,
                 edges,

@@ -125,6 +125,11 @@ impl FaceYieldSpec {
         self.stack().hole_orders
     }
 
+    /// The number of functions across the face of its teeth.
+    pub fn functions_across(&self) -> usize {
+        self.stack().face.len()
+    }
+
     /// The unknowns to which a sector of the web is condensed that has its holes; 0 without holes.
     pub fn condensed_unknowns(&self) -> usize {
         condensed_unknowns(&self.stack(), self.gear.section())

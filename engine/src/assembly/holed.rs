@@ -17,7 +17,7 @@ use crate::fem::prism::{COMPONENTS, Prism};
 use crate::gear::{BlankRegion, Material, SpurGear, gcd};
 use crate::grid::{BlankGrid, GridLevel};
 use crate::ring::solid::gear::ClassAnswers;
-use crate::ring::solid::web::{HoledRing, conjugate_below_zero, of_order};
+use crate::ring::solid::web::{HoledRing, condensed_blocks, conjugate_below_zero, of_order};
 use crate::run::Run;
 
 /// Elements around the web for each order in which holes are seen, at the standard level.
@@ -191,7 +191,7 @@ impl HoledChange {
             ..
         } = web;
         let holed = HoledSection::new(stack, section, largest)?;
-        let mut change = holed.ring(&[])?.on_outer(largest, holed.phase, run)?;
+        let mut change = holed.ring(&[])?.on_outer(holed.phase, run)?;
         for order in -(largest as i64)..=largest as i64 {
             let plain = of_order(&web.plain, order);
             let first = (order + largest as i64) as usize * size;
@@ -291,6 +291,8 @@ pub(super) struct HoledSection {
     pub(super) grid: BlankGrid,
     /// Where hole 0 of a pattern stands.
     pub(super) phase: f64,
+    /// The largest order that its circles are asked for.
+    largest: usize,
     /// What carries each order 0 … of its inner circle; `None` where that is held.
     hub: Option<Vec<Mat<c64>>>,
     material: Material,
@@ -311,6 +313,7 @@ impl HoledSection {
         Ok(Self {
             grid,
             phase,
+            largest,
             hub,
             material: *section.material(),
             axial: stack.across[1].clone(),
@@ -329,6 +332,7 @@ impl HoledSection {
 
     /// The ring of it, which can be asked for the nodes `told`.
     pub(super) fn ring(&self, told: &[u32]) -> Result<HoledRing<'_>, FemError> {
+        let told = (self.largest, told);
         HoledRing::new(&self.grid, &self.prism(), self.hub.as_deref(), told)
     }
 }
@@ -359,16 +363,14 @@ fn holed_grid(
 
 /// The unknowns to which a sector of the web of `section` is condensed, whose gear is otherwise that of `stack`; 0 without holes.
 pub(crate) fn condensed_unknowns(stack: &Stack, section: &SpurGear) -> usize {
-    let grid = stack
-        .hole_orders
-        .and_then(|largest| holed_grid(stack, section, largest).ok());
-    grid.map_or(0, |(grid, _)| {
-        let (right, left) = &grid.side_nodes;
-        let carried = stack.layers.len() > 2;
-        let bore = if carried { grid.bore_nodes.len() } else { 0 };
-        let nodes = right.len() + left.len() + bore + grid.arc_nodes.len();
-        COMPONENTS * stack.across[1].len() * nodes
-    })
+    let Some(largest) = stack.hole_orders else {
+        return 0;
+    };
+    let Ok((grid, _)) = holed_grid(stack, section, largest) else {
+        return 0;
+    };
+    let carried = stack.layers.len() > 2;
+    COMPONENTS * stack.across[1].len() * condensed_blocks(&grid, carried, largest)
 }
 
 /// Where the cosine of an order stands, in blocks; the sine follows.

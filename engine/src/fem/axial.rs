@@ -71,6 +71,11 @@ impl AxialBasis {
         [self.breaks[0], self.breaks[self.breaks.len() - 1]]
     }
 
+    /// Whether its functions are even and odd in turn about its middle, as one polynomial has them.
+    pub fn alternates(&self) -> bool {
+        self.breaks.len() == 2
+    }
+
     /// Where its pieces begin and end.
     pub fn breaks(&self) -> &[f64] {
         &self.breaks

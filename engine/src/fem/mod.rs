@@ -17,6 +17,8 @@ mod sparse;
 pub mod surface;
 pub mod volume;
 
+pub use sparse::Followers;
+
 use crate::run::Stopped;
 
 /// Why a substructure could not be condensed.

@@ -22,13 +22,16 @@ use super::axial::{AxialBasis, AxialMatrices};
 use super::condensation::squared;
 use super::element::gradients;
 use super::factor::Factor;
-use super::sparse::{BlockMatrix, Numbering};
+use super::sparse::{BlockMatrix, Followers, Numbering};
 use crate::gear::{Material, Vector};
 use crate::grid::element::MOST_NODES;
 use crate::grid::{Element, Grid};
 
 /// The components of the displacement of a node: radial, tangential, axial.
 pub const COMPONENTS: usize = 3;
+
+/// The last of them.
+const AXIAL: usize = 2;
 
 /// The unknowns of an element for one function along the axis.
 const UNKNOWNS: usize = COMPONENTS * MOST_NODES;
@@ -49,10 +52,21 @@ pub struct Prism<'a> {
     pub axial: &'a AxialBasis,
 }
 
-/// A prism on the unknowns of the nodes that are kept, and what becomes of displacements at points.
+/// What a prism is condensed to.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Interface<'a> {
+    /// Nodes whose unknowns are kept.
+    pub kept: &'a [u32],
+    /// Nodes that follow unknowns of their own, which are kept after those.
+    pub followers: &'a [Followers<'a>],
+    /// Nodes that are held.
+    pub fixed: &'a [u32],
+}
+
+/// A prism on the unknowns that are kept, and what becomes of displacements at points.
 #[derive(Debug, Clone)]
 pub struct CondensedPrism {
-    /// The stiffness on the kept unknowns, in N/m.
+    /// The stiffness on the kept unknowns, in N/m: node by node, component by component, function by function.
     pub stiffness: Mat<f64>,
     /// The displacements asked for, by the kept unknowns: a row for each point and function along the axis.
     pub rows: Mat<f64>,
@@ -88,8 +102,8 @@ impl Prism<'_> {
         COMPONENTS * self.axial.len()
     }
 
-    /// Condenses the prism to the nodes in `kept`, with the nodes in `fixed` held, and asks for the displacement at each of
-    /// `points`: a node and a direction in polar components, for every function along the axis.
+    /// Condenses the prism to its interface, and asks for the displacement at each of `points`: a node and a direction in polar
+    /// components, for every function along the axis.
     ///
     /// # Errors
     ///
@@ -97,11 +111,10 @@ impl Prism<'_> {
     pub fn condense(
         &self,
         part: &'static str,
-        kept: &[u32],
-        fixed: &[u32],
+        interface: &Interface<'_>,
         points: &[(u32, [f64; COMPONENTS])],
     ) -> Result<CondensedPrism, FemError> {
-        let (condensed, _) = self.condense_with(part, kept, fixed, points, &[])?;
+        let (condensed, _) = self.condense_with(part, interface, points, &[])?;
         Ok(condensed)
     }
 
@@ -113,98 +126,55 @@ impl Prism<'_> {
     pub fn condense_with(
         &self,
         part: &'static str,
-        kept: &[u32],
-        fixed: &[u32],
+        interface: &Interface<'_>,
         points: &[(u32, [f64; COMPONENTS])],
         told: &[u32],
     ) -> Result<(CondensedPrism, NodeRows), FemError> {
-        let numbering = Numbering::new(self.grid.nodes.len(), kept, fixed);
-        let (size, functions) = (self.unknowns_of_node(), self.axial.len());
-        let mut matrix = BlockMatrix::new(size, &self.grid.elements, &numbering);
-        self.each_element(&mut |element, k| matrix.add(element, k, &numbering));
-        // Springs on the kept unknowns make a floating grid definite; they add to the Schur complement exactly and are taken
-        // off again below.
-        let spring = if fixed.is_empty() {
-            self.material.youngs_modulus
-        } else {
-            0.0
-        };
-        for node in numbering.interior..numbering.count {
-            matrix.add_to_diagonal(node, spring);
-        }
-        let factor = Factor::new(part, matrix, &numbering)?;
-        let trailing = factor.trailing();
-        let mut stiffness = squared(&trailing);
-        for i in 0..stiffness.nrows() {
-            stiffness[(i, i)] -= spring;
-        }
-
-        let mut columns = Mat::<f64>::zeros(size * numbering.count, points.len() * functions);
-        let places = factor.places();
-        for (point, (node, direction)) in points.iter().enumerate() {
-            let Some(node) = numbering.place(*node) else {
-                continue;
-            };
-            for (c, along) in direction.iter().enumerate() {
-                for p in 0..functions {
-                    let place = places[node * size + c * functions + p] as usize;
-                    columns[(place, point * functions + p)] += along;
-                }
-            }
-        }
-        factor.half_solve_in_place(&mut columns);
-        let interior = size * numbering.interior;
-        let inside = columns.subrows(0, interior);
-        let mut held = Mat::<f64>::zeros(columns.ncols(), columns.ncols());
-        triangular::matmul(
-            held.as_mut(),
-            BlockStructure::TriangularLower,
-            Accum::Replace,
-            inside.transpose(),
-            BlockStructure::Rectangular,
-            inside,
-            BlockStructure::Rectangular,
-            1.0,
-            Par::Seq,
+        let Interface {
+            kept,
+            followers,
+            fixed,
+        } = *interface;
+        let numbering = Numbering::with_followers(self.grid.nodes.len(), kept, followers, fixed);
+        let kept = self.unknowns_of_node() * (numbering.count - numbering.interior);
+        let (asked, told_rows) = (
+            points.len() * self.axial.len(),
+            told.len() * self.unknowns_of_node(),
         );
-        super::dense::mirror_lower(&mut held);
-        let on_kept = &trailing * columns.subrows(interior, trailing.nrows());
-
+        let mut condensed = CondensedPrism {
+            stiffness: Mat::zeros(kept, kept),
+            rows: Mat::zeros(asked, kept),
+            held: Mat::zeros(asked, asked),
+        };
         let mut rows = NodeRows {
-            by_kept: Mat::zeros(told.len() * size, trailing.nrows()),
-            by_points: Mat::zeros(told.len() * size, inside.ncols()),
+            by_kept: Mat::zeros(told_rows, kept),
+            by_points: Mat::zeros(told_rows, asked),
         };
-        let at_once = (ROWS_AT_ONCE / size).max(1);
-        for (part, nodes) in told.chunks(at_once).enumerate() {
-            let mut units = Mat::<f64>::zeros(size * numbering.count, nodes.len() * size);
-            for (i, node) in nodes.iter().enumerate() {
-                let Some(node) = numbering.place(*node) else {
-                    continue;
-                };
-                for c in 0..size {
-                    units[(places[node * size + c] as usize, i * size + c)] = 1.0;
-                }
-            }
-            factor.half_solve_in_place(&mut units);
-            let (first, count) = (part * at_once * size, nodes.len() * size);
-            let by_kept = &trailing * units.subrows(interior, trailing.nrows());
-            let mut to = rows.by_kept.subrows_mut(first, count);
-            to.copy_from(by_kept.transpose());
-            matmul(
-                rows.by_points.subrows_mut(first, count),
-                Accum::Replace,
-                units.subrows(0, interior).transpose(),
-                inside,
-                1.0,
-                Par::Seq,
-            );
+        for unknowns in self.independent() {
+            let alone = Independent {
+                prism: self,
+                unknowns,
+                numbering: &numbering,
+            };
+            alone.condense(part, points, told, (&mut condensed, &mut rows))?;
         }
-        let condensed = CondensedPrism {
-            stiffness,
-            rows: on_kept.transpose().to_owned(),
-            held,
-        };
         Ok((condensed, rows))
+    }
+
+    /// The unknowns of a node, in sets that do not stiffen each other. A straight body is its own image in its middle: what is even in the
+    /// plane and odd along the axis has nothing to do with the opposite.
+    fn independent(&self) -> Vec<Vec<usize>> {
+        let functions = self.axial.len();
+        let all = 0..self.unknowns_of_node();
+        if self.twist != 0.0 || !self.axial.alternates() {
+            return vec![all.collect()];
+        }
+        let is_even = |unknown: &usize| {
+            let (component, p) = (unknown / functions, unknown % functions);
+            (p + usize::from(component == AXIAL)).is_multiple_of(2)
+        };
+        let (even, odd) = all.partition(is_even);
+        vec![even, odd]
     }
 
     /// The energy ½ uᵀ K u of the displacements `u` of all nodes, node by node.
@@ -245,6 +215,166 @@ impl Prism<'_> {
                     + axial[(a, b)] * slopes[(p, q)]
             });
         }
+    }
+}
+
+/// Those unknowns of each node of a prism that have nothing to do with the others.
+struct Independent<'a> {
+    prism: &'a Prism<'a>,
+    unknowns: Vec<usize>,
+    numbering: &'a Numbering,
+}
+
+impl Independent<'_> {
+    /// Adds what becomes of these unknowns to what all become.
+    fn condense(
+        &self,
+        part: &'static str,
+        points: &[(u32, [f64; COMPONENTS])],
+        told: &[u32],
+        (condensed, rows): (&mut CondensedPrism, &mut NodeRows),
+    ) -> Result<(), FemError> {
+        let Self {
+            prism,
+            unknowns,
+            numbering,
+        } = self;
+        let (size, all) = (unknowns.len(), prism.unknowns_of_node());
+        let mut matrix = BlockMatrix::new(size, &prism.grid.elements, numbering);
+        prism.each_element(&mut |element, k| {
+            let place = |i: usize| all * (i / size) + unknowns[i % size];
+            matrix.add(element, |i, j| k(place(i), place(j)), numbering);
+        });
+        // Springs on the kept unknowns make a floating grid definite; they add to the Schur complement exactly and are taken
+        // off again below.
+        let spring = if numbering.holds() {
+            0.0
+        } else {
+            prism.material.youngs_modulus
+        };
+        for node in numbering.interior..numbering.count {
+            matrix.add_to_diagonal(node, spring);
+        }
+        let factor = Factor::new(part, matrix, numbering)?;
+        let trailing = factor.trailing();
+        let interior = size * numbering.interior;
+        let on_kept = |i: usize| all * (i / size) + unknowns[i % size];
+
+        let mut stiffness = squared(&trailing);
+        for i in 0..stiffness.nrows() {
+            stiffness[(i, i)] -= spring;
+        }
+        for j in 0..stiffness.ncols() {
+            for i in 0..stiffness.nrows() {
+                condensed.stiffness[(on_kept(i), on_kept(j))] = stiffness[(i, j)];
+            }
+        }
+
+        let asked = self.asked(points);
+        let mut columns = self.forces(&factor, asked.len(), |add| {
+            for (column, (point, p)) in asked.iter().enumerate() {
+                let (node, direction) = points[*point];
+                for (c, along) in direction.into_iter().enumerate() {
+                    add(node, c * prism.axial.len() + p, column, along);
+                }
+            }
+        });
+        let asked: Vec<usize> = asked
+            .into_iter()
+            .map(|(point, p)| point * prism.axial.len() + p)
+            .collect();
+        factor.half_solve_in_place(&mut columns);
+        let inside = columns.subrows(0, interior);
+        let mut held = Mat::<f64>::zeros(columns.ncols(), columns.ncols());
+        triangular::matmul(
+            held.as_mut(),
+            BlockStructure::TriangularLower,
+            Accum::Replace,
+            inside.transpose(),
+            BlockStructure::Rectangular,
+            inside,
+            BlockStructure::Rectangular,
+            1.0,
+            Par::Seq,
+        );
+        super::dense::mirror_lower(&mut held);
+        let by_kept = &trailing * columns.subrows(interior, trailing.nrows());
+        for (j, &column) in asked.iter().enumerate() {
+            for (i, &row) in asked.iter().enumerate() {
+                condensed.held[(row, column)] += held[(i, j)];
+            }
+            for i in 0..by_kept.nrows() {
+                condensed.rows[(column, on_kept(i))] = by_kept[(i, j)];
+            }
+        }
+
+        let at_once = (ROWS_AT_ONCE / size).max(1);
+        for (chunk, nodes) in told.chunks(at_once).enumerate() {
+            let mut units = self.forces(&factor, nodes.len() * size, |add| {
+                for (i, node) in nodes.iter().enumerate() {
+                    for (c, unknown) in unknowns.iter().enumerate() {
+                        add(*node, *unknown, i * size + c, 1.0);
+                    }
+                }
+            });
+            factor.half_solve_in_place(&mut units);
+            let by_kept = &trailing * units.subrows(interior, trailing.nrows());
+            let mut by_points = Mat::<f64>::zeros(units.ncols(), inside.ncols());
+            matmul(
+                by_points.as_mut(),
+                Accum::Replace,
+                units.subrows(0, interior).transpose(),
+                inside,
+                1.0,
+                Par::Seq,
+            );
+            for row in 0..units.ncols() {
+                let to = on_kept(chunk * at_once * size + row);
+                for i in 0..by_kept.nrows() {
+                    rows.by_kept[(to, on_kept(i))] = by_kept[(i, row)];
+                }
+                for (j, &column) in asked.iter().enumerate() {
+                    rows.by_points[(to, column)] = by_points[(row, j)];
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The points and functions along the axis whose displacements these unknowns have a part in.
+    fn asked(&self, points: &[(u32, [f64; COMPONENTS])]) -> Vec<(usize, usize)> {
+        let functions = self.prism.axial.len();
+        let has_part = |direction: &[f64; COMPONENTS], p: usize| {
+            let mut components = direction.iter().enumerate();
+            components
+                .any(|(c, along)| *along != 0.0 && self.unknowns.contains(&(c * functions + p)))
+        };
+        let each = points.iter().enumerate();
+        each.flat_map(|(point, (_, direction))| {
+            let own = (0..functions).filter(move |p| has_part(direction, *p));
+            own.map(move |p| (point, p))
+        })
+        .collect()
+    }
+
+    /// Columns of forces in the order of `factor`: `each` is handed what adds to them, by node, unknown of it and column.
+    fn forces(
+        &self,
+        factor: &Factor,
+        count: usize,
+        each: impl FnOnce(&mut dyn FnMut(u32, usize, usize, f64)),
+    ) -> Mat<f64> {
+        let (size, places) = (self.unknowns.len(), factor.places());
+        let mut forces = Mat::<f64>::zeros(size * self.numbering.count, count);
+        each(&mut |node, unknown, column, force| {
+            let Some(own) = self.unknowns.iter().position(|of| *of == unknown) else {
+                return;
+            };
+            for (place, share) in self.numbering.terms(node) {
+                forces[(places[place * size + own] as usize, column)] += share * force;
+            }
+        });
+        forces
     }
 }
 
@@ -486,6 +616,43 @@ mod tests {
     }
 
     #[test]
+    fn even_and_odd_motions_of_a_straight_body_are_told_apart_and_make_the_same_of_it() {
+        let grid = square();
+        let axial = AxialBasis::new(&[-7e-3, 13e-3], 4);
+        // A turn that nobody feels keeps them together.
+        let [apart, together] = [0.0, 1e-9].map(|twist| {
+            let prism = Prism {
+                grid: &grid,
+                material: &STEEL,
+                twist,
+                axial: &axial,
+            };
+            assert_eq!(prism.independent().len(), if twist == 0.0 { 2 } else { 1 });
+            let interface = Interface {
+                kept: &[0, 1, 5],
+                fixed: &[30, 31, 32],
+                ..Default::default()
+            };
+            let points = [(12, [0.6, -0.3, 0.7]), (20, [0.0, 1.0, 0.0])];
+            let made = prism.condense_with("a bar", &interface, &points, &[13, 5, 25]);
+            made.expect("definite")
+        });
+        let matrices = |(condensed, rows): &(CondensedPrism, NodeRows)| {
+            [
+                condensed.stiffness.clone(),
+                condensed.rows.clone(),
+                condensed.held.clone(),
+                rows.by_kept.clone(),
+                rows.by_points.clone(),
+            ]
+        };
+        for (one, other) in matrices(&apart).iter().zip(&matrices(&together)) {
+            assert!(one.norm_max() > 0.0);
+            assert!((one - other).norm_max() < 1e-8 * one.norm_max());
+        }
+    }
+
+    #[test]
     fn a_bar_pulled_at_its_end_gives_as_much_as_by_hooke_though_its_section_turns() {
         // Both ends are free; a force along the axis at z, spread over the section, is balanced by springs at the other end: so
         // the bar is held along the axis at the nodes of one corner only in the mean. Instead, hold nothing and compare the energy
@@ -500,7 +667,14 @@ mod tests {
         };
         let kept: Vec<u32> = (0..grid.nodes.len() as u32).collect();
         let k = prism
-            .condense("a bar", &kept, &[], &[])
+            .condense(
+                "a bar",
+                &Interface {
+                    kept: &kept,
+                    ..Default::default()
+                },
+                &[],
+            )
             .expect("definite")
             .stiffness;
         // Consistent loads of a uniform stress on both ends.

@@ -2,13 +2,13 @@
 
 use std::ops::Range;
 
+use faer::Mat;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::perm::Perm;
 use faer::sparse::linalg::amd;
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
 
 use crate::grid::Element;
-use crate::grid::element::MOST_NODES;
 
 /// Why a matrix was not factorized.
 pub(super) enum Failure {
@@ -31,11 +31,12 @@ pub(super) struct BlockMatrix {
 impl BlockMatrix {
     /// A matrix of zeros with the pattern of `elements` and `size` unknowns a node.
     pub(super) fn new(size: usize, elements: &[Element], numbering: &Numbering) -> Self {
+        let reached = elements.iter().map(|element| numbering.places_of(element));
+        let reached: Vec<Vec<usize>> = reached.collect();
         let pairs = || {
-            elements.iter().flat_map(|element| {
-                let places = || element.nodes().iter().map(|node| numbering.place(*node));
-                let all = places().flat_map(move |column| places().map(move |row| column.zip(row)));
-                all.flatten().filter(|(column, row)| row >= column)
+            reached.iter().flat_map(|places| {
+                let columns = places.iter().enumerate();
+                columns.flat_map(|(i, column)| places[i..].iter().map(move |row| (*column, *row)))
             })
         };
         let mut ends = vec![0; numbering.count + 1];
@@ -93,27 +94,41 @@ impl BlockMatrix {
         k: impl Fn(usize, usize) -> f64,
         numbering: &Numbering,
     ) {
-        let mut places = [None; MOST_NODES];
-        for (place, node) in places.iter_mut().zip(element.nodes()) {
-            *place = numbering.place(*node);
-        }
-        for (b, column) in places.iter().enumerate() {
-            let Some(column) = *column else { continue };
-            let (size, diagonals) = (self.size, self.diagonals(column));
-            let rows = &self.rows[self.starts[column]..self.starts[column + 1]];
-            for (a, row) in places.iter().enumerate() {
-                let Some(row) = row.filter(|row| *row >= column) else {
+        let size = self.size;
+        let mut between = vec![0.0; size * size];
+        for (b, node) in element.nodes().iter().enumerate() {
+            let columns = numbering.terms(*node);
+            for (a, node) in element.nodes().iter().enumerate() {
+                let rows = numbering.terms(*node);
+                let lower = |(column, _): &&(usize, f64)| rows.iter().any(|(row, _)| row >= column);
+                if !columns.iter().any(|column| lower(&column)) {
                     continue;
-                };
-                let block = rows.partition_point(|&known| (known as usize) < row);
-                for (c, diagonal) in diagonals.clone().enumerate() {
-                    // The block on the diagonal has no entries above it.
-                    let first = if row == column { c } else { 0 };
-                    for r in first..size {
-                        self.values[diagonal + size * block + r - c] +=
-                            k(size * a + r, size * b + c);
+                }
+                for (c, column) in between.chunks_exact_mut(size).enumerate() {
+                    for (r, value) in column.iter_mut().enumerate() {
+                        *value = k(size * a + r, size * b + c);
                     }
                 }
+                for (column, by) in columns {
+                    for (row, share) in rows.iter().filter(|(row, _)| row >= column) {
+                        self.add_block((*row, *column), by * share, &between);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds `share` of a block, column by column.
+    fn add_block(&mut self, (row, column): (usize, usize), share: f64, block: &[f64]) {
+        let rows = &self.rows[self.starts[column]..self.starts[column + 1]];
+        let place = self.size * rows.partition_point(|&known| (known as usize) < row);
+        for (c, diagonal) in self.diagonals(column).enumerate() {
+            // The block on the diagonal has no entries above it.
+            let first = if row == column { c } else { 0 };
+            let from = &block[self.size * c + first..self.size * (c + 1)];
+            let to = &mut self.values[diagonal + place + first - c..];
+            for (to, from) in to.iter_mut().zip(from) {
+                *to += share * from;
             }
         }
     }
@@ -196,48 +211,106 @@ fn above(size: usize) -> usize {
     size * size.saturating_sub(1) / 2
 }
 
-/// The places of the nodes that move: interior ones first, kept ones last, fixed ones nowhere.
+/// Nodes whose displacements follow unknowns that take their place: u_i = Σ_j w_ij a_j, alike for each unknown of a node.
+#[derive(Debug, Clone)]
+pub struct Followers<'a> {
+    /// The nodes.
+    pub nodes: &'a [u32],
+    /// w: a row for each node.
+    pub weights: Mat<f64>,
+}
+
+/// The places of the nodes that move: interior ones first, kept ones and what others follow last, fixed ones nowhere.
 pub(super) struct Numbering {
-    places: Vec<u32>,
+    /// Of each node where its terms begin, and where they end.
+    ranges: Vec<Range<usize>>,
+    /// Places and weights.
+    terms: Vec<(usize, f64)>,
     pub(super) interior: usize,
     pub(super) count: usize,
+    holds: bool,
 }
 
 impl Numbering {
-    const FIXED: u32 = u32::MAX;
-
     pub(super) fn new(nodes: usize, kept: &[u32], fixed: &[u32]) -> Self {
-        let mut places = vec![0; nodes];
-        for &node in kept.iter().chain(fixed) {
-            places[node as usize] = Self::FIXED;
+        Self::with_followers(nodes, kept, &[], fixed)
+    }
+
+    pub(super) fn with_followers(
+        nodes: usize,
+        kept: &[u32],
+        followers: &[Followers<'_>],
+        fixed: &[u32],
+    ) -> Self {
+        let mut is_interior = vec![true; nodes];
+        let following = followers.iter().flat_map(|of| of.nodes);
+        for &node in kept.iter().chain(fixed).chain(following) {
+            is_interior[node as usize] = false;
         }
-        let mut next = 0;
-        for place in places.iter_mut().filter(|place| **place != Self::FIXED) {
-            *place = next;
-            next += 1;
+        let mut numbering = Self {
+            ranges: vec![0..0; nodes],
+            terms: Vec::new(),
+            interior: 0,
+            count: 0,
+            holds: !fixed.is_empty(),
+        };
+        let interior = (0..nodes as u32).filter(|node| is_interior[*node as usize]);
+        for node in interior {
+            numbering.set(node, [(numbering.count, 1.0)]);
+            numbering.count += 1;
         }
-        let interior = next as usize;
+        numbering.interior = numbering.count;
         for &node in kept {
-            places[node as usize] = next;
-            next += 1;
+            numbering.set(node, [(numbering.count, 1.0)]);
+            numbering.count += 1;
         }
-        Self {
-            places,
-            interior,
-            count: next as usize,
+        for of in followers {
+            let first = numbering.count;
+            for (i, &node) in of.nodes.iter().enumerate() {
+                let weights = (0..of.weights.ncols()).map(|j| (first + j, of.weights[(i, j)]));
+                numbering.set(node, weights);
+            }
+            numbering.count += of.weights.ncols();
+        }
+        numbering
+    }
+
+    /// Whether any node is held.
+    pub(super) fn holds(&self) -> bool {
+        self.holds
+    }
+
+    fn set(&mut self, node: u32, terms: impl IntoIterator<Item = (usize, f64)>) {
+        let first = self.terms.len();
+        self.terms.extend(terms);
+        self.ranges[node as usize] = first..self.terms.len();
+    }
+
+    /// Where the unknowns stand that a node follows, and by how much; a node that moves by itself follows its own.
+    pub(super) fn terms(&self, node: u32) -> &[(usize, f64)] {
+        &self.terms[self.ranges[node as usize].clone()]
+    }
+
+    /// Where the unknowns of a node stand that moves by itself.
+    pub(super) fn place(&self, node: u32) -> Option<usize> {
+        match self.terms(node) {
+            [(place, _)] => Some(*place),
+            _ => None,
         }
     }
 
-    pub(super) fn place(&self, node: u32) -> Option<usize> {
-        let place = self.places[node as usize];
-        (place != Self::FIXED).then_some(place as usize)
+    /// All places that an element reaches, each once.
+    fn places_of(&self, element: &Element) -> Vec<usize> {
+        let terms = element.nodes().iter().flat_map(|node| self.terms(*node));
+        let mut places: Vec<usize> = terms.map(|(place, _)| *place).collect();
+        places.sort_unstable();
+        places.dedup();
+        places
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use faer::Mat;
-
     use super::*;
 
     /// The matrix of two elements with so many unknowns at each node, entry by entry, and the same by adding up.
@@ -293,5 +366,49 @@ mod tests {
         assembled(1);
         assembled(2);
         assembled(3);
+    }
+
+    #[test]
+    fn nodes_that_follow_others_add_their_part_to_those() {
+        let elements = [
+            Element::triangle([0, 1, 2, 3, 4, 5]),
+            Element::triangle([2, 1, 6, 4, 7, 8]),
+        ];
+        let weights = Mat::from_fn(3, 2, |i, j| 0.3 + 0.5 * i as f64 - 0.7 * (i * j) as f64);
+        let followers = [Followers {
+            nodes: &[2, 6, 8],
+            weights: weights.clone(),
+        }];
+        let numbering = Numbering::with_followers(9, &[4], &followers, &[0]);
+        assert_eq!((numbering.interior, numbering.count), (4, 7));
+        // Every node by the numbered unknowns: fixed ones by none.
+        let mut by = Mat::<f64>::zeros(9, 7);
+        for (place, node) in [1, 3, 5, 7, 4].into_iter().enumerate() {
+            by[(node, place)] = 1.0;
+        }
+        for (i, node) in [2, 6, 8].into_iter().enumerate() {
+            (by[(node, 5)], by[(node, 6)]) = (weights[(i, 0)], weights[(i, 1)]);
+        }
+        let k =
+            |e: usize, i: usize, j: usize| (1.0 + (7 * e + 3 * i.min(j) + i.max(j)) as f64).sin();
+        let mut matrix = BlockMatrix::new(1, &elements, &numbering);
+        let mut plain = Mat::<f64>::zeros(9, 9);
+        for (e, element) in elements.iter().enumerate() {
+            matrix.add(element, |i, j| k(e, i, j), &numbering);
+            for (a, row) in element.nodes().iter().enumerate() {
+                for (b, column) in element.nodes().iter().enumerate() {
+                    plain[(*row as usize, *column as usize)] += k(e, a, b);
+                }
+            }
+        }
+        let (found, expected) = (
+            matrix.into_unknowns().to_dense(),
+            by.transpose() * &plain * &by,
+        );
+        for j in 0..7 {
+            for i in j..7 {
+                assert!((found[(i, j)] - expected[(i, j)]).abs() < 1e-13, "{i} {j}");
+            }
+        }
     }
 }

@@ -16,11 +16,67 @@ pub struct SolidSector {
     pub stiffness: Mat<f64>,
     /// The number of nodes on each side.
     pub side_nodes: usize,
-    /// The angles of the nodes on its arcs, one arc after the other.
-    pub arcs: Vec<Vec<f64>>,
+    /// Its arcs, one after the other.
+    pub arcs: Vec<Arc>,
+}
+
+/// What stands for the displacement of an arc: blocks of unknowns.
+#[derive(Debug, Clone)]
+pub enum Arc {
+    /// The nodes at these angles.
+    Nodes(Vec<f64>),
+    /// The amplitudes a_0, a_1, b_1, … of Σ a_n cos nφ + b_n sin nφ up to an order: of a whole circle.
+    Harmonics(usize),
+}
+
+impl Arc {
+    fn blocks(&self) -> usize {
+        match self {
+            Self::Nodes(angles) => angles.len(),
+            Self::Harmonics(largest) => 2 * largest + 1,
+        }
+    }
+
+    /// The blocks in which e^{i order φ} is seen, and how.
+    fn trace(&self, order: i64) -> Vec<(usize, c64)> {
+        match self {
+            Self::Nodes(angles) => {
+                let turn = |angle: &f64| SolidSector::turn(order, *angle);
+                angles.iter().map(turn).enumerate().collect()
+            }
+            Self::Harmonics(_) => {
+                let (cosine, one) = (2 * order.unsigned_abs() as usize, c64::new(1.0, 0.0));
+                match order.signum() {
+                    0 => vec![(0, one)],
+                    sign => vec![(cosine - 1, one), (cosine, c64::new(0.0, sign as f64))],
+                }
+            }
+        }
+    }
+
+    /// The amplitudes of [`Arc::Harmonics`] at nodes: a row for each of `angles`.
+    pub fn harmonics_at(angles: &[f64], largest: usize) -> Mat<f64> {
+        Mat::from_fn(angles.len(), 2 * largest + 1, |i, j| {
+            let (sin, cos) = (j.div_ceil(2) as f64 * angles[i]).sin_cos();
+            if j > 0 && j.is_multiple_of(2) {
+                sin
+            } else {
+                cos
+            }
+        })
+    }
 }
 
 impl SolidSector {
+    /// The interface alone, its arcs told node by node at these angles.
+    pub fn with_nodes(&self, angles: &[Vec<f64>]) -> Self {
+        Self {
+            stiffness: Mat::zeros(0, 0),
+            arcs: angles.iter().cloned().map(Arc::Nodes).collect(),
+            ..*self
+        }
+    }
+
     /// The orders of `class` up to `largest`.
     pub fn orders(&self, class: usize, largest: usize) -> Vec<i64> {
         let harmonics = crate::ring::cyclic::Harmonics { largest };
@@ -63,22 +119,21 @@ impl SolidSector {
                 *to = across * *l + c64::new(*r, 0.0);
             }
         }
-        let mut from = 2 * sides;
-        for (arc, angles) in self.arcs.iter().enumerate() {
-            let first = sides + arc * orders.len() * size;
-            for &angle in angles {
-                for (k, &order) in orders.iter().enumerate() {
-                    let turn = Self::turn(order, angle);
+        let (mut from, mut first) = (2 * sides, sides);
+        for arc in &self.arcs {
+            for &order in orders {
+                for (block, turn) in arc.trace(order) {
                     for c in 0..size {
-                        let from = rows.col_as_slice(from + c);
-                        let column = on_class.col_as_slice_mut(first + k * size + c);
+                        let from = rows.col_as_slice(from + block * size + c);
+                        let column = on_class.col_as_slice_mut(first + c);
                         for (to, from) in column.iter_mut().zip(from) {
                             *to += turn * *from;
                         }
                     }
                 }
-                from += size;
+                first += size;
             }
+            from += arc.blocks() * size;
         }
         on_class
     }
@@ -88,8 +143,8 @@ impl SolidSector {
         let (size, sides) = (self.size, self.size * self.side_nodes);
         let angle = std::f64::consts::TAU * (class % self.count) as f64 / self.count as f64;
         let across = Self::turn(1, angle);
-        let nodes: usize = self.arcs.iter().map(Vec::len).sum();
-        let mut off = Mat::<c64>::zeros(2 * sides + nodes * size, motion.ncols());
+        let blocks: usize = self.arcs.iter().map(Arc::blocks).sum();
+        let mut off = Mat::<c64>::zeros(2 * sides + blocks * size, motion.ncols());
         for j in 0..motion.ncols() {
             let (from, to) = (motion.col_as_slice(j), off.col_as_slice_mut(j));
             for i in 0..sides {
@@ -97,22 +152,21 @@ impl SolidSector {
                 to[sides + i] = across * from[i];
             }
         }
-        let mut first = 2 * sides;
-        for (arc, angles) in self.arcs.iter().enumerate() {
-            let of_arc = sides + arc * orders.len() * size;
-            for &angle in angles {
-                for (k, &order) in orders.iter().enumerate() {
-                    let turn = Self::turn(order, angle);
+        let (mut first, mut from) = (2 * sides, sides);
+        for arc in &self.arcs {
+            for &order in orders {
+                for (block, turn) in arc.trace(order) {
                     for j in 0..motion.ncols() {
-                        let from = &motion.col_as_slice(j)[of_arc + k * size..][..size];
-                        let to = &mut off.col_as_slice_mut(j)[first..first + size];
+                        let from = &motion.col_as_slice(j)[from..from + size];
+                        let to = &mut off.col_as_slice_mut(j)[first + block * size..][..size];
                         for (to, from) in to.iter_mut().zip(from) {
                             *to += turn * *from;
                         }
                     }
                 }
-                first += size;
+                from += size;
             }
+            first += arc.blocks() * size;
         }
         off
     }

@@ -2,10 +2,10 @@
 
 use faer::Mat;
 
-use super::sector::SolidSector;
+use super::sector::{Arc, SolidSector};
 use crate::fem::FemError;
 use crate::fem::axial::AxialBasis;
-use crate::fem::prism::{COMPONENTS, NodeRows, Prism};
+use crate::fem::prism::{COMPONENTS, Interface, NodeRows, Prism};
 use crate::gear::{SolidGear, radial, tangential};
 use crate::grid::ToothGrid;
 
@@ -62,14 +62,18 @@ impl SolidTooth {
             axial,
         };
         let points = flank_normals(gear, grid);
-        let (condensed, rows) = prism.condense_with("the tooth", &kept, &[], &points, told)?;
+        let interface = Interface {
+            kept: &kept,
+            ..Default::default()
+        };
+        let (condensed, rows) = prism.condense_with("the tooth", &interface, &points, told)?;
         let tooth = Self {
             sector: SolidSector {
                 count: section.tooth_count() as usize,
                 size: prism.unknowns_of_node(),
                 stiffness: condensed.stiffness,
                 side_nodes: right.len(),
-                arcs: vec![grid.arc_angles.clone()],
+                arcs: vec![Arc::Nodes(grid.arc_angles.clone())],
             },
             rows: condensed.rows,
             held: condensed.held,
@@ -98,8 +102,11 @@ pub fn flank_compliance_alone(
         axial,
     };
     let points = flank_normals(gear, grid);
-    let (condensed, rows) =
-        prism.condense_with("the tooth", &[], &grid.arc_nodes, &points, told)?;
+    let interface = Interface {
+        fixed: &grid.arc_nodes,
+        ..Default::default()
+    };
+    let (condensed, rows) = prism.condense_with("the tooth", &interface, &points, told)?;
     Ok((condensed.held, rows))
 }
 

@@ -4,19 +4,27 @@ use faer::{Mat, c64};
 use rayon::prelude::*;
 
 use super::revolution::{add_block, last_of};
-use super::sector::SolidSector;
+use super::sector::{Arc, SolidSector};
 use crate::fem::FemError;
+use crate::fem::Followers;
 use crate::fem::dense::Cholesky;
-use crate::fem::prism::Prism;
+use crate::fem::prism::{Interface, Prism};
 use crate::grid::BlankGrid;
 use crate::run::Run;
 
 /// A ring of sectors with holes, each condensed to its interface.
+///
+/// On its circles it is told the orders up to the largest that is asked for. Where one sector is all of the ring, which has many nodes
+/// around it, these take the place of the nodes before it is condensed.
 #[derive(Debug)]
 pub struct HoledRing<'a> {
     sector: SolidSector,
+    /// The angles of the nodes of each of its arcs.
+    angles: Vec<Vec<f64>>,
     /// How the nodes that are told move, by the interface of their sector.
     rows: Mat<f64>,
+    /// The largest order that is asked for.
+    largest: usize,
     /// What carries the inner circle, one of each order 0 …; without it that circle is held.
     hub: Option<&'a [Mat<c64>]>,
 }
@@ -42,9 +50,10 @@ pub struct MovedRing {
 }
 
 impl<'a> HoledRing<'a> {
-    /// The ring of sectors `grid`; `prism` is its section with the functions across it, and the nodes `told` can be asked for.
+    /// The ring of sectors `grid`; `prism` is its section with the functions across it, and the nodes `told` can be asked for. It is asked
+    /// for the orders up to `largest`.
     ///
-    /// `hub` is what carries the inner circle, one of each order 0 … that is asked for; without it that circle is held.
+    /// `hub` is what carries the inner circle, one of each of these orders; without it that circle is held.
     ///
     /// # Errors
     ///
@@ -53,46 +62,65 @@ impl<'a> HoledRing<'a> {
         grid: &BlankGrid,
         prism: &Prism<'_>,
         hub: Option<&'a [Mat<c64>]>,
-        told: &[u32],
+        (largest, told): (usize, &[u32]),
     ) -> Result<Self, FemError> {
         let (right, left) = &grid.side_nodes;
         let angle = |node: &u32| {
             let place = grid.grid.nodes[*node as usize];
             place.y.atan2(place.x)
         };
-        let (inner, held) = match hub {
-            Some(_) => (grid.bore_nodes.as_slice(), [].as_slice()),
-            None => ([].as_slice(), grid.bore_nodes.as_slice()),
+        let mut circles = vec![(grid.arc_nodes.as_slice(), grid.arc_angles.clone())];
+        let mut held = grid.bore_nodes.as_slice();
+        if hub.is_some() {
+            circles.insert(0, (held, held.iter().map(angle).collect()));
+            held = &[];
+        }
+        let mut kept = [right.as_slice(), left].concat();
+        let mut followers = Vec::new();
+        let is_whole = right.is_empty();
+        for (nodes, angles) in &circles {
+            if is_whole {
+                let weights = Arc::harmonics_at(angles, largest);
+                followers.push(Followers { nodes, weights });
+            } else {
+                kept.extend_from_slice(nodes);
+            }
+        }
+        let interface = Interface {
+            kept: &kept,
+            followers: &followers,
+            fixed: held,
         };
-        let kept: Vec<u32> = [right.as_slice(), left, inner, &grid.arc_nodes]
-            .into_iter()
-            .flatten()
-            .copied()
-            .collect();
-        let (condensed, rows) = prism.condense_with("the web", &kept, held, &[], told)?;
-        let inner = hub.map(|_| inner.iter().map(angle).collect());
+        let (condensed, rows) = prism.condense_with("the web", &interface, &[], told)?;
+        let angles: Vec<_> = circles.into_iter().map(|(_, angles)| angles).collect();
+        let arcs = angles.iter().map(|angles| match is_whole {
+            true => Arc::Harmonics(largest),
+            false => Arc::Nodes(angles.clone()),
+        });
         Ok(Self {
             sector: SolidSector {
                 count: grid.sector_count as usize,
                 size: prism.unknowns_of_node(),
                 stiffness: condensed.stiffness,
                 side_nodes: right.len(),
-                arcs: inner.into_iter().chain([grid.arc_angles.clone()]).collect(),
+                arcs: arcs.collect(),
             },
+            angles,
             rows: rows.by_kept,
+            largest,
             hub,
         })
     }
 
-    /// Its Hermitian stiffness on the orders −`largest` … `largest` of the outer circle, order by order. Hole 0 of a pattern stands at the
-    /// angle `phase`.
+    /// Its Hermitian stiffness on the orders of the outer circle, from the lowest negative one on. Hole 0 of a pattern stands at the angle
+    /// `phase`.
     ///
     /// # Errors
     ///
     /// [`FemError`].
-    pub fn on_outer(&self, largest: usize, phase: f64, run: &Run) -> Result<Mat<c64>, FemError> {
-        let size = self.sector.size;
-        let classes = self.each_class(largest, run, |_, orders, stiffness| {
+    pub fn on_outer(&self, phase: f64, run: &Run) -> Result<Mat<c64>, FemError> {
+        let (size, largest) = (self.sector.size, self.largest);
+        let classes = self.each_class(run, |_, orders, stiffness| {
             last_of(&stiffness, orders.len() * size).map(|outer| (orders, outer))
         })?;
         let count = size * (2 * largest + 1);
@@ -116,14 +144,14 @@ impl<'a> HoledRing<'a> {
         Ok(ring)
     }
 
-    /// How the nodes that are told move by the orders −`largest` … `largest` of the outer circle, class by class.
+    /// How the nodes that are told move by the orders of the outer circle, class by class.
     ///
     /// # Errors
     ///
     /// [`FemError`].
-    pub fn inside(&self, largest: usize, run: &Run) -> Result<Vec<ClassRows>, FemError> {
+    pub fn inside(&self, run: &Run) -> Result<Vec<ClassRows>, FemError> {
         let sector = &self.sector;
-        self.each_class(largest, run, |class, orders, stiffness| {
+        self.each_class(run, |class, orders, stiffness| {
             let follows = following(&stiffness, orders.len() * sector.size)?;
             let rows = sector.on_class(&self.rows, class, &orders);
             let (inner, outer) = (follows.nrows(), follows.ncols());
@@ -136,21 +164,21 @@ impl<'a> HoledRing<'a> {
         })
     }
 
-    /// How the ring moves where its outer circle does: by the first of `amplitudes`, of the orders 0 …, up to the order `largest`, each a column.
-    /// Hole 0 of a pattern stands at the angle `phase`.
+    /// How the ring moves where its outer circle does: by the first of `amplitudes`, of the orders 0 …, each a column. Hole 0 of a pattern
+    /// stands at the angle `phase`.
     ///
     /// # Errors
     ///
     /// [`FemError`].
     pub fn moved(
         &self,
-        (largest, phase): (usize, f64),
+        phase: f64,
         amplitudes: &[Mat<c64>],
         run: &Run,
     ) -> Result<MovedRing, FemError> {
-        let sector = &self.sector;
+        let sector = &self.sector.with_nodes(&self.angles);
         let (size, sides) = (sector.size, sector.size * sector.side_nodes);
-        let classes = self.each_class(largest, run, |class, orders, stiffness| {
+        let classes = self.each_class(run, |class, orders, stiffness| {
             let outer = orders.len() * size;
             let follows = following(&stiffness, outer)?;
             let inner = follows.nrows();
@@ -164,7 +192,7 @@ impl<'a> HoledRing<'a> {
             motion.subrows_mut(0, inner).copy_from(&moved);
             Ok((class, orders, motion))
         })?;
-        let mut hub = vec![Mat::zeros(size, 1); largest + 1];
+        let mut hub = vec![Mat::zeros(size, 1); self.largest + 1];
         let mut sectors = vec![Vec::new(); sector.count];
         for (class, orders, motion) in &classes {
             let interface = sector.off_class(motion, *class, orders);
@@ -183,18 +211,17 @@ impl<'a> HoledRing<'a> {
         })
     }
 
-    /// What `of` makes of each class that has orders up to `largest`: its number, these orders, and the stiffness of the ring on its
+    /// What `of` makes of each class that has orders: its number, these orders, and the stiffness of the ring on its
     /// unknowns, the outer circle last.
     fn each_class<T: Send>(
         &self,
-        largest: usize,
         run: &Run,
         of: impl Fn(usize, Vec<i64>, Mat<c64>) -> Result<T, FemError> + Sync,
     ) -> Result<Vec<T>, FemError> {
         let sector = &self.sector;
         let made = (0..=sector.count / 2).into_par_iter().map(|class| {
             run.check()?;
-            let orders = sector.orders(class, largest);
+            let orders = sector.orders(class, self.largest);
             if orders.is_empty() {
                 return Ok(None);
             }
@@ -212,6 +239,17 @@ impl<'a> HoledRing<'a> {
         let made: Vec<Option<T>> = made.collect::<Result<_, FemError>>()?;
         Ok(made.into_iter().flatten().collect())
     }
+}
+
+/// The blocks of unknowns, one a node or an amplitude, that [`HoledRing::new`] keeps of a sector `grid` whose bore is `carried` or held.
+pub fn condensed_blocks(grid: &BlankGrid, carried: bool, largest: usize) -> usize {
+    let (right, left) = &grid.side_nodes;
+    let on = |nodes: &[u32]| match right.is_empty() {
+        true => 2 * largest + 1,
+        false => nodes.len(),
+    };
+    let bore = if carried { on(&grid.bore_nodes) } else { 0 };
+    right.len() + left.len() + bore + on(&grid.arc_nodes)
 }
 
 /// How all other unknowns follow the last `outer` of those of a class.
@@ -238,5 +276,91 @@ pub fn conjugate_below_zero(of: &Mat<c64>, order: i64) -> Mat<c64> {
         of.conjugate().to_owned()
     } else {
         of.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fem::axial::AxialBasis;
+    use crate::gear::{HolePattern, Material};
+    use crate::grid::GridLevel;
+
+    #[test]
+    fn a_ring_is_as_stiff_on_its_orders_by_sectors_and_as_a_whole_on_a_hub_and_on_a_bore() {
+        let steel = Material {
+            youngs_modulus: 210e9,
+            poisson_ratio: 0.3,
+            density: 7850.0,
+        };
+        let pattern = HolePattern {
+            count: 5,
+            circle_radius: 20e-3,
+            radius: 4e-3,
+            phase: 0.0,
+        };
+        let (radius, largest, phase) = (30e-3, 6, 0.3);
+        let grid = BlankGrid::new(10e-3, radius, Some(&pattern), 20, 4.0, GridLevel::Coarse);
+        let grid = grid.expect("a usable grid");
+        let whole = grid.unrolled();
+        let axial = AxialBasis::new(&[-2e-3, 3e-3], 3);
+        let size = 3 * axial.len();
+        // What carries the orders couples even motions and odd ones.
+        let hub: Vec<Mat<c64>> = (0..=largest)
+            .map(|order| {
+                let off = |i: usize, j: usize| c64::new(0.01 * (i + j + order) as f64, 0.0);
+                let own = |i, j| {
+                    if i == j {
+                        c64::new(5.0, 0.0)
+                    } else {
+                        c64::new(0.0, 0.0)
+                    }
+                };
+                Mat::from_fn(size, size, |i, j| (off(i, j) + own(i, j)) * 1e10)
+            })
+            .collect();
+        let run = Run::unattended();
+        for hub in [None, Some(hub.as_slice())] {
+            let rings = [&grid, &whole].map(|grid| {
+                let prism = Prism {
+                    grid: &grid.grid,
+                    material: &steel,
+                    twist: 0.0,
+                    axial: &axial,
+                };
+                HoledRing::new(grid, &prism, hub, (largest, &[])).expect("sound")
+            });
+            let [sectors, as_one] = rings.each_ref().map(|ring| ring.on_outer(phase, &run));
+            let (sectors, as_one) = (sectors.expect("sound"), as_one.expect("sound"));
+            assert!((&sectors - &as_one).norm_max() < 1e-9 * sectors.norm_max());
+
+            let amplitudes: Vec<Mat<c64>> = (0..=largest)
+                .map(|order| {
+                    let real = |i: usize| ((3 * i + order) as f64).sin();
+                    let imaginary = |i: usize| if order == 0 { 0.0 } else { real(i + 7) };
+                    Mat::from_fn(size, 1, |i, _| c64::new(real(i), imaginary(i)) * 1e-6)
+                })
+                .collect();
+            let [sectors, as_one] = rings.map(|ring| {
+                let moved = ring.moved(phase, &amplitudes, &run).expect("sound");
+                let outer = |of: &Vec<f64>, nodes: usize| of[of.len() - nodes * size..].to_vec();
+                // The last node of the arc of a sector is the next one's first.
+                let nodes = ring.angles.last().map_or(0, Vec::len);
+                let sectors = moved.sectors.iter().flat_map(|of| {
+                    let last = usize::from(ring.sector.count > 1);
+                    outer(of, nodes)[..(nodes - last) * size].to_vec()
+                });
+                (sectors.collect::<Vec<f64>>(), moved.hub)
+            });
+            assert_eq!(sectors.0.len(), as_one.0.len());
+            for (one, other) in sectors.0.iter().zip(&as_one.0) {
+                assert!((one - other).abs() < 1e-14);
+            }
+            assert_eq!(sectors.1.is_some(), as_one.1.is_some());
+            let hubs = sectors.1.iter().flatten().zip(as_one.1.iter().flatten());
+            for (one, other) in hubs {
+                assert!((one - other).norm_max() < 1e-9 * 1e-6);
+            }
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! Contact along faces: what holds whatever yields under the teeth. The yield here is given by a closed form.
 
+#[path = "../cases/mod.rs"]
 mod cases;
 
 use std::sync::Arc;
