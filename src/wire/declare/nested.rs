@@ -186,23 +186,14 @@ pub(in crate::wire) fn object(title: &str, about: &str, properties: Vec<Property
 /// What a schema says of fields that exclude each other: one alternative for each, and one for none of them unless one has to be given. Null is
 /// as good as absent.
 ///
-/// It stands in an `allOf`, beside the properties: generators of clients make no types of alternatives there.
+/// It stands in an `allOf` beside the properties, and says nothing but what is not: generators of clients make no types of such alternatives.
 pub(in crate::wire) fn exclusive(names: &[&str], is_one_needed: bool) -> Value {
-    let only = |given: Option<&str>| {
-        let schema = |name: &str| match given == Some(name) {
-            true => json!({ "not": { "type": "null" } }),
-            false => json!({ "type": "null" }),
-        };
-        let properties = names.iter().map(|name| (String::from(*name), schema(name)));
-        let mut alternative = json!({ "properties": Map::from_iter(properties) });
-        if let Some(given) = given {
-            alternative["required"] = json!([given]);
-        }
-        alternative
-    };
-    let none = (!is_one_needed).then_some(None);
-    let alternatives = names.iter().copied().map(Some).chain(none).map(only);
-    json!({ "oneOf": alternatives.collect::<Vec<Value>>() })
+    let given = |name: &&str| json!({ "not": { "properties": { *name: { "type": "null" } } } });
+    let mut alternatives: Vec<Value> = names.iter().map(given).collect();
+    if !is_one_needed {
+        alternatives.push(json!({ "not": { "anyOf": alternatives } }));
+    }
+    json!({ "oneOf": alternatives })
 }
 
 /// `schema` in a form that utoipa carries to the finished document, which has it instead. What utoipa knows of schemas is less than
