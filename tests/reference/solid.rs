@@ -319,8 +319,8 @@ fn web_errors(case: &WebCase) -> Vec<f64> {
             axial: &across,
         };
         let largest = HOLE_ORDERS as usize;
-        let ring = HoledRing::new(&grid, &prism, None, &[]).expect("definite");
-        let web = ring.on_outer(largest, 0.0, &Run::unattended());
+        let ring = HoledRing::new(&grid, &prism, None, (largest, &[])).expect("definite");
+        let web = ring.on_outer(0.0, &Run::unattended());
         let web = web.expect("definite");
         let low: Vec<usize> = (0..orders.len())
             .filter(|i| orders[*i].order.abs() <= seen)
