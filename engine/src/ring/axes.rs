@@ -41,6 +41,6 @@ pub(super) fn rows_in_axes(rows: &Mat<f64>, axes: &[[Vector; 2]]) -> Mat<f64> {
 }
 
 /// The angle of tooth `i` of `z` in the gear's frame.
-pub(super) fn tooth_angle(i: usize, z: usize) -> f64 {
+pub fn tooth_angle(i: usize, z: usize) -> f64 {
     2.0 * std::f64::consts::PI * i as f64 / z as f64
 }

@@ -3,10 +3,10 @@
 //! Read in this order: [`harmonics`] (the unknowns of an interface circle), [`cyclic`] (N equal sectors joined into a ring on them),
 //! [`tooth`], [`teeth`] (the ring of them), [`blank`], and [`body`], which joins them into the compliance of a whole gear. What happens
 //! inside: [`motion`] (of the interface circle under loads), [`teeth_recovery`] and [`blank::BlankRecovery`]. A blank by itself:
-//! [`annulus`]. The same with an extent along the axis: [`solid`]. Beside them: `axes` and `modes`.
+//! [`annulus`]. The same with an extent along the axis: [`solid`]. Beside them: [`axes`] and `modes`.
 
 pub mod annulus;
-mod axes;
+pub mod axes;
 pub mod blank;
 pub mod body;
 pub mod cyclic;

@@ -130,7 +130,7 @@ fn by_the_whole(level: GridLevel, teeth: &[usize], orders: usize) -> Stresses {
     for (loaded, forces) in LOADED.into_iter().zip(&forces) {
         for (i, force) in forces.chunks(2).enumerate() {
             let t = gear.flank().tangent_angle(tooth.flank_roll_lengths[i])
-                + meshwright_engine::ring::body::tooth_angle(loaded, 18);
+                + meshwright_engine::ring::axes::tooth_angle(loaded, 18);
             nodal[whole.flank_node(loaded, i) as usize] +=
                 force[0] * meshwright_engine::gear::tangential(t);
         }
@@ -161,7 +161,7 @@ fn by_the_whole(level: GridLevel, teeth: &[usize], orders: usize) -> Stresses {
                 along(
                     &fillet,
                     &whole.teeth[*t],
-                    meshwright_engine::ring::body::tooth_angle(*t, 18),
+                    meshwright_engine::ring::axes::tooth_angle(*t, 18),
                 )
             })
             .collect(),

@@ -12,8 +12,9 @@ use meshwright_engine::grid::ring_grid::ELEMENTS_PER_TOOTH;
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::library::Library;
 use meshwright_engine::quadrature::GAUSS_3;
+use meshwright_engine::ring::axes::tooth_angle;
 use meshwright_engine::ring::blank::BlankSubstructure;
-use meshwright_engine::ring::body::{Coupling, tooth_angle};
+use meshwright_engine::ring::body::Coupling;
 use meshwright_engine::run::Run;
 use nalgebra::DMatrix;
 
