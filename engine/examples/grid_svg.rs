@@ -4,7 +4,7 @@
 use meshwright_engine::gear::{
     BlankRegion, GearData, HolePattern, Material, Rack, SpurGear, TipEdge, ToothDeviations,
 };
-use meshwright_engine::grid::blank::ELEMENTS_PER_TOOTH;
+use meshwright_engine::grid::ring_grid::ELEMENTS_PER_TOOTH;
 use meshwright_engine::grid::{BlankGrid, Grid, GridLevel, ToothGrid};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
