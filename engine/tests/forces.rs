@@ -238,7 +238,8 @@ fn along_faces_the_other_flanks_are_those_of_the_mirror_image() {
         let swing = found.iter().map(|contact| contact.mesh.transmission_error);
         for (expected, delta) in swing.zip(row) {
             let expected = -case.pair.backlash() - expected;
-            assert!((delta - expected).abs() < 1e-9, "{j}: {delta} {expected}");
+            // Each has its slices from the other end of the face, and moves on from other positions.
+            assert!((delta - expected).abs() < 3e-9, "{j}: {delta} {expected}");
         }
     }
 }
