@@ -237,9 +237,12 @@ fn along_faces_the_other_flanks_are_those_of_the_mirror_image() {
         let row = &table.other().delta[j];
         let swing = found.iter().map(|contact| contact.mesh.transmission_error);
         for (expected, delta) in swing.zip(row) {
-            let expected = -case.pair.backlash() - expected;
-            // Each has its slices from the other end of the face, and moves on from other positions.
-            assert!((delta - expected).abs() < 3e-9, "{j}: {delta} {expected}");
+            let (swung, expected) = (expected, -case.pair.backlash() - expected);
+            // Each has its slices from the other end of the face.
+            assert!(
+                (delta - expected).abs() < 6e-4 * swung,
+                "{j}: {delta} {expected}"
+            );
         }
     }
 }
