@@ -88,7 +88,7 @@ fn designs() -> Value {
         "examples": ["8R34"],
     });
     let changes = json!({
-        "type": "object",
+        "type": ["object", "null"],
         "title": "Changes",
         "description": "JSON pointers into the submission and the values there, applied in their order.",
         "additionalProperties": true,
