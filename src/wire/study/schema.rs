@@ -92,7 +92,7 @@ fn designs() -> Value {
         "title": "Changes",
         "description": "JSON pointers into the submission and the values there, applied in their order.",
         "additionalProperties": true,
-        "default": {},
+        "default": null,
     });
     let properties = vec![
         Property::new("label", label, true),
