@@ -29,11 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         profile_shift: 0.0,
         thickness_deviation: 0.0,
         face_width: 20e-3,
-        material: Material {
-            youngs_modulus: 210e9,
-            poisson_ratio: 0.3,
-            density: 7850.0,
-        },
+        material: Material::STEEL,
         tip_edge: TipEdge::Sharp,
         modifications: vec![ModificationData::TipRelief(ReliefData {
             amount: 5e-6,

@@ -75,11 +75,7 @@ fn gear(tooth_count: u32, profile_shift: f64) -> Result<SpurGear, Box<dyn std::e
         face_width: 20e-3,
         modifications: Vec::new(),
         deviations: ToothDeviations::default(),
-        material: Material {
-            youngs_modulus: 210e9,
-            poisson_ratio: 0.3,
-            density: 7850.0,
-        },
+        material: Material::STEEL,
         blank: BlankRegion::solid(1e-3),
     })?)
 }

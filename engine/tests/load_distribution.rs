@@ -8,7 +8,7 @@ use meshwright_engine::analysis::{
     StiffnessRule, ToothFormula, Warning, analyze,
 };
 use meshwright_engine::gear::{
-    GearData, GearPair, ModificationData, ReliefData, ReliefShape, ReliefStart, SpurGear,
+    GearData, GearPair, Material, ModificationData, ReliefData, ReliefShape, ReliefStart, SpurGear,
 };
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -472,7 +472,7 @@ fn isos_stiffness_lies_above_the_sum_of_the_parts_by_as_much_as_the_stiffest_pos
         .into_iter()
         .filter_map(|drawing| {
             let steel = drawing.changed(|data| {
-                data.material = cases::STEEL;
+                data.material = Material::STEEL;
                 data.modifications.clear();
                 data.face_width = 20.0 * data.rack.module;
             });

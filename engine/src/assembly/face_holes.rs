@@ -140,11 +140,6 @@ pub(super) mod tests {
 
     #[test]
     fn a_small_hole_in_a_wide_plate_triples_the_stress_beside_it_and_presses_across() {
-        let steel = Material {
-            youngs_modulus: 210e9,
-            poisson_ratio: 0.3,
-            density: 7850.0,
-        };
         let pattern = HolePattern {
             count: 5,
             circle_radius: 20e-3,
@@ -159,7 +154,7 @@ pub(super) mod tests {
             let axial = AxialBasis::new(&[-0.02e-3, 0.02e-3], 2);
             let prism = Prism {
                 grid: &grid.grid,
-                material: &steel,
+                material: &Material::STEEL,
                 twist: 0.0,
                 axial: &axial,
             };

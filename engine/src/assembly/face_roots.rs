@@ -321,12 +321,6 @@ mod tests {
     use crate::ring::teeth_recovery::TeethRecovery;
     use crate::ring::tooth::{ToothSubstructure, modal_loads};
 
-    const STEEL: Material = Material {
-        youngs_modulus: 210e9,
-        poisson_ratio: 0.3,
-        density: 7850.0,
-    };
-
     fn of_order(face_order: usize) -> FaceResolution {
         FaceResolution {
             face_order,
@@ -384,15 +378,16 @@ mod tests {
 
     #[test]
     fn narrow_and_wide_straight_teeth_are_stressed_as_in_the_plane() {
-        let nu = STEEL.poisson_ratio;
+        let nu = Material::STEEL.poisson_ratio;
         let plane_strain = Material {
-            youngs_modulus: STEEL.youngs_modulus / (1.0 - nu * nu),
+            youngs_modulus: Material::STEEL.youngs_modulus / (1.0 - nu * nu),
             poisson_ratio: nu / (1.0 - nu),
-            ..STEEL
+            ..Material::STEEL
         };
-        for (width, order, material, most) in
-            [(0.05e-3, 2, &STEEL, 2e-3), (60e-3, 8, &plane_strain, 2e-3)]
-        {
+        for (width, order, material, most) in [
+            (0.05e-3, 2, &Material::STEEL, 2e-3),
+            (60e-3, 8, &plane_strain, 2e-3),
+        ] {
             let gear = gear(0.0, width);
             let section = gear.section();
             let inner = section.root_radius() - 4e-3;
@@ -448,7 +443,7 @@ mod tests {
             let plain = section.without_blank();
             let grid = ToothGrid::of_stressed_prism(&plain, radius, GridLevel::Standard);
             let grid = grid.expect("a usable grid");
-            let probes = along_edges(&grid, &STEEL);
+            let probes = along_edges(&grid, &Material::STEEL);
             let (tooth, rows) =
                 ToothSubstructure::with_recovery(section, &grid, &probes).expect("sound");
             let harmonics = Harmonics { largest: 90 };
@@ -457,7 +452,7 @@ mod tests {
             let holes = holes.then_some(&pattern);
             let level = GridLevel::Fine;
             let blank = BlankGrid::new(section.bore_radius(), radius, holes, 30, 8.0, level);
-            let plate = (&STEEL, section.face_width());
+            let plate = (&Material::STEEL, section.face_width());
             let blank = BlankSubstructure::new(
                 &blank.expect("a usable grid"),
                 radius,

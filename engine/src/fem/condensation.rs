@@ -135,12 +135,6 @@ pub(super) mod tests {
     use crate::gear::Vector;
     use crate::grid::Element;
 
-    const STEEL: Material = Material {
-        youngs_modulus: 210e9,
-        poisson_ratio: 0.3,
-        density: 7850.0,
-    };
-
     /// Four distorted elements around one corner: nodes on the lattice of corners and midsides.
     pub(in crate::fem) fn patch() -> Grid {
         let mut number = [[u32::MAX; 5]; 5];
@@ -179,10 +173,10 @@ pub(super) mod tests {
     fn dense(grid: &Grid) -> DMatrix<f64> {
         let n = 2 * grid.nodes.len();
         let mut k = DMatrix::<f64>::zeros(n, n);
-        for (element, stiffness) in grid
-            .elements
-            .iter()
-            .zip(element_stiffnesses(grid, &STEEL, 20e-3))
+        for (element, stiffness) in
+            grid.elements
+                .iter()
+                .zip(element_stiffnesses(grid, &Material::STEEL, 20e-3))
         {
             let place = |local: usize| 2 * element.nodes()[local / 2] as usize + local % 2;
             let unknowns = 2 * element.nodes().len();
@@ -233,7 +227,8 @@ pub(super) mod tests {
     fn the_trailing_factor_is_the_schur_complement_of_a_floating_grid() {
         let grid = patch();
         let kept = [20, 0, 7, 4, 12];
-        let schur = condense("a patch", &grid, &STEEL, 20e-3, &kept, &[]).expect("a sound grid");
+        let schur =
+            condense("a patch", &grid, &Material::STEEL, 20e-3, &kept, &[]).expect("a sound grid");
         assert_alike(&schur, &dense_schur(&grid, &kept, &[]));
         // It floats: a translation and a rotation of the kept nodes cost nothing.
         let scale = schur[(0, 0)];
@@ -255,7 +250,8 @@ pub(super) mod tests {
     fn the_trailing_factor_is_the_schur_complement_of_a_held_grid() {
         let grid = patch();
         let (kept, fixed) = ([18, 20, 3], [0, 1, 2]);
-        let schur = condense("a patch", &grid, &STEEL, 20e-3, &kept, &fixed).expect("a sound grid");
+        let schur = condense("a patch", &grid, &Material::STEEL, 20e-3, &kept, &fixed)
+            .expect("a sound grid");
         assert_alike(&schur, &dense_schur(&grid, &kept, &fixed));
     }
 
@@ -266,7 +262,8 @@ pub(super) mod tests {
             let nodes = element.nodes();
             *element = Element::quadrilateral([0, 3, 2, 1, 7, 6, 5, 4].map(|i: usize| nodes[i]));
         }
-        let error = condense("a patch", &grid, &STEEL, 20e-3, &[0, 4], &[]).expect_err("a refusal");
+        let error = condense("a patch", &grid, &Material::STEEL, 20e-3, &[0, 4], &[])
+            .expect_err("a refusal");
         assert!(matches!(
             error,
             FemError::NotPositiveDefinite {
@@ -294,8 +291,15 @@ pub(super) mod tests {
             .collect();
         for fixed in [&[0, 1, 2][..], &[]] {
             let kept = [18, 20, 3];
-            let condensed = condense_with("a patch", &grid, (&STEEL, 20e-3), &kept, fixed, &asked)
-                .expect("a sound grid");
+            let condensed = condense_with(
+                "a patch",
+                &grid,
+                (&Material::STEEL, 20e-3),
+                &kept,
+                fixed,
+                &asked,
+            )
+            .expect("a sound grid");
             let inner: Vec<u32> = (0..n)
                 .filter(|node| !kept.contains(node) && !fixed.contains(node))
                 .collect();

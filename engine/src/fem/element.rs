@@ -76,12 +76,6 @@ pub fn stiffness(
 mod tests {
     use super::*;
 
-    const STEEL: Material = Material {
-        youngs_modulus: 210e9,
-        poisson_ratio: 0.3,
-        density: 7850.0,
-    };
-
     const KINDS: [ElementKind; 2] = [ElementKind::Quadrilateral, ElementKind::Triangle];
 
     /// A distorted element with curved sides.
@@ -117,7 +111,7 @@ mod tests {
     fn a_rigid_motion_strains_nothing() {
         for kind in KINDS {
             let nodes = distorted(kind);
-            let k = stiffness(kind, &nodes, &STEEL, 20e-3);
+            let k = stiffness(kind, &nodes, &Material::STEEL, 20e-3);
             for motion in [
                 |_: Vector| Vector::new(1.0, 0.0),
                 |_| Vector::new(0.0, 1.0),
@@ -137,7 +131,7 @@ mod tests {
     fn only_the_rigid_motions_strain_nothing() {
         for kind in KINDS {
             let unknowns = 2 * kind.node_places().len();
-            let k = stiffness(kind, &distorted(kind), &STEEL, 20e-3);
+            let k = stiffness(kind, &distorted(kind), &Material::STEEL, 20e-3);
             let own = k.view((0, 0), (unknowns, unknowns)).clone_owned();
             let own = nalgebra::DMatrix::from_fn(unknowns, unknowns, |i, j| own[(i, j)]);
             let energies = own.symmetric_eigenvalues();
@@ -151,7 +145,7 @@ mod tests {
         // u = (a x, 0): energy = 1/2 E/(1-nu^2) a^2 V, with the area by the same isoparametric rule.
         for kind in KINDS {
             let nodes = distorted(kind);
-            let k = stiffness(kind, &nodes, &STEEL, 20e-3);
+            let k = stiffness(kind, &nodes, &Material::STEEL, 20e-3);
             let a = 1e-3;
             let u = field(kind, &nodes, |p| Vector::new(a * p.x, 0.0));
             let area: f64 = kind
@@ -169,7 +163,7 @@ mod tests {
         // The rule on each of the 64 parts of the reference triangle; two sides bulge by a twentieth of their length.
         let kind = ElementKind::Triangle;
         let nodes = distorted(kind);
-        let k = stiffness(kind, &nodes, &STEEL, 20e-3);
+        let k = stiffness(kind, &nodes, &Material::STEEL, 20e-3);
         let u = field(kind, &nodes, |p| {
             Vector::new(1e3 * p.x * p.y, p.y - 2e3 * p.x * p.x)
         });

@@ -32,11 +32,7 @@ mod tests {
 
     #[test]
     fn a_bar_in_plane_stress_is_as_stiff_as_young_says_and_grows_thinner_as_poisson_says() {
-        let material = Material {
-            youngs_modulus: 210e9,
-            poisson_ratio: 0.3,
-            density: 7850.0,
-        };
+        let material = Material::STEEL;
         let law = Law::plane_stress(&material);
         let (along, across) = (1e-3, -0.3e-3);
         assert!((law.along * along + law.across * across - 210e6).abs() < 1e-6);

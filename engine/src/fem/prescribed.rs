@@ -141,12 +141,6 @@ mod tests {
     use super::*;
     use crate::fem::condensation::tests::patch;
 
-    const STEEL: Material = Material {
-        youngs_modulus: 210e9,
-        poisson_ratio: 0.3,
-        density: 7850.0,
-    };
-
     #[test]
     fn a_grid_whose_boundary_moves_by_a_linear_field_follows_it_inside() {
         let grid = patch();
@@ -165,7 +159,7 @@ mod tests {
                 .collect(),
             forces: Vec::new(),
         };
-        let plate = (&STEEL, 20e-3);
+        let plate = (&Material::STEEL, 20e-3);
         let answers = displacements("a patch", &grid, plate, &moved, &[moves(1.0), moves(-2.0)]);
         for (answer, factor) in answers.expect("sound").iter().zip([1.0, -2.0]) {
             for (u, point) in answer.iter().zip(&grid.nodes) {
@@ -180,7 +174,7 @@ mod tests {
         let (free, held) = (grid.elements[0].nodes()[0], grid.elements[3].nodes()[2]);
         let fixed: Vec<u32> = grid.elements[3].nodes().to_vec();
         assert!(fixed.contains(&held) && !fixed.contains(&free));
-        let plate = (&STEEL, 20e-3);
+        let plate = (&Material::STEEL, 20e-3);
         let stiffness =
             crate::fem::condensation::condense("a patch", &grid, plate.0, plate.1, &[free], &fixed)
                 .expect("sound");

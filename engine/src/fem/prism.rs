@@ -491,11 +491,6 @@ fn section_matrices(element: &Element, grid: &Grid, law: &Law3, twist: f64) -> S
 mod tests {
     use super::*;
 
-    const STEEL: Material = Material {
-        youngs_modulus: 210e9,
-        poisson_ratio: 0.3,
-        density: 7850.0,
-    };
     const HALF: f64 = 10e-3;
 
     /// The displacement at (x, y, z).
@@ -563,7 +558,7 @@ mod tests {
             ] {
                 let prism = Prism {
                     grid: &square,
-                    material: &STEEL,
+                    material: &Material::STEEL,
                     twist,
                     axial: &axial,
                 };
@@ -591,12 +586,12 @@ mod tests {
         let grid = square();
         let side = 8e-3_f64;
         let (area, moment) = (side * side, side.powi(4) / 12.0);
-        let (e, nu, g) = (210e9, 0.3, STEEL.shear_modulus());
+        let (e, nu, g) = (210e9, 0.3, Material::STEEL.shear_modulus());
         for twist in [0.0, 12.0] {
             let axial = AxialBasis::new(&[-HALF, HALF], 9);
             let prism = Prism {
                 grid: &grid,
-                material: &STEEL,
+                material: &Material::STEEL,
                 twist,
                 axial: &axial,
             };
@@ -623,7 +618,7 @@ mod tests {
         let [apart, together] = [0.0, 1e-9].map(|twist| {
             let prism = Prism {
                 grid: &grid,
-                material: &STEEL,
+                material: &Material::STEEL,
                 twist,
                 axial: &axial,
             };
@@ -661,7 +656,7 @@ mod tests {
         let axial = AxialBasis::new(&[-HALF, HALF], 6);
         let prism = Prism {
             grid: &grid,
-            material: &STEEL,
+            material: &Material::STEEL,
             twist: 12.0,
             axial: &axial,
         };

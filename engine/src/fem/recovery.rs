@@ -171,12 +171,6 @@ mod tests {
     use super::*;
     use crate::fem::condensation::tests::patch;
 
-    const STEEL: Material = Material {
-        youngs_modulus: 210e9,
-        poisson_ratio: 0.3,
-        density: 7850.0,
-    };
-
     /// The patch of distorted quadrilaterals, and the same cut into triangles.
     fn patches() -> [Grid; 2] {
         let quadrilaterals = patch();
@@ -211,12 +205,12 @@ mod tests {
             let field =
                 |p: &Vector| Vector::new(exx * p.x + 0.2 * gxy * p.y, eyy * p.y + 0.8 * gxy * p.x);
             let u: Vec<Vector> = grid.nodes.iter().map(field).collect();
-            for found in nodal_stresses(&grid, &STEEL, &all) {
+            for found in nodal_stresses(&grid, &Material::STEEL, &all) {
                 for (stress, expected) in found.iter().zip(expected) {
                     assert!((stress.value(&u) - expected).abs() < 1e-9 * d * exx);
                 }
             }
-            for found in stresses(&grid, &STEEL, &u) {
+            for found in stresses(&grid, &Material::STEEL, &u) {
                 for (stress, expected) in found.iter().zip(expected) {
                     assert!((stress - expected).abs() < 1e-9 * d * exx);
                 }
@@ -237,7 +231,7 @@ mod tests {
         let strain = sigma / 210e9;
         let field = |p: &Vector| Vector::new(strain * p.x + 1e-6, -0.3 * strain * p.y);
         let u: Vec<Vector> = grid.nodes.iter().map(field).collect();
-        for stress in edge_stresses(&grid, &STEEL, &[0, 1, 2, 3, 4], false) {
+        for stress in edge_stresses(&grid, &Material::STEEL, &[0, 1, 2, 3, 4], false) {
             assert!((stress.value(&u) / sigma - 1.0).abs() < 1e-12);
         }
     }
@@ -255,7 +249,7 @@ mod tests {
         };
         let u: Vec<Vector> = grid.nodes.iter().map(|p| 1e-3 * p).collect();
         let edge: Vec<u32> = (0..count as u32).collect();
-        for stress in edge_stresses(&grid, &STEEL, &edge, true) {
+        for stress in edge_stresses(&grid, &Material::STEEL, &edge, true) {
             assert!((stress.value(&u) / 210e6 - 1.0).abs() < 1e-12);
         }
     }

@@ -224,12 +224,6 @@ mod tests {
     use crate::grid::{BlankGrid, Grid, GridLevel, ToothGrid};
     use nalgebra::Matrix3;
 
-    const STEEL: Material = Material {
-        youngs_modulus: 210e9,
-        poisson_ratio: 0.3,
-        density: 7850.0,
-    };
-
     /// A section, edges of it, and whether these are closed.
     type Drawn = (Grid, Vec<Vec<u32>>, bool);
 
@@ -269,7 +263,7 @@ mod tests {
             let axial = &AxialBasis::new(&[-5e-3, 5e-3], 10);
             let prism = Prism {
                 grid: &grid,
-                material: &STEEL,
+                material: &Material::STEEL,
                 twist,
                 axial,
             };

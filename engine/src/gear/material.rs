@@ -21,6 +21,13 @@ pub enum PlaneState {
 }
 
 impl Material {
+    /// The steel of the paper's gears.
+    pub const STEEL: Self = Self {
+        youngs_modulus: 210e9,
+        poisson_ratio: 0.3,
+        density: 7850.0,
+    };
+
     /// The shear modulus G = E/(2(1 + ν)) in pascals, the same in both plane states.
     pub fn shear_modulus(&self) -> f64 {
         self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
@@ -47,18 +54,13 @@ impl Material {
 pub(crate) mod tests {
     use super::*;
 
-    pub(crate) const STEEL: Material = Material {
-        youngs_modulus: 210e9,
-        poisson_ratio: 0.3,
-        density: 7850.0,
-    };
-
     #[test]
     fn the_shear_modulus_is_the_same_in_both_plane_states() {
         // G = E'/(2(1 + ν')) in either state; only rounding is allowed for.
         for plane in [PlaneState::Stress, PlaneState::Strain] {
-            let g = STEEL.plane_modulus(plane) / (2.0 * (1.0 + STEEL.plane_poisson_ratio(plane)));
-            assert!((g / STEEL.shear_modulus() - 1.0).abs() < 1e-14);
+            let g = Material::STEEL.plane_modulus(plane)
+                / (2.0 * (1.0 + Material::STEEL.plane_poisson_ratio(plane)));
+            assert!((g / Material::STEEL.shear_modulus() - 1.0).abs() < 1e-14);
         }
     }
 }

@@ -103,7 +103,7 @@ impl LineContact {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gear::material::tests::STEEL;
+    use crate::gear::Material;
     use std::f64::consts::PI;
 
     const FACE_WIDTH: f64 = 20e-3;
@@ -111,7 +111,7 @@ mod tests {
     /// A contact of two alike steel bodies whose relative radius is `relative_radius`.
     fn contact(relative_radius: f64, depth: f64, plane: PlaneState) -> LineContact {
         let body = ContactBody {
-            material: STEEL,
+            material: Material::STEEL,
             curvature_radius: 2.0 * relative_radius,
             depth,
         };
@@ -186,7 +186,7 @@ mod tests {
     fn bodies_of_one_material_approach_as_webers_product_of_depths_says() {
         let (force, t_1, t_2, e, nu) = (20.0, 1.5e-3, 2.5e-3, 210e9, 0.3);
         let body = |curvature_radius, depth| ContactBody {
-            material: STEEL,
+            material: Material::STEEL,
             curvature_radius,
             depth,
         };
@@ -243,7 +243,7 @@ mod tests {
     fn unlike_bodies_share_the_contact_and_keep_their_own_approach() {
         // A partner a million times stiffer takes no part: a² and h are those of one body alone.
         let body = ContactBody {
-            material: STEEL,
+            material: Material::STEEL,
             curvature_radius: 18e-3,
             depth: 1.6e-3,
         };

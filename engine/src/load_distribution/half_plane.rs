@@ -46,13 +46,14 @@ fn coefficients(nu: f64) -> [f64; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gear::material::tests::STEEL;
+    use crate::gear::Material;
 
     #[test]
     fn weber_and_banascheks_own_numbers_come_out_in_plane_strain() {
         // Printed for ν = 0.3 with E alone in the denominator: 5.2, 1, 1.4 and 0.294, each rounded to about 1 %; c_2
         // is 1.04.
-        let [c_1, c_2, c_3, c_4] = coefficients(STEEL.plane_poisson_ratio(PlaneState::Strain));
+        let [c_1, c_2, c_3, c_4] =
+            coefficients(Material::STEEL.plane_poisson_ratio(PlaneState::Strain));
         let over_e = 1.0 - 0.3_f64.powi(2);
         for (value, print) in [
             (c_1 * over_e, 5.2),
@@ -81,7 +82,7 @@ mod tests {
             .map(|n| 2.0 / n * moment_of_chebyshev(n).powi(2))
             .sum();
         let rotation = 2.0 / PI * 9.0 / 4.0 * sum;
-        let [c_1, ..] = coefficients(STEEL.plane_poisson_ratio(PlaneState::Stress));
+        let [c_1, ..] = coefficients(Material::STEEL.plane_poisson_ratio(PlaneState::Stress));
         assert!(
             (c_1 / 4.0 / rotation - 1.0).abs() < 1e-9,
             "{} beside {rotation}",
@@ -103,7 +104,7 @@ mod tests {
             angle: 0.33,
             depth: 1.6e-3,
         };
-        let ours = compliance(&load, 4e-3, 20e-3, &STEEL, PlaneState::Stress);
+        let ours = compliance(&load, 4e-3, 20e-3, &Material::STEEL, PlaneState::Stress);
         assert!(ours > published && ours < 1.1 * published);
     }
 }

@@ -175,12 +175,12 @@ pub fn rise(pairs: &[LinePair], load: f64) -> f64 {
 mod tests {
     use super::super::approach::ContactBody;
     use super::*;
+    use crate::gear::Material;
     use crate::gear::PlaneState;
-    use crate::gear::material::tests::STEEL;
 
     fn line_pair(offset: i32, compliance: f64, gap: f64, with_approach: bool) -> LinePair {
         let body = ContactBody {
-            material: STEEL,
+            material: Material::STEEL,
             curvature_radius: 18e-3,
             depth: 1.6e-3,
         };

@@ -78,7 +78,7 @@ fn heights(u: f64) -> impl Iterator<Item = (f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gear::material::tests::STEEL;
+    use crate::gear::Material;
     use std::f64::consts::PI;
 
     const B: f64 = 20e-3;
@@ -93,7 +93,7 @@ mod tests {
         load: &ToothLoad,
         plane: PlaneState,
     ) -> ToothCompliance {
-        ToothCompliance::new(half_thickness, load, B, &STEEL, plane)
+        ToothCompliance::new(half_thickness, load, B, &Material::STEEL, plane)
     }
 
     #[test]

@@ -15,13 +15,6 @@ use meshwright_engine::gear::{
 };
 use meshwright_engine::grid::GridLevel;
 
-/// Steel, as taken for all of the paper's gears.
-pub(crate) const STEEL: Material = Material {
-    youngs_modulus: 210e9,
-    poisson_ratio: 0.3,
-    density: 7850.0,
-};
-
 /// The gears of the paper and of CalculiX but for their tooth counts and blanks: m 2 mm, α 20°, b 20 mm.
 pub(crate) fn gear(tooth_count: u32, bore_radius: f64) -> GearData {
     GearData {
@@ -39,7 +32,7 @@ pub(crate) fn gear(tooth_count: u32, bore_radius: f64) -> GearData {
         face_width: 20e-3,
         modifications: Vec::new(),
         deviations: ToothDeviations::default(),
-        material: STEEL,
+        material: Material::STEEL,
         blank: BlankRegion::solid(bore_radius),
     }
 }

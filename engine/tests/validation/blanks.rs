@@ -10,7 +10,7 @@ use faer::Mat;
 use meshwright_engine::fem::condensation::condense_with;
 use meshwright_engine::fem::recovery::{Functional, edge_stresses, nodal_stresses};
 use meshwright_engine::gear::{
-    BlankRegion, Hole, HolePattern, HoleShape, SpurGear, Vector, Web, radial, tangential,
+    BlankRegion, Hole, HolePattern, HoleShape, Material, SpurGear, Vector, Web, radial, tangential,
 };
 use meshwright_engine::grid::{BlankGrid, Grid, GridLevel, ToothGrid};
 use meshwright_engine::ring::blank::BlankSubstructure;
@@ -20,7 +20,7 @@ use meshwright_engine::ring::teeth::TeethRing;
 use meshwright_engine::ring::tooth::ToothSubstructure;
 use meshwright_engine::run::Run;
 
-use crate::support::{STEEL, case, gear, pair, solve};
+use crate::support::{case, gear, pair, solve};
 
 const LEVELS: [GridLevel; 3] = [GridLevel::Coarse, GridLevel::Standard, GridLevel::Fine];
 const FACE_WIDTH: f64 = 20e-3;
@@ -32,7 +32,7 @@ fn condensed(grid: &BlankGrid, largest: usize) -> BlankSubstructure {
     BlankSubstructure::new(
         grid,
         INTERFACE,
-        &STEEL,
+        &Material::STEEL,
         FACE_WIDTH,
         harmonics,
         &Run::unattended(),
@@ -335,7 +335,10 @@ const RINGS: [(f64, f64); 3] = [(15e-3, FACE_WIDTH), (20e-3, 5e-3), (38e-3, FACE
 
 /// Order 0 of the interface circle in closed form: the stiffness against a radial and a tangential displacement of all of it.
 fn rings_in_series() -> [f64; 2] {
-    let (e, nu) = (STEEL.youngs_modulus, STEEL.poisson_ratio);
+    let (e, nu) = (
+        Material::STEEL.youngs_modulus,
+        Material::STEEL.poisson_ratio,
+    );
     let shear = e / (2.0 * (1.0 + nu));
     let outer = |i: usize| RINGS.get(i + 1).map_or(INTERFACE, |ring| ring.0);
     // Torsion: the torque T turns a ring by T/(4π G t) (1/r_i² − 1/r_o²).
@@ -434,7 +437,7 @@ fn answers(grid: &BlankGrid, forces: &[(u32, Vector)], asked: &[Functional]) -> 
     let condensed = condense_with(
         "a ring",
         &grid.grid,
-        (&STEEL, FACE_WIDTH),
+        (&Material::STEEL, FACE_WIDTH),
         &kept,
         &[],
         asked,
@@ -462,7 +465,8 @@ fn answers(grid: &BlankGrid, forces: &[(u32, Vector)], asked: &[Functional]) -> 
                 _ => 0.0,
             }
         });
-        stiffness += &rigid * rigid.transpose() * (STEEL.youngs_modulus * FACE_WIDTH / n as f64);
+        stiffness +=
+            &rigid * rigid.transpose() * (Material::STEEL.youngs_modulus * FACE_WIDTH / n as f64);
     }
     let u = stiffness.cholesky().expect("held").solve(&load);
     let row = |i: usize| (0..n).map(|j| condensed.rows[(i, j)] * u[j]).sum();
@@ -478,8 +482,8 @@ fn a_ring_under_pressure_is_stressed_as_lame_says() {
     for (level, bound) in LEVELS.into_iter().zip([2e-2, 5e-3, 1.5e-3]) {
         let grid = whole(&region(Vec::new(), None), level);
         let forces = edge_forces(&grid.grid, &grid.bore_nodes, |p| pressure * p / p.norm());
-        let rim = edge_stresses(&grid.grid, &STEEL, &grid.arc_nodes, true);
-        let bore = nodal_stresses(&grid.grid, &STEEL, &grid.bore_nodes);
+        let rim = edge_stresses(&grid.grid, &Material::STEEL, &grid.arc_nodes, true);
+        let bore = nodal_stresses(&grid.grid, &Material::STEEL, &grid.bore_nodes);
         let asked: Vec<Functional> = rim
             .iter()
             .cloned()
@@ -527,7 +531,7 @@ fn a_hole_in_a_plate_in_tension_triples_the_stress_as_kirsch_says() {
         };
         let grid = whole(&plate, level);
         let forces = edge_forces(&grid.grid, &grid.arc_nodes, traction);
-        let asked = edge_stresses(&grid.grid, &STEEL, &grid.bore_nodes, true);
+        let asked = edge_stresses(&grid.grid, &Material::STEEL, &grid.bore_nodes, true);
         let values = answers(&grid, &forces, &asked);
         let off = grid
             .bore_nodes
@@ -562,12 +566,12 @@ fn stresses_at_hole_edges_settle_and_symmetry_recovers_what_the_whole_does() {
         })
         .collect();
     let stresses = |grid: &BlankGrid, hole: usize| {
-        let asked = edge_stresses(&grid.grid, &STEEL, &grid.hole_edges[hole], true);
+        let asked = edge_stresses(&grid.grid, &Material::STEEL, &grid.hole_edges[hole], true);
         let run = Run::unattended();
         BlankSubstructure::with_recovery(
             grid,
             INTERFACE,
-            (&STEEL, FACE_WIDTH),
+            (&Material::STEEL, FACE_WIDTH),
             harmonics,
             &asked,
             &run,

@@ -4,19 +4,21 @@ use std::f64::consts::PI;
 
 use meshwright_engine::analysis::pair_model;
 use meshwright_engine::contact::WarmStart;
+use meshwright_engine::gear::Material;
 use meshwright_engine::grid::{BlankGrid, GridLevel};
 use meshwright_engine::ring::blank::BlankSubstructure;
 use meshwright_engine::ring::cyclic::{Component, Harmonics};
 use meshwright_engine::run::Run;
 
-use crate::support::{STEEL, case, gear, library, pair, standard_pair};
+use crate::support::{case, gear, library, pair, standard_pair};
 
 #[test]
 fn an_annulus_under_uniform_tangential_traction_turns_by_its_closed_form() {
     // θ = T/(4π G b) (1/r_i² − 1/r_o²): T 115 N m, b 20 mm, r_o 47.5 mm; 5.41407e-5 rad for r_i 10 mm and 2.26676e-5 rad
     // for 15 mm, to 0.1 %.
     let (torque, width, r_o) = (115.0, 20e-3, 47.5e-3);
-    let shear_modulus = STEEL.youngs_modulus / (2.0 * (1.0 + STEEL.poisson_ratio));
+    let shear_modulus =
+        Material::STEEL.youngs_modulus / (2.0 * (1.0 + Material::STEEL.poisson_ratio));
     for (r_i, printed) in [(10e-3, 5.41407e-5), (15e-3, 2.26676e-5)] {
         let formula = torque / (4.0 * PI * shear_modulus * width)
             * (1.0 / f64::powi(r_i, 2) - 1.0 / f64::powi(r_o, 2));
@@ -29,7 +31,7 @@ fn an_annulus_under_uniform_tangential_traction_turns_by_its_closed_form() {
             let blank = BlankSubstructure::new(
                 &grid,
                 r_o,
-                &STEEL,
+                &Material::STEEL,
                 width,
                 Harmonics { largest: 60 },
                 &Run::unattended(),

@@ -4,11 +4,11 @@ use std::f64::consts::TAU;
 
 use meshwright_engine::analysis::fields::{GearField, fields};
 use meshwright_engine::fem::element;
-use meshwright_engine::gear::{GearPair, Hole, HoleShape, Member, Vector};
+use meshwright_engine::gear::{GearPair, Hole, HoleShape, Material, Member, Vector};
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::run::Run;
 
-use crate::support::{STEEL, case, gear, holed, library, pair, relieved, solve};
+use crate::support::{case, gear, holed, library, pair, relieved, solve};
 
 const TORQUE: f64 = 115.0;
 const CENTER_DISTANCE: f64 = 100.5e-3;
@@ -35,7 +35,7 @@ fn hub_moment(field: &GearField, center: Vector, bore_radius: f64) -> f64 {
         let stiffness = element::stiffness(
             element.kind(),
             &element.places(&field.nodes),
-            &STEEL,
+            &Material::STEEL,
             *thickness,
         );
         let nodes = element.nodes();

@@ -7,14 +7,14 @@
 //! substructure holds its bore; so the linear field is imposed on two rings of the blank's own elements.)
 
 use meshwright_engine::assembly::interface::default_interface_radius;
-use meshwright_engine::gear::{SpurGear, Vector, radial};
+use meshwright_engine::gear::{Material, SpurGear, Vector, radial};
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::ring::cyclic::{Component, Harmonics};
 use meshwright_engine::ring::teeth::TeethRing;
 use meshwright_engine::ring::tooth::ToothSubstructure;
 use meshwright_engine::run::Run;
 
-use crate::support::{STEEL, gear, holed};
+use crate::support::{gear, holed};
 use crate::whole::{Assembly, Hold, Whole, WholeGear, on_circle, whole_sides};
 
 /// Amplitudes of a translation by (x, y), and of a rotation that moves the interface circle by `turn` along itself.
@@ -120,7 +120,7 @@ fn a_gear_with_teeth_and_holes_follows_its_bore_rigidly() {
     )
     .expect("a blank");
     let motion = |p: Vector| Vector::new(2e-6, -1e-6) + 1e-3 * Vector::new(-p.y, p.x);
-    let mut assembly = WholeGear::new(tooth, 18, &blank, 0.21, 36, (&STEEL, 20e-3));
+    let mut assembly = WholeGear::new(tooth, 18, &blank, 0.21, 36, (&Material::STEEL, 20e-3));
     let bore = assembly.bore.clone();
     assembly.whole.assembly.hold(bore, |p| Hold::At(motion(p)));
     let u = &assembly.whole.solve(&[assembly.no_forces()])[0];
@@ -173,7 +173,7 @@ fn off_a_linear_field(inner: (u32, f64), outer: (u32, f64), phase: f64, level: G
     assembly.hold(all(&inner_copies, &inner.arc_nodes), on_circle);
     assembly.hold(all(&outer_copies, &outer.bore_nodes), on_circle);
     // Orders 0 and 2 carry A x, order 1 the translation; the others must stay silent.
-    let whole = Whole::new(assembly, &STEEL, 20e-3, 12);
+    let whole = Whole::new(assembly, &Material::STEEL, 20e-3, 12);
     let none = vec![Vector::zeros(); whole.assembly.nodes.len()];
     let u = &whole.solve(&[none])[0];
     let moved = whole.assembly.nodes.iter().zip(u);

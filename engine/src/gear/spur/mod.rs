@@ -362,11 +362,7 @@ pub(crate) mod tests {
             face_width: 20e-3,
             modifications: Vec::new(),
             deviations: ToothDeviations::default(),
-            material: Material {
-                youngs_modulus: 210e9,
-                poisson_ratio: 0.3,
-                density: 7850.0,
-            },
+            material: Material::STEEL,
             blank: BlankRegion::solid(15e-3),
         }
     }

@@ -351,15 +351,9 @@ fn in_order(k: &Mat<c64>, order: &[usize], size: usize) -> Mat<c64> {
 mod tests {
     use super::*;
 
-    const STEEL: Material = Material {
-        youngs_modulus: 210e9,
-        poisson_ratio: 0.3,
-        density: 7850.0,
-    };
-
     fn ring(twist: f64, axial: &AxialBasis) -> Revolution<'_> {
         Revolution {
-            material: &STEEL,
+            material: &Material::STEEL,
             twist,
             axial,
             radii: [33e-3, 38e-3],

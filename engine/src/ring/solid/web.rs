@@ -288,11 +288,6 @@ mod tests {
 
     #[test]
     fn a_ring_is_as_stiff_on_its_orders_by_sectors_and_as_a_whole_on_a_hub_and_on_a_bore() {
-        let steel = Material {
-            youngs_modulus: 210e9,
-            poisson_ratio: 0.3,
-            density: 7850.0,
-        };
         let pattern = HolePattern {
             count: 5,
             circle_radius: 20e-3,
@@ -324,7 +319,7 @@ mod tests {
             let rings = [&grid, &whole].map(|grid| {
                 let prism = Prism {
                     grid: &grid.grid,
-                    material: &steel,
+                    material: &Material::STEEL,
                     twist: 0.0,
                     axial: &axial,
                 };
