@@ -29,7 +29,7 @@ pub(crate) struct Net<'a> {
 }
 
 /// A point that penetrates.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct Deepest {
     /// How deep, along the normal.
     pub(crate) depth: f64,
@@ -76,7 +76,7 @@ impl<'a> Net<'a> {
 
     /// The point of the net that penetrates deepest at the position `eta`.
     pub(crate) fn deepest(&self, eta: f64) -> Deepest {
-        // Loads are even over a slice, and close gaps in the mean over one: at an end of the face half of one would stand beside it.
+        // Loads are even over a slice: at an end of the face half of one would stand beside it.
         let lengths = self.contact.slices.iter().map(|slice| slice.length);
         let half = 0.5 * (self.pair.common_face_width() - lengths.fold(0.0, f64::max));
         let mut deepest = Deepest::default();
@@ -98,19 +98,13 @@ impl<'a> Net<'a> {
         deepest
     }
 
-    /// How much the gap between the flanks of a pair changes at most over half a slice beside a height, by leads, deviations and axes.
-    pub(crate) fn opening_in_half_a_slice(&self, (n, z, _): (i64, f64, [f64; 2])) -> f64 {
-        let section = self.pair.section();
-        let (deviations, teeth) = (section.deviations(), section.teeth(n));
-        let at = |z: f64| self.pair.lead_gap(&deviations, teeth, z);
-        let lengths = self.contact.slices.iter().map(|slice| slice.length);
-        let half = 0.5 * lengths.fold(0.0, f64::max);
-        let change = |z: f64| {
-            (at(z) - at(z + half))
-                .abs()
-                .max((at(z) - at(z - half)).abs())
-        };
-        change(z - half).max(change(z)).max(change(z + half))
+    /// Whether all that carries is a line, without a sharp edge.
+    pub(crate) fn are_lines(&self) -> bool {
+        let slices = &self.contact.slices;
+        let length: f64 = slices.iter().map(|slice| slice.length).sum();
+        let widest = slices.iter().map(|slice| slice.half_width);
+        let is_long = length > 20.0 * widest.fold(0.0, f64::max);
+        is_long && slices.iter().all(|slice| !slice.at_sharp_edge)
     }
 
     /// The points up both flanks.

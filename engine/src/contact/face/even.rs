@@ -8,7 +8,7 @@ use faer::Mat;
 use rayon::prelude::*;
 
 use super::balance::{Balance, balance};
-use super::slice::Slice;
+use super::slice::{Slice, Stretches};
 use super::{Balanced, FaceModel, add_to_strips, beyond};
 use crate::fem::dense::Cholesky;
 use crate::gear::{LeadModification, Member};
@@ -144,7 +144,9 @@ impl FaceModel {
             slices,
             compliance: h,
             ..
-        } = self.balanced(eta, load, phases).ok()?;
+        } = self
+            .balanced(eta, load, &Stretches::whole(self, eta, phases))
+            .ok()?;
         let width = self.pair.gear(Member::Driving).face_width();
         let opened = |lead: &LeadModification| -> Vec<f64> {
             let removed = slices.iter().map(|slice| {

@@ -32,7 +32,7 @@ use crate::run::Run;
 use balance::{Balance, balance};
 use compliance::compliance;
 pub use model::{FaceModel, FlankYield};
-use slice::{Loading, Slice};
+use slice::{Loading, Slice, Stretches};
 
 /// How many slices the whole face is cut into, unless a case says otherwise.
 pub const SLICES: usize = 40;
@@ -44,12 +44,27 @@ const BEYOND: f64 = 0.3;
 const HEAVIER: f64 = 2.5;
 const HEAVIEST: f64 = 200.0;
 
+/// How many times stretches of lines that carry are cut anew, at most.
+const FINEST: usize = 4;
+
 /// Slices in balance.
 struct Balanced {
     slices: Vec<Slice>,
     /// Their compliance without springs.
     compliance: Mat<f64>,
     balance: Balance,
+}
+
+impl Balanced {
+    /// The stretches of `of`, of which these are the slices, that are shut, where they are worth to be cut anew.
+    fn shut(&self, model: &FaceModel, of: &Stretches) -> Option<Stretches> {
+        let forces = self.balance.forces.iter();
+        let gaps = forces.zip(&self.balance.gaps);
+        let gaps: Vec<f64> = gaps
+            .map(|(force, gap)| if *force > 0.0 { 0.0 } else { *gap })
+            .collect();
+        of.shut(model, &self.slices, &gaps)
+    }
 }
 
 /// What is found among the flanks within a reach.
@@ -226,18 +241,32 @@ impl FaceModel {
         }
     }
 
-    /// The δ at which the pair touches at the position `eta`, as the slices of its theoretical contact lines see it.
+    /// The δ at which the pair touches at the position `eta`, on its theoretical contact lines.
     pub fn least_touch(&self, eta: f64) -> Option<f64> {
-        let slices = self.slices_on_path(eta).into_iter();
-        slices
-            .map(|slice| slice.gap / slice.weights[1])
-            .reduce(f64::min)
+        self.first_touch(eta).map(|(touch, _)| touch)
     }
 
-    /// The slices of the theoretical contact lines at the position `eta`.
-    fn slices_on_path(&self, eta: f64) -> Vec<Slice> {
+    /// The δ at which the pair touches at the position `eta`, on its theoretical contact lines, and the pair n that does.
+    fn first_touch(&self, eta: f64) -> Option<(f64, i64)> {
+        let mut stretches = Some(self.theoretical_lines(eta));
+        let mut first = None;
+        for _ in 0..=FINEST {
+            let Some(cut) = stretches else { break };
+            let slices = slice::lay(self, eta, &cut, None);
+            let touch = |slice: &Slice| slice.gap / slice.weights[1];
+            let touches = slices.iter().map(|slice| (touch(slice), slice.pair));
+            first = touches.min_by(|a, b| a.0.total_cmp(&b.0));
+            let (least, _) = first?;
+            let gaps: Vec<f64> = slices.iter().map(|slice| touch(slice) - least).collect();
+            stretches = cut.shut(self, &slices, &gaps);
+        }
+        first
+    }
+
+    /// The theoretical contact lines at the position `eta`.
+    fn theoretical_lines(&self, eta: f64) -> Stretches {
         let (s_a, s_e) = self.pair.section().path_of_contact();
-        slice::lay(self, eta, [s_a, s_e].map(|s| self.pair.phase_at(s)), None)
+        Stretches::whole(self, eta, [s_a, s_e].map(|s| self.pair.phase_at(s)))
     }
 
     /// How far leads, deviations and the axes may bring flanks nearer to each other than their sections are.
@@ -287,26 +316,45 @@ impl FaceModel {
     }
 
     /// The contact at the position `eta` under `load` of sections in `phases`.
+    ///
+    /// A slice closes in its middle. Where few of them carry, so that their length is a large part of the contact, that is cut anew.
     fn contact_within(
         &self,
         eta: f64,
         load: f64,
         phases: [f64; 2],
     ) -> Result<FaceContact, PositionError> {
-        let Balanced {
-            slices, balance, ..
-        } = self.balanced(eta, load, phases)?;
-        Ok(self.told(&slices, &balance, load))
+        let whole = Stretches::whole(self, eta, phases);
+        let mut balanced = self.balanced(eta, load, &whole)?;
+        let mut shut = balanced.shut(self, &whole);
+        for _ in 0..FINEST {
+            let Some(stretches) = shut else { break };
+            // Where a line is too short for finer slices, the longer ones stand.
+            let Ok(finer) = self.balanced(eta, load, &stretches) else {
+                break;
+            };
+            if stretches.end_under_load(&finer.slices, &finer.balance.forces, &whole) {
+                break;
+            }
+            balanced = finer;
+            shut = balanced.shut(self, &stretches);
+        }
+        Ok(self.told(&balanced.slices, &balanced.balance, load))
     }
 
-    /// The balance at the position `eta` under `load` of sections in `phases`.
+    /// The balance at the position `eta` under `load` of the slices of `stretches`.
     ///
     /// A spring that is shorter than its contact is wide is none, and where few of many slices carry they press wider than was thought: then they
     /// are laid anew, longer.
-    fn balanced(&self, eta: f64, load: f64, phases: [f64; 2]) -> Result<Balanced, PositionError> {
+    fn balanced(
+        &self,
+        eta: f64,
+        load: f64,
+        stretches: &Stretches,
+    ) -> Result<Balanced, PositionError> {
         let mut heavier = HEAVIER;
         loop {
-            let slices = slice::lay(self, eta, phases, Some(Loading { load, heavier }));
+            let slices = slice::lay(self, eta, stretches, Some(Loading { load, heavier }));
             let (Some(first), Some(last)) = (slices.first(), slices.last()) else {
                 return Err(PositionError::NoContact);
             };
@@ -473,12 +521,8 @@ pub fn light_face(pair: &SolidPair, slices: usize, eta: f64) -> Result<MeshConta
     let rigid: Arc<dyn FlankYield> = Arc::new(Rigid);
     let yields = [Arc::clone(&rigid), rigid];
     let model = FaceModel::new(pair.clone(), yields, slices, usize::MAX);
-    let slices = model.slices_on_path(eta);
-    let touches = slices
-        .iter()
-        .map(|slice| (slice.pair, slice.gap / slice.weights[1]));
-    let first = touches.min_by(|a, b| a.1.total_cmp(&b.1));
-    let (pair, transmission_error) = first.ok_or(PositionError::NoContact)?;
+    let first = model.first_touch(eta);
+    let (transmission_error, pair) = first.ok_or(PositionError::NoContact)?;
     Ok(MeshContact {
         transmission_error,
         stiffness: 0.0,
@@ -575,7 +619,8 @@ mod tests {
             let model = FaceModel::new(pair, yields.clone(), SLICES, 16);
             let contacts: Vec<FaceContact> = (0..16)
                 .map(|i| {
-                    let slices = model.slices_on_path(f64::from(i) / 16.0);
+                    let eta = f64::from(i) / 16.0;
+                    let slices = slice::lay(&model, eta, &model.theoretical_lines(eta), None);
                     let balance = balance(compliance(&model, &slices), &slices, load);
                     model.told(&slices, &balance.expect("a balance"), load)
                 })

@@ -40,28 +40,90 @@ pub(super) struct Loading {
     pub(super) heavier: f64,
 }
 
-/// The slices of all lines of `model` at the position `eta` on which sections are in `phases`; with the springs that they have under a load, or
-/// Hertz's alone.
+/// What is cut into slices.
+pub(super) struct Stretches {
+    lines: Vec<ContactLine>,
+    /// No slice is longer along the axis.
+    longest: f64,
+}
+
+impl Stretches {
+    /// All lines of `model` at the position `eta` on which sections are in `phases`.
+    pub(super) fn whole(model: &FaceModel, eta: f64, phases: [f64; 2]) -> Self {
+        Self {
+            lines: model.pair.lines(eta, phases),
+            longest: model.pair.common_face_width() / model.slices as f64,
+        }
+    }
+
+    /// Where `slices` of these are shut, which have no gap, or may be within half of their length, for which the `gaps` beside them speak; each
+    /// with a slice to either side, and cut into as many as a whole face is. `None` where that is more than half a face.
+    pub(super) fn shut(&self, model: &FaceModel, slices: &[Slice], gaps: &[f64]) -> Option<Self> {
+        let mut lines = Vec::new();
+        let mut first = 0;
+        for line in slices.chunk_by(|one, next| one.pair == next.pair) {
+            let gaps = &gaps[first..first + line.len()];
+            first += line.len();
+            let may_shut = |i: usize| {
+                let beside = [i.wrapping_sub(1), i + 1].map(|k| gaps.get(k));
+                let rise = |other: &f64| gaps[i] - (other - gaps[i]).abs() <= 0.0;
+                gaps[i] <= 0.0 || beside.into_iter().flatten().any(rise)
+            };
+            let mut shut = (0..line.len()).filter(|&i| may_shut(i));
+            let Some(low) = shut.next() else {
+                continue;
+            };
+            let high = shut.next_back().unwrap_or(low);
+            let [low, high] = [low.saturating_sub(1), (high + 1).min(line.len() - 1)];
+            lines.push(ContactLine {
+                pair: line[0].pair,
+                heights: [
+                    line[low].z - 0.5 * line[low].length,
+                    line[high].z + 0.5 * line[high].length,
+                ],
+            });
+        }
+        let longest = length(&lines) / model.slices as f64;
+        (longest <= 0.5 * self.longest).then_some(Self { lines, longest })
+    }
+
+    /// Whether of `slices` of these one that carries, as `forces` say, ends where its line goes on, as the `whole` ones have it.
+    pub(super) fn end_under_load(&self, slices: &[Slice], forces: &[f64], whole: &Self) -> bool {
+        let is_end = |place: f64, of: &[ContactLine], pair: i64| {
+            let ends = of.iter().filter(|line| line.pair == pair);
+            let mut places = ends.flat_map(|line| line.heights);
+            places.any(|end| (end - place).abs() < 1e-6 * self.longest)
+        };
+        let mut loaded = slices.iter().zip(forces).filter(|(_, force)| **force > 0.0);
+        loaded.any(|(slice, _)| {
+            let half = 0.5 * slice.length;
+            [slice.z - half, slice.z + half].into_iter().any(|place| {
+                is_end(place, &self.lines, slice.pair) && !is_end(place, &whole.lines, slice.pair)
+            })
+        })
+    }
+}
+
+fn length(lines: &[ContactLine]) -> f64 {
+    let lengths = lines.iter().map(|line| line.heights[1] - line.heights[0]);
+    lengths.sum()
+}
+
+/// The slices of `stretches` of the lines of `model` at the position `eta`; with the springs that they have under a load, or Hertz's alone.
 ///
-/// Slices of one line are equally long, so that they move with it.
+/// Slices of one stretch are equally long, so that they move with their line.
 pub(super) fn lay(
     model: &FaceModel,
     eta: f64,
-    phases: [f64; 2],
+    stretches: &Stretches,
     loading: Option<Loading>,
 ) -> Vec<Slice> {
-    let lines = model.pair.lines(eta, phases);
-    let total: f64 = lines
-        .iter()
-        .map(|line| line.heights[1] - line.heights[0])
-        .sum();
     // For each length along a contact line.
+    let total = length(&stretches.lines);
     let densities = loading.map(|of| [1.0, of.heavier].map(|times| times * of.load / total));
-    let layer = Layer::new(model, densities);
-    lines
-        .iter()
-        .flat_map(|line| layer.line(eta, line))
-        .collect()
+    let layer = Layer::new(model, densities, stretches.longest);
+    let lines = stretches.lines.iter();
+    lines.flat_map(|line| layer.line(eta, line)).collect()
 }
 
 /// What all slices of one position have alike.
@@ -71,10 +133,12 @@ struct Layer<'a> {
     factor: f64,
     /// In the mean, and at most.
     densities: Option<[f64; 2]>,
+    /// The longest slice along the axis.
+    longest: f64,
 }
 
 impl<'a> Layer<'a> {
-    fn new(model: &'a FaceModel, densities: Option<[f64; 2]>) -> Self {
+    fn new(model: &'a FaceModel, densities: Option<[f64; 2]>, longest: f64) -> Self {
         let factors = Member::BOTH.map(|member| {
             let modulus = model.long.gear(member).material().youngs_modulus;
             logarithm_factor(modulus, 1.0)
@@ -84,18 +148,18 @@ impl<'a> Layer<'a> {
             cosine: model.pair.base_helix_angle().cos(),
             factor: factors[0] + factors[1],
             densities,
+            longest,
         }
     }
 
     fn line(&self, eta: f64, line: &ContactLine) -> Vec<Slice> {
         let [from, to] = line.heights;
         let pair = &self.model.pair;
-        let regular = pair.common_face_width() / self.model.slices as f64;
         let half_width = self.densities.map_or(0.0, |[_, density]| {
             let s = 0.5 * pair.section().line_of_action();
             hertz(density, 0.5 * s / self.cosine, self.factor, 1.0).0
         });
-        let shortest = regular.max(SHORTEST * half_width * self.cosine);
+        let shortest = self.longest.max(SHORTEST * half_width * self.cosine);
         let count = ((to - from) / shortest - 1e-9).ceil().max(1.0);
         let length = (to - from) / count;
         let straight = pair.advance() == 0.0;
