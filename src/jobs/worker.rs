@@ -318,6 +318,17 @@ mod tests {
         results
     }
 
+    /// An engine that gives its results when the test lets it go, once for each job.
+    fn gated() -> (mpsc::Sender<()>, Solve) {
+        let (go, wait) = mpsc::channel();
+        let wait = std::sync::Mutex::new(wait);
+        let solve: Solve = Arc::new(move |_, _| {
+            wait.lock().unwrap().recv().unwrap();
+            Ok(results(1.0))
+        });
+        (go, solve)
+    }
+
     /// A queue on a file, and how many transactions have been written that waited for the disk, and how many that did not.
     struct Desk {
         jobs: Jobs,
@@ -441,12 +452,7 @@ mod tests {
     #[tokio::test]
     async fn who_waits_for_a_job_is_told_its_end_and_does_not_look_for_it() {
         let desk = Desk::new().await;
-        let (go, wait) = mpsc::channel::<()>();
-        let wait = std::sync::Mutex::new(wait);
-        let solve: Solve = Arc::new(move |_, _| {
-            wait.lock().unwrap().recv().unwrap();
-            Ok(results(1.0))
-        });
+        let (go, solve) = gated();
         let pace = Pace::with_time_limit(Duration::from_secs(3600));
         let workers = Workers::beside(desk.jobs.clone(), solve, 1, pace).await;
         let mut workers = workers.unwrap();
@@ -471,12 +477,7 @@ mod tests {
     async fn equal_job_beside(is_cancelled: bool) -> (Job, Job) {
         let desk = Desk::new().await;
         let first = desk.submit(1.0).await;
-        let (go, wait) = mpsc::channel::<()>();
-        let wait = std::sync::Mutex::new(wait);
-        let solve: Solve = Arc::new(move |_, _| {
-            wait.lock().unwrap().recv().unwrap();
-            Ok(results(1.0))
-        });
+        let (go, solve) = gated();
         let pace = Pace::with_time_limit(Duration::from_secs(3600));
         let workers = Workers::beside(desk.jobs.clone(), solve, 2, pace).await;
         let mut workers = workers.unwrap();
