@@ -157,11 +157,7 @@ async fn begin_with(
     }
     let mut connection = writer.acquire().await?;
     // In plain SQL, because the driver's count of open transactions survives an error that SQLite's does not.
-    let begun = match relaxed {
-        Some(_) => connection.later(query(words)).await,
-        None => connection.say(words).await,
-    };
-    if let Err(error) = begun {
+    if let Err(error) = connection.later(query(words)).await {
         connection.close_on_drop();
         return Err(error.into());
     }
