@@ -103,7 +103,7 @@ export function search(place, design, form, onOpen) {
       ? [figure({ points: front.map(({ goals: [x, y], row }) => ({ x, y, label: `design ${row}`, strong: row === best.row, open: () => open(row) })), x: inUnit(parts[0]), y: inUnit(parts[1]), title: "The front: no design found is better in both; the large point is the best compromise. Press a point to open its design" }), frontOf(front, parts, use)]
       : reached.length > 1 ? [figure({ lines: [{ x: reached.map(([i]) => i), y: reached.map(([, value]) => value) }], x: "generation", y: inUnit(parts[0]), title: "The best so far, generation by generation" })] : [];
     const fine = confirmed && (confirmed.error_estimate
-      ? `By the flexible method on the fine grid: ${told(confirmed.goals, parts)}; another grid level changes the peak-to-peak value by ${fixed(confirmed.error_estimate.transmission_error_peak_to_peak_um, 4)} µm.`
+      ? `By the ${about.base.method.startsWith("three") ? "three-dimensional" : "flexible"} method on the fine grid: ${told(confirmed.goals, parts)}; another grid level changes the peak-to-peak value by ${fixed(confirmed.error_estimate.transmission_error_peak_to_peak_um, 4)} µm.`
       : `It could not be confirmed: ${confirmed.problem?.detail ?? "there are no results"}`);
     out.replaceChildren(
       h("p", {}, h("strong", {}, told(best.goals, parts)), held.length ? `, with ${told(best.conditions, held)}` : "", best.feasible ? "" : ". No design so far keeps what has to hold; this one comes nearest to it"),

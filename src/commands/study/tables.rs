@@ -17,7 +17,7 @@ pub(super) fn numbers(values: &[Option<f64>]) -> String {
     told.collect::<Vec<_>>().join(", ")
 }
 
-/// What a search found: the best design, of two goals the front, and what the best one comes to by the flexible method on the fine grid.
+/// What a search found: the best design, of two goals the front, and what the best one comes to once more, on the fine grid.
 pub(super) fn search_table(
     study: &StudyDocument,
     search: &SearchState,
@@ -66,7 +66,7 @@ pub(super) fn search_table(
         let goals = numbers(&confirmed.goals);
         match &confirmed.error_estimate {
             Some(estimate) => say(format!(
-                "by the flexible method on the fine grid: {goals}; another grid level changes the peak-to-peak value by {:.4} um, the mean by {:.4} um",
+                "once more on the fine grid: {goals}; another grid level changes the peak-to-peak value by {:.4} um, the mean by {:.4} um",
                 estimate.transmission_error_peak_to_peak_um, estimate.transmission_error_mean_um
             )),
             None => {

@@ -2,13 +2,15 @@
 
 use std::sync::LazyLock;
 
-use meshwright_engine::analysis::Method;
 use meshwright_search::space::Axis;
 
-use super::{Condition, Goal, MOST_EVALUATIONS, Measure, OF_POPULATION, Search, Torques, Variable};
+use super::{
+    Condition, Goal, MOST_EVALUATIONS, Measure, OF_POPULATION, Search, Torques, Variable,
+    sees_faces,
+};
 use crate::wire::declare::{
-    Choice as _, EACH, Errors, Kind, Node, Number, Place, Text, absent, document, list, nested,
-    number, or_else, text, word, words,
+    EACH, Errors, Kind, Node, Number, Place, Text, absent, document, list, nested, number, or_else,
+    text, word, words,
 };
 use crate::wire::draw::SEED;
 use crate::wire::pointer::{NumberKind, Pointer, Schema};
@@ -441,14 +443,6 @@ impl Reader<'_> {
             percent,
         })
     }
-}
-
-/// Whether the method of this name sees the faces.
-fn sees_faces(name: &Node) -> bool {
-    let mut methods = Method::OPTIONS.iter();
-    methods.any(|(word, method, _)| {
-        matches!(name, Node::Text(name) if name == word) && method.sees_faces()
-    })
 }
 
 /// Refuses bounds of one quantity that no design keeps.

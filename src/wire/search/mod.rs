@@ -10,13 +10,12 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-use std::sync::LazyLock;
-
+use meshwright_engine::analysis::Method;
 use meshwright_search::driver::Problem as Space;
 use meshwright_search::space::Axis;
 use serde_json::{Map, Value, json};
 
-use super::declare::{Errors, Node, Place};
+use super::declare::{Choice as _, Errors, Node, Place};
 use super::pointer::Pointer;
 use super::population::Population;
 use super::problem::{Code, FieldError};
@@ -330,7 +329,7 @@ pub(super) enum Role {
     Design(usize),
     /// A member of its population, from 0.
     Member(usize, u32),
-    /// The best design once more, by the flexible method on the fine grid.
+    /// The best design once more, by the method that sees most, on the fine grid.
     Confirmed,
 }
 
@@ -360,16 +359,26 @@ impl Role {
     }
 }
 
-/// What the best design is changed by to be confirmed.
-pub(super) fn confirming() -> &'static [(Pointer, Value)] {
-    static CHANGES: LazyLock<Vec<(Pointer, Value)>> = LazyLock::new(|| {
-        let changes = [
-            ("/method", json!("flexible")),
-            ("/resolution/grid", json!("fine")),
-            ("/resolution/error_estimate", json!(true)),
-        ];
-        let named = |(path, value)| Some((Pointer::parse(path).ok()?, value));
-        changes.into_iter().filter_map(named).collect()
-    });
-    &CHANGES
+/// What the best design is changed by to be confirmed: to the method that sees most of what its own sees, and to the finest grid.
+pub(super) fn confirming(method: Option<&Node>) -> Vec<(Pointer, Value)> {
+    let method = if method.is_some_and(sees_faces) {
+        "three_dimensional"
+    } else {
+        "flexible"
+    };
+    let changes = [
+        ("/method", json!(method)),
+        ("/resolution/grid", json!("fine")),
+        ("/resolution/error_estimate", json!(true)),
+    ];
+    let named = |(path, value)| Some((Pointer::parse(path).ok()?, value));
+    changes.into_iter().filter_map(named).collect()
+}
+
+/// Whether the method of this name sees the faces.
+pub(super) fn sees_faces(name: &Node) -> bool {
+    let mut methods = Method::OPTIONS.iter();
+    methods.any(|(word, method, _)| {
+        matches!(name, Node::Text(name) if name == word) && method.sees_faces()
+    })
 }

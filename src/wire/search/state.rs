@@ -27,7 +27,7 @@ pub struct SearchState {
     /// Why no further designs are asked for; null while some are.
     #[serde(default)]
     pub ended_by: Option<SearchEnd>,
-    /// The best design once more, by the flexible method on the fine grid; null until then, and where no design keeps every condition.
+    /// The best design once more, on the fine grid; null until then, and where no design keeps every condition.
     #[serde(default)]
     pub confirmed: Option<ConfirmedDesign>,
 }
@@ -85,7 +85,7 @@ pub enum SearchEnd {
     Exhausted,
 }
 
-/// The best design by the flexible method on the fine grid.
+/// The best design by the method `flexible`, or `three_dimensional` where the search sees the faces, on the fine grid.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(title = "Confirmed design")]
 pub struct ConfirmedDesign {

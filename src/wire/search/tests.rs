@@ -343,6 +343,23 @@ fn the_best_design_is_confirmed_by_the_flexible_method_on_the_fine_grid() {
 }
 
 #[test]
+fn a_search_along_faces_is_confirmed_along_them() {
+    for method in ["three_dimensional", "three_dimensional_projected"] {
+        let mut base = and(base(), &json!({ "method": method }));
+        base["pair"]["helix_angle_deg"] = json!(15);
+        base["pair"]["center_distance_mm"] = json!(41.6);
+        let document = json!({ "base": base, "search": reliefs() });
+        let study = parse(&document).expect("a search");
+        let design = study.searched(Role::Confirmed, &Map::new());
+        let submission = design
+            .submission
+            .as_ref()
+            .expect("its method knows the helix");
+        assert_eq!(echo(submission)["method"], "three_dimensional");
+    }
+}
+
+#[test]
 fn what_is_wrong_with_a_search_is_refused_with_its_place() {
     let variable = |change: Value| {
         let mut search = reliefs();

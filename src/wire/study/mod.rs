@@ -337,8 +337,8 @@ impl Study {
         let own = self.search().into_iter().flat_map(Search::paths_of_base);
         let own = own.filter_map(|path| Some((path, Cow::Borrowed(told.get(path.text())?))));
         let confirming = match role {
-            Role::Confirmed => confirming(),
-            Role::Design(_) | Role::Member(..) => &[],
+            Role::Confirmed => confirming(self.base.at(&["method"])),
+            Role::Design(_) | Role::Member(..) => Vec::new(),
         };
         let fixed = confirming.iter();
         let fixed = fixed.map(|(path, value)| (path, Cow::Borrowed(value)));
