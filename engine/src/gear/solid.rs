@@ -110,8 +110,16 @@ pub enum SolidGearError {
     WebBeyondFace {
         /// By how much.
         beyond: f64,
-        /// The nearest offset that would do: 0, and still beyond, where the web is thicker than the face is wide.
+        /// The nearest offset that would do.
         nearest: f64,
+    },
+    /// The web is thicker than the face is wide, which no offset mends.
+    #[error("the web is {thickness} m thick on a face {face_width} m wide")]
+    WebThickerThanFace {
+        /// The thickness of the web.
+        thickness: f64,
+        /// The most that would do.
+        face_width: f64,
     },
     /// The web stands out of the hub.
     #[error("the hub is narrower than its web; a width of {nearest} m would do")]
@@ -337,7 +345,14 @@ impl SolidGear {
             let [low, high] = around(self.web_offset, web.thickness);
             let beyond = (face[0] - low).max(high - face[1]);
             // Flush faces differ by roundings.
-            let fits = beyond <= 1e-9 * self.face_width();
+            let slack = 1e-9 * self.face_width();
+            if web.thickness > self.face_width() + slack {
+                return Err(SolidGearError::WebThickerThanFace {
+                    thickness: web.thickness,
+                    face_width: self.face_width(),
+                });
+            }
+            let fits = beyond <= slack;
             if !fits {
                 let play = ((self.face_width() - web.thickness) / 2.0).max(0.0);
                 return Err(SolidGearError::WebBeyondFace {

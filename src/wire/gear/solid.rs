@@ -122,6 +122,18 @@ impl GearDocument {
                 let pointer = format!("{pointer}/blank/web/{}", WebDocument::offset_mm.name);
                 FieldError::new(pointer, Code::WebBeyondFace, detail).nearest(to_mm(nearest))
             }
+            SolidGearError::WebThickerThanFace {
+                thickness,
+                face_width,
+            } => {
+                let detail = format!(
+                    "The web is {} mm thick, the face {} mm wide; along the face no web stands out of it.",
+                    mm(thickness),
+                    mm(face_width)
+                );
+                let pointer = format!("{pointer}/blank/web/{}", WebDocument::thickness_mm.name);
+                FieldError::new(pointer, Code::WebBeyondFace, detail).nearest(to_mm(face_width))
+            }
             SolidGearError::HubNarrowerThanWeb { width, nearest } => {
                 let detail = format!(
                     "The hub is {} mm wide, narrower than the web on it; at least {} mm hold the web.",

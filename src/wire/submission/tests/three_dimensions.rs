@@ -90,6 +90,7 @@ fn what_three_dimensions_do_not_tell_is_refused_with_its_place() {
 #[test]
 fn each_fault_along_the_axis_is_told_with_a_value_that_would_do() {
     let web = |offset: f64| json!({ "inner_radius_mm": 20, "outer_radius_mm": 42, "thickness_mm": 6, "offset_mm": offset });
+    let thick_web = json!({ "inner_radius_mm": 20, "outer_radius_mm": 42, "thickness_mm": 25 });
     let hub = |width: f64, outer: f64| json!({ "outer_radius_mm": outer, "width_mm": width });
     let relief =
         |length: f64| json!([{ "kind": "end_relief", "amount_um": 5, "length_mm": length }]);
@@ -116,6 +117,7 @@ fn each_fault_along_the_axis_is_told_with_a_value_that_would_do() {
         vec![("/pair/axial_offset_mm", json!(19))] => "/pair/axial_offset_mm", FacesDoNotOverlap;
         vec![("/pair/axial_offset_mm", json!(-40))] => "/pair/axial_offset_mm", FacesDoNotOverlap;
         vec![("/pair/driven/blank/web", web(9.0))] => "/pair/driven/blank/web/offset_mm", WebBeyondFace;
+        vec![("/pair/driven/blank/web", thick_web)] => "/pair/driven/blank/web/thickness_mm", WebBeyondFace;
         narrow_hub => "/pair/driven/blank/hub/width_mm", HubDoesNotFit;
         vec![("/pair/driven/blank/hub", hub(24.0, 60.0))] => "/pair/driven/blank/hub/outer_radius_mm", HubDoesNotFit;
         holed(24.0, 5.0) => "/pair/driven/blank/holes/circle_radius_mm", HoleAcrossEdge;
