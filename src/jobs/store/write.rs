@@ -157,7 +157,11 @@ async fn begin_with(
     }
     let mut connection = writer.acquire().await?;
     // In plain SQL, because the driver's count of open transactions survives an error that SQLite's does not.
-    if let Err(error) = connection.later(query(words)).await {
+    let begun = match relaxed {
+        Some(_) => connection.later(query(words)).await,
+        None => connection.say(words).await,
+    };
+    if let Err(error) = begun {
         connection.close_on_drop();
         return Err(error.into());
     }
