@@ -118,13 +118,17 @@ impl Fleet {
         while self.number(SUCCESSFUL).await < enough {
             worker.signal(Signal::STOP);
             let held = self.held_by(owner).await;
-            // A statement that it had sent ends without it.
-            tokio::time::sleep(Duration::from_millis(500)).await;
-            let still = self.held_by(owner).await;
-            if held.iter().any(|job| still.contains(job)) {
-                return worker;
+            if !held.is_empty() {
+                // A statement that it had sent ends without it.
+                tokio::time::sleep(Duration::from_millis(500)).await;
+                let still = self.held_by(owner).await;
+                if held.iter().any(|job| still.contains(job)) {
+                    return worker;
+                }
             }
             worker.signal(Signal::CONT);
+            // It has to come to something new before it is worth another look.
+            tokio::time::sleep(Duration::from_millis(20)).await;
         }
         panic!("the worker is never seen at work");
     }
