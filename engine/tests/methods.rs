@@ -612,8 +612,9 @@ fn along_faces_the_projection_is_the_whole_solution_without_holes_and_near_it_wi
                 delta < 0.01 * swing && stiffness < 2e-3 * mean,
                 "{delta:e} {stiffness:e}"
             );
+            // It looks at some of the positions, as the whole solution does.
             assert!(
-                error < 1.5 * delta && error > 0.3 * delta,
+                error < 1.0001 * delta && error > 0.3 * delta,
                 "{error:e} of {delta:e}"
             );
         }

@@ -178,9 +178,12 @@ impl FaceModel {
             mesh_position,
             error,
         };
-        let Some(&first) = positions.first() else {
+        if positions.is_empty() {
             return Ok(Vec::new());
-        };
+        }
+        // Looked for at one place whatever is asked for: where lines end decides where slices lie, so that a position that is checked by
+        // itself is solved as it was among all.
+        let first = 0.0;
         let touch = self.least_touch(first);
         let touch = touch.ok_or_else(|| at(PositionError::NoContact, first))?;
         let mut reach = self

@@ -17,6 +17,9 @@ use crate::quadrature::{gauss_legendre, parabola};
 /// The size of the elements at both circles of a layer, by the length r/n in which an order fades; quadratic elements of it
 /// err by less than a thousandth.
 const SIZE_BY_FADING: f64 = 0.5;
+/// The size of the elements at both circles by the width of the narrowest piece of the layer: where it is held, or meets one of another
+/// width, fields about the corners fade within a part of that width, whatever their order.
+const SIZE_BY_WIDTH: f64 = 0.5;
 /// The growth of elements away from both circles.
 const GROWTH: f64 = 0.4;
 /// The least number of elements in the depth of a layer.
@@ -92,7 +95,7 @@ impl Revolution<'_> {
         let size = self.size();
         let matrices = self.axial.matrices();
         let mut carried = below.cloned();
-        for ends in self.division(order).windows(2) {
+        for ends in self.elements(order).windows(2) {
             let mut k = self.element(order, [ends[0], ends[1]], &matrices);
             carried = Some(match &carried {
                 Some(below) => {
@@ -117,7 +120,7 @@ impl Revolution<'_> {
         let size = self.size();
         let matrices = self.axial.matrices();
         let mut ports: Option<Mat<c64>> = None;
-        for ends in self.division(order).windows(2) {
+        for ends in self.elements(order).windows(2) {
             let element = self.element(order, [ends[0], ends[1]], &matrices);
             // Unknowns (inner circle, outer circle so far, middle, next): the middle ones go.
             let joined = match ports {
@@ -150,7 +153,7 @@ impl Revolution<'_> {
         outer: &Mat<c64>,
     ) -> Result<Circles, FemError> {
         let (size, matrices) = (self.size(), self.axial.matrices());
-        let division = self.division(order);
+        let division = self.elements(order);
         let none = || Mat::<c64>::zeros(size, 1);
         let mut force = forces.unwrap_or_else(none);
         let mut carried = below.cloned();
@@ -197,16 +200,26 @@ impl Revolution<'_> {
         })
     }
 
-    /// The radii of the circles on which its elements for `order` have nodes.
+    /// The radii of circles, corners and middles of elements in turn, that tell the field of `order` but for that about its corners.
     pub fn circles(&self, order: i64) -> Vec<f64> {
-        with_middles(&self.division(order))
+        with_middles(&self.division(order, f64::INFINITY))
     }
 
-    /// The radii of its elements for `order`: small at both circles, where that order fades.
-    fn division(&self, order: i64) -> Vec<f64> {
+    /// The radii of its elements for `order`.
+    fn elements(&self, order: i64) -> Vec<f64> {
+        let pieces = self.axial.breaks().windows(2);
+        let narrowest = pieces.fold(f64::INFINITY, |least, ends| least.min(ends[1] - ends[0]));
+        self.division(order, SIZE_BY_WIDTH * narrowest)
+    }
+
+    /// The radii of elements that are small at both circles, where `order` fades, and no larger there than `at_corners`.
+    fn division(&self, order: i64, at_corners: f64) -> Vec<f64> {
         let [inner, outer] = self.radii;
         let depth = outer - inner;
-        let fading = |radius: f64| SIZE_BY_FADING * radius / (1.0 + order.unsigned_abs() as f64);
+        let fading = |radius: f64| {
+            let by_order = SIZE_BY_FADING * radius / (1.0 + order.unsigned_abs() as f64);
+            by_order.min(at_corners)
+        };
         let largest = depth / LEAST_ELEMENTS;
         let size = |r: f64| {
             let from_inner = fading(inner) + GROWTH * (r - inner);
@@ -450,15 +463,16 @@ mod tests {
 
     #[test]
     fn similar_layers_have_as_many_elements() {
-        let axial = AxialBasis::new(&[-1.5e-3, 1.5e-3], 4);
         for radii in [[8e-3, 10e-3], [16e-3, 17e-3], [16e-3, 36e-3]] {
             for order in [0, 1, 4] {
                 let counts = (1..400).map(|i| {
+                    let scale = 0.013 * f64::from(i);
+                    let axial = AxialBasis::new(&[-1.5e-3, 1.5e-3].map(|z| scale * z), 4);
                     let layer = Revolution {
-                        radii: radii.map(|radius| radius * 0.013 * f64::from(i)),
+                        radii: radii.map(|radius| scale * radius),
                         ..ring(0.0, &axial)
                     };
-                    layer.circles(order).len()
+                    layer.elements(order).len()
                 });
                 let counts: Vec<usize> = counts.collect();
                 assert!(
@@ -466,6 +480,40 @@ mod tests {
                     "{order} {radii:?}"
                 );
             }
+        }
+    }
+
+    #[test]
+    fn a_thin_plate_bends_as_one_of_many_layers() {
+        let axial = AxialBasis::new(&[-1.5e-3, 1.5e-3], 4);
+        let layer = |radii| Revolution {
+            radii,
+            ..ring(0.0, &axial)
+        };
+        // A pull along the axis, even over the width, on the outer circle.
+        let yields = |k: &Mat<c64>| {
+            let mut half = Mat::<c64>::zeros(k.nrows(), 1);
+            for (p, even) in axial.even().into_iter().enumerate() {
+                half[(2 * axial.len() + p, 0)] = c64::new(even, 0.0);
+            }
+            let factor = Cholesky::new(k.clone()).expect("definite");
+            factor.half_solve_in_place(half.as_mut());
+            (half.adjoint() * &half)[(0, 0)].re
+        };
+        for order in [0, 1, 4] {
+            let one = yields(
+                &layer([16e-3, 36e-3])
+                    .on_outer(order, None)
+                    .expect("definite"),
+            );
+            let mut stacked = None;
+            for i in 0..20 {
+                let radii = [16e-3 + 1e-3 * f64::from(i), 17e-3 + 1e-3 * f64::from(i)];
+                let next = layer(radii).on_outer(order, stacked.as_ref());
+                stacked = Some(next.expect("definite"));
+            }
+            let many = yields(&stacked.expect("layers"));
+            assert!((one / many - 1.0).abs() < 5e-3, "{order}: {one} {many}");
         }
     }
 
