@@ -15,11 +15,10 @@
 mod balance;
 mod compliance;
 pub mod even;
+mod light;
 mod model;
 mod slice;
 pub mod spring;
-
-use std::sync::Arc;
 
 use faer::Mat;
 use rayon::prelude::*;
@@ -31,6 +30,7 @@ use crate::gear::{Member, SolidPair};
 use crate::run::Run;
 use balance::{Balance, balance};
 use compliance::compliance;
+pub use light::light_face;
 pub use model::{FaceModel, FlankYield};
 use slice::{Loading, Slice, Stretches};
 
@@ -181,14 +181,14 @@ impl FaceModel {
         if positions.is_empty() {
             return Ok(Vec::new());
         }
-        // Looked for at one place whatever is asked for: where lines end decides where slices lie, so that a position that is checked by
-        // itself is solved as it was among all.
-        let first = 0.0;
-        let touch = self.least_touch(first);
-        let touch = touch.ok_or_else(|| at(PositionError::NoContact, first))?;
+        // Where lines end decides where slices lie. That is looked for at one place whatever is asked for, so that a position which is
+        // checked by itself is solved as it was among all.
+        const LOOKED_FROM: f64 = 0.0;
+        let touch = self.least_touch(LOOKED_FROM);
+        let touch = touch.ok_or_else(|| at(PositionError::NoContact, LOOKED_FROM))?;
         let mut reach = self
-            .first_reach(first, load, touch)
-            .map_err(|error| at(error, first))?;
+            .first_reach(LOOKED_FROM, load, touch)
+            .map_err(|error| at(error, LOOKED_FROM))?;
         let mut told = false;
         loop {
             let phases = self.phases_within(reach);
@@ -514,59 +514,6 @@ impl FaceModel {
     }
 }
 
-/// The limit of the contact of `pair` at the mesh position `eta` as the load goes to zero, its face cut into so many `slices`: δ is that at which
-/// the first of them touches.
-///
-/// # Errors
-///
-/// [`PositionError::NoContact`] if no flanks face each other.
-pub fn light_face(pair: &SolidPair, slices: usize, eta: f64) -> Result<MeshContact, PositionError> {
-    let rigid: Arc<dyn FlankYield> = Arc::new(Rigid);
-    let yields = [Arc::clone(&rigid), rigid];
-    let model = FaceModel::new(pair.clone(), yields, slices, usize::MAX);
-    let first = model.first_touch(eta);
-    let (transmission_error, pair) = first.ok_or(PositionError::NoContact)?;
-    Ok(MeshContact {
-        transmission_error,
-        stiffness: 0.0,
-        driving_load: 0.0,
-        pairs: vec![PairContact {
-            pair,
-            share: 1.0,
-            tip_corner: None,
-            fillet: None,
-        }],
-        peak_pressure: Some(0.0),
-        equilibrium: 0.0,
-        complementarity: 0.0,
-        penetration: 0.0,
-        iterations: 0,
-    })
-}
-
-/// Flanks that yield nowhere.
-struct Rigid;
-
-impl FlankYield for Rigid {
-    fn basis_len(&self) -> usize {
-        0
-    }
-
-    fn basis(&self, _: f64, _: f64, _: &mut [f64]) {}
-
-    fn smooth(&self, _: &[usize]) -> Mat<f64> {
-        Mat::new()
-    }
-
-    fn repeats_after(&self) -> usize {
-        1
-    }
-
-    fn at_ends(&self, _: (f64, f64), _: (f64, f64), _: f64) -> f64 {
-        0.0
-    }
-}
-
 /// Adds the force on a piece of a common face of `width` to the equal strips that it lies in.
 fn add_to_strips(strips: &mut [f64], width: f64, (z, length, force): (f64, f64, f64)) {
     let strip = width / strips.len() as f64;
@@ -590,6 +537,8 @@ fn beyond(delta: f64, touch: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::assembly::{FaceResolution, FaceYield, FaceYieldSpec, MakeAll, Parts};
     use crate::gear::spur::tests::paper_gear;
