@@ -484,7 +484,7 @@ mod tests {
     }
 
     #[test]
-    fn a_thin_plate_bends_as_one_of_many_layers() {
+    fn a_thin_plate_bends_as_one_of_many_layers_and_its_elements_do_not_hang_on_roundings() {
         let axial = AxialBasis::new(&[-1.5e-3, 1.5e-3], 4);
         let layer = |radii| Revolution {
             radii,
@@ -501,11 +501,8 @@ mod tests {
             (half.adjoint() * &half)[(0, 0)].re
         };
         for order in [0, 1, 4] {
-            let one = yields(
-                &layer([16e-3, 36e-3])
-                    .on_outer(order, None)
-                    .expect("definite"),
-            );
+            let whole = |scale: f64| layer([scale * 16e-3, scale * 36e-3]).on_outer(order, None);
+            let one = yields(&whole(1.0).expect("definite"));
             let mut stacked = None;
             for i in 0..20 {
                 let radii = [16e-3 + 1e-3 * f64::from(i), 17e-3 + 1e-3 * f64::from(i)];
@@ -514,6 +511,10 @@ mod tests {
             }
             let many = yields(&stacked.expect("layers"));
             assert!((one / many - 1.0).abs() < 5e-3, "{order}: {one} {many}");
+            for rounding in [-1e-15, 1e-15, 1e-12, -1e-12] {
+                let other = yields(&whole(1.0 + rounding).expect("definite"));
+                assert!((other / one - 1.0).abs() < 1e-8, "{order}: {one} {other}");
+            }
         }
     }
 
