@@ -67,8 +67,19 @@ async fn packed_or_plain(
         let packing = [(CONTENT_ENCODING, "gzip"), (VARY, "accept-encoding")];
         return Ok((json, packing, packed).into_response());
     }
-    let text = aside(client, move |_| document.text())
-        .await?
-        .map_err(JobError::from)?;
+    let text = text_of(client, document).await?;
     Ok((json, text).into_response())
+}
+
+/// A document of fewer bytes, packed, is unpacked in less time than the way to another thread and back takes.
+const SMALL: usize = 8 << 10;
+
+/// The text of a document, unpacked where that holds nobody up.
+pub(super) async fn text_of(client: &str, document: Document) -> Result<String, Problem> {
+    let text = if document.packed_bytes() <= SMALL {
+        document.text()
+    } else {
+        aside(client, move |_| document.text()).await?
+    };
+    Ok(text.map_err(JobError::from)?)
 }

@@ -6,12 +6,12 @@ use serde_json::value::RawValue;
 
 use super::answer;
 use super::app::App;
-use super::aside::aside;
 use super::client::Client;
 use super::document::Document;
 use super::headers::Made;
 use super::parameters::IdempotencyKey;
 use super::prefer::Wait;
+use super::results::text_of;
 use super::view::JobView;
 use crate::jobs::Job;
 use crate::wire::{Problem, Submission};
@@ -78,6 +78,6 @@ pub(super) async fn submit(
 async fn results_of(app: &App, job: &Job) -> Option<Box<RawValue>> {
     job.document.as_ref()?;
     let document = app.jobs.document(job).await.ok()?;
-    let read = move |_: &_| RawValue::from_string(document.text().ok()?).ok();
-    aside(&job.client, read).await.ok()?
+    let text = text_of(&job.client, document).await.ok()?;
+    RawValue::from_string(text).ok()
 }

@@ -14,8 +14,9 @@ use super::statement::{Connection, list, query, query_as};
 use super::{Store, StoreError, dialect};
 use crate::hash::sha256_hex;
 
-/// Documents are numbers in decimal; a higher level packs them no smaller and takes longer.
-const LEVEL: Compression = Compression::new(6);
+/// Documents are numbers in decimal: the highest level packs one of 38 KB to 14.3 kB in 1 ms, this one to 15.2 kB in 0.2 ms, and every
+/// job waits for it.
+const LEVEL: Compression = Compression::fast();
 
 /// A text, packed.
 #[derive(Debug, Clone)]
@@ -126,6 +127,11 @@ impl Document {
     /// The bytes of a gzip file (RFC 1952), if it is kept as one.
     pub fn gzip(&self) -> Option<Bytes> {
         self.gzip.then(|| self.body.clone())
+    }
+
+    /// The number of its bytes as it is kept.
+    pub(crate) fn packed_bytes(&self) -> usize {
+        self.body.len()
     }
 
     /// The very text that was written.
