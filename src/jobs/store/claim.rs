@@ -8,7 +8,7 @@ use sqlx::Row;
 use super::attempt::Lease;
 use super::endings::tell_end;
 use super::rows::{from_row, job_columns};
-use super::shares::{self, Lane};
+use super::shares::{self, Here, Lane};
 use super::statement::{Connection, list, query, query_as, query_scalar};
 use super::submit::{Known, find_known};
 use super::{Store, StoreError, column, dialect, micros};
@@ -84,10 +84,12 @@ impl Store {
             lease,
             process: &process,
         };
-        let suspects = suspects(&mut write, &process, reader).await?;
+        let (lanes, here) = shares::lanes(&mut write, &process).await?;
+        let suspects = suspects(&mut write, here, reader).await?;
         match &suspects {
             Suspects::None => {
-                take_turn(&mut write, begin, reader, &mut claimed, &mut turn).await?;
+                turn.lanes = lanes.len();
+                take_turn(&mut write, lanes, begin, reader, &mut claimed, &mut turn).await?;
             }
             Suspects::Next(id) => {
                 claimed.started = begin.start(&mut write, std::slice::from_ref(id)).await?;
@@ -113,17 +115,13 @@ enum Suspects {
 
 async fn suspects(
     connection: &mut Connection,
-    process: &str,
+    here: Here,
     reader: Reader<'_>,
 ) -> Result<Suspects, sqlx::Error> {
-    let (running, alone, waiting): (i64, i64, i64) = query_as(dialect::running_here())
-        .bind(process)
-        .fetch_one(&mut *connection)
-        .await?;
-    if alone > 0 {
+    if here.alone > 0 {
         return Ok(Suspects::Wait);
     }
-    if waiting == 0 {
+    if here.waiting == 0 {
         return Ok(Suspects::None);
     }
     let next: Option<String> = query_scalar(dialect::next_suspect())
@@ -131,7 +129,7 @@ async fn suspects(
         .fetch_optional(connection)
         .await?;
     Ok(match next {
-        Some(id) if running == 0 => Suspects::Next(id),
+        Some(id) if here.running == 0 => Suspects::Next(id),
         Some(_) => Suspects::Wait,
         None => Suspects::None,
     })
@@ -176,13 +174,12 @@ impl Turn {
 /// All of it is in one lane: jobs of a study lock it, and studies are locked one at a time.
 async fn take_turn(
     connection: &mut Connection,
+    lanes: Vec<Lane>,
     begin: Begin<'_>,
     reader: Reader<'_>,
     claimed: &mut Claimed,
     turn: &mut Turn,
 ) -> Result<(), sqlx::Error> {
-    let lanes = shares::lanes(connection).await?;
-    turn.lanes = lanes.len();
     for lane in lanes {
         let mut look = Look {
             lane: &lane,

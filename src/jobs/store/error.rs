@@ -58,7 +58,8 @@ const OF_THE_SERVER: [&str; 9] = [
     "3D000", // the database is not there yet
 ];
 
-fn may_pass(error: &sqlx::Error) -> bool {
+/// Whether it is worth trying again.
+pub(super) fn may_pass(error: &sqlx::Error) -> bool {
     match error {
         sqlx::Error::Database(error) => match error.try_downcast_ref::<PgDatabaseError>() {
             Some(error) => OF_THE_SERVER

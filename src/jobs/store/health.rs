@@ -5,7 +5,7 @@ use std::sync::Arc;
 use tokio::sync::{Notify, watch};
 use tracing::{error, info};
 
-use super::error::StoreError;
+use super::error::{StoreError, may_pass};
 
 /// Whether what is written arrives.
 #[derive(Debug)]
@@ -25,7 +25,17 @@ impl Health {
     }
 
     pub(super) fn found(&self, result: Result<&(), &StoreError>) {
-        let now = result.err().map(cause);
+        self.tell(result.err().map(cause));
+    }
+
+    /// A transaction did not begin, if that may pass.
+    pub(super) fn failed(&self, error: &sqlx::Error) {
+        if may_pass(error) {
+            self.tell(Some(error.to_string()));
+        }
+    }
+
+    fn tell(&self, now: Option<String>) {
         self.fault.send_if_modified(|fault| {
             match (&*fault, &now) {
                 (None, Some(cause)) => error!(cause, "nothing can be stored"),

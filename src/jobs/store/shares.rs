@@ -75,16 +75,36 @@ pub(super) struct Lane {
     lane_due: i64,
 }
 
-/// The lanes with work to do, in the order in which they are due.
-pub(super) async fn lanes(connection: &mut Connection) -> Result<Vec<Lane>, sqlx::Error> {
-    query_as(
-        "select own.client, own.lane, whole.due as client_due, own.due as lane_due
-         from shares as whole join shares as own on own.client = whole.client and own.lane <> '*' and own.active = 1
-         where whole.lane = '*' and whole.active = 1
-         order by whole.due, whole.client, own.due, own.lane",
-    )
-    .fetch_all(connection)
-    .await
+/// What runs in a process, and whether a job waits that is to run alone.
+#[derive(Debug, Clone, Copy, Default, sqlx::FromRow)]
+pub(super) struct Here {
+    /// How many jobs run.
+    pub(super) running: i64,
+    /// How many of them are to run alone.
+    pub(super) alone: i64,
+    /// Whether one that is to run alone waits, wherever it will.
+    pub(super) waiting: i64,
+}
+
+#[derive(sqlx::FromRow)]
+struct LaneHere {
+    #[sqlx(flatten)]
+    lane: Lane,
+    #[sqlx(flatten)]
+    here: Here,
+}
+
+/// The lanes with work to do, in the order in which they are due, and what runs in `process`, which is not told where nothing waits.
+pub(super) async fn lanes(
+    connection: &mut Connection,
+    process: &str,
+) -> Result<(Vec<Lane>, Here), sqlx::Error> {
+    let rows: Vec<LaneHere> = query_as(dialect::lanes())
+        .bind(process)
+        .fetch_all(connection)
+        .await?;
+    let here = rows.first().map(|row| row.here).unwrap_or_default();
+    Ok((rows.into_iter().map(|row| row.lane).collect(), here))
 }
 
 impl Lane {

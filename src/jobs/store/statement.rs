@@ -15,6 +15,8 @@ use sqlx::{
     AssertSqlSafe, Either, Executor, FromRow, PgConnection, SqlSafeStr, SqlStr, SqliteConnection,
 };
 
+use super::health::Health;
+
 /// What is kept of a database: its connections.
 #[derive(Debug, Clone)]
 pub(crate) enum Pool {
@@ -117,6 +119,8 @@ pub(crate) enum Connection {
 pub(crate) struct Unsaid {
     text: String,
     values: Vec<Value>,
+    /// Who wants to know why a transaction cannot begin, while that is unsaid.
+    begins: Option<Arc<Health>>,
 }
 
 impl Unsaid {
@@ -145,7 +149,7 @@ impl Unsaid {
             return (text, values);
         }
         self.push(text.as_str(), values);
-        let Self { text, values } = std::mem::take(self);
+        let Self { text, values, .. } = std::mem::take(self);
         (AssertSqlSafe(text).into_sql_str(), values)
     }
 }
@@ -156,6 +160,18 @@ impl Connection {
             Self::Sqlite(connection, _) => connection.close_on_drop(),
             Self::Postgres(connection, _) => connection.close_on_drop(),
         }
+    }
+
+    /// Begins a transaction by these words. Where SQLite cannot, that shows in the next statement, and `health` is told why.
+    pub(super) async fn begin(
+        &mut self,
+        words: Text,
+        health: &Arc<Health>,
+    ) -> Result<(), sqlx::Error> {
+        if let Self::Sqlite(_, unsaid) = self {
+            unsaid.begins = Some(Arc::clone(health));
+        }
+        self.later(query(words)).await
     }
 
     /// Says something that is no query.
@@ -360,10 +376,24 @@ async fn ask(
     text: SqlStr,
     values: Vec<Value>,
 ) -> Result<Given, sqlx::Error> {
+    let begins = unsaid.begins.take();
     let (text, values) = unsaid.with(text, values);
+    let given = heard(connection, text, &values).await;
+    if let (Some(health), Err(error)) = (begins, &given) {
+        health.failed(error);
+    }
+    given
+}
+
+/// What the last of the statements of a query gives.
+async fn heard(
+    connection: &mut SqliteConnection,
+    text: SqlStr,
+    values: &[Value],
+) -> Result<Given, sqlx::Error> {
     // A pragma does what it does when it is read: kept by the driver, it would do nothing the next time.
     let is_kept = !text.as_str().contains("pragma");
-    let query = bind_sqlite::<Nothing>(text, &values).persistent(is_kept);
+    let query = bind_sqlite::<Nothing>(text, values).persistent(is_kept);
     let mut answers = connection.fetch_many(query);
     let (mut rows, mut given) = (Vec::new(), Given::default());
     while let Some(answer) = answers.try_next().await? {

@@ -15,7 +15,7 @@ const BETWEEN_TRIES: Duration = Duration::from_millis(500);
 /// A look that takes longer says that nothing can be stored now.
 const LOOKING: Duration = Duration::from_secs(2);
 
-/// A transaction that has the write lock. Dropped without an end, it takes its connection with it: what the
+/// A transaction that has the write lock from its first statement on. Dropped without an end, it takes its connection with it: what the
 /// database, the driver and this program believe of the transaction need not agree any more, after an error least of all.
 pub(crate) struct Write {
     connection: Connection,
@@ -157,11 +157,7 @@ async fn begin_with(
     }
     let mut connection = writer.acquire().await?;
     // In plain SQL, because the driver's count of open transactions survives an error that SQLite's does not.
-    let begun = match relaxed {
-        Some(_) => connection.later(query(words)).await,
-        None => connection.say(words).await,
-    };
-    if let Err(error) = begun {
+    if let Err(error) = connection.begin(words, health).await {
         connection.close_on_drop();
         return Err(error.into());
     }

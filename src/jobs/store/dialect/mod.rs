@@ -44,6 +44,21 @@ macro_rules! end_jobs {
     };
 }
 
+/// The lanes with work to do, and beside each of them what runs here; how that is found differs.
+macro_rules! lanes {
+    ($here:literal) => {
+        concat!(
+            "select own.client, own.lane, whole.due as client_due, own.due as lane_due, here.running, here.alone, here.waiting
+             from shares as whole join shares as own on own.client = whole.client and own.lane <> '*' and own.active = 1
+             cross join (",
+            $here,
+            ") as here
+             where whole.lane = '*' and whole.active = 1
+             order by whole.due, whole.client, own.due, own.lane"
+        )
+    };
+}
+
 /// A study without rows.
 macro_rules! insert_study {
     ($next:literal) => {
@@ -110,8 +125,9 @@ pairs! {
     lock_turn = LOCK_TURN;
     /// From here to its end, no other transaction changes the shares of the client $1.
     lock_shares = LOCK_SHARES;
-    /// Counts of jobs that run, and of those of them that are to run alone, and 1 if one that is to run alone waits. $1: the process.
-    running_here = RUNNING_HERE;
+    /// The lanes with work to do, in the order in which they are due, and beside each of them how many jobs run here, how many of those are to
+    /// run alone, and 1 if one that is to run alone waits. $1: the process.
+    lanes = LANES;
     /// The next job that is to be run alone. $1: the latest version of documents that is read.
     next_suspect = NEXT_SUSPECT;
     /// The jobs of a lane whose turn it is, in their order, but for those of which an equal one is running. $1: client, $2: lane, $3: the

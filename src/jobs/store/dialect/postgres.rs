@@ -44,11 +44,11 @@ pub(in crate::jobs::store) const LOCK_TURN: Words =
 pub(in crate::jobs::store) const LOCK_SHARES: Words =
     Some("select 1 from shares where client = $1 and lane = '*' for update");
 
-pub(in crate::jobs::store) const RUNNING_HERE: Words = Some(
-    "select count(*), cast(coalesce(sum(suspect), 0) as bigint),
-            (select count(*) from (select 1 from jobs where suspect = 1 and status = 'accepted' limit 1) as one)
-     from jobs where status = 'running' and owner = $1",
-);
+pub(in crate::jobs::store) const LANES: Words = Some(lanes!(
+    "select count(*) as running, cast(coalesce(sum(suspect), 0) as bigint) as alone,
+            (select count(*) from (select 1 from jobs where suspect = 1 and status = 'accepted' limit 1) as one) as waiting
+     from jobs where status = 'running' and owner = $1"
+));
 
 pub(in crate::jobs::store) const NEXT_SUSPECT: Words = Some(
     "select id from jobs as waiting

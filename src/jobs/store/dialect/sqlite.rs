@@ -25,11 +25,11 @@ pub(in crate::jobs::store) const LOCK_TURN: Words = None;
 
 pub(in crate::jobs::store) const LOCK_SHARES: Words = None;
 
-pub(in crate::jobs::store) const RUNNING_HERE: Words = Some(
-    "select count(*), coalesce(sum(suspect), 0),
-            (select count(*) from (select 1 from jobs where suspect = 1 and status = 'accepted' limit 1))
-     from jobs indexed by jobs_running where status = 'running'",
-);
+pub(in crate::jobs::store) const LANES: Words = Some(lanes!(
+    "select count(*) as running, coalesce(sum(suspect), 0) as alone,
+            (select count(*) from (select 1 from jobs where suspect = 1 and status = 'accepted' limit 1)) as waiting
+     from jobs indexed by jobs_running where status = 'running'"
+));
 
 pub(in crate::jobs::store) const NEXT_SUSPECT: Words = Some(
     "select id from jobs where suspect = 1 and status = 'accepted' and document_version <= $1 order by sequence limit 1",

@@ -3,6 +3,7 @@
 use std::fs;
 
 use super::*;
+use crate::jobs::store::statement::query;
 use crate::jobs::store::{OpenError, StoreError};
 use crate::wire::Status;
 
@@ -64,7 +65,8 @@ async fn a_full_disk_costs_one_answer_and_wedges_nothing() {
 async fn a_locked_database_is_told_as_such_and_found_to_be_free_again() {
     let (store, folder) = store().await;
     let other = open(&folder).await;
-    let held = other.begin().await.unwrap();
+    let mut held = other.begin().await.unwrap();
+    query("select 1").execute(&mut *held).await.unwrap();
     sqlx::raw_sql("pragma busy_timeout = 20")
         .execute(writer(&store))
         .await

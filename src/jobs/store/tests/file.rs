@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::jobs::store::BackupError;
+use crate::jobs::store::statement::query;
 
 /// A large document, another one for each name.
 fn large(name: &str) -> Packed {
@@ -44,12 +45,15 @@ async fn a_backup_is_whole_while_others_write_and_takes_no_place() {
     let (store, folder) = store().await;
     let job = ended(&store, 1, "a").await;
     // Somebody writes meanwhile, and is not seen.
-    let write = store.begin().await.unwrap();
+    let mut write = store.begin().await.unwrap();
+    let delete = query("delete from submissions");
+    assert_eq!(delete.execute(&mut *write).await.unwrap(), 1);
     let (database, target) = (place(&folder), folder.path().join("copy.db"));
     Store::backup(&database, &target).await.unwrap();
     write.rollback().await.unwrap();
 
     let copy = Store::open(&Place::File(target.clone())).await.unwrap();
+    assert!(copy.submission(job.id).await.unwrap().is_some());
     let found = copy.find(CLIENT, job.id).await.unwrap().unwrap();
     let text = copy
         .document(&found.document.unwrap())
