@@ -1,5 +1,7 @@
 # Sourced by the checks that need more than Rust and a C compiler: what they need is installed where that may be done.
 
+packages=$(dirname "${BASH_SOURCE[0]}")/../target/packages.lock
+
 # An installation that hangs is given up.
 patience=600
 
@@ -11,10 +13,13 @@ provide() {
     command -v apt-get >/dev/null || return 1
     [ "$(id -u)" = 0 ] || as_root='sudo -n'
     say "installing $*."
+    # The package system serves one at a time, and checks run side by side.
+    mkdir -p "${packages%/*}"
     {
+        flock 9
         timeout $patience $as_root apt-get -qq update &&
             timeout $patience $as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends "$@"
-    } >/dev/null 2>&1 </dev/null || true
+    } 9>"$packages" >/dev/null 2>&1 </dev/null || true
     $command >/dev/null 2>&1
 }
 

@@ -3,7 +3,6 @@
 use std::fs;
 
 use super::*;
-use crate::jobs::store::statement::query;
 use crate::jobs::store::{OpenError, StoreError};
 use crate::wire::Status;
 

@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::jobs::store::BackupError;
-use crate::jobs::store::statement::query;
 
 /// A large document, another one for each name.
 fn large(name: &str) -> Packed {
