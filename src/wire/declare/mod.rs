@@ -112,11 +112,6 @@ impl<S> Declared<S> {
         Self { name, about, spec }
     }
 
-    /// The same with another specification.
-    pub(super) fn map<T>(self, change: impl FnOnce(S) -> T) -> Declared<T> {
-        Declared::new(self.name, self.about, change(self.spec))
-    }
-
     /// Reads the field.
     pub(super) fn read<K: Kind<Spec = S>>(&self, reader: &mut ObjectReader<'_>) -> Option<K> {
         K::read_field(reader, self.name, &self.spec)

@@ -3,7 +3,7 @@
 use serde::Serializer;
 use serde_json::{Value, json};
 
-use super::{Exclusion, Kind, Named, Node, ObjectReader, Place};
+use super::{Declared, Exclusion, Kind, Named, Node, ObjectReader, Place};
 
 /// What it means that a value is absent.
 #[derive(Debug, Clone, Copy)]
@@ -62,6 +62,13 @@ impl<S: Copy> Optional<S> {
     pub(in crate::wire) const fn left_out(self) -> Self {
         let left_out = true;
         Self { left_out, ..self }
+    }
+}
+
+impl<S> Declared<Optional<S>> {
+    /// The declaration of the value that is given.
+    pub(in crate::wire) fn given(self) -> Declared<S> {
+        Declared::new(self.name, self.about, self.spec.spec)
     }
 }
 

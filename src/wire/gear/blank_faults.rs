@@ -3,8 +3,12 @@
 use meshwright_engine::gear::data::LEAST_LIGAMENT;
 
 use super::GearDocument;
+use super::blank::WebDocument;
 use super::faults::Fault;
 use super::field::Field;
+use super::holes::{PatternDocument, SlotDocument};
+use super::proportions::check_between;
+use crate::wire::declare::{Declared, Number};
 use crate::wire::problem::Code;
 use crate::wire::units::{Side, plain, rounded_inward, to_mm};
 
@@ -23,7 +27,7 @@ impl GearDocument {
             .into_iter()
             .find_map(|pattern| self.narrower(pattern, missing, Code::HolesOverlap, &detail))
             .unwrap_or_else(|| {
-                Fault::new(Field::HoleCircle(second), Code::HolesOverlap, detail, None)
+                Fault::new(self.hole_circle(second), Code::HolesOverlap, detail, None)
             })
     }
 
@@ -44,7 +48,7 @@ impl GearDocument {
             let chord = ((2.0 * width + least) / (2.0 * circle)).min(1.0);
             let span = (apart - 2.0 * chord.asin()).to_degrees();
             if span > 0.0 {
-                let field = Field::SlotAngle(pattern);
+                let field = self.hole_field(pattern, "slot/", SlotDocument::angle_deg);
                 return Fault::new(field, code, detail, Some((span, Side::AtMost)));
             }
         }
@@ -54,7 +58,7 @@ impl GearDocument {
         let needed = (width + least / 2.0) / (apart / 2.0).sin();
         // Holes at one and the same angle find no circle.
         let bound = needed.is_finite().then_some((needed, Side::AtLeast));
-        Fault::new(Field::HoleCircle(pattern), code, detail, bound)
+        Fault::new(self.hole_circle(pattern), code, detail, bound)
     }
 
     /// A hole leaves too little below the root circle or around the bore.
@@ -69,9 +73,9 @@ impl GearDocument {
         // The width of the holes is to blame, unless none would do: then it is their circle.
         self.narrower(pattern, missing, code, &detail)
             .unwrap_or_else(|| {
-                let circle = self.value(Field::HoleCircle(pattern));
+                let circle = self.blank.holes.patterns()[pattern].circle_radius_mm;
                 let bound = (circle + sign * missing, side);
-                Fault::new(Field::HoleCircle(pattern), code, detail, Some(bound))
+                Fault::new(self.hole_circle(pattern), code, detail, Some(bound))
             })
     }
 
@@ -95,29 +99,45 @@ impl GearDocument {
             let missing = to_mm((low - from).max(to - high));
             let narrower = self.narrower(pattern, missing, code, &detail);
             return narrower
-                .unwrap_or_else(|| Fault::new(Field::HoleWidth(pattern), code, detail, None));
+                .unwrap_or_else(|| Fault::new(self.hole_width(pattern), code, detail, None));
         }
-        let circle = self.value(Field::HoleCircle(pattern));
+        let circle = self.blank.holes.patterns()[pattern].circle_radius_mm;
         let bound = if from <= inner {
             (circle + to_mm(low - from), Side::AtLeast)
         } else {
             (circle - to_mm(to - high), Side::AtMost)
         };
-        Fault::new(Field::HoleCircle(pattern), code, detail, Some(bound))
+        Fault::new(self.hole_circle(pattern), code, detail, Some(bound))
     }
 
     /// That the holes of a pattern are wider by `missing` mm to each side than would do, if holes so narrow can be made.
     fn narrower(&self, pattern: usize, missing: f64, code: Code, detail: &str) -> Option<Fault> {
         let shape = &self.blank.holes.patterns()[pattern];
         let largest = shape.of_half_width(self.half_width(pattern) - missing);
-        let field = Field::HoleWidth(pattern);
+        let field = self.hole_width(pattern);
         let rounded = rounded_inward(largest, Side::AtMost, 0);
         let can_be_made =
-            self.accepts(field, rounded) && rounded >= shape.of_half_width(self.least_hole_mm());
+            field.accepts(rounded) && rounded >= shape.of_half_width(self.least_hole_mm());
         can_be_made.then(|| {
             let bound = Some((largest, Side::AtMost));
             Fault::new(field, code, detail.to_owned(), bound)
         })
+    }
+
+    /// The circle of a pattern.
+    fn hole_circle(&self, pattern: usize) -> Field {
+        self.hole_field(pattern, "", PatternDocument::circle_radius_mm)
+    }
+
+    /// The radius of its holes, or the width of its slots.
+    pub(super) fn hole_width(&self, pattern: usize) -> Field {
+        let (within, declared) = self.blank.holes.patterns()[pattern].width_field();
+        self.hole_field(pattern, within, declared)
+    }
+
+    fn hole_field(&self, pattern: usize, within: &str, declared: Declared<Number>) -> Field {
+        let folder = self.blank.holes.pointer_within(pattern);
+        Field::of(&format!("{folder}/{within}"), declared)
     }
 
     fn half_width(&self, pattern: usize) -> f64 {
@@ -146,32 +166,40 @@ impl GearDocument {
             plain(to_mm(largest))
         );
         let (field, bound) = if inner < least {
-            (Field::WebInner, (to_mm(least), Side::AtLeast))
+            (WebDocument::inner_radius_mm, (to_mm(least), Side::AtLeast))
         } else if outer > largest {
-            (Field::WebOuter, (to_mm(largest), Side::AtMost))
+            (WebDocument::outer_radius_mm, (to_mm(largest), Side::AtMost))
         } else {
-            (
-                Field::WebOuter,
-                (to_mm(inner) + self.least_web_mm(), Side::AtLeast),
-            )
+            let narrowest = to_mm(inner) + self.least_web_mm();
+            (WebDocument::outer_radius_mm, (narrowest, Side::AtLeast))
         };
-        Fault::new(field, Code::WebOutsideBlank, detail, Some(bound))
+        Fault::new(web(field), Code::WebOutsideBlank, detail, Some(bound))
     }
 
     /// A web is a ring of some width, away from the bore or up to it, and of some thickness.
     pub(super) fn check_web(&self) -> Result<(), Fault> {
-        let Some(web) = &self.blank.web else {
+        let Some(WebDocument {
+            inner_radius_mm: inner,
+            outer_radius_mm: outer,
+            thickness_mm,
+            ..
+        }) = self.blank.web
+        else {
             return Ok(());
         };
         let (least, bore) = (self.least_web_mm(), self.blank.bore_radius_mm);
-        let (inner, outer) = (web.inner_radius_mm, web.outer_radius_mm);
         if inner > bore && inner < (bore + least) * (1.0 - 1e-12) {
             let detail = format!(
                 "The web begins {} mm outside of the bore; it begins there, or at least 0.1 modules away.",
                 plain(inner - bore)
             );
             let bound = Some((bore + least, Side::AtLeast));
-            return Err(Fault::new(Field::WebInner, Code::OutOfRange, detail, bound));
+            return Err(Fault::new(
+                web(WebDocument::inner_radius_mm),
+                Code::OutOfRange,
+                detail,
+                bound,
+            ));
         }
         if outer > inner && outer < (inner + least) * (1.0 - 1e-12) {
             let detail = format!(
@@ -179,10 +207,16 @@ impl GearDocument {
                 plain(outer - inner)
             );
             let bound = Some((inner + least, Side::AtLeast));
-            return Err(Fault::new(Field::WebOuter, Code::OutOfRange, detail, bound));
+            return Err(Fault::new(
+                web(WebDocument::outer_radius_mm),
+                Code::OutOfRange,
+                detail,
+                bound,
+            ));
         }
-        self.check_between(
-            Field::WebThickness,
+        check_between(
+            web(WebDocument::thickness_mm),
+            thickness_mm,
             0.01 * self.face_width_mm,
             4.0 * self.face_width_mm,
             "1 % to four times the face width",
@@ -193,6 +227,11 @@ impl GearDocument {
     fn least_web_mm(&self) -> f64 {
         0.1 * self.module_mm
     }
+}
+
+/// A number of the web.
+fn web(declared: Declared<Number>) -> Field {
+    Field::of("blank/web/", declared)
 }
 
 /// What is left at `place`, as a sentence.

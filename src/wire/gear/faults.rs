@@ -4,13 +4,14 @@ use meshwright_engine::gear::data::{LEAST_RIM, LEAST_TIP_THICKNESS};
 use meshwright_engine::gear::{DeviationList, GearError};
 
 use super::GearDocument;
+use super::blank::BlankDocument;
 use super::field::{Field, ReliefPlace};
 use super::relief::{ReliefEnd, StartWay};
 use crate::wire::problem::Code;
 use crate::wire::units::{Side, from_mm, plain, to_mm, to_um};
 
 /// Why a gear cannot be made, and the bound beyond which it could, in the unit of the field.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(super) struct Fault {
     pub(super) field: Field,
     pub(super) code: Code,
@@ -57,7 +58,7 @@ impl GearDocument {
                 tip_radius,
                 largest,
             } => Fault::new(
-                Field::RackTipRadius,
+                Field::of("", Self::rack_tip_radius_mm),
                 Code::OutOfRange,
                 format!(
                     "A rack tip rounding of {} mm does not fit; at most {} mm does.",
@@ -70,7 +71,7 @@ impl GearDocument {
                 profile_shift,
                 smallest,
             } => Fault::new(
-                Field::ProfileShift,
+                Field::of("", Self::profile_shift),
                 Code::Undercut,
                 format!(
                     "{} teeth are undercut at profile shift {}; it takes at least {}.",
@@ -84,7 +85,7 @@ impl GearDocument {
                 thickness,
                 largest_addendum,
             } => Fault::new(
-                Field::Tip,
+                self.tip_field(),
                 Code::PointedTip,
                 if thickness < 0.0 {
                     format!(
@@ -104,7 +105,7 @@ impl GearDocument {
                 tip_radius,
                 form_radius,
             } => Fault::new(
-                Field::Tip,
+                self.tip_field(),
                 Code::OutOfRange,
                 format!(
                     "The tip radius {} mm leaves no flank above the form radius {} mm.",
@@ -132,7 +133,7 @@ impl GearDocument {
                 bore_radius,
                 largest,
             } => Fault::new(
-                Field::Bore,
+                Field::of("blank/", BlankDocument::bore_radius_mm),
                 Code::BoreTooLarge,
                 format!(
                     "A bore of radius {} mm leaves less than {LEAST_RIM} module below the root circle; at most {} mm.",
@@ -142,7 +143,7 @@ impl GearDocument {
                 Some((to_mm(largest), Side::AtMost)),
             ),
             GearError::TeethTooThick { deviation, largest } => Fault::new(
-                Field::ThicknessDeviation,
+                Field::of("", Self::tooth_thickness_deviation_um),
                 Code::TeethTooThick,
                 format!(
                     "Teeth thicker by {} um leave no space between their fillets; at most {} um.",
@@ -152,7 +153,7 @@ impl GearDocument {
                 Some((to_um(largest), Side::AtMost)),
             ),
             GearError::TipEdgeTooLarge { amount, largest } => Fault::new(
-                Field::TipEdge,
+                self.tip_edge_field().0,
                 Code::TipEdgeTooLarge,
                 format!(
                     "Tip edges broken by {} mm leave no tip or no flank; at most {} mm.",
@@ -166,7 +167,7 @@ impl GearDocument {
                 modification,
                 entry,
             } => Fault::new(
-                Field::Modification(self.place_of(modification)),
+                self.place_of(modification).field(),
                 Code::TableDoesNotRise,
                 format!("Entry {entry} of the table does not stand beyond the one before it."),
                 None,
@@ -176,7 +177,7 @@ impl GearDocument {
                 given,
                 needed,
             } => Fault::new(
-                Field::Deviations,
+                Field::whole(Self::tooth_deviations.name.to_owned()),
                 Code::WrongLength,
                 format!(
                     "The {} deviations are {given}; {needed} are needed, one for each tooth.",
@@ -253,7 +254,7 @@ impl GearDocument {
             Some(StartWay::RollAngle) => ((roll(nearest) / r_b).to_degrees(), side),
         };
         Fault::new(
-            Field::ReliefStart(place),
+            self.relief_start_field(place),
             Code::ReliefTooLong,
             detail,
             Some(bound),

@@ -1,36 +1,44 @@
-//! The fields that may have to change to make a gear: their values, bounds and places.
+//! The fields that may have to change to make a gear: where they stand, and what they may say.
 
 use super::GearDocument;
-use super::blank::{BlankDocument, WebDocument};
-use super::holes::{PatternDocument, SlotDocument};
 use super::relief::Relief;
-use crate::wire::declare::{Declared, Node, Number, Optional};
+use crate::wire::declare::{Declared, Node, Number};
 
-/// The fields that may have to change to make a gear.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Field {
-    ProfileShift,
-    /// The tip circle, by addendum or by diameter.
-    Tip,
-    Dedendum,
-    RackTipRadius,
-    ThicknessDeviation,
-    /// The rounding or the chamfer.
-    TipEdge,
-    ReliefStart(ReliefPlace),
-    /// A modification as a whole.
-    Modification(ReliefPlace),
-    /// The deviations as a whole.
-    Deviations,
-    Bore,
-    /// The circle of a pattern of holes.
-    HoleCircle(usize),
-    /// The radius of its holes, or the width of its slots.
-    HoleWidth(usize),
-    SlotAngle(usize),
-    WebInner,
-    WebOuter,
-    WebThickness,
+/// A field that may have to change to make a gear.
+#[derive(Debug, Clone)]
+pub(super) struct Field {
+    /// Where it stands in the gear.
+    pub(super) pointer: String,
+    /// Its unit, "1" where it has none.
+    pub(super) unit: &'static str,
+    /// What it may say: nothing where it is no number.
+    bounds: (f64, f64),
+}
+
+impl Field {
+    /// A number of the object in `folder`, which is empty or ends with a slash.
+    pub(super) fn of(folder: &str, declared: Declared<Number>) -> Self {
+        Self {
+            pointer: format!("{folder}{}", declared.name),
+            unit: declared.spec.unit,
+            bounds: declared.spec.bounds,
+        }
+    }
+
+    /// What is no number.
+    pub(super) fn whole(pointer: String) -> Self {
+        Self {
+            pointer,
+            unit: "1",
+            bounds: (f64::INFINITY, f64::NEG_INFINITY),
+        }
+    }
+
+    /// Whether `value` is within its bounds.
+    pub(super) fn accepts(&self, value: f64) -> bool {
+        let (least, most) = self.bounds;
+        (least..=most).contains(&value)
+    }
 }
 
 /// Where a relief stands in the document of a gear.
@@ -43,134 +51,51 @@ pub(super) enum ReliefPlace {
 }
 
 impl ReliefPlace {
-    fn pointer_within(self) -> String {
-        match self {
+    /// The modification as a whole.
+    pub(super) fn field(self) -> Field {
+        Field::whole(match self {
             Self::Short => "tip_relief".to_owned(),
             Self::Listed(i) => format!("profile_modifications/{i}"),
-        }
+        })
     }
-}
-
-/// A field as it stands in a gear.
-pub(super) struct Found {
-    /// Where, within the gear.
-    pub(super) pointer: String,
-    /// What it says, and what it may say; none where it is no number.
-    pub(super) number: Option<(f64, Number)>,
 }
 
 impl GearDocument {
-    /// Where `field` stands, and what it says.
-    pub(super) fn found(&self, field: Field) -> Found {
-        let number = |folder: &str, declared: Declared<Number>, value: f64| Found {
-            pointer: format!("{folder}{}", declared.name),
-            number: Some((value, declared.spec)),
+    /// The tip circle, by addendum or by diameter.
+    pub(super) fn tip_field(&self) -> Field {
+        let said = match self.tip_diameter_mm {
+            Some(_) => Self::tip_diameter_mm,
+            None => Self::addendum_mm,
         };
-        let given = |declared: Declared<Optional<Number>>, value: Option<f64>| {
-            let declared = declared.map(|optional| optional.spec);
-            number("", declared, value.unwrap_or(0.0))
+        Field::of("", said.given())
+    }
+
+    /// The rounding or the chamfer of the tip edges, and what it says.
+    pub(super) fn tip_edge_field(&self) -> (Field, f64) {
+        let (said, value) = match self.tip_rounding_mm {
+            Some(_) => (Self::tip_rounding_mm, self.tip_rounding_mm),
+            None => (Self::tip_chamfer_mm, self.tip_chamfer_mm),
         };
-        let whole = |pointer: String| Found {
-            pointer,
-            number: None,
-        };
-        let holes = |i: usize| {
-            (
-                format!("{}/", self.blank.holes.pointer_within(i)),
-                &self.blank.holes.patterns()[i],
-            )
-        };
-        let web = |declared: Declared<Number>, value: fn(&WebDocument) -> f64| {
-            number(
-                "blank/web/",
-                declared,
-                self.blank.web.as_ref().map_or(0.0, value),
-            )
-        };
-        match field {
-            Field::ProfileShift => number("", Self::profile_shift, self.profile_shift),
-            Field::Tip if self.tip_diameter_mm.is_some() => {
-                given(Self::tip_diameter_mm, self.tip_diameter_mm)
+        (Field::of("", said.given()), value.unwrap_or(0.0))
+    }
+
+    /// The start of the relief at `place`.
+    pub(super) fn relief_start_field(&self, place: ReliefPlace) -> Field {
+        let whole = place.field();
+        match self.relief(place) {
+            Some(Relief { start, .. }) => {
+                Field::of(&format!("{}/start/", whole.pointer), start.field())
             }
-            Field::Tip => given(Self::addendum_mm, self.addendum_mm),
-            Field::Dedendum => number("", Self::dedendum_mm, self.dedendum_mm),
-            Field::RackTipRadius => number("", Self::rack_tip_radius_mm, self.rack_tip_radius_mm),
-            Field::ThicknessDeviation => number(
-                "",
-                Self::tooth_thickness_deviation_um,
-                self.tooth_thickness_deviation_um,
-            ),
-            Field::TipEdge if self.tip_rounding_mm.is_some() => {
-                given(Self::tip_rounding_mm, self.tip_rounding_mm)
-            }
-            Field::TipEdge => given(Self::tip_chamfer_mm, self.tip_chamfer_mm),
-            Field::ReliefStart(place) => match self.relief(place) {
-                Some(Relief { start, .. }) => number(
-                    &format!("{}/start/", place.pointer_within()),
-                    start.field(),
-                    start.value,
-                ),
-                None => whole(place.pointer_within()),
-            },
-            Field::Modification(place) => whole(place.pointer_within()),
-            Field::Deviations => whole(Self::tooth_deviations.name.to_owned()),
-            Field::Bore => number(
-                "blank/",
-                BlankDocument::bore_radius_mm,
-                self.blank.bore_radius_mm,
-            ),
-            Field::HoleCircle(i) => {
-                let (folder, pattern) = holes(i);
-                number(
-                    &folder,
-                    PatternDocument::circle_radius_mm,
-                    pattern.circle_radius_mm,
-                )
-            }
-            Field::HoleWidth(i) => {
-                let (folder, pattern) = holes(i);
-                let (within, declared) = pattern.width_field();
-                number(&(folder + within), declared, pattern.width())
-            }
-            Field::SlotAngle(i) => {
-                let (folder, pattern) = holes(i);
-                number(
-                    &(folder + "slot/"),
-                    SlotDocument::angle_deg,
-                    pattern.span_deg(),
-                )
-            }
-            Field::WebInner => web(WebDocument::inner_radius_mm, |web| web.inner_radius_mm),
-            Field::WebOuter => web(WebDocument::outer_radius_mm, |web| web.outer_radius_mm),
-            Field::WebThickness => web(WebDocument::thickness_mm, |web| web.thickness_mm),
+            None => whole,
         }
     }
 
-    /// The number that `field` says.
-    pub(super) fn value(&self, field: Field) -> f64 {
-        self.found(field).number.map_or(0.0, |(value, _)| value)
-    }
-
     /// The same gear with another number in `field`.
-    pub(super) fn with_value(&self, field: Field, value: f64) -> Option<Self> {
+    pub(super) fn with_value(&self, field: &Field, value: f64) -> Option<Self> {
         let mut gear = Node::of(&serde_json::to_value(self).ok()?);
-        let pointer = self.found(field).pointer;
-        let steps: Vec<&str> = pointer.split('/').collect();
+        let steps: Vec<&str> = field.pointer.split('/').collect();
         gear.put(&steps, Node::Number(value))?;
         Self::at(&gear)
-    }
-
-    /// Whether `value` is within the bounds of `field`.
-    pub(super) fn accepts(&self, field: Field, value: f64) -> bool {
-        self.found(field).number.is_some_and(
-            |(
-                _,
-                Number {
-                    bounds: (least, most),
-                    ..
-                },
-            )| { (least..=most).contains(&value) },
-        )
     }
 
     /// The places of all reliefs, in the order in which the engine is told of them.

@@ -218,7 +218,7 @@ impl PatternDocument {
     /// The field that says how wide a hole is, and where it stands in the pattern.
     pub(super) fn width_field(&self) -> (&'static str, Declared<Number>) {
         match self.slot {
-            None => ("", Self::radius_mm.map(|optional| optional.spec)),
+            None => ("", Self::radius_mm.given()),
             Some(_) => ("slot/", SlotDocument::width_mm),
         }
     }

@@ -3,6 +3,7 @@
 use meshwright_engine::gear::{Helix, SpurGear};
 
 use super::GearDocument;
+use super::blank::BlankDocument;
 use super::faults::Fault;
 use super::field::Field;
 use super::holes::HolesDocument;
@@ -35,39 +36,42 @@ impl GearDocument {
     fn check_proportions(&self) -> Result<(), Fault> {
         let m = self.module_mm;
         self.check_addendum()?;
-        for (field, least, most) in [
-            (Field::Dedendum, 0.5, 2.5),
-            (Field::RackTipRadius, 0.05, 2.0),
+        for (declared, value, least, most) in [
+            (Self::dedendum_mm, self.dedendum_mm, 0.5, 2.5),
+            (Self::rack_tip_radius_mm, self.rack_tip_radius_mm, 0.05, 2.0),
         ] {
-            let said = format!("{least} and {most} modules");
-            self.check_between(field, least * m, most * m, &said)?;
+            let (field, said) = (
+                Field::of("", declared),
+                format!("{least} and {most} modules"),
+            );
+            check_between(field, value, least * m, most * m, &said)?;
         }
         let half = 500.0 * m;
-        self.check_between(
-            Field::ThicknessDeviation,
+        check_between(
+            Field::of("", Self::tooth_thickness_deviation_um),
+            self.tooth_thickness_deviation_um,
             -half,
             half,
             "half a module to either side",
         )?;
-        if self.value(Field::TipEdge) > 0.0 {
-            self.check_between(
-                Field::TipEdge,
-                0.01 * m,
-                f64::INFINITY,
-                "0.01 modules and more",
-            )?;
+        let (edge, broken) = self.tip_edge_field();
+        if broken > 0.0 {
+            let least = 0.01 * m;
+            check_between(edge, broken, least, f64::INFINITY, "0.01 modules and more")?;
         }
         // A bore or a hole that is a mere point has a logarithmically singular compliance.
         let least_bore = 0.05 * self.root_radius_mm();
-        self.check_between(
-            Field::Bore,
+        check_between(
+            Field::of("blank/", BlankDocument::bore_radius_mm),
+            self.blank.bore_radius_mm,
             least_bore,
             f64::INFINITY,
             "5 % of the root radius and more",
         )?;
         for (i, pattern) in self.blank.holes.patterns().iter().enumerate() {
-            self.check_between(
-                Field::HoleWidth(i),
+            check_between(
+                self.hole_width(i),
+                pattern.width(),
                 pattern.of_half_width(self.least_hole_mm()),
                 f64::INFINITY,
                 "1 % of the root radius to each side and more",
@@ -79,34 +83,13 @@ impl GearDocument {
     /// The addendum has its bounds in modules, and they are those of the tip diameter too.
     fn check_addendum(&self) -> Result<(), Fault> {
         let said = |modules: f64| self.tip_said(modules * self.module_mm);
-        self.check_between(
-            Field::Tip,
+        check_between(
+            self.tip_field(),
+            self.tip_diameter_mm.unwrap_or_else(|| self.addendum()),
             said(0.2),
             said(2.0),
             "an addendum of 0.2 to 2 modules",
         )
-    }
-
-    pub(super) fn check_between(
-        &self,
-        field: Field,
-        least: f64,
-        most: f64,
-        said: &str,
-    ) -> Result<(), Fault> {
-        // What was computed from the other numbers is so up to the last bits.
-        const ROUNDING: f64 = 1e-12;
-        let number = self.found(field).number;
-        let (value, unit) = number.map_or((0.0, "mm"), |(value, number)| (value, number.unit));
-        let bound = if value < least - ROUNDING * least.abs() {
-            (least, Side::AtLeast)
-        } else if value > most + ROUNDING * most.abs() {
-            (most, Side::AtMost)
-        } else {
-            return Ok(());
-        };
-        let detail = format!("{} {unit} is outside {said}.", plain(value));
-        Err(Fault::new(field, Code::OutOfRange, detail, Some(bound)))
     }
 
     pub(super) fn least_hole_mm(&self) -> f64 {
@@ -157,4 +140,25 @@ impl GearDocument {
         }
         gear
     }
+}
+
+/// Refuses a `value` of `field` that is outside its bounds, which are `said` in words.
+pub(super) fn check_between(
+    field: Field,
+    value: f64,
+    least: f64,
+    most: f64,
+    said: &str,
+) -> Result<(), Fault> {
+    // What was computed from the other numbers is so up to the last bits.
+    const ROUNDING: f64 = 1e-12;
+    let bound = if value < least - ROUNDING * least.abs() {
+        (least, Side::AtLeast)
+    } else if value > most + ROUNDING * most.abs() {
+        (most, Side::AtMost)
+    } else {
+        return Ok(());
+    };
+    let detail = format!("{} {} is outside {said}.", plain(value), field.unit);
+    Err(Fault::new(field, Code::OutOfRange, detail, Some(bound)))
 }

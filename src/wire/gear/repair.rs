@@ -36,15 +36,17 @@ impl GearDocument {
         for _ in 0..MOST_REPAIRS {
             let mut fault = match repaired.made(helix) {
                 Ok(gear) if faults.is_empty() => return Ok(gear),
-                Ok(_) => return Err(self.told(pointer, faults)),
+                Ok(_) => return Err(Self::told(pointer, faults)),
                 Err(fault) => fault,
             };
-            let index = faults.iter().position(|known| known.field == fault.field);
+            let index = faults
+                .iter()
+                .position(|known| known.field.pointer == fault.field.pointer);
             let steps = index.map_or(0, |index| faults[index].steps_after(&fault));
             let cure = fault
                 .bound
                 .map(|(bound, side)| rounded_inward(bound, side, steps));
-            let cure = cure.filter(|&value| repaired.accepts(fault.field, value));
+            let cure = cure.filter(|&value| fault.field.accepts(value));
             match index {
                 Some(index) => {
                     let known = &mut faults[index];
@@ -55,7 +57,7 @@ impl GearDocument {
                     faults.push(fault.clone());
                 }
             }
-            match cure.and_then(|value| repaired.with_value(fault.field, value)) {
+            match cure.and_then(|value| repaired.with_value(&fault.field, value)) {
                 Some(gear) => repaired = gear,
                 None => break,
             }
@@ -64,27 +66,26 @@ impl GearDocument {
         if let Some(last) = faults.last_mut() {
             last.cure = None;
         }
-        Err(self.told(pointer, faults))
+        Err(Self::told(pointer, faults))
     }
 
     /// `fault` with the nearest value that its field takes.
-    pub(super) fn cured(&self, fault: Fault) -> Fault {
+    pub(super) fn cured(fault: Fault) -> Fault {
         let bound = fault
             .bound
             .map(|(bound, side)| rounded_inward(bound, side, 0));
-        let cure = bound.filter(|value| self.accepts(fault.field, *value));
+        let cure = bound.filter(|value| fault.field.accepts(*value));
         Fault { cure, ..fault }
     }
 
-    pub(super) fn told(&self, pointer: &str, faults: Vec<Fault>) -> Vec<FieldError> {
+    pub(super) fn told(pointer: &str, faults: Vec<Fault>) -> Vec<FieldError> {
         let told = faults.into_iter().map(|fault| {
-            let found = self.found(fault.field);
-            let unit = found.number.map_or("1", |(_, number)| number.unit);
+            let unit = fault.field.unit;
             let advice = fault
                 .cure
                 .map(|cure| format!(" {} would do.", spoken(cure, unit)));
             let detail = fault.detail + &advice.unwrap_or_default();
-            let place = format!("{pointer}/{}", found.pointer);
+            let place = format!("{pointer}/{}", fault.field.pointer);
             FieldError::new(place, fault.code, detail).nearest(fault.cure)
         });
         told.collect()

@@ -183,7 +183,7 @@ impl GearDocument {
                 outer_radius,
             } => {
                 let fault = self.edge_fault(hole, [from, to], [inner_radius, outer_radius]);
-                return self.told(pointer, vec![self.cured(fault)]);
+                return Self::told(pointer, vec![Self::cured(fault)]);
             }
         };
         vec![fault]

@@ -29,7 +29,7 @@ document! {
 
 /// The radius of the holes of a pattern.
 fn hole_radius() -> Declared<Number> {
-    PatternDocument::radius_mm.map(|optional| optional.spec)
+    PatternDocument::radius_mm.given()
 }
 
 /// The size of a pattern's holes, where it stands in the pattern.
@@ -158,11 +158,11 @@ fn blank_area(gear: &Node) -> Option<f64> {
     let or_preset =
         |name: &str, number: Number| given(name).unwrap_or_else(|| number.preset(Some(m)));
     let (shift, dedendum) = (GearDocument::profile_shift, GearDocument::dedendum_mm);
-    let addendum = GearDocument::addendum_mm;
+    let addendum = GearDocument::addendum_mm.given();
     let shifted = m * z / 2.0 + or_preset(shift.name, shift.spec)? * m;
     let r_a = match given(GearDocument::tip_diameter_mm.name) {
         Some(diameter) => diameter? / 2.0,
-        None => shifted + or_preset(addendum.name, addendum.spec.spec)?,
+        None => shifted + or_preset(addendum.name, addendum.spec)?,
     };
     let r_f = shifted - or_preset(dedendum.name, dedendum.spec)?;
     let bore = gear.number_at(&["blank", BlankDocument::bore_radius_mm.name])?;
