@@ -16,143 +16,86 @@ use super::client::Operator;
 use crate::jobs::JobError;
 use crate::wire::{Code, Problem};
 
+/// Declares numbers: their names, and what they are.
+macro_rules! told {
+    ($($name:literal: $about:literal,)*) => {
+        &[$(($name, $about)),*]
+    };
+}
+
+const COUNTERS: &[(&str, &str)] = told! {
+    "meshwright_http_requests_total": "Requests answered.",
+    "meshwright_jobs_ended_total": "Jobs that a worker brought to an end.",
+    "meshwright_commits_total": "Transactions that were written, by whether their commit waited for the disk.",
+    "meshwright_webhook_attempts_total": "Messages to webhooks, by what came of them.",
+    "meshwright_cache_hits_total": "Substructures that were wanted and kept.",
+    "meshwright_cache_misses_total": "Substructures that were wanted and had to be computed.",
+    "meshwright_cache_evictions_total": "Substructures that found no room or had to make room.",
+};
+
+/// What is rare is told from the beginning, so that an alert sees its first time as a growth.
+const RARE: &[(&str, &str)] = told! {
+    "meshwright_connections_evicted_total": "Connections that gave way to new ones: idle, or taking nothing of their answer.",
+    "meshwright_strangers_refused_total": "Requests without a known key that were refused because too many came.",
+    "meshwright_spans_forgotten_total": "Spans that found no place in the queue to the collector.",
+    "meshwright_removed_jobs_total": "Jobs removed because they were old or there was no room.",
+    "meshwright_removed_studies_total": "Studies removed because they were old or there was no room.",
+};
+
+const GAUGES: &[(&str, &str)] = told! {
+    "meshwright_oldest_waiting_seconds": "Age of the job alone that has waited longest.",
+    "meshwright_workers": "Workers that live.",
+    "meshwright_storage_writable": "1 if something can be stored, 0 if not.",
+    "meshwright_database_bytes": "Size of the database, its journal aside.",
+    "meshwright_database_free_bytes": "Of these, bytes that nothing occupies.",
+    "meshwright_database_journal_bytes": "Size of the journal.",
+    "meshwright_connections": "Connections of clients.",
+    "meshwright_jobs_waiting": "Jobs in the queue, alone or of studies.",
+    "meshwright_jobs_running": "Jobs that are being computed.",
+    "meshwright_previews_running": "Previews that requests wait for.",
+    "meshwright_cache_bytes": "Memory of the substructures that jobs and previews share.",
+    "meshwright_cache_capacity_bytes": "Memory that they may take.",
+    "meshwright_cache_entries": "Substructures that are kept.",
+};
+
+const HISTOGRAMS: &[(&str, &str)] = told! {
+    "meshwright_http_request_duration_seconds": "Time until the head of an answer.",
+    "meshwright_job_wall_time_seconds": "Time that a job was computed.",
+    "meshwright_job_waiting_time_seconds": "Time from the submission of a job to its last begin.",
+    "meshwright_preview_engine_seconds": "Time that a preview was computed.",
+};
+
+/// Where the buckets of the histograms end, in their order.
+const BUCKETS: [&[f64]; 4] = [
+    &[0.001, 0.005, 0.02, 0.1, 0.5, 2.0, 10.0, 60.0],
+    &[0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 600.0],
+    &[0.01, 0.1, 1.0, 10.0, 60.0, 600.0, 3600.0, 21_600.0],
+    &[0.01, 0.02, 0.035, 0.05, 0.1, 0.3, 1.0, 3.0, 10.0],
+];
+
 /// The numbers of this process. One recorder serves all parts of it, as the `metrics` facade wants.
 fn recorder() -> &'static PrometheusHandle {
     static RECORDER: OnceLock<PrometheusHandle> = OnceLock::new();
     RECORDER.get_or_init(|| {
-        let requests = Matcher::Full("meshwright_http_request_duration_seconds".to_owned());
-        let jobs = Matcher::Full("meshwright_job_wall_time_seconds".to_owned());
-        let waiting = Matcher::Full("meshwright_job_waiting_time_seconds".to_owned());
-        let previews = Matcher::Full("meshwright_preview_engine_seconds".to_owned());
-        let recorder = PrometheusBuilder::new()
-            .set_buckets_for_metric(requests, &[0.001, 0.005, 0.02, 0.1, 0.5, 2.0, 10.0, 60.0])
-            .and_then(|builder| {
-                builder
-                    .set_buckets_for_metric(jobs, &[0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 600.0])
-            })
-            .and_then(|builder| {
-                builder.set_buckets_for_metric(
-                    waiting,
-                    &[0.01, 0.1, 1.0, 10.0, 60.0, 600.0, 3600.0, 21_600.0],
-                )
-            })
-            .and_then(|builder| {
-                builder.set_buckets_for_metric(
-                    previews,
-                    &[0.01, 0.02, 0.035, 0.05, 0.1, 0.3, 1.0, 3.0, 10.0],
-                )
-            })
-            .expect("the lists of buckets are not empty")
-            .build_recorder();
+        let histograms = HISTOGRAMS.iter().zip(BUCKETS);
+        let builder = histograms.fold(PrometheusBuilder::new(), |builder, ((name, _), ends)| {
+            let builder = builder.set_buckets_for_metric(Matcher::Full((*name).to_owned()), ends);
+            builder.expect("no list of buckets is empty")
+        });
+        let recorder = builder.build_recorder();
         let handle = recorder.handle();
         // Another recorder may have been set by who embeds the service; then it gets the numbers.
         let _ = metrics::set_global_recorder(recorder);
-        metrics::describe_counter!("meshwright_http_requests_total", "Requests answered.");
-        metrics::describe_histogram!(
-            "meshwright_http_request_duration_seconds",
-            "Time until the head of an answer."
-        );
-        metrics::describe_counter!(
-            "meshwright_jobs_ended_total",
-            "Jobs that a worker brought to an end."
-        );
-        metrics::describe_histogram!(
-            "meshwright_job_wall_time_seconds",
-            "Time that a job was computed."
-        );
-        metrics::describe_histogram!(
-            "meshwright_job_waiting_time_seconds",
-            "Time from the submission of a job to its last begin."
-        );
-        metrics::describe_gauge!(
-            "meshwright_oldest_waiting_seconds",
-            "Age of the job alone that has waited longest."
-        );
-        metrics::describe_gauge!("meshwright_workers", "Workers that live.");
-        metrics::describe_gauge!(
-            "meshwright_storage_writable",
-            "1 if something can be stored, 0 if not."
-        );
-        metrics::describe_counter!(
-            "meshwright_commits_total",
-            "Transactions that were written, by whether their commit waited for the disk."
-        );
-        metrics::describe_gauge!(
-            "meshwright_database_bytes",
-            "Size of the database, its journal aside."
-        );
-        metrics::describe_gauge!(
-            "meshwright_database_free_bytes",
-            "Of these, bytes that nothing occupies."
-        );
-        metrics::describe_gauge!("meshwright_database_journal_bytes", "Size of the journal.");
-        metrics::describe_gauge!("meshwright_connections", "Connections of clients.");
-        metrics::describe_counter!(
-            "meshwright_connections_evicted_total",
-            "Connections that gave way to new ones: idle, or taking nothing of their answer."
-        );
-        metrics::describe_counter!(
-            "meshwright_strangers_refused_total",
-            "Requests without a known key that were refused because too many came."
-        );
-        metrics::describe_counter!(
-            "meshwright_spans_forgotten_total",
-            "Spans that found no place in the queue to the collector."
-        );
-        metrics::describe_counter!(
-            "meshwright_removed_jobs_total",
-            "Jobs removed because they were old or there was no room."
-        );
-        metrics::describe_counter!(
-            "meshwright_removed_studies_total",
-            "Studies removed because they were old or there was no room."
-        );
-        metrics::describe_counter!(
-            "meshwright_webhook_attempts_total",
-            "Messages to webhooks, by what came of them."
-        );
-        metrics::describe_gauge!(
-            "meshwright_jobs_waiting",
-            "Jobs in the queue, alone or of studies."
-        );
-        metrics::describe_gauge!("meshwright_jobs_running", "Jobs that are being computed.");
-        metrics::describe_gauge!(
-            "meshwright_previews_running",
-            "Previews that requests wait for."
-        );
-        metrics::describe_histogram!(
-            "meshwright_preview_engine_seconds",
-            "Time that a preview was computed."
-        );
-        metrics::describe_gauge!(
-            "meshwright_cache_bytes",
-            "Memory of the substructures that jobs and previews share."
-        );
-        metrics::describe_gauge!(
-            "meshwright_cache_capacity_bytes",
-            "Memory that they may take."
-        );
-        metrics::describe_gauge!("meshwright_cache_entries", "Substructures that are kept.");
-        metrics::describe_counter!(
-            "meshwright_cache_hits_total",
-            "Substructures that were wanted and kept."
-        );
-        metrics::describe_counter!(
-            "meshwright_cache_misses_total",
-            "Substructures that were wanted and had to be computed."
-        );
-        metrics::describe_counter!(
-            "meshwright_cache_evictions_total",
-            "Substructures that found no room or had to make room."
-        );
-        // What is rare is told from the beginning, so that an alert sees its first time as a growth.
-        for name in [
-            "meshwright_connections_evicted_total",
-            "meshwright_strangers_refused_total",
-            "meshwright_spans_forgotten_total",
-            "meshwright_removed_jobs_total",
-            "meshwright_removed_studies_total",
-        ] {
+        for &(name, about) in COUNTERS.iter().chain(RARE) {
+            metrics::describe_counter!(name, about);
+        }
+        for &(name, about) in GAUGES {
+            metrics::describe_gauge!(name, about);
+        }
+        for &(name, about) in HISTOGRAMS {
+            metrics::describe_histogram!(name, about);
+        }
+        for &(name, _) in RARE {
             metrics::counter!(name).increment(0);
         }
         for result in ["arrived", "refused", "given_up"] {
