@@ -14,7 +14,6 @@ view! {
     /// A job: one submission, where it stands, and where to find what belongs to it.
     pub(super) struct JobView<'a> as Job of (job: &'a Job, edge: &Edge) {
         /// The id of the job.
-        #[schema(value_type = String, format = "uuid")]
         id: Uuid = job.id,
         status: Status = job.status,
         /// Mesh positions solved, in whole percent of those to solve. 100 means all.
@@ -33,13 +32,10 @@ view! {
         /// three times at most.
         attempt: i64 = job.attempts_counted,
         /// When the job was submitted (UTC).
-        #[schema(value_type = String, format = DateTime)]
         submitted_at: Timestamp = job.submitted_at,
         /// When the computation began (UTC); null while the job waits.
-        #[schema(value_type = Option<String>, format = DateTime)]
         started_at: Option<Timestamp> = job.started_at,
         /// When the job ended (UTC); null until then.
-        #[schema(value_type = Option<String>, format = DateTime)]
         finished_at: Option<Timestamp> = job.finished_at,
         /// What the computation took, in seconds; null until the job has ended.
         wall_time_seconds: Option<f64> = job.elapsed.map(|time| time.as_secs_f64()),

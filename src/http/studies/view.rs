@@ -15,7 +15,6 @@ view! {
     /// A study: how far it has come, and where to find its table.
     pub(in crate::http) struct StudyView as SubmittedStudy of (study: &StudyRecord, edge: &Edge) {
         /// The id of the study.
-        #[schema(value_type = String, format = "uuid")]
         id: Uuid = study.id,
         /// `successful` when at least one design has results, `failed` when none has and all have ended.
         status: Status = study.status(),
@@ -34,10 +33,8 @@ view! {
         /// The tags of the study.
         tags: Vec<String> = study.tags.clone(),
         /// When the study was submitted (UTC).
-        #[schema(value_type = String, format = DateTime)]
         submitted_at: Timestamp = study.submitted_at,
         /// When its last design ended, or it was cancelled (UTC); null until then.
-        #[schema(value_type = Option<String>, format = DateTime)]
         finished_at: Option<Timestamp> = study.finished_at(),
         /// Of a failed study: why.
         #[schema(value_type = Option<Problem>)]

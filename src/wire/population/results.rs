@@ -32,7 +32,6 @@ const MOST_KEPT: usize = 8_000_000;
 #[schema(as = PopulationResults, title = "Population results")]
 pub struct PopulationResults {
     /// The study; null for a study that was computed from the command line.
-    #[schema(value_type = Option<String>, format = "uuid")]
     pub id: Option<Uuid>,
     /// Where it stands.
     pub status: Status,

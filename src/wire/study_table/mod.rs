@@ -28,7 +28,6 @@ pub use summary::Summary;
 #[schema(title = "Study results")]
 pub struct StudyResults {
     /// The study; null for a study that was computed from the command line.
-    #[schema(value_type = Option<String>, format = "uuid")]
     pub id: Option<Uuid>,
     /// Where it stands; `failed` when no design could be computed.
     pub status: Status,
