@@ -2,12 +2,22 @@
 
 use axum::body::{Body, Bytes};
 use axum::http::StatusCode;
-use axum::http::header::{CONTENT_TYPE, HeaderValue, LOCATION, RETRY_AFTER};
+use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE, HeaderValue, LOCATION, RETRY_AFTER};
 use axum::response::{IntoResponse, Response};
 
 /// A document that is JSON already.
 pub(super) fn json(text: impl Into<Body>) -> Response {
     ([(CONTENT_TYPE, "application/json")], text.into()).into_response()
+}
+
+/// A file that a browser saves under this name.
+pub(super) fn file(media_type: &str, name: &str, body: impl IntoResponse) -> Response {
+    let saved_as = format!("attachment; filename=\"{name}\"");
+    let headers = [
+        (CONTENT_TYPE, media_type.to_owned()),
+        (CONTENT_DISPOSITION, saved_as),
+    ];
+    (headers, body).into_response()
 }
 
 /// What a submission came to, which stands at `address`: 200 where the client is `told_the_end`, 202 otherwise.

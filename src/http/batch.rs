@@ -1,7 +1,6 @@
 //! Many submissions in one request.
 
 use axum::Json;
-use axum::extract::State;
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use futures_util::future::join_all;
@@ -9,7 +8,6 @@ use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use utoipa::ToSchema;
 
-use super::app::App;
 use super::aside::aside;
 use super::client::Client;
 use super::document::Document;
@@ -74,7 +72,6 @@ pub(super) struct BatchItem<'a> {
     ),
 )]
 pub(super) async fn submit(
-    State(app): State<App>,
     client: Client,
     IdempotencyKey(key): IdempotencyKey,
     document: Document<4>,
@@ -82,10 +79,14 @@ pub(super) async fn submit(
     let read = aside(client.name(), move |_| read(&document)).await??;
     let jobs = read.into_iter().enumerate().map(|(i, submission)| {
         let key = key.as_ref().map(|key| key_within(key, i));
-        let (app, client) = (&app, &client);
+        let client = &client;
         async move {
             let submission = submission?;
-            let submitted = app.jobs.submit(&client.0, &submission, key).await;
+            let submitted = client
+                .app
+                .jobs
+                .submit(&client.member, &submission, key)
+                .await;
             submitted.map_err(Problem::from)
         }
     });
@@ -100,10 +101,10 @@ pub(super) async fn submit(
     let items: Vec<BatchItem<'_>> = outcomes
         .iter()
         .map(|(job, problem)| BatchItem {
-            job: job.as_ref().map(|job| JobView::of(job, &app.edge)),
+            job: job.as_ref().map(|job| JobView::of(job, &client.app.edge)),
             problem: problem.as_ref().map(|problem| {
                 let problem = serde_json::to_value(problem).expect("a problem is plain data");
-                with_public_type(problem, &app.edge.public_url)
+                with_public_type(problem, &client.app.edge.public_url)
             }),
         })
         .collect();

@@ -19,9 +19,13 @@ use crate::wire::{Code, Problem};
 /// The client of requests without a key, where none is needed.
 const ANONYMOUS: &str = "anonymous";
 
-/// The client that a request comes from. Jobs belong to their client, and nobody sees those of another. A handler that
-/// takes it is served to those who may get in, as often as they may, and changes nothing for those who may only look.
-pub(super) struct Client(pub(super) Member, pub(super) Pass);
+/// The client that a request comes from, and the service that it asks. Jobs belong to their client, and nobody sees those of another. A
+/// handler that takes it is served to those who may get in, as often as they may, and changes nothing for those who may only look.
+pub(super) struct Client {
+    pub(super) app: App,
+    pub(super) member: Member,
+    pub(super) pass: Pass,
+}
 
 /// The name of the client of a request, for what is done before its handler.
 #[derive(Debug, Clone)]
@@ -52,7 +56,7 @@ impl Pass {
 impl Client {
     /// The name that its jobs bear.
     pub(super) fn name(&self) -> &str {
-        &self.0.client
+        &self.member.client
     }
 
     /// Refuses who has waited and would not get in now.
@@ -60,8 +64,8 @@ impl Client {
     /// # Errors
     ///
     /// `unauthorized`.
-    pub(super) async fn check_again(&self, app: &App) -> Result<(), Problem> {
-        if self.1.holds(app).await {
+    pub(super) async fn check_again(&self) -> Result<(), Problem> {
+        if self.pass.holds(&self.app).await {
             Ok(())
         } else {
             let detail = "The key was revoked or has expired while the request waited.";
@@ -92,7 +96,11 @@ impl FromRequestParts<App> for Client {
         if changes && caller.role == Role::Reader {
             return Err(forbidden("The key may look, and change nothing.").into());
         }
-        Ok(Self(caller.member, caller.pass))
+        Ok(Self {
+            app: app.clone(),
+            member: caller.member,
+            pass: caller.pass,
+        })
     }
 }
 

@@ -1,16 +1,15 @@
 //! Where the flanks of a job's pair touch and how they press there, as numbers and as a picture.
 
-use axum::extract::{Path, State};
 use axum::http::HeaderMap;
 use axum::response::Response;
 use meshwright_engine::analysis::contact_pattern::ContactPattern;
 use serde::Deserialize;
 use utoipa::IntoParams;
+use uuid::Uuid;
 
-use super::app::App;
 use super::client::Client;
 use super::fields::{Done, File, NoLook};
-use super::parameters::{IfNoneMatch, Parameters};
+use super::parameters::{IfNoneMatch, JobId, Parameters};
 use super::pictures;
 use super::problem::internal;
 use crate::wire::solve::contact_pattern;
@@ -43,10 +42,9 @@ pub(super) struct PatternParameters {
     ),
 )]
 pub(super) async fn json(
-    State(app): State<App>,
     client: Client,
-    Path(id): Path<String>,
     Parameters(which): Parameters<PatternParameters>,
+    JobId(id): JobId,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
     let write = |pattern: &ContactPattern| {
@@ -54,7 +52,7 @@ pub(super) async fn json(
         Ok(document.to_json().map_err(|_| internal())?.into_bytes())
     };
     let file = File::shown("contact-pattern.json", "application/json");
-    answer(&app, &client, &id, &which, &request, file, write).await
+    answer(&client, id, &which, &request, file, write).await
 }
 
 /// Get the contact pattern as a picture
@@ -72,27 +70,25 @@ pub(super) async fn json(
     ),
 )]
 pub(super) async fn svg(
-    State(app): State<App>,
     client: Client,
-    Path(id): Path<String>,
     Parameters(which): Parameters<PatternParameters>,
+    JobId(id): JobId,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
     let write = |pattern: &ContactPattern| Ok(pictures::contact_pattern(pattern)?.into_bytes());
     let file = File::shown("contact-pattern.svg", "image/svg+xml");
-    answer(&app, &client, &id, &which, &request, file, write).await
+    answer(&client, id, &which, &request, file, write).await
 }
 
 async fn answer(
-    app: &App,
     client: &Client,
-    id: &str,
+    id: Uuid,
     which: &PatternParameters,
     request: &HeaderMap,
     file: File,
     write: impl FnOnce(&ContactPattern) -> Result<Vec<u8>, Problem> + Send + 'static,
 ) -> Result<Response, Problem> {
-    let done = Done::find(app, client, id).await?;
+    let done = Done::find(client, id).await?;
     let torques = which.of(&done.submission)?;
     let form = which
         .torque
@@ -100,7 +96,7 @@ async fn answer(
     let work = move |submission: &Submission, library: &_, run: &_| {
         write(&contact_pattern(submission, &torques, library, run)?)
     };
-    done.look(app, client, (file, &form), request, work).await
+    done.look(client, (file, &form), request, work).await
 }
 
 impl PatternParameters {

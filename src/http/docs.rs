@@ -9,10 +9,10 @@ use axum::response::{Redirect, Response};
 use axum::routing::get;
 use serde_json::Value;
 use utoipa::OpenApi as _;
-use utoipa::openapi::path::{Operation, Parameter};
+use utoipa::openapi::path::{Operation, Parameter, ParameterBuilder, ParameterIn};
 use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityRequirement, SecurityScheme};
 use utoipa::openapi::{
-    ContentBuilder, HeaderBuilder, ObjectBuilder, OpenApi, Ref, RefOr, ResponseBuilder,
+    ContentBuilder, HeaderBuilder, ObjectBuilder, OpenApi, Ref, RefOr, Required, ResponseBuilder,
     SchemaFormat, Server, ServerBuilder, Type,
 };
 
@@ -123,7 +123,7 @@ pub(super) fn add_common_answers(openapi: &mut OpenApi) {
     }
 }
 
-/// Says whose `id` a path has, before its other parameters.
+/// Says whose `id` a path has, before its other parameters: handlers take it by a type of their own.
 fn describe_ids(path: &str, operation: &mut Operation) {
     let whose = [
         ("/v1/jobs/", "job"),
@@ -131,20 +131,21 @@ fn describe_ids(path: &str, operation: &mut Operation) {
         ("/v1/webhooks/", "webhook"),
     ];
     let whose = whose.iter().find(|(root, _)| path.starts_with(root));
-    let (Some((_, whose)), Some(parameters)) = (whose, &mut operation.parameters) else {
+    let Some((_, whose)) = whose.filter(|_| path.contains("{id}")) else {
         return;
     };
-    parameters.sort_by_key(|parameter| !is_called("id", parameter));
-    if let Some(RefOr::T(id)) = parameters
-        .first_mut()
-        .filter(|first| is_called("id", first))
-    {
-        let uuid = ObjectBuilder::new()
-            .schema_type(Type::String)
-            .format(Some(SchemaFormat::Custom("uuid".to_owned())));
-        id.schema = Some(uuid.into());
-        id.description = Some(format!("The id of the {whose}."));
-    }
+    let uuid = ObjectBuilder::new()
+        .schema_type(Type::String)
+        .format(Some(SchemaFormat::Custom("uuid".to_owned())));
+    let id = ParameterBuilder::new()
+        .name("id")
+        .parameter_in(ParameterIn::Path)
+        .required(Required::True)
+        .description(Some(format!("The id of the {whose}.")))
+        .schema(Some(uuid));
+    let parameters = operation.parameters.get_or_insert_default();
+    parameters.retain(|parameter| !is_called("id", parameter));
+    parameters.insert(0, id.build().into());
 }
 
 fn is_called(name: &str, parameter: &RefOr<Parameter>) -> bool {

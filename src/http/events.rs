@@ -4,7 +4,6 @@ use std::convert::Infallible;
 use std::pin::pin;
 use std::time::Duration;
 
-use axum::extract::{Path, State};
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use futures_util::stream;
@@ -15,7 +14,7 @@ use uuid::Uuid;
 use super::app::App;
 use super::client::{Client, Pass};
 use super::door::PlaceToWait;
-use super::parameters::job_id;
+use super::parameters::JobId;
 use super::view::JobView;
 use crate::jobs::{News, Progress};
 use crate::wire::{Code, Problem, Status};
@@ -87,23 +86,18 @@ impl From<WatchEvent> for Event {
         (status = 429, description = "As many streams are open as one client may have."),
     ),
 )]
-pub(super) async fn events(
-    State(app): State<App>,
-    client: Client,
-    Path(id): Path<String>,
-) -> Result<Response, Problem> {
-    let id = job_id(&id)?;
-    app.jobs.find(client.name(), id).await?;
-    let place = place(&app, client.name())?;
+pub(super) async fn events(client: Client, JobId(id): JobId) -> Result<Response, Problem> {
+    client.app.jobs.find(client.name(), id).await?;
+    let place = place(&client.app, client.name())?;
     let watch = Watch {
-        news: app.jobs.news(id),
-        app: app.clone(),
-        client: client.0.client,
+        news: client.app.jobs.news(id),
+        app: client.app.clone(),
+        client: client.member.client,
         id,
         status: None,
         progress: None,
     };
-    Ok(answer(app, watch, client.1, place))
+    Ok(answer(client.app, watch, client.pass, place))
 }
 
 /// What an event tells: its name, and its data as JSON.

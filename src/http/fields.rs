@@ -2,9 +2,8 @@
 
 use std::time::Duration;
 
-use axum::extract::{Path, State};
 use axum::http::HeaderMap;
-use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE, HeaderValue};
+use axum::http::header::{CONTENT_TYPE, HeaderValue};
 use axum::response::{IntoResponse, Response};
 use meshwright_engine::gear::Member;
 use meshwright_engine::library::Library;
@@ -12,11 +11,11 @@ use meshwright_engine::run::Run;
 use meshwright_exchange::vtu;
 use serde::Deserialize;
 use utoipa::{IntoParams, IntoResponses};
+use uuid::Uuid;
 
-use super::app::App;
 use super::client::Client;
 use super::conditional::{Keep, Tag};
-use super::parameters::{IfNoneMatch, Parameters, invalid, job_id};
+use super::parameters::{IfNoneMatch, JobId, Parameters, invalid};
 use super::problem::{internal, of_missing_results};
 use crate::jobs::Job;
 use crate::wire::solve::{Inside, inside, section};
@@ -60,10 +59,9 @@ pub(super) struct FieldParameters {
     ),
 )]
 pub(super) async fn vtu(
-    State(app): State<App>,
     client: Client,
-    Path(id): Path<String>,
     Parameters(place): Parameters<FieldParameters>,
+    JobId(id): JobId,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
     let work = |submission: &Submission, place, library: &Library, run: &Run| {
@@ -78,7 +76,7 @@ pub(super) async fn vtu(
         })
     };
     let file = File::grids("fields.vtu", "text/xml");
-    answer(app, client, &id, &place, &request, file, work).await
+    answer(&client, id, &place, &request, file, work).await
 }
 
 /// Get the edges of both gears under load at a mesh position
@@ -99,10 +97,9 @@ pub(super) async fn vtu(
     ),
 )]
 pub(super) async fn edges(
-    State(app): State<App>,
     client: Client,
-    Path(id): Path<String>,
     Parameters(place): Parameters<FieldParameters>,
+    JobId(id): JobId,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
     let work = |submission: &Submission, place: (f64, f64), library: &Library, run: &Run| {
@@ -112,7 +109,7 @@ pub(super) async fn edges(
         Ok(text.into_bytes())
     };
     let file = File::shown("edges.json", "application/json");
-    answer(app, client, &id, &place, &request, file, work).await
+    answer(&client, id, &place, &request, file, work).await
 }
 
 /// Why a job that is computed once more shows nothing.
@@ -179,9 +176,8 @@ impl File {
 
 /// What `work` makes of job `id` at a torque and a mesh position of it, `place`.
 async fn answer(
-    app: App,
-    client: Client,
-    id: &str,
+    client: &Client,
+    id: Uuid,
     place: &FieldParameters,
     request: &HeaderMap,
     file: File,
@@ -189,13 +185,13 @@ async fn answer(
     + Send
     + 'static,
 ) -> Result<Response, Problem> {
-    let done = Done::find(&app, &client, id).await?;
+    let done = Done::find(client, id).await?;
     let (torque, position) = place.within(&done.submission)?;
     let form = format!("{torque}/{position}");
     let look = move |submission: &Submission, library: &Library, run: &Run| {
         work(submission, (torque, position), library, run)
     };
-    done.look(&app, &client, (file, &form), request, look).await
+    done.look(client, (file, &form), request, look).await
 }
 
 /// A job that has results, whose submission is computed once more for what they do not hold.
@@ -207,12 +203,13 @@ pub(super) struct Done {
 
 impl Done {
     /// That of an id.
-    pub(super) async fn find(app: &App, client: &Client, id: &str) -> Result<Self, Problem> {
-        let job = app.jobs.find(client.name(), job_id(id)?).await?;
+    pub(super) async fn find(client: &Client, id: Uuid) -> Result<Self, Problem> {
+        let jobs = &client.app.jobs;
+        let job = jobs.find(client.name(), id).await?;
         let Some(hash) = job.document.clone() else {
             return Err(of_missing_results(job.status, job.problem.as_ref()));
         };
-        let submission = app.jobs.readable_submission(job.id).await?;
+        let submission = jobs.readable_submission(id).await?;
         Ok(Self {
             submission: Submission::parse(submission.as_bytes())?,
             job,
@@ -223,7 +220,6 @@ impl Done {
     /// The `file` that `work` makes while the request waits; `form` tells it from others of the same name.
     pub(super) async fn look(
         self,
-        app: &App,
         client: &Client,
         (file, form): (File, &str),
         request: &HeaderMap,
@@ -234,6 +230,7 @@ impl Done {
             hash,
             submission,
         } = self;
+        let app = &client.app;
         app.jobs.check_memory(&submission)?;
         let File {
             name,
@@ -255,13 +252,11 @@ impl Done {
             let within = (memory, most.min(LONGEST));
             let made = app.previews.work(client.name(), None, within, work);
             let document = made.await?.answer;
-            let mut response = ([(CONTENT_TYPE, media_type)], document).into_response();
-            if saved {
-                let saved_as = format!("attachment; filename=\"{}-{name}\"", job.id);
-                let saved_as = HeaderValue::try_from(saved_as).map_err(|_| internal())?;
-                response.headers_mut().insert(CONTENT_DISPOSITION, saved_as);
-            }
-            Ok::<_, Problem>(response)
+            Ok::<_, Problem>(if saved {
+                super::answer::file(media_type, &format!("{}-{name}", job.id), document)
+            } else {
+                ([(CONTENT_TYPE, media_type)], document).into_response()
+            })
         };
         // What this version of the solver says of the job; another one that answers under the same address may say it otherwise.
         let mut response = Tag::of(&[&hash, name, form, SOLVER_VERSION])

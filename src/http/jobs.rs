@@ -1,7 +1,6 @@
 //! Looking at jobs, cancelling and deleting them.
 
 use axum::Json;
-use axum::extract::{Path, State};
 use axum::http::StatusCode;
 use axum::http::header::HeaderMap;
 use axum::response::{IntoResponse, Response};
@@ -10,11 +9,10 @@ use utoipa::IntoParams;
 use uuid::Uuid;
 
 use super::answer::{json, tell_when_to_return};
-use super::app::App;
 use super::client::Client;
 use super::conditional::{Keep, Tag};
 use super::page::{self, LARGEST_LIMIT, Page, USUAL_LIMIT};
-use super::parameters::{IfNoneMatch, Parameters, invalid, job_id};
+use super::parameters::{IfNoneMatch, JobId, Parameters, invalid};
 use super::prefer::Wait;
 use super::view::JobView;
 use crate::jobs::{Filter, Membership};
@@ -154,11 +152,11 @@ fn words(list: &str) -> impl Iterator<Item = &str> {
     ),
 )]
 pub(super) async fn list(
-    State(app): State<App>,
     client: Client,
     Parameters(parameters): Parameters<ListParameters>,
 ) -> Result<Response, Problem> {
     let limit = parameters.limit()?;
+    let app = &client.app;
     let found = app
         .jobs
         .list(client.name(), &parameters.filter()?, limit)
@@ -183,29 +181,27 @@ pub(super) async fn list(
     ),
 )]
 pub(super) async fn show(
-    State(app): State<App>,
     client: Client,
     wait: Wait,
-    Path(id): Path<String>,
+    JobId(id): JobId,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
-    let id = job_id(&id)?;
-    let wait = wait.grant(&app.door, client.name());
+    let wait = wait.grant(&client);
     let job = match wait.patience() {
         Some(patience) => {
-            let job = app.jobs.wait(client.name(), id, patience).await?;
-            client.check_again(&app).await?;
+            let job = client.app.jobs.wait(client.name(), id, patience).await?;
+            client.check_again().await?;
             job
         }
-        None => app.jobs.find(client.name(), id).await?,
+        None => client.app.jobs.find(client.name(), id).await?,
     };
 
     // The submission never changes; what has not changed is answered without reading it.
-    let small = JobView::of(&job, &app.edge).to_json();
+    let small = JobView::of(&job, &client.app.edge).to_json();
     let tag = Tag::of(&["job", &String::from_utf8_lossy(&small)]);
     let whole = async {
-        let submission = app.jobs.submission(id).await?;
-        let body = JobView::whole(&job, &submission, &app.edge).to_json();
+        let submission = client.app.jobs.submission(id).await?;
+        let body = JobView::whole(&job, &submission, &client.app.edge).to_json();
         Ok::<_, Problem>(json(body))
     };
     let mut response = tag.answer(Keep::AskAgain, &request, whole).await?;
@@ -226,13 +222,13 @@ pub(super) async fn show(
         (status = 409, description = "The job is successful or failed already."),
     ),
 )]
-pub(super) async fn cancel(
-    State(app): State<App>,
-    client: Client,
-    Path(id): Path<String>,
-) -> Result<Response, Problem> {
-    let job = app.jobs.cancel(client.name(), job_id(&id)?).await?;
-    Ok((StatusCode::ACCEPTED, Json(JobView::of(&job, &app.edge))).into_response())
+pub(super) async fn cancel(client: Client, JobId(id): JobId) -> Result<Response, Problem> {
+    let job = client.app.jobs.cancel(client.name(), id).await?;
+    Ok((
+        StatusCode::ACCEPTED,
+        Json(JobView::of(&job, &client.app.edge)),
+    )
+        .into_response())
 }
 
 /// Delete a job
@@ -246,11 +242,7 @@ pub(super) async fn cancel(
         (status = 409, description = "The job is running; cancel it first."),
     ),
 )]
-pub(super) async fn delete(
-    State(app): State<App>,
-    client: Client,
-    Path(id): Path<String>,
-) -> Result<StatusCode, Problem> {
-    app.jobs.delete(client.name(), job_id(&id)?).await?;
+pub(super) async fn delete(client: Client, JobId(id): JobId) -> Result<StatusCode, Problem> {
+    client.app.jobs.delete(client.name(), id).await?;
     Ok(StatusCode::NO_CONTENT)
 }

@@ -1,7 +1,8 @@
 //! What a request says beside its body: path, query and headers.
 
-use axum::extract::{FromRequestParts, Query};
+use axum::extract::{FromRequestParts, Path, Query};
 use axum::http::request::Parts;
+use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use utoipa::IntoParams;
 use uuid::Uuid;
@@ -71,10 +72,42 @@ pub(super) struct IfNoneMatch {
     tag: Option<String>,
 }
 
-/// The id in a path. What is no id names no job.
-pub(super) fn job_id(text: &str) -> Result<Uuid, Problem> {
-    text.parse()
-        .map_err(|_| Problem::new(Code::JobNotFound, "There is no job of this id."))
+/// The id in a path.
+#[derive(Deserialize)]
+struct Named {
+    id: String,
+}
+
+/// Declares the ids that stand in paths.
+macro_rules! ids {
+    ($($Id:ident, $missing:ident: $sentence:literal;)*) => {$(
+        /// The id in a path. What is no id names nothing.
+        pub(super) struct $Id(pub(super) Uuid);
+
+        impl $Id {
+            /// That of a text, where there is one.
+            pub(super) fn of(text: &str) -> Result<Self, Problem> {
+                let id = text.parse();
+                id.map(Self).map_err(|_| Problem::new(Code::$missing, $sentence))
+            }
+        }
+
+        impl<S: Send + Sync> FromRequestParts<S> for $Id {
+            type Rejection = Problem;
+
+            async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
+                let named = Path::<Named>::from_request_parts(parts, state).await;
+                let named = named.map_err(|_| invalid("The request is not understood."))?;
+                Self::of(&named.id)
+            }
+        }
+    )*};
+}
+
+ids! {
+    JobId, JobNotFound: "There is no job of this id.";
+    StudyId, StudyNotFound: "There is no study of this id.";
+    WebhookId, WebhookNotFound: "There is no webhook of this id.";
 }
 
 /// A parameter or header that is not understood.

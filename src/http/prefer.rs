@@ -9,7 +9,8 @@ use axum::http::header::HeaderValue;
 use axum::http::request::Parts;
 use utoipa::IntoParams;
 
-use super::door::{Door, PlaceToWait};
+use super::client::Client;
+use super::door::PlaceToWait;
 
 /// Nobody waits longer than this, in seconds.
 pub(super) const LONGEST_WAIT_S: u64 = 60;
@@ -32,8 +33,9 @@ pub(super) struct Granted {
 
 impl Wait {
     /// What is granted to `client`.
-    pub(super) fn grant(self, door: &Door, client: &str) -> Granted {
-        let place = self.0.and_then(|_| door.place_to_wait(client));
+    pub(super) fn grant(self, client: &Client) -> Granted {
+        let door = &client.app.door;
+        let place = self.0.and_then(|_| door.place_to_wait(client.name()));
         Granted {
             seconds: self.0.map(|seconds| match place {
                 Some(_) => seconds.min(LONGEST_WAIT_S),

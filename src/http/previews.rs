@@ -1,10 +1,8 @@
 //! Previews: results in the answer to the request itself.
 
-use axum::extract::State;
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, HeaderName};
 use axum::response::{IntoResponse, Response};
 
-use super::app::App;
 use super::client::Client;
 use super::document::Document;
 use crate::compute::Previewed;
@@ -36,14 +34,13 @@ use crate::wire::{Preview, Problem};
     ),
 )]
 pub(super) async fn preview(
-    State(app): State<App>,
     client: Client,
     Document(document, memory): Document,
 ) -> Result<Response, Problem> {
-    let preview = Preview::parse(&document, app.previews.rules().most_positions)?;
+    let preview = Preview::parse(&document, client.app.previews.rules().most_positions)?;
     drop((document, memory));
-    app.jobs.check_memory(&preview.submission)?;
-    let previewed = app.previews.compute(client.name(), preview).await?;
+    client.app.jobs.check_memory(&preview.submission)?;
+    let previewed = client.app.previews.compute(client.name(), preview).await?;
     let headers = [
         (CONTENT_TYPE, "application/json".to_owned()),
         (CACHE_CONTROL, "no-store".to_owned()),

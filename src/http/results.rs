@@ -1,6 +1,5 @@
 //! The results of a job: the very text that was stored.
 
-use axum::extract::{Path, State};
 use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_ENCODING, CONTENT_LOCATION, CONTENT_TYPE, HeaderValue, VARY};
 use axum::response::{IntoResponse, Response};
@@ -10,7 +9,7 @@ use super::aside::aside;
 use super::client::Client;
 use super::conditional::{Keep, Tag};
 use super::packing::takes_gzip;
-use super::parameters::{IfNoneMatch, job_id};
+use super::parameters::{IfNoneMatch, JobId};
 use super::problem::of_missing_results;
 use crate::jobs::{Document, Job, JobError};
 use crate::wire::Problem;
@@ -29,13 +28,12 @@ use crate::wire::Problem;
     ),
 )]
 pub(super) async fn results(
-    State(app): State<App>,
     client: Client,
-    Path(id): Path<String>,
+    JobId(id): JobId,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
-    let job = app.jobs.find(client.name(), job_id(&id)?).await?;
-    answer(&app, &job, &request).await
+    let job = client.app.jobs.find(client.name(), id).await?;
+    answer(&client.app, &job, &request).await
 }
 
 /// The results of a job, or why there are none.

@@ -1,23 +1,21 @@
 //! Models of gearboxes in REXS: submissions out of them, and a job as one.
 
 use axum::Json;
-use axum::extract::{Path, State};
-use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
-use axum::response::{IntoResponse, Response};
+use axum::response::Response;
 use meshwright_engine::run::Run;
 use meshwright_exchange::rexs::{Choices, Fault, Import, NotRead, import, stages};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::{IntoParams, ToSchema};
 
-use super::app::App;
+use super::answer::file;
 use super::aside::aside;
 use super::client::{Client, Onlooker};
 use super::document::XmlDocument;
-use super::parameters::{Parameters, job_id};
+use super::parameters::{JobId, Parameters};
 use super::problem::internal;
 use crate::jobs::JobError;
-use crate::wire::{Code, Problem, Submission, model_of};
+use crate::wire::{Code, Problem, Submission, model_of, view};
 
 /// Stages beyond this number are not looked at.
 const MOST_STAGES: usize = 20;
@@ -53,24 +51,24 @@ pub(super) struct ModelView {
     refused: Vec<RefusedView>,
 }
 
-/// An attribute of a model that was not read.
-#[derive(Serialize, ToSchema)]
-#[schema(as = NotRead, title = "NotRead")]
-pub(super) struct NotReadView {
-    /// The component.
-    component: String,
-    /// Its attribute; null where nothing of the component was read.
-    attribute: Option<String>,
+view! {
+    /// An attribute of a model that was not read.
+    pub(super) struct NotReadView as NotRead, "NotRead" of (not_read: NotRead) {
+        /// The component.
+        component: String = not_read.component,
+        /// Its attribute; null where nothing of the component was read.
+        attribute: Option<String> = not_read.attribute,
+    }
 }
 
-/// Why a stage of a model cannot be taken.
-#[derive(Serialize, ToSchema)]
-#[schema(as = RefusedPlace, title = "RefusedPlace")]
-pub(super) struct RefusedView {
-    /// The component and its attribute, or the line, or the file.
-    place: String,
-    /// What is wrong there, and what would do.
-    detail: String,
+view! {
+    /// Why a stage of a model cannot be taken.
+    pub(super) struct RefusedView as RefusedPlace, "RefusedPlace" of (fault: Fault) {
+        /// The component and its attribute, or the line, or the file.
+        place: String = fault.place,
+        /// What is wrong there, and what would do.
+        detail: String = fault.detail,
+    }
 }
 
 /// Read a model of a gearbox
@@ -94,14 +92,14 @@ pub(super) async fn read(
     XmlDocument(model, memory): XmlDocument,
 ) -> Result<Json<ModelView>, Problem> {
     let read = move |_: &Run| {
-        let view = view(&model, &parameters);
+        let view = model_view(&model, &parameters);
         drop(memory);
         view
     };
     aside(onlooker.name(), read).await?.map(Json)
 }
 
-fn view(model: &[u8], parameters: &ModelParameters) -> Result<ModelView, Problem> {
+fn model_view(model: &[u8], parameters: &ModelParameters) -> Result<ModelView, Problem> {
     let refuse = |refused: &dyn std::fmt::Display| {
         Problem::new(Code::ModelRefused, refused.to_string().trim_end())
     };
@@ -140,9 +138,7 @@ fn view(model: &[u8], parameters: &ModelParameters) -> Result<ModelView, Problem
                 let assumed = remarks.filter(|remark| !remark.starts_with("Not read"));
                 view.assumed.extend(assumed);
             }
-            Err(faults) => view
-                .refused
-                .extend(faults.into_iter().map(RefusedView::from)),
+            Err(faults) => view.refused.extend(faults.into_iter().map(RefusedView::of)),
         }
     }
     if view.submissions.is_empty() {
@@ -152,17 +148,7 @@ fn view(model: &[u8], parameters: &ModelParameters) -> Result<ModelView, Problem
         return Err(refuse(&refused));
     }
     let not_read = not_read.unwrap_or_default().into_iter();
-    view.not_read = not_read
-        .map(
-            |NotRead {
-                 component,
-                 attribute,
-             }| NotReadView {
-                component,
-                attribute,
-            },
-        )
-        .collect();
+    view.not_read = not_read.map(NotReadView::of).collect();
     Ok(view)
 }
 
@@ -181,12 +167,6 @@ fn checked(import: &Import) -> Result<Submission, Vec<Fault>> {
     })
 }
 
-impl From<Fault> for RefusedView {
-    fn from(Fault { place, detail }: Fault) -> Self {
-        Self { place, detail }
-    }
-}
-
 /// Get a job as a model of a gearbox
 ///
 /// A REXS model, version 2.0, of the submission; of a job that has results with its curves, one load case for each torque.
@@ -197,17 +177,13 @@ impl From<Fault> for RefusedView {
         (status = 404, description = "There is no such job."),
     ),
 )]
-pub(super) async fn write(
-    State(app): State<App>,
-    client: Client,
-    Path(id): Path<String>,
-) -> Result<Response, Problem> {
-    let job = app.jobs.find(client.name(), job_id(&id)?).await?;
-    let submission = app.jobs.submission(job.id).await?;
+pub(super) async fn write(client: Client, JobId(id): JobId) -> Result<Response, Problem> {
+    let job = client.app.jobs.find(client.name(), id).await?;
+    let submission = client.app.jobs.submission(job.id).await?;
     let document = match &job.document {
         None => None,
         // Of designs whose statistics alone were kept there are no curves to tell.
-        Some(_) => match app.jobs.document(&job).await {
+        Some(_) => match client.app.jobs.document(&job).await {
             Err(JobError::ResultsNotKept(_)) => None,
             document => Some(document?),
         },
@@ -226,12 +202,5 @@ pub(super) async fn write(
         Ok::<_, Problem>(model_of(&submission, results.as_ref(), &date))
     });
     let model = written.await??;
-    let headers = [
-        (CONTENT_TYPE, "application/xml".to_owned()),
-        (
-            CONTENT_DISPOSITION,
-            format!("attachment; filename=\"{id}.rexs\""),
-        ),
-    ];
-    Ok((headers, model).into_response())
+    Ok(file("application/xml", &format!("{id}.rexs"), model))
 }

@@ -1,6 +1,5 @@
 //! Submitting a job.
 
-use axum::extract::State;
 use axum::response::Response;
 use serde_json::value::RawValue;
 
@@ -37,7 +36,6 @@ use crate::wire::{Problem, Submission};
     ),
 )]
 pub(super) async fn submit(
-    State(app): State<App>,
     client: Client,
     IdempotencyKey(key): IdempotencyKey,
     wait: Wait,
@@ -47,25 +45,34 @@ pub(super) async fn submit(
     // What was read is small now, and its client may wait for long.
     drop((document, memory));
     // Begun before the job is, so that its end is among them.
-    let changes = app.jobs.changes();
-    let submitted = app.jobs.submit(&client.0, &submission, key).await?;
+    let changes = client.app.jobs.changes();
+    let submitted = client
+        .app
+        .jobs
+        .submit(&client.member, &submission, key)
+        .await?;
     let (mut job, repeated) = (submitted.record, submitted.repeated);
     let made = (!job.status.has_ended()).then(|| Made(vec![job.id]));
 
     // The job was made: whatever goes wrong from here on, it is told of it.
-    let wait = wait.grant(&app.door, client.name());
+    let wait = wait.grant(&client);
     let mut results = None;
     if let Some(patience) = wait.patience() {
-        if let Ok(now) = app.jobs.until_ended(changes, job.clone(), patience).await {
+        if let Ok(now) = client
+            .app
+            .jobs
+            .until_ended(changes, job.clone(), patience)
+            .await
+        {
             job = now;
         }
-        if client.check_again(&app).await.is_ok() {
-            results = results_of(&app, &job).await;
+        if client.check_again().await.is_ok() {
+            results = results_of(&client.app, &job).await;
         }
     }
     let has_waited = wait.patience().is_some();
-    let view = JobView::with_results(&job, results, &app.edge).to_json();
-    let (address, has_ended) = (app.edge.job(job.id), job.status.has_ended());
+    let view = JobView::with_results(&job, results, &client.app.edge).to_json();
+    let (address, has_ended) = (client.app.edge.job(job.id), job.status.has_ended());
     let mut response = answer::submitted(view, &address, has_ended, repeated || has_waited);
     if let Some(made) = made {
         response.extensions_mut().insert(made);

@@ -1,9 +1,8 @@
 //! Parts of the results as tables or pictures, for those who want a curve and not the whole document.
 
 use axum::Json;
-use axum::extract::{Path, State};
+use axum::extract::Path;
 use axum::http::HeaderMap;
-use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE, HeaderName};
 use axum::response::{IntoResponse, Response};
 use meshwright_exchange::fmu::fmu;
 use meshwright_exchange::{force_table, look_up};
@@ -11,11 +10,11 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use utoipa::{IntoParams, ToSchema};
 
-use super::app::App;
+use super::answer::file;
 use super::aside::aside;
 use super::client::Client;
 use super::conditional::{Keep, Tag};
-use super::parameters::{IfNoneMatch, Parameters, job_id};
+use super::parameters::{IfNoneMatch, JobId, Parameters};
 use super::pictures::{self, Picture};
 use super::problem::{internal, of_missing_results};
 use crate::jobs::{Document, JobError};
@@ -247,20 +246,20 @@ pub(super) struct TableParameters {
     ),
 )]
 pub(super) async fn table(
-    State(app): State<App>,
     client: Client,
     Path((id, file)): Path<(String, String)>,
     Parameters(TableParameters { torque }): Parameters<TableParameters>,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
     let wanted = find_file(&file)?;
-    let job = app.jobs.find(client.name(), job_id(&id)?).await?;
+    let JobId(id) = JobId::of(&id)?;
+    let job = client.app.jobs.find(client.name(), id).await?;
     let Some(hash) = &job.document else {
         return Err(of_missing_results(job.status, job.problem.as_ref()));
     };
     let part = torque.map_or_else(|| format!("/{file}"), |torque| format!("/{file}/{torque}"));
     let made = async {
-        let document = app.jobs.document(&job).await?;
+        let document = client.app.jobs.document(&job).await?;
         let name = format!("{id}-{file}");
         aside(client.name(), move |_| {
             make(&document, wanted, torque, &name)
@@ -291,10 +290,7 @@ fn make(
             let curves = select(table, &curves)?;
             Ok(match form {
                 Form::Json => Json(CurveTable { curves }).into_response(),
-                Form::Csv => {
-                    let headers = file_headers("text/csv; charset=utf-8", name);
-                    (headers, csv(&curves)).into_response()
-                }
+                Form::Csv => file("text/csv; charset=utf-8", name, csv(&curves)),
             })
         }
         File::Picture(picture) => {
@@ -327,7 +323,7 @@ fn look_up_table(
         look_up::Form::Csv => "text/csv; charset=utf-8",
         look_up::Form::Text => "text/plain; charset=utf-8",
     };
-    Ok((file_headers(media_type, name), table).into_response())
+    Ok(file(media_type, name, table))
 }
 
 fn no_forces() -> Problem {
@@ -342,7 +338,7 @@ fn packed(results: &Results, name: &str) -> Result<Response, Problem> {
         tracing::error!(%error, "an FMU could not be packed");
         internal()
     })?;
-    Ok((file_headers("application/octet-stream", name), bytes).into_response())
+    Ok(file("application/octet-stream", name, bytes))
 }
 
 /// The force table as others read it.
@@ -352,17 +348,7 @@ fn forces(results: &Results, form: force_table::Form, name: &str) -> Result<Resp
         force_table::Form::Csv => "text/csv; charset=utf-8",
         force_table::Form::Text | force_table::Form::Modelica => "text/plain; charset=utf-8",
     };
-    Ok((file_headers(media_type, name), forces.write(form)).into_response())
-}
-
-fn file_headers(media_type: &str, name: &str) -> [(HeaderName, String); 2] {
-    [
-        (CONTENT_TYPE, media_type.to_owned()),
-        (
-            CONTENT_DISPOSITION,
-            format!("attachment; filename=\"{name}\""),
-        ),
-    ]
+    Ok(file(media_type, name, forces.write(form)))
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

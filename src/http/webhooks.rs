@@ -1,7 +1,6 @@
 //! Webhooks: where a client is told that a job or study has ended.
 
 use axum::Json;
-use axum::extract::{Path, State};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use jiff::Timestamp;
@@ -9,10 +8,9 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-use super::app::App;
 use super::client::Client;
 use super::document::Document;
-use super::parameters::IdempotencyKey;
+use super::parameters::{IdempotencyKey, WebhookId};
 use crate::jobs::EventKind;
 use crate::webhooks::{Delivery, Webhook};
 use crate::wire::{Code, Problem, view};
@@ -39,22 +37,18 @@ view! {
     /// A webhook.
     pub(super) struct WebhookView as Webhook, "Webhook" of (webhook: Webhook, secret: Option<String>) {
         /// The id of the webhook.
-        #[schema(value_type = String, format = "uuid")]
         id: Uuid = webhook.id,
         /// Where messages are sent.
         url: String = webhook.url,
         /// What is told.
         events: Vec<EventKind> = webhook.events,
         /// When it was made (UTC).
-        #[schema(value_type = String, format = DateTime)]
         created_at: Timestamp = webhook.created_at,
         /// When it was given up because nobody took its messages (UTC), from when on nothing is sent to it; null while it works.
-        #[schema(value_type = Option<String>, format = DateTime)]
         disabled_at: Option<Timestamp> = webhook.disabled_at,
         /// Attempts that have failed since the last one that did not.
         failures: u32 = webhook.failures,
         /// When it is tried again (UTC), because the last attempt has failed; null while it works.
-        #[schema(value_type = Option<String>, format = DateTime)]
         retry_at: Option<Timestamp> = webhook.retry_at.filter(|_| webhook.disabled_at.is_none()),
         /// Why the last message that was not taken was not.
         problem: Option<String> = webhook.problem,
@@ -75,13 +69,11 @@ view! {
     /// A message to a webhook, and what has come of it so far.
     pub(super) struct DeliveryView as Delivery, "Delivery" of (delivery: Delivery) {
         /// The id of the message, which its header `webhook-id` bears at every attempt.
-        #[schema(value_type = String, format = "uuid")]
         id: Uuid = delivery.id,
         /// What it tells: `job.ended`, `study.ended`, or `webhook.ping`, which tells nothing.
         #[serde(rename = "type")]
         kind: String = delivery.kind,
         /// Whose end it tells: the id of a job or a study; of a ping that of the webhook.
-        #[schema(value_type = Option<String>, format = "uuid")]
         subject: Option<Uuid> = delivery.subject,
         /// Where it stands.
         status: DeliveryStatus = match delivery.arrived_at {
@@ -89,12 +81,10 @@ view! {
             None => DeliveryStatus::Waiting,
         },
         /// When what it tells happened (UTC).
-        #[schema(value_type = String, format = DateTime)]
         created_at: Timestamp = delivery.created_at,
         /// Attempts so far.
         attempts: u32 = delivery.attempts,
         /// When it was last sent (UTC).
-        #[schema(value_type = Option<String>, format = DateTime)]
         attempted_at: Option<Timestamp> = delivery.attempted_at,
         /// What the receiver answered last, an HTTP status; null if it gave no answer.
         answered: Option<u32> = delivery.answered,
@@ -121,12 +111,6 @@ pub(super) struct DeliveryListView {
     items: Vec<DeliveryView>,
 }
 
-/// The id in a path. What is no id names no webhook.
-fn webhook_id(text: &str) -> Result<Uuid, Problem> {
-    text.parse()
-        .map_err(|_| Problem::new(Code::WebhookNotFound, "There is no webhook of this id."))
-}
-
 /// Make a webhook
 ///
 /// From now on a message is sent to the address when a job that stands alone, or a study, has ended: a POST with a small
@@ -146,7 +130,6 @@ fn webhook_id(text: &str) -> Result<Uuid, Problem> {
     ),
 )]
 pub(super) async fn make(
-    State(app): State<App>,
     client: Client,
     IdempotencyKey(key): IdempotencyKey,
     document: Document,
@@ -163,7 +146,8 @@ pub(super) async fn make(
         let detail = format!("/events is empty; give one or more of {words}, or leave it out.");
         return Err(Problem::new(Code::OutOfRange, detail));
     }
-    let made = app
+    let made = client
+        .app
         .webhooks
         .make(client.name(), new.url, events, key)
         .await?;
@@ -183,11 +167,8 @@ pub(super) async fn make(
     get, path = "/v1/webhooks", tag = "Webhooks", operation_id = "list_webhooks",
     responses((status = 200, description = "The webhooks.", body = WebhookListView)),
 )]
-pub(super) async fn list(
-    State(app): State<App>,
-    client: Client,
-) -> Result<Json<WebhookListView>, Problem> {
-    let webhooks = app.webhooks.list(client.name()).await?.into_iter();
+pub(super) async fn list(client: Client) -> Result<Json<WebhookListView>, Problem> {
+    let webhooks = client.app.webhooks.list(client.name()).await?.into_iter();
     Ok(Json(WebhookListView {
         items: webhooks
             .map(|webhook| WebhookView::of(webhook, None))
@@ -206,11 +187,10 @@ pub(super) async fn list(
     ),
 )]
 pub(super) async fn delete(
-    State(app): State<App>,
     client: Client,
-    Path(id): Path<String>,
+    WebhookId(id): WebhookId,
 ) -> Result<StatusCode, Problem> {
-    app.webhooks.delete(client.name(), webhook_id(&id)?).await?;
+    client.app.webhooks.delete(client.name(), id).await?;
     Ok(StatusCode::NO_CONTENT)
 }
 
@@ -225,11 +205,10 @@ pub(super) async fn delete(
     ),
 )]
 pub(super) async fn show(
-    State(app): State<App>,
     client: Client,
-    Path(id): Path<String>,
+    WebhookId(id): WebhookId,
 ) -> Result<Json<WebhookView>, Problem> {
-    let webhook = app.webhooks.find(client.name(), webhook_id(&id)?).await?;
+    let webhook = client.app.webhooks.find(client.name(), id).await?;
     Ok(Json(WebhookView::of(webhook, None)))
 }
 
@@ -244,12 +223,8 @@ pub(super) async fn show(
         (status = 409, description = "The webhook was given up."),
     ),
 )]
-pub(super) async fn ping(
-    State(app): State<App>,
-    client: Client,
-    Path(id): Path<String>,
-) -> Result<Response, Problem> {
-    let ping = app.webhooks.ping(client.name(), webhook_id(&id)?).await?;
+pub(super) async fn ping(client: Client, WebhookId(id): WebhookId) -> Result<Response, Problem> {
+    let ping = client.app.webhooks.ping(client.name(), id).await?;
     Ok((StatusCode::ACCEPTED, Json(DeliveryView::of(ping))).into_response())
 }
 
@@ -264,14 +239,10 @@ pub(super) async fn ping(
     ),
 )]
 pub(super) async fn deliveries(
-    State(app): State<App>,
     client: Client,
-    Path(id): Path<String>,
+    WebhookId(id): WebhookId,
 ) -> Result<Json<DeliveryListView>, Problem> {
-    let deliveries = app
-        .webhooks
-        .deliveries(client.name(), webhook_id(&id)?)
-        .await?;
+    let deliveries = client.app.webhooks.deliveries(client.name(), id).await?;
     let items = deliveries.into_iter().map(DeliveryView::of).collect();
     Ok(Json(DeliveryListView { items }))
 }
@@ -289,11 +260,10 @@ pub(super) async fn deliveries(
     ),
 )]
 pub(super) async fn enable(
-    State(app): State<App>,
     client: Client,
-    Path(id): Path<String>,
+    WebhookId(id): WebhookId,
 ) -> Result<Json<WebhookView>, Problem> {
-    let webhook = app.webhooks.enable(client.name(), webhook_id(&id)?).await?;
+    let webhook = client.app.webhooks.enable(client.name(), id).await?;
     Ok(Json(WebhookView::of(webhook, None)))
 }
 
@@ -309,10 +279,9 @@ pub(super) async fn enable(
     ),
 )]
 pub(super) async fn rotate(
-    State(app): State<App>,
     client: Client,
-    Path(id): Path<String>,
+    WebhookId(id): WebhookId,
 ) -> Result<Json<WebhookView>, Problem> {
-    let rotated = app.webhooks.rotate(client.name(), webhook_id(&id)?).await?;
+    let rotated = client.app.webhooks.rotate(client.name(), id).await?;
     Ok(Json(WebhookView::of(rotated.webhook, Some(rotated.secret))))
 }

@@ -2,17 +2,16 @@
 
 use std::time::Duration;
 
-use axum::extract::{Path, State};
 use axum::response::Response;
 use serde::Serialize;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-use super::study_id;
 use super::view::StudyView;
 use crate::http::app::App;
 use crate::http::client::Client;
 use crate::http::events::{self, EventName, Told, WatchEvent, Watching, told};
+use crate::http::parameters::StudyId;
 use crate::jobs::News;
 use crate::wire::{Problem, Status};
 
@@ -42,21 +41,19 @@ pub(in crate::http) struct StudyProgressView {
     ),
 )]
 pub(in crate::http) async fn events(
-    State(app): State<App>,
     client: Client,
-    Path(id): Path<String>,
+    StudyId(id): StudyId,
 ) -> Result<Response, Problem> {
-    let id = study_id(&id)?;
-    app.jobs.find_study(client.name(), id).await?;
-    let place = events::place(&app, client.name())?;
+    client.app.jobs.find_study(client.name(), id).await?;
+    let place = events::place(&client.app, client.name())?;
     let watch = Watch {
-        news: app.jobs.news(id),
-        app: app.clone(),
-        client: client.0.client,
+        news: client.app.jobs.news(id),
+        app: client.app.clone(),
+        client: client.member.client,
         id,
         known: None,
     };
-    Ok(events::answer(app, watch, client.1, place))
+    Ok(events::answer(client.app, watch, client.pass, place))
 }
 
 /// One client that watches one study.

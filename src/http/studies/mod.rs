@@ -6,26 +6,23 @@ mod table;
 mod view;
 
 use axum::Json;
-use axum::extract::{Path, State};
 use axum::http::StatusCode;
 use axum::http::header::HeaderMap;
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use utoipa::IntoParams;
-use uuid::Uuid;
 
 use super::answer::{self, json, tell_when_to_return};
-use super::app::App;
 use super::aside::aside;
 use super::client::Client;
 use super::conditional::{Keep, Tag};
 use super::document::Document;
 use super::edge::Edge;
 use super::page::{self, Page, USUAL_LIMIT};
-use super::parameters::{IdempotencyKey, IfNoneMatch, Parameters};
+use super::parameters::{IdempotencyKey, IfNoneMatch, Parameters, StudyId};
 use super::prefer::Wait;
 use crate::jobs::{StudyFilter, StudyRecord};
-use crate::wire::{Code, Problem, Study};
+use crate::wire::{Problem, Study};
 use view::StudyView;
 
 pub(super) use events::*;
@@ -37,12 +34,6 @@ const MIB: usize = 16;
 
 /// The document of a study is told with its state if it has no more bytes than this.
 const LONGEST_IN_VIEW: u64 = 64 << 10;
-
-/// The id in a path. What is no id names no study.
-fn study_id(text: &str) -> Result<Uuid, Problem> {
-    text.parse()
-        .map_err(|_| Problem::new(Code::StudyNotFound, "There is no study of this id."))
-}
 
 /// Submit a study
 ///
@@ -65,17 +56,20 @@ fn study_id(text: &str) -> Result<Uuid, Problem> {
         (status = 503, description = "Too many designs wait, nothing can be stored, or the service is shutting down. Try again after `Retry-After` seconds."),
     ),
 )]
-pub(in crate::http) async fn submit(
-    State(app): State<App>,
+pub(super) async fn submit(
     client: Client,
     IdempotencyKey(key): IdempotencyKey,
     Document(document, _memory): Document<MIB>,
 ) -> Result<Response, Problem> {
     let study = aside(client.name(), move |run| Study::parse(&document, run)).await??;
-    let submitted = app.jobs.submit_study(&client.0, study, key).await?;
+    let submitted = client
+        .app
+        .jobs
+        .submit_study(&client.member, study, key)
+        .await?;
     let study = &submitted.record;
-    let view = StudyView::of(study, &app.edge).to_json();
-    let (address, has_ended) = (app.edge.study(study.id), study.status().has_ended());
+    let view = StudyView::of(study, &client.app.edge).to_json();
+    let (address, has_ended) = (client.app.edge.study(study.id), study.status().has_ended());
     Ok(answer::submitted(
         view,
         &address,
@@ -122,8 +116,7 @@ pub(in crate::http) struct StudyListParameters {
         (status = 400, description = "A parameter is not understood."),
     ),
 )]
-pub(in crate::http) async fn list(
-    State(app): State<App>,
+pub(super) async fn list(
     client: Client,
     Parameters(parameters): Parameters<StudyListParameters>,
 ) -> Result<Response, Problem> {
@@ -135,7 +128,11 @@ pub(in crate::http) async fn list(
         span: page::span(since.as_deref(), before.as_deref())?,
         after: page::cursor(parameters.cursor.as_deref())?,
     };
-    let found = app.jobs.list_studies(client.name(), &filter, limit).await?;
+    let found = client
+        .app
+        .jobs
+        .list_studies(client.name(), &filter, limit)
+        .await?;
     let pairs = [
         ("name", parameters.name.as_deref()),
         ("tag", parameters.tag.as_deref()),
@@ -143,8 +140,14 @@ pub(in crate::http) async fn list(
         ("submitted_before", before.as_deref()),
         ("limit", Some(&*limit.to_string())),
     ];
-    let view = |study| StudyView::of(study, &app.edge);
-    Ok(page::answer(&app.edge, "/v1/studies", &pairs, &found, view))
+    let view = |study| StudyView::of(study, &client.app.edge);
+    Ok(page::answer(
+        &client.app.edge,
+        "/v1/studies",
+        &pairs,
+        &found,
+        view,
+    ))
 }
 
 /// Look at a study
@@ -160,28 +163,34 @@ pub(in crate::http) async fn list(
         (status = 404, description = "There is no such study."),
     ),
 )]
-pub(in crate::http) async fn show(
-    State(app): State<App>,
+pub(super) async fn show(
     client: Client,
     wait: Wait,
-    Path(id): Path<String>,
+    StudyId(id): StudyId,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
-    let id = study_id(&id)?;
-    let wait = wait.grant(&app.door, client.name());
+    let wait = wait.grant(&client);
     let study = match wait.patience() {
         Some(patience) => {
-            let study = app.jobs.wait_for_study(client.name(), id, patience).await?;
-            client.check_again(&app).await?;
+            let study = client
+                .app
+                .jobs
+                .wait_for_study(client.name(), id, patience)
+                .await?;
+            client.check_again().await?;
             study
         }
-        None => app.jobs.find_study(client.name(), id).await?,
+        None => client.app.jobs.find_study(client.name(), id).await?,
     };
     // What has not changed is answered without reading the document.
-    let tag = tag_of(&study, "state", &app.edge);
+    let tag = tag_of(&study, "state", &client.app.edge);
     let whole = async {
-        let document = app.jobs.short_study_text(id, LONGEST_IN_VIEW).await?;
-        let body = StudyView::whole(&study, document, &app.edge).to_json();
+        let document = client
+            .app
+            .jobs
+            .short_study_text(id, LONGEST_IN_VIEW)
+            .await?;
+        let body = StudyView::whole(&study, document, &client.app.edge).to_json();
         Ok::<_, Problem>(json(body))
     };
     let mut response = tag.answer(Keep::AskAgain, &request, whole).await?;
@@ -207,15 +216,14 @@ fn tag_of(study: &StudyRecord, form: &str, edge: &Edge) -> Tag {
         (status = 404, description = "There is no such study."),
     ),
 )]
-pub(in crate::http) async fn document(
-    State(app): State<App>,
+pub(super) async fn document(
     client: Client,
-    Path(id): Path<String>,
+    StudyId(id): StudyId,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
-    let study = app.jobs.find_study(client.name(), study_id(&id)?).await?;
+    let study = client.app.jobs.find_study(client.name(), id).await?;
     let text = async {
-        let text = app.jobs.study_text(study.id).await?;
+        let text = client.app.jobs.study_text(study.id).await?;
         Ok::<_, Problem>(json(text))
     };
     let tag = Tag::of(&["study document", &study.id.to_string()]);
@@ -233,13 +241,9 @@ pub(in crate::http) async fn document(
         (status = 409, description = "The study has ended already."),
     ),
 )]
-pub(in crate::http) async fn cancel(
-    State(app): State<App>,
-    client: Client,
-    Path(id): Path<String>,
-) -> Result<Response, Problem> {
-    let study = app.jobs.cancel_study(client.name(), study_id(&id)?).await?;
-    let view = StudyView::of(&study, &app.edge);
+pub(super) async fn cancel(client: Client, StudyId(id): StudyId) -> Result<Response, Problem> {
+    let study = client.app.jobs.cancel_study(client.name(), id).await?;
+    let view = StudyView::of(&study, &client.app.edge);
     Ok((StatusCode::ACCEPTED, Json(view)).into_response())
 }
 
@@ -254,11 +258,7 @@ pub(in crate::http) async fn cancel(
         (status = 409, description = "The study has not ended; cancel it first."),
     ),
 )]
-pub(in crate::http) async fn delete(
-    State(app): State<App>,
-    client: Client,
-    Path(id): Path<String>,
-) -> Result<StatusCode, Problem> {
-    app.jobs.delete_study(client.name(), study_id(&id)?).await?;
+pub(super) async fn delete(client: Client, StudyId(id): StudyId) -> Result<StatusCode, Problem> {
+    client.app.jobs.delete_study(client.name(), id).await?;
     Ok(StatusCode::NO_CONTENT)
 }

@@ -2,21 +2,21 @@
 
 use std::sync::Arc;
 
-use axum::extract::{Path, State};
+use axum::extract::Path;
 use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
 use meshwright_engine::run::Run;
 
-use super::{study_id, tag_of};
+use super::{over_rows, tag_of};
 use crate::http::answer::{json, tell_when_to_return};
 use crate::http::app::App;
-use crate::http::aside::{aside, turn_to_read};
+use crate::http::aside::aside;
 use crate::http::client::Client;
 use crate::http::conditional::{Keep, Tag};
-use crate::http::parameters::IfNoneMatch;
+use crate::http::parameters::{IfNoneMatch, StudyId};
 use crate::jobs::StudyRecord;
 use crate::wire::{
-    Code, PopulationResults, PopulationSample, Problem, SearchState, Study, Submission,
+    Code, PopulationResults, PopulationSample, Problem, RowState, SearchState, Study, Submission,
 };
 
 /// Get what a population comes to
@@ -36,16 +36,15 @@ use crate::wire::{
     ),
 )]
 pub(in crate::http) async fn population(
-    State(app): State<App>,
     client: Client,
-    Path(id): Path<String>,
+    StudyId(id): StudyId,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
-    let study = app.jobs.find_study(client.name(), study_id(&id)?).await?;
-    let tag = tag_of(&study, "population", &app.edge);
+    let study = client.app.jobs.find_study(client.name(), id).await?;
+    let tag = tag_of(&study, "population", &client.app.edge);
     let name = Arc::from(client.name());
     let made = async {
-        let results = results(&app, name, &study).await?;
+        let results = results(&client.app, name, &study).await?;
         Ok::<_, Problem>(axum::Json(results).into_response())
     };
     let mut response = tag.answer(Keep::AskAgain, &request, made).await?;
@@ -63,29 +62,16 @@ async fn results(
     let at_once = PopulationSample::torques_at_once(&study);
     let mut whole: Option<PopulationResults> = None;
     for first in (0..Study::MOST_TORQUES).step_by(at_once) {
-        let Some(mut sample) = PopulationSample::new(&study, first..first + at_once) else {
+        let Some(sample) = PopulationSample::new(&study, first..first + at_once) else {
             return Err(Problem::new(
                 Code::NotFound,
                 "This study is no population; its table is at /results.",
             ));
         };
-        let mut read = 0;
-        loop {
-            let _turn = turn_to_read(&client).await;
-            let rows = app.jobs.study_rows(record.id, read).await?;
-            if rows.is_empty() {
-                break;
-            }
-            let before = read as u32;
-            read += rows.len() as u64;
-            let added = aside(&client, move |_| {
-                (before..)
-                    .zip(&rows)
-                    .for_each(|(member, row)| sample.add(member, row));
-                sample
-            });
-            sample = added.await?;
-        }
+        let add = |sample: &mut PopulationSample, row: u64, state: &RowState| {
+            sample.add(row as u32, state);
+        };
+        let sample = over_rows(app, &client, record.id, sample, add).await?;
         let (id, status) = (record.id, record.status());
         let (part, is_last) = aside(&client, move |_| {
             (sample.results(Some(id), status), sample.has_all_torques())
@@ -124,16 +110,16 @@ async fn document(app: &App, client: &str, record: &StudyRecord) -> Result<Study
     ),
 )]
 pub(in crate::http) async fn design(
-    State(app): State<App>,
     client: Client,
     Path((id, row)): Path<(String, String)>,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
-    let record = app.jobs.find_study(client.name(), study_id(&id)?).await?;
+    let StudyId(id) = StudyId::of(&id)?;
+    let record = client.app.jobs.find_study(client.name(), id).await?;
     let wanted = row.parse::<u32>().ok();
     let text = async {
         let found = match wanted {
-            Some(row) => submission_of(&app, client.name(), &record, row).await?,
+            Some(row) => submission_of(&client.app, client.name(), &record, row).await?,
             None => None,
         };
         let Some(text) = found else {
@@ -180,12 +166,11 @@ async fn submission_of(
     ),
 )]
 pub(in crate::http) async fn best(
-    State(app): State<App>,
     client: Client,
-    Path(id): Path<String>,
+    StudyId(id): StudyId,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
-    let record = app.jobs.find_study(client.name(), study_id(&id)?).await?;
+    let record = client.app.jobs.find_study(client.name(), id).await?;
     let Some(state) = &record.search else {
         return Err(Problem::new(
             Code::NotFound,
@@ -201,7 +186,7 @@ pub(in crate::http) async fn best(
         return Err(Problem::new(Code::ResultNotReady, detail));
     };
     let text = async {
-        let found = submission_of(&app, client.name(), &record, best.row as u32).await?;
+        let found = submission_of(&client.app, client.name(), &record, best.row as u32).await?;
         let text = found.ok_or_else(crate::http::problem::internal)?;
         Ok::<_, Problem>(json(text))
     };

@@ -4,9 +4,9 @@
 use std::sync::Arc;
 
 use axum::body::{Body, Bytes};
-use axum::extract::{Path, State};
+use axum::extract::Path;
 use axum::http::HeaderMap;
-use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE, HeaderName, HeaderValue, LINK};
+use axum::http::header::{CONTENT_TYPE, HeaderName, HeaderValue, LINK};
 use axum::response::{IntoResponse, Response};
 use futures_util::stream;
 use serde::de::IntoDeserializer;
@@ -14,15 +14,16 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use serde_json::value::RawValue;
 use utoipa::ToSchema;
+use uuid::Uuid;
 
+use super::tag_of;
 use super::view::why_failed;
-use super::{study_id, tag_of};
-use crate::http::answer::tell_when_to_return;
+use crate::http::answer::{self, tell_when_to_return};
 use crate::http::app::App;
 use crate::http::aside::{aside, turn_to_read};
 use crate::http::client::Client;
 use crate::http::conditional::Keep;
-use crate::http::parameters::IfNoneMatch;
+use crate::http::parameters::{IfNoneMatch, StudyId};
 use crate::http::view::with_public_type;
 use crate::jobs::{DocumentLine, JobError, StudyRecord};
 use crate::wire::study_table::{CsvTable, Outline, TableRow};
@@ -43,12 +44,11 @@ use crate::wire::{Code, Problem, Results, RowState, StudyResults};
     ),
 )]
 pub(in crate::http) async fn results(
-    State(app): State<App>,
     client: Client,
-    Path(id): Path<String>,
+    StudyId(id): StudyId,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
-    send(app, client, &id, &request, StudyFile::Json).await
+    send(client, id, &request, StudyFile::Json).await
 }
 
 /// Get the table of a study, or its results, as a file
@@ -73,7 +73,6 @@ pub(in crate::http) async fn results(
     ),
 )]
 pub(in crate::http) async fn file(
-    State(app): State<App>,
     client: Client,
     Path((id, file)): Path<(String, String)>,
     request: HeaderMap,
@@ -86,21 +85,21 @@ pub(in crate::http) async fn file(
             "The files are table.json, table.ndjson, table.csv and documents.ndjson.",
         )
     })?;
-    send(app, client, &id, &request, form).await
+    let StudyId(id) = StudyId::of(&id)?;
+    send(client, id, &request, form).await
 }
 
 /// The table as CSV at the address that it had first.
 pub(in crate::http) async fn old_csv(
-    State(app): State<App>,
     client: Client,
-    Path(id): Path<String>,
+    StudyId(id): StudyId,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
     let address = format!(
         "<{}/v1/studies/{id}/results/table.csv>; rel=\"successor-version\"",
-        app.edge.public_url
+        client.app.edge.public_url
     );
-    let mut response = send(app, client, &id, &request, StudyFile::Csv).await?;
+    let mut response = send(client, id, &request, StudyFile::Csv).await?;
     let headers = response.headers_mut();
     // 2026-11-21, as RFC 9745 wants it.
     headers.insert(
@@ -186,34 +185,30 @@ impl StudyFile {
 }
 
 async fn send(
-    app: App,
     client: Client,
-    id: &str,
+    id: Uuid,
     request: &HeaderMap,
     form: StudyFile,
 ) -> Result<Response, Problem> {
-    let study = app.jobs.find_study(client.name(), study_id(id)?).await?;
-    let tag = tag_of(&study, form.word(), &app.edge);
+    let study = client.app.jobs.find_study(client.name(), id).await?;
+    let tag = tag_of(&study, form.word(), &client.app.edge);
     let name = Arc::from(client.name());
     let made = async {
         let body = match form {
             StudyFile::Json | StudyFile::Ndjson | StudyFile::Csv => {
-                table(app, name, &study, form).await?
+                table(client.app, name, &study, form).await?
             }
-            StudyFile::Documents => documents(app, name, &study).await?,
+            StudyFile::Documents => documents(client.app, name, &study).await?,
         };
-        let mut response = ([(CONTENT_TYPE, form.content_type())], body).into_response();
-        if !matches!(form, StudyFile::Json) {
-            let name = format!(
-                "attachment; filename=\"study-{}-{}\"",
-                study.id,
-                form.word()
-            );
-            if let Ok(name) = HeaderValue::try_from(name) {
-                response.headers_mut().insert(CONTENT_DISPOSITION, name);
-            }
-        }
-        Ok::<_, Problem>(response)
+        let media_type = form.content_type();
+        Ok::<_, Problem>(match form {
+            StudyFile::Json => ([(CONTENT_TYPE, media_type)], body).into_response(),
+            _ => answer::file(
+                media_type,
+                &format!("study-{}-{}", study.id, form.word()),
+                body,
+            ),
+        })
     };
     let mut response = tag.answer(Keep::AskAgain, request, made).await?;
     tell_when_to_return(study.status().has_ended(), &mut response);
@@ -227,21 +222,8 @@ async fn table(
     study: &StudyRecord,
     form: StudyFile,
 ) -> Result<Body, Problem> {
-    let mut outline = Outline::default();
-    let mut read = 0;
-    loop {
-        let _turn = turn_to_read(&client).await;
-        let rows = app.jobs.study_rows(study.id, read).await?;
-        if rows.is_empty() {
-            break;
-        }
-        read += rows.len() as u64;
-        let added = aside(&client, move |_| {
-            rows.iter().for_each(|row| outline.add(row));
-            outline
-        });
-        outline = added.await?;
-    }
+    let add = |outline: &mut Outline, _, state: &RowState| outline.add(state);
+    let outline = over_rows(&app, &client, study.id, Outline::default(), add).await?;
     let (pointers, told) = (outline.pointers().to_vec(), outline.told());
     let front = aside(&client, move |_| outline.front()).await?;
     let (head, foot, layout) = match form {
@@ -272,6 +254,33 @@ async fn table(
     let foot = stream::iter([Ok(Bytes::from_static(foot.as_bytes()))]);
     use futures_util::StreamExt;
     Ok(Body::from_stream(head.chain(rows).chain(foot)))
+}
+
+/// What `add` makes of every row of a study and its place; they are read some at a time.
+pub(super) async fn over_rows<T: Send + 'static>(
+    app: &App,
+    client: &str,
+    study: Uuid,
+    mut made: T,
+    add: fn(&mut T, u64, &RowState),
+) -> Result<T, Problem> {
+    let mut read = 0;
+    loop {
+        let _turn = turn_to_read(client).await;
+        let rows = app.jobs.study_rows(study, read).await?;
+        if rows.is_empty() {
+            return Ok(made);
+        }
+        let before = read;
+        read += rows.len() as u64;
+        let added = aside(client, move |_| {
+            (before..)
+                .zip(&rows)
+                .for_each(|(place, row)| add(&mut made, place, row));
+            made
+        });
+        made = added.await?;
+    }
 }
 
 /// Everything before the rows.
