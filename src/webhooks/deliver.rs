@@ -233,18 +233,14 @@ impl Courier {
     }
 
     async fn attempt(&self, message: &Message) {
-        let sent = self.send(message).await;
-        let (result, refusal) = match &sent.refusal {
-            None => ("arrived", None),
-            Some(Refused::Again(why)) => ("refused", Some(Refusal::Again(why))),
-            Some(Refused::Never(why)) => ("given_up", Some(Refusal::Never(why))),
+        let attempt = self.send(message).await;
+        let result = match &attempt.refusal {
+            None => "arrived",
+            Some(Refusal::Again(_)) => "refused",
+            Some(Refusal::Never(_)) => "given_up",
         };
         metrics::counter!("meshwright_webhook_attempts_total", "result" => result).increment(1);
-        let attempt = Attempt {
-            answered: sent.answered,
-            refusal,
-        };
-        match self.webhooks.attempted(message, attempt).await {
+        match self.webhooks.attempted(message, &attempt).await {
             Ok(true) => info!(webhook = %message.webhook, "a webhook is given up"),
             Ok(false) => {}
             Err(error) => {
@@ -254,15 +250,15 @@ impl Courier {
         }
     }
 
-    async fn send(&self, message: &Message) -> Sent {
+    async fn send(&self, message: &Message) -> Attempt {
         // The list may be another one than when the webhook was made.
         if let Err(why) = self.webhooks.rules.check(&message.url) {
-            return Sent::not(Refused::Again(why));
+            return Attempt::not(Refusal::Again(why));
         }
         let timestamp = self.webhooks.jobs.clock().now().as_second();
         let id = message.id.to_string();
         let Some(signature) = signatures(&message.secrets, &id, timestamp, &message.body) else {
-            return Sent::not(Refused::Never("its secret is damaged".to_owned()));
+            return Attempt::not(Refusal::Never("its secret is damaged".to_owned()));
         };
         let request = self
             .client
@@ -273,28 +269,15 @@ impl Courier {
             .header("webhook-signature", signature)
             .body(message.body.clone());
         match request.send().await {
-            Ok(answer) => Sent::answered(answer.status()),
-            Err(error) => Sent::not(Refused::Again(told(&error, TIME_OUT))),
+            Ok(answer) => Attempt::answered(answer.status()),
+            Err(error) => Attempt::not(Refusal::Again(told(&error, TIME_OUT))),
         }
     }
 }
 
-/// What came of a message that was sent.
-struct Sent {
-    answered: Option<u16>,
-    refusal: Option<Refused>,
-}
-
-/// Why a message was not taken.
-enum Refused {
-    /// It may be the next time.
-    Again(String),
-    /// It will not be.
-    Never(String),
-}
-
-impl Sent {
-    fn not(refusal: Refused) -> Self {
+impl Attempt {
+    /// There was no answer.
+    fn not(refusal: Refusal) -> Self {
         Self {
             answered: None,
             refusal: Some(refusal),
@@ -306,8 +289,8 @@ impl Sent {
         let refusal = match status {
             status if status.is_success() => None,
             // Standard Webhooks: the receiver wants no more.
-            StatusCode::GONE => Some(Refused::Never("it answered 410".to_owned())),
-            _ => Some(Refused::Again(format!("it answered {code}"))),
+            StatusCode::GONE => Some(Refusal::Never("it answered 410".to_owned())),
+            _ => Some(Refusal::Again(format!("it answered {code}"))),
         };
         Self {
             answered: Some(code),

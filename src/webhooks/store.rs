@@ -8,7 +8,7 @@ use uuid::Uuid;
 use super::addresses::HookRules;
 use crate::jobs::store::outbox::NewMessage;
 use crate::jobs::store::rows::{from_row, instant, optional_instant, optional_uuid, small, uuid};
-use crate::jobs::store::statement::{query, query_as, query_scalar};
+use crate::jobs::store::statement::{Nothing, Statement, query, query_as, query_scalar};
 use crate::jobs::store::{StoreError, dialect, micros};
 use crate::jobs::{EventKind, Jobs, KEY_LIFETIME};
 
@@ -195,20 +195,19 @@ pub(super) struct Message {
 }
 
 /// What came of an attempt.
-pub(super) struct Attempt<'a> {
+pub(super) struct Attempt {
     /// The HTTP status, if there was an answer.
     pub(super) answered: Option<u16>,
     /// Why the message was not taken, if it was not.
-    pub(super) refusal: Option<Refusal<'a>>,
+    pub(super) refusal: Option<Refusal>,
 }
 
 /// Why a message was not taken.
-#[derive(Clone, Copy)]
-pub(super) enum Refusal<'a> {
+pub(super) enum Refusal {
     /// It may be the next time.
-    Again(&'a str),
-    /// The receiver wants no more.
-    Never(&'a str),
+    Again(String),
+    /// It will not be.
+    Never(String),
 }
 
 /// The webhooks of all clients.
@@ -229,6 +228,14 @@ impl Webhooks {
         let steady = self.jobs.clock().steady();
         let now = query_scalar(dialect::steady_now()).bind(steady.as_microsecond());
         Ok(now.fetch_one(&self.jobs.store().readers).await?)
+    }
+
+    /// Carries out a statement by itself. Gives back how many rows it was about.
+    async fn write(&self, statement: Statement<Nothing>) -> Result<u64, StoreError> {
+        let mut write = self.jobs.store().begin().await?;
+        let changed = statement.execute(&mut *write).await?;
+        write.commit().await?;
+        Ok(changed)
     }
 
     pub(super) async fn store_new(&self, new: &NewWebhook) -> Result<Outcome, StoreError> {
@@ -308,14 +315,10 @@ impl Webhooks {
 
     /// False if the client has no such webhook.
     pub(super) async fn remove(&self, client: &str, id: Uuid) -> Result<bool, StoreError> {
-        let mut write = self.jobs.store().begin().await?;
         let deleted = query("delete from webhooks where id = $1 and client = $2")
             .bind(id.to_string())
-            .bind(client)
-            .execute(&mut *write)
-            .await?;
-        write.commit().await?;
-        Ok(deleted == 1)
+            .bind(client);
+        Ok(self.write(deleted).await? == 1)
     }
 
     /// The latest messages to a webhook, the newest first, or the one of this id.
@@ -369,12 +372,11 @@ impl Webhooks {
     }
 
     pub(super) async fn store_enabled(&self, webhook: Uuid) -> Result<(), StoreError> {
-        let mut write = self.jobs.store().begin().await?;
-        query("update webhooks set disabled_at = null, failures = 0, retry_at = 0, problem = null where id = $1")
-            .bind(webhook.to_string())
-            .execute(&mut *write)
-            .await?;
-        write.commit().await
+        let enabled = query(
+            "update webhooks set disabled_at = null, failures = 0, retry_at = 0, problem = null where id = $1",
+        );
+        self.write(enabled.bind(webhook.to_string())).await?;
+        Ok(())
     }
 
     pub(super) async fn store_secret(&self, webhook: Uuid, secret: &str) -> Result<(), StoreError> {
@@ -382,14 +384,12 @@ impl Webhooks {
             .store_now()
             .await?
             .saturating_add(micros(BOTH_SECRETS_FOR));
-        let mut write = self.jobs.store().begin().await?;
-        query("update webhooks set previous_secret = secret, previous_until = $3, secret = $2 where id = $1")
+        let rotated = query("update webhooks set previous_secret = secret, previous_until = $3, secret = $2 where id = $1")
             .bind(webhook.to_string())
             .bind(secret)
-            .bind(until)
-            .execute(&mut *write)
-            .await?;
-        write.commit().await
+            .bind(until);
+        self.write(rotated).await?;
+        Ok(())
     }
 
     /// The webhooks for which something waits.
@@ -470,22 +470,22 @@ impl Webhooks {
         if self.jobs.store().is_shared() {
             return Ok(());
         }
-        let mut write = self.jobs.store().begin().await?;
-        query("update messages set next_at = 0 where arrived_at is null and next_at > 0")
-            .execute(&mut *write)
-            .await?;
-        write.commit().await
+        self.write(query(
+            "update messages set next_at = 0 where arrived_at is null and next_at > 0",
+        ))
+        .await?;
+        Ok(())
     }
 
     /// Writes down what came of an attempt. True if the webhook is given up with it.
     pub(super) async fn attempted(
         &self,
         message: &Message,
-        attempt: Attempt<'_>,
+        attempt: &Attempt,
     ) -> Result<bool, StoreError> {
         let at = self.jobs.clock().now().as_microsecond();
         let now = self.store_now().await?;
-        let problem = attempt.refusal.map(|refusal| match refusal {
+        let problem = attempt.refusal.as_ref().map(|refusal| match refusal {
             Refusal::Again(why) | Refusal::Never(why) => why,
         });
         let mut write = self.jobs.store().begin().await?;
@@ -496,11 +496,11 @@ impl Webhooks {
         .bind(message.id.to_string())
         .bind(at)
         .bind(attempt.answered.map(u32::from))
-        .bind(problem.map(str::to_owned))
+        .bind(problem.cloned())
         .bind(attempt.refusal.is_none().then_some(at))
         .execute(&mut *write)
         .await?;
-        let Some(refusal) = attempt.refusal else {
+        let Some(refusal) = &attempt.refusal else {
             query("update webhooks set failures = 0, retry_at = 0 where id = $1 and failures > 0")
                 .bind(message.webhook.to_string())
                 .execute(&mut *write)
@@ -511,7 +511,7 @@ impl Webhooks {
         let before: Option<(i64, i64)> =
             query_as("update webhooks set problem = $2 where id = $1 returning failures, retry_at")
                 .bind(message.webhook.to_string())
-                .bind(problem.map(str::to_owned))
+                .bind(problem.cloned())
                 .fetch_optional(&mut *write)
                 .await?;
         let next = before.map(|(failures, retry_at)| {
@@ -549,7 +549,7 @@ struct Patience {
 
 impl Patience {
     /// After so many failures before this one; none if it changes nothing.
-    fn after(failures: i64, counts: bool, now: i64, refusal: Refusal<'_>) -> Option<Self> {
+    fn after(failures: i64, counts: bool, now: i64, refusal: &Refusal) -> Option<Self> {
         if matches!(refusal, Refusal::Never(_)) {
             return Some(Self {
                 failures: failures + 1,
@@ -575,16 +575,17 @@ mod tests {
 
     #[test]
     fn patience_grows_and_ends_after_a_day_and_a_half() {
-        let again = Refusal::Again("it answered 500");
+        let again = Refusal::Again("it answered 500".to_owned());
         let waits: Vec<i64> = (0..)
-            .map_while(|failures| Patience::after(failures, true, 0, again)?.retry_at)
+            .map_while(|failures| Patience::after(failures, true, 0, &again)?.retry_at)
             .map(|at| at / 1_000_000)
             .collect();
         assert_eq!(waits, PATIENCE_S);
         assert!(waits.is_sorted());
         assert!((33 * 3600..37 * 3600).contains(&waits.iter().sum::<i64>()));
-        assert_eq!(Patience::after(3, false, 0, again), None);
-        let never = Patience::after(0, false, 0, Refusal::Never("it answered 410"));
+        assert_eq!(Patience::after(3, false, 0, &again), None);
+        let never = Refusal::Never("it answered 410".to_owned());
+        let never = Patience::after(0, false, 0, &never);
         assert_eq!(never.unwrap().retry_at, None);
     }
 }
