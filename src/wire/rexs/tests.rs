@@ -31,6 +31,27 @@ fn with(old: &str, new: &str) -> String {
     CASE_2.replacen(old, new, 1)
 }
 
+/// The first attribute of this name in the model of test case 2.
+fn attribute(id: &str) -> &'static str {
+    let from = CASE_2.find(&format!("<attribute id=\"{id}\"")).expect(id);
+    let (own, _) = CASE_2[from..].split_once("</attribute>").expect("an end");
+    &CASE_2[from..from + own.len() + "</attribute>".len()]
+}
+
+/// The model of test case 2 without this attribute.
+fn without(id: &str) -> String {
+    with(attribute(id), "")
+}
+
+/// The model of test case 2 with another value of this attribute.
+fn saying(id: &str, unit: &str, value: &str) -> String {
+    with(attribute(id), &said(id, unit, value))
+}
+
+fn said(id: &str, unit: &str, value: &str) -> String {
+    format!(r#"<attribute id="{id}" unit="{unit}">{value}</attribute>"#)
+}
+
 /// That exactly one thing is wrong, at `place`, and that these words are said of it.
 fn assert_refused(model: &str, place: &str, words: &[&str]) {
     let Refused(faults) = refused(model);
@@ -40,6 +61,15 @@ fn assert_refused(model: &str, place: &str, words: &[&str]) {
     assert!(fault.place.contains(place), "{fault:?}");
     for word in words {
         assert!(fault.detail.contains(word), "{word}: {fault:?}");
+    }
+}
+
+/// That each of these words is in a remark.
+fn assert_told(imported: &Import, words: &[&str]) {
+    let remarks = &imported.remarks;
+    for word in words {
+        let is_told = remarks.iter().any(|remark| remark.contains(word));
+        assert!(is_told, "{word}: {remarks:?}");
     }
 }
 
@@ -66,54 +96,58 @@ fn the_model_of_test_case_2_is_its_submission() {
 
 #[test]
 fn units_are_converted_and_unknown_ones_refused() {
-    for (old, new, pointer, value) in [
+    for (id, unit, said, pointer, value) in [
         (
-            r#""center_distance" unit="mm">100.5"#,
-            r#""center_distance" unit="m">0.1005"#,
+            "center_distance",
+            "m",
+            "0.1005",
             "/pair/center_distance_mm",
             100.5,
         ),
         (
-            r#"unit="N / mm^2">210000"#,
-            r#"unit="MPa">205000"#,
+            "elastic_modulus",
+            "MPa",
+            "205000",
             "/pair/driven/material/youngs_modulus_gpa",
             205.0,
         ),
         (
-            r#"unit="kg / dm^3">7.85"#,
-            r#"unit="kg / m^3">7850"#,
+            "density",
+            "kg / m^3",
+            "7850",
             "/pair/driven/material/density_kg_m3",
             7850.0,
         ),
         (
-            r#"unit="N m">-115"#,
-            r#"unit="kN m">-0.115"#,
+            "torque_around_u_axis",
+            "kN m",
+            "-0.115",
             "/output_torques_n_m/0",
             115.0,
         ),
         (
-            r#"unit="mm">0.005<"#,
-            r#"unit="mum">5.1<"#,
+            "tip_relief_depth",
+            "mum",
+            "5.1",
             "/pair/driving/tip_relief/amount_um",
             5.1,
         ),
-        (
-            r#""number_of_teeth" unit="none">50"#,
-            r#""number_of_teeth">50"#,
-            "/pair/driving/tooth_count",
-            50.0,
-        ),
     ] {
-        let said = field(&taken(&with(old, new)), pointer);
-        assert_eq!(said.as_f64(), Some(value), "{new}");
+        let found = field(&taken(&saying(id, unit, said)), pointer);
+        assert_eq!(found.as_f64(), Some(value), "{said}");
     }
-    let inches = with(r#"unit="mm">100.5"#, r#"unit="inch">3.957"#);
+    let unitless = with(
+        r#""number_of_teeth" unit="none">50"#,
+        r#""number_of_teeth">50"#,
+    );
+    assert_eq!(field(&taken(&unitless), "/pair/driving/tooth_count"), 50);
+    let inches = saying("center_distance", "inch", "3.957");
     assert_refused(
         &inches,
         "component 2 (cylindrical_stage \"Stage\"), center_distance",
         &["inch", "mm, mum"],
     );
-    let word = with(r#"unit="mm">100.5"#, r#"unit="mm">wide"#);
+    let word = saying("center_distance", "mm", "wide");
     assert_refused(&word, "center_distance", &["wide", "number"]);
 }
 
@@ -126,11 +160,7 @@ fn a_word_that_is_not_known_is_refused() {
     assert_refused(&flank, "component 11", &["both", "left, right"]);
     let drives = with(">true<", ">yes<");
     assert_refused(&drives, "component 11", &["yes", "true, false"]);
-    let shape = with(
-        r#"<attribute id="shape_of_relief" unit="none">linear</attribute>"#,
-        "",
-    );
-    let shape = taken(&shape);
+    let shape = taken(&without("shape_of_relief"));
     assert_eq!(field(&shape, "/pair/driven/tip_relief/shape"), "linear");
     let said = "Assumed: component 32 (tip_relief) has no shape_of_relief; taken is linear.";
     assert_eq!(shape.remarks[0], said);
@@ -138,10 +168,7 @@ fn a_word_that_is_not_known_is_refused() {
 
 #[test]
 fn a_helix_an_internal_gear_and_flanks_that_differ_are_refused_with_the_reason() {
-    let helix = with(
-        r#""helix_angle_reference_diameter" unit="deg">0"#,
-        r#""helix_angle_reference_diameter" unit="deg">21"#,
-    );
+    let helix = saying("helix_angle_reference_diameter", "deg", "21");
     assert_refused(
         &helix,
         "component 10 (cylindrical_gear \"Pinion\"), helix_angle_reference_diameter",
@@ -152,10 +179,7 @@ fn a_helix_an_internal_gear_and_flanks_that_differ_are_refused_with_the_reason()
         r#"<component id="20" type="ring_gear""#,
     );
     assert_refused(&ring, "component 20", &["ring_gear", "external"]);
-    let shifted = with(
-        r#""addendum_modification_coefficient" unit="none">0"#,
-        r#""addendum_modification_coefficient" unit="none">0.2"#,
-    );
+    let shifted = saying("addendum_modification_coefficient", "none", "0.2");
     assert_refused(&shifted, "component 13", &["0.2", "both sides"]);
     let one_relief = with(
         r#"<ref id="12" role="origin"/>"#,
@@ -207,10 +231,7 @@ fn of_several_stages_one_is_chosen_by_its_id() {
 
 #[test]
 fn a_torque_comes_from_the_case_the_gear_data_or_the_caller_and_else_is_missed() {
-    let none = with(
-        r#"<attribute id="torque_around_u_axis" unit="N m">-115</attribute>"#,
-        "",
-    );
+    let none = without("torque_around_u_axis");
     assert_refused(&none, "component 2", &["--torque", "external_load"]);
     let choices = Choices {
         torques: vec![80.0, 20.0],
@@ -219,11 +240,8 @@ fn a_torque_comes_from_the_case_the_gear_data_or_the_caller_and_else_is_missed()
     let chosen = import(none.as_bytes(), &choices).expect("the caller says it");
     assert_eq!(field(&chosen, "/output_torques_n_m"), json!([80.0, 20.0]));
     // The torque of the driving gear is larger by the ratio on the driven one, and signs are those of the axes.
-    let data = r#"is_driving_gear" unit="none">true</attribute>"#;
-    let of_driving = none.replace(
-        data,
-        &format!("{data}<attribute id=\"torque\" unit=\"N m\">-40</attribute>"),
-    );
+    let data = attribute("is_driving_gear");
+    let of_driving = none.replace(data, &(data.to_owned() + &said("torque", "N m", "-40")));
     let of_driving = of_driving.replacen(">50<", ">25<", 1);
     assert_eq!(
         field(&taken(&of_driving), "/output_torques_n_m"),
@@ -253,42 +271,28 @@ fn the_gear_that_says_so_drives() {
     let silent = CASE_2.replace(">true<", "><").replace(">false<", "><");
     let silent = taken(&silent);
     assert_eq!(field(&silent, "/pair/driven/blank/holes/count"), 10);
-    assert!(
-        silent
-            .remarks
-            .iter()
-            .any(|remark| remark.contains("drives")),
-        "{:?}",
-        silent.remarks
-    );
+    assert_told(&silent, &["drives"]);
     let both = CASE_2.replace(">false<", ">true<");
     assert_refused(&both, "component 2", &["exactly one drives"]);
 }
 
 #[test]
 fn what_is_absent_is_told_as_assumed_or_missed_and_what_is_not_read_is_named() {
-    let poor = CASE_2.replace(
-        r#"<attribute id="tip_radius_factor" unit="none">0.38</attribute>"#,
-        "",
-    );
-    let poor = poor.replace(
-        r#"<attribute id="normal_pressure_angle" unit="deg">20</attribute>"#,
-        r#"<attribute id="grinding_allowance" unit="mm">0.1</attribute>"#,
+    let poor = without("tip_radius_factor").replace(
+        attribute("normal_pressure_angle"),
+        &said("grinding_allowance", "mm", "0.1"),
     );
     let imported = taken(&poor);
     assert_eq!(field(&imported, "/pair/driven/pressure_angle_deg"), 20.0);
-    let remarks = imported.remarks.join("\n");
-    for said in [
-        "Assumed: component 10 (cylindrical_gear \"Pinion\") has no normal_pressure_angle; taken is 20 deg.",
-        "no rack_shaped_tool with a tip radius",
-        "Not read: of component 12 (cylindrical_gear_flank): grinding_allowance.",
-    ] {
-        assert!(remarks.contains(said), "{said}: {remarks}");
-    }
-    let solid = with(
-        r#"<attribute id="inner_diameter" unit="mm">32</attribute>"#,
-        "",
+    assert_told(
+        &imported,
+        &[
+            "Assumed: component 10 (cylindrical_gear \"Pinion\") has no normal_pressure_angle; taken is 20 deg.",
+            "no rack_shaped_tool with a tip radius",
+            "Not read: of component 12 (cylindrical_gear_flank): grinding_allowance.",
+        ],
     );
+    let solid = without("inner_diameter");
     assert_refused(&solid, "component 10", &["inner_diameter", "--bore-radius"]);
     let choices = Choices {
         bore_radii: vec![12.0, 15.0],
@@ -297,15 +301,16 @@ fn what_is_absent_is_told_as_assumed_or_missed_and_what_is_not_read_is_named() {
     let bored = import(solid.as_bytes(), &choices).expect("the caller says it");
     assert_eq!(field(&bored, "/pair/driving/blank/bore_radius_mm"), 12.0);
     assert_eq!(field(&bored, "/pair/driven/blank/bore_radius_mm"), 15.0);
-    let narrow = with(r#"<attribute id="face_width" unit="mm">20</attribute>"#, "");
+    let narrow = without("face_width");
     assert_refused(&narrow, "component 10", &["face_width", "no default"]);
 }
 
 #[test]
 fn the_tool_stands_where_it_generates_the_teeth() {
-    let thin = with(
-        r#""generated_addendum_modification_coefficient" unit="none">0"#,
-        r#""generated_addendum_modification_coefficient" unit="none">-0.02"#,
+    let thin = saying(
+        "generated_addendum_modification_coefficient",
+        "none",
+        "-0.02",
     );
     let imported = taken(&thin);
     // Cut 0.02 modules deeper: the root by 0.04 mm, the tooth thinner by 2 * 0.04 mm * tan 20 deg.
@@ -314,18 +319,11 @@ fn the_tool_stands_where_it_generates_the_teeth() {
     let expected = -80.0 * 20_f64.to_radians().tan();
     assert!((thinner.as_f64().expect("a number") - expected).abs() < 1e-6);
     // A root diameter that says otherwise holds, and that is told.
-    let ground = CASE_2.replace(
-        r#"<attribute id="tip_diameter" unit="mm">104</attribute>"#,
-        r#"<attribute id="tip_diameter" unit="mm">104</attribute><attribute id="root_diameter" unit="mm">94.8</attribute>"#,
-    );
-    let ground = taken(&ground);
+    let tip = attribute("tip_diameter");
+    let root = said("root_diameter", "mm", "94.8");
+    let ground = taken(&CASE_2.replace(tip, &(tip.to_owned() + &root)));
     assert_eq!(field(&ground, "/pair/driven/dedendum_mm"), 2.6);
-    assert!(
-        ground
-            .remarks
-            .iter()
-            .any(|remark| remark.contains("root_diameter 2.6 mm"))
-    );
+    assert_told(&ground, &["root_diameter 2.6 mm"]);
     let other = with(
         r#""normal_module" unit="mm">2</attribute>
       <attribute id="normal_pressure_angle""#,
@@ -343,55 +341,36 @@ fn the_tool_stands_where_it_generates_the_teeth() {
 
 #[test]
 fn a_web_lies_between_the_rim_and_the_bore() {
-    let body = r#"<component id="50" type="gear_body"><attribute id="gear_body_rim_thickness" unit="mm">4.5</attribute><attribute id="gear_body_web_thickness" unit="mm">6</attribute></component></components>"#;
+    let rim = said("gear_body_rim_thickness", "mm", "4.5");
+    let web = said("gear_body_web_thickness", "mm", "6");
+    let body =
+        format!(r#"<component id="50" type="gear_body">{rim}{web}</component></components>"#);
     let relation = r#"<relation id="50" type="assembly"><ref id="20" role="assembly"/><ref id="50" role="part"/></relation></relations>"#;
     let model = CASE_2
-        .replace("</components>", body)
+        .replace("</components>", &body)
         .replace("</relations>", relation);
     let imported = taken(&model);
     let web = json!({ "inner_radius_mm": 16.0, "outer_radius_mm": 43.0, "thickness_mm": 6.0 });
     assert_eq!(field(&imported, "/pair/driven/blank/web"), web);
-    assert!(
-        imported
-            .remarks
-            .iter()
-            .any(|remark| remark.contains("no hub"))
-    );
-    let half = model.replace(
-        r#"<attribute id="gear_body_rim_thickness" unit="mm">4.5</attribute>"#,
-        "",
-    );
-    assert_refused(&half, "component 50", &["needs both"]);
+    assert_told(&imported, &["no hub"]);
+    assert_refused(&model.replace(&rim, ""), "component 50", &["needs both"]);
 }
 
 #[test]
 fn reliefs_that_are_said_otherwise_than_we_can_take_are_refused() {
-    for (new, words) in [
-        (
-            r#""shape_of_relief">exponential"#,
-            ["exponential", "parabolic"],
-        ),
-        (
-            r#""shape_of_relief">linear</attribute><attribute id="tip_relief_evaluation_reference" unit="mm">103.6"#,
-            ["103.6", "104"],
-        ),
-    ] {
-        assert_refused(
-            &with(r#""shape_of_relief" unit="none">linear"#, new),
-            "component 32",
-            &words,
-        );
-    }
-    let nowhere = with(
-        r#"<attribute id="tip_relief_datum_diameter" unit="mm">100.5</attribute>"#,
-        "",
+    let shape = "shape_of_relief";
+    let grown = saying(shape, "none", "exponential");
+    assert_refused(&grown, "component 32", &["exponential", "parabolic"]);
+    let below_tip = said("tip_relief_evaluation_reference", "mm", "103.6");
+    let below_tip = with(
+        attribute(shape),
+        &(attribute(shape).to_owned() + &below_tip),
     );
-    assert_refused(&nowhere, "component 32", &["where does it begin"]);
-    let rolled = with(
-        r#""tip_relief_datum_diameter" unit="mm">100.5"#,
-        r#""tip_relief_datum_length" unit="mm">4"#,
-    );
-    let rolled = taken(&rolled);
+    assert_refused(&below_tip, "component 32", &["103.6", "104"]);
+    let datum = "tip_relief_datum_diameter";
+    assert_refused(&without(datum), "component 32", &["where does it begin"]);
+    let rolled = said("tip_relief_datum_length", "mm", "4");
+    let rolled = taken(&with(attribute(datum), &rolled));
     assert_eq!(
         field(&rolled, "/pair/driving/tip_relief/start"),
         json!({ "roll_length_from_tip_mm": 4.0 })
@@ -413,17 +392,14 @@ fn a_crowning_takes_off_the_same_at_both_ends_and_a_slope_at_the_tip() {
         let model = CASE_2.replace("</components>", &parts);
         model.replace("</relations>", &format!("{relations}</relations>"))
     };
-    let at = |end: &str, mm: f64| {
-        format!(r#"<attribute id="profile_crowning_at_{end}" unit="mm">{mm}</attribute>"#)
-    };
-    let imported = taken(&model(&(at("tip", 0.004) + &at("root", 0.004))));
+    let at = |end: &str, mm: &str| said(&format!("profile_crowning_at_{end}"), "mm", mm);
+    let imported = taken(&model(&(at("tip", "0.004") + &at("root", "0.004"))));
     assert_eq!(
         field(&imported, "/pair/driving/profile_modifications"),
         json!([{ "kind": "crowning", "amount_um": 4.0 }, { "kind": "slope", "amount_um": -3.0 }])
     );
-    let sign = |remark: &String| remark.contains("takes material off at the tip");
-    assert!(imported.remarks.iter().any(sign), "{:?}", imported.remarks);
-    let unlike = model(&(at("tip", 0.004) + &at("root", 0.006)));
+    assert_told(&imported, &["takes material off at the tip"]);
+    let unlike = model(&(at("tip", "0.004") + &at("root", "0.006")));
     assert_refused(
         &unlike,
         "component 60",
@@ -442,11 +418,7 @@ fn more_load_cases_than_anybody_computes_are_refused() {
 
 #[test]
 fn a_problem_of_the_submission_leads_back_to_the_model() {
-    let apart = with(
-        r#""center_distance" unit="mm">100.5"#,
-        r#""center_distance" unit="mm">105"#,
-    );
-    let imported = taken(&apart);
+    let imported = taken(&saying("center_distance", "mm", "105"));
     let problem = parse(&imported.submission).expect_err("apart");
     let origin = imported.origin(&problem.errors[0].pointer);
     assert_eq!(
@@ -487,9 +459,9 @@ fn every_valid_example_comes_back_as_the_same_pair() {
         let back = back.unwrap_or_else(|problem| panic!("{}: {problem:?}", example.name));
         assert_eq!(gone.method(), back.method());
         let again = solved(&back);
-        assert_alike(&there["pair"], &again["pair"], example.name);
-        assert_alike(&there["frequencies"], &again["frequencies"], example.name);
-        assert_alike(&there["curves"], &again["curves"], example.name);
+        for part in ["pair", "frequencies", "curves"] {
+            assert_alike(&there[part], &again[part], example.name);
+        }
     }
 }
 
@@ -549,20 +521,14 @@ fn helices_leads_and_what_stands_askew_come_back_as_they_went() {
         } else {
             "left-handed"
         };
-        let told = |word: &str| imported.remarks.iter().any(|remark| remark.contains(word));
-        assert!(told(hand) && told("+z end"), "{:?}", imported.remarks);
+        assert_told(&imported, &[hand, "+z end"]);
 
         // Another program says no method: the one that sees the helix is taken, and that is told.
         let own = "<attribute id=\"custom_meshwright_method\" unit=\"none\">three_dimensional</attribute>";
         assert!(text.contains(own));
         let other = taken(&text.replace(own, ""));
         assert_eq!(other.submission["method"], "three_dimensional");
-        assert!(
-            other
-                .remarks
-                .iter()
-                .any(|remark| remark.contains("by three_dimensional"))
-        );
+        assert_told(&other, &["by three_dimensional"]);
         let angle =
             |angle: f64| format!("\"helix_angle_reference_diameter\" unit=\"deg\">{angle}<");
         let alone = text.replace(&angle(-helix), &angle(11.0));
@@ -592,10 +558,7 @@ fn a_helix_crowning_that_differs_at_the_ends_is_refused() {
 fn assert_alike(one: &Value, other: &Value, place: &str) {
     match (one, other) {
         (Value::Number(a), Value::Number(b)) => {
-            let (a, b) = (
-                a.as_f64().unwrap_or(f64::NAN),
-                b.as_f64().unwrap_or(f64::NAN),
-            );
+            let [a, b] = [a, b].map(|number| number.as_f64().unwrap_or(f64::NAN));
             assert!(
                 (a - b).abs() <= 1e-6 * a.abs().max(b.abs()).max(1e-3),
                 "{place}: {a} and {b}"
@@ -691,7 +654,7 @@ fn what_is_no_model_is_refused_before_anything_grows() {
     );
     assert_refused(&lost, "relation of type stage", &["component 99"]);
     let twice = with(
-        r#"<attribute id="poisson_ratio" unit="none">0.3</attribute>"#,
+        attribute("poisson_ratio"),
         r#"<attribute id="density">7</attribute>"#,
     );
     assert_refused(&twice, "component 33", &["twice"]);

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::case_2;
 use crate::wire::Code;
-use crate::wire::testing::{echo, parse, put, refused, with};
+use crate::wire::testing::{echo, fault, parse, put, refused, with};
 
 /// A value that is refused: where it is sent, and what is told.
 #[derive(Deserialize)]
@@ -163,10 +163,8 @@ fn a_run_up_is_refused_where_it_has_no_table_or_no_load_and_the_nearest_will_do(
         many.to_vec() => "/dynamics/driving_speed_rpm/count", TooLarge;
     } {
         let mut document = with(run_up.clone(), &changes);
-        let problem = parse(&document).expect_err(place);
-        let error = &problem.errors[0];
-        assert_eq!((&*error.pointer, error.code), (place, code), "{problem:?}");
-        let nearest = error.nearest.expect("a nearest value");
+        let nearest = fault(&document, place, code).nearest;
+        let nearest = nearest.expect("a nearest value");
         put(&mut document, place, json!(nearest));
         let again = parse(&document);
         assert!(again.is_ok(), "{nearest:?}: {again:?}");

@@ -8,7 +8,7 @@ use super::least;
 use crate::wire::contact_pattern::{PatternCurveDocument, PatternFlank, PatternPressure};
 use crate::wire::results::FaceDocument;
 use crate::wire::solve::contact_pattern;
-use crate::wire::testing::{filled_in, parse, refused, with};
+use crate::wire::testing::{fault, filled_in, parse, refused, told, with};
 use crate::wire::{Code, ContactPatternDocument, Results, Submission, solve};
 
 /// A straight pair that three dimensions take.
@@ -46,12 +46,7 @@ fn planes_refuse_what_they_do_not_know_and_three_dimensions_take_it() {
                 &[(pointer, value.clone()), ("/method", json!(method))],
             );
             let problem = parse(&document).expect_err(pointer);
-            let error = &problem.errors[0];
-            assert_eq!(problem.errors.len(), 1, "{problem:?}");
-            assert_eq!(
-                (error.pointer.as_str(), error.code, error.nearest),
-                (told_at, code, nearest)
-            );
+            assert_eq!(told(problem), [(told_at.to_owned(), code, nearest)]);
         }
         let mut changes = vec![(pointer, value)];
         if pointer.contains("helix") {
@@ -79,12 +74,9 @@ fn what_is_said_to_be_nothing_is_nothing() {
 #[test]
 fn what_three_dimensions_do_not_tell_is_refused_with_its_place() {
     let solver = json!({ "contact_solver": "augmented_lagrangian" });
-    let problem = parse(&with(solid(), &[("/resolution", solver)])).expect_err("a plane choice");
-    let error = &problem.errors[0];
-    assert_eq!(
-        (error.pointer.as_str(), error.code),
-        ("/resolution/contact_solver", Code::NotInThreeDimensions)
-    );
+    let document = with(solid(), &[("/resolution", solver)]);
+    let place = "/resolution/contact_solver";
+    fault(&document, place, Code::NotInThreeDimensions);
 }
 
 #[test]
@@ -130,15 +122,8 @@ fn each_fault_along_the_axis_is_told_with_a_value_that_would_do() {
         undercut => "/pair/driving/profile_shift", Undercut;
     } {
         let document = with(solid(), &changes);
-        let problem = parse(&document).expect_err(told_at);
-        let error = &problem.errors[0];
-        assert_eq!(
-            (error.pointer.as_str(), error.code),
-            (told_at, code),
-            "{problem:?}"
-        );
-        let Some(nearest) = error.nearest else {
-            assert_eq!(code, Code::TableDoesNotRise, "{problem:?}");
+        let Some(nearest) = fault(&document, told_at, code).nearest else {
+            assert_eq!(code, Code::TableDoesNotRise);
             continue;
         };
         let cured = with(document, &[(told_at, json!(nearest))]);
