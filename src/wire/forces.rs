@@ -6,22 +6,12 @@ use meshwright_engine::analysis::forces::ForceTableRequest;
 use super::declare::{absent, document, nested, number, word, words};
 
 words! {
-    Sweep {
+    /// Which way speeds are run through.
+    pub enum Sweep {
         Up = "up": "from the lowest speed to the highest",
         Down = "down": "from the highest speed to the lowest",
         Both = "both": "both, which differ where the motion jumps",
     }
-}
-
-/// Which way speeds are run through.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sweep {
-    /// From the lowest speed.
-    Up,
-    /// From the highest speed.
-    Down,
-    /// Both.
-    Both,
 }
 
 document! {

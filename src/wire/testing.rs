@@ -1,9 +1,10 @@
 //! What tests of documents have in common: examples, changes of them, and tables of what is refused.
 
+use meshwright_engine::run::Run;
 use serde_json::Value;
 
-use super::problem::{Code, Problem};
-use super::{Submission, examples};
+use super::problem::{Code, FieldError, Problem};
+use super::{Study, Submission, examples};
 
 /// The example of this name as it ships.
 pub(crate) fn example(name: &str) -> Value {
@@ -14,6 +15,11 @@ pub(crate) fn example(name: &str) -> Value {
 /// The submission that `document` is, or why it is none.
 pub(crate) fn parse(document: &Value) -> Result<Submission, Problem> {
     Submission::parse(document.to_string().as_bytes())
+}
+
+/// The study that `document` is, or why it is none.
+pub(crate) fn study(document: &Value) -> Result<Study, Problem> {
+    Study::parse(document.to_string().as_bytes(), &Run::unattended())
 }
 
 /// The submission that the example of this name is.
@@ -69,6 +75,14 @@ pub(crate) fn told(problem: Problem) -> Vec<(String, Code, Option<f64>)> {
     errors
         .map(|error| (error.pointer, error.code, error.nearest))
         .collect()
+}
+
+/// The first thing that is wrong with `document`, which is this at this place.
+pub(crate) fn fault(document: &Value, place: &str, code: Code) -> FieldError {
+    let problem = parse(document).expect_err(place);
+    let fault = &problem.errors[0];
+    assert_eq!((&*fault.pointer, fault.code), (place, code), "{problem:?}");
+    fault.clone()
 }
 
 /// A table of what is refused, a line each: what is sent, the place and the code that are told, and the nearest value that would do.

@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use meshwright::wire::{
-    Code, Design, Kept, Problem, RowState, SearchState, Searching, Status, Study as StudyDocument,
-    Summary, solve,
+    Code, Design, Kept, Problem, RowState, SearchState, Searching, Study as StudyDocument, Summary,
+    solve,
 };
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -101,17 +101,18 @@ fn compute_designs(
     };
     let solved = on_every_core(&work, one)?;
 
-    let mut outcomes: Vec<Option<Outcome>> = vec![None; count];
+    let uncomputed = Problem::new(Code::InternalError, "The design was not computed.");
+    let mut outcomes: Vec<Outcome> = vec![Err(uncomputed); count];
     for (equal, outcome) in work.iter().zip(solved) {
         for &i in equal {
-            outcomes[i] = Some(outcome.clone());
+            outcomes[i] = outcome.clone();
         }
     }
-    Ok(designs
-        .into_iter()
-        .zip(outcomes)
-        .map(|(design, outcome)| row_state(design, outcome))
-        .collect())
+    let rows = designs.into_iter().zip(outcomes).map(|(design, outcome)| {
+        let outcome = design.submission.and(outcome);
+        RowState::computed(design.label, design.changes, outcome)
+    });
+    Ok(rows.collect())
 }
 
 /// Does each piece of work on a core of its own: in one pool for all, a core that waits for a part of one design would begin another one meanwhile,
@@ -144,34 +145,6 @@ fn on_every_core<W: Sync, T: Send>(
     let mut done: Vec<(usize, T)> = parts.into_iter().flatten().collect();
     done.sort_by_key(|(i, _)| *i);
     Ok(done.into_iter().map(|(_, done)| done).collect())
-}
-
-fn row_state(design: Design, outcome: Option<Outcome>) -> RowState {
-    let (summary, problem) = match (design.submission, outcome) {
-        (Ok(_), Some(Ok(summary))) => (Some(summary), None),
-        (Ok(_), Some(Err(problem))) | (Err(problem), _) => (None, Some(problem)),
-        (Ok(_), None) => (
-            None,
-            Some(Problem::new(
-                Code::InternalError,
-                "The design was not computed.",
-            )),
-        ),
-    };
-    RowState {
-        label: design.label,
-        changes: design.changes,
-        job: None,
-        status: if summary.is_some() {
-            Status::Successful
-        } else {
-            Status::Failed
-        },
-        summary,
-        problem: problem.map(|problem| {
-            serde_json::to_value(problem).expect("a problem is strings and finite numbers")
-        }),
-    }
 }
 
 fn progress_bar(total: usize) -> ProgressBar {

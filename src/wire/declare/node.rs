@@ -32,7 +32,7 @@ impl Node {
                 format!("The JSON ends or breaks: {error}."),
             )
         })?;
-        match node.key_that_stands_twice("") {
+        match node.key_that_stands_twice() {
             None => Ok(node),
             Some(pointer) => {
                 let detail = format!(
@@ -53,23 +53,7 @@ impl Node {
 
     /// The document that serde read, which had no key twice.
     pub(in crate::wire) fn of(value: &serde_json::Value) -> Self {
-        use serde_json::Value;
-        match value {
-            Value::Null => Self::Null,
-            Value::Bool(value) => Self::Bool(*value),
-            // Every number of JSON that was read has a nearest double.
-            Value::Number(number) => Self::Number(number.as_f64().unwrap_or(f64::NAN)),
-            Value::String(text) => Self::Text(text.clone()),
-            Value::Array(items) => Self::List(items.iter().map(Self::of).collect()),
-            Value::Object(fields) => {
-                let fields = fields.iter();
-                Self::Object(
-                    fields
-                        .map(|(key, value)| (key.clone(), Self::of(value)))
-                        .collect(),
-                )
-            }
-        }
+        Self::deserialize(value).expect("every value of JSON is a node")
     }
 
     /// The same document for serde.
@@ -110,32 +94,24 @@ impl Node {
         format!("{self:?}")
     }
 
-    /// The pointer to a key that stands twice in its object, below `pointer`.
-    fn key_that_stands_twice(&self, pointer: &str) -> Option<String> {
-        let steps = self.steps_to_double_key()?;
-        // Found from the inside, so the outermost step came last.
-        let steps = steps.iter().rev();
-        Some(steps.fold(pointer.to_owned(), |pointer, step| joined(&pointer, step)))
-    }
-
-    fn steps_to_double_key(&self) -> Option<Vec<String>> {
-        let with = |step: String, steps: Option<Vec<String>>| {
-            let mut steps = steps?;
-            steps.push(step);
-            Some(steps)
-        };
+    /// The pointer to a key that stands twice in its object.
+    fn key_that_stands_twice(&self) -> Option<String> {
+        fn within(node: &Node, step: impl FnOnce() -> String) -> Option<String> {
+            let rest = node.key_that_stands_twice()?;
+            Some(joined("", &step()) + &rest)
+        }
         match self {
-            Self::List(items) => items
-                .iter()
-                .enumerate()
-                .find_map(|(i, item)| with(i.to_string(), Some(item.steps_to_double_key()?))),
+            Self::List(items) => {
+                let mut items = items.iter().enumerate();
+                items.find_map(|(i, item)| within(item, || i.to_string()))
+            }
             Self::Object(fields) => {
                 let mut seen = HashSet::new();
                 fields.iter().find_map(|(key, value)| {
                     if seen.insert(key) {
-                        with(key.clone(), Some(value.steps_to_double_key()?))
+                        within(value, || key.clone())
                     } else {
-                        Some(vec![key.clone()])
+                        Some(joined("", key))
                     }
                 })
             }

@@ -102,8 +102,23 @@ impl<C: Copy> OneWord<C> {
     }
 }
 
-/// Declares the words of a type, each with what it means.
+/// Declares the words of a type, each with what it means; the type itself, too, where it is none of the engine.
 macro_rules! words {
+    (
+        $(#[doc = $about:literal])*
+        $visibility:vis enum $choice:ident {
+            $($value:ident = $word:literal: $meaning:literal),* $(,)?
+        }
+    ) => {
+        $(#[doc = $about])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        $visibility enum $choice {
+            $(#[doc = $meaning] $value,)*
+        }
+
+        $crate::wire::declare::words! { $choice { $($value = $word: $meaning),* } }
+    };
+
     ($($choice:ty { $($value:ident = $word:literal: $meaning:literal),* $(,)? })*) => {$(
         impl $crate::wire::declare::Choice for $choice {
             const OPTIONS: &'static [(&'static str, Self, &'static str)] =

@@ -25,6 +25,7 @@ use super::pointer::Pointer;
 use super::units::significant;
 use document::GearAccuracy;
 pub(super) use document::PopulationDocument;
+pub(super) use reading::{number_at, rises};
 pub use results::*;
 
 /// Members drawn from laws. What exists has laws that can be drawn from, of fields that take a number.

@@ -102,7 +102,7 @@ impl VariedDocument {
 
     fn made(&self, place: &Place<'_>) -> Option<Varied> {
         let law = self.law(place);
-        let (path, whole) = number_at(self.path(), &place.of("path"))?;
+        let (path, whole) = number_at(self.path(), &place.of("path"), Pointer::number_kind)?;
         Some(Varied {
             path,
             law: law?,
@@ -112,18 +112,6 @@ impl VariedDocument {
 
     /// The law, if its numbers go together.
     fn law(&self, place: &Place<'_>) -> Option<Law> {
-        let rises = |low: f64, high: f64| {
-            if low < high {
-                return Some(());
-            }
-            let place = place.of("high");
-            let detail = format!(
-                "{place} is {}, not above low, which is {}.",
-                plain(high),
-                plain(low)
-            );
-            place.wrong(Code::OutOfRange, detail, None)
-        };
         let holds = |name: &str, value: f64, low: f64, high: f64| {
             if low <= value && value <= high {
                 return Some(());
@@ -141,7 +129,7 @@ impl VariedDocument {
             Self::Normal(law) => {
                 let low = law.low.unwrap_or(f64::NEG_INFINITY);
                 let high = law.high.unwrap_or(f64::INFINITY);
-                rises(low, high)?;
+                rises(place, low, high)?;
                 holds("mean", law.mean, low, high)?;
                 Some(Law::Normal {
                     mean: law.mean,
@@ -151,12 +139,12 @@ impl VariedDocument {
                 })
             }
             Self::Uniform(law) => {
-                rises(law.low, law.high)?;
+                rises(place, law.low, law.high)?;
                 let (low, high) = (law.low, law.high);
                 Some(Law::Uniform { low, high })
             }
             Self::Triangular(law) => {
-                rises(law.low, law.high)?;
+                rises(place, law.low, law.high)?;
                 holds("mode", law.mode, law.low, law.high)?;
                 let (low, mode, high) = (law.low, law.mode, law.high);
                 Some(Law::Triangular { low, mode, high })
@@ -165,10 +153,25 @@ impl VariedDocument {
     }
 }
 
-/// The field of a submission that `path` names, if it takes a number, and whether that is a whole one.
-fn number_at(path: &str, place: &Place<'_>) -> Option<(Pointer, bool)> {
+/// Refuses a `high` that stands beside `low` at `place` and is not above it.
+pub(in crate::wire) fn rises(place: &Place<'_>, low: f64, high: f64) -> Option<()> {
+    if low < high {
+        return Some(());
+    }
+    let place = place.of("high");
+    let (low, high) = (plain(low), plain(high));
+    let detail = format!("{place} is {high}, not above low, which is {low}.");
+    place.wrong(Code::OutOfRange, detail, None)
+}
+
+/// The field that `path` names, if it takes a number, of which `kind` tells the kind; and whether that is a whole one.
+pub(in crate::wire) fn number_at(
+    path: &str,
+    place: &Place<'_>,
+    kind: impl FnOnce(&Pointer) -> Result<NumberKind, (Code, String)>,
+) -> Option<(Pointer, bool)> {
     let named = Pointer::parse(path).and_then(|pointer| {
-        let kind = pointer.number_kind()?;
+        let kind = kind(&pointer)?;
         Ok((pointer, kind == NumberKind::Whole))
     });
     match named {

@@ -24,16 +24,12 @@ fn document(population: Value) -> Value {
     json!({ "base": base(), "population": population })
 }
 
-fn parse(document: &Value) -> Result<Study, Problem> {
-    Study::parse(document.to_string().as_bytes(), &Run::unattended())
-}
-
 fn study(population: Value) -> Study {
-    parse(&document(population)).expect("a population")
+    testing::study(&document(population)).expect("a population")
 }
 
 fn refusal(document: &Value) -> Vec<(String, Code, Option<f64>)> {
-    testing::told(parse(document).expect_err("refused"))
+    testing::told(testing::study(document).expect_err("refused"))
 }
 
 fn distance() -> Value {
@@ -229,9 +225,10 @@ fn what_cannot_be_drawn_is_refused_with_its_place_and_the_nearest() {
     assert_eq!(refusal(&drawn)[0].1, Code::ConflictingFields);
 }
 
-/// A row with results in which the peak-to-peak value is this.
+/// A row with results in which the peak-to-peak value is this, or one without.
 fn row(design: &Design, range: Option<f64>) -> RowState {
-    let summary = range.map(|range| {
+    let failed = || Problem::new(Code::NotConverged, "");
+    let outcome = range.ok_or_else(failed).and_then(|range| {
         let mut results = Results::read(STUB).expect("a results document");
         results.pair.contact_ratio = 1.5;
         results.curves.truncate(1);
@@ -240,20 +237,9 @@ fn row(design: &Design, range: Option<f64>) -> RowState {
         let values = &mut curve.statistics.transmission_error_um;
         (values.mean, values.rms, values.peak_to_peak) = (1.0, 0.0, range);
         curve.statistics.mesh_stiffness_tangent_n_per_m = values.clone();
-        Summary::of(&results).expect("finite")
+        Summary::of(&results)
     });
-    RowState {
-        label: design.label.clone(),
-        changes: design.changes.clone(),
-        job: None,
-        status: if summary.is_some() {
-            Status::Successful
-        } else {
-            Status::Failed
-        },
-        summary,
-        problem: None,
-    }
+    RowState::computed(design.label.clone(), design.changes.clone(), outcome)
 }
 
 fn told(study: &Study, range: impl Fn(&Design) -> Option<f64>) -> Value {
@@ -444,7 +430,7 @@ fn lead_slopes_are_drawn_where_the_method_sees_the_faces_and_leave_the_other_tee
     let members = |base: Value| {
         let population = json!({ "size": 200, "seed": 3, "accuracy": {
             "driving": { "iso_1328_class": 6 }, "driven": { "iso_1328_class": 8, "capability": 1.33 } } });
-        parse(&json!({ "base": base, "population": population })).expect("a population")
+        testing::study(&json!({ "base": base, "population": population })).expect("a population")
     };
     let plane = members(base("load_distribution", 0.0));
     let solid = members(base("three_dimensional", 0.0));

@@ -5,8 +5,7 @@ use std::sync::LazyLock;
 use meshwright_search::space::Axis;
 
 use super::{
-    Condition, Goal, MOST_EVALUATIONS, Measure, OF_POPULATION, Search, Torques, Variable,
-    sees_faces,
+    Condition, Goal, MOST_EVALUATIONS, Measure, OF_POPULATION, Search, Variable, sees_faces,
 };
 use crate::wire::declare::{
     EACH, Errors, Kind, Node, Number, Place, Text, absent, document, list, nested, number, or_else,
@@ -14,7 +13,7 @@ use crate::wire::declare::{
 };
 use crate::wire::draw::SEED;
 use crate::wire::pointer::{NumberKind, Pointer, Schema};
-use crate::wire::population::{Population, PopulationDocument};
+use crate::wire::population::{Population, PopulationDocument, number_at, rises};
 use crate::wire::problem::Code;
 use crate::wire::study::MOST_DESIGNS;
 use crate::wire::study_table::{Needs, QUANTITIES, Quantity};
@@ -27,7 +26,8 @@ const MOST: usize = 50;
 const PATH: Text = text("Path", 300);
 
 words! {
-    Torques {
+    /// What of several torques counts.
+    pub(in crate::wire) enum Torques {
         Largest = "largest": "of the torque at which it is worst: the largest value, in at_least the smallest",
         Mean = "mean": "the mean over the torques",
     }
@@ -279,23 +279,8 @@ fn number_kind(pointer: &Pointer) -> Result<NumberKind, (Code, String)> {
 
 impl VariableDocument {
     fn made(&self, place: &Place<'_>) -> Option<Variable> {
-        let named = Pointer::parse(&self.path).and_then(|pointer| {
-            let kind = number_kind(&pointer)?;
-            Ok((pointer, kind == NumberKind::Whole))
-        });
-        let (path, whole) = match named {
-            Ok(named) => named,
-            Err((code, detail)) => return place.of("path").wrong(code, detail, None),
-        };
-        if self.low >= self.high {
-            let place = place.of("high");
-            let detail = format!(
-                "{place} is {}, not above low, which is {}.",
-                plain(self.high),
-                plain(self.low)
-            );
-            return place.wrong(Code::OutOfRange, detail, None);
-        }
+        let (path, whole) = number_at(&self.path, &place.of("path"), number_kind)?;
+        rises(place, self.low, self.high)?;
         if whole {
             for (name, value) in [
                 ("low", self.low),

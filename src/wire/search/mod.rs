@@ -23,6 +23,7 @@ use super::study_table::Quantity;
 use super::units::significant;
 
 pub(in crate::wire) use document::SearchDocument;
+use document::Torques;
 pub use run::Searching;
 pub use state::*;
 
@@ -75,13 +76,6 @@ impl Measure {
             Some(percent) => format!("p{percent} of {}", self.quantity.name),
         }
     }
-}
-
-/// What of several torques counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::wire) enum Torques {
-    Largest,
-    Mean,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -344,6 +338,14 @@ impl std::fmt::Display for Role {
 }
 
 impl Role {
+    /// Of a member its number.
+    pub(super) fn member(self) -> Option<u32> {
+        match self {
+            Self::Member(_, member) => Some(member),
+            Self::Design(_) | Self::Confirmed => None,
+        }
+    }
+
     /// What the row of this label is.
     pub(super) fn of_label(label: &str) -> Option<Self> {
         if label == Self::Confirmed.to_string() {

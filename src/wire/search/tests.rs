@@ -5,9 +5,9 @@ use meshwright_engine::run::Run;
 
 use super::*;
 use crate::wire::study_table::{Of, RowState, Summary};
-use crate::wire::testing::{self, and, echo, example, refused, told};
+use crate::wire::testing::{self, and, echo, example, refused, study, told};
 use crate::wire::warning::GearName;
-use crate::wire::{Design, Problem, Status, Study, solve};
+use crate::wire::{Design, Study, solve};
 
 fn base() -> Value {
     let gear = json!({
@@ -40,36 +40,18 @@ fn document(search: Value) -> Value {
     json!({ "base": base(), "search": search })
 }
 
-fn parse(document: &Value) -> Result<Study, Problem> {
-    Study::parse(document.to_string().as_bytes(), &Run::unattended())
-}
-
 fn searching(search: Value) -> Searching {
-    let study = parse(&document(search)).expect("a search");
+    let study = study(&document(search)).expect("a search");
     Searching::new(study).expect("it is one")
 }
 
 /// A row as it is once its design has been computed.
 fn computed(design: Design, library: &Library) -> RowState {
-    let solved = design
-        .submission
-        .and_then(|submission| solve(&submission, library, &Run::unattended()));
-    let (summary, problem) = match solved {
-        Ok(results) => (Summary::of(&results).ok(), None),
-        Err(problem) => (None, serde_json::to_value(problem).ok()),
-    };
-    RowState {
-        label: design.label,
-        changes: design.changes,
-        job: None,
-        status: if summary.is_some() {
-            Status::Successful
-        } else {
-            Status::Failed
-        },
-        summary,
-        problem,
-    }
+    let outcome = design.submission.and_then(|submission| {
+        let results = solve(&submission, library, &Run::unattended())?;
+        Summary::of(&results)
+    });
+    RowState::computed(design.label, design.changes, outcome)
 }
 
 /// The rows of the next generation.
@@ -349,7 +331,7 @@ fn a_search_along_faces_is_confirmed_along_them() {
         base["pair"]["helix_angle_deg"] = json!(15);
         base["pair"]["center_distance_mm"] = json!(41.6);
         let document = json!({ "base": base, "search": reliefs() });
-        let study = parse(&document).expect("a search");
+        let study = study(&document).expect("a search");
         let design = study.searched(Role::Confirmed, &Map::new());
         let submission = design
             .submission
@@ -438,7 +420,7 @@ fn what_is_wrong_with_a_search_is_refused_with_its_place() {
             => "/search/population/accuracy/driven/iso_1328_class", OutOfRange, 1.0;
     };
     for (study, pointer, code, nearest) in cases {
-        let problem = parse(&study).expect_err("it is refused");
+        let problem = testing::study(&study).expect_err("it is refused");
         assert_eq!(
             told(problem),
             [(pointer.to_owned(), code, nearest)],
@@ -518,7 +500,7 @@ fn a_front_of_mass_and_noise_beats_designs_of_the_paper() {
     let mut study: Value = serde_json::from_str(example).expect("JSON");
     study["search"]["evaluations"] = json!(400);
     study["search"]["seed"] = json!(1);
-    let study = parse(&study).expect("a search");
+    let study = testing::study(&study).expect("a search");
     let mut search = Searching::new(study).expect("it is one");
     assert_eq!(go_on(&mut search, usize::MAX).len(), 400);
     let front = search.state().front;
@@ -548,5 +530,5 @@ fn a_search_along_the_face_bounds_and_minimizes_how_even_the_load_is() {
         "subject_to": [{ "quantity": "face_load_factor", "at_most": 3, "torques": "mean" }],
         "evaluations": 8,
     } });
-    assert_eq!(parse(&study).err(), None);
+    assert_eq!(testing::study(&study).err(), None);
 }

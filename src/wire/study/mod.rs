@@ -94,6 +94,31 @@ struct Composed {
     submission: Result<Node, Problem>,
 }
 
+impl Composed {
+    /// The design, of a member of a population with its teeth.
+    fn design(self, member: Option<(&Population, u32)>) -> Design {
+        let submission = self.submission.and_then(|node| match member {
+            Some((population, member)) => {
+                Submission::of_node_with(&node, |pair, method, errors| {
+                    population.give_teeth(member, pair, method, errors)
+                })
+            }
+            None => Submission::of_node(&node),
+        });
+        Design {
+            label: self.label,
+            changes: self.changes,
+            submission,
+        }
+    }
+}
+
+/// What is drawn for the fields that are varied.
+fn drawn(varied: &[Varied], values: Vec<f64>) -> impl Iterator<Item = (&Pointer, Cow<'_, Value>)> {
+    let drawn = varied.iter().zip(values);
+    drawn.map(|(varied, value)| (&varied.path, Cow::Owned(varied.told(value))))
+}
+
 impl Study {
     /// The most output torques of a design.
     pub const MOST_TORQUES: usize = MOST_TORQUES;
@@ -211,43 +236,24 @@ impl Study {
     }
 
     /// Every place that a design changes, those of the list as often as they stand there.
-    fn paths(&self) -> impl Iterator<Item = &Pointer> {
-        let (axes, designs, varied) = match &self.plan {
-            Plan::Axes(axes) => (&axes[..], &[][..], &[][..]),
-            Plan::Designs(designs) => (&[][..], &designs[..], &[][..]),
-            Plan::Population(population) => (&[][..], &[][..], population.varied()),
-            Plan::Search(_) => (&[][..], &[][..], &[][..]),
-        };
-        let searched = self.search().into_iter().flat_map(Search::paths);
-        let listed = designs.iter().flat_map(|design: &Listed| &design.changes);
-        let of_axes = axes.iter().map(|axis: &Axis| &axis.path);
-        let of_members = varied.iter().map(|varied: &Varied| &varied.path);
-        of_axes
-            .chain(listed.map(|(path, _)| path))
-            .chain(of_members)
-            .chain(searched)
+    fn paths(&self) -> Box<dyn Iterator<Item = &Pointer> + '_> {
+        match &self.plan {
+            Plan::Axes(axes) => Box::new(axes.iter().map(|axis| &axis.path)),
+            Plan::Designs(designs) => {
+                let changes = designs.iter().flat_map(|design| &design.changes);
+                Box::new(changes.map(|(path, _)| path))
+            }
+            Plan::Population(population) => {
+                Box::new(population.varied().iter().map(|varied| &varied.path))
+            }
+            Plan::Search(search) => Box::new(search.paths()),
+        }
     }
 
     /// The design of a row, counted from 0; none beyond the last, and none of a search, whose rows follow from each other.
     pub fn design(&self, row: usize) -> Option<Design> {
-        let Composed {
-            label,
-            changes,
-            submission,
-        } = self.composed(row)?;
-        let submission = submission.and_then(|submission| match &self.plan {
-            Plan::Population(population) => {
-                Submission::of_node_with(&submission, |pair, method, errors| {
-                    population.give_teeth(row as u32, pair, method, errors)
-                })
-            }
-            Plan::Axes(_) | Plan::Designs(_) | Plan::Search(_) => Submission::of_node(&submission),
-        });
-        Some(Design {
-            label,
-            changes,
-            submission,
-        })
+        let member = self.population().zip(u32::try_from(row).ok());
+        Some(self.composed(row)?.design(member))
     }
 
     /// The submission of a row, as JSON; one that cannot be built as far as it can be put together. None beyond the last row.
@@ -262,8 +268,7 @@ impl Study {
         let changes = search.changes_among(told)?;
         let design = self.searched(role, &changes);
         Some(self.written(design.submission, || {
-            let (composed, _) = self.composed_of_search(role, &changes).ok()?;
-            Some(composed)
+            Some(self.composed_of_search(role, &changes).0)
         }))
     }
 
@@ -283,36 +288,13 @@ impl Study {
 
     /// A design of a search, its variables having these values.
     pub(super) fn searched(&self, role: Role, changes: &Map<String, Value>) -> Design {
-        let (composed, population) = match self.composed_of_search(role, changes) {
-            Ok(composed) => composed,
-            Err(errors) => {
-                return Design {
-                    label: role.to_string(),
-                    changes: changes.clone(),
-                    submission: Err(Problem::of_fields(errors)),
-                };
-            }
-        };
-        let submission = composed
-            .submission
-            .and_then(|node| match (role, &population) {
-                (Role::Member(_, member), Some(population)) => {
-                    Submission::of_node_with(&node, |pair, method, errors| {
-                        population.give_teeth(member, pair, method, errors)
-                    })
-                }
-                _ => Submission::of_node(&node),
-            });
-        Design {
-            label: composed.label,
-            changes: composed.changes,
-            submission,
-        }
+        let (composed, population) = self.composed_of_search(role, changes);
+        composed.design(population.as_ref().zip(role.member()))
     }
 
     /// The same before it is looked at as a whole; none if its changes lead nowhere.
     pub(super) fn node_searched(&self, changes: &Map<String, Value>) -> Option<Node> {
-        let (composed, _) = self.composed_of_search(Role::Design(1), changes).ok()?;
+        let (composed, _) = self.composed_of_search(Role::Design(1), changes);
         composed.submission.ok()
     }
 
@@ -321,30 +303,40 @@ impl Study {
         &self,
         role: Role,
         told: &Map<String, Value>,
-    ) -> Result<(Composed, Option<Population>), Vec<FieldError>> {
+    ) -> (Composed, Option<Population>) {
         let population = match self.search() {
-            Some(search) => search.population_with(&self.base, told)?,
-            None => None,
+            Some(search) => search.population_with(&self.base, told),
+            None => Ok(None),
         };
-        let varied = population.as_ref().map_or(&[][..], Population::varied);
-        let drawn: Vec<f64> = match (role, &population) {
-            (Role::Member(_, member), Some(population)) => population.values(member),
-            // As it is drawn, a design has the middle of each law.
-            _ => varied.iter().map(Varied::median).collect(),
+        let population = match population {
+            Ok(population) => population,
+            Err(errors) => {
+                let unmade = Composed {
+                    label: role.to_string(),
+                    changes: told.clone(),
+                    submission: Err(Problem::of_fields(errors)),
+                };
+                return (unmade, None);
+            }
         };
-        let drawn = varied.iter().zip(drawn);
-        let drawn = drawn.map(|(varied, value)| (&varied.path, Cow::Owned(varied.told(value))));
-        let own = self.search().into_iter().flat_map(Search::paths_of_base);
-        let own = own.filter_map(|path| Some((path, Cow::Borrowed(told.get(path.text())?))));
         let confirming = match role {
             Role::Confirmed => confirming(self.base.at(&["method"])),
             Role::Design(_) | Role::Member(..) => Vec::new(),
         };
+        let varied = population.as_ref().map_or(&[][..], Population::varied);
+        let values = match (role.member(), &population) {
+            (Some(member), Some(population)) => population.values(member),
+            // As it is drawn, a design has the middle of each law.
+            _ => varied.iter().map(Varied::median).collect(),
+        };
+        let drawn = drawn(varied, values);
+        let own = self.search().into_iter().flat_map(Search::paths_of_base);
+        let own = own.filter_map(|path| Some((path, Cow::Borrowed(told.get(path.text())?))));
         let fixed = confirming.iter();
         let fixed = fixed.map(|(path, value)| (path, Cow::Borrowed(value)));
         let changes: Changes<'_> = own.chain(drawn).chain(fixed).collect();
         let composed = self.put_together(role.to_string(), told.clone(), changes);
-        Ok((composed, population))
+        (composed, population)
     }
 
     /// A row put together, before it is looked at as a whole.
@@ -395,12 +387,7 @@ impl Study {
                 let member = u32::try_from(row)
                     .ok()
                     .filter(|_| row < population.size())?;
-                let values = population.values(member).into_iter();
-                let changes = population
-                    .varied()
-                    .iter()
-                    .zip(values)
-                    .map(|(varied, value)| (&varied.path, Cow::Owned(varied.told(value))));
+                let changes = drawn(population.varied(), population.values(member));
                 Some((format!("member {member}"), changes.collect()))
             }
             Plan::Designs(designs) => {

@@ -4,6 +4,7 @@ use serde_json::json;
 
 use super::*;
 use crate::wire::examples::STUDY_SECTION_5;
+use crate::wire::testing::study as parse;
 
 #[test]
 fn the_studies_in_the_guides_are_studies() {
@@ -33,16 +34,24 @@ fn base() -> Value {
     })
 }
 
-fn parse(document: &Value) -> Result<Study, Problem> {
-    Study::parse(document.to_string().as_bytes(), &Run::unattended())
-}
-
 fn axes(axes: Value) -> Value {
     json!({ "base": base(), "axes": axes })
 }
 
 fn listed(designs: Value) -> Value {
     json!({ "base": base(), "designs": designs })
+}
+
+/// The designs of a study of constant mass, all of which remove this share of the driven blank.
+fn removing(document: &Value, share: f64) -> Vec<Design> {
+    let designs = designs(&parse(document).unwrap());
+    for design in &designs {
+        let driven = design.submission.as_ref().unwrap().case().pair.driven();
+        // The engine has the area of a slot from its outline.
+        let removed = driven.removed_fraction();
+        assert!((removed - share).abs() < 1e-10, "{removed}");
+    }
+    designs
 }
 
 fn designs(study: &Study) -> Vec<Design> {
@@ -210,8 +219,8 @@ fn values_of_the_wrong_type_are_refused_with_their_place() {
     let document = axes(json!([
         { "path": "/pair/driven/tooth_count", "values": [50, "50", 50.5, null] },
     ]));
-    let places = [1, 2, 3].map(|j| format!("/axes/0/values/{j}"));
-    assert_eq!(refused(&document), (Code::WrongType, places.to_vec()));
+    let places = ["/axes/0/values/1", "/axes/0/values/2", "/axes/0/values/3"];
+    refuses(&document, Code::WrongType, &places);
     let document = listed(json!([
         { "label": "a", "changes": { "/pair/driven/blank/holes": { "count": 8, "circle_radius_mm": 34, "radius": 3 } } },
         { "label": "b", "changes": { "/method": "fast" } },
@@ -354,9 +363,12 @@ fn a_base_that_no_design_mends_is_refused_once() {
     };
     let bores = json!([{ "path": "/pair/driven/blank/bore_radius_mm", "values": [15, 16] }]);
     let too_many: Vec<u32> = (1..=61).collect();
-    let document = torques(json!(too_many), bores.clone());
-    let place = vec!["/base/output_torques_n_m".to_owned()];
-    assert_eq!(refused(&document), (Code::TooLarge, place.clone()));
+    let place = ["/base/output_torques_n_m"];
+    refuses(
+        &torques(json!(too_many), bores.clone()),
+        Code::TooLarge,
+        &place,
+    );
     refuses(
         &torques(json!([-1]), bores.clone()),
         Code::TorqueNotPositive,
@@ -371,8 +383,7 @@ fn a_base_that_no_design_mends_is_refused_once() {
     let item = json!([{ "path": "/output_torques_n_m/0", "values": [20] }]);
     assert!(parse(&torques(json!([-1]), item.clone())).is_ok());
     // One torque of too many is still one too many.
-    let document = torques(json!((1..=61).collect::<Vec<_>>()), item);
-    assert_eq!(refused(&document), (Code::TooLarge, place));
+    refuses(&torques(json!(too_many), item), Code::TooLarge, &place);
 }
 
 #[test]
@@ -393,8 +404,7 @@ fn a_bomb_is_refused_before_it_is_expanded() {
         { "path": "/output_torques_n_m", "values": [[1.0]] },
         { "path": "/pair/driven/blank/bore_radius_mm", "values": values },
     ]);
-    let (code, places) = refused(&document);
-    assert_eq!((code, places), (Code::TooLarge, vec!["/base".to_owned()]));
+    refuses(&document, Code::TooLarge, &["/base"]);
 }
 
 #[test]
@@ -491,10 +501,7 @@ fn a_constant_mass_gives_every_pattern_of_a_list_the_same_radius() {
         { "at_deg": [40, 140, 230, 320], "circle_radius_mm": 38.0 }
     ]);
     document["constant_mass"] = json!({ "gear": "driven", "mass_removed_percent": 10 });
-    let designs = designs(&parse(&document).unwrap());
-    for design in &designs {
-        let driven = design.submission.as_ref().unwrap().case().pair.driven();
-        assert!((driven.removed_fraction() - 0.1).abs() < 1e-10);
+    for design in removing(&document, 0.1) {
         let radii = ["0", "1"].map(|i| {
             let pointer = format!("/pair/driven/blank/holes/{i}/radius_mm");
             design.changes[&pointer].as_f64().unwrap()
@@ -517,11 +524,7 @@ fn a_constant_mass_gives_slots_a_width_beside_round_holes_of_the_same_half_width
         { "count": 4, "circle_radius_mm": 38.0, "slot": { "angle_deg": 10 } }
     ]);
     document["constant_mass"] = json!({ "gear": "driven", "mass_removed_percent": 12 });
-    for design in designs(&parse(&document).unwrap()) {
-        let driven = design.submission.as_ref().unwrap().case().pair.driven();
-        // The engine has the area of a slot from its outline.
-        let removed = driven.removed_fraction();
-        assert!((removed - 0.12).abs() < 1e-10, "{removed}");
+    for design in removing(&document, 0.12) {
         let set = |pointer: &str| design.changes[pointer].as_f64().unwrap();
         let radius = set("/pair/driven/blank/holes/0/radius_mm");
         let width = set("/pair/driven/blank/holes/1/slot/width_mm");
@@ -531,10 +534,7 @@ fn a_constant_mass_gives_slots_a_width_beside_round_holes_of_the_same_half_width
     document["base"]["pair"]["driven"]["blank"]["holes"] =
         json!({ "count": 5, "circle_radius_mm": 34.0, "slot": { "angle_deg": 25 } });
     document["axes"] = json!([{ "path": "/pair/driven/blank/holes/count", "values": [3, 5] }]);
-    for design in designs(&parse(&document).unwrap()) {
-        let driven = design.submission.as_ref().unwrap().case().pair.driven();
-        assert!((driven.removed_fraction() - 0.12).abs() < 1e-10);
-    }
+    removing(&document, 0.12);
     document["axes"] = json!([
         { "path": "/pair/driven/blank/holes/slot/width_mm", "values": [3, 4] }
     ]);

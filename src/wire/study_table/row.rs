@@ -30,6 +30,31 @@ pub struct RowState {
     pub problem: Option<Value>,
 }
 
+impl RowState {
+    /// A design with these changes that has been computed without a job, and what came of it.
+    pub fn computed(
+        label: String,
+        changes: Map<String, Value>,
+        outcome: Result<Summary, Problem>,
+    ) -> Self {
+        let (status, summary, problem) = match outcome {
+            Ok(summary) => (Status::Successful, Some(summary), None),
+            Err(problem) => {
+                let problem = serde_json::to_value(problem).expect("a problem is plain data");
+                (Status::Failed, None, Some(problem))
+            }
+        };
+        Self {
+            label,
+            changes,
+            job: None,
+            status,
+            summary,
+            problem,
+        }
+    }
+}
+
 /// A design, and the numbers that designs are compared by.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 #[schema(title = "Row")]
@@ -40,7 +65,6 @@ pub struct TableRow {
     #[schema(value_type = Object)]
     pub changes: Map<String, Value>,
     /// The job that computes it; null for a design that could not be built.
-    #[schema(value_type = Option<String>, format = "uuid")]
     pub job: Option<Uuid>,
     /// Where it stands.
     pub status: Status,

@@ -2,8 +2,6 @@
 
 use meshwright_engine::analysis::Method;
 
-use super::FaceRows;
-
 use crate::wire::declare::{
     List, Number, Text, absent, document, flag, list, nested, number, text, word, words,
 };
@@ -19,7 +17,8 @@ pub(in crate::wire) const MOST_TORQUES: usize = 60;
 pub(in crate::wire) const MOST_TAGS: (usize, usize) = (16, 64);
 
 words! {
-    FaceRows {
+    /// The rows in which the load along the face is told.
+    pub(in crate::wire) enum FaceRows {
         Mean = "mean": "the mean over the positions",
         Positions = "positions": "every position",
     }

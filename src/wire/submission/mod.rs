@@ -14,6 +14,7 @@ pub(super) use document::OUTPUT_TORQUE;
 pub(super) use document::{MOST_TAGS, MOST_TORQUES, TAGS};
 
 pub(super) use document::Document;
+use document::FaceRows;
 
 use super::declare::{
     Choice, Document as _, EACH, Errors, Kind, Node, ObjectReader, Place, utoipa_schema, word,
@@ -31,15 +32,6 @@ pub const SOLVER_VERSION: &str = concat!("meshwright ", env!("CARGO_PKG_VERSION"
 /// The version of the document of a submission: one more with every field that it gains, in whichever part. A process that reads only
 /// earlier ones leaves the job to others instead of refusing what it does not know.
 pub const DOCUMENT_VERSION: i64 = 2;
-
-/// The rows in which the load along the face is told.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum FaceRows {
-    /// Their mean.
-    Mean,
-    /// One a position.
-    Positions,
-}
 
 /// What is asked: a gear pair, torques, and how to compute.
 ///
