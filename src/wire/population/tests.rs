@@ -169,7 +169,11 @@ fn what_cannot_be_drawn_is_refused_with_its_place_and_the_nearest() {
     let field = |path: &str| vary(json!({ "path": path, "kind": "uniform", "low": 1, "high": 2 }));
     let path = "/population/vary/0/path";
     let of_distance = |law: Value| vary(and(json!({ "path": "/pair/center_distance_mm" }), &law));
+    let drawn = json!({ "size": 10, "accuracy": { "driving": { "iso_1328_class": 6 } } });
+    let eccentric = json!({ "eccentricity": { "amount_um": 3 } });
+    let measured = [("/base/pair/driving/tooth_deviations", eccentric)];
     for (document, place, code, nearest) in refused! {
+        testing::with(document(drawn), &measured) => "/population/accuracy/driving", ConflictingFields;
         document(json!({ "size": 10 })) => "/population/vary", MissingField;
         document(json!({ "vary": [distance()] })) => "/population/size", MissingField;
         document(json!({ "size": 1, "vary": [distance()] })) => "/population/size", OutOfRange, 2.0;
@@ -206,18 +210,6 @@ fn what_cannot_be_drawn_is_refused_with_its_place_and_the_nearest() {
     let mut both = document(json!({ "size": 10, "vary": [distance()] }));
     both["designs"] = json!([{ "label": "a" }]);
     assert_eq!(refusal(&both)[0].0, "/population");
-    let mut measured =
-        document(json!({ "size": 10, "accuracy": { "driving": { "iso_1328_class": 6 } } }));
-    measured["base"]["pair"]["driving"]["tooth_deviations"] =
-        json!({ "eccentricity": { "amount_um": 3 } });
-    assert_eq!(
-        refusal(&measured),
-        [(
-            "/population/accuracy/driving".to_owned(),
-            Code::ConflictingFields,
-            None
-        )]
-    );
     let drawn = document(
         json!({ "size": 10, "accuracy": { "driving": { "iso_1328_class": 6 } },
         "vary": [{ "path": "/pair/driving/tooth_deviations/eccentricity/amount_um", "kind": "uniform", "low": 1, "high": 2 }] }),

@@ -109,6 +109,12 @@ fn analysis(case: &Case) -> Analysis {
     }
 }
 
+/// The document of hand-made curves.
+fn written(submission: &Submission) -> String {
+    let results = Results::of(submission, &analysis(submission.case()), None);
+    results.to_json().expect("finite")
+}
+
 /// Stresses at half a turn.
 fn peaks(stresses: &[f64]) -> Vec<PeakStress> {
     let peak = |&stress: &f64| PeakStress {
@@ -122,9 +128,7 @@ fn peaks(stresses: &[f64]) -> Vec<PeakStress> {
 #[test]
 fn the_document_speaks_the_units_of_its_names() {
     let submission = submission("test-case-2", Some(600.0));
-    let text = Results::of(&submission, &analysis(submission.case()), None)
-        .to_json()
-        .expect("finite");
+    let text = written(&submission);
     let document: Value = serde_json::from_str(&text).expect("JSON");
     let curve = &document["curves"][0];
     let near = |pointer: &str, expected: f64| {
@@ -141,10 +145,8 @@ fn the_document_speaks_the_units_of_its_names() {
     near("/curves/0/transmission_error_um/0", 14.518);
     near("/curves/0/mesh_stiffness_tangent_n_per_m/0", 2.43e8);
     near("/curves/0/peak_contact_pressure_mpa/0", 650.0);
-    near(
-        "/curves/0/load_n",
-        115.0 / (0.05 * 20_f64.to_radians().cos()),
-    );
+    let r_b2 = 0.05 * 20_f64.to_radians().cos();
+    near("/curves/0/load_n", 115.0 / r_b2);
     near("/curves/0/driven_angle_deg/40", 7.2);
     near("/curves/0/decomposition/blanks/0/interface_radius_mm", 45.5);
     near(
@@ -190,9 +192,7 @@ fn the_document_speaks_the_units_of_its_names() {
 #[test]
 fn all_lists_of_a_curve_have_one_entry_a_position() {
     let submission = submission("standard-pair", None);
-    let text = Results::of(&submission, &analysis(submission.case()), None)
-        .to_json()
-        .expect("finite");
+    let text = written(&submission);
     let document: Value = serde_json::from_str(&text).expect("JSON");
     let curves = document["curves"].as_array().expect("curves");
     assert_eq!(curves.len(), 2);
@@ -216,9 +216,7 @@ fn all_lists_of_a_curve_have_one_entry_a_position() {
 #[test]
 fn the_results_of_case_3_stay_below_a_megabyte_and_a_half() {
     let submission = submission("test-case-3", Some(1000.0));
-    let text = Results::of(&submission, &analysis(submission.case()), None)
-        .to_json()
-        .expect("finite");
+    let text = written(&submission);
     assert!(text.len() < 1_500_000, "{} bytes", text.len());
 }
 
@@ -246,8 +244,7 @@ fn an_interface_radius_that_is_left_to_one_gear_s_default_has_results() {
     ] {
         document["resolution"]["interface_radius_mm"] = radii;
         let submission = parse(&document).expect("valid");
-        let written = Results::of(&submission, &analysis(submission.case()), None).to_json();
-        let written: Value = serde_json::from_str(&written.expect("finite")).expect("JSON");
+        let written: Value = serde_json::from_str(&written(&submission)).expect("JSON");
         let radii = &written["evidence"]["resolution"]["interface_radius_mm"];
         assert!(radii.get("driving").is_none(), "{radii}");
     }
@@ -268,8 +265,7 @@ fn the_results_of_every_example_read_back_to_the_same_bytes() {
         document["driving_speed_rpm"] = json!(600.0);
         // Those that are no submission are studies.
         if let Ok(submission) = parse(&document) {
-            let results = Results::of(&submission, &analysis(submission.case()), None);
-            reads_back(&results.to_json().expect("finite"));
+            reads_back(&written(&submission));
             read += 1;
         }
     }

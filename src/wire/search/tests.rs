@@ -22,6 +22,9 @@ fn base() -> Value {
     })
 }
 
+/// The accuracy class of the driven gear.
+const CLASS: &str = "/population/accuracy/driven/iso_1328_class";
+
 const RANGE: &str = "transmission_error_um.peak_to_peak";
 
 /// Reliefs of both gears for the least peak-to-peak value.
@@ -162,8 +165,7 @@ fn a_row_is_told_from_its_label_and_its_changes() {
         "evaluations": 8,
     });
     let mut with_class = search;
-    with_class["variables"][1] =
-        json!({ "path": "/population/accuracy/driven/iso_1328_class", "low": 4, "high": 8 });
+    with_class["variables"][1] = json!({ "path": CLASS, "low": 4, "high": 8 });
     let mut search = searching(with_class);
     let designs = asked(&mut search);
     let labels: Vec<&str> = designs.iter().map(|design| &*design.label).collect();
@@ -196,11 +198,7 @@ fn a_row_is_told_from_its_label_and_its_changes() {
     assert_ne!(member["pair"]["center_distance_mm"], 40.2);
     assert!(member["pair"]["driven"]["tooth_deviations"].is_object());
     // Equal members of two classes err by the same share of their tolerances.
-    let class = |design: &Design| {
-        design.changes["/population/accuracy/driven/iso_1328_class"]
-            .as_f64()
-            .expect("a class")
-    };
+    let class = |design: &Design| design.changes[CLASS].as_f64().expect("a class");
     let pitch = |design: &Design| {
         value(design)["pair"]["driven"]["tooth_deviations"]["pitch_single_um"][3]
             .as_f64()
@@ -223,8 +221,8 @@ fn a_row_is_told_from_its_label_and_its_changes() {
 /// The coarsest class of the driven gear for which the 90th percentile over its members stays below a bound.
 fn coarsest(bound: f64) -> (Searching, Vec<RowState>) {
     let mut search = searching(json!({
-        "variables": [{ "path": "/population/accuracy/driven/iso_1328_class", "low": 3, "high": 10 }],
-        "minimize": [{ "cost": [{ "path": "/population/accuracy/driven/iso_1328_class", "weight": -1 }] }],
+        "variables": [{ "path": CLASS, "low": 3, "high": 10 }],
+        "minimize": [{ "cost": [{ "path": CLASS, "weight": -1 }] }],
         "subject_to": [{ "quantity": RANGE, "at_most": bound, "percent": 90 }],
         "population": { "size": 16, "accuracy": { "driven": { "iso_1328_class": 6 } } },
         "evaluations": 20,
@@ -244,10 +242,9 @@ fn percentiles_conditions_and_costs_decide_what_is_best() {
     );
     assert_eq!(rows.len(), 8 * 17);
     let at_torque = |class: i64, torque: usize| {
-        let members = rows.iter().filter(|row| {
-            row.changes["/population/accuracy/driven/iso_1328_class"] == class
-                && row.label.contains("member")
-        });
+        let members = rows
+            .iter()
+            .filter(|row| row.changes[CLASS] == class && row.label.contains("member"));
         let mut values: Vec<f64> = members.map(|row| range_at(row, torque)).collect();
         values.sort_by(f64::total_cmp);
         meshwright_sample::percentile::percentile(&values, 90.0)
@@ -256,7 +253,7 @@ fn percentiles_conditions_and_costs_decide_what_is_best() {
     let bound = (percentile(6) + percentile(7)) / 2.0;
     let expected = (3..=10).rev().find(|class| percentile(*class) <= bound);
     let best = coarsest(bound).0.state().best.expect("a best one");
-    let class = best.values["/population/accuracy/driven/iso_1328_class"].as_i64();
+    let class = best.values[CLASS].as_i64();
     assert_eq!(class, expected);
     let class = class.expect("a class");
     assert!(best.feasible && best.goals == [Some(-class as f64)]);
@@ -358,8 +355,7 @@ fn what_is_wrong_with_a_search_is_refused_with_its_place() {
         study["axes"] = json!([{ "path": "/output_torques_n_m/0", "values": [1, 2] }]);
         study
     };
-    let class =
-        json!([{ "path": "/population/accuracy/driven/iso_1328_class", "low": 1, "high": 8 }]);
+    let class = json!([{ "path": CLASS, "low": 1, "high": 8 }]);
     let population = json!({ "size": 4, "accuracy": { "driven": { "iso_1328_class": 6 } } });
     let of_members = |changes: &[(&str, Value)]| {
         let mut search = reliefs();
@@ -414,7 +410,7 @@ fn what_is_wrong_with_a_search_is_refused_with_its_place() {
             { "path": "/pair/driving/tip_relief/amount_um", "kind": "uniform", "low": 4, "high": 6 },
         ]))]) => path, ConflictingFields;
         of_members(&[("/variables", json!([
-            { "path": "/population/accuracy/driven/iso_1328_class", "low": 1, "high": 12 },
+            { "path": CLASS, "low": 1, "high": 12 },
         ]))]) => "/search/variables/0/high", OutOfRange, 11.0;
         of_members(&[("/population/accuracy/driven/iso_1328_class", json!(0))])
             => "/search/population/accuracy/driven/iso_1328_class", OutOfRange, 1.0;

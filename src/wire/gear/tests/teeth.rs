@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::{fault, faults, near, told, with};
 use crate::wire::Code;
-use crate::wire::testing::{parse, refused};
+use crate::wire::testing::{and, parse, refused};
 
 #[test]
 fn a_tip_diameter_says_the_addendum() {
@@ -159,63 +159,35 @@ fn a_relief_off_the_flank_is_told_where_it_stands_with_a_start_that_would_do() {
 
 #[test]
 fn a_table_is_told_its_first_entry_that_does_not_rise_and_how_many_values_it_needs() {
-    let table = |places: Value, removed: Value| json!({ "profile_modifications": [{ "kind": "table", "roll_length_mm": places, "removed_um": removed }] });
-    let item = "profile_modifications/0";
-    let falls = fault(
-        &table(json!([14, 15, 15, 16]), json!([0, 0, 0, 0])),
-        &format!("{item}/roll_length_mm/2"),
-        Code::TableDoesNotRise,
-    );
-    assert_eq!(
-        falls.nearest,
-        Some(15.001),
-        "a unit in the fifth digit: {falls:?}"
-    );
+    let modified = |modifications: Value| json!({ "profile_modifications": modifications });
+    let of = |fields: Value| modified(json!([and(json!({ "kind": "table" }), &fields)]));
+    let table = |places: Value, removed: Value| {
+        of(json!({ "roll_length_mm": places, "removed_um": removed }))
+    };
+    let diameters = |places: Value| of(json!({ "diameter_mm": places, "removed_um": [0, 0] }));
+    let many: Vec<u32> = (0..1001).collect();
+    let both =
+        json!({ "diameter_mm": [98, 100], "roll_length_mm": [15, 16], "removed_um": [0, 0] });
+    let seventeen = vec![json!({ "kind": "slope", "amount_um": 1 }); 17];
+    for (fields, place, code, nearest) in refused! {
+        // A unit in the fifth digit.
+        table(json!([14, 15, 15, 16]), json!([0, 0, 0, 0])) => "/0/roll_length_mm/2", TableDoesNotRise, 15.001;
+        table(json!([14, 15, 16]), json!([0, 1])) => "/0/removed_um", WrongLength, 3.0;
+        table(json!([14]), json!([0])) => "/0/roll_length_mm", WrongLength, 2.0;
+        table(json!(many), json!([0, 1])) => "/0/roll_length_mm", TooLarge, 1000.0;
+        // The base circle of 100 cos 20 mm.
+        diameters(json!([90, 100])) => "/0/diameter_mm/0", OutOfRange, 93.97;
+        of(both) => "/0/diameter_mm", ConflictingFields;
+        of(json!({ "removed_um": [0, 0] })) => "/0", MissingField;
+        modified(json!([{ "kind": "helix" }])) => "/0/kind", WrongType;
+        modified(json!(seventeen)) => "", TooLarge, 16.0;
+    } {
+        let found = fault(&fields, &format!("profile_modifications{place}"), code);
+        assert_eq!(found.nearest, nearest, "{found:?}");
+    }
     let falling = faults(&table(json!([14, 15, 15, 13]), json!([0, 0, 0, 0])));
     let together: Vec<_> = falling.iter().map(|fault| fault.nearest).collect();
     assert_eq!(together, [Some(15.001), Some(15.002)], "{falling:?}");
-    let short = fault(
-        &table(json!([14, 15, 16]), json!([0, 1])),
-        &format!("{item}/removed_um"),
-        Code::WrongLength,
-    );
-    assert_eq!(short.nearest, Some(3.0));
-    fault(
-        &table(json!([14]), json!([0])),
-        &format!("{item}/roll_length_mm"),
-        Code::WrongLength,
-    );
-    let many: Vec<u32> = (0..1001).collect();
-    fault(
-        &table(json!(many), json!([0, 1])),
-        &format!("{item}/roll_length_mm"),
-        Code::TooLarge,
-    );
-    let below = json!({ "profile_modifications": [{ "kind": "table", "diameter_mm": [90, 100], "removed_um": [0, 0] }] });
-    let below = fault(&below, &format!("{item}/diameter_mm/0"), Code::OutOfRange);
-    assert_eq!(
-        below.nearest,
-        Some(93.97),
-        "the base circle of 100 cos 20 mm"
-    );
-    let both = json!({ "profile_modifications": [
-        { "kind": "table", "diameter_mm": [98, 100], "roll_length_mm": [15, 16], "removed_um": [0, 0] }
-    ] });
-    fault(
-        &both,
-        &format!("{item}/diameter_mm"),
-        Code::ConflictingFields,
-    );
-    let neither = json!({ "profile_modifications": [{ "kind": "table", "removed_um": [0, 0] }] });
-    fault(&neither, item, Code::MissingField);
-    let odd = json!({ "profile_modifications": [{ "kind": "helix" }] });
-    fault(&odd, &format!("{item}/kind"), Code::WrongType);
-    let seventeen = vec![json!({ "kind": "slope", "amount_um": 1 }); 17];
-    fault(
-        &json!({ "profile_modifications": seventeen }),
-        "profile_modifications",
-        Code::TooLarge,
-    );
 }
 
 /// Single deviations that rise by `step` on every even tooth and fall on every odd one.
