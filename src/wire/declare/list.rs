@@ -4,7 +4,7 @@ use serde::Serializer;
 use serde::ser::SerializeSeq;
 use serde_json::{Value, json};
 
-use super::{Kind, Named, Node, ObjectReader, Place, Written};
+use super::{Kind, Named, Node, Place, Written};
 use crate::wire::problem::Code;
 
 /// What a declaration says of a list.
@@ -119,16 +119,8 @@ impl<T: Kind + PartialEq> Kind for Vec<T> {
         read.into_iter().collect()
     }
 
-    fn read_field(
-        reader: &mut ObjectReader<'_>,
-        name: &'static str,
-        spec: &Self::Spec,
-    ) -> Option<Self> {
-        let node = reader.get(name);
-        match node.filter(|node| !(spec.or_null && **node == Node::Null)) {
-            Some(node) => Self::read(node, &reader.place_of(name), spec),
-            None => Self::absent(reader, name, spec),
-        }
+    fn takes_null(spec: &Self::Spec) -> bool {
+        spec.or_null
     }
 
     fn usual(spec: &Self::Spec) -> Option<Self> {

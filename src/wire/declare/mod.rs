@@ -51,10 +51,16 @@ pub(super) trait Kind: Sized {
         name: &'static str,
         spec: &Self::Spec,
     ) -> Option<Self> {
-        match reader.get(name) {
+        let node = reader.get(name);
+        match node.filter(|node| **node != Node::Null || !Self::takes_null(spec)) {
             Some(node) => Self::read(node, &reader.place_of(name), spec),
             None => Self::absent(reader, name, spec),
         }
+    }
+
+    /// Whether null is as good as absent.
+    fn takes_null(_: &Self::Spec) -> bool {
+        false
     }
 
     /// What stands for it where it is absent; nothing if it has to be given.

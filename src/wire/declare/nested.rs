@@ -99,19 +99,15 @@ impl<D: Document> Kind for D {
         Self::read_whole(ObjectReader::new(node, place.clone())?)
     }
 
-    fn read_field(
-        reader: &mut ObjectReader<'_>,
-        name: &'static str,
-        spec: &Nested,
-    ) -> Option<Self> {
-        let place = reader.place_of(name);
-        match reader.get(name) {
-            Some(Node::Null) | None if spec.or_defaults => {
-                Self::read(&Node::Object(Vec::new()), &place, spec)
-            }
-            Some(node) => Self::read(node, &place, spec),
-            None => reader.missing(name),
+    fn takes_null(spec: &Nested) -> bool {
+        spec.or_defaults
+    }
+
+    fn absent(reader: &mut ObjectReader<'_>, name: &'static str, spec: &Nested) -> Option<Self> {
+        if !spec.or_defaults {
+            return reader.missing(name);
         }
+        Self::read(&Node::Object(Vec::new()), &reader.place_of(name), spec)
     }
 
     fn is_needed(spec: &Nested) -> bool {
