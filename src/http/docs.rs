@@ -123,7 +123,7 @@ pub(super) fn add_common_answers(openapi: &mut OpenApi) {
     }
 }
 
-/// Says whose `id` a path has, before its other parameters: handlers take it by a type of their own.
+/// Says whose `id` a path has, before its other parameters, and that there may be no such: handlers take it by a type of their own.
 fn describe_ids(path: &str, operation: &mut Operation) {
     let whose = [
         ("/v1/jobs/", "job"),
@@ -146,6 +146,11 @@ fn describe_ids(path: &str, operation: &mut Operation) {
     let parameters = operation.parameters.get_or_insert_default();
     parameters.retain(|parameter| !is_called("id", parameter));
     parameters.insert(0, id.build().into());
+    let missing = ResponseBuilder::new().description(format!("There is no such {whose}."));
+    let responses = &mut operation.responses.responses;
+    responses
+        .entry("404".to_owned())
+        .or_insert(missing.build().into());
 }
 
 fn is_called(name: &str, parameter: &RefOr<Parameter>) -> bool {

@@ -82,7 +82,6 @@ impl From<WatchEvent> for Event {
     ),
     responses(
         (status = 200, description = "Events: `status` with a Job as data, and `progress` with a Progress.", body = WatchEvent, content_type = "text/event-stream"),
-        (status = 404, description = "There is no such job."),
         (status = 429, description = "As many streams are open as one client may have."),
     ),
 )]

@@ -58,16 +58,13 @@ pub(super) async fn ready(State(app): State<App>) -> Response {
     } else {
         StatusCode::SERVICE_UNAVAILABLE
     };
-    let mut response = (
-        status,
-        Json(Readiness {
-            ready,
-            database,
-            workers,
-            shutting_down,
-        }),
-    )
-        .into_response();
+    let readiness = Readiness {
+        ready,
+        database,
+        workers,
+        shutting_down,
+    };
+    let mut response = (status, Json(readiness)).into_response();
     response.extensions_mut().insert(Plain);
     response
 }

@@ -177,7 +177,6 @@ pub(super) async fn list(
         (status = 200, description = "The job.", body = JobView, headers(
             ("Retry-After" = u32, description = "Until the job has ended: seconds after which it is worth looking again."),
         )),
-        (status = 404, description = "There is no such job."),
     ),
 )]
 pub(super) async fn show(
@@ -218,7 +217,6 @@ pub(super) async fn show(
     post, path = "/v1/jobs/{id}/cancel", tag = "Jobs", operation_id = "cancel_job",
     responses(
         (status = 202, description = "The job is dismissed.", body = JobView),
-        (status = 404, description = "There is no such job."),
         (status = 409, description = "The job is successful or failed already."),
     ),
 )]
@@ -238,7 +236,6 @@ pub(super) async fn cancel(client: Client, JobId(id): JobId) -> Result<Response,
     delete, path = "/v1/jobs/{id}", tag = "Jobs", operation_id = "delete_job",
     responses(
         (status = 204, description = "The job is gone."),
-        (status = 404, description = "There is no such job."),
         (status = 409, description = "The job is running; cancel it first."),
     ),
 )]

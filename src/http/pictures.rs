@@ -128,10 +128,7 @@ pub(super) fn contact_pattern(pattern: &ContactPattern) -> Result<String, Proble
         panel_size: (480, 300),
         panels: panels.collect(),
     };
-    figure.to_svg().map_err(|error| {
-        tracing::error!(%error, "a contact pattern could not be drawn");
-        internal()
-    })
+    drawn(&figure)
 }
 
 /// A number without digits that say nothing.
@@ -151,6 +148,10 @@ fn svg(title: &str, panel: Panel, panel_size: (u32, u32)) -> Result<String, Prob
         panel_size,
         panels: vec![panel],
     };
+    drawn(&figure)
+}
+
+fn drawn(figure: &Figure) -> Result<String, Problem> {
     figure.to_svg().map_err(|error| {
         tracing::error!(%error, "a picture could not be drawn");
         internal()

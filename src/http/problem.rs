@@ -39,26 +39,23 @@ pub(super) struct Refusal {
 impl Refusal {
     /// The client comes too often, and may come again after `wait`.
     pub(super) fn too_often(wait: Duration) -> Self {
-        Self {
-            problem: Problem::new(
-                Code::RateLimited,
-                format!(
-                    "More requests came from you than one client may send; the next is taken in {:.1} s.",
-                    wait.as_secs_f64()
-                ),
-            ),
-            retry_after: Some(wait),
-        }
+        let detail = format!(
+            "More requests came from you than one client may send; the next is taken in {:.1} s.",
+            wait.as_secs_f64()
+        );
+        Self::until(wait, detail)
     }
-}
 
-impl Refusal {
     /// Too many requests come without a key that is known.
     pub(super) fn too_many_strangers(wait: Duration) -> Self {
         let detail = format!(
             "More requests came without a key that is known here than are answered; the next is taken in {:.1} s. A key that is known has bounds of its own.",
             wait.as_secs_f64()
         );
+        Self::until(wait, detail)
+    }
+
+    fn until(wait: Duration, detail: String) -> Self {
         Self {
             problem: Problem::new(Code::RateLimited, detail),
             retry_after: Some(wait),

@@ -46,18 +46,19 @@ pub(super) async fn validate(
     Ok(Json(validation.await??))
 }
 
-/// A submission to start from.
-#[derive(Serialize, ToSchema)]
-pub(super) struct Example {
-    /// A short name.
-    name: &'static str,
-    /// What it shows.
-    description: &'static str,
-    /// Whether it can be computed. One cannot, on purpose: it shows what a refusal looks like.
-    valid: bool,
-    /// The submission, ready for `POST /v1/jobs`.
-    #[schema(value_type = Submission)]
-    submission: Value,
+view! {
+    /// A submission to start from.
+    pub(super) struct Example as Example of (example: &wire::Example) {
+        /// A short name.
+        name: &'static str = example.name,
+        /// What it shows.
+        description: &'static str = example.description,
+        /// Whether it can be computed. One cannot, on purpose: it shows what a refusal looks like.
+        valid: bool = example.valid,
+        /// The submission, ready for `POST /v1/jobs`.
+        #[schema(value_type = Submission)]
+        submission: Value = serde_json::from_str(example.json).expect("a test reads every example"),
+    }
 }
 
 /// The examples.
@@ -77,22 +78,11 @@ pub(super) struct Examples {
 )]
 pub(super) async fn examples(request: HeaderMap) -> Response {
     static EXAMPLES: LazyLock<Standing> = LazyLock::new(|| {
-        let json = serde_json::to_vec(&all_examples()).expect("examples are plain data");
+        let items = wire::examples().iter().map(Example::of).collect();
+        let json = serde_json::to_vec(&Examples { items }).expect("examples are plain data");
         Standing::document("application/json", json)
     });
     EXAMPLES.answer(&request).await
-}
-
-fn all_examples() -> Examples {
-    let view = |example: &wire::Example| Example {
-        name: example.name,
-        description: example.description,
-        valid: example.valid,
-        submission: serde_json::from_str(example.json).expect("a test reads every example"),
-    };
-    Examples {
-        items: wire::examples().iter().map(view).collect(),
-    }
 }
 
 view! {

@@ -174,7 +174,6 @@ fn checked(import: &Import) -> Result<Submission, Vec<Fault>> {
     get, path = "/v1/jobs/{id}/submission.rexs", tag = "Jobs", operation_id = "get_model",
     responses(
         (status = 200, description = "The model.", body = String, content_type = "application/xml"),
-        (status = 404, description = "There is no such job."),
     ),
 )]
 pub(super) async fn write(client: Client, JobId(id): JobId) -> Result<Response, Problem> {

@@ -183,7 +183,6 @@ pub(super) async fn list(client: Client) -> Result<Json<WebhookListView>, Proble
     delete, path = "/v1/webhooks/{id}", tag = "Webhooks", operation_id = "delete_webhook",
     responses(
         (status = 204, description = "The webhook is gone."),
-        (status = 404, description = "There is no such webhook."),
     ),
 )]
 pub(super) async fn delete(
@@ -201,7 +200,6 @@ pub(super) async fn delete(
     get, path = "/v1/webhooks/{id}", tag = "Webhooks", operation_id = "get_webhook",
     responses(
         (status = 200, description = "The webhook, without its secret.", body = WebhookView),
-        (status = 404, description = "There is no such webhook."),
     ),
 )]
 pub(super) async fn show(
@@ -219,7 +217,6 @@ pub(super) async fn show(
     post, path = "/v1/webhooks/{id}/ping", tag = "Webhooks", operation_id = "ping_webhook",
     responses(
         (status = 202, description = "The message.", body = DeliveryView),
-        (status = 404, description = "There is no such webhook."),
         (status = 409, description = "The webhook was given up."),
     ),
 )]
@@ -235,7 +232,6 @@ pub(super) async fn ping(client: Client, WebhookId(id): WebhookId) -> Result<Res
     get, path = "/v1/webhooks/{id}/deliveries", tag = "Webhooks", operation_id = "list_deliveries",
     responses(
         (status = 200, description = "The messages.", body = DeliveryListView),
-        (status = 404, description = "There is no such webhook."),
     ),
 )]
 pub(super) async fn deliveries(
@@ -255,7 +251,6 @@ pub(super) async fn deliveries(
     post, path = "/v1/webhooks/{id}/enable", tag = "Webhooks", operation_id = "enable_webhook",
     responses(
         (status = 200, description = "The webhook.", body = WebhookView),
-        (status = 404, description = "There is no such webhook."),
         (status = 422, description = "The address is no longer one to send to."),
     ),
 )]
@@ -275,7 +270,6 @@ pub(super) async fn enable(
     post, path = "/v1/webhooks/{id}/rotate", tag = "Webhooks", operation_id = "rotate_webhook",
     responses(
         (status = 200, description = "The webhook, with its new secret, which is told this once.", body = WebhookView),
-        (status = 404, description = "There is no such webhook."),
     ),
 )]
 pub(super) async fn rotate(

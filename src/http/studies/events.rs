@@ -36,7 +36,6 @@ pub(in crate::http) struct StudyProgressView {
     get, path = "/v1/studies/{id}/events", tag = "Studies", operation_id = "watch_study",
     responses(
         (status = 200, description = "Events: `status` with a SubmittedStudy as data, and `progress` with a StudyProgress.", body = WatchEvent, content_type = "text/event-stream"),
-        (status = 404, description = "There is no such study."),
         (status = 429, description = "As many streams are open as one client may have."),
     ),
 )]

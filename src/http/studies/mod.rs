@@ -160,7 +160,6 @@ pub(super) async fn list(
         (status = 200, description = "The study.", body = StudyView, headers(
             ("Retry-After" = u32, description = "Until the study has ended: seconds after which it is worth looking again."),
         )),
-        (status = 404, description = "There is no such study."),
     ),
 )]
 pub(super) async fn show(
@@ -213,7 +212,6 @@ fn tag_of(study: &StudyRecord, form: &str, edge: &Edge) -> Tag {
     params(IfNoneMatch),
     responses(
         (status = 200, description = "The study.", body = Study),
-        (status = 404, description = "There is no such study."),
     ),
 )]
 pub(super) async fn document(
@@ -237,7 +235,6 @@ pub(super) async fn document(
     post, path = "/v1/studies/{id}/cancel", tag = "Studies", operation_id = "cancel_study",
     responses(
         (status = 202, description = "The study is dismissed.", body = StudyView),
-        (status = 404, description = "There is no such study."),
         (status = 409, description = "The study has ended already."),
     ),
 )]
@@ -254,7 +251,6 @@ pub(super) async fn cancel(client: Client, StudyId(id): StudyId) -> Result<Respo
     delete, path = "/v1/studies/{id}", tag = "Studies", operation_id = "delete_study",
     responses(
         (status = 204, description = "The study is gone."),
-        (status = 404, description = "There is no such study."),
         (status = 409, description = "The study has not ended; cancel it first."),
     ),
 )]

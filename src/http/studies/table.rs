@@ -40,7 +40,6 @@ use crate::wire::{Code, Problem, Results, RowState, StudyResults};
         (status = 200, description = "The table.", body = StudyResults, headers(
             ("Retry-After" = u32, description = "Until the study has ended: seconds after which it is worth looking again."),
         )),
-        (status = 404, description = "There is no such study."),
     ),
 )]
 pub(in crate::http) async fn results(
