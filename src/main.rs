@@ -5,6 +5,10 @@ mod commands;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use meshwright::serve::UnusableDatabase;
+
+/// The exit code for a database that cannot be used: to start again does not help.
+const EXIT_DATABASE: u8 = 3;
 
 /// Static transmission error and mesh stiffness of gears with lightening holes.
 #[derive(Parser)]
@@ -41,7 +45,7 @@ enum Command {
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 fn main() -> anyhow::Result<ExitCode> {
-    match Arguments::parse().command {
+    let ended = match Arguments::parse().command {
         Command::Serve(serve) => serve.run(),
         Command::Solve(solve) => solve.run(),
         Command::Study(study) => study.run(),
@@ -50,5 +54,16 @@ fn main() -> anyhow::Result<ExitCode> {
         Command::Migrate(migrate) => migrate.run(),
         Command::Backup(backup) => backup.run(),
         Command::Health(health) => health.run(),
+    };
+    match ended {
+        Err(error)
+            if error
+                .downcast_ref::<UnusableDatabase>()
+                .is_some_and(|database| !database.may_pass()) =>
+        {
+            eprintln!("Error: {error:#}.");
+            Ok(ExitCode::from(EXIT_DATABASE))
+        }
+        ended => ended,
     }
 }

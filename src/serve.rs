@@ -15,7 +15,7 @@ use crate::compute::{Budget, Previews, Solve};
 use crate::config::{Config, Part};
 use crate::http::{App, Door, Edge, KeysRule, Readings, Server, router, router_of_metrics};
 use crate::jobs::store::lock::{DatabaseLock, LockError};
-use crate::jobs::{Clock, Jobs, Keeper, OpenError, Place, Store, Workers};
+use crate::jobs::{Clock, Jobs, Keeper, Migrate, OpenError, Place, Store, Workers};
 use crate::tokens::Tokens;
 use crate::webhooks::{Deliveries, HookRules, Webhooks};
 use crate::wire::{Problem, Results, Submission};
@@ -64,6 +64,26 @@ pub struct UnusableDatabase {
     cause: OpenError,
 }
 
+impl UnusableDatabase {
+    /// Whether it is worth starting again: a server that is not there may come.
+    pub fn may_pass(&self) -> bool {
+        self.place.file().is_none() && self.cause.may_pass()
+    }
+}
+
+/// Opens the database of a command.
+///
+/// # Errors
+///
+/// [`UnusableDatabase`].
+pub async fn open(place: &Place, migrate: Migrate) -> Result<Store, UnusableDatabase> {
+    let opened = Store::open_as(place, migrate).await;
+    opened.map_err(|cause| UnusableDatabase {
+        place: place.clone(),
+        cause,
+    })
+}
+
 /// Starts the service: the database, the workers, the listeners.
 ///
 /// # Errors
@@ -81,11 +101,7 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         }
         None => None,
     };
-    let opened = Store::open_as(&config.database, config.migrate).await;
-    let store = opened.map_err(|cause| UnusableDatabase {
-        place: config.database.clone(),
-        cause,
-    })?;
+    let store = open(&config.database, config.migrate).await?;
     let listener = if config.role.answers() {
         Some(listen(config.listen).await?)
     } else {
@@ -206,11 +222,7 @@ pub async fn migrate(place: &Place) -> anyhow::Result<()> {
         Some(path) => Some(DatabaseLock::take(path).map_err(|error| unusable(place, error))?),
         None => None,
     };
-    let opened = Store::open(place).await;
-    let store = opened.map_err(|cause| UnusableDatabase {
-        place: place.clone(),
-        cause,
-    })?;
+    let store = open(place, Migrate::Auto).await?;
     store.close().await;
     Ok(())
 }

@@ -45,7 +45,7 @@ pub(super) fn told(problem: &Problem) -> String {
 
 /// The same, with where each field is from.
 pub(super) fn told_with<'a>(problem: &Problem, origin: impl Fn(&str) -> Option<&'a str>) -> String {
-    let mut text = format!("{} ({}).\n", problem.title, code_word(problem));
+    let mut text = format!("{} ({}).\n", problem.title, problem.code.word());
     if problem.errors.is_empty() {
         text.push_str(&format!("  {}\n", problem.detail));
     }
@@ -59,8 +59,4 @@ pub(super) fn told_with<'a>(problem: &Problem, origin: impl Fn(&str) -> Option<&
         }
     }
     text
-}
-
-fn code_word(problem: &Problem) -> String {
-    problem.code.slug().replace('-', "_")
 }

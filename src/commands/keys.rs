@@ -6,8 +6,9 @@ use std::time::Duration;
 use anyhow::{Context, bail};
 use jiff::Timestamp;
 use meshwright::config::lasting;
-use meshwright::jobs::{KeyRecord, Place, Role, Store};
+use meshwright::jobs::{KeyRecord, Migrate, Place, Role, Store};
 use meshwright::keys::{Key, is_client_name};
+use meshwright::serve::open;
 
 /// Make, list and revoke API keys.
 #[derive(Debug, clap::Args)]
@@ -70,9 +71,7 @@ impl Keys {
     pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
         let runtime = tokio::runtime::Runtime::new().context("the runtime cannot be started")?;
         runtime.block_on(async {
-            let store = Store::open(&self.database).await;
-            let store =
-                store.with_context(|| format!("cannot use the database {}", self.database))?;
+            let store = open(&self.database, Migrate::Auto).await?;
             let done = self.act(&store).await;
             store.close().await;
             done

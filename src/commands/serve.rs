@@ -8,16 +8,13 @@ use std::time::Duration;
 use anyhow::Context;
 use meshwright::config::Config;
 use meshwright::jobs::Clock;
-use meshwright::serve::{END, UnusableDatabase, World, serve};
+use meshwright::serve::{END, World, serve};
 use meshwright::spans::Spans;
 use meshwright::webhooks::HookRules;
 use meshwright::wire;
 use tracing_subscriber::EnvFilter;
 
 use super::demo;
-
-/// The exit code for a database that cannot be used: to start again does not help.
-const EXIT_DATABASE: u8 = 3;
 
 /// Serve jobs over HTTP.
 #[derive(Debug, clap::Args)]
@@ -47,14 +44,7 @@ impl Serve {
         let ended = runtime.block_on(self.until_signal());
         // Work that nobody waits for any more does not hold the process up.
         runtime.shutdown_background();
-        match ended {
-            Ok(()) => Ok(ExitCode::SUCCESS),
-            Err(error) if error.is::<UnusableDatabase>() => {
-                eprintln!("Error: {error:#}.");
-                Ok(ExitCode::from(EXIT_DATABASE))
-            }
-            Err(error) => Err(error),
-        }
+        ended.map(|()| ExitCode::SUCCESS)
     }
 
     async fn until_signal(&self) -> anyhow::Result<()> {

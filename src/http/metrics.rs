@@ -14,7 +14,7 @@ use metrics_exporter_prometheus::{Matcher, PrometheusBuilder, PrometheusHandle};
 use super::app::App;
 use super::client::Operator;
 use crate::jobs::JobError;
-use crate::wire::{Code, Problem};
+use crate::wire::{Code, Problem, methods};
 
 /// Declares numbers: their names, and what they are.
 macro_rules! told {
@@ -58,30 +58,40 @@ const GAUGES: &[(&str, &str)] = told! {
     "meshwright_cache_entries": "Substructures that are kept.",
 };
 
-const HISTOGRAMS: &[(&str, &str)] = told! {
-    "meshwright_http_request_duration_seconds": "Time until the head of an answer.",
-    "meshwright_job_wall_time_seconds": "Time that a job was computed.",
-    "meshwright_job_waiting_time_seconds": "Time from the submission of a job to its last begin.",
-    "meshwright_preview_engine_seconds": "Time that a preview was computed.",
-};
-
-/// Where the buckets of the histograms end, in their order.
-const BUCKETS: [&[f64]; 4] = [
-    &[0.001, 0.005, 0.02, 0.1, 0.5, 2.0, 10.0, 60.0],
-    &[0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 600.0],
-    &[0.01, 0.1, 1.0, 10.0, 60.0, 600.0, 3600.0, 21_600.0],
-    &[0.01, 0.02, 0.035, 0.05, 0.1, 0.3, 1.0, 3.0, 10.0],
+/// These, and where their buckets end.
+const HISTOGRAMS: &[(&str, &str, &[f64])] = &[
+    (
+        "meshwright_http_request_duration_seconds",
+        "Time until the head of an answer.",
+        &[0.001, 0.005, 0.02, 0.1, 0.5, 2.0, 10.0, 60.0],
+    ),
+    (
+        "meshwright_job_wall_time_seconds",
+        "Time that a job was computed.",
+        &[0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 600.0],
+    ),
+    (
+        "meshwright_job_waiting_time_seconds",
+        "Time from the submission of a job to its last begin.",
+        &[0.01, 0.1, 1.0, 10.0, 60.0, 600.0, 3600.0, 21_600.0],
+    ),
+    (
+        "meshwright_preview_engine_seconds",
+        "Time that a preview was computed.",
+        &[0.01, 0.02, 0.035, 0.05, 0.1, 0.3, 1.0, 3.0, 10.0],
+    ),
 ];
 
 /// The numbers of this process. One recorder serves all parts of it, as the `metrics` facade wants.
 fn recorder() -> &'static PrometheusHandle {
     static RECORDER: OnceLock<PrometheusHandle> = OnceLock::new();
     RECORDER.get_or_init(|| {
-        let histograms = HISTOGRAMS.iter().zip(BUCKETS);
-        let builder = histograms.fold(PrometheusBuilder::new(), |builder, ((name, _), ends)| {
-            let builder = builder.set_buckets_for_metric(Matcher::Full((*name).to_owned()), ends);
-            builder.expect("no list of buckets is empty")
-        });
+        let mut builder = PrometheusBuilder::new();
+        for &(name, _, ends) in HISTOGRAMS {
+            builder = builder
+                .set_buckets_for_metric(Matcher::Full(name.to_owned()), ends)
+                .expect("no list of buckets is empty");
+        }
         let recorder = builder.build_recorder();
         let handle = recorder.handle();
         // Another recorder may have been set by who embeds the service; then it gets the numbers.
@@ -92,7 +102,7 @@ fn recorder() -> &'static PrometheusHandle {
         for &(name, about) in GAUGES {
             metrics::describe_gauge!(name, about);
         }
-        for &(name, about) in HISTOGRAMS {
+        for &(name, about, _) in HISTOGRAMS {
             metrics::describe_histogram!(name, about);
         }
         for &(name, _) in RARE {
@@ -100,6 +110,11 @@ fn recorder() -> &'static PrometheusHandle {
         }
         for result in ["arrived", "refused", "given_up"] {
             metrics::counter!("meshwright_webhook_attempts_total", "result" => result).increment(0);
+        }
+        for method in methods() {
+            let code = Code::InternalError.word();
+            metrics::counter!("meshwright_jobs_ended_total", "status" => "failed", "method" => method, "code" => code)
+                .increment(0);
         }
         handle
     })

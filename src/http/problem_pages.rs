@@ -54,7 +54,7 @@ pub(super) async fn page_of(Path(slug): Path<String>) -> Result<Html<String>, Pr
     let body = format!(
         "<p>{}</p><p>Code <code>{}</code>, status {}.</p><p><a href=\"../problems\">All problems</a></p>",
         code.explanation(),
-        code.slug().replace('-', "_"),
+        code.word(),
         code.status(),
     );
     Ok(Html(page(code.title(), &body)))

@@ -435,10 +435,10 @@ fn solved(
 fn tell_end(job: &Job, end: End, outcome: &Outcome) {
     let seconds = end.elapsed.as_secs_f64();
     let (status, code) = match outcome {
-        Ok(_) => ("successful", "none"),
-        Err(problem) => ("failed", problem.code.slug()),
+        Ok(_) => ("successful", "none".to_owned()),
+        Err(problem) => ("failed", problem.code.word()),
     };
-    metrics::counter!("meshwright_jobs_ended_total", "status" => status, "method" => job.method.clone(), "code" => code)
+    metrics::counter!("meshwright_jobs_ended_total", "status" => status, "method" => job.method.clone(), "code" => code.clone())
         .increment(1);
     metrics::histogram!("meshwright_job_wall_time_seconds", "method" => job.method.clone())
         .record(seconds);
@@ -453,11 +453,11 @@ fn tell_end(job: &Job, end: End, outcome: &Outcome) {
     metrics::histogram!("meshwright_job_waiting_time_seconds", "kind" => kind)
         .record(waited.unwrap_or(0.0).max(0.0));
     info!(job = %job.id, client = job.client, status, code, wall_time_seconds = seconds, "job ended");
-    tell_spans(job, end, status, code);
+    tell_spans(job, end, status, &code);
 }
 
 /// The job from its submission to its end, and within it the attempt that brought it there.
-fn tell_spans(job: &Job, end: End, status: &'static str, code: &'static str) {
+fn tell_spans(job: &Job, end: End, status: &'static str, code: &str) {
     let span = |attempt: Option<i64>, name: &'static str, begin: Timestamp| Span {
         place: spans::place_of_job(job.id, attempt),
         parent: attempt.map_or(SpanId::INVALID, |_| {
@@ -473,7 +473,7 @@ fn tell_spans(job: &Job, end: End, status: &'static str, code: &'static str) {
             KeyValue::new("meshwright.job.method", job.method.clone()),
             KeyValue::new("meshwright.job.attempt", job.attempt),
             KeyValue::new("meshwright.job.status", status),
-            KeyValue::new("meshwright.job.code", code),
+            KeyValue::new("meshwright.job.code", code.to_owned()),
         ],
         causes: Vec::new(),
         failed: status != "successful",

@@ -36,8 +36,10 @@ impl HookRules {
         if self.allowed.is_empty() {
             return Err("Webhooks are off in this service.".to_owned());
         }
-        // As the sender reads it, to whom 127.1, 0x7f000001 and 2130706433 are addresses, too.
-        let parsed = Url::parse(url).ok().filter(|_| url.len() <= LONGEST);
+        // As the sender reads it, to whom 127.1, 0x7f000001 and 2130706433 are addresses, too. He passes over some controls, but not
+        // everybody who keeps them does.
+        let is_text = url.len() <= LONGEST && !url.contains(char::is_control);
+        let parsed = Url::parse(url).ok().filter(|_| is_text);
         let target = parsed
             .as_ref()
             .and_then(|url| Some((url, url.host_str()?, url.port_or_known_default()?)));
@@ -266,6 +268,11 @@ mod tests {
             "https://0x7f.1/",
             "https://127.0.0.1./",
             "https://\u{ff11}27.0.0.1/",
+            "https://hooks.example.com/a\0b",
+            "https://hooks.example.com/?\0",
+            "https://hooks.example.com/#\0",
+            "\0https://hooks.example.com/",
+            "https://hooks.example.com/\n",
             "ftp://hooks.example.com/",
             "hooks.example.com",
             "/path",

@@ -59,6 +59,7 @@ pub use outline::PairOutline;
 pub use population::{PopulationResults, PopulationSample};
 pub use preview::Preview;
 pub use problem::{Code, FieldError, Problem};
+pub use resolution::methods;
 pub use results::Results;
 pub use rexs::model_of;
 pub use search::{SearchState, Searching};

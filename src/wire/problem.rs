@@ -18,6 +18,9 @@ macro_rules! codes {
             /// The last part of the problem's type: the code with hyphens.
             pub fn slug(self) -> &'static str { match self { $(Code::$name => $slug,)* } }
 
+            /// Its word in documents and numbers.
+            pub fn word(self) -> String { self.slug().replace('-', "_") }
+
             /// The HTTP status that it answers with.
             pub fn status(self) -> u16 { match self { $(Code::$name => $status,)* } }
 
@@ -297,10 +300,8 @@ mod tests {
     fn the_slug_is_the_code_with_hyphens_and_every_code_is_explained() {
         for &code in Code::ALL {
             let name = serde_json::to_value(code).expect("a word");
-            assert_eq!(
-                name.as_str().expect("a word").replace('_', "-"),
-                code.slug()
-            );
+            assert_eq!(name, code.word());
+            assert_eq!(code.word().replace('_', "-"), code.slug());
             assert!((400..600).contains(&code.status()));
             assert!(code.explanation().len() > code.title().len());
         }

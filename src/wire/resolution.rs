@@ -10,12 +10,17 @@ use serde::ser::SerializeMap;
 use serde_json::{Value, json};
 
 use super::declare::{
-    Document, EACH, Kind, Named, Node, ObjectReader, Place, absent, document, flag, nested, number,
-    word, words,
+    Choice, Document, EACH, Kind, Named, Node, ObjectReader, Place, absent, document, flag, nested,
+    number, word, words,
 };
 use super::interface::InterfaceRadii;
 use super::problem::Code;
 use super::units::from_um;
+
+/// The words of the methods.
+pub fn methods() -> impl Iterator<Item = &'static str> {
+    Method::OPTIONS.iter().map(|(word, ..)| *word)
+}
 
 words! {
     Method {

@@ -148,10 +148,10 @@ async fn a_full_disk_stops_nothing_for_longer_than_it_is_full() {
 async fn a_database_that_cannot_be_written_is_refused_with_a_reason_and_an_exit_code() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("meshwright.db");
-    let serve = |path: &Path| {
+    let run = |command: &[&str], database: &Path| {
         let output = Command::new(env!("CARGO_BIN_EXE_meshwright"))
-            .args(["serve", "--listen", "127.0.0.1:0", "--database"])
-            .arg(path)
+            .args(command)
+            .env("MESHWRIGHT_DATABASE", database)
             .output()
             .unwrap();
         (
@@ -159,13 +159,37 @@ async fn a_database_that_cannot_be_written_is_refused_with_a_reason_and_an_exit_
             String::from_utf8(output.stderr).unwrap(),
         )
     };
+    let serve = |database: &Path| run(&["serve", "--listen", "127.0.0.1:0"], database);
     fs::write(&path, "this is no database, whatever its name says").unwrap();
-    let (code, told) = serve(&path);
-    assert_eq!(code, Some(3), "{told}");
+    let pipe = folder.path().join("pipe");
     assert!(
-        told.contains("no SQLite database") && told.contains("nothing was changed"),
-        "{told}"
+        Command::new("mkfifo")
+            .arg(&pipe)
+            .status()
+            .unwrap()
+            .success()
     );
+    for (code, told) in [
+        serve(&path),
+        run(&["migrate"], &path),
+        run(&["keys", "list"], &path),
+        serve(&pipe),
+    ] {
+        assert_eq!(code, Some(3), "{told}");
+        assert!(
+            told.contains("no SQLite database") && told.contains("nothing was changed"),
+            "{told}"
+        );
+    }
+    // A server that is not there may come, and then it helps to start again.
+    for server in [
+        "postgres://127.0.0.1:1/jobs",
+        "postgres://nowhere.invalid/jobs",
+    ] {
+        let (code, told) = serve(Path::new(server));
+        assert_eq!(code, Some(1), "{told}");
+        assert!(told.contains("cannot use the database"), "{told}");
+    }
 
     // Of another program, which has it open: its bytes are the same afterwards, to the last one.
     for (number, made) in [
@@ -231,20 +255,23 @@ async fn a_file_that_was_removed_takes_nothing_more_and_says_so() {
     let path = bench.submit(&submission(1.0)).await;
     bench.ended(&path).await;
     let file = bench.config.database.file().unwrap().to_owned();
-    let aside = file.with_extension("aside");
-    fs::rename(&file, &aside).unwrap();
-    let answer = bench.post("/v1/jobs", &submission(2.0)).answer().await;
-    problem(answer, 503, "storage_unavailable").await;
-    let ready = bench.get("/health/ready").answer().await;
-    assert_eq!(ready.status(), 503);
-    // Another file of this name is not the one that is served.
-    fs::copy(&aside, &file).unwrap();
-    let answer = bench.post("/v1/jobs", &submission(2.0)).answer().await;
-    problem(answer, 503, "storage_unavailable").await;
-    // It is there again, and so is the service.
-    fs::rename(&aside, &file).unwrap();
-    while bench.get("/health/ready").answer().await.status() != 200 {
-        tokio::task::yield_now().await;
+    let journal = PathBuf::from(format!("{}-wal", file.display()));
+    for (torque, file) in [(2.0, file), (3.0, journal)] {
+        let aside = file.with_extension("aside");
+        fs::rename(&file, &aside).unwrap();
+        let answer = bench.post("/v1/jobs", &submission(torque)).answer().await;
+        problem(answer, 503, "storage_unavailable").await;
+        let ready = bench.get("/health/ready").answer().await;
+        assert_eq!(ready.status(), 503);
+        // Another file of this name is not the one that is served.
+        fs::copy(&aside, &file).unwrap();
+        let answer = bench.post("/v1/jobs", &submission(torque)).answer().await;
+        problem(answer, 503, "storage_unavailable").await;
+        // It is there again, and so is the service.
+        fs::rename(&aside, &file).unwrap();
+        while bench.get("/health/ready").answer().await.status() != 200 {
+            tokio::task::yield_now().await;
+        }
+        bench.submit(&submission(torque)).await;
     }
-    bench.submit(&submission(2.0)).await;
 }

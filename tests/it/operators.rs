@@ -17,6 +17,24 @@ fn names(text: &str) -> BTreeSet<&str> {
         .collect()
 }
 
+/// What rises from nothing is told as nothing before: the growth of a number that begins at one is none.
+#[tokio::test]
+async fn what_an_alert_waits_for_is_told_before_it_happens_the_first_time() {
+    let bench = Bench::quick().await;
+    let told = bench.get("/metrics").answer().await.body().await;
+    let grows: Vec<&str> = ALERTS
+        .split("increase(")
+        .skip(1)
+        .map(|rest| rest.split_once('[').unwrap().0)
+        .collect();
+    assert!(grows.len() >= 2, "{grows:?}");
+    for number in grows {
+        let (name, label) = number.trim_end_matches('}').split_once('{').unwrap();
+        let is_told = |line: &str| line.starts_with(name) && line.contains(label);
+        assert!(told.lines().any(is_told), "{number}");
+    }
+}
+
 #[tokio::test]
 async fn every_number_of_the_dashboard_and_of_the_alerts_is_told() {
     let bench = Bench::quick().await;

@@ -15,8 +15,9 @@ pub(super) const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 /// The largest file that is read. Whole gearboxes with their results have a few megabytes.
 const MOST_BYTES: usize = 32 << 20;
 
-/// The most nodes of its tree, which bounds the memory: some 100 bytes each.
-const MOST_NODES: u32 = 2_000_000;
+/// The most nodes of its tree, which bounds the memory: some 100 bytes each. A file of four megabytes, which is
+/// large for a gearbox, has up to this many where every one is an attribute.
+const MOST_NODES: u32 = 300_000;
 
 /// The most load cases of a file, which is far more than a submission has torques.
 const MOST_LOAD_CASES: usize = 1000;
@@ -334,5 +335,18 @@ impl Relation {
 
     pub(super) fn has(&self, role: &str, id: i64) -> bool {
         self.refs.iter().any(|(has, of)| has == role && *of == id)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_of_nothing_but_nodes_is_refused_before_they_are_memory() {
+        let nodes = "<a/>".repeat(MOST_NODES as usize);
+        let text = format!("<model version='1.4'>{nodes}</model>");
+        let told = Model::read(text.as_bytes()).unwrap_err().to_string();
+        assert!(told.contains("nodes"), "{told}");
     }
 }

@@ -367,7 +367,10 @@ async fn page(
 async fn documents(app: App, client: Arc<str>, study: &StudyRecord) -> Result<Body, Problem> {
     let id = study.id;
     // The first lines are read before anything is sent, so that what fails at once is told as a problem.
-    let first = app.jobs.study_documents(id, None).await?;
+    let first = {
+        let _turn = turn_to_read(&client).await;
+        app.jobs.study_documents(id, None).await?
+    };
     let begin = Some((app, Some(first), None, client));
     let lines = stream::unfold(begin, move |at| async move {
         let (app, ready, after, client) = at?;

@@ -1,18 +1,21 @@
-//! What a file of SQLite stands on: its name, which may be taken from it while it is open, and the room on its disk.
+//! What a file of SQLite stands on: its name and that of its journal, which may be taken from them while they are open, and the room on its disk.
 
 use std::io::{Error, ErrorKind, Result};
 use std::path::{Path, PathBuf};
+
+use super::lock::beside;
 
 /// With less room on the disk nothing is taken for writable, in bytes. A look writes less than a submission does, and what one
 /// checkpoint gives back is enough for many looks.
 #[cfg(unix)]
 const LEAST_ROOM: u64 = 1 << 20;
 
-/// The file of a database, as it was when it was opened.
+/// The file of a database, as it was when something had been written to it.
 #[derive(Debug, Clone)]
 pub(super) struct Ground {
     path: PathBuf,
-    identity: Identity,
+    /// It, and the journal beside it.
+    files: [(PathBuf, Identity); 2],
 }
 
 #[cfg(unix)]
@@ -22,22 +25,30 @@ type Identity = ();
 
 impl Ground {
     pub(super) fn of(path: &Path) -> Result<Self> {
+        // The journal stands beside the file, wherever a link to that stands.
+        let journal = beside(&path.canonicalize()?, "-wal");
+        let (own, its) = (identity(path)?, identity(&journal)?);
         Ok(Self {
             path: path.to_owned(),
-            identity: identity(path)?,
+            files: [(path.to_owned(), own), (journal, its)],
         })
     }
 
-    /// That the file still has its name. What is written to one that has lost it is gone with the process.
-    pub(super) fn check_name(&self) -> Result<()> {
-        match identity(&self.path) {
-            Ok(identity) if identity == self.identity => Ok(()),
-            Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
-            _ => Err(Error::new(
-                ErrorKind::NotFound,
-                "the file of the database was removed, or another one has its name",
-            )),
+    /// That both still have their names. What is written to one that has lost it is gone with the process.
+    pub(super) fn check_names(&self) -> Result<()> {
+        for (path, known) in &self.files {
+            match identity(path) {
+                Ok(identity) if identity == *known => {}
+                Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
+                _ => {
+                    return Err(Error::new(
+                        ErrorKind::NotFound,
+                        "the file of the database or its journal was removed, or another one has its name",
+                    ));
+                }
+            }
         }
+        Ok(())
     }
 
     /// That there is room for what comes.

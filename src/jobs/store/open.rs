@@ -15,7 +15,7 @@ use sqlx::{ConnectOptions, Connection, PgConnection, SqliteConnection};
 use tracing::{info, warn};
 use uuid::Uuid;
 
-use super::error::primary_code;
+use super::error::{may_pass, primary_code};
 use super::ground::Ground;
 use super::health::Health;
 use super::lock::beside;
@@ -112,6 +112,11 @@ pub enum OpenError {
 }
 
 impl OpenError {
+    /// Whether the server may be there, and let this process in, a moment later.
+    pub(crate) fn may_pass(&self) -> bool {
+        matches!(self, Self::Connect(error) if may_pass(error))
+    }
+
     /// Why the system does not open the file.
     pub(crate) fn of_system(error: std::io::Error) -> Self {
         match error.kind() {
@@ -178,20 +183,20 @@ impl Store {
             Place::File(path) => open_file(path, migrate).await?,
             Place::Postgres(address) => open_server(address, migrate).await?,
         };
-        let ground = match place.file() {
-            Some(path) => Some(Ground::of(path).map_err(sqlx::Error::Io)?),
-            None => None,
-        };
-        let store = Self {
+        let mut store = Self {
             place: place.clone(),
             writer,
             readers,
             health: Health::new(),
-            ground,
+            ground: None,
             process: Uuid::now_v7(),
         };
         store.look_for_damage().await?;
         store.probe().await?;
+        // By now there is a journal, too.
+        if let Some(path) = place.file() {
+            store.ground = Some(Ground::of(path).map_err(sqlx::Error::Io)?);
+        }
         store.watch_writing();
         Ok(store)
     }
@@ -378,6 +383,10 @@ async fn is_encrypted(connection: &mut PgConnection) -> Result<bool, sqlx::Error
 /// A file that is there and not empty has to be a database; SQLite would say so later, and less clearly. One that is absent is
 /// made.
 fn refuse_other_files(path: &Path) -> Result<(), OpenError> {
+    // A pipe would be waited for.
+    if std::fs::metadata(path).is_ok_and(|data| !data.is_file()) {
+        return Err(OpenError::NotADatabase);
+    }
     let mut head = [0; MAGIC.len()];
     let Ok(mut file) = std::fs::File::open(path) else {
         // What may not be read or made is told by SQLite.

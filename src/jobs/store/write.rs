@@ -153,7 +153,7 @@ async fn begin_with(
     relaxed: Option<Text>,
 ) -> Result<Write, StoreError> {
     if let Some(ground) = ground {
-        ground.check_name().map_err(sqlx::Error::Io)?;
+        ground.check_names().map_err(sqlx::Error::Io)?;
     }
     let mut connection = writer.acquire().await?;
     // In plain SQL, because the driver's count of open transactions survives an error that SQLite's does not.

@@ -22,7 +22,15 @@ pub(in crate::jobs::store) const PROBE: Words = Some(
           no_documents as (update documents set size = size where false),
           no_studies as (update studies set version = version where false),
           no_rows as (update study_rows set label = label where false),
+          no_study_documents as (update study_documents set body = body where false),
+          no_tags as (update job_tags set tag = tag where false),
+          no_study_tags as (update study_tags set tag = tag where false),
+          no_idempotency_keys as (update idempotency_keys set key = key where false),
           no_shares as (update shares set due = due where false),
+          no_served as (update served set due = due where false),
+          no_summaries as (update summaries set body = body where false),
+          no_messages as (update messages set next_at = next_at where false),
+          no_webhooks as (update webhooks set url = url where false),
           no_keys as (select 1 from keys where false)
      update probed set number = number + 1",
 );
