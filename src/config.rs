@@ -218,7 +218,8 @@ pub struct DoorOptions {
           value_parser = clap::value_parser!(i64).range(1..))]
     pub client_design_limit: i64,
 
-    /// Streams of events and waiting requests that one client may have open; all together may have eight times as many.
+    /// Streams of events and waiting requests that one client may have open, at most a quarter of --connections; all together may
+    /// have eight times as many, at most half of --connections.
     #[arg(
         long,
         env = "MESHWRIGHT_CLIENT_STREAMS",
@@ -398,6 +399,7 @@ impl Config {
             .chain(self.door.allowed_hosts.iter().cloned())
             .collect();
         let loopback = self.listen.ip().is_loopback();
+        let connections = self.bounds().connections;
         DoorRules {
             keys: self.door.keys.unwrap_or_default(),
             // Who names somebody that vouches for people wants to know who they are.
@@ -407,8 +409,13 @@ impl Config {
             hosts,
             requests_per_second: self.door.requests_per_second,
             strangers_per_second: self.door.requests_without_key,
-            waiting_per_client: self.door.client_streams,
-            waiting: self.door.client_streams.saturating_mul(8),
+            // Each has a connection: one client's leave most of them to others, and those of all half.
+            waiting_per_client: self.door.client_streams.min((connections / 4).max(1)),
+            waiting: self
+                .door
+                .client_streams
+                .saturating_mul(8)
+                .min((connections / 2).max(1)),
         }
     }
 

@@ -147,17 +147,16 @@ impl Caller {
             }
             None => Self::anonymous(app),
         };
+        let client = Arc::from(caller.member.client.as_str());
         if let Some(fingerprint) = fingerprint {
             app.door.prove(fingerprint);
             if let Some(guest) = parts.extensions.get::<Arc<Guest>>() {
-                guest.recognize();
+                guest.recognize(&client);
             }
             tracing::Span::current().record("client", &caller.member.client);
         }
         // Who reads the body shares the memory for that by it.
-        parts
-            .extensions
-            .insert(ClientName(Arc::from(caller.member.client.as_str())));
+        parts.extensions.insert(ClientName(client));
         app.door
             .count_request(&caller.member.client, caller.rate)
             .map_err(Refusal::too_often)?;

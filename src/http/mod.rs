@@ -1,6 +1,7 @@
 //! The jobs over HTTP. A handler takes a document, hands it on, and answers; all work is done below.
 //!
-//! In reading order: what handlers work with; how connections are served (who is there, and what they take of their answers);
+//! In reading order: what handlers work with; how connections are served (who is there, what they give of their requests and take of their
+//! answers);
 //! the router and its layers; who gets in; how errors become problem documents; what requests are made of (body, client,
 //! parameters, preferences); what answers are made of (bodies and headers, entity tags, packing, pages, the view of a job); the handlers.
 
@@ -19,6 +20,7 @@ mod draw;
 mod edge;
 mod events;
 mod fields;
+mod giving;
 mod guests;
 mod guides;
 mod headers;

@@ -1,7 +1,7 @@
 //! Connections: how many there may be, how long one may say nothing, and how they end.
 //!
-//! A connection is busy from the head of a request to the last byte of its answer, and idle otherwise; one whose client takes
-//! nothing of its answer is as idle. Idle ones cost little, but each holds a descriptor, of which a process has so many: an
+//! A connection is busy from the head of a request to the last byte of its answer, and idle otherwise; one whose client gives
+//! nothing of its request, or takes nothing of its answer, is as idle. Idle ones cost little, but each holds a descriptor, of which a process has so many: an
 //! idle one gives way where a new one finds no room, and ends by itself when its client sends no request, or takes nothing, for
 //! a while.
 
@@ -30,6 +30,7 @@ use tokio_util::task::TaskTracker;
 use tower::ServiceExt;
 use tracing::{debug, warn};
 
+use super::giving::Awaited;
 use super::guests::{Busy, Guest, Guests, Place};
 use super::taking::Watched;
 
@@ -205,8 +206,10 @@ async fn serve_connection<S>(
         let busy = Busy::begin(&guest);
         async move {
             guest.taking.emptied().await;
+            let giving = Arc::clone(&guest.giving);
             request.extensions_mut().insert(guest);
-            let Ok(response) = router.oneshot(request.map(Body::new)).await;
+            let request = request.map(|body| Body::new(Awaited::new(body, giving)));
+            let Ok(response) = router.oneshot(request).await;
             Ok::<_, Infallible>(kept_busy(response, busy))
         }
     });
@@ -234,7 +237,7 @@ fn kept_busy(response: Response<Body>, busy: Busy) -> Response<BusyBody> {
 }
 
 /// Ends a connection: with the answer that is under way, or when it has been idle for `patience`. One that has sent half a
-/// head is as idle as one that has sent nothing, and so is one that takes nothing of its answer.
+/// head is as idle as one that has sent nothing, and so is one that gives no body, or takes nothing of its answer.
 async fn end<I, S>(
     mut connection: Pin<&mut http1::Connection<I, S>>,
     guest: &Guest,
@@ -253,10 +256,10 @@ where
             // What has arrived by now is answered.
             biased;
             ended = poll_fn(|context| connection.as_mut().poll(context)) => return ended,
-            () = std::future::ready(()), if patience.is_zero() && guest.is_idle() => return Ok(()),
+            () = std::future::ready(()), if patience.is_zero() && guest.is_idle(Instant::now()) => return Ok(()),
             () = wait => {}
         }
-        if !guest.is_idle() {
+        if !guest.is_idle(Instant::now()) {
             idle_since = Instant::now();
         } else if idle_since.elapsed() >= patience {
             return Ok(());

@@ -11,7 +11,7 @@ use tokio::sync::Notify;
 use tokio::time::{Instant, Sleep, sleep_until};
 
 /// Who takes less of an answer than this, in bytes a second, is given up in the end, as who takes nothing.
-const LEAST_RATE: f64 = 4096.0;
+pub(super) const LEAST_RATE: f64 = 4096.0;
 
 /// How far a client has taken what it asked for.
 #[derive(Debug, Default)]
@@ -52,8 +52,9 @@ impl Taking {
     }
 
     /// For how long the client has taken nothing of what waits for it.
-    pub(super) fn stalled_for(&self) -> Option<Duration> {
-        self.state().stalled.map(|since| since.elapsed())
+    pub(super) fn stalled_for(&self, now: Instant) -> Option<Duration> {
+        let since = self.state().stalled;
+        since.map(|since| now.saturating_duration_since(since))
     }
 
     fn everything_left(&self) {

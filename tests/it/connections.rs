@@ -1,12 +1,13 @@
 //! Connections that say nothing, half of something, or take nothing: none of them stops the service or its end.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use meshwright::config::Config;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 
-use crate::bench::{Asked, Bench, PATIENCE, problem, results, submission};
+use crate::bench::{Asked, Bench, PATIENCE, Said, problem, results, submission};
+use crate::door::key_of;
 
 async fn service(adjust: impl FnOnce(&mut Config)) -> Bench {
     Bench::start(adjust, std::sync::Arc::new(|_, _| Ok(results()))).await
@@ -55,6 +56,62 @@ async fn silent_connections_give_way_to_those_who_ask() {
     assert_eq!(answer.status(), 200);
     // The first that came is the first that went.
     closed(silent.remove(0)).await;
+}
+
+#[tokio::test]
+async fn a_client_whose_requests_never_come_whole_locks_no_other_one_out() {
+    let bench = service(|config| config.door.connections = 16).await;
+    let (hog, other) = (key_of(&bench, "hog").await, key_of(&bench, "other").await);
+    let head = format!(
+        "POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer {hog}\r\nContent-Type: application/json\r\nContent-Length: 1000\r\n\r\n"
+    );
+    let service = bench.service().address().unwrap();
+    let mut hanging = tokio::task::JoinSet::new();
+    for _ in 0..20 {
+        let head = head.clone();
+        hanging.spawn(async move {
+            loop {
+                let mut stream = TcpStream::connect(service).await.unwrap();
+                // Each comes again when it was sent away.
+                if stream.write_all(head.as_bytes()).await.is_ok() {
+                    let _ = stream.read(&mut [0]).await;
+                }
+            }
+        });
+    }
+    tokio::time::sleep(Duration::from_millis(500)).await;
+    let start = Instant::now();
+    for _ in 0..4 {
+        let request = bench.get("/v1/jobs").bearer_auth(&other);
+        // Each on a connection of its own, which has to find a place.
+        let answer = request.header("connection", "close").answer().await;
+        assert_eq!(answer.status(), 200);
+    }
+    let took = start.elapsed();
+    assert!(took < PATIENCE, "{took:?}");
+    println!(
+        "beside 20 requests of a client that never come whole, at 16 connections: 4 of another one answered in {took:?}"
+    );
+}
+
+#[tokio::test]
+async fn the_streams_of_one_client_leave_most_connections_to_others() {
+    let adjust = |config: &mut Config| config.door.connections = 16;
+    let (bench, _engine) = Bench::steered_with(adjust).await;
+    let (hog, other) = (key_of(&bench, "hog").await, key_of(&bench, "other").await);
+    let request = bench.post("/v1/jobs", &submission(1.0)).bearer_auth(&hog);
+    let job = request.answer().await.document().await;
+    let events = format!("/v1/jobs/{}/events", job["id"].as_str().unwrap());
+    let mut streams = Vec::new();
+    for _ in 0..16 / 4 {
+        let stream = bench.get(&events).bearer_auth(&hog).answer().await;
+        assert_eq!(stream.status(), 200);
+        streams.push(stream);
+    }
+    let one_more = bench.get(&events).bearer_auth(&hog).answer().await;
+    problem(one_more, 429, "rate_limited").await;
+    let answer = bench.get("/v1/jobs").bearer_auth(&other).answer().await;
+    assert_eq!(answer.status(), 200);
 }
 
 #[tokio::test]
