@@ -2,9 +2,9 @@
 //! is not public, whatever a name means by the time it is looked up.
 //!
 //! Each webhook is patient by itself, and each client has its share of what is under way, so that receivers that hang keep nobody
-//! waiting but who named them.
+//! waiting but who named them. However many clients name such receivers, those that answer have half of the places for themselves.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::net::IpAddr;
 use std::sync::Arc;
 use std::time::Duration;
@@ -28,11 +28,18 @@ use crate::jobs::StoreError;
 /// One attempt takes so long at most.
 const TIME_OUT: Duration = Duration::from_secs(10);
 
-/// So many messages are on their way at the same time, so many of them of one client, and so many to one webhook. One that fails
-/// is tried with one message.
+/// So many messages are on their way at the same time, so many of them of one client, and so many to one webhook.
 const AT_ONCE: usize = 32;
 const OF_CLIENT: usize = 8;
 const TO_WEBHOOK: usize = 4;
+
+/// So many of these, and so many of them of one client, go to webhooks that may hang: their last message did not arrive, or none was
+/// sent by this process. Such a one is tried with one message.
+const DOUBTFUL: usize = 16;
+const DOUBTFUL_OF_CLIENT: usize = 2;
+
+/// So many webhooks that answer are remembered before all of them are in doubt again.
+const MOST_REMEMBERED: usize = 10_000;
 
 /// Without any news the messages are looked at so often.
 const QUIET: Duration = Duration::from_secs(30);
@@ -95,66 +102,119 @@ struct Courier {
 
 /// The messages under way: to each webhook so many, of this client.
 #[derive(Debug, Default)]
-struct UnderWay(BTreeMap<Uuid, (String, usize)>);
+struct UnderWay {
+    to: BTreeMap<Uuid, (String, usize)>,
+    /// The webhooks whose last message arrived.
+    answering: HashSet<Uuid>,
+}
+
+/// How many of the places are taken.
+#[derive(Debug, Clone, Copy, Default)]
+struct Taken {
+    all: usize,
+    /// Of these, by webhooks that may hang.
+    doubtful: usize,
+}
+
+impl Taken {
+    fn add(&mut self, count: usize, is_doubtful: bool) {
+        self.all += count;
+        self.doubtful += if is_doubtful { count } else { 0 };
+    }
+
+    fn leaves_room(self, most: Self, is_doubtful: bool) -> bool {
+        self.all < most.all && (!is_doubtful || self.doubtful < most.doubtful)
+    }
+}
+
+const ALL_TOGETHER: Taken = Taken {
+    all: AT_ONCE,
+    doubtful: DOUBTFUL,
+};
+
+const ONE_CLIENT: Taken = Taken {
+    all: OF_CLIENT,
+    doubtful: DOUBTFUL_OF_CLIENT,
+};
 
 impl UnderWay {
-    fn all(&self) -> usize {
-        self.0.values().map(|(_, count)| count).sum()
-    }
-
     fn to(&self, webhook: Uuid) -> usize {
-        self.0.get(&webhook).map_or(0, |(_, count)| *count)
+        self.to.get(&webhook).map_or(0, |(_, count)| *count)
     }
 
-    fn of_clients(&self) -> HashMap<String, usize> {
-        let mut counts = HashMap::new();
-        for (client, count) in self.0.values() {
-            *counts.entry(client.clone()).or_default() += count;
+    fn is_doubtful(&self, webhook: &Waiting) -> bool {
+        webhook.is_failing || !self.answering.contains(&webhook.webhook)
+    }
+
+    /// The places that are taken, in all and by each client.
+    fn taken(&self) -> (Taken, HashMap<&str, Taken>) {
+        let mut all = Taken::default();
+        let mut of_client: HashMap<&str, Taken> = HashMap::new();
+        for (webhook, (client, count)) in &self.to {
+            let is_doubtful = !self.answering.contains(webhook);
+            all.add(*count, is_doubtful);
+            of_client
+                .entry(client)
+                .or_default()
+                .add(*count, is_doubtful);
         }
-        counts
+        (all, of_client)
     }
 
     fn begin(&mut self, webhook: Uuid, client: &str, count: usize) {
-        let entry = self.0.entry(webhook);
+        let entry = self.to.entry(webhook);
         entry.or_insert_with(|| (client.to_owned(), 0)).1 += count;
     }
 
-    fn end(&mut self, webhook: Uuid) {
-        if let Some((_, count)) = self.0.get_mut(&webhook) {
+    fn end(&mut self, webhook: Uuid, has_arrived: bool) {
+        if has_arrived {
+            if self.answering.len() >= MOST_REMEMBERED {
+                self.answering.clear();
+            }
+            self.answering.insert(webhook);
+        } else {
+            self.answering.remove(&webhook);
+        }
+        if let Some((_, count)) = self.to.get_mut(&webhook) {
             *count -= 1;
             if *count == 0 {
-                self.0.remove(&webhook);
+                self.to.remove(&webhook);
             }
         }
     }
 
     /// How many messages to which of the webhooks may begin now: one after the other to the client that has the fewest under way.
     fn shares<'a>(&self, waiting: &'a [Waiting]) -> Vec<(&'a Waiting, usize)> {
-        let mut clients = self.of_clients();
-        let mut free = AT_ONCE.saturating_sub(self.all());
+        let (mut all, mut of_client) = self.taken();
         let mut shares: Vec<(&Waiting, usize)> = waiting
             .iter()
             .filter(|webhook| webhook.patience.is_zero())
             .map(|webhook| (webhook, 0))
             .collect();
-        while free > 0 {
+        loop {
             let next = shares
                 .iter_mut()
-                .filter(|(webhook, share)| {
-                    let most = if webhook.is_failing { 1 } else { TO_WEBHOOK };
-                    self.to(webhook.webhook) + *share < most
+                .filter_map(|entry| {
+                    let (webhook, share) = &*entry;
+                    let is_doubtful = self.is_doubtful(webhook);
+                    let most = if is_doubtful { 1 } else { TO_WEBHOOK };
+                    let to = self.to(webhook.webhook) + *share;
+                    let own = of_client.get(&*webhook.client).copied().unwrap_or_default();
+                    let may = to < most
+                        && all.leaves_room(ALL_TOGETHER, is_doubtful)
+                        && own.leaves_room(ONE_CLIENT, is_doubtful);
+                    may.then_some((own.all, to, is_doubtful, entry))
                 })
-                .map(|entry| (*clients.entry(entry.0.client.clone()).or_default(), entry))
-                .filter(|(of_client, _)| *of_client < OF_CLIENT)
-                .min_by_key(|(of_client, (webhook, share))| {
-                    (*of_client, self.to(webhook.webhook) + *share)
-                });
-            let Some((_, (webhook, share))) = next else {
+                .min_by_key(|(own, to, ..)| (*own, *to));
+            let Some((_, _, is_doubtful, (webhook, share))) = next else {
                 break;
             };
             *share += 1;
-            free -= 1;
-            *clients.entry(webhook.client.clone()).or_default() += 1;
+            all.add(1, is_doubtful);
+            of_client
+                .entry(&webhook.client)
+                .or_default()
+                .add(1, is_doubtful);
         }
         shares.retain(|(_, share)| *share > 0);
         shares
@@ -183,8 +243,8 @@ impl Courier {
             tokio::select! {
                 Some(ended) = attempts.join_next() => {
                     // An attempt neither panics nor is aborted before the end of all.
-                    if let Ok(webhook) = ended {
-                        under_way.end(webhook);
+                    if let Ok((webhook, has_arrived)) = ended {
+                        under_way.end(webhook, has_arrived);
                     }
                 }
                 () = changes.end() => {}
@@ -201,7 +261,7 @@ impl Courier {
     async fn begin(
         self: &Arc<Self>,
         under_way: &mut UnderWay,
-        attempts: &mut JoinSet<Uuid>,
+        attempts: &mut JoinSet<(Uuid, bool)>,
     ) -> Result<Duration, StoreError> {
         loop {
             let waiting = self.webhooks.waiting().await?;
@@ -213,8 +273,8 @@ impl Courier {
                 for message in messages {
                     let courier = Arc::clone(self);
                     attempts.spawn(async move {
-                        courier.attempt(&message).await;
-                        message.webhook
+                        let has_arrived = courier.attempt(&message).await;
+                        (message.webhook, has_arrived)
                     });
                 }
             }
@@ -232,7 +292,8 @@ impl Courier {
         }
     }
 
-    async fn attempt(&self, message: &Message) {
+    /// Sends a message, and writes down what came of it. True if it has arrived.
+    async fn attempt(&self, message: &Message) -> bool {
         let attempt = self.send(message).await;
         let result = match &attempt.refusal {
             None => "arrived",
@@ -248,6 +309,7 @@ impl Courier {
                 self.webhooks.jobs.wait_for_storage().await;
             }
         }
+        attempt.refusal.is_none()
     }
 
     async fn send(&self, message: &Message) -> Attempt {
@@ -353,33 +415,94 @@ mod tests {
         own.map(|(_, share)| share).sum()
     }
 
+    /// What is under way when all of these have answered before.
+    fn answered<'a>(waiting: impl IntoIterator<Item = &'a Waiting>) -> UnderWay {
+        let answering = waiting.into_iter().map(|webhook| webhook.webhook);
+        UnderWay {
+            answering: answering.collect(),
+            ..UnderWay::default()
+        }
+    }
+
+    fn begin(under_way: &mut UnderWay, shares: &[(&Waiting, usize)]) {
+        for (webhook, share) in shares {
+            under_way.begin(webhook.webhook, &webhook.client, *share);
+        }
+    }
+
     #[test]
     fn no_client_has_more_under_way_than_its_part_and_no_webhook_more_than_its_own() {
         let mut all = waiting("a", 16, false);
         all.extend(waiting("bb", 1, false));
-        let mut under_way = UnderWay::default();
-        let shares = under_way.shares(&all);
+        let mut under_way = answered(&all);
+        let mut shares = under_way.shares(&all);
         assert_eq!(
             (of("a", &shares), of("bb", &shares)),
             (OF_CLIENT, TO_WEBHOOK)
         );
         // Whose webhooks hang waits for them; others do not.
-        for (webhook, share) in shares.iter().filter(|(webhook, _)| webhook.client == "a") {
-            under_way.begin(webhook.webhook, "a", *share);
-        }
+        shares.retain(|(webhook, _)| webhook.client == "a");
+        begin(&mut under_way, &shares);
         let shares = under_way.shares(&all);
         assert_eq!((of("a", &shares), of("bb", &shares)), (0, TO_WEBHOOK));
     }
 
     #[test]
-    fn the_last_places_go_to_who_has_the_fewest_under_way() {
+    fn webhooks_that_may_hang_leave_half_of_the_places_to_those_that_answer() {
+        let names: Vec<String> = (1..=12).map(|length| "h".repeat(length)).collect();
+        let hanging: Vec<Waiting> = (0..)
+            .zip(&names)
+            .flat_map(|(i, name)| waiting(name, 16, i % 2 == 0))
+            .collect();
+        let answers = waiting("answers, always", 4, false);
+        let mut under_way = answered(&answers);
+        let shares = under_way.shares(&hanging);
+        // Each with one message, whether it has failed or was never tried.
+        assert!(shares.iter().all(|(_, share)| *share == 1));
+        assert_eq!(shares.len(), DOUBTFUL);
+        assert!(
+            names
+                .iter()
+                .all(|name| of(name, &shares) <= DOUBTFUL_OF_CLIENT)
+        );
+        begin(&mut under_way, &shares);
+        assert!(under_way.shares(&hanging).is_empty());
+        let shares = under_way.shares(&answers);
+        assert_eq!(of("answers, always", &shares), OF_CLIENT);
+        // What has answered once is beyond doubt until it does so no more.
+        let first = &hanging[31..32];
+        begin(&mut under_way, &[(&first[0], 1)]);
+        under_way.end(first[0].webhook, true);
+        assert_eq!(of("hh", &under_way.shares(first)), TO_WEBHOOK);
+        begin(&mut under_way, &[(&first[0], 1)]);
+        under_way.end(first[0].webhook, false);
+        assert!(under_way.shares(first).is_empty());
+    }
+
+    #[test]
+    fn five_clients_whose_webhooks_hang_keep_nobody_from_a_first_message() {
+        let names = ["a", "bb", "ccc", "dddd", "eeeee"];
+        let hanging: Vec<_> = names
+            .into_iter()
+            .flat_map(|name| waiting(name, 16, false))
+            .collect();
         let mut under_way = UnderWay::default();
+        let shares = under_way.shares(&hanging);
+        begin(&mut under_way, &shares);
+        let new = waiting("somebody else", 1, false);
+        assert_eq!(under_way.shares(&new), [(&new[0], 1)]);
+    }
+
+    #[test]
+    fn the_last_places_go_to_who_has_the_fewest_under_way() {
         let names = ["a", "bb", "ccc", "dddd"];
-        for (name, count) in names.into_iter().zip([8, 8, 8, 6]) {
-            under_way.begin(Uuid::from_u128(name.len() as u128), name, count);
-        }
         let mut all = waiting("dddd", 2, false);
         all.extend(waiting("eeeee", 2, false));
+        let mut under_way = answered(&all);
+        for (name, count) in names.into_iter().zip([8, 8, 8, 6]) {
+            let webhook = Uuid::from_u128(name.len() as u128);
+            under_way.begin(webhook, name, count);
+        }
         let shares = under_way.shares(&all);
         assert_eq!((of("dddd", &shares), of("eeeee", &shares)), (0, 2));
     }
