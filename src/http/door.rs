@@ -212,8 +212,10 @@ impl Door {
 
 /// Whether somebody has passed the request on: then who sent it is not on this machine, whatever the address says.
 fn came_through_a_proxy(headers: &HeaderMap) -> bool {
-    let passed_on =
-        |name: &HeaderName| name.as_str().starts_with("x-forwarded-") || name == "x-real-ip";
+    let passed_on = |name: &HeaderName| {
+        let name = name.as_str();
+        name == "x-real-ip" || name == "x-forwarded" || name.starts_with("x-forwarded-")
+    };
     headers.contains_key(FORWARDED) || headers.contains_key(VIA) || headers.keys().any(passed_on)
 }
 
@@ -364,6 +366,7 @@ mod tests {
         let passed_on = [
             "forwarded",
             "via",
+            "x-forwarded",
             "x-forwarded-for",
             "x-forwarded-proto",
             "x-real-ip",

@@ -99,6 +99,7 @@ pub fn router_of_metrics(app: App) -> Router {
         .route("/health/live", get(health::live))
         .route("/health/ready", get(health::ready))
         .fallback(nothing_here)
+        .method_not_allowed_fallback(not_that_method)
         .layer(layers)
         .with_state(app)
 }

@@ -350,8 +350,10 @@ async fn numbers_and_health_may_have_a_listener_of_their_own() {
         let foreign = foreign.header("host", "evil.example").answer().await;
         problem(foreign, 421, "host_not_allowed").await;
     }
-    let answer = bench.client.get(format!("{base}/v1/jobs")).answer().await;
-    assert_eq!(answer.status(), StatusCode::NOT_FOUND);
+    let nothing = bench.client.get(format!("{base}/v1/jobs")).answer().await;
+    problem(nothing, 404, "not_found").await;
+    let posted = bench.client.post(format!("{base}/metrics")).answer().await;
+    problem(posted, 405, "method_not_allowed").await;
 }
 
 #[tokio::test]
@@ -365,6 +367,7 @@ async fn behind_a_proxy_or_under_a_public_name_a_key_is_needed_though_it_listens
     for header in [
         "forwarded",
         "via",
+        "x-forwarded",
         "x-forwarded-for",
         "x-forwarded-host",
         "x-real-ip",
