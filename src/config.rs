@@ -441,8 +441,9 @@ pub struct Memory {
 /// The first look at what is old comes no sooner after the start: a clock that was wrong then is right by then.
 const FIRST_LOOK: Duration = Duration::from_secs(600);
 
-/// A client that takes nothing of its answer is given at least so long.
-const LEAST_STALL: Duration = Duration::from_secs(20);
+/// A client that takes nothing of its answer is given at least so long: its system may have taken two megabytes at once, which it reads at
+/// 30 KB a second. Where connections are short it gives way before that.
+const LEAST_STALL: Duration = Duration::from_secs(120);
 
 /// Descriptors that the process needs for itself: the database, its log, files, and requests of its own.
 const OWN_DESCRIPTORS: u64 = 64;
