@@ -11,9 +11,11 @@ use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
 use tracing::{info, warn};
 
-use crate::compute::{Budget, Previews, Solve};
+use crate::compute::{Previews, Solve};
 use crate::config::{Config, Part};
-use crate::http::{App, Door, Edge, KeysRule, Readings, Server, router, router_of_metrics};
+use crate::http::{
+    App, Door, Edge, KeysRule, ReadingMemory, Readings, Server, router, router_of_metrics,
+};
 use crate::jobs::store::lock::{DatabaseLock, LockError};
 use crate::jobs::{Clock, Jobs, Keeper, Migrate, OpenError, Place, Store, Workers};
 use crate::tokens::Tokens;
@@ -184,7 +186,7 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         door: Arc::new(door),
         edge: Arc::new(edge),
         readings: Arc::new(Readings::default()),
-        reading: Budget::of(config.memory().reading << 20),
+        reading: ReadingMemory::of(config.memory().reading << 20),
     };
     let bounds = config.bounds();
     let metrics_server = metrics_listener.map(|listener| {

@@ -1,7 +1,8 @@
 //! Something of which there is so much, and which clients share: memory, threads, connections to the database.
 //!
 //! Who holds least gets the next part, so that a client who asks for everything at once keeps nobody waiting for longer than one
-//! of its parts lasts. A part that does not fit yet is waited for: smaller ones behind it would keep it waiting for ever.
+//! of its parts lasts. A part that does not fit yet lets smaller ones of others who hold no more pass, until they come to as much as
+//! itself: then it is waited for, because they would keep it waiting for ever.
 
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -16,6 +17,8 @@ pub struct Budget(Arc<Shared>);
 #[derive(Debug)]
 struct Shared {
     most: u64,
+    /// Whether who has some takes no more than it leaves.
+    leaves_as_much: bool,
     state: Mutex<State>,
 }
 
@@ -32,6 +35,8 @@ struct State {
 struct Waiting {
     client: Arc<str>,
     amount: u64,
+    /// So much may pass it yet.
+    yields: u64,
     answer: oneshot::Sender<Part>,
 }
 
@@ -46,8 +51,19 @@ pub struct Part {
 impl Budget {
     /// A budget of so much.
     pub fn of(most: u64) -> Self {
+        Self::new(most, false)
+    }
+
+    /// A budget of which a client that has some gets no more than it leaves: for what lasts as long as a client likes, or so long that
+    /// nobody should wait for it. Whatever one client asks for, the next one finds something.
+    pub fn leaving_as_much(most: u64) -> Self {
+        Self::new(most, true)
+    }
+
+    fn new(most: u64, leaves_as_much: bool) -> Self {
         Self(Arc::new(Shared {
             most,
+            leaves_as_much,
             state: Mutex::new(State {
                 free: most,
                 held: HashMap::new(),
@@ -87,12 +103,14 @@ impl Budget {
     /// Waits for a part: a place among those who do, and what is answered.
     fn queue(&self, client: &str, amount: u64) -> (Place, oneshot::Receiver<Part>) {
         let (answer, part) = oneshot::channel();
+        let amount = amount.min(self.0.most);
         let mut state = self.0.state();
         state.arrived += 1;
         let number = state.arrived;
         let waiting = Waiting {
             client: client.into(),
-            amount: amount.min(self.0.most),
+            amount,
+            yields: amount,
             answer,
         };
         state.waiting.insert(number, waiting);
@@ -152,13 +170,31 @@ impl State {
     /// Whose turn it is, and his part, if it is free.
     fn next(&mut self, shared: &Arc<Shared>) -> Option<(oneshot::Sender<Part>, Part)> {
         let held = |waiting: &Waiting| self.held.get(&waiting.client).copied().unwrap_or_default();
+        let fits = |waiting: &Waiting| {
+            let Some(left) = self.free.checked_sub(waiting.amount) else {
+                return false;
+            };
+            let held = held(waiting);
+            !shared.leaves_as_much || held == 0 || held + waiting.amount <= left
+        };
         let first = self
             .waiting
             .iter()
             .min_by_key(|(number, waiting)| (held(waiting), **number));
-        let (&number, waiting) = first.filter(|(_, waiting)| waiting.amount <= self.free)?;
-        let (client, amount) = (Arc::clone(&waiting.client), waiting.amount);
+        let (&first, head) = first?;
+        let number = if fits(head) {
+            first
+        } else {
+            let mut others = self.waiting.iter();
+            let (&number, passing) = others.find(|(_, waiting)| {
+                held(waiting) == held(head) && waiting.amount <= head.yields && fits(waiting)
+            })?;
+            let amount = passing.amount;
+            self.waiting.get_mut(&first)?.yields -= amount;
+            number
+        };
         let waiting = self.waiting.remove(&number)?;
+        let (client, amount) = (waiting.client, waiting.amount);
         self.free -= amount;
         *self.held.entry(Arc::clone(&client)).or_default() += amount;
         let part = Part {
@@ -212,22 +248,53 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn a_large_part_is_not_passed_by_smaller_ones_for_ever() {
+    async fn a_large_part_lets_small_ones_pass_but_not_for_ever() {
         let budget = Budget::of(10);
         let (one, two) = (budget.take("a", 5).await, budget.take("b", 5).await);
         let mut large = pin!(budget.take("c", 8));
-        let mut small = pin!(budget.take("d", 1));
-        assert!(poll!(&mut large).is_pending() && poll!(&mut small).is_pending());
+        assert!(poll!(&mut large).is_pending());
         drop(one);
-        assert!(poll!(&mut small).is_pending());
+        for _ in 0..2 {
+            let Poll::Ready(_) = poll!(pin!(budget.take("d", 4))) else {
+                panic!("it fits, and no more than the large one has passed");
+            };
+        }
+        let mut small = pin!(budget.take("d", 1));
+        assert!(poll!(&mut small).is_pending() && poll!(&mut large).is_pending());
         drop(two);
         assert!(poll!(&mut large).is_ready());
     }
 
     #[tokio::test]
+    async fn who_holds_more_passes_nobody() {
+        let budget = Budget::of(10);
+        let _held = budget.take("hog", 5).await;
+        let mut large = pin!(budget.take("other", 8));
+        let mut small = pin!(budget.take("hog", 1));
+        assert!(poll!(&mut large).is_pending() && poll!(&mut small).is_pending());
+    }
+
+    #[tokio::test]
+    async fn what_leaves_as_much_has_something_for_the_next_client_whatever_one_asks_for() {
+        let budget = Budget::leaving_as_much(4);
+        let first = budget.take("hog", 1).await;
+        let _second = budget.take("hog", 1).await;
+        let mut third = pin!(budget.take("hog", 1));
+        assert!(poll!(&mut third).is_pending());
+        let mut other = pin!(budget.take("other", 1));
+        let other = poll!(&mut other);
+        assert!(other.is_ready());
+        assert!(poll!(pin!(budget.take("somebody else", 1))).is_ready());
+        drop((first, other));
+        assert!(poll!(&mut third).is_ready());
+    }
+
+    #[tokio::test]
     async fn who_gives_up_waiting_keeps_nobody_waiting_and_nothing_is_lost() {
         let budget = Budget::of(10);
-        let held = budget.take("a", 6).await;
+        let held = budget.take("a", 5).await;
+        // Who holds more than the large one's client passes nobody.
+        let other = budget.take("c", 1).await;
         let mut large = Box::pin(budget.take("b", 8));
         assert!(poll!(&mut large).is_pending());
         let mut small = pin!(budget.take("c", 4));
@@ -239,7 +306,7 @@ mod tests {
         // A part that was granted and never fetched is free as well.
         let mut unfetched = Box::pin(budget.take("d", 6));
         assert!(poll!(&mut unfetched).is_pending());
-        drop(held);
+        drop((held, other));
         drop(unfetched);
         drop(small);
         assert_eq!((budget.free(), budget.waiting()), (10, 0));

@@ -7,8 +7,9 @@ use meshwright_engine::library::Library;
 
 use super::door::Door;
 use super::edge::Edge;
+use super::memory::ReadingMemory;
 use super::readings::Readings;
-use crate::compute::{Budget, Previews};
+use crate::compute::Previews;
 use crate::jobs::Jobs;
 use crate::tokens::Tokens;
 use crate::webhooks::Webhooks;
@@ -34,8 +35,8 @@ pub struct App {
     pub edge: Arc<Edge>,
     /// Whether this process computes jobs.
     pub computes: bool,
-    /// The memory for what is sent, while it is read, in bytes.
-    pub reading: Budget,
+    /// The memory for what is sent.
+    pub reading: ReadingMemory,
     /// What the last look at the database said.
     pub readings: Arc<Readings>,
 }

@@ -11,10 +11,10 @@ use crate::compute::{Budget, Part};
 use crate::wire::Problem;
 
 /// So many pieces of such work are done at the same time; others wait for their turn, which clients take one after the other.
-/// It is the cores that are short.
+/// It is the cores that are short. Some takes seconds, so one client never has all places.
 static ROOM: LazyLock<Budget> = LazyLock::new(|| {
     let cores = thread::available_parallelism().map_or(1, usize::from);
-    Budget::of(2 * cores as u64)
+    Budget::leaving_as_much(2 * cores as u64)
 });
 
 /// So many tables are read at the same time: each takes a connection to the database, of which there are twice as many, so that
@@ -31,10 +31,15 @@ pub(super) async fn aside<T: Send + 'static>(
     client: &str,
     work: impl FnOnce(&Run) -> T + Send + 'static,
 ) -> Result<T, Problem> {
-    let _part = ROOM.take(client, 1).await;
+    let part = ROOM.take(client, 1).await;
     let stop = StopOnDrop::default();
     let run = Run::new(Arc::clone(&stop.0), |_, _| {});
-    let done = tokio::task::spawn_blocking(move || work(&run)).await;
+    let done = tokio::task::spawn_blocking(move || {
+        // Its place is free when it has ended, whether anybody waits for it or not.
+        let _part = part;
+        work(&run)
+    });
+    let done = done.await;
     done.map_err(|error| {
         tracing::error!(%error, "work beside the requests failed");
         internal()

@@ -26,16 +26,13 @@ const DRAINED: usize = 64;
 /// The body is here within this time, from when there is memory for it.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// So long a request waits for the memory to be read, at most.
-const LONGEST_WAIT: Duration = Duration::from_secs(45);
-
-/// A document that is taken apart takes so many times its size, with all that is made of it.
-const TIMES_ITS_SIZE: usize = 6;
-
 /// The bytes of a request's JSON document, so many MiB at most. The largest submission, with every table full, has a few hundred thousand bytes.
-/// And the memory that it and what is made of it take: a document is not read before there is some, and who has many read shares
-/// it with the others.
-pub(super) struct Document<const MIB: usize = 1>(pub(super) Bytes, pub(super) Part);
+/// And the memory that it and what is made of it take: a document does not come in, and is not read, before there is some, and who
+/// has many read shares it with the others.
+pub(super) struct Document<const MIB: usize = 1>(pub(super) Bytes, pub(super) Memory);
+
+/// The memory of a document: of its bytes, and of what is made of them.
+pub(super) type Memory = [Option<Part>; 2];
 
 impl<const MIB: usize> FromRequest<App> for Document<MIB> {
     type Rejection = Problem;
@@ -78,23 +75,19 @@ async fn taken(
     app: &App,
     mib: usize,
     kind: &str,
-) -> Result<(Bytes, Part), Problem> {
+) -> Result<(Bytes, Memory), Problem> {
     let limit = mib * 1024 * 1024;
     let media_type = check_media_type(request.headers(), kind);
     let length = request.body().size_hint().upper();
     let length = length.map_or(limit, |length| length.min(limit as u64) as usize);
     let client = request.extensions().get::<ClientName>().cloned();
     let client = client.map_or_else(|| Arc::from(""), |client| client.0);
-    let needed = (TIMES_ITS_SIZE * length) as u64;
-    let memory = timeout(LONGEST_WAIT, app.reading.take(&client, needed)).await;
-    let memory = memory.map_err(|_| {
-        let detail = "More is sent at once than is read. Try again in a moment.";
-        Problem::new(Code::Overloaded, detail)
-    })?;
+    let bytes = app.reading.for_bytes(&client, length).await?;
     let body = timeout(PATIENCE, read(request.into_body(), limit, length)).await;
     let body = body.map_err(|_| late())??;
     media_type?;
-    Ok((body, memory))
+    let made = app.reading.to_read(&client, &body).await?;
+    Ok((body, [bytes, made]))
 }
 
 impl<const MIB: usize> Document<MIB> {
@@ -115,7 +108,7 @@ impl<const MIB: usize> Document<MIB> {
 const XML_MIB: usize = 4;
 
 /// The bytes of a request's XML document, and the memory that it takes.
-pub(super) struct XmlDocument(pub(super) Bytes, pub(super) Part);
+pub(super) struct XmlDocument(pub(super) Bytes, pub(super) Memory);
 
 impl FromRequest<App> for XmlDocument {
     type Rejection = Problem;

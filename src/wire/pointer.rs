@@ -44,10 +44,14 @@ impl Pointer {
             (!rest.contains('~')).then(|| step.replace("~1", "/").replace("~0", "~"))
         };
         match steps.split('/').map(unescaped).collect::<Option<Vec<_>>>() {
-            Some(steps) => Ok(Self {
-                text: text.to_owned(),
-                steps,
-            }),
+            Some(mut steps) => {
+                // A study may have a hundred thousand.
+                steps.shrink_to_fit();
+                Ok(Self {
+                    text: text.to_owned(),
+                    steps,
+                })
+            }
             None => refuse("has a ~ that is neither ~0 nor ~1"),
         }
     }

@@ -1,4 +1,5 @@
-//! One client who reads a large table on many connections at once, and what another one notices of it, for `docs/reliability.md`.
+//! One client who reads of a large study on many connections at once: the memory that it takes, and what another client notices of it,
+//! for `docs/reliability.md`.
 
 use std::time::{Duration, Instant};
 
@@ -91,4 +92,34 @@ async fn who_reads_a_large_table_on_forty_connections_leaves_the_service_to_othe
         "a table of {ROWS} rows read on 40 connections: {took:?}; another client's questions meanwhile {during:?} (median), {before:?} before"
     );
     assert!(during < Duration::from_millis(50), "{during:?}");
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn designs_of_a_large_study_are_looked_at_in_a_bounded_memory() {
+    let _alone = stores::ALONE.lock().await;
+    let folder = tempfile::tempdir().unwrap();
+    let process = Process::start_with(&stores::place(&folder).await, &["--memory-mb", "512"]);
+    let client = meshwright::client().timeout(6 * PATIENCE).build().unwrap();
+    let designs: Vec<Value> = (0..60_000)
+        .map(|i| {
+            let changes = json!({ "/output_torques_n_m": [f64::from(i) + 1.5] });
+            json!({ "label": i.to_string(), "changes": changes })
+        })
+        .collect();
+    let study = json!({ "base": study()["base"], "designs": designs });
+    let path = process.submit(&client, &study).await;
+    let readers: Vec<_> = (0..20)
+        .map(|row| {
+            let request = client.get(format!("{}{path}/designs/{row}", process.base));
+            tokio::spawn(async move { request.answer().await.document().await })
+        })
+        .collect();
+    for (row, reader) in readers.into_iter().enumerate() {
+        let torques = &reader.await.unwrap()["output_torques_n_m"];
+        assert_eq!(*torques, json!([row as f64 + 1.5]));
+    }
+    // Twenty of them side by side would take more than twice as much.
+    let memory = process.peak_memory_mb();
+    println!("20 designs of a study of 60,000 at once: at most {memory:?} MB");
+    assert!(memory.is_none_or(|memory| memory < 400), "{memory:?} MB");
 }

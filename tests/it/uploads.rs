@@ -1,21 +1,22 @@
-//! Many large documents of one client at once: they take turns, in a bounded memory, and another client notices little.
-//! `./chaos` measures it at length.
+//! Many large documents of one client at once, and slow ones: they take turns, in a bounded memory, and another client notices
+//! little. `./chaos` measures it at length.
 
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use reqwest::Client;
 use serde_json::{Value, json};
+use tokio::io::AsyncWriteExt;
+use tokio::net::TcpStream;
 
-use crate::bench::{Asked, PATIENCE};
+use crate::bench::{Asked, PATIENCE, submission};
+use crate::flood::make_key;
 use crate::process::Process;
 use crate::stores;
 
 /// A study of 15 MB, none of whose designs can be built: a base without teeth.
-fn large(number: usize) -> String {
+fn large() -> String {
     let designs: Vec<Value> = (0..60_000)
         .map(|i| {
-            let label = format!("{number}-{i}-{}", "x".repeat(150));
+            let label = format!("{i}-{}", "x".repeat(150));
             let changes = json!({ "/pair/driven/blank/bore_radius_mm": 10.0, "/pair/driving/blank/bore_radius_mm": 11.0 });
             json!({ "label": label, "changes": changes })
         })
@@ -23,59 +24,169 @@ fn large(number: usize) -> String {
     json!({ "base": { "method": "flexible" }, "designs": designs }).to_string()
 }
 
-async fn upload(client: Client, url: String, body: String) -> u16 {
-    let request = client.post(url).header("content-type", "application/json");
-    let answer = request.body(body).answer().await;
-    answer.status().as_u16()
+/// A study of as many designs as there may be, all of which can be built. What is made of it takes far more than its 6 MB.
+fn rich() -> String {
+    let designs: Vec<Value> = (0..100_000)
+        .map(|i| {
+            let changes = json!({ "/output_torques_n_m": [f64::from(i % 900) + 1.5] });
+            json!({ "label": i.to_string(), "changes": changes })
+        })
+        .collect();
+    json!({ "base": submission(100.0), "designs": designs }).to_string()
 }
 
-/// What so many at once come to: the most memory, in MB, how long they took, and the median of short questions meanwhile.
-async fn bear(count: usize) -> (Option<u64>, Duration, Duration) {
+async fn upload(request: reqwest::RequestBuilder) -> u16 {
+    request.answer().await.status().as_u16()
+}
+
+/// What `count` of them at once come to.
+struct Borne {
+    /// The most memory, in MB.
+    memory: Option<u64>,
+    took: Duration,
+    /// The medians of a list and of a check that another client asks for meanwhile.
+    medians: [Duration; 2],
+}
+
+async fn bear(count: usize, body: String) -> Borne {
     let folder = tempfile::tempdir().unwrap();
-    let process = Process::start(&stores::place(&folder).await);
-    let client = meshwright::client().build().unwrap();
-    let url = format!("{}/v1/studies", process.base);
-    let body = Arc::new(large(0));
-    assert!(body.len() > 10 << 20, "{}", body.len());
-    let start = Instant::now();
+    let database = stores::place(&folder).await;
+    let process = Process::start(&database);
+    let (hog, other) = (
+        make_key(&database, "hog").await,
+        make_key(&database, "other").await,
+    );
+    let client = meshwright::client().timeout(6 * PATIENCE).build().unwrap();
+    let url = |path: &str| format!("{}{path}", process.base);
+    let (body, start) = (bytes::Bytes::from(body), Instant::now());
     let uploads: Vec<_> = (0..count)
-        .map(|_| tokio::spawn(upload(client.clone(), url.clone(), String::clone(&body))))
+        .map(|_| {
+            let request = client.post(url("/v1/studies")).bearer_auth(&hog);
+            let request = request.header("content-type", "application/json");
+            tokio::spawn(upload(request.body(body.clone())))
+        })
         .collect();
-    let mut asked = Vec::new();
+    let mut asked = [Vec::new(), Vec::new()];
     while !uploads.iter().all(tokio::task::JoinHandle::is_finished) {
-        let start = Instant::now();
-        process.get(&client, "/v1/jobs").await;
-        asked.push(start.elapsed());
+        let questions = [
+            client.get(url("/v1/jobs")),
+            client.post(url("/v1/validate")).json(&submission(100.0)),
+        ];
+        for (question, asked) in questions.into_iter().zip(&mut asked) {
+            let start = Instant::now();
+            assert_eq!(question.bearer_auth(&other).answer().await.status(), 200);
+            asked.push(start.elapsed());
+        }
         tokio::time::sleep(Duration::from_millis(10)).await;
     }
     let took = start.elapsed();
     for upload in uploads {
         let status = upload.await.unwrap();
-        assert!([202, 422].contains(&status), "{status}");
+        // One client may have so many designs waiting, and no more.
+        assert!([202, 422, 429].contains(&status), "{status}");
     }
-    asked.sort();
-    (process.peak_memory_mb(), took, asked[asked.len() / 2])
+    let medians = asked.map(|mut asked| {
+        asked.sort();
+        asked[asked.len() / 2]
+    });
+    Borne {
+        memory: process.peak_memory_mb(),
+        took,
+        medians,
+    }
+}
+
+impl Borne {
+    fn check_memory(&self, what: &str) {
+        let Self {
+            memory,
+            took,
+            medians: [list, check],
+        } = self;
+        println!(
+            "{what} at once: {took:?}, at most {memory:?} MB; another client's list {list:?}, check {check:?} (medians)"
+        );
+        // Side by side they would take more than this.
+        assert!(memory.is_none_or(|memory| memory < 600), "{memory:?} MB");
+    }
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn large_documents_are_read_in_turns_in_a_bounded_memory() {
     let _alone = stores::ALONE.lock().await;
-    let (memory, took, median) = tokio::time::timeout(6 * PATIENCE, bear(12)).await.unwrap();
-    // Side by side they would take more than this.
-    assert!(memory.is_none_or(|memory| memory < 600), "{memory:?} MB");
-    println!(
-        "12 uploads at once: {took:?}, at most {memory:?} MB, other questions {median:?} (median)"
-    );
+    let borne = bear(12, large()).await;
+    borne.check_memory("12 uploads of 13 MB");
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn studies_of_many_designs_are_weighed_by_what_is_made_of_them() {
+    let _alone = stores::ALONE.lock().await;
+    let borne = bear(6, rich()).await;
+    borne.check_memory("6 studies of 100,000 designs");
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 #[ignore = "it measures, and wants the machine for itself: ./chaos"]
-async fn forty_uploads_of_fifteen_megabytes() {
-    let (memory, took, median) = bear(40).await;
-    println!(
-        "40 uploads at once: {took:?}, at most {memory:?} MB, other questions {median:?} (median)"
+async fn forty_large_uploads_leave_the_service_to_others() {
+    for (what, body) in [
+        ("40 uploads of 13 MB", large()),
+        ("40 studies of 100,000 designs", rich()),
+    ] {
+        let borne = bear(40, body).await;
+        borne.check_memory(what);
+        let slowest = borne.medians.into_iter().max().unwrap();
+        assert!(slowest < Duration::from_millis(20), "{slowest:?}");
+        assert!(borne.took < Duration::from_secs(60), "{:?}", borne.took);
+    }
+}
+
+/// Bodies of one client that never come to their end. Had each all memory that it may take once it is here, they would leave 120 bytes of
+/// 256 MiB.
+async fn slow_bodies(process: &Process, key: &str) -> Vec<TcpStream> {
+    let host = process.base.trim_start_matches("http://");
+    let (large, small) = (16 << 20, 1 << 20);
+    let rest = (256 << 20) / 6 - 2 * large - 20;
+    let studies = [large, large, rest].map(|length| ("/v1/studies", length));
+    let bodies = studies.into_iter().chain([("/v1/validate", small); 43]);
+    let mut streams = Vec::new();
+    for (path, length) in bodies {
+        let mut stream = TcpStream::connect(host).await.unwrap();
+        let head = format!(
+            "POST {path} HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer {key}\r\nContent-Type: application/json\r\nContent-Length: {length}\r\n\r\n{{"
+        );
+        stream.write_all(head.as_bytes()).await.unwrap();
+        streams.push(stream);
+    }
+    streams
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn who_sends_slowly_keeps_no_other_client_waiting() {
+    let _alone = stores::ALONE.lock().await;
+    let folder = tempfile::tempdir().unwrap();
+    let database = stores::place(&folder).await;
+    let process = Process::start(&database);
+    let (hog, other) = (
+        make_key(&database, "hog").await,
+        make_key(&database, "other").await,
     );
-    assert!(memory.is_none_or(|memory| memory < 600), "{memory:?} MB");
-    assert!(median < Duration::from_millis(20), "{median:?}");
-    assert!(took < Duration::from_secs(60), "{took:?}");
+    let client = meshwright::client().timeout(2 * PATIENCE).build().unwrap();
+    let slow = slow_bodies(&process, &hog).await;
+    // They are there, and wait.
+    tokio::time::sleep(Duration::from_millis(300)).await;
+    let small = submission(100.0).to_string();
+    // One that has to wait for memory, if there is none.
+    let middling = format!("{small}{}", " ".repeat(500_000));
+    for _ in 0..3 {
+        for body in [&small, &middling] {
+            let request = client.post(format!("{}/v1/validate", process.base));
+            let request = request.header("content-type", "application/json");
+            let request = request.bearer_auth(&other).body(body.clone());
+            let start = Instant::now();
+            assert_eq!(upload(request).await, 200);
+            let took = start.elapsed();
+            assert!(took < Duration::from_secs(1), "{took:?}");
+        }
+    }
+    drop(slow);
 }

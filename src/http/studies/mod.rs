@@ -9,6 +9,7 @@ use axum::Json;
 use axum::http::StatusCode;
 use axum::http::header::HeaderMap;
 use axum::response::{IntoResponse, Response};
+use meshwright_engine::run::Run;
 use serde::Deserialize;
 use utoipa::IntoParams;
 
@@ -59,9 +60,11 @@ const LONGEST_IN_VIEW: u64 = 64 << 10;
 pub(super) async fn submit(
     client: Client,
     IdempotencyKey(key): IdempotencyKey,
-    Document(document, _memory): Document<MIB>,
+    Document(document, memory): Document<MIB>,
 ) -> Result<Response, Problem> {
-    let study = aside(client.name(), move |run| Study::parse(&document, run)).await??;
+    let read = move |run: &Run| (Study::parse(&document, run), memory);
+    let (study, _memory) = aside(client.name(), read).await?;
+    let study = study?;
     let submitted = client
         .app
         .jobs

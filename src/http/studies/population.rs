@@ -7,12 +7,14 @@ use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
 use meshwright_engine::run::Run;
 
-use super::{over_rows, tag_of};
+use super::{MIB, over_rows, tag_of};
+use crate::compute::Part;
 use crate::http::answer::{json, tell_when_to_return};
 use crate::http::app::App;
 use crate::http::aside::aside;
 use crate::http::client::Client;
 use crate::http::conditional::{Keep, Tag};
+use crate::http::memory::SMALL;
 use crate::http::parameters::{IfNoneMatch, StudyId};
 use crate::jobs::StudyRecord;
 use crate::wire::{
@@ -58,7 +60,8 @@ async fn results(
     client: Arc<str>,
     record: &StudyRecord,
 ) -> Result<PopulationResults, Problem> {
-    let study = Arc::new(document(app, &client, record).await?);
+    let (study, _memory) = document(app, &client, record).await?;
+    let study = Arc::new(study);
     let at_once = PopulationSample::torques_at_once(&study);
     let mut whole: Option<PopulationResults> = None;
     for first in (0..Study::MOST_TORQUES).step_by(at_once) {
@@ -88,10 +91,28 @@ async fn results(
     whole.ok_or_else(crate::http::problem::internal)
 }
 
-/// The study as it was sent, read.
-async fn document(app: &App, client: &str, record: &StudyRecord) -> Result<Study, Problem> {
-    let text = app.jobs.study_text(record.id).await?;
-    aside(client, move |run: &Run| Study::parse(text.as_bytes(), run)).await?
+/// The study as it was sent, read, and the memory that it takes.
+async fn document(
+    app: &App,
+    client: &str,
+    record: &StudyRecord,
+) -> Result<(Study, Option<Part>), Problem> {
+    let short = app.jobs.short_study_text(record.id, SMALL as u64).await?;
+    let (text, bytes) = match short {
+        Some(text) => (text, None),
+        None => {
+            let bytes = app.reading.for_bytes(client, MIB << 20).await?;
+            (app.jobs.study_text(record.id).await?, bytes)
+        }
+    };
+    let memory = app.reading.to_read(client, text.as_bytes()).await?;
+    let read = move |run: &Run| {
+        let study = Study::parse(text.as_bytes(), run);
+        drop((text, bytes));
+        (study, memory)
+    };
+    let (study, memory) = aside(client, read).await?;
+    Ok((study?, memory))
 }
 
 /// Get the submission of a design
@@ -139,9 +160,13 @@ async fn submission_of(
     record: &StudyRecord,
     row: u32,
 ) -> Result<Option<String>, Problem> {
-    let study = document(app, client, record).await?;
+    let (study, memory) = document(app, client, record).await?;
     if !study.is_search() {
-        return aside(client, move |_| study.submission_of(row as usize)).await;
+        return aside(client, move |_| {
+            let _memory = memory;
+            study.submission_of(row as usize)
+        })
+        .await;
     }
     // What a search asked for stands in its rows.
     let rows = app.jobs.study_rows(record.id, u64::from(row)).await?;

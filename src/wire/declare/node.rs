@@ -194,6 +194,8 @@ impl<'de> Visitor<'de> for NodeVisitor {
         while let Some(item) = items.next_element()? {
             list.push(item);
         }
+        // Most have one item or two, and hundreds of thousands may stand beside each other.
+        list.shrink_to_fit();
         Ok(Node::List(list))
     }
 
@@ -202,6 +204,7 @@ impl<'de> Visitor<'de> for NodeVisitor {
         while let Some(entry) = entries.next_entry()? {
             fields.push(entry);
         }
+        fields.shrink_to_fit();
         Ok(Node::Object(fields))
     }
 }

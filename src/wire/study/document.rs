@@ -2,7 +2,9 @@
 
 use std::collections::HashSet;
 
+use serde::Deserialize;
 use serde_json::Value;
+use serde_json::value::RawValue;
 
 use super::constant_mass::ConstantMass;
 use super::labels::name_values;
@@ -39,8 +41,34 @@ pub(super) const KEEP: Declared<OneWord<Kept>> = Declared::new(
     word("Keep").or(Kept::Results),
 );
 
-/// Reads the study that `node` is; `value` is the same document. `None` if something is wrong, which `errors` has.
-pub(super) fn read(node: Node, value: Value, errors: &Errors) -> Option<Study> {
+/// What stands in the lists of a document, as it is written there: values are told as they were sent, and read one at a time,
+/// since those of a hundred thousand designs take fifty times their text.
+#[derive(Default, Deserialize)]
+struct Written<'a> {
+    #[serde(borrow)]
+    axes: Option<Vec<&'a RawValue>>,
+    #[serde(borrow)]
+    designs: Option<Vec<&'a RawValue>>,
+}
+
+/// The values of an axis, likewise.
+#[derive(Deserialize)]
+struct WrittenAxis<'a> {
+    #[serde(borrow)]
+    values: Vec<&'a RawValue>,
+}
+
+/// The item `i` of what is written.
+fn value_at(written: Option<&[&RawValue]>, i: usize) -> Value {
+    // What is no list has been told as such.
+    let item = written.and_then(|items| items.get(i));
+    let value = item.and_then(|item| serde_json::from_str(item.get()).ok());
+    value.unwrap_or_default()
+}
+
+/// Reads the study that `node` is; `document` is the text of it. `None` if something is wrong, which `errors` has.
+pub(super) fn read(node: Node, document: String, errors: &Errors) -> Option<Study> {
+    let written = serde_json::from_str(&document).unwrap_or_default();
     let mut reader = ObjectReader::new(&node, Place::root(errors))?;
     let name = NAME.read::<Option<String>>(&mut reader);
     let tags = Declared::new("tags", "", TAGS).read::<Vec<String>>(&mut reader);
@@ -49,14 +77,14 @@ pub(super) fn read(node: Node, value: Value, errors: &Errors) -> Option<Study> {
         Some(base) => ObjectReader::new(base, reader.place_of("base")).is_some(),
         None => reader.missing::<()>("base").is_some(),
     };
-    let plan = read_plan(&mut reader, &value, errors);
+    let plan = read_plan(&mut reader, &written, errors);
     let rule = Declared::new("constant_mass", "", absent(nested(""), "none"));
     let constant_mass = rule.read::<Option<ConstantMass>>(&mut reader);
     reader.finish();
     base.then_some(())?;
     let (name, tags, keep, plan, constant_mass) = (name?, tags?, keep?, plan?, constant_mass?);
     Some(Study {
-        document: value.to_string(),
+        document,
         name,
         tags,
         keep,
@@ -69,7 +97,11 @@ pub(super) fn read(node: Node, value: Value, errors: &Errors) -> Option<Study> {
 /// What a study may choose its designs by.
 pub(super) const PLANS: [&str; 4] = ["axes", "designs", "population", "search"];
 
-fn read_plan(reader: &mut ObjectReader<'_>, value: &Value, errors: &Errors) -> Option<Plan> {
+fn read_plan(
+    reader: &mut ObjectReader<'_>,
+    written: &Written<'_>,
+    errors: &Errors,
+) -> Option<Plan> {
     let given = PLANS.map(|name| reader.present(name).map(|node| (name, node)));
     let mut given = given.into_iter().flatten();
     let Some((name, node)) = given.next() else {
@@ -82,10 +114,11 @@ fn read_plan(reader: &mut ObjectReader<'_>, value: &Value, errors: &Errors) -> O
         let detail = format!("A study has either /{name} or /{other}; it has both.");
         return reader.place_of(other).wrong(Code::OutOfRange, detail, None);
     }
-    let values = &value[name];
     match name {
-        "axes" => read_axes(reader, node, values, errors).map(Plan::Axes),
-        "designs" => read_designs(reader, node, values, errors).map(Plan::Designs),
+        "axes" => read_axes(reader, node, written.axes.as_deref(), errors).map(Plan::Axes),
+        "designs" => {
+            read_designs(reader, node, written.designs.as_deref(), errors).map(Plan::Designs)
+        }
         "search" => {
             let (place, base) = (reader.place_of(name), reader.get("base"));
             let search = Search::read(node, base, &place, errors)?;
@@ -114,7 +147,7 @@ fn items<'a>(place: &Place<'_>, node: &'a Node) -> Option<&'a [Node]> {
 fn read_axes(
     reader: &ObjectReader<'_>,
     node: &Node,
-    values: &Value,
+    written: Option<&[&RawValue]>,
     errors: &Errors,
 ) -> Option<Vec<Axis>> {
     let items = items(&reader.place_of("axes"), node)?;
@@ -136,7 +169,7 @@ fn read_axes(
     let axes: Vec<_> = items
         .iter()
         .enumerate()
-        .map(|(i, item)| read_axis(i, item, &values[i], reader, errors))
+        .map(|(i, item)| read_axis(i, item, written, reader, errors))
         .collect();
     let mut axes = axes.into_iter().collect::<Option<Vec<_>>>()?;
     for i in 0..axes.len() {
@@ -164,7 +197,7 @@ fn length_of_values(axis: &Node) -> usize {
 fn read_axis(
     i: usize,
     item: &Node,
-    value: &Value,
+    written: Option<&[&RawValue]>,
     study: &ObjectReader<'_>,
     errors: &Errors,
 ) -> Option<Axis> {
@@ -189,9 +222,14 @@ fn read_axis(
     }
     reader.finish();
     values?;
+    let axis: WrittenAxis<'_> = serde_json::from_str(written?.get(i)?.get()).ok()?;
+    let places = 0..axis.values.len();
     Some(Axis {
         path: path?,
-        values: value["values"].as_array()?.clone(),
+        // A copy has no room to spare, which a value that was read has.
+        values: places
+            .map(|place| value_at(Some(&axis.values), place).clone())
+            .collect(),
         words: Vec::new(),
     })
 }
@@ -206,7 +244,7 @@ fn read_pointer(text: &str, place: &str, errors: &Errors) -> Option<Pointer> {
 fn read_designs(
     reader: &ObjectReader<'_>,
     node: &Node,
-    values: &Value,
+    written: Option<&[&RawValue]>,
     errors: &Errors,
 ) -> Option<Vec<Listed>> {
     let items = items(&reader.place_of("designs"), node)?;
@@ -217,7 +255,7 @@ fn read_designs(
     let designs: Vec<_> = items
         .iter()
         .enumerate()
-        .map(|(i, item)| read_design(i, item, &values[i], reader, errors))
+        .map(|(i, item)| read_design(i, item, &value_at(written, i), reader, errors))
         .collect();
     let designs = designs.into_iter().collect::<Option<Vec<_>>>()?;
     let mut labels = HashSet::new();
@@ -282,7 +320,8 @@ fn read_changes(
             ))
         })
         .collect();
-    let changes = changes.into_iter().collect::<Option<Vec<_>>>()?;
+    let mut changes = changes.into_iter().collect::<Option<Vec<_>>>()?;
+    changes.shrink_to_fit();
     for (j, (path, _)) in changes.iter().enumerate() {
         if let Some((earlier, _)) = changes[..j]
             .iter()

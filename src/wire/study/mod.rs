@@ -119,6 +119,19 @@ fn drawn(varied: &[Varied], values: Vec<f64>) -> impl Iterator<Item = (&Pointer,
     drawn.map(|(varied, value)| (&varied.path, Cow::Owned(varied.told(value))))
 }
 
+/// A document that is JSON, without what stands between its words.
+fn without_white_space(document: &[u8]) -> Result<String, Problem> {
+    let (mut in_text, mut is_escaped) = (false, false);
+    let stays = |&byte: &u8| {
+        let stays = in_text || !byte.is_ascii_whitespace();
+        in_text ^= byte == b'"' && !is_escaped;
+        is_escaped = in_text && byte == b'\\' && !is_escaped;
+        stays
+    };
+    let text = document.iter().copied().filter(stays).collect();
+    String::from_utf8(text).map_err(|error| Problem::new(Code::MalformedJson, error.to_string()))
+}
+
 impl Study {
     /// The most output torques of a design.
     pub const MOST_TORQUES: usize = MOST_TORQUES;
@@ -132,10 +145,8 @@ impl Study {
     pub fn parse(document: &[u8], run: &Run) -> Result<Self, Problem> {
         size::refuse_too_many(document)?;
         let node = Node::parse(document)?;
-        let value: Value = serde_json::from_slice(document)
-            .map_err(|error| Problem::new(Code::MalformedJson, error.to_string()))?;
         let errors = Errors::default();
-        let study = document::read(node, value, &errors);
+        let study = document::read(node, without_white_space(document)?, &errors);
         if let (Some(study), 0) = (&study, errors.count()) {
             study.refuse_faults(&errors, run)?;
         }

@@ -23,6 +23,24 @@ fn the_studies_in_the_guides_are_studies() {
     }
 }
 
+#[test]
+fn a_study_is_kept_as_it_was_written_but_for_white_space() {
+    let kept = r#"{"name":"a \" \\","base":BASE,"axes":[{"path":"/output_torques_n_m/0","values":[1.50,2e1]}]}"#
+        .replace("BASE", &base().to_string());
+    let sent = kept
+        .replace(r#"":"#, "\" :\r\n\t")
+        .replace("],", " ] ,")
+        .replace("1.50,", " 1.50 , ");
+    assert_ne!(sent, kept);
+    let study = Study::parse(sent.as_bytes(), &Run::unattended()).unwrap();
+    assert_eq!(study.document(), kept);
+    let told: Vec<String> = (0..2).map(|row| study.design(row).unwrap().label).collect();
+    assert_eq!(
+        told,
+        ["output_torques_n_m.0=1.5", "output_torques_n_m.0=20.0"]
+    );
+}
+
 fn base() -> Value {
     let gear = json!({
         "tooth_count": 50, "module_mm": 2.0, "face_width_mm": 20.0, "blank": { "bore_radius_mm": 15.0 }
