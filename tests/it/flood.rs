@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use jiff::Timestamp;
 use meshwright::jobs::{KeyRecord, Place, Role, Store};
 use meshwright::keys::Key;
+use tempfile::TempDir;
 use tokio::io::AsyncWriteExt;
 use tokio::net::{TcpSocket, TcpStream};
 use tokio::task::JoinSet;
@@ -16,8 +17,21 @@ use crate::bench::{Asked, Bench, PATIENCE, results};
 use crate::process::Process;
 use crate::stores;
 
+/// The program on a database of its own, and a key for each of two clients.
+pub(crate) async fn shared_by(clients: [&str; 2]) -> (TempDir, Process, [String; 2]) {
+    let folder = tempfile::tempdir().unwrap();
+    let database = stores::place(&folder).await;
+    let process = Process::start(&database);
+    let [one, other] = clients;
+    let keys = [
+        make_key(&database, one).await,
+        make_key(&database, other).await,
+    ];
+    (folder, process, keys)
+}
+
 /// Makes a key, as `meshwright keys create` does.
-pub(crate) async fn make_key(database: &Place, client: &str) -> String {
+async fn make_key(database: &Place, client: &str) -> String {
     let store = Store::open(database).await.unwrap();
     let key = Key::random().unwrap();
     let record = KeyRecord {

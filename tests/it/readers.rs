@@ -7,7 +7,7 @@ use reqwest::Client;
 use serde_json::{Value, json};
 
 use crate::bench::{Asked, PATIENCE, Said};
-use crate::flood::make_key;
+use crate::flood::shared_by;
 use crate::process::Process;
 use crate::stores;
 
@@ -46,13 +46,7 @@ async fn median(client: &Client, url: &str, key: &str, more: impl Fn(usize) -> b
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 #[ignore = "it measures, and wants the machine for itself: ./chaos"]
 async fn who_reads_a_large_table_on_forty_connections_leaves_the_service_to_others() {
-    let folder = tempfile::tempdir().unwrap();
-    let database = stores::place(&folder).await;
-    let process = Process::start(&database);
-    let (reader, other) = (
-        make_key(&database, "reader").await,
-        make_key(&database, "other").await,
-    );
+    let (_folder, process, [reader, other]) = shared_by(["reader", "other"]).await;
     let client = meshwright::client().timeout(15 * PATIENCE).build().unwrap();
     let made = client.post(format!("{}/v1/studies", process.base));
     let made = made.bearer_auth(&reader).json(&study()).answer().await;
