@@ -3,7 +3,7 @@
 mod cases;
 
 use std::f64::consts::PI;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, LazyLock, Mutex};
 
 use cases::{case, gear, helical, holed, pair, relieved, standard_pair, test_case};
 use meshwright_engine::analysis::at_speed::{
@@ -30,8 +30,11 @@ const TWELVE: ForceTableRequest = ForceTableRequest {
     largest_output_torque: None,
 };
 
+/// What the tests make they have in common: several ask the same tables.
+static LIBRARY: LazyLock<Library> = LazyLock::new(Library::default);
+
 fn table(case: &Case) -> ForceTable {
-    force_table(case, TWELVE, &Library::default(), &Run::unattended()).expect("a table")
+    force_table(case, TWELVE, &*LIBRARY, &Run::unattended()).expect("a table")
 }
 
 /// Numbers in 0 to 1, the same ones every time.
@@ -54,7 +57,7 @@ fn missed(
     seed: u64,
 ) -> Vec<f64> {
     let run = Run::unattended();
-    let table = force_table(case, request, &Library::default(), &run).expect("a table");
+    let table = force_table(case, request, &*LIBRARY, &run).expect("a table");
     let table = table.refined(4, 4);
     let largest = *table.loads().last().expect("loads");
     let mut draw = drawn(seed);
@@ -93,7 +96,7 @@ fn thickness(case: &Case) -> f64 {
 
 /// δ of the flexible method at a position under a load.
 fn plane_model(case: &Case) -> impl Fn(f64, f64) -> f64 {
-    let model = pair_model(case, &Library::default(), &Run::unattended()).expect("a model");
+    let model = pair_model(case, &*LIBRARY, &Run::unattended()).expect("a model");
     move |eta, load| {
         let made = MadePair {
             model: &model,
@@ -251,7 +254,7 @@ fn along_faces_the_other_flanks_are_those_of_the_mirror_image() {
 fn a_run_up_along_faces_begins_with_the_static_curve_and_is_finite() {
     let case = along_faces(0.3);
     let found = run_up(&case, 60_000.0, 61);
-    let analysis = analyze(&case, &Library::default(), &Run::unattended()).expect("curves");
+    let analysis = analyze(&case, &*LIBRARY, &Run::unattended()).expect("curves");
     let statistics = analysis.curves[0].transmission_error_statistics;
     for branch in [&found.run_up.up, &found.run_up.down] {
         let branch = branch.as_ref().expect("asked for");
@@ -274,7 +277,7 @@ fn the_torque_on_the_driver_follows_from_the_energy_of_the_table() {
     let mut case = case(standard_pair(false), &[115.0]);
     case.resolution.positions_per_mesh_period = 160;
     let table = table(&case).refined(4, 4);
-    let analysis = analyze(&case, &Library::default(), &Run::unattended()).expect("curves");
+    let analysis = analyze(&case, &*LIBRARY, &Run::unattended()).expect("curves");
     let curve = &analysis.curves[0];
     let driving = case.pair.driving();
     let mean = curve.load * driving.base_radius();
@@ -337,7 +340,7 @@ fn backlash_is_that_of_the_drawing_and_deviations_move_the_loaded_flank_alone() 
 }
 
 fn run_up(case: &Case, to: f64, count: u32) -> CurveDynamics {
-    let analysis = analyze(case, &Library::default(), &Run::unattended()).expect("curves");
+    let analysis = analyze(case, &*LIBRARY, &Run::unattended()).expect("curves");
     let step = to / 60.0 / f64::from(count - 1);
     let request = DynamicsRequest {
         speeds: (0..count).map(|i| f64::from(i) * step).collect(),
@@ -362,7 +365,7 @@ fn the_run_up_of_a_pair_with_holes_resonates_at_its_mesh_and_hole_orders() {
     let up = found.run_up.up.as_ref().expect("asked for");
     let down = found.run_up.down.as_ref().expect("asked for");
     // Speed 0 is the static curve.
-    let analysis = analyze(&case, &Library::default(), &Run::unattended()).expect("curves");
+    let analysis = analyze(&case, &*LIBRARY, &Run::unattended()).expect("curves");
     let statistics = analysis.curves[0].transmission_error_statistics;
     assert!((up.rms[0] / statistics.rms - 1.0).abs() < 1e-2);
     assert!((up.peak_to_peak[0] / statistics.peak_to_peak - 1.0).abs() < 2e-2);

@@ -5,52 +5,56 @@
     reason = "a test may end where its assumption does"
 )]
 
-/// Which store the suites run on.
-const ON_POSTGRES: bool = false;
-
 mod bench;
 #[path = "../postgres/server.rs"]
 mod server;
 mod stores;
 mod submitters;
 
-mod batch;
-mod chaos;
-mod connections;
+/// What holds on either store: `./test` runs these suites once more with `MESHWRIGHT_TEST_STORE=postgres`.
+#[path = "."]
+mod either_store {
+    mod batch;
+    mod chaos;
+    mod connections;
+    pub(crate) mod door;
+    mod edge;
+    mod events;
+    mod growth;
+    mod life;
+    mod lists;
+    mod members;
+    mod page;
+    mod population;
+    mod previews;
+    pub(crate) mod process;
+    mod real;
+    mod recovery;
+    mod refusals;
+    mod repeats;
+    mod rexs;
+    mod searches;
+    mod shares;
+    mod sigkill;
+    mod strain;
+    mod studies;
+    mod tables;
+    mod time;
+    pub(crate) mod webhooks;
+}
+
 mod contract;
 mod disk;
-mod door;
-mod edge;
-mod events;
 mod fleet;
 mod flood;
 mod frozen;
 mod generated;
-mod growth;
-mod life;
-mod lists;
-mod members;
 mod one_process;
 mod operators;
-mod page;
-mod population;
-mod previews;
-mod process;
 mod readers;
-mod real;
-mod recovery;
-mod refusals;
-mod repeats;
-mod rexs;
-mod searches;
-mod shares;
-mod sigkill;
 mod spans;
-mod strain;
-mod studies;
-mod tables;
-mod time;
 mod tokens;
 mod upgrade;
 mod uploads;
-mod webhooks;
+
+use either_store::{door, process};

@@ -12,7 +12,7 @@ pub(crate) static ALONE: Mutex<()> = Mutex::const_new(());
 
 /// Whether the suites run on PostgreSQL.
 pub(crate) fn on_postgres() -> bool {
-    crate::ON_POSTGRES
+    std::env::var_os("MESHWRIGHT_TEST_STORE").is_some_and(|store| store == "postgres")
 }
 
 /// A database without anything in it: a file in `folder`, or one of the server.

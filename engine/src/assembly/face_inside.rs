@@ -431,6 +431,8 @@ fn around(circles: &[Circles], radii: &[f64], angles: &[f64]) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::LazyLock;
+
     use nalgebra::{Matrix3, Vector3};
 
     use super::*;
@@ -487,11 +489,14 @@ mod tests {
         FORCES.into_iter().map(load).collect()
     }
 
-    fn under(inside: &FaceInside) -> Vec<MovedParts> {
-        inside
-            .under(&loads(inside), &Run::unattended())
-            .expect("sound")
-    }
+    /// Each of the gears, its inside, and how it moves under the loads.
+    static MADE: LazyLock<[(SolidGear, FaceInside, Vec<MovedParts>); 3]> = LazyLock::new(|| {
+        gears().map(|gear| {
+            let inside = inside(&gear);
+            let moved = inside.under(&loads(&inside), &Run::unattended());
+            (gear, inside, moved.expect("sound"))
+        })
+    });
 
     /// The force and the moment about the origin with which the flanks are pressed.
     fn pressed(inside: &FaceInside) -> [Vector3<f64>; 2] {
@@ -552,10 +557,8 @@ mod tests {
 
     #[test]
     fn what_presses_the_flanks_goes_through_every_circle_of_rim_web_and_hub() {
-        for gear in gears() {
-            let inside = inside(&gear);
-            let moved = under(&inside);
-            let [force, moment] = pressed(&inside);
+        for (_, inside, moved) in &*MADE {
+            let [force, moment] = pressed(inside);
             let arm = inside.stack.interface_radius;
             for (part, moved) in moved.iter().enumerate().skip(1) {
                 let ends = moved.grid.nodes.iter().map(nalgebra::Vector2::norm);
@@ -580,12 +583,10 @@ mod tests {
 
     #[test]
     fn the_web_moves_as_the_yield_of_the_flanks_has_it() {
-        for gear in &gears()[1..] {
-            let inside = inside(gear);
-            let loads = loads(&inside);
+        for (_, inside, moved) in &MADE[1..] {
+            let loads = loads(inside);
             let smooth: Vec<_> = loads.iter().map(|of| (of.tooth, &of.smooth[..])).collect();
             let expected = inside.yields.circle(&smooth).expect("it has holes");
-            let moved = under(&inside);
             let web = &moved[2];
             let m = web.axial.len();
             let largest = inside.stack.hole_orders.expect("it has holes");
@@ -617,9 +618,7 @@ mod tests {
 
     #[test]
     fn parts_move_together_where_they_meet() {
-        for gear in gears() {
-            let inside = inside(&gear);
-            let moved = under(&inside);
+        for (_, _, moved) in &*MADE {
             let most = |levels: &[Level]| {
                 let all = levels.iter().flat_map(|of| &of.displacements);
                 all.map(Vector3::norm).fold(0.0, f64::max)
@@ -650,10 +649,8 @@ mod tests {
     #[test]
     fn fillets_and_holes_are_stressed_inside_as_on_their_surfaces() {
         let run = Run::unattended();
-        let gear = &gears()[1];
-        let inside = inside(gear);
-        let loads = loads(&inside);
-        let moved = under(&inside);
+        let (gear, inside, moved) = &MADE[1];
+        let loads = loads(inside);
         let spec = FaceYieldSpec::new(gear, RESOLUTION);
         let roots = MakeAll.face_roots(&spec.stack(), &run).expect("sound");
         let holes = MakeAll.face_holes(&spec, &run).expect("sound");
@@ -690,12 +687,9 @@ mod tests {
 
     #[test]
     fn elements_fill_the_gear_once() {
-        for gear in gears() {
-            let inside = inside(&gear);
+        for (gear, _, moved) in &*MADE {
             let mut volume = Volume::default();
-            under(&inside)
-                .iter()
-                .for_each(|of| of.add_to(&mut volume, HERE));
+            moved.iter().for_each(|of| of.add_to(&mut volume, HERE));
             // By the corners alone: cells are so small that their curves hardly count.
             let of = |element: &VolumeElement| {
                 let corners = element.kind.corner_count();
