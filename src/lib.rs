@@ -1,6 +1,6 @@
 //! The service around the mechanics: documents, jobs and HTTP.
 //!
-//! The parts, in the order to read them; each knows only those above it, and `serve` puts them together.
+//! The parts, in the order to read them; each knows only those above it; `serve` puts them together, and `commands` is what the program does.
 
 mod client;
 mod hash;
@@ -25,5 +25,7 @@ pub mod http;
 pub mod config;
 
 pub mod serve;
+
+pub mod commands;
 
 pub use client::client;

@@ -14,9 +14,7 @@ const TEST_CASE_2: &str = include_str!("../../api/examples/test-case-2.json");
 /// Submits the case to the service at `address`, follows its events, and prints what comes out.
 pub(super) async fn run(address: SocketAddr) -> anyhow::Result<()> {
     let base = format!("http://{address}");
-    let client = meshwright::client()
-        .build()
-        .context("no client can be set up")?;
+    let client = crate::client().build().context("no client can be set up")?;
     println!(
         "\nPOST {base}/v1/jobs: test case 2 of the paper, 10 holes in the driven gear, 115 N m, flexible method."
     );

@@ -22,9 +22,7 @@ impl Health {
     pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
         let runtime = tokio::runtime::Runtime::new().context("the runtime cannot be started")?;
         let status = runtime.block_on(async {
-            let client = meshwright::client()
-                .timeout(Duration::from_secs(3))
-                .build()?;
+            let client = crate::client().timeout(Duration::from_secs(3)).build()?;
             // A service that listens everywhere is asked on the loopback.
             let host = if self.listen.ip().is_unspecified() {
                 "127.0.0.1".to_owned()

@@ -3,12 +3,12 @@
 use std::process::ExitCode;
 use std::time::Duration;
 
+use crate::config::lasting;
+use crate::jobs::{KeyRecord, Migrate, Place, Role, Store};
+use crate::keys::{Key, is_client_name};
+use crate::serve::open;
 use anyhow::{Context, bail};
 use jiff::Timestamp;
-use meshwright::config::lasting;
-use meshwright::jobs::{KeyRecord, Migrate, Place, Role, Store};
-use meshwright::keys::{Key, is_client_name};
-use meshwright::serve::open;
 
 /// Make, list and revoke API keys.
 #[derive(Debug, clap::Args)]

@@ -2,9 +2,9 @@
 
 use std::process::ExitCode;
 
+use crate::jobs::Place;
+use crate::serve::migrate;
 use anyhow::Context;
-use meshwright::jobs::Place;
-use meshwright::serve::migrate;
 
 /// Bring the tables of the database up to date.
 #[derive(Debug, clap::Args)]

@@ -1,13 +1,80 @@
-//! The commands of the command line.
+//! The command line.
 
-pub(crate) mod backup;
+mod backup;
 mod chart;
 mod demo;
 mod document;
-pub(crate) mod health;
-pub(crate) mod keys;
-pub(crate) mod migrate;
-pub(crate) mod rexs;
-pub(crate) mod serve;
-pub(crate) mod solve;
-pub(crate) mod study;
+mod health;
+mod keys;
+mod migrate;
+mod rexs;
+mod serve;
+mod solve;
+mod study;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::serve::UnusableDatabase;
+
+/// The exit code for a database that cannot be used: to start again does not help.
+const EXIT_DATABASE: u8 = 3;
+
+/// Static transmission error and mesh stiffness of gears with lightening holes.
+#[derive(Parser)]
+#[command(name = "meshwright", version, about)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Serve jobs over HTTP.
+    Serve(Box<serve::Serve>),
+    /// Compute one submission.
+    Solve(solve::Solve),
+    /// Compute a study: many variants of one submission, and their table.
+    Study(study::Study),
+    /// Take a pair out of a REXS model, or write one.
+    #[command(subcommand)]
+    Rexs(rexs::Rexs),
+    /// Make, list and revoke API keys.
+    Keys(keys::Keys),
+    /// Bring the tables of the database up to date.
+    Migrate(migrate::Migrate),
+    /// Copy the database, while the service runs or not.
+    Backup(backup::Backup),
+    /// Ask a running service whether it is ready; exit code 1 if not.
+    Health(health::Health),
+}
+
+/// Runs what the command line asks for.
+///
+/// # Errors
+///
+/// What the command ends with, other than by an exit code of its own.
+pub fn run() -> anyhow::Result<ExitCode> {
+    let ended = match Arguments::parse().command {
+        Command::Serve(serve) => serve.run(),
+        Command::Solve(solve) => solve.run(),
+        Command::Study(study) => study.run(),
+        Command::Rexs(rexs) => rexs.run(),
+        Command::Keys(keys) => keys.run(),
+        Command::Migrate(migrate) => migrate.run(),
+        Command::Backup(backup) => backup.run(),
+        Command::Health(health) => health.run(),
+    };
+    match ended {
+        Err(error)
+            if error
+                .downcast_ref::<UnusableDatabase>()
+                .is_some_and(|database| !database.may_pass()) =>
+        {
+            eprintln!("Error: {error:#}.");
+            Ok(ExitCode::from(EXIT_DATABASE))
+        }
+        ended => ended,
+    }
+}

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use crate::wire::{Submission, model_of};
 use anyhow::Context;
 use jiff::Zoned;
-use meshwright::wire::{Submission, model_of};
 use meshwright_exchange::rexs::{Choices, Import, import};
 use serde_json::Value;
 

@@ -5,13 +5,13 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
 
+use crate::config::Config;
+use crate::jobs::Clock;
+use crate::serve::{END, World, serve};
+use crate::spans::Spans;
+use crate::webhooks::HookRules;
+use crate::wire;
 use anyhow::Context;
-use meshwright::config::Config;
-use meshwright::jobs::Clock;
-use meshwright::serve::{END, World, serve};
-use meshwright::spans::Spans;
-use meshwright::webhooks::HookRules;
-use meshwright::wire;
 use tracing_subscriber::EnvFilter;
 
 use super::demo;
@@ -119,7 +119,7 @@ fn end_in_any_case() {
 }
 
 /// Comes with ctrl-c, or when the system asks the process to end.
-async fn signal() -> anyhow::Result<()> {
+pub(super) async fn signal() -> anyhow::Result<()> {
     let interrupt = tokio::signal::ctrl_c();
     #[cfg(unix)]
     {

@@ -5,9 +5,9 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use crate::wire::results::{CurveDocument, GearPeakStress, PeakStressDocument, Results};
+use crate::wire::{Problem, Submission, solve};
 use indicatif::{ProgressBar, ProgressStyle};
-use meshwright::wire::results::{CurveDocument, GearPeakStress, PeakStressDocument, Results};
-use meshwright::wire::{Problem, Submission, solve};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use meshwright_exchange::rexs::is_xml;

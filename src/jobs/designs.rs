@@ -30,6 +30,7 @@ pub(super) struct Owner {
 
 impl Owner {
     pub(super) fn row(&self, design: Design) -> NewRow {
+        let is_known_as_drawn = self.is_population || is_drawn_as_the_base(&design);
         let submission = design.submission.and_then(|submission| {
             match memory_above(&submission, self.memory_mb) {
                 None => Ok(submission),
@@ -40,7 +41,7 @@ impl Owner {
             Ok(submission) => Ok(NewJob {
                 study: Some(self.study),
                 keep: self.keep,
-                cost: rough_cost(&submission, self.is_population),
+                cost: rough_cost(&submission, is_known_as_drawn),
                 ..NewJob::of(&submission, &self.client, self.submitted_at)
             }),
             Err(problem) => Err(problem.to_json()),
@@ -132,6 +133,15 @@ pub(super) async fn blocking<T: Send + 'static>(
             Err(_) => Err(JobError::ShuttingDown),
         },
     }
+}
+
+/// Whether a design has the gears of the base as they are drawn, which the first of such designs makes known to all.
+fn is_drawn_as_the_base(design: &Design) -> bool {
+    design.changes.keys().all(|path| {
+        path.contains("/tooth_deviations")
+            || path.starts_with("/pair/center_distance_mm")
+            || path.starts_with("/output_torques_n_m")
+    })
 }
 
 /// The position before the first one behind `count` rows.

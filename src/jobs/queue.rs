@@ -17,6 +17,7 @@ use super::others;
 use super::resource::{Listed, Submitted};
 use super::store::{Depth, Document, Filter, NewJob, Outcome, QueueBounds, Store, StoreError};
 use crate::compute::Budget;
+use crate::machine;
 use crate::wire::{DOCUMENT_VERSION, Kept, SOLVER_VERSION, Status, Submission};
 
 /// So long a repeated request is recognized by its key.
@@ -38,6 +39,20 @@ pub struct Rules {
     pub job_memory_mb: u64,
     /// Everything that is computed at the same time takes no more memory than this, by its estimates, in MB.
     pub memory_mb: u64,
+}
+
+impl Rules {
+    /// For one who has the machine alone: what it can compute at all.
+    pub fn of_machine() -> Self {
+        let memory_mb = machine::memory_mb();
+        Self {
+            queue_limit: u32::MAX,
+            client_queue_limit: u32::MAX,
+            client_design_limit: i64::MAX,
+            job_memory_mb: memory_mb,
+            memory_mb,
+        }
+    }
 }
 
 /// Who submits, and what it may.

@@ -3,8 +3,8 @@
 use jiff::Timestamp;
 use uuid::Uuid;
 
-use crate::wire::Status;
 use crate::wire::warning::GearName;
+use crate::wire::{Code, Problem, SearchState, Status};
 
 /// A study and how far it has come. Where it stands follows from where its jobs stand.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,6 +71,23 @@ impl StudyRecord {
         } else {
             Status::Failed
         }
+    }
+
+    /// Why it came to nothing, if it did.
+    pub fn why_failed(&self) -> Option<Problem> {
+        if self.status() != Status::Failed {
+            return None;
+        }
+        let state = self.search.as_deref().map(serde_json::from_str);
+        let state: Option<SearchState> = state.and_then(Result::ok);
+        let searched = state.and_then(|state| state.why_nothing());
+        let detail = searched.unwrap_or_else(|| {
+            format!(
+                "None of the {} designs has results: {} could not be built, {} could not be computed. Each row of the table has its problem.",
+                self.total, self.unbuildable, self.failed
+            )
+        });
+        Some(Problem::new(Code::NoDesignComputed, detail))
     }
 
     /// When it ended.

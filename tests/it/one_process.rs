@@ -1,6 +1,14 @@
-//! A file is served by one process, whatever name leads to it.
+//! A file is served by one process, whatever name leads to it; and a process that computes alone has one of its own.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
 
 use meshwright::jobs::Place;
+use meshwright::wire::examples;
+use serde_json::{Value, json};
 
 use crate::bench::Bench;
 
@@ -27,4 +35,43 @@ async fn links_of_both_kinds_lead_to_the_same_lock() {
         let refusal = bench.another_on(Place::File(path)).await.err().unwrap();
         assert!(refusal.to_string().contains("another process"), "{refusal}");
     }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_study_that_is_stopped_leaves_its_results_and_no_database() {
+    let mut study: Value = serde_json::from_str(examples::STUDY_SECTION_5).unwrap();
+    study["base"]["method"] = json!("load_distribution");
+    let study = study.as_object_mut().unwrap();
+    study.remove("designs");
+    study.remove("constant_mass");
+    let vary = json!([{ "path": "/pair/center_distance_mm", "kind": "uniform", "low": 100.45, "high": 100.55 }]);
+    // More than anybody would wait for.
+    study.insert(
+        "population".into(),
+        json!({ "size": 100_000, "vary": vary }),
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let (document, out) = (folder.path().join("study.json"), folder.path().join("out"));
+    fs::write(&document, json!(study).to_string()).unwrap();
+
+    let mut program = Command::new(env!("CARGO_BIN_EXE_meshwright"))
+        .arg("study")
+        .args([&document, Path::new("--output"), &out])
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let entries = |of: &Path| fs::read_dir(of).map_or(0, Iterator::count);
+    while entries(&out.join("results")) == 0 {
+        assert_eq!(program.try_wait().unwrap(), None);
+        sleep(Duration::from_millis(10));
+    }
+    let id = program.id().to_string();
+    let stopped = Command::new("kill").args(["-INT", &id]).status();
+    assert!(stopped.unwrap().success());
+    let ended = program.wait_with_output().unwrap();
+    assert_eq!(ended.status.code(), Some(1));
+    let told = String::from_utf8(ended.stderr).unwrap();
+    assert!(told.contains("stopped before its end"), "{told}");
+    assert_eq!(entries(&out), 1);
 }

@@ -17,6 +17,10 @@ impl ResultFolder {
         Ok(Self(path.to_owned()))
     }
 
+    pub(super) fn path(&self) -> &Path {
+        &self.0
+    }
+
     pub(super) fn write(&self, name: &str, text: &str) -> anyhow::Result<()> {
         let path = self.0.join(name);
         fs::write(&path, text).with_context(|| format!("{} cannot be written", path.display()))

@@ -9,14 +9,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use meshwright::wire::study_table::{csv, table};
-use meshwright::wire::{
-    Code, PopulationResults, PopulationSample, Problem, RowState, SearchState, Searching, Status,
-    Study as StudyDocument, StudyResults,
-};
+use crate::wire::study_table::{csv, table};
+use crate::wire::{PopulationResults, PopulationSample, Study as StudyDocument, StudyResults};
 use meshwright_engine::run::Run;
 
-use self::compute::{compute, search};
+use self::compute::{Computed, compute};
 use self::folder::ResultFolder;
 use self::picture::picture;
 use self::tables::{search_table, short_table, spread_table};
@@ -53,21 +50,17 @@ impl Study {
         let folder = self.output.as_deref().map(ResultFolder::make).transpose()?;
 
         let started = Instant::now();
-        let (rows, search) = match Searching::new(study.clone()) {
-            Some(search) => {
-                let (rows, state) = self::search(&study, search, folder.as_ref(), started)?;
-                (rows, Some(state))
-            }
-            None => (compute(&study, folder.as_ref())?, None),
-        };
+        let computed = compute(&study, folder.as_ref())?;
         let elapsed = started.elapsed();
 
+        let search = computed.search();
         let best = search.as_ref().and_then(|search| {
-            let row = rows.get(usize::try_from(search.best.as_ref()?.row).ok()?)?;
+            let row = usize::try_from(search.best.as_ref()?.row).ok()?;
+            let row = computed.rows.get(row)?;
             study.submission_searched(&row.label, &row.changes)
         });
-        let population = population(&study, &rows);
-        let results = results(&study, rows, search.as_ref());
+        let population = population(&study, &computed);
+        let results = results(&study, computed);
         if let Some(folder) = &folder {
             folder.write_json("table.json", &results)?;
             folder.write("table.csv", &csv(&results.rows))?;
@@ -101,49 +94,26 @@ impl Study {
 }
 
 /// What the members of a population come to; none where the designs are none.
-fn population(study: &StudyDocument, rows: &[RowState]) -> Option<PopulationResults> {
+fn population(study: &StudyDocument, computed: &Computed) -> Option<PopulationResults> {
     let mut sample = PopulationSample::new(study, 0..StudyDocument::MOST_TORQUES)?;
-    for (member, row) in (0..).zip(rows) {
+    for (member, row) in (0..).zip(&computed.rows) {
         sample.add(member, row);
     }
-    let failed = rows.iter().all(|row| row.status == Status::Failed);
-    Some(sample.results(None, ended(failed)))
+    Some(sample.results(None, computed.record.status()))
 }
 
-fn ended(failed: bool) -> Status {
-    if failed {
-        Status::Failed
-    } else {
-        Status::Successful
-    }
-}
-
-fn results(
-    study: &StudyDocument,
-    states: Vec<RowState>,
-    search: Option<&SearchState>,
-) -> StudyResults {
-    let rows = table(study.gear(), states);
-    let failed = rows.iter().all(|row| row.status == Status::Failed);
-    let problem = failed.then(|| {
-        let searched = search.and_then(SearchState::why_nothing);
-        let detail = searched.unwrap_or_else(|| {
-            format!(
-                "None of the {} designs could be computed; each row of the table has its problem.",
-                rows.len()
-            )
-        });
-        serde_json::to_value(Problem::new(Code::NoDesignComputed, detail))
-            .expect("a problem is strings")
-    });
+fn results(study: &StudyDocument, computed: Computed) -> StudyResults {
+    let Computed { record, rows } = computed;
+    let problem = record.why_failed();
     StudyResults {
         id: None,
-        status: ended(failed),
-        done: rows.len() as u64,
-        total: rows.len() as u64,
+        status: record.status(),
+        done: record.done(),
+        total: record.total,
         gear: study.gear(),
-        problem,
-        rows,
+        problem: problem
+            .map(|problem| serde_json::to_value(problem).expect("a problem is strings")),
+        rows: table(study.gear(), rows),
     }
 }
 
@@ -152,13 +122,14 @@ mod tests {
     use std::fs;
     use std::time::Duration;
 
+    use crate::wire::Status;
     use serde_json::{Value, json};
 
     use super::*;
 
     fn study() -> StudyDocument {
         let mut study: Value =
-            serde_json::from_str(meshwright::wire::examples::STUDY_SECTION_5).unwrap();
+            serde_json::from_str(crate::wire::examples::STUDY_SECTION_5).unwrap();
         // The formulas do not see holes, but they are quick.
         study["base"]["method"] = json!("load_distribution");
         let designs = study["designs"].as_array_mut().unwrap();
@@ -172,11 +143,10 @@ mod tests {
     fn a_study_leaves_its_table_and_every_result() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("out");
-        let results = results(
-            &study(),
-            compute(&study(), Some(&ResultFolder::make(&path).unwrap())).unwrap(),
-            None,
-        );
+        let folder = ResultFolder::make(&path).unwrap();
+        let computed = compute(&study(), Some(&folder)).unwrap();
+        assert_eq!(population(&study(), &computed), None);
+        let results = results(&study(), computed);
         let labels: Vec<&str> = results.rows.iter().map(|row| &*row.label).collect();
         assert_eq!(
             labels,
@@ -201,7 +171,6 @@ mod tests {
         assert_eq!(files, 7);
         assert!(path.join("results/00002-8R34.json").exists());
 
-        assert_eq!(population(&study(), &[]), None);
         let drawn = picture(&study(), &results, None, None).expect("seven designs");
         let svg = drawn.to_svg().expect("can be drawn");
         assert!(svg.contains("mass of both gears in kg"), "{svg}");
@@ -217,7 +186,7 @@ mod tests {
     #[test]
     fn a_population_leaves_what_its_members_come_to() {
         let mut document: Value =
-            serde_json::from_str(meshwright::wire::examples::STUDY_SECTION_5).unwrap();
+            serde_json::from_str(crate::wire::examples::STUDY_SECTION_5).unwrap();
         document["base"]["method"] = json!("load_distribution");
         document.as_object_mut().unwrap().remove("designs");
         document.as_object_mut().unwrap().remove("constant_mass");
@@ -226,10 +195,10 @@ mod tests {
         ] });
         let study =
             StudyDocument::parse(document.to_string().as_bytes(), &Run::unattended()).unwrap();
-        let rows = compute(&study, None).unwrap();
-        let found = population(&study, &rows).expect("a population");
+        let computed = compute(&study, None).unwrap();
+        let found = population(&study, &computed).expect("a population");
         assert_eq!((found.size, found.done, found.failed), (80, 80, 0));
-        let drawn = picture(&study, &results(&study, rows, None), Some(&found), None);
+        let drawn = picture(&study, &results(&study, computed), Some(&found), None);
         let svg = drawn.expect("two torques").to_svg().expect("can be drawn");
         assert!(svg.contains("p95"), "{svg}");
         let text = spread_table(&found, Duration::from_secs(2));

@@ -1,7 +1,7 @@
 //! What a study came to, as a picture.
 
-use meshwright::wire::study_table::TableRow;
-use meshwright::wire::{PopulationResults, SearchState, Study as StudyDocument, StudyResults};
+use crate::wire::study_table::TableRow;
+use crate::wire::{PopulationResults, SearchState, Study as StudyDocument, StudyResults};
 use meshwright_plot::{Axis, Chart, Figure, Look, PALETTE, Panel, RGBColor, Series};
 
 /// The quantity that is shown of a population.

@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use meshwright::wire::study_table::TableRow;
-use meshwright::wire::warning::GearName;
-use meshwright::wire::{PopulationResults, SearchState, Study as StudyDocument, StudyResults};
+use crate::wire::study_table::TableRow;
+use crate::wire::warning::GearName;
+use crate::wire::{PopulationResults, SearchState, Study as StudyDocument, StudyResults};
 
 /// A printed table has so many designs at most; of more, only the best are printed.
 const MOST_PRINTED: usize = 40;

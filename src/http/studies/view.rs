@@ -9,7 +9,7 @@ use uuid::Uuid;
 use crate::http::edge::Edge;
 use crate::http::view::with_public_type;
 use crate::jobs::StudyRecord;
-use crate::wire::{Code, Problem, SearchState, Status, Study, view};
+use crate::wire::{Problem, SearchState, Status, Study, view};
 
 view! {
     /// A study: how far it has come, and where to find its table.
@@ -103,23 +103,6 @@ impl Edge {
 
 /// A study that came to nothing says so.
 pub(super) fn why_failed(study: &StudyRecord, edge: &Edge) -> Option<Value> {
-    if study.status() != Status::Failed {
-        return None;
-    }
-    let searched: Option<SearchState> = study
-        .search
-        .as_ref()
-        .and_then(|text| serde_json::from_str(text).ok());
-    let usual = || {
-        format!(
-            "None of the {} designs has results: {} could not be built, {} could not be computed. Each row of the table has its problem.",
-            study.total, study.unbuildable, study.failed
-        )
-    };
-    let detail = searched
-        .and_then(|search| search.why_nothing())
-        .unwrap_or_else(usual);
-    let problem = serde_json::to_value(Problem::new(Code::NoDesignComputed, detail))
-        .expect("a problem is plain data");
+    let problem = serde_json::to_value(study.why_failed()?).expect("a problem is plain data");
     Some(with_public_type(problem, &edge.public_url))
 }

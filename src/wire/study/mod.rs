@@ -225,6 +225,12 @@ impl Study {
         self.keep
     }
 
+    /// The same study, of whose results so much is kept.
+    #[must_use]
+    pub fn keeping(self, keep: Kept) -> Self {
+        Self { keep, ..self }
+    }
+
     /// The gear that the table tells mass and holes of: the one of constant mass, else the only one that changes, else
     /// the driven one.
     pub fn gear(&self) -> GearName {

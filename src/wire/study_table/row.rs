@@ -32,7 +32,8 @@ pub struct RowState {
 
 impl RowState {
     /// A design with these changes that has been computed without a job, and what came of it.
-    pub fn computed(
+    #[cfg(test)]
+    pub(crate) fn computed(
         label: String,
         changes: Map<String, Value>,
         outcome: Result<Summary, Problem>,
