@@ -135,13 +135,13 @@ pub(super) async fn blocking<T: Send + 'static>(
     }
 }
 
-/// Whether a design has the gears of the base as they are drawn, which the first of such designs makes known to all.
+/// Whether a design differs from the base by what its teeth deviate by, and has gears drawn alike.
 fn is_drawn_as_the_base(design: &Design) -> bool {
-    design.changes.keys().all(|path| {
-        path.contains("/tooth_deviations")
-            || path.starts_with("/pair/center_distance_mm")
-            || path.starts_with("/output_torques_n_m")
-    })
+    let changes = &design.changes;
+    !changes.is_empty()
+        && changes
+            .keys()
+            .all(|path| path.contains("/tooth_deviations"))
 }
 
 /// The position before the first one behind `count` rows.

@@ -127,7 +127,9 @@ async fn take_rows(jobs: &Jobs, id: Uuid, rows: &mut Vec<RowState>) -> anyhow::R
     loop {
         let read = jobs.study_rows(id, rows.len() as u64).await?;
         let (before, count) = (rows.len(), read.len());
-        rows.extend(read.into_iter().take_while(|row| row.status.has_ended()));
+        let ended = read.into_iter().take_while(|row| row.status.has_ended());
+        // The jobs are gone with the database.
+        rows.extend(ended.map(|row| RowState { job: None, ..row }));
         if count == 0 || rows.len() < before + count {
             return Ok(());
         }
