@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use crate::jobs::{Place, Store};
 use anyhow::{Context, bail};
+
+use crate::jobs::{Place, Store};
 
 /// Copy the database, while the service runs or not.
 #[derive(Debug, clap::Args)]

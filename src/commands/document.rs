@@ -4,8 +4,9 @@ use std::fs;
 use std::io::{Read, Write};
 use std::path::Path;
 
-use crate::wire::Problem;
 use anyhow::Context;
+
+use crate::wire::Problem;
 
 /// The exit code for a submission that cannot be computed.
 pub(super) const EXIT_PROBLEM: u8 = 2;

@@ -3,12 +3,13 @@
 use std::process::ExitCode;
 use std::time::Duration;
 
+use anyhow::{Context, bail};
+use jiff::Timestamp;
+
 use crate::config::lasting;
 use crate::jobs::{KeyRecord, Migrate, Place, Role, Store};
 use crate::keys::{Key, is_client_name};
 use crate::serve::open;
-use anyhow::{Context, bail};
-use jiff::Timestamp;
 
 /// Make, list and revoke API keys.
 #[derive(Debug, clap::Args)]

@@ -2,9 +2,10 @@
 
 use std::process::ExitCode;
 
+use anyhow::Context;
+
 use crate::jobs::Place;
 use crate::serve::migrate;
-use anyhow::Context;
 
 /// Bring the tables of the database up to date.
 #[derive(Debug, clap::Args)]

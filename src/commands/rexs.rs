@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use crate::wire::{Submission, model_of};
 use anyhow::Context;
 use jiff::Zoned;
 use meshwright_exchange::rexs::{Choices, Import, import};
 use serde_json::Value;
 
 use super::document::{EXIT_PROBLEM, read, told, told_with, write};
+use crate::wire::{Submission, model_of};
 
 /// Take a pair out of a REXS model, or write one.
 #[derive(Debug, clap::Subcommand)]

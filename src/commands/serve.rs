@@ -5,16 +5,16 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
 
+use anyhow::Context;
+use tracing_subscriber::EnvFilter;
+
+use super::demo;
 use crate::config::Config;
 use crate::jobs::Clock;
 use crate::serve::{END, World, serve};
 use crate::spans::Spans;
 use crate::webhooks::HookRules;
 use crate::wire;
-use anyhow::Context;
-use tracing_subscriber::EnvFilter;
-
-use super::demo;
 
 /// Serve jobs over HTTP.
 #[derive(Debug, clap::Args)]

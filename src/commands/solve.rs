@@ -5,8 +5,6 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::wire::results::{CurveDocument, GearPeakStress, PeakStressDocument, Results};
-use crate::wire::{Problem, Submission, solve};
 use indicatif::{ProgressBar, ProgressStyle};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -14,6 +12,8 @@ use meshwright_exchange::rexs::is_xml;
 
 use super::document::{EXIT_PROBLEM, is_dash, read, told, write};
 use super::rexs::ModelChoices;
+use crate::wire::results::{CurveDocument, GearPeakStress, PeakStressDocument, Results};
+use crate::wire::{Problem, Submission, solve};
 
 /// What the substructures of one submission may take; it is never reached by one pair.
 const LIBRARY_BYTES: usize = 512 << 20;

@@ -3,10 +3,6 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::compute::Cores;
-use crate::jobs::{Clock, Jobs, Member, Migrate, Pace, Place, Rules, StudyRecord, Workers};
-use crate::serve::open;
-use crate::wire::{Kept, RowState, SearchState, Study as StudyDocument, solve};
 use anyhow::{Context, anyhow};
 use indicatif::{ProgressBar, ProgressStyle};
 use meshwright_engine::library::Library;
@@ -16,6 +12,10 @@ use uuid::Uuid;
 use super::folder::ResultFolder;
 use super::tables::numbers;
 use crate::commands::serve::signal;
+use crate::compute::Cores;
+use crate::jobs::{Clock, Jobs, Member, Migrate, Pace, Place, Rules, StudyRecord, Workers};
+use crate::serve::open;
+use crate::wire::{Kept, RowState, SearchState, Study as StudyDocument, solve};
 
 /// What the substructures that designs share may take.
 const LIBRARY_BYTES: usize = 256 << 20;

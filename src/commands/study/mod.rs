@@ -9,8 +9,6 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use crate::wire::study_table::{csv, table};
-use crate::wire::{PopulationResults, PopulationSample, Study as StudyDocument, StudyResults};
 use meshwright_engine::run::Run;
 
 use self::compute::{Computed, compute};
@@ -18,6 +16,8 @@ use self::folder::ResultFolder;
 use self::picture::picture;
 use self::tables::{search_table, short_table, spread_table};
 use super::document::{EXIT_PROBLEM, read, told};
+use crate::wire::study_table::{csv, table};
+use crate::wire::{PopulationResults, PopulationSample, Study as StudyDocument, StudyResults};
 
 /// Compute a study: many variants of one submission, and their table.
 #[derive(Debug, clap::Args)]

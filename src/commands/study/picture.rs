@@ -1,8 +1,9 @@
 //! What a study came to, as a picture.
 
+use meshwright_plot::{Axis, Chart, Figure, Look, PALETTE, Panel, RGBColor, Series};
+
 use crate::wire::study_table::TableRow;
 use crate::wire::{PopulationResults, SearchState, Study as StudyDocument, StudyResults};
-use meshwright_plot::{Axis, Chart, Figure, Look, PALETTE, Panel, RGBColor, Series};
 
 /// The quantity that is shown of a population.
 const SHOWN: &str = "transmission_error_um.peak_to_peak";
