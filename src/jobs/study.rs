@@ -73,14 +73,17 @@ impl StudyRecord {
         }
     }
 
+    /// How far a search has come; none for other studies.
+    pub fn search_state(&self) -> Option<SearchState> {
+        serde_json::from_str(self.search.as_ref()?).ok()
+    }
+
     /// Why it came to nothing, if it did.
     pub fn why_failed(&self) -> Option<Problem> {
         if self.status() != Status::Failed {
             return None;
         }
-        let state = self.search.as_deref().map(serde_json::from_str);
-        let state: Option<SearchState> = state.and_then(Result::ok);
-        let searched = state.and_then(|state| state.why_nothing());
+        let searched = self.search_state().and_then(|state| state.why_nothing());
         let detail = searched.unwrap_or_else(|| {
             format!(
                 "None of the {} designs has results: {} could not be built, {} could not be computed. Each row of the table has its problem.",

@@ -15,7 +15,7 @@ use crate::commands::serve::signal;
 use crate::compute::Cores;
 use crate::jobs::{Clock, Jobs, Member, Migrate, Pace, Place, Rules, StudyRecord, Workers};
 use crate::serve::open;
-use crate::wire::{Kept, RowState, SearchState, Study as StudyDocument, solve};
+use crate::wire::{Kept, RowState, Study as StudyDocument, solve};
 
 /// What the substructures that designs share may take.
 const LIBRARY_BYTES: usize = 256 << 20;
@@ -31,13 +31,6 @@ pub(super) struct Computed {
     pub(super) record: StudyRecord,
     /// Every design, in the order of the study.
     pub(super) rows: Vec<RowState>,
-}
-
-impl Computed {
-    /// How a search went; none for other studies.
-    pub(super) fn search(&self) -> Option<SearchState> {
-        search_of(&self.record)
-    }
 }
 
 /// Computes a study on all cores; results go to the folder as they come.
@@ -112,7 +105,7 @@ async fn follow(
             written = write_results(jobs, id, written, rows.len(), folder).await?;
         }
         bar.set_position(record.done());
-        if let Some(best) = search_of(&record).and_then(|search| search.best) {
+        if let Some(best) = record.search_state().and_then(|search| search.best) {
             bar.set_message(format!("best {}", numbers(&best.goals)));
         }
         if record.status().has_ended() {
@@ -158,11 +151,6 @@ async fn write_results(
             written = Some(line.position);
         }
     }
-}
-
-/// How a search went; none for other studies.
-fn search_of(record: &StudyRecord) -> Option<SearchState> {
-    serde_json::from_str(record.search.as_ref()?).ok()
 }
 
 fn progress_bar(total: usize) -> ProgressBar {

@@ -53,7 +53,7 @@ impl Study {
         let computed = compute(&study, folder.as_ref())?;
         let elapsed = started.elapsed();
 
-        let search = computed.search();
+        let search = computed.record.search_state();
         let best = search.as_ref().and_then(|search| {
             let row = usize::try_from(search.best.as_ref()?.row).ok()?;
             let row = computed.rows.get(row)?;
