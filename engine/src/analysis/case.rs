@@ -86,6 +86,30 @@ pub struct Faces {
     pub cure: bool,
 }
 
+/// A place in a curve, and the contact that tells of it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    /// The mesh position.
+    pub(super) position: f64,
+    /// Which contact it is.
+    pub(super) contact: usize,
+    /// So many mesh periods later.
+    pub(super) later: i64,
+}
+
+impl Place {
+    /// Those of contacts that tell of their own `positions` alone.
+    pub(super) fn own(positions: &[f64]) -> Vec<Self> {
+        let each = positions.iter().enumerate();
+        each.map(|(contact, &position)| Self {
+            position,
+            contact,
+            later: 0,
+        })
+        .collect()
+    }
+}
+
 /// A pair under load, and how to compute it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
@@ -140,6 +164,21 @@ impl Case {
             positions.truncate(self.resolution.positions_per_mesh_period as usize);
         }
         positions
+    }
+
+    /// The places in a curve that contacts at the mesh positions `at` tell of, where those after a mesh period, or those of the whole span, are
+    /// known: these positions, and as many mesh periods later as the span has.
+    pub(super) fn places(&self, at: &[f64]) -> Vec<Place> {
+        let periods = if self.pair.is_as_drawn() { self.span() } else { 1 };
+        let of_period = |later: i64| {
+            let at = at.iter().enumerate();
+            at.map(move |(contact, position)| Place {
+                position: position + later as f64,
+                contact,
+                later,
+            })
+        };
+        (0..i64::from(periods)).flat_map(of_period).collect()
     }
 
     /// What holds at the repeating positions, over the whole span.

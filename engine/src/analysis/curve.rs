@@ -5,7 +5,7 @@ use super::stress::GearStresses;
 use crate::contact::face::even::EvenLead;
 use crate::gear::Member;
 
-/// Mean, rms of the fluctuation and peak-to-peak over one span.
+/// Mean, rms of the fluctuation and extremes of a curve over one span, between its positions too.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statistics {
     /// The mean.
@@ -14,30 +14,23 @@ pub struct Statistics {
     pub rms: f64,
     /// Largest less smallest value.
     pub peak_to_peak: f64,
+    /// The smallest value; where the curve jumps, of both sides.
+    pub smallest: f64,
+    /// The mesh position at which it stands.
+    pub smallest_at: f64,
+    /// The largest value; where the curve jumps, of both sides.
+    pub largest: f64,
+    /// The mesh position at which it stands.
+    pub largest_at: f64,
 }
 
-impl Statistics {
-    /// The statistics of equally spaced `values`; all zero for none.
-    pub fn of(values: &[f64]) -> Self {
-        let count = values.len().max(1) as f64;
-        let mean = values.iter().sum::<f64>() / count;
-        let rms = (values
-            .iter()
-            .map(|value| (value - mean).powi(2))
-            .sum::<f64>()
-            / count)
-            .sqrt();
-        let (low, high) = values
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| {
-                (low.min(v), high.max(v))
-            });
-        Self {
-            mean,
-            rms,
-            peak_to_peak: (high - low).max(0.0),
-        }
-    }
+/// By how much the statistics of δ may be off because the contact is solved at some positions only, in meters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SamplingError {
+    /// In the mean.
+    pub mean: f64,
+    /// In the peak-to-peak.
+    pub peak_to_peak: f64,
 }
 
 /// The share of the load that the tooth pairs at one offset carry, position by position.
@@ -161,7 +154,9 @@ pub struct Curve {
     pub transmission_error_statistics: Statistics,
     /// Of the tangent stiffness.
     pub mesh_stiffness_tangent_statistics: Statistics,
-    /// The order spectrum, where the span is whole periods.
+    /// By how much the statistics of δ may be off between the positions.
+    pub sampling_error: SamplingError,
+    /// The order spectrum, where the span is whole periods: of the curve between its positions too.
     pub spectrum: Option<Spectrum>,
     /// The parts of the decomposition, for that method.
     pub decomposition: Option<DecompositionParts>,

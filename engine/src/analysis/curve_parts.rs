@@ -1,7 +1,8 @@
 //! A curve put together from what a method finds at each position.
 
 use super::Case;
-use super::curve::{Curve, DecompositionParts, FaceLoad, LoadShare, Statistics};
+use super::between::Sections;
+use super::curve::{Curve, DecompositionParts, FaceLoad, LoadShare};
 use super::spectrum::Spectrum;
 use super::stress::GearStresses;
 use crate::contact::MeshContact;
@@ -10,6 +11,8 @@ use crate::contact::MeshContact;
 pub(super) struct CurveParts {
     pub(super) transmission_error: Vec<f64>,
     pub(super) stiffness: Vec<f64>,
+    /// δ and k between the positions.
+    pub(super) sections: Sections,
     /// What the driver gives, over r_b1.
     pub(super) driving_load: Vec<f64>,
     pub(super) pairs_in_contact: Vec<u32>,
@@ -24,15 +27,12 @@ impl CurveParts {
     /// The curve of these parts at one torque of `case`.
     pub(super) fn into_curve(self, case: &Case, output_torque: f64) -> Curve {
         let load = case.pair.load(output_torque);
-        let spectrum = case.covers_whole_periods().then(|| {
-            Spectrum::of(
-                &case.pair,
-                case.span(),
-                &self.transmission_error,
-                &self.stiffness,
-                case.driving_speed,
-            )
-        });
+        let sections = &self.sections;
+        let spectrum = case
+            .covers_whole_periods()
+            .then(|| Spectrum::of(case, sections));
+        let [transmission_error_statistics, mesh_stiffness_tangent_statistics] =
+            sections.statistics();
         Curve {
             output_torque,
             load,
@@ -47,8 +47,9 @@ impl CurveParts {
                 .iter()
                 .map(|load| load * case.pair.driving().base_radius())
                 .collect(),
-            transmission_error_statistics: Statistics::of(&self.transmission_error),
-            mesh_stiffness_tangent_statistics: Statistics::of(&self.stiffness),
+            transmission_error_statistics,
+            mesh_stiffness_tangent_statistics,
+            sampling_error: sections.error(),
             transmission_error: self.transmission_error,
             mesh_stiffness_tangent: self.stiffness,
             pairs_in_contact: self.pairs_in_contact,
@@ -63,8 +64,13 @@ impl CurveParts {
 }
 
 impl CurveParts {
-    /// What `contacts` at every position of `case` say, but for the stiffness.
-    pub(super) fn of_contacts(case: &Case, contacts: &[MeshContact], stiffness: Vec<f64>) -> Self {
+    /// What `contacts` at every position of `case` say, but for the stiffness and what is between them.
+    pub(super) fn of_contacts(
+        case: &Case,
+        contacts: &[MeshContact],
+        stiffness: Vec<f64>,
+        sections: Sections,
+    ) -> Self {
         let each = contacts.iter();
         Self {
             transmission_error: each
@@ -72,6 +78,7 @@ impl CurveParts {
                 .map(|contact| contact.transmission_error)
                 .collect(),
             stiffness,
+            sections,
             driving_load: each.clone().map(|contact| contact.driving_load).collect(),
             pairs_in_contact: each.clone().map(MeshContact::loaded_pairs).collect(),
             peak_contact_pressure: each.map(|contact| contact.peak_pressure).collect(),
@@ -82,13 +89,18 @@ impl CurveParts {
         }
     }
 
-    /// What `contacts` at the repeating positions of `case` say of everything but δ and k.
-    pub(super) fn of_repeating(case: &Case, contacts: &[MeshContact]) -> Self {
+    /// What `contacts` at the repeating positions of `case` say of everything but δ and k, whose curve is that of `sections`.
+    pub(super) fn of_repeating(
+        case: &Case,
+        contacts: &[MeshContact],
+        sections: Sections,
+    ) -> Self {
         let each = contacts.iter();
         let shares = load_shares(&case.repeating_positions(), contacts).into_iter();
         Self {
             transmission_error: Vec::new(),
             stiffness: Vec::new(),
+            sections,
             driving_load: case.repeated(each.clone().map(|contact| contact.driving_load)),
             pairs_in_contact: case.repeated(each.clone().map(MeshContact::loaded_pairs)),
             peak_contact_pressure: case.repeated(each.map(|contact| contact.peak_pressure)),

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use super::between::Sample;
 use super::case::Case;
 use super::curve::{BlankFit, BlankSample, Curve, DecompositionParts};
 use super::curve_parts::CurveParts;
@@ -86,7 +87,7 @@ pub(super) fn solve(setup: Setup<'_>, plan: &Pass) -> Result<Analysis, AnalysisE
     let mut warnings = warnings(case);
     let mut curves = Vec::with_capacity(case.output_torques.len());
     for &output_torque in &case.output_torques {
-        let (curve, contacts) = curve(&rigid, &blanks, &plan.told, output_torque)?;
+        let (curve, contacts) = curve(&rigid, &blanks, &plan.told, output_torque, &mut evidence)?;
         evidence.gather(&contacts, curve.load);
         warn_of_tips(&mut warnings, &contacts);
         curves.push(curve);
@@ -104,64 +105,82 @@ fn curve(
     blanks: &[HoledBlank<'_>],
     told: &Sweep,
     output_torque: f64,
+    evidence: &mut Evidence,
 ) -> Result<(Curve, Arc<Vec<MeshContact>>), AnalysisError> {
     let case = rigid.setup.case;
     let load = case.pair.load(output_torque);
-    let at = |load: f64| Terms::at(rigid, blanks, &told.positions, load);
-    let middle = at(load)?;
-    let parts =
-        CurveParts {
-            transmission_error: middle.transmission_error(case),
-            stiffness: told.stiffness(load, Vec::new, |load| {
-                Ok(at(load)?.transmission_error(case))
-            })?,
-            decomposition: Some(DecompositionParts {
-                rigid_blank_transmission_error: middle.of_rigid_blank(case),
-                blanks: middle.fits,
-            }),
-            ..CurveParts::of_repeating(case, &middle.contacts)
-        };
-    Ok((parts.into_curve(case, output_torque), middle.contacts))
+    let step = told.step.unwrap_or(0.0);
+    let loads = [load, load * (1.0 - step), load * (1.0 + step)];
+    let [middle, below, above] = loads.map(|load| Terms::under(rigid, blanks, load));
+    let (middle, [below, above]) = (middle?, [below?, above?]);
+    let found = |sweep: &Sweep| {
+        let (contacts, delta) = middle.at(&sweep.positions)?;
+        let stiffness = sweep.stiffness(load, Vec::new, |other| {
+            let terms = if other < load { &below } else { &above };
+            Ok(terms.at(&sweep.positions)?.1)
+        })?;
+        Ok::<_, AnalysisError>((contacts, delta, stiffness))
+    };
+    let samples = |sweep: &Sweep, contacts: &[MeshContact], delta: &[f64], k: &[f64]| {
+        Sample::of(&case.places(&sweep.positions), contacts, delta, k)
+    };
+    let (contacts, transmission_error, stiffness) = found(told)?;
+    let known = samples(told, &contacts, &transmission_error, &stiffness);
+    let sections = told.sections(case, known, rigid.setup.run, |sweep| {
+        let (contacts, delta, stiffness) = found(sweep)?;
+        evidence.gather(&contacts, load);
+        Ok(samples(sweep, &contacts, &delta, &stiffness))
+    })?;
+    let of_rigid_blank = contacts.iter().map(|contact| contact.transmission_error);
+    let parts = CurveParts {
+        transmission_error,
+        stiffness,
+        decomposition: Some(DecompositionParts {
+            rigid_blank_transmission_error: case.repeated(of_rigid_blank),
+            blanks: middle.fits,
+        }),
+        ..CurveParts::of_repeating(case, &contacts, sections)
+    };
+    Ok((parts.into_curve(case, output_torque), contacts))
 }
 
-/// The terms of eq. 15 at one load.
-struct Terms {
-    contacts: Arc<Vec<MeshContact>>,
+/// The terms of eq. 15 under one load.
+struct Terms<'a> {
+    rigid: &'a RigidBlank<'a>,
+    load: f64,
     fits: Vec<BlankFit>,
 }
 
-impl Terms {
-    fn at(
-        rigid: &RigidBlank<'_>,
+impl<'a> Terms<'a> {
+    fn under(
+        rigid: &'a RigidBlank<'a>,
         blanks: &[HoledBlank<'_>],
-        positions: &[f64],
         load: f64,
     ) -> Result<Self, AnalysisError> {
-        let contacts = rigid.contacts(load, positions)?;
-        let fits = blanks
-            .iter()
-            .map(|blank| blank.fit(load))
-            .collect::<Result<_, _>>()?;
-        Ok(Self { contacts, fits })
+        let fits = blanks.iter().map(|blank| blank.fit(load));
+        Ok(Self {
+            rigid,
+            load,
+            fits: fits.collect::<Result<_, _>>()?,
+        })
     }
 
-    /// δ_wh over the whole span.
-    fn of_rigid_blank(&self, case: &Case) -> Vec<f64> {
-        let contacts = self.contacts.iter();
-        case.repeated(contacts.map(|contact| contact.transmission_error))
-    }
-
-    fn transmission_error(&self, case: &Case) -> Vec<f64> {
-        let mut sum = self.of_rigid_blank(case);
-        for fit in &self.fits {
-            let gear = case.pair.gear(fit.member);
-            let n = f64::from(gear.hole_repeats());
-            for (delta, eta) in sum.iter_mut().zip(case.mesh_positions()) {
+    /// The contacts on rigid blanks at `positions`, and δ at the places in the curve that they tell of.
+    fn at(&self, positions: &[f64]) -> Result<(Arc<Vec<MeshContact>>, Vec<f64>), AnalysisError> {
+        let case = self.rigid.setup.case;
+        let contacts = self.rigid.contacts(self.load, positions)?;
+        let places = case.places(positions).into_iter();
+        let delta = places.map(|place| {
+            let fits = self.fits.iter().map(|fit| {
+                let gear = case.pair.gear(fit.member);
                 // Eq. (13) has 2πθ and N; with θ in radians, a period of 2π/N is cos(Nθ).
-                *delta += fit.at(n * eta * gear.pitch_angle());
-            }
-        }
-        sum
+                let n = f64::from(gear.hole_repeats());
+                fit.at(n * place.position * gear.pitch_angle())
+            });
+            contacts[place.contact].transmission_error + fits.sum::<f64>()
+        });
+        let delta = delta.collect();
+        Ok((contacts, delta))
     }
 }
 

@@ -9,6 +9,7 @@
 //! that of 1/k is where the law is linear.
 
 use super::Case;
+use super::case::Place;
 
 /// Where the projection is held to exact solutions: fractions of the mesh period, and mesh periods for each of them, at most.
 ///
@@ -32,18 +33,16 @@ pub(super) struct WithHoles {
     pub(super) stiffness: Vec<f64>,
 }
 
-/// δ and k of `case`, of what is known at its repeating positions: `yielded` says qᵀ H p and qᵀ H q of the forces at one of them in a later
-/// mesh period.
+/// δ and k at `places`, of what is known of their contacts: `yielded` says qᵀ H p and qᵀ H q of the forces of one of them, so much later.
 pub(super) fn with_holes(
-    case: &Case,
+    places: &[Place],
     round: &[OnRound],
-    yielded: impl Fn(usize, i64) -> [f64; 2],
+    yielded: impl Fn(&Place) -> [f64; 2],
 ) -> WithHoles {
-    let per_period = case.resolution.positions_per_mesh_period as usize;
-    let (transmission_error, stiffness) = (0..case.positions())
-        .map(|i| {
-            let (at, periods) = (i % round.len(), (i / per_period) as i64);
-            let (here, after) = (&round[at], yielded(at, periods));
+    let (transmission_error, stiffness) = places
+        .iter()
+        .map(|place| {
+            let (here, after) = (&round[place.contact], yielded(place));
             let [delta, compliance] = [0, 1].map(|k| after[k] - here.yielded[k]);
             (
                 here.transmission_error + delta,
@@ -91,11 +90,11 @@ impl Checks {
         self.fractions as u64
     }
 
-    /// Their places in the curve of `case`, with this `round` at its repeating positions.
-    pub(super) fn places(self, case: &Case, round: &[OnRound]) -> Vec<usize> {
+    /// Their places in the curve of `case`, with this stiffness on `round` blanks at its repeating positions.
+    pub(super) fn places(self, case: &Case, round: &[f64]) -> Vec<usize> {
         let per_period = case.resolution.positions_per_mesh_period as usize;
         let (span, count) = (case.span() as usize, round.len());
-        let stiffness = |i: usize| round[i % count].stiffness;
+        let stiffness = |i: usize| round[i % count];
         let change = |i: usize| {
             let after = stiffness(i + 1) / stiffness(i);
             let before = stiffness(i + count - 1) / stiffness(i);

@@ -1,5 +1,7 @@
 //! The flexible method: both whole gears as finite elements, contact at every position (section 2 of the paper).
 
+use super::between::{Sample, Sections};
+use super::case::Place;
 use super::curve_parts::CurveParts;
 use super::evidence::Evidence;
 use super::plan::{Pass, Sweep};
@@ -28,10 +30,11 @@ pub(super) fn solve(setup: Setup<'_>, plan: &Pass) -> Result<Analysis, AnalysisE
         let solved = solved(&setup, &model, load, &plan.told, peaks)?;
         evidence.gather(&solved.contacts, load);
         warn_of_tips(&mut warnings, &solved.contacts);
+        let sections = sections(&setup, &model, load, &plan.told, &solved, &mut evidence)?;
         let peaks: Option<Vec<PositionPeaks>> = solved.kept.into_iter().collect();
         let parts = CurveParts {
             stresses: peaks.map(|peaks| GearStresses::of_positions(&peaks)),
-            ..CurveParts::of_contacts(case, &solved.contacts, solved.stiffness)
+            ..CurveParts::of_contacts(case, &solved.contacts, solved.stiffness, sections)
         };
         curves.push(parts.into_curve(case, output_torque));
     }
@@ -50,6 +53,33 @@ pub(super) struct Solved<T> {
     pub(super) kept: Vec<T>,
     /// The tangent stiffness by the rule of the case.
     pub(super) stiffness: Vec<f64>,
+}
+
+/// The curve through what was `solved` under one load, and through what is solved further between its positions.
+fn sections<T>(
+    setup: &Setup<'_>,
+    model: &PairModel,
+    load: f64,
+    told: &Sweep,
+    solved_at_first: &Solved<T>,
+    evidence: &mut Evidence,
+) -> Result<Sections, AnalysisError> {
+    let case = setup.case;
+    let samples = solved_at_first.samples(&told.positions);
+    told.sections(case, samples, setup.run, |sweep| {
+        let further = solved(setup, model, load, sweep, |_, _| ())?;
+        evidence.gather(&further.contacts, load);
+        Ok(further.samples(&sweep.positions))
+    })
+}
+
+impl<T> Solved<T> {
+    /// What is known at their `positions`.
+    fn samples(&self, positions: &[f64]) -> Vec<Sample> {
+        let each = self.contacts.iter();
+        let deltas: Vec<f64> = each.map(|contact| contact.transmission_error).collect();
+        Sample::of(&Place::own(positions), &self.contacts, &deltas, &self.stiffness)
+    }
 }
 
 /// Solves `sweep` under one load and keeps of each contact what `keep` takes.

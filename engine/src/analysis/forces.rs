@@ -99,7 +99,7 @@ impl TablePlan {
         Self {
             ladder,
             other: OtherFlank::of(&rows),
-            rows: Plan::of(&rows),
+            rows: Plan::of_rows(&rows),
         }
     }
 
@@ -189,7 +189,7 @@ impl OtherFlank {
         // So that the positions of the mirror image are those of the table.
         mirrored.resolution.first_position = later.fract() / per_period;
         Self {
-            mirrored: Plan::of(&mirrored),
+            mirrored: Plan::of_rows(&mirrored),
             zero: later.trunc() as i64,
         }
     }

@@ -1,6 +1,8 @@
 //! Curves at torque 0: the limit as the load vanishes, in which nothing is elastic. All methods agree on it but the load distribution, which sees
 //! contact on the line of contact alone.
 
+use super::between::{Refinement, Sample};
+use super::case::Place;
 use super::curve_parts::CurveParts;
 use super::{AnalysisError, Case, Curve, Method, load_distribution};
 use crate::contact::face::light_face;
@@ -24,23 +26,37 @@ fn curve(case: &Case) -> Result<Curve, AnalysisError> {
     let deviations = case.pair.deviations();
     let formulas = (case.method == Method::LoadDistribution)
         .then(|| PairFormulas::new(&case.pair, case.resolution.formulas));
-    let contacts = case
-        .repeating_positions()
-        .into_iter()
-        .map(|eta| {
-            let contact = match (&formulas, &case.faces) {
-                (Some(formulas), _) => return load_distribution::light(formulas, eta),
-                (None, Some(faces)) => light_face(&faces.pair, faces.slices, eta),
-                (None, None) => light_contact(&case.pair, &deviations, eta),
-            };
-            contact.map_err(|error| AnalysisError::at_position(error, eta))
-        })
-        .collect::<Result<Vec<_>, _>>()?;
-    let each = contacts.iter();
+    let contact = |&eta: &f64| {
+        let contact = match (&formulas, &case.faces) {
+            (Some(formulas), _) => return load_distribution::light(formulas, eta),
+            (None, Some(faces)) => light_face(&faces.pair, faces.slices, eta),
+            (None, None) => light_contact(&case.pair, &deviations, eta),
+        };
+        contact.map_err(|error| AnalysisError::at_position(error, eta))
+    };
+    let found = |positions: &[f64]| {
+        let contacts: Result<Vec<_>, _> = positions.iter().map(contact).collect();
+        let (contacts, places) = (contacts?, case.places(positions));
+        let at = |place: &Place| &contacts[place.contact];
+        let delta = places.iter().map(|place| at(place).transmission_error);
+        let stiffness = places.iter().map(|place| at(place).stiffness);
+        let curves: [Vec<f64>; 2] = [delta.collect(), stiffness.collect()];
+        let samples = Sample::of(&places, &contacts, &curves[0], &curves[1]);
+        Ok::<_, AnalysisError>((contacts, curves, samples))
+    };
+    let positions = case.repeating_positions();
+    let (contacts, [transmission_error, stiffness], mut samples) = found(&positions)?;
+    if let Some(formulas) = &formulas {
+        let ends = load_distribution::ends_of_contact(formulas, case);
+        samples.extend(found(&ends)?.2);
+        samples.sort_by(|a, b| a.position.total_cmp(&b.position));
+    }
+    let refinement = Refinement::of(case, positions.len());
+    let sections = refinement.sections(samples, |further| Ok::<_, AnalysisError>(found(further)?.2))?;
     let parts = CurveParts {
-        transmission_error: case.repeated(each.clone().map(|contact| contact.transmission_error)),
-        stiffness: case.repeated(each.map(|contact| contact.stiffness)),
-        ..CurveParts::of_repeating(case, &contacts)
+        transmission_error,
+        stiffness,
+        ..CurveParts::of_repeating(case, &contacts, sections)
     };
     Ok(parts.into_curve(case, 0.0))
 }

@@ -1,12 +1,13 @@
 //! From a pair to its curves: the methods, their results and spectra.
 //!
 //! Read in this order: [`case`] (what is asked), `plan` (what will be computed of it), `setup` (what the methods work with), `flexible`, `rigid_blank`,
-//! `decomposition`, `projected`, `three_dimensional` and `load_distribution` (the methods), `first_order` (what holes change, in the plane and along faces), `light` (torque 0, alike for all), [`stress`] (at roots and holes; along faces `face_stress`) and [`fields`] (everywhere; along faces [`face_fields`]), [`contact_pattern`] (over the flanks), `curve_parts` and [`curve`], [`evidence`], [`warning`],
+//! `decomposition`, `projected`, `three_dimensional` and `load_distribution` (the methods), `first_order` (what holes change, in the plane and along faces), `light` (torque 0, alike for all), [`stress`] (at roots and holes; along faces `face_stress`) and [`fields`] (everywhere; along faces [`face_fields`]), [`contact_pattern`] (over the flanks), `between` (a curve between its positions), `curve_parts` and [`curve`], [`evidence`], [`warning`],
 //! [`error`] and [`spectrum`] (what comes out), `answer` (all of it); `analyze` (who carries out the plan), `estimate` (what it costs); [`forces`] (tables of force), [`at_speed`] (motion).
 
 mod analyze;
 mod answer;
 pub mod at_speed;
+mod between;
 pub mod case;
 pub mod contact_pattern;
 pub mod curve;
@@ -36,7 +37,7 @@ pub mod warning;
 pub use analyze::{analyze, pair_model};
 pub use answer::Analysis;
 pub use case::{Case, Faces, Method, Resolution, StiffnessRule};
-pub use curve::{Curve, FaceLoad, Statistics};
+pub use curve::{Curve, FaceLoad, SamplingError, Statistics};
 pub use error::AnalysisError;
 pub use estimate::{Estimate, estimate};
 pub use evidence::{ErrorEstimate, Evidence};

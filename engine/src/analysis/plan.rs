@@ -2,12 +2,14 @@
 //! [`estimate`](super::estimate()) prices it.
 
 use super::AnalysisError;
+use super::between::{Refinement, Sample, Sections, most_further};
 use super::case::{Case, Faces, Method, StiffnessRule};
 use super::first_order::Checks;
 use crate::assembly::{Blanks, FaceResolution};
 use crate::contact::positions::stages;
 use crate::gear::{Member, SpurGear};
 use crate::grid::GridLevel;
+use crate::run::Run;
 
 /// The torque step to either side, over the torque, with which the paper's route differentiates.
 const TORQUE_STEP: f64 = 0.01;
@@ -52,6 +54,8 @@ pub(super) struct Sweep {
     pub(super) positions: Vec<f64>,
     /// The step of the torque to either side, over the torque, by which the stiffness is found; `None` where it is that of the contacts.
     pub(super) step: Option<f64>,
+    /// Positions between these that may be solved further, where they tell most of the curve.
+    pub(super) further: usize,
 }
 
 impl Plan {
@@ -73,6 +77,15 @@ impl Plan {
             passes: levels.into_iter().map(pass).collect(),
             loaded,
         }
+    }
+
+    /// The plan for the rows of a table, which are told at their positions alone.
+    pub(super) fn of_rows(case: &Case) -> Self {
+        let mut plan = Self::of(case);
+        for pass in &mut plan.passes {
+            pass.told.further = 0;
+        }
+        plan
     }
 
     /// The contact solutions under all torques.
@@ -104,6 +117,7 @@ impl Pass {
         };
         let told = Sweep {
             blanks,
+            further: most_further(positions.len()),
             positions,
             step,
         };
@@ -123,6 +137,7 @@ impl Pass {
                     Vec::new()
                 },
                 step: None,
+                further: 0,
             },
             samples: if case.method == Method::Decomposition {
                 let of = |member| (member, samples(case, member, told.step));
@@ -184,11 +199,43 @@ impl Sweep {
     }
 
     fn solutions(&self) -> u64 {
-        self.at_each() * self.positions.len() as u64
+        self.at_each() * (self.positions.len() + self.further) as u64
     }
 
     fn first_solutions(&self) -> u64 {
-        self.at_each() * stages(&self.positions).len() as u64
+        self.at_each() * (stages(&self.positions).len() + self.further) as u64
+    }
+
+    /// The same at other `positions`.
+    pub(super) fn at(&self, positions: &[f64]) -> Self {
+        Self {
+            blanks: self.blanks,
+            positions: positions.to_vec(),
+            step: self.step,
+            further: 0,
+        }
+    }
+
+    /// The curve of `case` through `samples` at these positions, and through those that `solve` finds further, with the contacts behind them.
+    pub(super) fn sections(
+        &self,
+        case: &Case,
+        samples: Vec<Sample>,
+        run: &Run,
+        mut solve: impl FnMut(&Self) -> Result<Vec<Sample>, AnalysisError>,
+    ) -> Result<Sections, AnalysisError> {
+        if self.further == 0 {
+            return Ok(Sections::of(case, &samples));
+        }
+        let refinement = Refinement::of(case, self.positions.len());
+        let mut left = self.further;
+        let sections = refinement.sections(samples, |positions| {
+            left -= positions.len();
+            solve(&self.at(positions))
+        })?;
+        // What was not needed is done.
+        run.reached(self.at_each() * left as u64)?;
+        Ok(sections)
     }
 
     /// The stiffness under `load`: that of its contacts, or by a central difference of what δ is `at` a smaller and a larger one.
@@ -223,6 +270,7 @@ fn samples(case: &Case, member: Member, step: Option<f64>) -> Sweep {
             .map(|j| f64::from(j) * period / f64::from(count))
             .collect(),
         step,
+        further: 0,
     }
 }
 

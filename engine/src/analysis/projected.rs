@@ -2,16 +2,17 @@
 
 use std::sync::Arc;
 
+use super::between::Sample;
 use super::curve::{Curve, DecompositionParts};
 use super::curve_parts::CurveParts;
 use super::evidence::Evidence;
 use super::first_order::{OnRound, WithHoles, with_holes};
 use super::flexible::{self, Solved};
-use super::plan::Pass;
+use super::plan::{Pass, Sweep};
 use super::rigid_blank::RigidBlank;
 use super::setup::Setup;
 use super::warning::{warn_of_projection, warn_of_tips, warnings};
-use super::{Analysis, AnalysisError};
+use super::{Analysis, AnalysisError, Case};
 use crate::contact::positions::contacts;
 use crate::contact::{ContactCells, ContactSolution, MeshContact, PairLoads, PairModel};
 use crate::gear::{Member, teeth_on};
@@ -53,7 +54,7 @@ pub(super) fn solve(setup: Setup<'_>, plan: &Pass) -> Result<Analysis, AnalysisE
             curve,
             contacts,
             error,
-        } = expansion.curve(output_torque)?;
+        } = expansion.curve(output_torque, &mut evidence)?;
         evidence.gather(&contacts, curve.load);
         let known = evidence.projection_error.unwrap_or(0.0);
         evidence.projection_error = Some(error.max(known));
@@ -68,6 +69,27 @@ pub(super) fn solve(setup: Setup<'_>, plan: &Pass) -> Result<Analysis, AnalysisE
     })
 }
 
+/// What is found at some positions under one load.
+struct Found {
+    /// The contacts on round blanks.
+    contacts: Vec<MeshContact>,
+    round: Vec<OnRound>,
+    /// δ and k at all places that they tell of.
+    with_holes: WithHoles,
+}
+
+impl Found {
+    /// What is known at the places in the curve of `case` that the positions of `sweep` tell of.
+    fn samples(&self, case: &Case, sweep: &Sweep) -> Vec<Sample> {
+        let WithHoles {
+            transmission_error,
+            stiffness,
+        } = &self.with_holes;
+        let places = case.places(&sweep.positions);
+        Sample::of(&places, &self.contacts, transmission_error, stiffness)
+    }
+}
+
 /// The curve at one torque.
 struct Projected {
     curve: Curve,
@@ -78,11 +100,48 @@ struct Projected {
 }
 
 impl Expansion<'_> {
-    fn curve(&self, output_torque: f64) -> Result<Projected, AnalysisError> {
-        let setup = &self.rigid.setup;
-        let case = setup.case;
+    fn curve(
+        &self,
+        output_torque: f64,
+        evidence: &mut Evidence,
+    ) -> Result<Projected, AnalysisError> {
+        let case = self.rigid.setup.case;
         let load = case.pair.load(output_torque);
         let rigid = self.rigid.contacts(load, &self.plan.rigid.positions)?;
+        let told = &self.plan.told;
+        let found = self.found(load, told)?;
+        let run = self.rigid.setup.run;
+        let sections = told.sections(case, found.samples(case, told), run, |sweep| {
+            let further = self.found(load, sweep)?;
+            evidence.gather(&further.contacts, load);
+            Ok(further.samples(case, sweep))
+        })?;
+        let Found {
+            contacts,
+            round,
+            with_holes,
+        } = found;
+        let error = self.error(load, &round, &with_holes.transmission_error)?;
+        let of_rigid_blank = rigid.iter().map(|contact| contact.transmission_error);
+        let parts = CurveParts {
+            transmission_error: with_holes.transmission_error,
+            stiffness: with_holes.stiffness,
+            decomposition: Some(DecompositionParts {
+                rigid_blank_transmission_error: case.repeated(of_rigid_blank),
+                blanks: Vec::new(),
+            }),
+            ..CurveParts::of_repeating(case, &contacts, sections)
+        };
+        Ok(Projected {
+            curve: parts.into_curve(case, output_torque),
+            contacts,
+            error,
+        })
+    }
+
+    /// The contacts of `sweep` on round blanks under `load`, and what holes make of them.
+    fn found(&self, load: f64, sweep: &Sweep) -> Result<Found, AnalysisError> {
+        let setup = &self.rigid.setup;
         let keep = |cells: &ContactCells<'_>, solution: &ContactSolution| {
             cells.loads(&[&solution.forces, &solution.load_derivative])
         };
@@ -90,7 +149,7 @@ impl Expansion<'_> {
             contacts,
             kept: loads,
             stiffness,
-        } = flexible::solved(setup, &self.round, load, &self.plan.told, keep)?;
+        } = flexible::solved(setup, &self.round, load, sweep, keep)?;
         let round: Vec<OnRound> = contacts
             .iter()
             .zip(&stiffness)
@@ -102,27 +161,15 @@ impl Expansion<'_> {
                 yielded: yielded(&self.round, &self.holed, pairs, 0),
             })
             .collect();
-        let WithHoles {
-            transmission_error,
-            stiffness,
-        } = with_holes(case, &round, |at, periods| {
-            yielded(&self.whole, &self.holed, &loads[at], periods)
+        let places = setup.case.places(&sweep.positions);
+        let with_holes = with_holes(&places, &round, |place| {
+            let period = place.position.floor() as i64;
+            yielded(&self.whole, &self.holed, &loads[place.contact], period)
         });
-        let error = self.error(load, &round, &transmission_error)?;
-        let of_rigid_blank = rigid.iter().map(|contact| contact.transmission_error);
-        let parts = CurveParts {
-            transmission_error,
-            stiffness,
-            decomposition: Some(DecompositionParts {
-                rigid_blank_transmission_error: case.repeated(of_rigid_blank),
-                blanks: Vec::new(),
-            }),
-            ..CurveParts::of_repeating(case, &contacts)
-        };
-        Ok(Projected {
-            curve: parts.into_curve(case, output_torque),
+        Ok(Found {
             contacts,
-            error,
+            round,
+            with_holes,
         })
     }
 
@@ -135,7 +182,8 @@ impl Expansion<'_> {
         transmission_error: &[f64],
     ) -> Result<f64, AnalysisError> {
         let Setup { case, run, .. } = self.rigid.setup;
-        let places = self.plan.checks.places(case, round);
+        let stiffness: Vec<f64> = round.iter().map(|each| each.stiffness).collect();
+        let places = self.plan.checks.places(case, &stiffness);
         let positions = case.mesh_positions();
         let positions: Vec<f64> = places.iter().map(|&place| positions[place]).collect();
         let made = self.whole.made(self.rigid.setup.deviations);
@@ -187,7 +235,7 @@ fn yielded(model: &PairModel, members: &[Member], pairs: &[PairLoads], period: i
 mod tests {
     use super::*;
     use crate::analysis::{
-        BodyFormula, Case, ContactSolver, Formulas, Method, PlaneState, Resolution, StiffnessRule,
+        BodyFormula, ContactSolver, Formulas, Method, PlaneState, Resolution, StiffnessRule,
         ToothFormula,
     };
     use crate::assembly::{Blanks, MakeAll};

@@ -2,6 +2,8 @@
 
 use realfft::RealFftPlanner;
 
+use super::Case;
+use super::between::Sections;
 use super::orders::{KnownOrder, OrderKind, Orders};
 use crate::gear::GearPair;
 
@@ -43,20 +45,47 @@ pub struct Spectrum {
     pub frequency: Option<Vec<f64>>,
 }
 
+/// Places in a mesh period, at least, at which a curve is read for its spectrum: with kinks and jumps in it, lines fall so slowly that those
+/// beyond the last one told would add a percent to it.
+const RESAMPLED: usize = 400;
+
 /// Lines that get a name because they stand out, and the least part of the largest line that does.
 const STANDING_OUT: (usize, f64) = (10, 0.01);
 
 impl Spectrum {
-    /// The spectrum of one curve of `pair` over `span` mesh periods, which are whole true periods.
-    pub fn of(
+    /// The spectrum of the curve of `sections` over the span of `case`, which is whole true periods: as many orders as its positions tell.
+    pub(super) fn of(case: &Case, sections: &Sections) -> Self {
+        let (positions, periods) = (case.positions(), case.span() as usize);
+        let finer = (RESAMPLED * periods).div_ceil(positions);
+        let [delta, stiffness] = sections.resampled(finer * positions);
+        let lines = [delta, stiffness].map(|values| {
+            let mut lines = harmonics(&values);
+            lines.truncate(positions / 2);
+            lines
+        });
+        Self::of_lines(&case.pair, case.span(), lines, case.driving_speed)
+    }
+
+    /// The spectrum of equal samples of one curve of `pair` over `span` mesh periods, which are whole true periods.
+    pub fn of_samples(
         pair: &GearPair,
         span: u32,
         transmission_error: &[f64],
         stiffness: &[f64],
         speed: Option<RotationSpeed>,
     ) -> Self {
+        let lines = [transmission_error, stiffness].map(harmonics);
+        Self::of_lines(pair, span, lines, speed)
+    }
+
+    /// The spectrum of the lines 1, 2, … of δ and k over `span` mesh periods.
+    fn of_lines(
+        pair: &GearPair,
+        span: u32,
+        [ste, k]: [Vec<(f64, f64)>; 2],
+        speed: Option<RotationSpeed>,
+    ) -> Self {
         let z_2 = f64::from(pair.driven().tooth_count());
-        let (ste, k) = (harmonics(transmission_error), harmonics(stiffness));
         let order: Vec<f64> = (1..=ste.len())
             .map(|bin| bin as f64 * z_2 / f64::from(span))
             .collect();
@@ -196,7 +225,7 @@ mod tests {
         let values: Vec<f64> = (0..200)
             .map(|j| wave(j, 5.0) + 0.5 * wave(j, 2.0) + 0.005 * wave(j, 3.0))
             .collect();
-        let spectrum = Spectrum::of(&case_2(), 5, &values, &values, None);
+        let spectrum = Spectrum::of_samples(&case_2(), 5, &values, &values, None);
         let twice = spectrum.line("H_2N").expect("it stands out");
         assert!((twice.transmission_error - 0.5).abs() < 1e-13 && twice.order == 20.0);
         // Half a percent of the largest line is the third multiple, and a sideband that is named anyway.
@@ -212,7 +241,7 @@ mod tests {
                     + (2.0 * PI * f64::from(j) / 40.0).cos()
             })
             .collect();
-        let spectrum = Spectrum::of(&case_2(), 5, &values, &values, Some(RotationSpeed(10.0)));
+        let spectrum = Spectrum::of_samples(&case_2(), 5, &values, &values, Some(RotationSpeed(10.0)));
         assert_eq!(spectrum.order[..2], [10.0, 20.0]);
         assert!((spectrum.line("H_N").expect("named").transmission_error - 3.0).abs() < 1e-13);
         assert!((spectrum.line("H_Z2").expect("named").transmission_error - 1.0).abs() < 1e-13);

@@ -5,13 +5,14 @@ use std::sync::Arc;
 
 use faer::Mat;
 
-use super::case::{Faces, Method};
+use super::between::{Sample, Sections};
+use super::case::{Faces, Method, Place};
 use super::curve::{FaceLoad, LeadCure};
 use super::curve_parts::CurveParts;
 use super::evidence::Evidence;
 use super::face_stress::FaceStressModel;
 use super::first_order::{OnRound, with_holes};
-use super::plan::Pass;
+use super::plan::{Pass, Sweep};
 use super::warning::{warn_of_corner, warn_of_projection, warn_of_tips, warnings};
 use super::{Analysis, AnalysisError, Case};
 use crate::assembly::{FaceResolution, FaceYield, FaceYieldSpec, Parts};
@@ -51,9 +52,20 @@ pub(super) fn solve(
     for &output_torque in &case.output_torques {
         let load = case.pair.load(output_torque);
         let solved = match case.method {
-            Method::ThreeDimensionalProjected => pair.projected(load)?,
-            _ => pair.whole(load)?,
+            Method::ThreeDimensionalProjected => {
+                let solved = pair.projected(load, &plan.told)?;
+                pair.checked(load, solved)?
+            }
+            _ => pair.whole(load, &plan.told)?,
         };
+        let sections = plan.told.sections(case, solved.samples(case, &plan.told), run, |sweep| {
+            let further = match case.method {
+                Method::ThreeDimensionalProjected => pair.projected(load, sweep)?,
+                _ => pair.whole(load, sweep)?,
+            };
+            evidence.gather(&further.meshes(), load);
+            Ok(further.samples(case, sweep))
+        })?;
         evidence.gather(&solved.meshes(), load);
         warn_of_tips(&mut warnings, &solved.meshes());
         for member in Member::BOTH {
@@ -70,7 +82,7 @@ pub(super) fn solve(
         let stresses = stresses.transpose()?;
         let error = solved.error;
         let even = pair.even_lead(load, &solved)?;
-        let mut parts = solved.into_parts(case, faces);
+        let mut parts = solved.into_parts(case, faces, sections);
         parts.stresses = stresses;
         if let Some(face) = &mut parts.face {
             face.cure = even.map(|lead| LeadCure::of(lead, face.face_load_factor));
@@ -134,8 +146,8 @@ impl<'a> OfFaces<'a> {
     }
 
     /// By a contact of the whole gears at every position.
-    fn whole(&self, load: f64) -> Result<Solved, AnalysisError> {
-        let (contacts, stiffness) = self.contacts(&self.whole, load)?;
+    fn whole(&self, load: f64, sweep: &Sweep) -> Result<Solved, AnalysisError> {
+        let (contacts, stiffness) = self.contacts(&self.whole, load, sweep)?;
         let each = contacts.iter();
         Ok(Solved {
             transmission_error: each.map(|each| each.mesh.transmission_error).collect(),
@@ -146,13 +158,9 @@ impl<'a> OfFaces<'a> {
     }
 
     /// By the contacts of gears that are alike all around, and what holes change of them at first order.
-    fn projected(&self, load: f64) -> Result<Solved, AnalysisError> {
-        let case = self.case;
-        let (contacts, stiffness) = self.contacts(&self.round, load)?;
+    fn projected(&self, load: f64, sweep: &Sweep) -> Result<Solved, AnalysisError> {
+        let (contacts, stiffness) = self.contacts(&self.round, load, sweep)?;
         let loads: Vec<_> = contacts.iter().map(|each| self.round.loads(each)).collect();
-        // Where the positions of a whole span repeat only after it, they have their own pairs.
-        let per_period = case.resolution.positions_per_mesh_period as usize;
-        let own = |at: usize| (at / per_period) as i64;
         let yielded = |model: &FaceModel, at: usize, periods: i64| {
             let of = self.uneven.iter();
             of.map(|&member| model.yielded(member, &loads[at], periods))
@@ -165,22 +173,31 @@ impl<'a> OfFaces<'a> {
                 yielded: yielded(&self.round, at, 0),
             })
             .collect();
-        let found = with_holes(case, &round, |at, periods| {
-            yielded(&self.whole, at, periods - own(at))
-        });
-
-        let places = self.plan.checks.places(case, &round);
-        let all = case.mesh_positions();
-        let positions: Vec<f64> = places.iter().map(|&place| all[place]).collect();
-        let exact = self.whole.contacts(load, &positions, self.run)?;
-        let apart = places.iter().zip(&exact).map(|(&place, exact)| {
-            (found.transmission_error[place] - exact.mesh.transmission_error).abs()
+        let found = with_holes(&self.case.places(&sweep.positions), &round, |place| {
+            yielded(&self.whole, place.contact, place.later)
         });
         Ok(Solved {
-            error: Some(apart.fold(0.0, f64::max)),
+            error: None,
             contacts,
             transmission_error: found.transmission_error,
             stiffness: found.stiffness,
+        })
+    }
+
+    /// What was `solved` by projection, held against exact solutions.
+    fn checked(&self, load: f64, solved: Solved) -> Result<Solved, AnalysisError> {
+        let round = solved.contacts.iter().map(|each| each.mesh.stiffness);
+        let round: Vec<f64> = round.collect();
+        let places = self.plan.checks.places(self.case, &round);
+        let all = self.case.mesh_positions();
+        let positions: Vec<f64> = places.iter().map(|&place| all[place]).collect();
+        let exact = self.whole.contacts(load, &positions, self.run)?;
+        let apart = places.iter().zip(&exact).map(|(&place, exact)| {
+            (solved.transmission_error[place] - exact.mesh.transmission_error).abs()
+        });
+        Ok(Solved {
+            error: Some(apart.fold(0.0, f64::max)),
+            ..solved
         })
     }
 
@@ -201,12 +218,12 @@ impl<'a> OfFaces<'a> {
         &self,
         model: &FaceModel,
         load: f64,
+        sweep: &Sweep,
     ) -> Result<(Vec<FaceContact>, Vec<f64>), AnalysisError> {
-        let told = &self.plan.told;
-        let at = |load: f64| model.contacts(load, &told.positions, self.run);
+        let at = |load: f64| model.contacts(load, &sweep.positions, self.run);
         let contacts = at(load)?;
         let of_contacts = || contacts.iter().map(|each| each.mesh.stiffness).collect();
-        let stiffness = told.stiffness(load, of_contacts, |load| {
+        let stiffness = sweep.stiffness(load, of_contacts, |load| {
             let contacts = at(load)?.into_iter();
             Ok(contacts.map(|each| each.mesh.transmission_error).collect())
         })?;
@@ -220,13 +237,23 @@ impl Solved {
         each.map(|contact| contact.mesh.clone()).collect()
     }
 
-    fn into_parts(self, case: &Case, faces: &Faces) -> CurveParts {
+    /// What is known at the places in the curve of `case` that the positions of `sweep` tell of.
+    fn samples(&self, case: &Case, sweep: &Sweep) -> Vec<Sample> {
+        let places = if case.method == Method::ThreeDimensionalProjected {
+            case.places(&sweep.positions)
+        } else {
+            Place::own(&sweep.positions)
+        };
+        Sample::of(&places, &self.meshes(), &self.transmission_error, &self.stiffness)
+    }
+
+    fn into_parts(self, case: &Case, faces: &Faces, sections: Sections) -> CurveParts {
         let meshes = self.meshes();
         let face = Some(face_load(case, faces, &self.contacts));
         let told = if meshes.len() == case.positions() {
-            CurveParts::of_contacts(case, &meshes, Vec::new())
+            CurveParts::of_contacts(case, &meshes, Vec::new(), sections)
         } else {
-            CurveParts::of_repeating(case, &meshes)
+            CurveParts::of_repeating(case, &meshes, sections)
         };
         CurveParts {
             transmission_error: self.transmission_error,

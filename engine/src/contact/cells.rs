@@ -147,6 +147,9 @@ pub struct PairContact {
     pub pair: i64,
     /// The share w·p/F of the load.
     pub share: f64,
+    /// How much more the driven gear would have to lag for the pair to touch, in meters along the line of action; `None` where it carries or
+    /// this is not known.
+    pub clearance: Option<f64>,
     /// The gear whose tip touches off the path of contact, if one does.
     pub tip_corner: Option<Member>,
     /// The gear whose fillet the contact reaches, if it does: it is followed on the flanks only.
@@ -384,7 +387,8 @@ impl<'a> ContactCells<'a> {
             .ranges()
             .map(|(laid, range)| {
                 let patch = &laid.cells().patch;
-                let (forces, active) = (&solution.forces[range.clone()], &solution.active[range]);
+                let forces = &solution.forces[range.clone()];
+                let active = &solution.active[range.clone()];
                 let carried = laid.arms.iter().zip(forces);
                 let share = carried.map(|(arms, p)| arms[1] * p).sum::<f64>() / load;
                 let ended = patch.ended_by(active);
@@ -396,9 +400,12 @@ impl<'a> ContactCells<'a> {
                 peak_pressure = peak_pressure
                     .filter(|_| !at_corner)
                     .map(|peak| pressures.fold(peak, f64::max));
+                let clearance = laid.arms.iter().zip(&solution.gaps[range]);
+                let clearance = clearance.map(|(arms, gap)| gap / arms[1]);
                 PairContact {
                     pair: self.period + laid.pair,
                     share,
+                    clearance: (share <= 0.0).then(|| clearance.fold(f64::INFINITY, f64::min)),
                     tip_corner: (patch.off_path && share > 0.0).then_some(patch.seat),
                     fillet: ended
                         .iter()

@@ -58,6 +58,7 @@ impl MeshContact {
         let pairs = touching.into_iter().map(|(pair, tip_corner)| PairContact {
             pair,
             share,
+            clearance: None,
             tip_corner,
             fillet: None,
         });

@@ -84,6 +84,18 @@ impl<'a> PairFormulas<'a> {
             .collect()
     }
 
+    /// The mesh positions, in the mesh period after `first`, just before and just behind which a pair comes to the line of contact or leaves it.
+    pub fn ends_of_contact(&self, first: f64) -> Vec<f64> {
+        /// Mesh periods to either side: far above rounding, and nothing moves by a digit that is told.
+        const BESIDE: f64 = 1e-7;
+        let (s_a, s_e) = self.pair.path_of_contact();
+        let (s_c, p_b) = (self.pair.pitch_roll_length(), self.pair.base_pitch());
+        let fraction = |s: f64| ((s - s_c) / p_b - first).rem_euclid(1.0);
+        let beside = |fraction: f64| [-BESIDE, BESIDE].map(|by| fraction + by);
+        let each = [s_a, s_e].map(fraction).into_iter().flat_map(beside);
+        each.map(|fraction| first + fraction.rem_euclid(1.0)).collect()
+    }
+
     /// The pair n of teeth, at `offset`, that touches at the roll length `s` of the driving gear.
     fn line_pair(&self, n: i64, offset: i32, s: f64) -> Result<LinePair, FormulaError> {
         let (line, width) = (self.pair.line_of_action(), self.pair.common_face_width());

@@ -119,7 +119,7 @@ answer! {
 }
 
 answer! {
-    /// Mean, fluctuation and range of a curve, in its unit.
+    /// Mean, fluctuation and extremes of a curve, in its unit: of the curve between its positions too, so that they may lie outside the lists.
     pub struct StatisticsValues as StatisticsValues, "Statistics of a curve"
     of (statistics: &Statistics, convert: fn(f64) -> f64) {
         /// The mean.
@@ -128,5 +128,21 @@ answer! {
         rms: f64 = convert(statistics.rms),
         /// The largest less the smallest value.
         peak_to_peak: f64 = convert(statistics.peak_to_peak),
+        /// The smallest value; where a pair takes up or leaves the load, of both sides.
+        #[serde(default)]
+        #[schema(required)]
+        smallest: f64 = convert(statistics.smallest),
+        /// The mesh position at which it stands.
+        #[serde(default)]
+        #[schema(required)]
+        smallest_at: f64 = significant(statistics.smallest_at, 6),
+        /// The largest value; where a pair takes up or leaves the load, of both sides.
+        #[serde(default)]
+        #[schema(required)]
+        largest: f64 = convert(statistics.largest),
+        /// The mesh position at which it stands.
+        #[serde(default)]
+        #[schema(required)]
+        largest_at: f64 = significant(statistics.largest_at, 6),
     }
 }

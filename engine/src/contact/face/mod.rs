@@ -450,6 +450,7 @@ impl FaceModel {
                 pairs.push(PairContact {
                     pair: slice.pair,
                     share: 0.0,
+                    clearance: None,
                     tip_corner: None,
                     fillet: None,
                 });

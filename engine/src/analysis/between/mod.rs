@@ -1,0 +1,121 @@
+//! A curve between its positions: where it has kinks, what its extremes are, and what it comes to over its span.
+//!
+//! δ and k are known at equal steps. Between them a pair takes up or leaves the load, contact reaches the start of a relief or a tip edge, and
+//! the extremes of a curve often stand there. So the curve is divided where the loaded pairs change ([`events`]), a polynomial stands between
+//! two neighboring positions or events ([`sections`]), and the contact is solved at some more positions, where it tells most of the extremes
+//! and then of the rest. The arrays of a curve stay on the equal steps; its statistics and its spectrum are those of the sections.
+
+mod cubic;
+mod events;
+mod refinement;
+mod sections;
+
+use super::Case;
+use super::case::Place;
+use crate::contact::MeshContact;
+
+pub(super) use refinement::{Refinement, most_further};
+pub(super) use sections::Sections;
+
+/// What is known of a curve at one mesh position.
+#[derive(Debug, Clone)]
+pub(super) struct Sample {
+    pub(super) position: f64,
+    pub(super) transmission_error: f64,
+    pub(super) stiffness: f64,
+    /// The pairs that carry load or are near to it.
+    pub(super) pairs: Vec<PairState>,
+}
+
+/// How near to the load a pair is.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PairState {
+    /// The pair n.
+    pub(super) pair: i64,
+    /// Its share of the load.
+    pub(super) share: f64,
+    /// How far the driven gear would have to lag more for it to touch, in meters along the line of action, where it carries nothing and this is known.
+    pub(super) clearance: Option<f64>,
+}
+
+impl Sample {
+    /// Those at `places` of a curve, of the `contacts` that tell of them and of δ and k there.
+    pub(super) fn of(
+        places: &[Place],
+        contacts: &[MeshContact],
+        transmission_error: &[f64],
+        stiffness: &[f64],
+    ) -> Vec<Self> {
+        let curves = transmission_error.iter().zip(stiffness);
+        let each = places.iter().zip(curves);
+        each.map(|(place, (&transmission_error, &stiffness))| {
+            let states = contacts[place.contact].pairs.iter();
+            let states = states.map(|pair| PairState {
+                pair: pair.pair + place.later,
+                share: pair.share,
+                clearance: pair.clearance,
+            });
+            Self {
+                position: place.position,
+                transmission_error,
+                stiffness,
+                pairs: states.collect(),
+            }
+        })
+        .collect()
+    }
+
+    /// The same, `periods` whole mesh periods later.
+    pub(super) fn later(&self, periods: i64) -> Self {
+        let mut later = self.clone();
+        later.position += periods as f64;
+        for state in &mut later.pairs {
+            state.pair += periods;
+        }
+        later
+    }
+
+    /// The state of pair `n`, if it is near.
+    fn pair(&self, n: i64) -> Option<&PairState> {
+        self.pairs.iter().find(|state| state.pair == n)
+    }
+
+    /// Whether pair `n` carries load.
+    fn carries(&self, n: i64) -> bool {
+        self.pair(n).is_some_and(|state| state.share > 0.0)
+    }
+}
+
+/// The stretch over which a curve runs.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Span {
+    /// Where it begins, as a mesh position.
+    first: f64,
+    /// Its mesh periods.
+    periods: u32,
+    /// Positions in a mesh period.
+    per_period: u32,
+    /// Whether the curve repeats after it.
+    closes: bool,
+}
+
+impl Span {
+    /// That of the curves of `case`.
+    pub(super) fn of(case: &Case) -> Self {
+        Self {
+            first: case.resolution.first_position,
+            periods: case.span(),
+            per_period: case.resolution.positions_per_mesh_period,
+            closes: case.covers_whole_periods(),
+        }
+    }
+
+    /// The distance of two positions.
+    fn step(&self) -> f64 {
+        1.0 / f64::from(self.per_period)
+    }
+
+    fn end(&self) -> f64 {
+        self.first + f64::from(self.periods)
+    }
+}

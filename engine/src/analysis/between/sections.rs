@@ -1,0 +1,368 @@
+//! A curve in sections, each a polynomial between neighboring positions or events, and what it comes to.
+
+use std::ops::Range;
+
+use super::cubic::Cubic;
+use super::events::events;
+use super::{Sample, Span};
+use crate::analysis::Case;
+use crate::analysis::curve::{SamplingError, Statistics};
+use crate::quadrature::gauss_legendre_panels;
+
+/// Samples from beyond either end of a curve that closes, so that its first and last sections have neighbors too.
+const OVERLAP: usize = 8;
+
+/// How much the error of a section with too few nodes for two cubics is less than the difference to the next lower degree.
+const LOWER_DEGREE: f64 = 0.3;
+
+/// The error of δ between two places of which nothing else is known, for their difference.
+const UNKNOWN: f64 = 0.1;
+
+/// Where samples on both sides of an event are nearer to each other than this, δ need not be the same on both: the classical load distribution
+/// sees pairs on the line of contact only, and takes them up at its end with a part of the load.
+const JUMP: f64 = 1e-5;
+
+/// δ and k over a whole span.
+#[derive(Debug, Clone)]
+pub(in crate::analysis) struct Sections {
+    pub(super) span: Span,
+    /// Rising, without gaps.
+    pub(super) sections: Vec<Section>,
+}
+
+/// δ and k between two neighboring positions or events.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Section {
+    pub(super) from: f64,
+    pub(super) to: f64,
+    /// Whether a pair takes up or leaves the load at either end.
+    pub(super) events: [bool; 2],
+    pub(super) delta: Cubic,
+    pub(super) stiffness: Cubic,
+    /// By how much δ may be off, about.
+    pub(super) error: f64,
+}
+
+/// The smallest and the largest value, each with its place.
+pub(super) type Extremes = [(f64, f64); 2];
+
+/// The extremes of nothing.
+const NONE: Extremes = [(f64::INFINITY, 0.0), (f64::NEG_INFINITY, 0.0)];
+
+/// The extremes of both; those of the first where they are equal.
+fn wider(first: Extremes, second: Extremes) -> Extremes {
+    let [low, high] = second;
+    [
+        if low.0 < first[0].0 { low } else { first[0] },
+        if high.0 > first[1].0 { high } else { first[1] },
+    ]
+}
+
+/// An event, with δ there as either side of it has it.
+struct Event {
+    at: f64,
+    /// The sample before it.
+    after: usize,
+    /// As the side before it has it, and that behind it.
+    delta: [f64; 2],
+    error: f64,
+}
+
+impl Sections {
+    /// Those of the curve through `samples` over `span`, rising by position.
+    pub(super) fn new(span: Span, samples: &[Sample]) -> Self {
+        let samples = overlapping(span, samples);
+        let events = with_values(&samples);
+        let mut sections = Vec::with_capacity(samples.len() + events.len());
+        let mut first = 0;
+        for piece in 0..=events.len() {
+            let begins = piece.checked_sub(1).map(|before| &events[before]);
+            let ends = events.get(piece);
+            let last = ends.map_or(samples.len(), |event| event.after + 1);
+            add_piece(&mut sections, begins, (&samples, first..last), ends);
+            first = last;
+        }
+        let (from, to) = (span.first, span.end());
+        sections.retain(|section| section.from < to && section.to > from);
+        for section in &mut sections {
+            section.from = section.from.max(from);
+            section.to = section.to.min(to);
+        }
+        Self { span, sections }
+    }
+
+    /// Those of the curve of `case` through `samples`.
+    pub(in crate::analysis) fn of(case: &Case, samples: &[Sample]) -> Self {
+        Self::new(Span::of(case), samples)
+    }
+
+    /// The statistics of δ and of k.
+    pub(in crate::analysis) fn statistics(&self) -> [Statistics; 2] {
+        [self.statistics_of(|section| section.delta), self.statistics_of(|section| section.stiffness)]
+    }
+
+    fn statistics_of(&self, curve: fn(&Section) -> Cubic) -> Statistics {
+        let integral = |value: &dyn Fn(f64) -> f64| -> f64 {
+            let each = self.sections.iter().map(|section| {
+                let points = gauss_legendre_panels(section.from, section.to, 1);
+                let curve = curve(section);
+                points.map(|(x, weight)| weight * value(curve.at(x))).sum::<f64>()
+            });
+            each.sum()
+        };
+        let length = integral(&|_| 1.0);
+        let mean = integral(&|value| value) / length;
+        let square = integral(&|value| (value - mean).powi(2)) / length;
+        let [(smallest, smallest_at), (largest, largest_at)] = self.extremes(curve);
+        Statistics {
+            mean,
+            rms: square.sqrt(),
+            peak_to_peak: largest - smallest,
+            smallest,
+            smallest_at,
+            largest,
+            largest_at,
+        }
+    }
+
+    /// The smallest and the largest value of a curve.
+    pub(super) fn extremes(&self, curve: fn(&Section) -> Cubic) -> Extremes {
+        let each = self.sections.iter();
+        let extremes = each.map(|section| section.extremes(curve)).fold(NONE, wider);
+        extremes.map(|(value, place)| {
+            let beyond = self.span.closes && place >= self.span.end();
+            let periods = if beyond { f64::from(self.span.periods) } else { 0.0 };
+            (value, place - periods)
+        })
+    }
+
+    /// δ and k at `count` equal steps over the span.
+    pub(in crate::analysis) fn resampled(&self, count: usize) -> [Vec<f64>; 2] {
+        let step = f64::from(self.span.periods) / count as f64;
+        let mut at = 0;
+        let values = (0..count).map(|i| {
+            let x = self.span.first + i as f64 * step;
+            while at + 1 < self.sections.len() && self.sections[at].to <= x {
+                at += 1;
+            }
+            let section = &self.sections[at];
+            (section.delta.at(x), section.stiffness.at(x))
+        });
+        let (delta, stiffness) = values.unzip();
+        [delta, stiffness]
+    }
+
+    /// By how much what is told of δ may be off because it is known at some positions only.
+    pub(in crate::analysis) fn error(&self) -> SamplingError {
+        let known = self.extremes(|section| section.delta);
+        // Of all sections that may hold an extreme the one that leaves it open most.
+        let open = |beyond: &dyn Fn(&Section) -> f64| {
+            let each = self.sections.iter().map(beyond);
+            each.fold(0.0, f64::max)
+        };
+        let low = open(&|section| {
+            known[0].0 - section.extremes(|section| section.delta)[0].0 + section.error
+        });
+        let high = open(&|section| {
+            section.extremes(|section| section.delta)[1].0 + section.error - known[1].0
+        });
+        let each = self.sections.iter();
+        let area: f64 = each.map(|section| section.error * (section.to - section.from)).sum();
+        SamplingError {
+            mean: area / f64::from(self.span.periods),
+            peak_to_peak: low + high,
+        }
+    }
+}
+
+impl Section {
+    /// The smallest and the largest value of one of its curves.
+    pub(super) fn extremes(&self, curve: fn(&Section) -> Cubic) -> Extremes {
+        let curve = curve(self);
+        let places = [self.from, self.to].into_iter();
+        let places = places.chain(curve.level_within(self.from, self.to));
+        let known = places.map(|place| [(curve.at(place), place); 2]);
+        known.fold(NONE, wider)
+    }
+}
+
+/// `samples` of a curve over `span`, and where it closes some more on either side of it.
+fn overlapping(span: Span, samples: &[Sample]) -> Vec<Sample> {
+    if !span.closes {
+        return samples.to_vec();
+    }
+    let periods = i64::from(span.periods);
+    let count = samples.len();
+    let overlap = OVERLAP.min(count);
+    let before = samples[count - overlap..].iter().map(|sample| sample.later(-periods));
+    let after = samples[..overlap].iter().map(|sample| sample.later(periods));
+    before.chain(samples.iter().cloned()).chain(after).collect()
+}
+
+/// The events between `samples`, with δ at each.
+fn with_values(samples: &[Sample]) -> Vec<Event> {
+    let mut found = Vec::new();
+    for after in 0..samples.len().saturating_sub(1) {
+        let places = events(samples, after).into_iter();
+        found.extend(places.map(|at| Event {
+            at,
+            after,
+            delta: [0.0; 2],
+            error: 0.0,
+        }));
+    }
+    let firsts: Vec<usize> = found.iter().map(|event| event.after + 1).collect();
+    for (i, event) in found.iter_mut().enumerate() {
+        let begins = i.checked_sub(1).map_or(0, |before| firsts[before]);
+        let ends = firsts.get(i + 1).copied().unwrap_or(samples.len());
+        let left = read(samples[begins..=event.after].iter().rev(), event.at);
+        let right = read(samples[event.after + 1..ends].iter(), event.at);
+        let ends = [&samples[event.after], &samples[event.after + 1]];
+        let [from, to] = ends.map(|sample| (sample.position, sample.transmission_error));
+        let unknown = UNKNOWN * (to.1 - from.1).abs();
+        (event.delta, event.error) = match (left, right) {
+            (Some((left, _)), Some((right, _))) if to.0 - from.0 < JUMP => ([left, right], 0.0),
+            (Some((left, a)), Some((right, b))) => {
+                let (apart, less) = ((left - right).abs(), a.min(b));
+                ([(a * left + b * right) / (a + b); 2], apart * less / (a + b))
+            }
+            (Some((value, _)), None) | (None, Some((value, _))) => ([value; 2], unknown),
+            (None, None) => ([Cubic::through(&[from, to]).at(event.at); 2], unknown),
+        };
+    }
+    found
+}
+
+/// δ at `place` as the samples on one side of it have it, the nearest first, and the weight of that: it falls with the distance.
+fn read<'a>(samples: impl Iterator<Item = &'a Sample>, place: f64) -> Option<(f64, f64)> {
+    /// What a value is worth that is read off one, two or three samples.
+    const WORTH: [f64; 3] = [0.03, 0.3, 1.0];
+    let mut nodes: Vec<(f64, f64)> = Vec::with_capacity(3);
+    for sample in samples {
+        // Those that stand close together would tell more of their rounding than of the curve.
+        let apart = match (nodes.first(), nodes.last()) {
+            (Some(first), Some(last)) => {
+                (sample.position - last.0).abs() >= 0.5 * (first.0 - place).abs()
+            }
+            _ => true,
+        };
+        if apart {
+            nodes.push((sample.position, sample.transmission_error));
+        }
+        if nodes.len() == 3 {
+            break;
+        }
+    }
+    let distance = (nodes.first()?.0 - place).abs().max(1e-9);
+    let weight = WORTH[nodes.len() - 1] / (distance * distance);
+    Some((Cubic::through(&nodes).at(place), weight))
+}
+
+/// Adds the sections between two events, with those of all samples that stand there.
+fn add_piece(
+    sections: &mut Vec<Section>,
+    begins: Option<&Event>,
+    (all, range): (&[Sample], Range<usize>),
+    ends: Option<&Event>,
+) {
+    let samples = &all[range.clone()];
+    let of_event = |event: &Event, side: usize| (event.at, event.delta[side]);
+    let of_sample = |sample: &Sample| (sample.position, sample.transmission_error);
+    let begin = begins.map(|event| of_event(event, 1)).into_iter();
+    let nodes: Vec<(f64, f64)> = begin
+        .chain(samples.iter().map(of_sample))
+        .chain(ends.map(|event| of_event(event, 0)))
+        .collect();
+    // Where no sample stands between two events, k goes from that before them to that after them.
+    let around = if range.is_empty() {
+        &all[range.start - 1..=range.start]
+    } else {
+        samples
+    };
+    let stiffness = around.iter().map(|sample| (sample.position, sample.stiffness));
+    let stiffness: Vec<(f64, f64)> = stiffness.collect();
+    let last = nodes.len().saturating_sub(2);
+    for (i, pair) in nodes.windows(2).enumerate() {
+        let events = [i == 0 && begins.is_some(), i == last && ends.is_some()];
+        let beside = [(events[0], begins), (events[1], ends)];
+        let beside = beside.iter().filter(|(is_beside, _)| *is_beside);
+        let of_events = beside.filter_map(|(_, event)| Some(event.as_ref()?.error));
+        let (delta, error) = curve_of(&nodes, i);
+        let first = if range.is_empty() {
+            Some(0)
+        } else {
+            i.checked_sub(usize::from(begins.is_some()))
+        };
+        sections.push(Section {
+            from: pair[0].0,
+            to: pair[1].0,
+            events,
+            delta,
+            stiffness: stiffness_of(&stiffness, first, (pair[0].0, pair[1].0)),
+            error: of_events.fold(error, f64::max),
+        });
+    }
+}
+
+/// The curve of δ between the nodes `i` and `i + 1`, and by how much others through the nodes beside differ from it.
+fn curve_of(nodes: &[(f64, f64)], i: usize) -> (Cubic, f64) {
+    let middle = f64::midpoint(nodes[i].0, nodes[i + 1].0);
+    let degree = (nodes.len() - 1).min(3);
+    // Windows of `count` nodes that hold both, that with as many on either side first.
+    let windows = |count: usize| {
+        let first = (i + 2).saturating_sub(count);
+        let last = i.min(nodes.len() - count);
+        let even = (i + 1).saturating_sub(count / 2).clamp(first, last);
+        let others = (first..=last).filter(move |start| *start != even);
+        std::iter::once(even)
+            .chain(others)
+            .map(move |start| Cubic::through(&nodes[start..start + count]))
+    };
+    let mut found = windows(degree + 1);
+    let curve = found.next().unwrap_or_else(|| Cubic::through(nodes));
+    let difference = |other: Cubic| (other.at(middle) - curve.at(middle)).abs();
+    let others = found.map(difference).reduce(f64::max);
+    let error = others.unwrap_or_else(|| match degree {
+        0 | 1 => UNKNOWN * (nodes[i + 1].1 - nodes[i].1).abs(),
+        _ => LOWER_DEGREE * windows(degree).map(difference).fold(0.0, f64::max),
+    });
+    (curve, error)
+}
+
+/// The curve of k on the section `within`, which begins with the sample `first` of a piece or, where there is none, with an event.
+///
+/// Between samples it is a cubic that rises and falls with them: k has steps of some thousandths, as one cell more touches or one less, and a
+/// cubic through such steps would swing. From the last sample to an event the line of the last two goes on.
+fn stiffness_of(samples: &[(f64, f64)], first: Option<usize>, within: (f64, f64)) -> Cubic {
+    let secant = |i: usize| {
+        let (a, b) = (samples[i], samples[i + 1]);
+        (b.1 - a.1) / (b.0 - a.0)
+    };
+    let slope = |i: usize| match (i.checked_sub(1).map(secant), (i + 1 < samples.len()).then(|| secant(i))) {
+        (Some(before), Some(after)) if before * after > 0.0 => 2.0 * before * after / (before + after),
+        (Some(_), Some(_)) | (None, None) => 0.0,
+        (Some(only), None) | (None, Some(only)) => only,
+    };
+    let last = samples.len() - 1;
+    let width = within.1 - within.0;
+    match first {
+        None => line(samples[0], samples[1..].iter(), width),
+        Some(first) if first == last => line(samples[last], samples[..last].iter().rev(), width),
+        Some(first) => {
+            let ends = [samples[first], samples[first + 1]];
+            Cubic::hermite(ends, [slope(first), slope(first + 1)])
+        }
+    }
+}
+
+/// The line through `near` and the first of the `others` that is no nearer to it than `width`.
+fn line<'a>(
+    near: (f64, f64),
+    mut others: impl Iterator<Item = &'a (f64, f64)>,
+    width: f64,
+) -> Cubic {
+    match others.find(|other| (other.0 - near.0).abs() >= width) {
+        Some(&other) => Cubic::through(&[near, other]),
+        None => Cubic::through(&[near]),
+    }
+}
