@@ -58,9 +58,10 @@ words! {
 document! {
     /// How finely and by which rules the pair is computed. Every field has a default.
     pub struct ResolutionDocument as "Resolution", "Resolution" {
-        /// The number of positions at which one mesh period is computed.
+        /// The number of positions at which one mesh period is told. Statistics and spectrum are those of the curve between them too: the contact is
+        /// solved further where a pair takes up or leaves the load and where an extreme stands.
         pub(super) positions_per_mesh_period: u32 =
-            number("Positions in a mesh period", "1", 8.0, 400.0).or(40.0),
+            number("Positions in a mesh period", "1", 8.0, 2000.0).or(40.0),
         /// How many mesh periods are computed. A span shorter than the true period gives curves and statistics marked as partial and no
         /// spectrum; a longer one has to be a whole multiple of it.
         pub(super) span_mesh_periods: Option<u32> = absent(

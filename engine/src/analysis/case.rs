@@ -169,7 +169,11 @@ impl Case {
     /// The places in a curve that contacts at the mesh positions `at` tell of, where those after a mesh period, or those of the whole span, are
     /// known: these positions, and as many mesh periods later as the span has.
     pub(super) fn places(&self, at: &[f64]) -> Vec<Place> {
-        let periods = if self.pair.is_as_drawn() { self.span() } else { 1 };
+        let periods = if self.pair.is_as_drawn() {
+            self.span()
+        } else {
+            1
+        };
         let of_period = |later: i64| {
             let at = at.iter().enumerate();
             at.map(move |(contact, position)| Place {

@@ -31,8 +31,10 @@ impl CurveParts {
         let spectrum = case
             .covers_whole_periods()
             .then(|| Spectrum::of(case, sections));
-        let [transmission_error_statistics, mesh_stiffness_tangent_statistics] =
-            sections.statistics();
+        let [
+            transmission_error_statistics,
+            mesh_stiffness_tangent_statistics,
+        ] = sections.statistics();
         Curve {
             output_torque,
             load,
@@ -90,11 +92,7 @@ impl CurveParts {
     }
 
     /// What `contacts` at the repeating positions of `case` say of everything but δ and k, whose curve is that of `sections`.
-    pub(super) fn of_repeating(
-        case: &Case,
-        contacts: &[MeshContact],
-        sections: Sections,
-    ) -> Self {
+    pub(super) fn of_repeating(case: &Case, contacts: &[MeshContact], sections: Sections) -> Self {
         let each = contacts.iter();
         let shares = load_shares(&case.repeating_positions(), contacts).into_iter();
         Self {

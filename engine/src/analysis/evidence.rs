@@ -3,7 +3,7 @@
 use super::Curve;
 use crate::contact::MeshContact;
 
-/// What a finer run changes: the estimate of the discretization error, largest over the torques.
+/// What a finer run changes, and what the positions leave open: the estimate of the discretization error, largest over the torques.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ErrorEstimate {
     /// In the mean of δ, in meters.
@@ -65,18 +65,26 @@ impl Evidence {
 }
 
 impl ErrorEstimate {
-    /// The largest differences between the curves of two grid levels.
+    /// The largest differences between the curves of two grid levels, and what their positions leave open.
     pub(super) fn between(curves: &[Curve], others: &[Curve]) -> Self {
-        let largest = |value: fn(&Curve) -> f64| {
+        let largest = |value: fn(&Curve) -> f64, open: fn(&Curve) -> f64| {
             let pairs = curves.iter().zip(others);
-            pairs
-                .map(|(a, b)| (value(a) - value(b)).abs())
-                .fold(0.0, f64::max)
+            let errors = pairs.map(|(a, b)| (value(a) - value(b)).abs() + open(a));
+            errors.fold(0.0, f64::max)
         };
         Self {
-            mean: largest(|curve| curve.transmission_error_statistics.mean),
-            peak_to_peak: largest(|curve| curve.transmission_error_statistics.peak_to_peak),
-            mean_stiffness: largest(|curve| curve.mesh_stiffness_tangent_statistics.mean),
+            mean: largest(
+                |curve| curve.transmission_error_statistics.mean,
+                |curve| curve.sampling_error.mean,
+            ),
+            peak_to_peak: largest(
+                |curve| curve.transmission_error_statistics.peak_to_peak,
+                |curve| curve.sampling_error.peak_to_peak,
+            ),
+            mean_stiffness: largest(
+                |curve| curve.mesh_stiffness_tangent_statistics.mean,
+                |_| 0.0,
+            ),
         }
     }
 }

@@ -78,7 +78,12 @@ impl<T> Solved<T> {
     fn samples(&self, positions: &[f64]) -> Vec<Sample> {
         let each = self.contacts.iter();
         let deltas: Vec<f64> = each.map(|contact| contact.transmission_error).collect();
-        Sample::of(&Place::own(positions), &self.contacts, &deltas, &self.stiffness)
+        Sample::of(
+            &Place::own(positions),
+            &self.contacts,
+            &deltas,
+            &self.stiffness,
+        )
     }
 }
 

@@ -52,7 +52,8 @@ fn curve(case: &Case) -> Result<Curve, AnalysisError> {
         samples.sort_by(|a, b| a.position.total_cmp(&b.position));
     }
     let refinement = Refinement::of(case, positions.len());
-    let sections = refinement.sections(samples, |further| Ok::<_, AnalysisError>(found(further)?.2))?;
+    let sections =
+        refinement.sections(samples, |further| Ok::<_, AnalysisError>(found(further)?.2))?;
     let parts = CurveParts {
         transmission_error,
         stiffness,

@@ -49,7 +49,11 @@ pub(super) fn solve(case: &Case, plan: &Pass, run: &Run) -> Result<Analysis, Ana
 /// The mesh positions just beside which a pair comes to the line of contact of `case` or leaves it: those of one mesh period, or of the whole span
 /// where teeth deviate.
 pub(super) fn ends_of_contact(formulas: &PairFormulas, case: &Case) -> Vec<f64> {
-    let periods = if case.pair.is_as_drawn() { 1 } else { case.span() };
+    let periods = if case.pair.is_as_drawn() {
+        1
+    } else {
+        case.span()
+    };
     let first = |period: u32| case.resolution.first_position + f64::from(period);
     let of_period = |period: u32| formulas.ends_of_contact(first(period));
     (0..periods).flat_map(of_period).collect()

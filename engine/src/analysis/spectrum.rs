@@ -241,7 +241,8 @@ mod tests {
                     + (2.0 * PI * f64::from(j) / 40.0).cos()
             })
             .collect();
-        let spectrum = Spectrum::of_samples(&case_2(), 5, &values, &values, Some(RotationSpeed(10.0)));
+        let spectrum =
+            Spectrum::of_samples(&case_2(), 5, &values, &values, Some(RotationSpeed(10.0)));
         assert_eq!(spectrum.order[..2], [10.0, 20.0]);
         assert!((spectrum.line("H_N").expect("named").transmission_error - 3.0).abs() < 1e-13);
         assert!((spectrum.line("H_Z2").expect("named").transmission_error - 1.0).abs() < 1e-13);

@@ -58,14 +58,16 @@ pub(super) fn solve(
             }
             _ => pair.whole(load, &plan.told)?,
         };
-        let sections = plan.told.sections(case, solved.samples(case, &plan.told), run, |sweep| {
-            let further = match case.method {
-                Method::ThreeDimensionalProjected => pair.projected(load, sweep)?,
-                _ => pair.whole(load, sweep)?,
-            };
-            evidence.gather(&further.meshes(), load);
-            Ok(further.samples(case, sweep))
-        })?;
+        let sections =
+            plan.told
+                .sections(case, solved.samples(case, &plan.told), run, |sweep| {
+                    let further = match case.method {
+                        Method::ThreeDimensionalProjected => pair.projected(load, sweep)?,
+                        _ => pair.whole(load, sweep)?,
+                    };
+                    evidence.gather(&further.meshes(), load);
+                    Ok(further.samples(case, sweep))
+                })?;
         evidence.gather(&solved.meshes(), load);
         warn_of_tips(&mut warnings, &solved.meshes());
         for member in Member::BOTH {
@@ -244,7 +246,12 @@ impl Solved {
         } else {
             Place::own(&sweep.positions)
         };
-        Sample::of(&places, &self.meshes(), &self.transmission_error, &self.stiffness)
+        Sample::of(
+            &places,
+            &self.meshes(),
+            &self.transmission_error,
+            &self.stiffness,
+        )
     }
 
     fn into_parts(self, case: &Case, faces: &Faces, sections: Sections) -> CurveParts {

@@ -93,7 +93,8 @@ impl<'a> PairFormulas<'a> {
         let fraction = |s: f64| ((s - s_c) / p_b - first).rem_euclid(1.0);
         let beside = |fraction: f64| [-BESIDE, BESIDE].map(|by| fraction + by);
         let each = [s_a, s_e].map(fraction).into_iter().flat_map(beside);
-        each.map(|fraction| first + fraction.rem_euclid(1.0)).collect()
+        each.map(|fraction| first + fraction.rem_euclid(1.0))
+            .collect()
     }
 
     /// The pair n of teeth, at `offset`, that touches at the roll length `s` of the driving gear.

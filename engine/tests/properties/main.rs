@@ -4,6 +4,7 @@
 //! property is tried on a few dozen pairs in the test command, and on two thousand by `./test --test properties -- --ignored --nocapture`,
 //! which prints the worst figures of each: docs/validity.md has them.
 
+mod between;
 #[path = "../cases/mod.rs"]
 mod cases;
 mod drawn;

@@ -99,7 +99,7 @@ pub(crate) const TRUTHS: &[Truth] = &[
 const POSITIONS: u32 = 8;
 
 /// One mesh period of `pair` on coarse grids.
-fn case(pair: &GearPair, output_torques: &[f64]) -> Case {
+pub(crate) fn case(pair: &GearPair, output_torques: &[f64]) -> Case {
     let mut case = cases::case(pair.clone(), output_torques);
     case.resolution.positions_per_mesh_period = POSITIONS;
     case.resolution.span_mesh_periods = Some(1);
@@ -107,7 +107,7 @@ fn case(pair: &GearPair, output_torques: &[f64]) -> Case {
     case
 }
 
-fn solve(case: &Case) -> Result<Analysis, String> {
+pub(crate) fn solve(case: &Case) -> Result<Analysis, String> {
     analyze(case, &Library::default(), &Run::unattended()).map_err(|error| {
         let cause = std::error::Error::source(&error).map(ToString::to_string);
         format!("{error} {}", cause.unwrap_or_default())

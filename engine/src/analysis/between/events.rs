@@ -5,6 +5,9 @@ use super::Sample;
 /// Events nearer to each other, or to a position, than this part of the way between two positions are one.
 const TOGETHER: f64 = 1e-3;
 
+/// The part of the way between two positions over which an event is looked for from one of them alone.
+const FARTHEST: f64 = 0.6;
+
 /// The places between the samples `at` and `at + 1` of `samples` at which a pair takes up or leaves the load, rising.
 pub(super) fn events(samples: &[Sample], at: usize) -> Vec<f64> {
     let (before, after) = (&samples[at], &samples[at + 1]);
@@ -25,8 +28,13 @@ pub(super) fn events(samples: &[Sample], at: usize) -> Vec<f64> {
     found.sort_by(f64::total_cmp);
     found.dedup_by(|later, earlier| *later - *earlier < margin);
     // Pairs that take the whole load over from each other without a share in common touch together nowhere but at one place.
-    if !before.pairs.iter().any(|state| state.share > 0.0 && after.carries(state.pair))
-        && changing.iter().all(|&n| clearance_of(samples, at, n).is_none())
+    if !before
+        .pairs
+        .iter()
+        .any(|state| state.share > 0.0 && after.carries(state.pair))
+        && changing
+            .iter()
+            .all(|&n| clearance_of(samples, at, n).is_none())
         && let Some(place) = crossing(samples, at)
     {
         return vec![within(place)];
@@ -50,23 +58,27 @@ fn event(samples: &[Sample], at: usize, n: i64) -> f64 {
         state.clearance.filter(|_| state.share <= 0.0)
     };
     let (by_before, by_after) = if carries_after {
-        (zero(samples, at, false, clearance), zero(samples, at, true, share))
+        (
+            zero(samples, at, false, clearance),
+            zero(samples, at, true, share),
+        )
     } else {
-        (zero(samples, at, false, share), zero(samples, at, true, clearance))
+        (
+            zero(samples, at, false, share),
+            zero(samples, at, true, clearance),
+        )
     };
-    let distance = 1e-3 * (to - from);
-    let sides = [(by_before, from), (by_after, to)];
-    let weighed = sides.iter().filter_map(|(place, from)| {
-        let place = (*place)?;
-        Some((place, 1.0 / ((place - from).powi(2) + distance.powi(2))))
-    });
-    let (sum, weights) = weighed.fold((0.0, 0.0), |sum, (place, weight)| {
-        (sum.0 + place * weight, sum.1 + weight)
-    });
-    if weights > 0.0 {
-        sum / weights
-    } else {
-        f64::midpoint(from, to)
+    let width = to - from;
+    match (by_before, by_after) {
+        (Some(before), Some(after)) => {
+            let weight = |way: f64| 1.0 / (way.powi(2) + (TOGETHER * width).powi(2));
+            let (a, b) = (weight(before - from), weight(to - after));
+            (a * before + b * after) / (a + b)
+        }
+        // From one side alone the other end of the way may just have been found to lie beyond it.
+        (Some(before), None) => before.min(from + FARTHEST * width),
+        (None, Some(after)) => after.max(to - FARTHEST * width),
+        (None, None) => f64::midpoint(from, to),
     }
 }
 
@@ -86,7 +98,10 @@ fn zero(
     let (near, far) = if from_after {
         (samples.get(at + 1)?, samples.get(at + 2))
     } else {
-        (samples.get(at)?, at.checked_sub(1).and_then(|far| samples.get(far)))
+        (
+            samples.get(at)?,
+            at.checked_sub(1).and_then(|far| samples.get(far)),
+        )
     };
     let (x, y) = (near.position, value(near)?);
     let (before_x, before_y) = far.and_then(|far| Some((far.position, value(far)?)))?;
@@ -99,7 +114,8 @@ fn zero(
 /// Where the lines along which δ comes and goes cross between the samples `at` and `at + 1`.
 fn crossing(samples: &[Sample], at: usize) -> Option<f64> {
     let line = |near: &Sample, far: &Sample| {
-        let rate = (near.transmission_error - far.transmission_error) / (near.position - far.position);
+        let rate =
+            (near.transmission_error - far.transmission_error) / (near.position - far.position);
         (near.transmission_error - rate * near.position, rate)
     };
     let (c_0, c_1) = line(&samples[at], samples.get(at.checked_sub(1)?)?);

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::cubic::Cubic;
 use super::events::events;
+use super::refinement::tolerance;
 use super::{Sample, Span};
 use crate::analysis::Case;
 use crate::analysis::curve::{SamplingError, Statistics};
@@ -21,6 +22,9 @@ const UNKNOWN: f64 = 0.1;
 /// Where samples on both sides of an event are nearer to each other than this, δ need not be the same on both: the classical load distribution
 /// sees pairs on the line of contact only, and takes them up at its end with a part of the load.
 const JUMP: f64 = 1e-5;
+
+/// Both sides of an event meet within twice this part of the way between its neighbors, if they are near enough to be believed.
+const NEARBY: f64 = 0.1;
 
 /// δ and k over a whole span.
 #[derive(Debug, Clone)]
@@ -98,7 +102,10 @@ impl Sections {
 
     /// The statistics of δ and of k.
     pub(in crate::analysis) fn statistics(&self) -> [Statistics; 2] {
-        [self.statistics_of(|section| section.delta), self.statistics_of(|section| section.stiffness)]
+        [
+            self.statistics_of(|section| section.delta),
+            self.statistics_of(|section| section.stiffness),
+        ]
     }
 
     fn statistics_of(&self, curve: fn(&Section) -> Cubic) -> Statistics {
@@ -106,7 +113,9 @@ impl Sections {
             let each = self.sections.iter().map(|section| {
                 let points = gauss_legendre_panels(section.from, section.to, 1);
                 let curve = curve(section);
-                points.map(|(x, weight)| weight * value(curve.at(x))).sum::<f64>()
+                points
+                    .map(|(x, weight)| weight * value(curve.at(x)))
+                    .sum::<f64>()
             });
             each.sum()
         };
@@ -128,10 +137,16 @@ impl Sections {
     /// The smallest and the largest value of a curve.
     pub(super) fn extremes(&self, curve: fn(&Section) -> Cubic) -> Extremes {
         let each = self.sections.iter();
-        let extremes = each.map(|section| section.extremes(curve)).fold(NONE, wider);
+        let extremes = each
+            .map(|section| section.extremes(curve))
+            .fold(NONE, wider);
         extremes.map(|(value, place)| {
             let beyond = self.span.closes && place >= self.span.end();
-            let periods = if beyond { f64::from(self.span.periods) } else { 0.0 };
+            let periods = if beyond {
+                f64::from(self.span.periods)
+            } else {
+                0.0
+            };
             (value, place - periods)
         })
     }
@@ -167,10 +182,12 @@ impl Sections {
             section.extremes(|section| section.delta)[1].0 + section.error - known[1].0
         });
         let each = self.sections.iter();
-        let area: f64 = each.map(|section| section.error * (section.to - section.from)).sum();
+        let area: f64 = each
+            .map(|section| section.error * (section.to - section.from))
+            .sum();
         SamplingError {
             mean: area / f64::from(self.span.periods),
-            peak_to_peak: low + high,
+            peak_to_peak: low + high + tolerance(known[1].0 - known[0].0),
         }
     }
 }
@@ -194,8 +211,12 @@ fn overlapping(span: Span, samples: &[Sample]) -> Vec<Sample> {
     let periods = i64::from(span.periods);
     let count = samples.len();
     let overlap = OVERLAP.min(count);
-    let before = samples[count - overlap..].iter().map(|sample| sample.later(-periods));
-    let after = samples[..overlap].iter().map(|sample| sample.later(periods));
+    let before = samples[count - overlap..]
+        .iter()
+        .map(|sample| sample.later(-periods));
+    let after = samples[..overlap]
+        .iter()
+        .map(|sample| sample.later(periods));
     before.chain(samples.iter().cloned()).chain(after).collect()
 }
 
@@ -215,47 +236,87 @@ fn with_values(samples: &[Sample]) -> Vec<Event> {
     for (i, event) in found.iter_mut().enumerate() {
         let begins = i.checked_sub(1).map_or(0, |before| firsts[before]);
         let ends = firsts.get(i + 1).copied().unwrap_or(samples.len());
-        let left = read(samples[begins..=event.after].iter().rev(), event.at);
-        let right = read(samples[event.after + 1..ends].iter(), event.at);
-        let ends = [&samples[event.after], &samples[event.after + 1]];
-        let [from, to] = ends.map(|sample| (sample.position, sample.transmission_error));
-        let unknown = UNKNOWN * (to.1 - from.1).abs();
-        (event.delta, event.error) = match (left, right) {
-            (Some((left, _)), Some((right, _))) if to.0 - from.0 < JUMP => ([left, right], 0.0),
-            (Some((left, a)), Some((right, b))) => {
-                let (apart, less) = ((left - right).abs(), a.min(b));
-                ([(a * left + b * right) / (a + b); 2], apart * less / (a + b))
-            }
-            (Some((value, _)), None) | (None, Some((value, _))) => ([value; 2], unknown),
-            (None, None) => ([Cubic::through(&[from, to]).at(event.at); 2], unknown),
-        };
+        let beside = [&samples[event.after], &samples[event.after + 1]];
+        let beside = beside.map(|sample| (sample.position, sample.transmission_error));
+        let before = Side::of(samples[begins..=event.after].iter().rev(), event.at);
+        let behind = Side::of(samples[event.after + 1..ends].iter(), event.at);
+        event.settle(beside, before, behind);
     }
     found
 }
 
-/// δ at `place` as the samples on one side of it have it, the nearest first, and the weight of that: it falls with the distance.
-fn read<'a>(samples: impl Iterator<Item = &'a Sample>, place: f64) -> Option<(f64, f64)> {
-    /// What a value is worth that is read off one, two or three samples.
-    const WORTH: [f64; 3] = [0.03, 0.3, 1.0];
-    let mut nodes: Vec<(f64, f64)> = Vec::with_capacity(3);
-    for sample in samples {
-        // Those that stand close together would tell more of their rounding than of the curve.
-        let apart = match (nodes.first(), nodes.last()) {
-            (Some(first), Some(last)) => {
-                (sample.position - last.0).abs() >= 0.5 * (first.0 - place).abs()
-            }
-            _ => true,
+impl Event {
+    /// Puts it where both sides of it meet, if that is near, and says what δ is there; `beside` are the samples next to it.
+    fn settle(&mut self, beside: [(f64, f64); 2], before: Option<Side>, behind: Option<Side>) {
+        let [from, to] = beside;
+        let unknown = UNKNOWN * (to.1 - from.1).abs();
+        let (Some(before), Some(behind)) = (&before, &behind) else {
+            let known = before.or(behind).map(|side| side.curve);
+            let curve = known.unwrap_or_else(|| Cubic::through(&beside));
+            (self.delta, self.error) = ([curve.at(self.at); 2], unknown);
+            return;
         };
-        if apart {
-            nodes.push((sample.position, sample.transmission_error));
+        let apart = |at: f64| before.curve.at(at) - behind.curve.at(at);
+        let width = to.0 - from.0;
+        if width < JUMP {
+            self.delta = [before, behind].map(|side| side.curve.at(self.at));
+            return;
         }
-        if nodes.len() == 3 {
-            break;
+        let (a, b) = (before.weight(), behind.weight());
+        self.error = apart(self.at).abs() * a.min(b) / (a + b);
+        // A step of the secant over a small part of the way.
+        let step = NEARBY * width;
+        let rate = (apart(self.at + step) - apart(self.at - step)) / (2.0 * step);
+        let met = self.at - apart(self.at) / rate;
+        if (met - self.at).abs() < 2.0 * step && from.0 < met && met < to.0 {
+            self.at = met;
         }
+        let [one, other] = [before, behind].map(|side| side.curve.at(self.at));
+        self.delta = [(a * one + b * other) / (a + b); 2];
     }
-    let distance = (nodes.first()?.0 - place).abs().max(1e-9);
-    let weight = WORTH[nodes.len() - 1] / (distance * distance);
-    Some((Cubic::through(&nodes).at(place), weight))
+}
+
+/// δ as the samples on one side of an event have it.
+struct Side {
+    /// Through the nearest of them.
+    curve: Cubic,
+    /// What it is worth: by how many it goes through.
+    worth: f64,
+    /// How far from the event the nearest is.
+    distance: f64,
+}
+
+impl Side {
+    /// That of `samples`, the nearest to `place` first.
+    fn of<'a>(samples: impl Iterator<Item = &'a Sample>, place: f64) -> Option<Self> {
+        const WORTH: [f64; 3] = [0.03, 0.3, 1.0];
+        let mut nodes: Vec<(f64, f64)> = Vec::with_capacity(WORTH.len());
+        for sample in samples {
+            // Those that stand close together would tell more of their rounding than of the curve.
+            let apart = match (nodes.first(), nodes.last()) {
+                (Some(first), Some(last)) => {
+                    (sample.position - last.0).abs() >= 0.5 * (first.0 - place).abs()
+                }
+                _ => true,
+            };
+            if apart {
+                nodes.push((sample.position, sample.transmission_error));
+            }
+            if nodes.len() == WORTH.len() {
+                break;
+            }
+        }
+        Some(Self {
+            distance: (nodes.first()?.0 - place).abs(),
+            worth: WORTH[nodes.len() - 1],
+            curve: Cubic::through(&nodes),
+        })
+    }
+
+    /// How much it counts beside the other side.
+    fn weight(&self) -> f64 {
+        self.worth / self.distance.max(1e-9).powi(2)
+    }
 }
 
 /// Adds the sections between two events, with those of all samples that stand there.
@@ -279,7 +340,9 @@ fn add_piece(
     } else {
         samples
     };
-    let stiffness = around.iter().map(|sample| (sample.position, sample.stiffness));
+    let stiffness = around
+        .iter()
+        .map(|sample| (sample.position, sample.stiffness));
     let stiffness: Vec<(f64, f64)> = stiffness.collect();
     let last = nodes.len().saturating_sub(2);
     for (i, pair) in nodes.windows(2).enumerate() {
@@ -338,8 +401,13 @@ fn stiffness_of(samples: &[(f64, f64)], first: Option<usize>, within: (f64, f64)
         let (a, b) = (samples[i], samples[i + 1]);
         (b.1 - a.1) / (b.0 - a.0)
     };
-    let slope = |i: usize| match (i.checked_sub(1).map(secant), (i + 1 < samples.len()).then(|| secant(i))) {
-        (Some(before), Some(after)) if before * after > 0.0 => 2.0 * before * after / (before + after),
+    let slope = |i: usize| match (
+        i.checked_sub(1).map(secant),
+        (i + 1 < samples.len()).then(|| secant(i)),
+    ) {
+        (Some(before), Some(after)) if before * after > 0.0 => {
+            2.0 * before * after / (before + after)
+        }
         (Some(_), Some(_)) | (None, None) => 0.0,
         (Some(only), None) | (None, Some(only)) => only,
     };
