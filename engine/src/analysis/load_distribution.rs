@@ -19,22 +19,23 @@ pub(super) fn solve(case: &Case, plan: &Pass, run: &Run) -> Result<Analysis, Ana
     let mut curves = Vec::with_capacity(case.output_torques.len());
     for &output_torque in &case.output_torques {
         let load = case.pair.load(output_torque);
-        let mut found = |sweep: &Sweep| {
+        let mut found = |sweep: &Sweep, run: &Run| {
             let found = Found::at(&formulas, sweep, load, run)?;
             for contact in &found.contacts {
                 evidence.equilibrium_residual = evidence.equilibrium_residual.max(contact.residual);
             }
             Ok::<_, AnalysisError>(found)
         };
-        let first = found(told)?;
+        let first = found(told, run)?;
         let mut samples = first.samples(case, told, load);
         if told.further > 0 {
             let ends = told.at(&ends_of_contact(&formulas, case));
-            samples.extend(found(&ends)?.samples(case, &ends, load));
+            // They belong to the curve as its positions do, and nobody waits for them.
+            samples.extend(found(&ends, &Run::unattended())?.samples(case, &ends, load));
             samples.sort_by(|a, b| a.position.total_cmp(&b.position));
         }
         let sections = told.sections(case, samples, run, |sweep| {
-            Ok(found(sweep)?.samples(case, sweep, load))
+            Ok(found(sweep, run)?.samples(case, sweep, load))
         })?;
         let parts = curve_parts(case, first, sections, load);
         curves.push(parts.into_curve(case, output_torque));
