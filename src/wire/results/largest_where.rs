@@ -32,8 +32,8 @@ answer! {
         let pressures: Option<Vec<f64>> = curve.peak_contact_pressure.iter().copied().collect();
         let largest = pressures.and_then(|pressures| pressures.into_iter().reduce(f64::max));
     } {
-        /// The largest pressure, in MPa; null where a sharp tip corner carries, at which it has no limit.
-        largest: Option<f64> = largest.map(to_mpa),
+        /// The largest pressure, in MPa; absent where a sharp tip corner carries at some position, at which it has no limit.
+        largest?: f64 = largest.map(to_mpa),
         /// Where it stands; absent without a largest pressure, and at the torque 0.
         largest_where?: WhereDocument = curve.largest_pressure.map(|largest| WhereDocument::of(&largest.stands(pair))),
     }
