@@ -19,7 +19,22 @@ export function largestStress({ stress }) {
   return largest(["driving", "driven"].flatMap((gear) => [...(stress[gear].root_mpa ?? []), ...(stress[gear].hole_mpa ?? [])]));
 }
 
-/** What each answer is: its name, unit, how it is read from a curve, how it is printed, and what a visitor asks of it. `less` says whether less is better, `some` that not every method tells it. */
+/** Where the largest stress at a root or at a hole of either gear stands. */
+function largestStressWhere({ statistics: { stress } }) {
+  const names = ["root_mpa", "hole_mpa"];
+  const each = Object.values(stress ?? {}).flatMap((gear) => names.map((name) => [gear[name] ?? 0, gear.largest_where?.[name]]));
+  return each.reduce((most, next) => (next[0] > most[0] ? next : most), [0, undefined])[1];
+}
+
+/** A place of a largest value in words. */
+function placed({ mesh_position, pair_offset, driving_diameter_mm, driven_diameter_mm, z_mm }) {
+  const of = (gear, diameter) => (diameter === undefined ? [] : [`⌀ ${fixed(diameter, 2)} mm of the ${gear} gear`]);
+  const pair = pair_offset === undefined ? [] : [`pair ${pair_offset}`];
+  const z = z_mm === undefined ? [] : [`z ${fixed(z_mm, 1)} mm`];
+  return [`at mesh position ${number(mesh_position, 3)}`, ...pair, ...of("driving", driving_diameter_mm), ...of("driven", driven_diameter_mm), ...z].join(", ");
+}
+
+/** What each answer is: its name, unit, how it is read from a curve, how it is printed, and what a visitor asks of it. `less` says whether less is better, `some` that not every method tells it, `where` the place at which it stands. */
 export const ANSWERS = [
   { id: "p-p", name: "STE p-p", unit: "µm", less: true, of: (curve) => curve.statistics.transmission_error_um.peak_to_peak, print: (value) => fixed(value, 3), about: "Peak-to-peak transmission error: how unevenly the driven gear lags. It excites gear whine; half of it is 6 dB less. As a rule of thumb below 1 µm is quiet and above 5 µm is heard." },
   { id: "mean", name: "STE mean", unit: "µm", of: (curve) => curve.statistics.transmission_error_um.mean, print: (value) => fixed(value, 2), about: "How far the driven gear lags under load on average, along the line of action. A constant lag makes no noise." },
@@ -28,8 +43,8 @@ export const ANSWERS = [
   { id: "h-n", name: "H_N", unit: "µm", less: true, of: (curve) => named(curve, /^H_N\d?$/), print: (value) => number(value, 3), about: "The part of the transmission error that repeats with the holes: its amplitude at as many waves in a revolution of the driven gear as there are holes. None without holes." },
   { id: "h-z", name: "H_Z2", unit: "µm", less: true, of: (curve) => named(curve, /^H_Z2?$/), print: (value) => number(value, 3), about: "The part that repeats with every tooth: its amplitude at the mesh order." },
   { id: "share", name: "One pair alone", unit: "%", less: true, some: true, of: alone, print: (value) => fixed(value, 0), about: "Load share: for this part of the time one pair of teeth carries all the load; else two or more share it." },
-  { id: "pressure", name: "Max pressure", unit: "MPa", less: true, of: (curve) => largest(curve.peak_contact_pressure_mpa), print: (value) => fixed(value, 0), about: "The largest contact pressure where it has a limit. A sharp tip corner that touches has none, and is left out." },
-  { id: "stress", name: "Max stress", unit: "MPa", less: true, of: largestStress, print: (value) => fixed(value, 1), about: "The largest von Mises stress at the roots and holes of both gears. Computed where Stress is on, under Load and method." },
+  { id: "pressure", name: "Max pressure", unit: "MPa", less: true, of: (curve) => largest(curve.peak_contact_pressure_mpa), where: (curve) => curve.statistics.peak_contact_pressure_mpa?.largest_where, print: (value) => fixed(value, 0), about: "The largest contact pressure where it has a limit. A sharp tip corner that touches has none, and is left out." },
+  { id: "stress", name: "Max stress", unit: "MPa", less: true, of: largestStress, where: largestStressWhere, print: (value) => fixed(value, 1), about: "The largest von Mises stress at the roots and holes of both gears. Computed where Stress is on, under Load and method." },
 ];
 
 /** The answers in `place`. */
@@ -55,6 +70,8 @@ export class Headline {
       const [now, before] = [answer.of(curve), other && answer.of(other.curve)];
       if (answer.some) tile.hidden = now === null;
       value.textContent = now === null ? "–" : answer.print(now);
+      const where = now === null ? undefined : answer.where?.(curve);
+      value.title = where ? placed(where) : "";
       value.classList.toggle("draft", draft);
       const known = typeof now === "number" && typeof before === "number";
       change.textContent = known ? changeOf(now, before) : "";

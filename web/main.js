@@ -144,7 +144,8 @@ function onResults(results, submission, { took, since, draft }) {
   showDesigns(draft);
   showProblem();
   byId("state").textContent = `${results.curves[0].mesh_position.length} positions ${took === null ? "as computed before" : took < 2000 ? `in ${fixed(took, 0)} ms` : `in ${fixed(took / 1000, 1)} s`}${results.curves.length > 1 ? `; answers at ${number(results.curves[0].output_torque_n_m)} N m` : ""}${draft ? ", a draft under the hand" : ""}`;
-  showWarnings(results.warnings);
+  // A draft has few positions of its own accord.
+  showWarnings(draft ? results.warnings.filter(({ code }) => code !== "few_positions") : results.warnings);
   if (!draft) showCure(results.curves[0]);
   turn(position);
   // For those who measure: the curve of a change is on the screen.

@@ -7,7 +7,7 @@ use meshwright_engine::gear::{
 use super::declare::{Errors, absent, document, nested, number};
 use super::gear::{GearDocument, LeadModificationDocument};
 use super::problem::{Code, FieldError};
-use super::units::{Side, from_mm, from_um, plain, rounded_inward, to_mm};
+use super::units::{Side, from_mm, from_um, plain, rounded_inward, significant, to_mm};
 
 document! {
     /// Two spur or helical gears at a center distance, the first driving the second.
@@ -115,6 +115,23 @@ impl PairDocument {
                     plain(nearest)
                 );
                 let error = FieldError::new(pointer, Code::FacesDoNotOverlap, detail);
+                Some(error.nearest(nearest))
+            }
+            Err(SolidPairError::TeethWindAround {
+                member,
+                teeth,
+                total_contact_ratio,
+                narrower,
+                nearest,
+            }) => {
+                let pointer = format!("/pair/{narrower}/{}", GearDocument::face_width_mm.name);
+                let nearest = rounded_inward(to_mm(nearest), Side::AtMost, 0);
+                let detail = format!(
+                    "The total contact ratio is {}, and the {member} gear has {teeth} teeth: nearly all are in mesh at once, some of them twice. A common face of {} mm leaves two out of it.",
+                    plain(significant(total_contact_ratio, 4)),
+                    plain(nearest)
+                );
+                let error = FieldError::new(pointer, Code::OutOfRange, detail);
                 Some(error.nearest(nearest))
             }
             Err(SolidPairError::Lead { member, error }) => {

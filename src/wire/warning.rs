@@ -2,7 +2,9 @@
 
 use std::borrow::Cow;
 
-use meshwright_engine::analysis::{FormulaQuantity, FormulaRange, PLANE_RIM, PLANE_WEB, Warning};
+use meshwright_engine::analysis::{
+    FEW_POSITIONS, FormulaQuantity, FormulaRange, PLANE_RIM, PLANE_WEB, Warning,
+};
 use meshwright_engine::gear::Member;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -52,6 +54,10 @@ pub enum WarningCode {
     FaceWidthsDiffer,
     /// The contact presses harder than materials bear in proportion.
     ContactBeyondElasticity,
+    /// The largest contact pressure stands at a kink of a profile modification, which a run-in would round.
+    PressureAtKink,
+    /// So few positions a mesh period tell the orders of its higher multiples wrongly.
+    FewPositions,
     /// The span is not whole true periods.
     PartialSpan,
     /// A formula is used outside the range for which it was published.
@@ -172,6 +178,29 @@ impl WarningDocument {
                     "The contact pressure comes to {} MPa, {} % of Young's modulus: no material stays elastic there.",
                     plain(to_mpa(pressure).round()),
                     plain((1000.0 * pressure / youngs_modulus).round() / 10.0)
+                ),
+            ),
+            Warning::PressureAtKink {
+                member,
+                diameter,
+                pressure,
+            } => (
+                Code::PressureAtKink,
+                Some(member),
+                Some((to_mpa(pressure), "MPa")),
+                format!(
+                    "The largest contact pressure, {} MPa, stands at a kink of the profile of the {member} gear, at a diameter of {} mm: a running-in rounds the kink and lowers the pressure. A parabolic relief has none.",
+                    plain(to_mpa(pressure).round()),
+                    plain(significant(to_mm(diameter), 6))
+                ),
+            ),
+            Warning::FewPositions { positions } => (
+                Code::FewPositions,
+                None,
+                Some((f64::from(positions), "positions")),
+                format!(
+                    "{positions} positions a mesh period tell mesh harmonics up to the {}th at most, and the upper ones wrongly where a pair takes up or leaves the load between two of them; orders want {FEW_POSITIONS} or more.",
+                    positions / 2
                 ),
             ),
             Warning::PartialSpan { span, period } => (
@@ -362,6 +391,39 @@ mod tests {
                     .contains("three-dimensional")
             );
         }
+    }
+
+    #[test]
+    fn few_positions_are_warned_of_before_anything_is_computed_where_orders_will_be_told() {
+        let warned = |positions: u32| {
+            let changes = [(
+                "/resolution",
+                serde_json::json!({ "positions_per_mesh_period": positions }),
+            )];
+            let submission = parse(&with(example("web"), &changes));
+            let warnings = crate::wire::validate(&submission.expect("valid")).warnings;
+            let mut found = warnings.into_iter();
+            found.find(|warning| warning.code == WarningCode::FewPositions)
+        };
+        let few = warned(10).expect("10 are few");
+        assert_eq!(
+            (few.value, few.unit.as_deref()),
+            (Some(10.0), Some("positions"))
+        );
+        assert!(few.detail.contains("up to the 5th"), "{}", few.detail);
+        assert_eq!(warned(20), None);
+    }
+
+    #[test]
+    fn a_kink_under_the_largest_pressure_is_told_with_its_gear_and_diameter() {
+        let warning = WarningDocument::of(&Warning::PressureAtKink {
+            member: Member::Driving,
+            diameter: 102e-3,
+            pressure: 1.2345e9,
+        });
+        assert_eq!(warning.gear, Some(GearName::Driving));
+        assert!(warning.detail.contains("1235 MPa") || warning.detail.contains("1234 MPa"));
+        assert!(warning.detail.contains("102 mm"), "{}", warning.detail);
     }
 
     #[test]

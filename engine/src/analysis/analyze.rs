@@ -57,33 +57,45 @@ pub(super) fn carried_out(
     Ok(analysis)
 }
 
-/// Makes one `pass` over `case`, with teeth coupled as far apart as they turn out to be loaded together.
+/// Makes one `pass` over `case`.
 fn passed(
     case: &Case,
     pass: &Pass,
     parts: &dyn Parts,
     run: &Run,
 ) -> Result<Analysis, AnalysisError> {
+    let in_plane = |solve| coupled_as_needed(case, pass, parts, run, solve);
+    let mut analysis = match case.method {
+        Method::Flexible => in_plane(flexible::solve),
+        Method::Decomposition => in_plane(decomposition::solve),
+        Method::ProjectedDecomposition => in_plane(projected::solve),
+        Method::ThreeDimensional | Method::ThreeDimensionalProjected => {
+            three_dimensional::solve(case, pass, parts, run)
+        }
+        Method::LoadDistribution => load_distribution::solve(case, pass, run),
+    }?;
+    warn_of_pressures(&mut analysis.warnings, case, &analysis.curves);
+    Ok(analysis)
+}
+
+/// How a plane method computes a case.
+type Solve = fn(Setup<'_>, &Pass) -> Result<Analysis, AnalysisError>;
+
+/// Makes one `pass` over `case` in the plane, with teeth coupled as far apart as they turn out to be loaded together.
+fn coupled_as_needed(
+    case: &Case,
+    pass: &Pass,
+    parts: &dyn Parts,
+    run: &Run,
+    solve: Solve,
+) -> Result<Analysis, AnalysisError> {
     let deviations = case.pair.deviations();
     let mut farthest = FIRST_COUPLED;
     loop {
         let setup = Setup::new((case, &deviations), pass.level, farthest, parts, run);
-        let answer = match case.method {
-            Method::Flexible => flexible::solve(setup, pass),
-            Method::Decomposition => decomposition::solve(setup, pass),
-            Method::ProjectedDecomposition => projected::solve(setup, pass),
-            Method::ThreeDimensional | Method::ThreeDimensionalProjected => {
-                three_dimensional::solve(case, pass, parts, run)
-            }
-            Method::LoadDistribution => load_distribution::solve(case, pass, run),
-        };
-        match answer {
+        match solve(setup, pass) {
             Err(AnalysisError::TooFarApart { .. }) if farthest < FARTHEST_COUPLED => farthest *= 2,
-            Ok(mut analysis) => {
-                warn_of_pressures(&mut analysis.warnings, case, &analysis.curves);
-                return Ok(analysis);
-            }
-            error => return error,
+            answer => return answer,
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::Case;
 use super::between::Sections;
 use super::curve::{Curve, DecompositionParts, FaceLoad, LoadShare};
+use super::largest_where::LargestPressure;
 use super::spectrum::Spectrum;
 use super::stress::GearStresses;
 use crate::contact::MeshContact;
@@ -17,6 +18,7 @@ pub(super) struct CurveParts {
     pub(super) driving_load: Vec<f64>,
     pub(super) pairs_in_contact: Vec<u32>,
     pub(super) peak_contact_pressure: Vec<Option<f64>>,
+    pub(super) largest_pressure: Option<LargestPressure>,
     pub(super) load_shares: Vec<LoadShare>,
     pub(super) decomposition: Option<DecompositionParts>,
     pub(super) stresses: Option<[GearStresses; 2]>,
@@ -56,6 +58,7 @@ impl CurveParts {
             mesh_stiffness_tangent: self.stiffness,
             pairs_in_contact: self.pairs_in_contact,
             peak_contact_pressure: self.peak_contact_pressure,
+            largest_pressure: self.largest_pressure,
             load_shares: self.load_shares,
             spectrum,
             decomposition: self.decomposition,
@@ -84,6 +87,7 @@ impl CurveParts {
             driving_load: each.clone().map(|contact| contact.driving_load).collect(),
             pairs_in_contact: each.clone().map(MeshContact::loaded_pairs).collect(),
             peak_contact_pressure: each.map(|contact| contact.peak_pressure).collect(),
+            largest_pressure: largest_pressure(&case.mesh_positions(), contacts),
             load_shares: load_shares(&case.mesh_positions(), contacts),
             decomposition: None,
             stresses: None,
@@ -94,7 +98,8 @@ impl CurveParts {
     /// What `contacts` at the repeating positions of `case` say of everything but δ and k, whose curve is that of `sections`.
     pub(super) fn of_repeating(case: &Case, contacts: &[MeshContact], sections: Sections) -> Self {
         let each = contacts.iter();
-        let shares = load_shares(&case.repeating_positions(), contacts).into_iter();
+        let positions = case.repeating_positions();
+        let shares = load_shares(&positions, contacts).into_iter();
         Self {
             transmission_error: Vec::new(),
             stiffness: Vec::new(),
@@ -102,6 +107,7 @@ impl CurveParts {
             driving_load: case.repeated(each.clone().map(|contact| contact.driving_load)),
             pairs_in_contact: case.repeated(each.clone().map(MeshContact::loaded_pairs)),
             peak_contact_pressure: case.repeated(each.map(|contact| contact.peak_pressure)),
+            largest_pressure: largest_pressure(&positions, contacts),
             load_shares: shares
                 .map(|LoadShare { pair_offset, share }| LoadShare {
                     pair_offset,
@@ -113,6 +119,14 @@ impl CurveParts {
             face: None,
         }
     }
+}
+
+/// The largest pressure of `contacts` at these `positions`.
+fn largest_pressure(positions: &[f64], contacts: &[MeshContact]) -> Option<LargestPressure> {
+    let found = positions.iter().zip(contacts);
+    LargestPressure::of(
+        found.map(|(eta, contact)| (*eta, contact.peak_pressure, contact.peak_place)),
+    )
 }
 
 /// Shares of the load by pair offset n − floor(η), for the offsets that ever carry load.

@@ -85,6 +85,7 @@ impl<'a> FaceStressModel<'a> {
         let at = |tooth: usize, of: &SurfaceStress, stress: f64| PeakStress {
             stress,
             angle: TAU * tooth as f64 / z as f64 + of.angle,
+            radius: of.place.norm(),
             z: Some(of.z),
         };
         let hole = holes.as_ref().map(|holes| {

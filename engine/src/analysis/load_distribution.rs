@@ -4,10 +4,11 @@ use super::between::{PairState, Sample, Sections};
 use super::case::{Case, Place};
 use super::curve::LoadShare;
 use super::curve_parts::CurveParts;
+use super::largest_where::LargestPressure;
 use super::plan::{Pass, Sweep};
 use super::warning::warnings;
 use super::{Analysis, AnalysisError, Evidence};
-use crate::contact::MeshContact;
+use crate::contact::{MeshContact, PeakPlace};
 use crate::load_distribution::{PairFormulas, Shared, rise, share, touch};
 use crate::run::Run;
 
@@ -37,7 +38,7 @@ pub(super) fn solve(case: &Case, plan: &Pass, run: &Run) -> Result<Analysis, Ana
         let sections = told.sections(case, samples, run, |sweep| {
             Ok(found(sweep, run)?.samples(case, sweep, load))
         })?;
-        let parts = curve_parts(case, first, sections, load);
+        let parts = curve_parts(case, (&told.positions, first), sections, load);
         curves.push(parts.into_curve(case, output_torque));
     }
     Ok(Analysis {
@@ -123,7 +124,12 @@ pub(super) fn light(formulas: &PairFormulas, eta: f64) -> Result<MeshContact, An
     Ok(MeshContact::unloaded(transmission_error, touching))
 }
 
-fn curve_parts(case: &Case, found: Found, sections: Sections, load: f64) -> CurveParts {
+fn curve_parts(
+    case: &Case,
+    (positions, found): (&[f64], Found),
+    sections: Sections,
+    load: f64,
+) -> CurveParts {
     let Found {
         contacts,
         stiffness,
@@ -133,6 +139,18 @@ fn curve_parts(case: &Case, found: Found, sections: Sections, load: f64) -> Curv
         .iter()
         .map(|contact| contact.loaded().count() as u32);
     let pressures = contacts.iter().map(|contact| Some(contact.peak_pressure));
+    let largest = positions.iter().zip(contacts).map(|(eta, contact)| {
+        let n = i64::from(contact.peak_offset) + eta.floor() as i64;
+        let s = case.pair.roll_length_of(eta - n as f64);
+        let place = PeakPlace {
+            pair: n,
+            roll_lengths: [s, case.pair.line_of_action() - s],
+            z: None,
+            // The pressure is Hertz's of unmodified flanks.
+            half_width: 0.0,
+        };
+        (*eta, Some(contact.peak_pressure), Some(place))
+    });
     CurveParts {
         transmission_error: all(|contact| contact.transmission_error),
         stiffness: case.repeated(stiffness.into_iter()),
@@ -141,6 +159,7 @@ fn curve_parts(case: &Case, found: Found, sections: Sections, load: f64) -> Curv
         driving_load: case.repeated(contacts.iter().map(|_| load)),
         peak_contact_pressure: case.repeated(pressures),
         pairs_in_contact: case.repeated(pairs_in_contact),
+        largest_pressure: LargestPressure::of(largest),
         load_shares: load_shares(case, &contacts, load),
         decomposition: None,
         stresses: None,

@@ -24,6 +24,8 @@ pub struct PeakStress {
     pub stress: f64,
     /// The polar angle of the place from the centerline of tooth 0 in radians, from 0 to 2π, in the frame of the gear.
     pub angle: f64,
+    /// The radius of the place in meters.
+    pub radius: f64,
     /// Its height from the middle of the face of its gear, in meters; `None` in the plane.
     pub z: Option<f64>,
 }
@@ -51,13 +53,13 @@ struct StressedGear {
     inside: Inside,
     sector_angles: Vec<f64>,
     tooth_count: usize,
-    /// The polar angles of the nodes along the fillet beside the loaded flank and along the other one, from the centerline of their
-    /// tooth.
-    fillets: Vec<f64>,
+    /// Where the nodes along the fillet beside the loaded flank stand and those along the other one: polar angles from the centerline of their
+    /// tooth, and radii.
+    fillets: Vec<[f64; 2]>,
     /// How many of them are beside the loaded flank.
     beside_loaded: usize,
-    /// The polar angles of the nodes along the edges of holes, in the frame of sector 0.
-    edges: Vec<f64>,
+    /// The same of the nodes along the edges of holes, in the frame of sector 0.
+    edges: Vec<[f64; 2]>,
 }
 
 /// The peaks of one gear at one position.
@@ -87,7 +89,7 @@ impl StressModel {
                 grid, hole_edges, ..
             }) = &grids.blank
             {
-                edges = angles(grid, &hole_edges.concat());
+                edges = polar(grid, &hole_edges.concat());
                 let along = |edge: &Vec<u32>| edge_stresses(grid, gear.material(), edge, true);
                 in_blank = hole_edges.iter().flat_map(along).collect();
             }
@@ -104,7 +106,7 @@ impl StressModel {
                 sector_angles: inside.sector_angles(),
                 inside,
                 tooth_count: gear.tooth_count() as usize,
-                fillets: angles(tooth, &sides.map(Vec::as_slice).concat()),
+                fillets: polar(tooth, &sides.map(Vec::as_slice).concat()),
                 beside_loaded: loaded.len(),
                 edges,
             })
@@ -156,7 +158,7 @@ impl LoadedPair<'_> {
             let sectors = gear.sector_angles.iter().enumerate();
             let holes = sectors.flat_map(|(sector, &turn)| {
                 let along = answer.in_blank(sector).into_iter().zip(&gear.edges);
-                along.map(move |(stress, angle)| in_plane(stress.abs(), turn + angle))
+                along.map(move |(stress, place)| in_plane(stress.abs(), turn, *place))
             });
             GearPeaks {
                 root: largest(loaded_sides.map(|root| root.peak)),
@@ -189,8 +191,8 @@ impl StressedGear {
             let along = answer.in_tooth(tooth).into_iter().zip(&self.fillets);
             along
                 .enumerate()
-                .map(move |(i, (stress, angle))| RootStress {
-                    peak: in_plane(stress, turn + angle),
+                .map(move |(i, (stress, place))| RootStress {
+                    peak: in_plane(stress, turn, *place),
                     in_mesh: i < self.beside_loaded && away(tooth) <= 1,
                 })
         };
@@ -210,19 +212,22 @@ impl GearStresses {
     }
 }
 
-/// The `stress` at the polar `angle`, of the plane.
-fn in_plane(stress: f64, angle: f64) -> PeakStress {
+/// The `stress` at a polar place that is turned by `turn`, of the plane.
+fn in_plane(stress: f64, turn: f64, [angle, radius]: [f64; 2]) -> PeakStress {
     PeakStress {
         stress,
-        angle,
+        angle: turn + angle,
+        radius,
         z: None,
     }
 }
 
-/// The polar angles of `nodes`.
-fn angles(grid: &Grid, nodes: &[u32]) -> Vec<f64> {
+/// The polar angles and the radii of `nodes`.
+fn polar(grid: &Grid, nodes: &[u32]) -> Vec<[f64; 2]> {
     let places = nodes.iter().map(|node| grid.nodes[*node as usize]);
-    places.map(|place| place.y.atan2(place.x)).collect()
+    places
+        .map(|place| [place.y.atan2(place.x), place.norm()])
+        .collect()
 }
 
 /// The first of the largest of `stresses`.
@@ -230,6 +235,7 @@ pub(super) fn largest(stresses: impl Iterator<Item = PeakStress>) -> PeakStress 
     let none = PeakStress {
         stress: 0.0,
         angle: 0.0,
+        radius: 0.0,
         z: None,
     };
     stresses.fold(none, |most, peak| {

@@ -20,7 +20,6 @@ use crate::contact::MeshContact;
 use crate::contact::face::even::{EvenLead, STRIPS, face_load_factor};
 use crate::contact::face::{FaceContact, FaceModel, FlankYield};
 use crate::gear::Member;
-use crate::ring::teeth::FARTHEST_COUPLED;
 use crate::run::Run;
 
 /// A tip corner is told of from this part of the load: one of many slices touches nearly always.
@@ -289,10 +288,11 @@ pub(super) fn yields(
 
 /// The pair whose flanks yield as `yields`.
 pub(super) fn face_model(faces: &Faces, yields: &[Arc<FaceYield>; 2]) -> FaceModel {
+    let [one, other] = yields.each_ref().map(|of| of.coupled());
     let yields = yields
         .each_ref()
         .map(|of| Arc::clone(of) as Arc<dyn FlankYield>);
-    FaceModel::new(faces.pair.clone(), yields, faces.slices, FARTHEST_COUPLED)
+    FaceModel::new(faces.pair.clone(), yields, faces.slices, one.min(other))
 }
 
 impl FlankYield for FaceYield {

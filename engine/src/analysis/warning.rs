@@ -21,6 +21,9 @@ const ELASTIC_STRAIN: f64 = 0.02;
 /// holes do to the fluctuation; at single positions case 1 of the paper is 4 % of it off, in its statistics 0.1 %.
 const DOUBTFUL_PROJECTION: [f64; 2] = [0.01, 0.05];
 
+/// Below so many positions a mesh period orders are told with a warning: each tells half as many mesh harmonics, and the upper ones badly.
+pub const FEW_POSITIONS: u32 = 20;
+
 /// A curve that fluctuates by a smaller part of its mean counts as one that fluctuates by so much: less is no concern of anyone.
 const LEAST_FLUCTUATION: f64 = 1e-3;
 
@@ -80,6 +83,20 @@ pub enum Warning {
         /// The smaller Young's modulus in Pa.
         youngs_modulus: f64,
     },
+    /// The largest contact pressure stands at a kink of a profile modification, which a run-in would round.
+    PressureAtKink {
+        /// The gear whose profile has the kink.
+        member: Member,
+        /// The diameter at which the kink stands, in meters.
+        diameter: f64,
+        /// The pressure in Pa.
+        pressure: f64,
+    },
+    /// So few positions a mesh period tell the orders of its higher multiples wrongly.
+    FewPositions {
+        /// The positions.
+        positions: u32,
+    },
     /// The span is not whole true periods: statistics are partial and there is no spectrum.
     PartialSpan {
         /// Mesh periods computed.
@@ -132,6 +149,10 @@ pub fn warnings(case: &Case) -> Vec<Warning> {
             span: case.span(),
             period: pair.period(),
         });
+    }
+    let positions = case.resolution.positions_per_mesh_period;
+    if case.covers_whole_periods() && positions < FEW_POSITIONS {
+        warnings.push(Warning::FewPositions { positions });
     }
     if case.method == Method::LoadDistribution {
         if !case.holed().is_empty() {
@@ -235,6 +256,16 @@ pub(super) fn warn_of_pressures(warnings: &mut Vec<Warning>, case: &Case, curves
             youngs_modulus,
         });
     }
+    let largest = curves.iter().filter_map(|curve| curve.largest_pressure);
+    let at_kinks = largest.filter_map(|largest| Some((largest, largest.kink(&case.pair)?)));
+    let worst = at_kinks.max_by(|(one, _), (other, _)| one.pressure.total_cmp(&other.pressure));
+    warnings.extend(
+        worst.map(|(largest, (member, diameter))| Warning::PressureAtKink {
+            member,
+            diameter,
+            pressure: largest.pressure,
+        }),
+    );
 }
 
 /// Tells of speeds at which the motion grows without bound.

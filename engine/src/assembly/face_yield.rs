@@ -78,7 +78,7 @@ pub struct PlainFace {
     squares: [f64; 2],
     /// What it yields beside a half space where it ends.
     ends: FlankEnds,
-    /// What tooth d yields to tooth 0, d = 0 … [`FARTHEST_COUPLED`].
+    /// What tooth d yields to tooth 0, d = 0 … [`farthest`], or half way around.
     blocks: Vec<Mat<f64>>,
     /// The stiffness of each order of the interface circle.
     carriers: Vec<Mat<c64>>,
@@ -196,7 +196,7 @@ impl PlainFace {
         Ok(Self {
             squares: flank.squares,
             ends: FlankEnds::new(gear),
-            blocks: blocks(&tooth, &classes, &flank),
+            blocks: blocks(&tooth, &classes, &flank, farthest(gear)),
             carriers: carrier.stiffness,
             web,
             degrees_of_freedom: (own * tooth.sector.size * tooth.sector.count) as u64,
@@ -316,7 +316,7 @@ impl FaceYield {
     ///
     /// # Panics
     ///
-    /// If two teeth are farther apart than [`FARTHEST_COUPLED`].
+    /// If two teeth are farther apart than [`FaceYield::coupled`].
     pub fn smooth(&self, teeth: &[usize]) -> Mat<f64> {
         let (size, z) = (self.basis_len(), self.tooth_count);
         let mut smooth = Mat::zeros(teeth.len() * size, teeth.len() * size);
@@ -338,6 +338,17 @@ impl FaceYield {
             symmetrize(&mut smooth);
         }
         smooth
+    }
+
+    /// How far apart teeth may stand that are loaded together, counted from pair to pair: on a gear that is coupled half way around, as far as no
+    /// tooth carries in two pairs.
+    pub fn coupled(&self) -> usize {
+        let farthest = self.plain.blocks.len() - 1;
+        if farthest < self.tooth_count / 2 {
+            farthest
+        } else {
+            self.tooth_count - 1
+        }
     }
 
     /// What holes change, if there are any.
@@ -376,15 +387,26 @@ impl FaceYield {
     }
 }
 
-/// What each tooth up to [`FARTHEST_COUPLED`] places away yields to the loads of tooth 0.
-fn blocks(tooth: &SolidTooth, classes: &[ClassAnswers], flank: &FlankFit<'_>) -> Vec<Mat<f64>> {
+/// How far apart teeth of `gear` may be loaded together: in one section, and farther by as many as lines go on over along its face.
+fn farthest(gear: &SolidGear) -> usize {
+    let section = gear.section();
+    let winding = gear.twist().abs() * gear.face_width() / section.pitch_angle();
+    FARTHEST_COUPLED + winding.ceil() as usize
+}
+
+/// What each tooth up to so many places away yields to the loads of tooth 0.
+fn blocks(
+    tooth: &SolidTooth,
+    classes: &[ClassAnswers],
+    flank: &FlankFit<'_>,
+    farthest: usize,
+) -> Vec<Mat<f64>> {
     let z = tooth.sector.count;
     let of_classes = || classes.iter().map(|answer| (answer.class, &answer.flank));
     let own = &tooth.held + between_teeth(of_classes(), z, 0);
     let (smoothing, m) = (flank.smoothing(), flank.axial.len());
-    let farthest = FARTHEST_COUPLED.min(z / 2);
     let mut blocks = vec![flank.own(&own)];
-    for distance in 1..=farthest {
+    for distance in 1..=farthest.min(z / 2) {
         let other = between_teeth(of_classes(), z, distance);
         blocks.push(smoothed(&smoothing, &other, m));
     }

@@ -18,8 +18,8 @@ use super::patch::{Extent, Patch};
 use super::penetration::Found;
 use super::wide::{Loops, wide};
 use super::{
-    AugmentedLagrangian, ContactProblem, ContactSolution, default_penalty, solve_active_set,
-    solve_augmented_lagrangian,
+    AugmentedLagrangian, ContactProblem, ContactSolution, PeakPlace, default_penalty,
+    solve_active_set, solve_augmented_lagrangian,
 };
 use crate::gear::{Member, teeth_on};
 
@@ -170,6 +170,8 @@ pub struct MeshContact {
     pub pairs: Vec<PairContact>,
     /// The largest pressure in Pa; `None` where a sharp tip corner carries, at which it has no limit.
     pub peak_pressure: Option<f64>,
+    /// Where that is; `None` without one, and without load.
+    pub peak_place: Option<PeakPlace>,
     /// |Σ arm·p − F|/F, the arms by cross product about the driven axis.
     pub equilibrium: f64,
     /// The largest |p_j g_j| in N m.
@@ -383,6 +385,7 @@ impl<'a> ContactCells<'a> {
     ) -> MeshContact {
         let width = self.made.model.pair.common_face_width();
         let mut peak_pressure = Some(0.0_f64);
+        let mut peak_place = None;
         let pairs = self
             .ranges()
             .map(|(laid, range)| {
@@ -395,11 +398,21 @@ impl<'a> ContactCells<'a> {
                 let at_corner = ended
                     .iter()
                     .any(|end| matches!(end, RangeEnd::Tip | RangeEnd::MateTip));
-                let cells = patch.cells.iter().zip(forces);
-                let pressures = cells.map(|(cell, p)| p / (cell.width * width));
-                peak_pressure = peak_pressure
-                    .filter(|_| !at_corner)
-                    .map(|peak| pressures.fold(peak, f64::max));
+                let cells = patch.cells.iter().zip(forces).enumerate();
+                peak_pressure = peak_pressure.filter(|_| !at_corner).map(|peak| {
+                    cells.fold(peak, |peak, (i, (cell, p))| {
+                        let pressure = p / (cell.width * width);
+                        if pressure > peak {
+                            peak_place = Some(PeakPlace {
+                                pair: self.period + laid.pair,
+                                roll_lengths: cell.roll_lengths,
+                                z: None,
+                                half_width: patch.half_width_about(i, active),
+                            });
+                        }
+                        peak.max(pressure)
+                    })
+                });
                 let clearance = laid.arms.iter().zip(&solution.gaps[range]);
                 let clearance = clearance.map(|(arms, gap)| gap / arms[1]);
                 PairContact {
@@ -441,6 +454,7 @@ impl<'a> ContactCells<'a> {
             driving_load,
             pairs,
             peak_pressure,
+            peak_place: peak_place.filter(|_| peak_pressure.is_some()),
             equilibrium: solution.load_residual,
             complementarity,
             penetration: found.largest,

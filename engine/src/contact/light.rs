@@ -68,6 +68,7 @@ impl MeshContact {
             driving_load: 0.0,
             pairs: pairs.collect(),
             peak_pressure: Some(0.0),
+            peak_place: None,
             equilibrium: 0.0,
             complementarity: 0.0,
             penetration: 0.0,

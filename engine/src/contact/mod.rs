@@ -11,6 +11,7 @@
 //!   them, and what their solution says of the mesh,
 //! - [`stage`]: one fraction of the mesh period, from laying the cells to a solution that nothing penetrates,
 //! - `light`: what is left of it as the load vanishes,
+//! - `peak`: where flanks press hardest,
 //! - `penetration`: the look over the whole flanks that proves it,
 //! - [`positions`]: many positions of one load, in parallel,
 //! - [`face`]: the same along faces of helical, misaligned or uneven gears, slice by slice,
@@ -50,6 +51,7 @@ mod memo;
 pub mod model;
 pub mod pair_cells;
 pub mod patch;
+mod peak;
 mod penetration;
 pub mod placement;
 pub mod positions;
@@ -65,5 +67,6 @@ pub use cells::{
 pub(crate) use corner::tip_softness;
 pub use light::light_contact;
 pub use model::{ContactSolver, GearModel, MadePair, PairModel, PositionError, WarmStart};
+pub use peak::PeakPlace;
 pub use problem::{ContactError, ContactProblem, ContactQuantity, ContactSolution};
 pub use stage::Stage;

@@ -316,6 +316,17 @@ impl Patch {
         (off / (0.5 * all / CORE) / 0.5).round() as i32
     }
 
+    /// Half the width along the flank of the contact of `active` cells that cell `i`, one of them, belongs to.
+    pub(super) fn half_width_about(&self, i: usize, active: &[bool]) -> f64 {
+        let joins = |a: usize, b: usize| {
+            active[a] && active[b] && self.cells[a].stretch + 1 == self.cells[b].stretch
+        };
+        let low = (1..=i).rev().find(|&k| !joins(k - 1, k)).unwrap_or(0);
+        let high = (i + 1..active.len()).find(|&k| !joins(k - 1, k));
+        let cells = &self.cells[low..high.unwrap_or(active.len())];
+        0.5 * cells.iter().map(|cell| cell.width).sum::<f64>()
+    }
+
     /// What ends the contact of the `active` cells where it reaches an end of the flanks.
     pub fn ended_by(&self, active: &[bool]) -> Vec<RangeEnd> {
         let first = self.ends[0].filter(|_| active.first() == Some(&true));

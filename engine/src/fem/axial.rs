@@ -93,14 +93,7 @@ impl AxialBasis {
 
     /// A rule over the width, piece by piece, of so many points a piece: heights and weights.
     pub fn rule(&self, count: usize) -> Vec<(f64, f64)> {
-        let rule = gauss_legendre(count);
-        let pieces = self.breaks.windows(2);
-        pieces
-            .flat_map(|ends| {
-                let (middle, half) = (f64::midpoint(ends[0], ends[1]), (ends[1] - ends[0]) / 2.0);
-                rule.iter().map(move |(x, w)| (middle + half * x, half * w))
-            })
-            .collect()
+        rule(&self.breaks, count)
     }
 
     /// ∫ f_p dz.
@@ -133,11 +126,16 @@ impl AxialBasis {
         matrices
     }
 
-    /// ∫ f_p g_q `weight` dz over this width, f of this basis and g of `other`, whose pieces do not break within these.
+    /// ∫ f_p g_q `weight` dz over this width, f of this basis and g of `other`.
     pub fn integrals(&self, other: &Self, weight: impl Fn(f64) -> f64) -> Mat<f64> {
         let mut integrals = Mat::zeros(self.len(), other.len());
+        let [low, high] = self.heights();
+        let within = other.breaks.iter().filter(|z| **z > low && **z < high);
+        let mut ends: Vec<f64> = self.breaks.iter().chain(within).copied().collect();
+        ends.sort_by(f64::total_cmp);
+        ends.dedup();
         // As many points as resolve a weight that turns once or twice over the width.
-        for (z, w) in self.rule(self.degree.max(other.degree) + 8) {
+        for (z, w) in rule(&ends, self.degree.max(other.degree) + 8) {
             let (f, g) = (self.values(z), other.values(z));
             let w = w * weight(z);
             for (q, g) in g.iter().enumerate() {
@@ -180,6 +178,18 @@ impl AxialBasis {
             .map(|column| column.iter().zip(plain).map(|(m, f)| m * f).sum())
             .collect()
     }
+}
+
+/// A rule of so many points a piece between each two of `ends`: places and weights.
+fn rule(ends: &[f64], count: usize) -> Vec<(f64, f64)> {
+    let rule = gauss_legendre(count);
+    let pieces = ends.windows(2);
+    pieces
+        .flat_map(|ends| {
+            let (middle, half) = (f64::midpoint(ends[0], ends[1]), (ends[1] - ends[0]) / 2.0);
+            rule.iter().map(move |(x, w)| (middle + half * x, half * w))
+        })
+        .collect()
 }
 
 #[cfg(test)]

@@ -10,6 +10,9 @@ use super::{GearPair, GearPairError, Member, PairDeviations, SolidGear};
 /// The least part of the narrower face on which two gears touch.
 const LEAST_OVERLAP: f64 = 0.1;
 
+/// So many teeth of either gear at least are out of mesh: no tooth carries at both ends of its face, in two pairs.
+const LEAST_OUT_OF_MESH: f64 = 2.0;
+
 /// How the axes of two gears, and their faces, stand from where they should. Lengths are in meters.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Alignment {
@@ -43,6 +46,22 @@ pub enum SolidPairError {
         /// The offset asked for.
         axial_offset: f64,
         /// The nearest that leaves enough.
+        nearest: f64,
+    },
+    /// A helical gear is so wide that its teeth wind around it, and nearly all are in mesh at once.
+    #[error(
+        "{total_contact_ratio} of the {teeth} teeth of the {member} gear are in mesh; a common face of {nearest} m leaves two out of it"
+    )]
+    TeethWindAround {
+        /// The gear with fewer teeth.
+        member: Member,
+        /// Its teeth.
+        teeth: u32,
+        /// The total contact ratio ε_γ.
+        total_contact_ratio: f64,
+        /// The gear whose face bounds the common one, the driving gear where both do.
+        narrower: Member,
+        /// The widest common face.
         nearest: f64,
     },
     /// A lead cannot be modified so.
@@ -115,12 +134,35 @@ impl SolidPair {
                 nearest: (0.5 * (b_1 + b_2) - least).copysign(offset),
             });
         }
-        Ok(Self {
+        let pair = Self {
             gears,
             section,
             leads,
             alignment,
             common,
+        };
+        pair.check_winding()?;
+        Ok(pair)
+    }
+
+    fn check_winding(&self) -> Result<(), SolidPairError> {
+        let teeth = |member: &Member| self.section.gear(*member).tooth_count();
+        let [one, other] = Member::BOTH;
+        let fewer = |first: bool| if first { one } else { other };
+        let member = fewer(teeth(&one) <= teeth(&other));
+        let most = f64::from(teeth(&member)) - LEAST_OUT_OF_MESH;
+        let total_contact_ratio = self.total_contact_ratio();
+        // Straight teeth stay apart whatever their contact ratio is.
+        if self.advance() == 0.0 || total_contact_ratio <= most {
+            return Ok(());
+        }
+        let width = |member: Member| self.gear(member).face_width();
+        Err(SolidPairError::TeethWindAround {
+            member,
+            teeth: teeth(&member),
+            total_contact_ratio,
+            narrower: fewer(width(one) <= width(other)),
+            nearest: (most - self.section.contact_ratio()).max(0.0) / self.advance().abs(),
         })
     }
 
@@ -394,6 +436,33 @@ mod tests {
         let a = 2.0 * gears[0].section().reference_radius();
         let refused = SolidPair::new(gears, [Vec::new(), Vec::new()], a, Alignment::default());
         assert!(matches!(refused, Err(SolidPairError::HelixMismatch { .. })));
+    }
+
+    #[test]
+    fn teeth_that_wind_around_their_gear_until_two_are_out_of_mesh_are_refused_with_the_width_that_leaves_two()
+     {
+        let beta = 40_f64.to_radians();
+        let pair = |width: f64| {
+            let gear = |beta: f64| {
+                let mut data = paper_gear(20);
+                data.face_width = width;
+                data.blank.bore_radius = 8e-3;
+                SolidGear::new(data, Helix::right(beta), 0.0, None)
+                    .expect("a gear that can be made")
+            };
+            let gears = [gear(beta), gear(-beta)];
+            let a = 2.0 * gears[0].section().reference_radius();
+            SolidPair::new(gears, [Vec::new(), Vec::new()], a, Alignment::default())
+        };
+        let Err(SolidPairError::TeethWindAround { nearest, teeth, .. }) = pair(200e-3) else {
+            panic!("an overlap of 20 of 20 teeth");
+        };
+        // ε_β = b sin β/(π m_n) = 18 − ε_α.
+        let transverse = pair(20e-3).expect("meshes").section().contact_ratio();
+        let width = (18.0 - transverse) * std::f64::consts::PI * 2e-3 / beta.sin();
+        assert!(teeth == 20 && (nearest / width - 1.0).abs() < 1e-12);
+        assert!(pair(nearest * (1.0 - 1e-9)).is_ok());
+        assert!(pair(nearest * (1.0 + 1e-9)).is_err());
     }
 
     #[test]

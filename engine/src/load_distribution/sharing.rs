@@ -83,6 +83,8 @@ pub struct Shared {
     pub stiffness: f64,
     /// The largest p_0 in Pa.
     pub peak_pressure: f64,
+    /// The offset of the pair that has it.
+    pub peak_offset: i32,
     /// Offset and force (N) of each pair.
     pub forces: Vec<(i32, f64)>,
     /// |Σ F_n − F|/F.
@@ -116,12 +118,19 @@ pub fn share(pairs: &[LinePair], load: f64) -> Shared {
         .map(|pair| pair.force(rise - (pair.gap - first), load))
         .collect();
     let loaded = || pairs.iter().zip(&forces).filter(|(_, force)| **force > 0.0);
+    let pressures = loaded().map(|(pair, &force)| (pair.offset, pair.contact.peak_pressure(force)));
+    let (peak_offset, peak_pressure) =
+        pressures.fold(
+            (0, 0.0),
+            |peak, next| {
+                if next.1 > peak.1 { next } else { peak }
+            },
+        );
     Shared {
         transmission_error: first + rise,
         stiffness: loaded().map(|(pair, &force)| pair.stiffness(force)).sum(),
-        peak_pressure: loaded()
-            .map(|(pair, &force)| pair.contact.peak_pressure(force))
-            .fold(0.0, f64::max),
+        peak_pressure,
+        peak_offset,
         residual: (forces.iter().sum::<f64>() - load).abs() / load,
         forces: pairs.iter().map(|pair| pair.offset).zip(forces).collect(),
     }

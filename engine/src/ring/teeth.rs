@@ -11,8 +11,8 @@ use crate::fem::FemError;
 use crate::fem::dense::Cholesky;
 use crate::run::Run;
 
-/// How far apart, in teeth, two teeth of one gear may be loaded together: several times what the heaviest load makes of the contact
-/// ratio of any gear that can be drawn.
+/// How far apart, in teeth, two teeth of one section may be loaded together: several times what the heaviest load makes of the transverse
+/// contact ratio of any gear that can be drawn.
 pub const FARTHEST_COUPLED: usize = 16;
 
 /// The ring of all teeth of a gear, condensed to the harmonics of the interface circle.

@@ -6,6 +6,7 @@ use meshwright_engine::analysis::{Case, Curve, FaceLoad, Statistics};
 
 use super::decomposition::DecompositionDocument;
 use super::forces::CurveDynamicsDocument;
+use super::largest_where::PressureStatistics;
 use super::spectrum::SpectrumDocument;
 use super::stress::{PeakStressDocument, StressDocument};
 use super::{all, each};
@@ -113,8 +114,10 @@ answer! {
         /// Of the tangent stiffness, in N/m.
         mesh_stiffness_tangent_n_per_m: StatisticsValues =
             StatisticsValues::of(&curve.mesh_stiffness_tangent_statistics, |value| value),
+        /// Of the contact pressure, in MPa; absent in results of versions before 0.5.
+        peak_contact_pressure_mpa?: PressureStatistics = Some(PressureStatistics::of(&case.pair, curve)),
         /// The largest stresses, where they were asked for.
-        stress?: PeakStressDocument = curve.stresses.as_ref().map(PeakStressDocument::of),
+        stress?: PeakStressDocument = curve.stresses.as_ref().map(|stresses| PeakStressDocument::of(case, stresses)),
     }
 }
 

@@ -5,6 +5,7 @@ mod decomposition;
 mod evidence;
 mod exchanged;
 mod forces;
+mod largest_where;
 mod spectrum;
 mod stress;
 mod unseen;
@@ -29,8 +30,11 @@ pub use forces::{
     BranchDocument, CurveDynamicsDocument, DynamicErrorDocument, ForceTableDocument,
     OrderAmplitudesDocument, ResonanceDocument, ResonanceKindName,
 };
+pub use largest_where::{PressureStatistics, WhereDocument};
 pub use spectrum::{NamedOrderDocument, OrderKindName, SpectrumDocument};
-pub use stress::{GearPeakStress, GearStressDocument, PeakStressDocument, StressDocument};
+pub use stress::{
+    GearPeakStress, GearStressDocument, GearStressWhere, PeakStressDocument, StressDocument,
+};
 
 use super::declare::answer;
 use super::geometry::{Frequencies, PairGeometry};

@@ -1,8 +1,11 @@
 //! The largest stresses of both gears, position by position.
 
+use meshwright_engine::analysis::Case;
 use meshwright_engine::analysis::stress::{GearStresses, PeakStress};
+use meshwright_engine::gear::Member;
 
 use super::all;
+use super::largest_where::WhereDocument;
 use crate::wire::declare::answer;
 use crate::wire::units::{to_mm, to_mpa};
 
@@ -67,17 +70,17 @@ answer! {
 
 answer! {
     /// The largest stresses of both gears over the span.
-    pub struct PeakStressDocument as PeakStress, "Peak stress" of ([driving, driven]: &[GearStresses; 2]) {
+    pub struct PeakStressDocument as PeakStress, "Peak stress" of (case: &Case, [driving, driven]: &[GearStresses; 2]) {
         /// Of the driving gear.
-        driving: GearPeakStress = GearPeakStress::of(driving),
+        driving: GearPeakStress = GearPeakStress::of((case, Member::Driving), driving),
         /// Of the driven gear.
-        driven: GearPeakStress = GearPeakStress::of(driven),
+        driven: GearPeakStress = GearPeakStress::of((case, Member::Driven), driven),
     }
 }
 
 answer! {
     /// The largest stresses of a gear over the span.
-    pub struct GearPeakStress as GearPeakStress, "Peak stress of a gear" of (gear: &GearStresses) with {
+    pub struct GearPeakStress as GearPeakStress, "Peak stress of a gear" of (of: (&Case, Member), gear: &GearStresses) with {
         let extreme = |peaks: &[PeakStress], of: fn(f64, f64) -> f64| {
             peaks.iter().map(|peak| to_mpa(peak.stress)).reduce(of)
         };
@@ -90,5 +93,25 @@ answer! {
         root_compression_mpa?: f64 = extreme(&gear.root_compression, f64::min),
         /// The largest von Mises stress along the edges of the holes, in MPa; absent without holes.
         hole_mpa?: f64 = extreme(&gear.holes, f64::max),
+        /// Where each of them stands; absent in results of versions before 0.5.
+        largest_where?: GearStressWhere = Some(GearStressWhere::of(of, gear)),
+    }
+}
+
+answer! {
+    /// Where the largest stresses of a gear stand.
+    pub struct GearStressWhere as GearStressWhere, "Places of the largest stresses of a gear" of ((case, member): (&Case, Member), gear: &GearStresses) with {
+        let stands = |peaks: &[PeakStress], on_tooth: bool| {
+            PeakStress::largest_where(case, member, peaks, on_tooth).as_ref().map(WhereDocument::of)
+        };
+    } {
+        /// Of `root_mpa`.
+        root_mpa?: WhereDocument = stands(&gear.root, true),
+        /// Of `root_tension_mpa`.
+        root_tension_mpa?: WhereDocument = stands(&gear.root_tension, true),
+        /// Of `root_compression_mpa`.
+        root_compression_mpa?: WhereDocument = stands(&gear.root_compression, true),
+        /// Of `hole_mpa`; absent without holes.
+        hole_mpa?: WhereDocument = stands(&gear.holes, false),
     }
 }

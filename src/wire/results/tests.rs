@@ -3,11 +3,13 @@
 use std::f64::consts::TAU;
 
 use meshwright_engine::analysis::curve::{BlankFit, BlankSample, DecompositionParts, LoadShare};
+use meshwright_engine::analysis::largest_where::LargestPressure;
 use meshwright_engine::analysis::spectrum::Spectrum;
 use meshwright_engine::analysis::stress::{GearStresses, PeakStress};
 use meshwright_engine::analysis::{
     Case, Curve, ErrorEstimate, Evidence, SamplingError, Statistics, Warning,
 };
+use meshwright_engine::contact::PeakPlace;
 use meshwright_engine::gear::Member;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -57,6 +59,17 @@ fn analysis(case: &Case) -> Analysis {
             driving_torque: wave(torque, 0.01 * torque),
             pairs_in_contact: vec![2; positions],
             peak_contact_pressure: wave(600e6, 50e6).into_iter().map(Some).collect(),
+            largest_pressure: Some(LargestPressure {
+                pressure: 650e6,
+                mesh_position: 2.75,
+                // On the reference circles: 50 sin 20 mm.
+                place: PeakPlace {
+                    pair: 3,
+                    roll_lengths: [50e-3 * 20_f64.to_radians().sin(); 2],
+                    z: Some(-1e-3),
+                    half_width: 0.1e-3,
+                },
+            }),
             load_shares: (-1..=2)
                 .map(|pair_offset| LoadShare {
                     pair_offset,
@@ -139,6 +152,7 @@ fn peaks(stresses: &[f64]) -> Vec<PeakStress> {
     let peak = |&stress: &f64| PeakStress {
         stress,
         angle: TAU / 2.0,
+        radius: 22e-3,
         z: Some(-2e-3),
     };
     stresses.iter().map(peak).collect()
@@ -180,6 +194,32 @@ fn the_document_speaks_the_units_of_its_names() {
     near("/curves/0/stress/driven/hole_angle_deg/0", 180.0);
     near("/curves/0/stress/driven/hole_z_mm/0", -2.0);
     near("/curves/0/statistics/stress/driving/root_mpa", 140.0);
+    let pressure = "/curves/0/statistics/peak_contact_pressure_mpa";
+    let pressures = curve["peak_contact_pressure_mpa"]
+        .as_array()
+        .expect("a list");
+    let largest = pressures
+        .iter()
+        .filter_map(Value::as_f64)
+        .fold(0.0, f64::max);
+    near(&format!("{pressure}/largest"), largest);
+    for (name, expected) in [
+        ("mesh_position", 2.75),
+        ("pair_offset", 1.0),
+        ("driving_diameter_mm", 100.0),
+        ("driven_diameter_mm", 100.0),
+        ("z_mm", -1.0),
+    ] {
+        near(&format!("{pressure}/largest_where/{name}"), expected);
+    }
+    let stands = &curve["statistics"]["stress"]["driving"]["largest_where"];
+    assert_eq!(stands["root_mpa"]["mesh_position"], json!(0.025));
+    assert_eq!(stands["root_compression_mpa"]["mesh_position"], json!(0.0));
+    assert_eq!(stands["root_mpa"]["driving_diameter_mm"], json!(44.0));
+    assert_eq!(stands["root_mpa"].get("driven_diameter_mm"), None);
+    assert_eq!(stands.get("hole_mpa"), None);
+    let of_hole = &curve["statistics"]["stress"]["driven"]["largest_where"]["hole_mpa"];
+    assert_eq!(of_hole.get("pair_offset"), None);
     near("/curves/0/statistics/stress/driven/hole_mpa", 31.0);
     near("/curves/0/stress/driving/root_compression_mpa/0", -160.0);
     for (name, expected) in [("tension", 150.0), ("compression", -160.0)] {

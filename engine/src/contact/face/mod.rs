@@ -25,7 +25,7 @@ use rayon::prelude::*;
 
 use super::facing::Facing;
 use super::positions::PositionsError;
-use super::{ContactError, MeshContact, PairContact, PairLoads, PositionError};
+use super::{ContactError, MeshContact, PairContact, PairLoads, PeakPlace, PositionError};
 use crate::gear::{Member, SolidPair};
 use crate::run::Run;
 use balance::{Balance, balance};
@@ -497,13 +497,15 @@ impl FaceModel {
             .clone()
             .zip(&balance.gaps)
             .map(|(p, g)| (p * g).abs());
+        let peak_pressure = peak_pressure.filter(|_| !at_sharp_edge);
         FaceContact {
             mesh: MeshContact {
                 transmission_error: balance.transmission_error,
                 stiffness: balance.stiffness,
                 driving_load: sum(0),
                 pairs,
-                peak_pressure: peak_pressure.filter(|_| !at_sharp_edge),
+                peak_pressure,
+                peak_place: PeakPlace::of_slices(&loads, peak_pressure),
                 equilibrium: (sum(1) - load).abs() / load,
                 complementarity: complementarity.fold(0.0, f64::max),
                 penetration: balance.penetration(slices),

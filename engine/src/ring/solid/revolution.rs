@@ -20,6 +20,9 @@ const SIZE_BY_FADING: f64 = 0.5;
 /// The size of the elements at both circles by the width of the narrowest piece of the layer: where it is held, or meets one of another
 /// width, fields about the corners fade within a part of that width, whatever their order.
 const SIZE_BY_WIDTH: f64 = 0.5;
+/// The largest size of elements that tell stresses, by their radius: at the corners of quadratic elements the shear of a torque, which falls
+/// with the square of the radius, errs by the square of half of that. Stiffnesses, which err by its fourth power, need none so small.
+const TOLD_BY_RADIUS: f64 = 0.12;
 /// The growth of elements away from both circles.
 const GROWTH: f64 = 0.4;
 /// The least number of elements in the depth of a layer.
@@ -140,7 +143,7 @@ impl Revolution<'_> {
         })
     }
 
-    /// How its circles move in `order` where the outer one moves by `outer`: with `below` under the inner one as in [`Revolution::on_outer`],
+    /// How its circles move in `order`, by elements small enough to tell stresses, where the outer one moves by `outer`: with `below` under the inner one as in [`Revolution::on_outer`],
     /// and `forces` that act there.
     ///
     /// # Errors
@@ -153,7 +156,7 @@ impl Revolution<'_> {
         outer: &Mat<c64>,
     ) -> Result<Circles, FemError> {
         let (size, matrices) = (self.size(), self.axial.matrices());
-        let division = self.elements(order);
+        let division = self.division(order, self.at_corners(), TOLD_BY_RADIUS);
         let none = || Mat::<c64>::zeros(size, 1);
         let mut force = forces.unwrap_or_else(none);
         let mut carried = below.cloned();
@@ -200,20 +203,27 @@ impl Revolution<'_> {
         })
     }
 
-    /// The radii of circles, corners and middles of elements in turn, that tell the field of `order` but for that about its corners.
+    /// The radii of circles, corners and middles of elements in turn, that tell the field of `order`, and its stresses, but for that about its
+    /// corners.
     pub fn circles(&self, order: i64) -> Vec<f64> {
-        with_middles(&self.division(order, f64::INFINITY))
+        with_middles(&self.division(order, f64::INFINITY, TOLD_BY_RADIUS))
     }
 
     /// The radii of its elements for `order`.
     fn elements(&self, order: i64) -> Vec<f64> {
-        let pieces = self.axial.breaks().windows(2);
-        let narrowest = pieces.fold(f64::INFINITY, |least, ends| least.min(ends[1] - ends[0]));
-        self.division(order, SIZE_BY_WIDTH * narrowest)
+        self.division(order, self.at_corners(), f64::INFINITY)
     }
 
-    /// The radii of elements that are small at both circles, where `order` fades, and no larger there than `at_corners`.
-    fn division(&self, order: i64, at_corners: f64) -> Vec<f64> {
+    /// The largest size of elements about its corners.
+    fn at_corners(&self) -> f64 {
+        let pieces = self.axial.breaks().windows(2);
+        let narrowest = pieces.fold(f64::INFINITY, |least, ends| least.min(ends[1] - ends[0]));
+        SIZE_BY_WIDTH * narrowest
+    }
+
+    /// The radii of elements that are small at both circles, where `order` fades, and no larger there than `at_corners`; nowhere larger than
+    /// `by_radius` times their radius.
+    fn division(&self, order: i64, at_corners: f64, by_radius: f64) -> Vec<f64> {
         let [inner, outer] = self.radii;
         let depth = outer - inner;
         let fading = |radius: f64| {
@@ -224,7 +234,7 @@ impl Revolution<'_> {
         let size = |r: f64| {
             let from_inner = fading(inner) + GROWTH * (r - inner);
             let from_outer = fading(outer) + GROWTH * (outer - r);
-            from_inner.min(from_outer).min(largest)
+            from_inner.min(from_outer).min(largest).min(by_radius * r)
         };
         // The number of elements up to each of many radii, and radii at equal parts of it.
         const STEPS: usize = 512;

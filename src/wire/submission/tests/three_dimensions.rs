@@ -297,6 +297,57 @@ fn face_of(results: &Results, curve: usize) -> &FaceDocument {
     results.curves[curve].face.as_ref().expect("along faces")
 }
 
+/// A pair of `teeth` on either side, of module 1 mm and 40 degrees, so wide.
+fn wide(teeth: u32, face_width_mm: f64) -> Value {
+    let gear = json!({ "tooth_count": teeth, "module_mm": 1.0, "face_width_mm": face_width_mm,
+                       "blank": { "bore_radius_mm": f64::from(teeth) / 6.0 } });
+    // The reference distance z m/cos β, and a little.
+    let reference = f64::from(teeth) / 40_f64.to_radians().cos();
+    json!({
+        "method": "three_dimensional",
+        "pair": { "center_distance_mm": reference + 0.1, "helix_angle_deg": 40.0, "driving": gear, "driven": gear },
+        "output_torques_n_m": [0.01, 50.0],
+        "resolution": { "positions_per_mesh_period": 8, "span_mesh_periods": 1, "face_order": 4 },
+    })
+}
+
+#[test]
+fn faces_over_which_more_than_sixteen_pairs_of_teeth_mesh_are_computed_as_narrower_ones_are() {
+    let stiffness = |face_width_mm: f64| {
+        let results = solved(&parse(&wide(60, face_width_mm)).expect("valid"));
+        let told = &results.curves[1];
+        let pairs = told.pairs_in_contact.iter().copied().max();
+        let stiffness = told.statistics.mesh_stiffness_tangent_n_per_m.mean;
+        (pairs.expect("positions"), stiffness / face_width_mm)
+    };
+    let [narrow, middle, broad] = [60.0, 80.0, 100.0].map(stiffness);
+    assert!(
+        narrow.0 < 17 && middle.0 > 17 && broad.0 > 20,
+        "{narrow:?} {middle:?} {broad:?}"
+    );
+    // Both ends of a face yield more, whatever its width: what a millimeter carries goes with one over the width, but for a percent.
+    let share = (1.0 / 60.0 - 1.0 / 80.0) / (1.0 / 60.0 - 1.0 / 100.0);
+    let between = narrow.1 + share * (broad.1 - narrow.1);
+    assert!(
+        (middle.1 / between - 1.0).abs() < 0.01,
+        "{narrow:?} {middle:?} {broad:?}"
+    );
+}
+
+#[test]
+fn a_face_that_winds_around_its_gear_is_refused_before_it_is_computed_with_the_width_that_would_do()
+{
+    let of_face = fault(
+        &wide(20, 100.0),
+        "/pair/driving/face_width_mm",
+        Code::OutOfRange,
+    );
+    let nearest = of_face.nearest.expect("a width");
+    assert!(of_face.detail.contains("20 teeth"), "{}", of_face.detail);
+    assert!(parse(&wide(20, nearest)).is_ok());
+    assert!(parse(&wide(20, nearest + 0.1)).is_err());
+}
+
 /// A helical pair of few teeth and slices, with no web in the way of a mirror.
 fn pattern_pair(changes: &[(&str, Value)]) -> Submission {
     let gear = |teeth: u32| {
