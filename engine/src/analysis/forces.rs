@@ -131,7 +131,11 @@ impl TablePlan {
         let case = &self.rows.asked;
         let [loaded, mirrored] = self.plans().map(rows_of);
         let flanks = [loaded?, self.other.turned(&mirrored?, case.positions())];
-        Ok(ForceTable::new(case.pair.period(), self.ladder, flanks))
+        Ok(ForceTable::new(
+            case.pair.period(),
+            self.ladder,
+            flanks,
+        )?)
     }
 }
 

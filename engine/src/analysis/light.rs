@@ -3,7 +3,7 @@
 
 use super::curve_parts::CurveParts;
 use super::{AnalysisError, Case, Curve, Method, load_distribution};
-use crate::contact::face::light_face;
+use crate::contact::face::FaceModel;
 use crate::contact::light_contact;
 use crate::load_distribution::PairFormulas;
 
@@ -24,13 +24,15 @@ fn curve(case: &Case) -> Result<Curve, AnalysisError> {
     let deviations = case.pair.deviations();
     let formulas = (case.method == Method::LoadDistribution)
         .then(|| PairFormulas::new(&case.pair, case.resolution.formulas));
+    let rigid =
+        (case.faces.as_ref()).map(|faces| FaceModel::rigid(faces.pair.clone(), faces.slices));
     let contacts = case
         .repeating_positions()
         .into_iter()
         .map(|eta| {
-            let contact = match (&formulas, &case.faces) {
+            let contact = match (&formulas, &rigid) {
                 (Some(formulas), _) => return load_distribution::light(formulas, eta),
-                (None, Some(faces)) => light_face(&faces.pair, faces.slices, eta),
+                (None, Some(rigid)) => rigid.light_contact(eta),
                 (None, None) => light_contact(&case.pair, &deviations, eta),
             };
             contact.map_err(|error| AnalysisError::at_position(error, eta))

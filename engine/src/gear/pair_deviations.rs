@@ -65,6 +65,12 @@ impl GearDeviations {
         self.lead_slopes.get(tooth).copied().unwrap_or(0.0)
     }
 
+    /// The most that any lead slope removes or adds.
+    pub fn steepest_lead(&self) -> f64 {
+        let slopes = self.lead_slopes.iter();
+        slopes.fold(0.0, |most, slope| slope.abs().max(most))
+    }
+
     /// What of [`GearDeviations::at`] is alike all along the flank of `tooth`.
     pub fn turn(&self, tooth: usize) -> f64 {
         self.turns.get(tooth).copied().unwrap_or(0.0)
