@@ -1,10 +1,12 @@
 //! Curves at torque 0: the limit as the load vanishes, in which nothing is elastic. All methods agree on it but the load distribution, which sees
 //! contact on the line of contact alone.
 
+use rayon::prelude::*;
+
 use super::curve_parts::CurveParts;
 use super::{AnalysisError, Case, Curve, Method, load_distribution};
 use crate::contact::face::FaceModel;
-use crate::contact::light_contact;
+use crate::contact::{MeshContact, light_contact};
 use crate::load_distribution::PairFormulas;
 
 /// The `curves` of the loaded torques of `case`, and those of its torques of zero, in its order.
@@ -26,9 +28,9 @@ fn curve(case: &Case) -> Result<Curve, AnalysisError> {
         .then(|| PairFormulas::new(&case.pair, case.resolution.formulas));
     let rigid =
         (case.faces.as_ref()).map(|faces| FaceModel::rigid(faces.pair.clone(), faces.slices));
-    let contacts = case
+    let contacts: Vec<Result<MeshContact, AnalysisError>> = case
         .repeating_positions()
-        .into_iter()
+        .into_par_iter()
         .map(|eta| {
             let contact = match (&formulas, &rigid) {
                 (Some(formulas), _) => return load_distribution::light(formulas, eta),
@@ -37,7 +39,8 @@ fn curve(case: &Case) -> Result<Curve, AnalysisError> {
             };
             contact.map_err(|error| AnalysisError::at_position(error, eta))
         })
-        .collect::<Result<Vec<_>, _>>()?;
+        .collect();
+    let contacts = contacts.into_iter().collect::<Result<Vec<_>, _>>()?;
     let each = contacts.iter();
     let parts = CurveParts {
         transmission_error: case.repeated(each.clone().map(|contact| contact.transmission_error)),

@@ -7,7 +7,7 @@
 use std::f64::consts::PI;
 
 use super::{GearPair, GearPairError, Member, PairDeviations};
-use crate::root_finding::bisect;
+use crate::root_finding::{bisect, least_between};
 
 /// Further mesh positions a mesh period that are looked at where a gear is eccentric.
 const PLACES: u32 = 4;
@@ -89,10 +89,8 @@ impl GearPair {
         }
         // A turn between two places is smooth.
         let beside = 1.0 / f64::from(PLACES);
-        let between =
-            crate::root_finding::least_between([found.0 - beside, found.0 + beside], |eta| {
-                -self.taken_at(deviations, eta)
-            });
+        let around = [found.0 - beside, found.0 + beside];
+        let between = least_between(around, |eta| -self.taken_at(deviations, eta));
         most(found, at(between)).1
     }
 

@@ -374,12 +374,14 @@ impl GearPair {
 
     /// As [`GearPair::period_with`], of gears without holes.
     pub(super) fn period_of_teeth(&self, deviations: &PairDeviations) -> u32 {
-        least_common_multiple(Member::BOTH.map(
-            |member| match deviations.of_gear(member).is_none() {
-                true => 1,
-                false => self.gear(member).tooth_count(),
-            },
-        ))
+        least_common_multiple(Member::BOTH.map(|member| {
+            let alike = deviations.of_gear(member).is_none();
+            if alike {
+                1
+            } else {
+                self.gear(member).tooth_count()
+            }
+        }))
     }
 
     /// As [`GearPair::period`], of gears that have these `deviations` instead of their own.

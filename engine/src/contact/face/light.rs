@@ -56,7 +56,7 @@ impl FaceModel {
             })
         };
         let delta = |z: f64| touch(z).map_or(f64::INFINITY, |touch| touch.delta);
-        let places = least_places([-half, half], 2 * self.slices, self.rounding(), delta);
+        let places = least_places([-half, half], self.slices, self.rounding(), delta);
         let touches = places.into_iter().filter_map(|(z, _)| touch(z));
         touches.min_by(|a, b| a.delta.total_cmp(&b.delta))
     }

@@ -239,7 +239,8 @@ fn other_flanks_stand_where_a_list_of_their_own_says() {
     let short = json!({ "tooth_deviations": { "other_flank_pitch_cumulative_um": [1.0] } });
     let place = "tooth_deviations/other_flank_pitch_cumulative_um";
     fault(&short, place, Code::WrongLength);
-    let far = json!({ "tooth_deviations": { "other_flank_pitch_cumulative_um": alternating(600.0) } });
+    let far =
+        json!({ "tooth_deviations": { "other_flank_pitch_cumulative_um": alternating(600.0) } });
     fault(&far, &format!("{place}/0"), Code::OutOfRange);
 }
 
