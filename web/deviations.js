@@ -5,6 +5,7 @@ import { fixed, h, number } from "./dom.js";
 
 /** What a column of measured teeth may be called, and the field that it is. */
 const COLUMNS = [
+  ["other_flank_pitch_cumulative_um", /other/i],
   ["pitch_single_um", /single|^f_?pt?\b|^fp$/i],
   ["pitch_cumulative_um", /cumulative|total|index|^f_?pk?\b|pitch/i],
   ["profile_slope_um", /slope|f_?h_?(a|α|alpha)/i],
@@ -89,7 +90,7 @@ export function deviations(member, design) {
   function take(given) {
     try {
       const lists = measured(given, design.get(`/pair/${member}/tooth_count`), kind.value);
-      const { pitch_single_um: _, pitch_cumulative_um: __, ...kept } = design.get(pointer) ?? {};
+      const { pitch_single_um: _, pitch_cumulative_um: __, other_flank_pitch_cumulative_um: ___, ...kept } = design.get(pointer) ?? {};
       design.set(pointer, { ...(lists.pitch_single_um || lists.pitch_cumulative_um ? kept : design.get(pointer)), ...lists }, "mend");
       out.textContent = `Taken: ${Object.entries(lists).map(([name, values]) => `${name} from ${number(Math.min(...values), 3)} to ${number(Math.max(...values), 3)} µm`).join(", ")}.`;
       text.value = "";

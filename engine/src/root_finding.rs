@@ -1,4 +1,4 @@
-//! Where a condition ceases to hold.
+//! Where a condition ceases to hold, and where a value is least.
 
 /// Halvings that bring any interval met here down to neighboring numbers.
 const MOST_HALVINGS: u32 = 200;
@@ -22,6 +22,54 @@ pub fn bisect(mut good: f64, mut bad: f64, mut holds: impl FnMut(f64) -> bool) -
     good
 }
 
+/// The place between two at which `value`, which falls and then rises, is least: by golden sections, to a billionth of their distance.
+pub(crate) fn least_between([mut low, mut high]: [f64; 2], value: impl Fn(f64) -> f64) -> f64 {
+    const STEPS: u32 = 50;
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let inner = |from: f64, to: f64| to + GOLDEN * (from - to);
+    let (mut a, mut b) = (inner(low, high), inner(high, low));
+    let (mut at_a, mut at_b) = (value(a), value(b));
+    for _ in 0..STEPS {
+        if at_a <= at_b {
+            (high, b, at_b) = (b, a, at_a);
+            a = inner(low, high);
+            at_a = value(a);
+        } else {
+            (low, a, at_a) = (a, b, at_b);
+            b = inner(high, low);
+            at_b = value(b);
+        }
+    }
+    f64::midpoint(low, high)
+}
+
+/// The places from `from` to `to` at which `value` is no more than beside them, with its value there: of `count` even steps, and found between them
+/// where it changes by more than `rounding` from step to step.
+pub(crate) fn least_places(
+    [from, to]: [f64; 2],
+    count: usize,
+    rounding: f64,
+    value: impl Fn(f64) -> f64,
+) -> Vec<(f64, f64)> {
+    let at = |i: usize| from + (to - from) * i as f64 / count as f64;
+    let values: Vec<f64> = (0..=count).map(|i| value(at(i))).collect();
+    let places = (0..=count).filter_map(|i| {
+        let beside = [i.saturating_sub(1), (i + 1).min(count)];
+        let rises = beside.map(|k| values[k] - values[i]);
+        if !rises.iter().all(|rise| *rise >= 0.0) {
+            return None;
+        }
+        let here = (at(i), values[i]);
+        if rises.iter().all(|rise| *rise <= rounding) {
+            return Some(here);
+        }
+        let between = least_between(beside.map(at), &value);
+        let found = (between, value(between));
+        Some(if found.1 < here.1 { found } else { here })
+    });
+    places.collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -32,6 +80,31 @@ mod tests {
         let above = bisect(2.0, 0.0, |x| x * x >= 2.0);
         assert!(below * below < 2.0 && above * above >= 2.0);
         assert_eq!(below.next_up(), above, "nothing lies between them");
+    }
+
+    #[test]
+    fn the_least_place_of_a_parabola_and_of_a_kink_is_found() {
+        let parabola = least_between([0.0, 3.0], |x| (x - 2.3) * (x - 2.3));
+        assert!((parabola - 2.3).abs() < 1e-7, "{parabola}");
+        let kink = least_between([0.0, 3.0], |x: f64| (x - 0.4).abs());
+        assert!((kink - 0.4).abs() < 1e-9, "{kink}");
+    }
+
+    #[test]
+    fn each_of_several_least_places_is_found() {
+        // Kinks at 0.13 and 0.77, and a parabola at the end.
+        let value = |x: f64| {
+            (x - 0.13)
+                .abs()
+                .min((x - 0.77).abs())
+                .min((x - 1.0).powi(2) + 0.01)
+        };
+        let found = least_places([0.0, 1.0], 20, 1e-12, value);
+        let expected = [(0.13, 0.0), (0.77, 0.0), (1.0, 0.01)];
+        assert_eq!(found.len(), 3, "{found:?}");
+        for (found, expected) in found.iter().zip(expected) {
+            assert!((found.0 - expected.0).abs() < 1e-9 && (found.1 - expected.1).abs() < 1e-9);
+        }
     }
 
     #[test]

@@ -8,8 +8,9 @@ use cases::{Made, case, gear};
 use meshwright_engine::analysis::{Method, analyze, pair_model};
 use meshwright_engine::contact::{MeshContact, light_contact};
 use meshwright_engine::gear::{
-    Eccentricity, GearData, GearPair, Member, ModificationData, SpurGear,
+    Eccentricity, GearData, GearPair, Member, ModificationData, Rack, SpurGear,
 };
+use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
@@ -331,4 +332,63 @@ fn every_method_sees_what_teeth_deviate() {
         dot(&a, &b) / (dot(&a, &a) * dot(&b, &b)).sqrt()
     };
     assert!(correlation > 0.9, "{correlation}");
+}
+
+#[test]
+fn nothing_penetrates_where_the_tip_of_a_gear_that_runs_out_far_carries_everything() {
+    // 16/28 teeth with pitch errors of 68 µm and an eccentricity of 257 µm: the tips of the driven gear touch where those of the drawing do not.
+    let module = 3.434595868106305e-3;
+    let made = |teeth: u32, shift: f64, bore: f64| {
+        let mut data = gear(teeth, bore);
+        data.rack = Rack {
+            module,
+            pressure_angle: 20_f64.to_radians(),
+            addendum: 4.241685733765527e-3,
+            dedendum: 5.100334700792104e-3,
+            tip_radius: 0.6525732149401979e-3,
+        };
+        data.profile_shift = shift;
+        data.face_width = 17.404557301851202e-3;
+        data
+    };
+    let mut driving = made(16, 0.46916258245463155, 7.196344833368129e-3);
+    let single = [
+        -53.8995, 61.3045, -18.8586, -19.8267, 56.3015, -49.4587, 7.2929, -15.3227, 12.7786,
+        16.0991, 36.2513, -68.4787, -18.6087, 64.9693, -35.7677, 25.2241,
+    ];
+    let sums = single.iter().scan(0.0, |sum, arc| {
+        *sum += 1e-6 * arc;
+        Some(*sum)
+    });
+    driving.deviations.cumulative_pitch = sums.collect();
+    let mut driven = made(28, -0.1436977494772292, 29.743324629259845e-3);
+    driven.deviations.eccentricity = Some(Eccentricity {
+        amount: 256.8124501950836e-6,
+        direction: 36.931455212655266_f64.to_radians(),
+    });
+    let pair = cases::pair(driving, driven, 77.049951534048e-3);
+    let mut case = case(pair.clone(), &[0.0, 9.106663451171235]);
+    case.resolution.grid = GridLevel::Coarse;
+    case.resolution.positions_per_mesh_period = 8;
+    case.resolution.span_mesh_periods = Some(28);
+    let analysis = analyze(&case, &Library::default(), &Run::unattended()).expect("curves");
+    let model = pair_model(&case, &Library::default(), &Run::unattended()).expect("a model");
+    let made = Made::new(pair.clone(), model);
+    let load = pair.load(9.106663451171235);
+    let [light, loaded] = &analysis.curves[..] else {
+        panic!("two curves")
+    };
+    let (mut worst, mut at) = (0.0_f64, 0.0);
+    for (i, eta) in light.mesh_position.iter().enumerate() {
+        let closed = loaded.transmission_error[i] - light.transmission_error[i];
+        let contact = made.contact(*eta, load).expect("a contact");
+        let part = contact.penetration / closed;
+        if part > 1e-3 || closed <= 0.0 {
+            println!("{eta}: {:e} of {closed:e}", contact.penetration);
+        }
+        if part > worst || closed <= 0.0 {
+            (worst, at) = (part.abs(), *eta);
+        }
+    }
+    assert!(worst < 2e-3, "{worst:e} at {at}");
 }

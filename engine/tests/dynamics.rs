@@ -198,7 +198,7 @@ fn with_backlash_of(
             .collect()
     };
     let flanks = [rows(0.0, 1.0), rows(-apart, -1.0)];
-    ForceTable::new(1, ladder, flanks.map(FlankRows::of_delta))
+    ForceTable::new(1, ladder, flanks.map(FlankRows::of_delta)).expect("rows that rise")
 }
 
 fn data(speeds: Vec<f64>, load: f64, orders: &[f64]) -> RunUpData {

@@ -334,6 +334,7 @@ fn eccentric_gears_with_pitch_errors_touch_where_their_points_do() {
             cumulative_pitch: noise(g).take(50).map(|part| 10e-6 * part).collect(),
             profile_slope: noise(g + 9).take(50).map(|part| 6e-6 * part).collect(),
             lead_slope: Vec::new(),
+            other_cumulative_pitch: Vec::new(),
             eccentricity: Some(Eccentricity {
                 amount: 80e-6,
                 direction: 1.0 + g as f64,

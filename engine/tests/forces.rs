@@ -18,8 +18,8 @@ use meshwright_engine::contact::face::{FaceModel, FlankYield};
 use meshwright_engine::contact::{MadePair, WarmStart};
 use meshwright_engine::dynamics::ForceTable;
 use meshwright_engine::gear::{
-    Alignment, Eccentricity, Helix, LeadModification, Member, PairDeviations, SolidGear, SolidPair,
-    Web,
+    Alignment, Eccentricity, GearPair, Helix, LeadModification, Member, PairDeviations, SolidGear,
+    SolidPair, Web,
 };
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
@@ -307,36 +307,177 @@ fn the_torque_on_the_driver_follows_from_the_energy_of_the_table() {
     assert!(rms < 0.15 * swing, "{rms} of {swing}");
 }
 
+/// The table of a pair by formulas on the line of contact, which under no load are its geometry to the first order.
+fn formula_table(pair: GearPair, per_period: u32) -> ForceTable {
+    let mut case = case(pair, &[20.0]);
+    case.method = Method::LoadDistribution;
+    case.resolution.positions_per_mesh_period = per_period;
+    table(&case)
+}
+
 #[test]
-fn backlash_is_that_of_the_drawing_and_deviations_move_the_loaded_flank_alone() {
-    let mut plain = case(standard_pair(false), &[60.0]);
-    plain.method = Method::LoadDistribution;
-    let of_plain = table(&plain);
-    for backlash in of_plain.backlash() {
-        assert!((backlash - plain.pair.backlash()).abs() < 1e-12);
+fn the_backlash_of_a_drawing_is_the_same_at_every_position() {
+    let drawn = standard_pair(false);
+    for backlash in formula_table(drawn.clone(), 40).backlash() {
+        assert!((backlash - drawn.backlash()).abs() < 1e-12);
     }
-    let mut eccentric = gear(20, 8e-3);
-    eccentric.deviations.eccentricity = Some(Eccentricity {
-        amount: 20e-6,
-        direction: 0.3,
-    });
-    let mut eccentric = case(pair(eccentric, gear(20, 8e-3), 40.6e-3), &[20.0]);
-    eccentric.method = Method::LoadDistribution;
-    eccentric.resolution.positions_per_mesh_period = 16;
-    let of_eccentric = table(&eccentric);
-    assert_eq!(of_eccentric.period(), 20);
-    let other = &of_eccentric.other().delta[0];
-    assert!(
-        other
-            .iter()
-            .all(|at| (at + eccentric.pair.backlash()).abs() < 1e-12)
+    assert_eq!(drawn.least_backlash(), drawn.backlash());
+}
+
+#[test]
+fn an_eccentric_gear_closes_up_on_both_flanks_while_it_stands_nearer_to_its_mate() {
+    // By d nearer to the mate both flanks close up by d sin α_w along the line of action.
+    let (amount, direction) = (20e-6, 0.3);
+    let eccentricity = Some(Eccentricity { amount, direction });
+    for member in Member::BOTH {
+        let mut data = [gear(20, 8e-3), gear(27, 8e-3)];
+        data[member.index()].deviations.eccentricity = eccentricity;
+        let [driving, driven] = data;
+        let pair = pair(driving, driven, 47.5e-3);
+        let table = formula_table(pair.clone(), 16);
+        let alpha = pair.working_pressure_angle();
+        let gear = pair.gear(member);
+        for (eta, backlash) in table.mesh_positions().into_iter().zip(table.backlash()) {
+            // Tooth 0 touches at the pitch point at mesh position 0; driving gears turn one way, driven ones the other.
+            let half_angle = gear.flank().base_half_angle() - (alpha.tan() - alpha);
+            let turned = gear.pitch_angle() * eta;
+            let from_mate = match member {
+                Member::Driving => turned - half_angle + direction,
+                Member::Driven => -turned - half_angle + direction,
+            };
+            let expected = pair.backlash() - 2.0 * amount * alpha.sin() * from_mate.cos();
+            // From one flank to the other the driven gear turns by the backlash, and its axis with it.
+            let turned = pair.backlash() / pair.driven().base_radius();
+            let apart = (backlash - expected).abs();
+            assert!(apart < amount * turned, "{member} {eta}: {apart:e}");
+        }
+        let least = pair.backlash() - 2.0 * amount * alpha.sin();
+        assert!((pair.least_backlash() - least).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_tooth_displaced_as_a_whole_moves_both_flanks_and_takes_no_backlash_by_itself() {
+    // The other flank of driving tooth −n passes the pitch point a thickness after its loaded one, against the driven tooth after its own, n + 1.
+    let amount = 6e-6;
+    let along = amount * 20_f64.to_radians().cos();
+    let make = |teeth: [Option<usize>; 2], other_flank: bool| {
+        let mut data = [gear(20, 8e-3), gear(27, 8e-3)];
+        for (data, tooth) in data.iter_mut().zip(teeth) {
+            let Some(tooth) = tooth else { continue };
+            let mut arcs = vec![0.0; data.tooth_count as usize];
+            arcs[tooth] = amount;
+            let deviations = &mut data.deviations;
+            if other_flank {
+                deviations.other_cumulative_pitch = arcs;
+            } else {
+                deviations.cumulative_pitch = arcs;
+            }
+        }
+        let [driving, driven] = data;
+        pair(driving, driven, 47.5e-3)
+    };
+    // Out at a place where one pair alone is on the path of contact, and by how much there: loaded flanks, other flanks.
+    let moved = |pair: &GearPair, n: f64| {
+        let table = formula_table(pair.clone(), 64);
+        let gear = pair.driving();
+        let alpha = pair.working_pressure_angle();
+        let half_angle = gear.flank().base_half_angle() - (alpha.tan() - alpha);
+        let later = 2.0 * half_angle / gear.pitch_angle();
+        let per_period = table.positions() as f64 / f64::from(table.period());
+        let at = |eta: f64| (eta * per_period).round() as usize % table.positions();
+        [
+            table.loaded().delta[0][at(n)],
+            table.other().delta[0][at(n + later)] + pair.backlash(),
+        ]
+    };
+    let near = |found: [f64; 2], expected: [f64; 2]| {
+        for (found, expected) in found.into_iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-9, "{found:e} {expected:e}");
+        }
+    };
+    // Pair 5 has driving tooth 15 and driven tooth 5.
+    near(moved(&make([Some(15), None], false), 5.0), [-along; 2]);
+    near(moved(&make([None, Some(5)], false), 5.0), [-along, 0.0]);
+    near(moved(&make([None, Some(6)], false), 5.0), [0.0, -along]);
+    near(
+        moved(&make([Some(15), Some(6)], false), 5.0),
+        [-along, -2.0 * along],
     );
-    let [most, least] = [f64::max, f64::min].map(|of| {
-        let backlash = of_eccentric.backlash();
-        backlash.iter().copied().reduce(of).expect("positions")
-    });
-    // It comes and goes once a revolution, by about its amount to either side.
-    assert!((most - least - 40e-6).abs() < 4e-6, "{}", most - least);
+    // The mean of the other list is that of the loaded flanks.
+    let mean = along / 20.0;
+    near(
+        moved(&make([Some(15), None], true), 5.0),
+        [0.0, mean - along],
+    );
+    near(moved(&make([Some(14), None], true), 5.0), [0.0, mean]);
+}
+
+#[test]
+fn the_least_backlash_is_the_least_of_the_table_whatever_teeth_deviate() {
+    for seed in 0..6 {
+        let mut draw = drawn(seed + 5);
+        let mut data = [gear(20, 8e-3), gear(23, 8e-3)];
+        for (g, data) in data.iter_mut().enumerate() {
+            let mut list = |amount: f64| -> Vec<f64> {
+                (0..data.tooth_count)
+                    .map(|_| amount * (draw() - 0.5))
+                    .collect()
+            };
+            let deviations = &mut data.deviations;
+            deviations.cumulative_pitch = list(20e-6);
+            if seed % 2 == 1 {
+                deviations.other_cumulative_pitch = list(20e-6);
+            }
+            if seed % 3 == 1 {
+                deviations.profile_slope = list(12e-6);
+            }
+            if seed % 3 == 2 || (seed == 0 && g == 0) {
+                let direction = 6.0 * draw();
+                deviations.eccentricity = Some(Eccentricity {
+                    amount: 15e-6,
+                    direction,
+                });
+            }
+        }
+        let [driving, driven] = data;
+        let pair = pair(driving, driven, 43.5e-3);
+        let of_table = formula_table(pair.clone(), 32).backlash();
+        let of_table = of_table.into_iter().fold(f64::INFINITY, f64::min);
+        let (drawn, least) = (pair.backlash(), pair.least_backlash());
+        let taken = drawn - least;
+        // From one flank to the other an eccentric driven gear turns by the backlash. The table steps over where a pair comes or goes: a slope is a few
+        // percent less a step of 1/64 beside its end.
+        let turned = 15e-6 * drawn / pair.driven().base_radius();
+        let missed = of_table - least + turned;
+        assert!(
+            taken > 5e-6 && missed > -1e-12 && missed < 0.03 * taken + 2.0 * turned,
+            "{seed}: {missed:e} of {taken:e}"
+        );
+        if seed % 3 == 0 {
+            assert!(
+                missed < 2e-3 * taken + 2.0 * turned,
+                "{seed}: {missed:e} of {taken:e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_is_the_same_of_all_teeth_takes_no_backlash() {
+    // A pitch written from two datum teeth.
+    let wave = |i: u32| 20e-6 * (2.0 * PI * f64::from(i) / 83.0).sin();
+    let pair = |datum: f64| {
+        let mut driven = gear(83, 10e-3);
+        driven.deviations.cumulative_pitch = (0..83).map(|i| wave(i) + datum).collect();
+        pair(gear(27, 8e-3), driven, 110.3e-3)
+    };
+    let [one, other] = [0.0, 40e-6].map(|datum| pair(datum).least_backlash());
+    assert!((one - other).abs() < 1e-15);
+    // Three pitches apart at the most are the driven teeth that touch on either side at a time.
+    let taken = pair(0.0).backlash() - one;
+    let most = 20e-6 * 2.0 * PI / 83.0 * 3.0;
+    assert!(taken > 0.3 * most && taken < most, "{taken:e} {most:e}");
 }
 
 fn run_up(case: &Case, to: f64, count: u32) -> CurveDynamics {

@@ -301,7 +301,7 @@ pub(crate) mod tests {
         };
         let flanks = [flank(rows(1.0, 0.0)), flank(rows(-1.0, -100e-6))];
         MeshForces {
-            table: ForceTable::new(1, ladder, flanks),
+            table: ForceTable::new(1, ladder, flanks).expect("rows that rise"),
             base_radii: [40e-3, 50e-3],
             tooth_count: 20.0,
             method: "flexible".to_owned(),

@@ -27,7 +27,8 @@ answer! {
         period_mesh_periods: u32 = pair.period(),
         /// The normal backlash, along the line of action, in mm, of teeth as drawn.
         backlash_mm: f64 = to_mm(pair.backlash()),
-        /// The least normal backlash, in mm: what pitch and slope deviations that stand out and eccentricity leave of it.
+        /// The least backlash over the true period, in mm: what the pitch deviations of teeth in mesh at the same time, slopes that stand out and
+        /// eccentricity leave of it.
         least_backlash_mm: f64 = to_mm(pair.least_backlash()),
         /// The face width on which the gears touch, in mm: the smaller of the two.
         contact_width_mm: f64 = to_mm(width),

@@ -174,6 +174,16 @@ fn problem_of(error: &AnalysisError) -> Problem {
                 ),
             )
         }
+        AnalysisError::RowFalls(row) => of_field(
+            "/force_table",
+            Code::NotConverged,
+            format!(
+                "At mesh position {} the transmission error under {} N is less by {} um than under the load before it. A mesh never yields less under more load: this is a mistake of the solver, and no table is made of it.",
+                plain(row.mesh_position),
+                plain(row.load),
+                plain(to_um(row.falls))
+            ),
+        ),
         AnalysisError::Discretization { member, reason } => of_field(
             &format!("/pair/{member}"),
             Code::DiscretizationFailed,

@@ -53,7 +53,7 @@ pub(super) fn carried_out(
         let estimate = ErrorEstimate::between(&analysis.curves, &other.curves);
         analysis.evidence.error_estimate = Some(estimate);
     }
-    analysis.curves = light::with_torque_zero(&plan.asked, analysis.curves)?;
+    analysis.curves = light::with_torque_zero(&plan.asked, plan.is_refined, analysis.curves)?;
     Ok(analysis)
 }
 

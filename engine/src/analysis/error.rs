@@ -3,6 +3,7 @@
 use crate::assembly::AssemblyError;
 use crate::contact::positions::PositionsError;
 use crate::contact::{ContactError, PositionError};
+use crate::dynamics::FallingRow;
 use crate::gear::Member;
 use crate::load_distribution::{Formula, FormulaError};
 use crate::run::Stopped;
@@ -60,6 +61,9 @@ pub enum AnalysisError {
         /// What it gives, in m/N: not positive, or no number.
         compliance: f64,
     },
+    /// The rows of a force table do not rise: a mistake of the method.
+    #[error(transparent)]
+    RowFalls(#[from] FallingRow),
     /// A grid or a factorization failed.
     #[error("the {member} gear cannot be discretized: {reason}")]
     Discretization {

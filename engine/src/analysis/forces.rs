@@ -8,7 +8,6 @@ use super::warning::warn_of_motions;
 use super::{Analysis, AnalysisError, Case, Faces, StiffnessRule};
 use crate::assembly::Parts;
 use crate::dynamics::{FlankRows, ForceTable, Ladder};
-use crate::gear::{Member, involute_function};
 use crate::run::Run;
 
 /// How many times as many positions a table has as the curves: pairs that begin and cease to carry make kinks, and two of them in
@@ -131,7 +130,7 @@ impl TablePlan {
         let case = &self.rows.asked;
         let [loaded, mirrored] = self.plans().map(rows_of);
         let flanks = [loaded?, self.other.turned(&mirrored?, case.positions())];
-        Ok(ForceTable::new(case.pair.period(), self.ladder, flanks))
+        Ok(ForceTable::new(case.pair.period(), self.ladder, flanks)?)
     }
 }
 
@@ -156,10 +155,10 @@ fn rows_case(case: &Case, loads: &[f64]) -> Case {
     rows
 }
 
-/// The other flanks of the case of a table: those of the drawing, without deviations.
+/// The other flanks of the case of a table.
 ///
-/// A pair of gears whose teeth are alike to both sides touches on them as its mirror image does on the loaded ones, which passes the same
-/// positions the other way round; along faces that is the drawing seen from its other side.
+/// A pair of gears touches on them as its mirror image does on the loaded ones, which passes the same positions the other way round; along faces that
+/// is the pair seen from its other side. Pitch deviations and eccentricities move both flanks; slopes are those of the loaded ones alone.
 struct OtherFlank {
     /// The curves of the mirror image.
     mirrored: Plan,
@@ -170,15 +169,11 @@ struct OtherFlank {
 impl OtherFlank {
     /// Those of `rows`.
     fn of(rows: &Case) -> Self {
-        let pair = rows.pair.as_drawn();
-        // The other flank of a tooth passes the pitch point later, by the thickness of the tooth.
-        let gear = pair.gear(Member::Driving);
-        let half_angle =
-            gear.flank().base_half_angle() - involute_function(pair.working_pressure_angle());
+        let pair = rows.pair.mirror_image();
         let per_period = f64::from(rows.resolution.positions_per_mesh_period);
-        let later = 2.0 * half_angle / gear.pitch_angle() * per_period;
+        let later = pair.other_flanks_later() * per_period;
         let faces = rows.faces.clone().map(|faces| Faces {
-            pair: faces.pair.as_drawn().turned_over(),
+            pair: faces.pair.turned_over(),
             ..faces
         });
         let mut mirrored = Case {

@@ -139,7 +139,7 @@ fn curve_parts(
         .iter()
         .map(|contact| contact.loaded().count() as u32);
     let pressures = contacts.iter().map(|contact| Some(contact.peak_pressure));
-    let largest = positions.iter().zip(contacts).map(|(eta, contact)| {
+    let largest = positions.iter().zip(&contacts).map(|(eta, contact)| {
         let n = i64::from(contact.peak_offset) + eta.floor() as i64;
         let s = case.pair.roll_length_of(eta - n as f64);
         let place = PeakPlace {

@@ -23,6 +23,8 @@ pub(super) struct Plan {
     pub(super) asked: Case,
     /// The same without its torques of zero, in whose curves nothing is elastic.
     pub(super) loaded: Case,
+    /// Whether curves are looked at between their positions.
+    pub(super) is_refined: bool,
     /// The pass that answers, and a second one that tells the discretization error of it. There is none without load.
     pub(super) passes: Vec<Pass>,
 }
@@ -74,6 +76,7 @@ impl Plan {
         let pass = |level| Pass::of(&loaded, level);
         Self {
             asked: case.clone(),
+            is_refined: true,
             passes: levels.into_iter().map(pass).collect(),
             loaded,
         }
@@ -81,7 +84,10 @@ impl Plan {
 
     /// The plan for the rows of a table, which are told at their positions alone.
     pub(super) fn of_rows(case: &Case) -> Self {
-        let mut plan = Self::of(case);
+        let mut plan = Self {
+            is_refined: false,
+            ..Self::of(case)
+        };
         for pass in &mut plan.passes {
             pass.told.further = 0;
         }

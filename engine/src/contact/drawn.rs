@@ -5,13 +5,14 @@
 
 use std::sync::Arc;
 
-use super::facing::{Facing, View};
+use super::facing::{Facing, View, nearer_tip};
 use super::memo::Memo;
 use super::model::PairModel;
 use super::pair_cells::PairCells;
 use super::patch::Extent;
 use super::penetration::Looks;
 use super::placement::Placement;
+use crate::gear::Member;
 
 /// What the cells of one pair, and the looks at them, may take, in bytes: two loads at forty positions a mesh period.
 const MOST_BYTES: usize = 12 << 20;
@@ -25,10 +26,11 @@ const REACH_STEP: f64 = 3.0;
 /// No look reaches less far beyond the least gap, in meters.
 const LEAST_REACH: f64 = 1e-9;
 
-/// What cells depend on: the bits of the phase and of the load, the cells on a core, how far they are laid.
+/// What cells depend on: the bits of the phase, the gear on whose flank they lie, the bits of the load, the cells on a core, how far they are laid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct Laid {
     phase: u64,
+    seat: Member,
     load: u64,
     cells_per_patch: usize,
     extent: Extent,
@@ -64,7 +66,7 @@ impl Carrying {
 /// The flanks of one pair as drawn, with what was found of them; shared between threads.
 #[derive(Debug)]
 pub struct DrawnFlanks {
-    facings: Memo<u64, Option<Facing>>,
+    facings: Memo<(u64, Member), Option<Facing>>,
     cells: Memo<Laid, Option<PairCells>>,
     looks: Memo<(Laid, i32, Carrying), Looks>,
 }
@@ -88,6 +90,8 @@ impl Default for DrawnFlanks {
 pub(super) struct DrawnPair {
     /// How many mesh periods ago it passed the pitch point.
     pub(super) phase: f64,
+    /// The gear on whose flank it is told.
+    pub(super) seat: Member,
     facing: Arc<Option<Facing>>,
 }
 
@@ -104,12 +108,21 @@ impl DrawnFlanks {
         size_of::<Self>() + self.facings.bytes() + self.cells.bytes() + self.looks.bytes()
     }
 
-    /// The pair of `model` at `phase`.
+    /// The pair of `model` at `phase`, told on the gear whose tip is nearer.
     pub(super) fn pair(&self, model: &PairModel, phase: f64) -> DrawnPair {
-        let facing = self
-            .facings
-            .get(phase.to_bits(), |_| Facing::drawn(&model.pair, phase));
-        DrawnPair { phase, facing }
+        self.pair_on(model, phase, nearer_tip(&model.pair, phase))
+    }
+
+    /// The pair of `model` at `phase`, told on the flank of `seat`.
+    pub(super) fn pair_on(&self, model: &PairModel, phase: f64, seat: Member) -> DrawnPair {
+        let facing = self.facings.get((phase.to_bits(), seat), |_| {
+            Facing::drawn_on(&model.pair, phase, seat)
+        });
+        DrawnPair {
+            phase,
+            seat,
+            facing,
+        }
     }
 
     /// The cells of `pair`, laid so far; `None` where there is no room for any.
@@ -155,6 +168,7 @@ impl DrawnFlanks {
 fn laid(model: &PairModel, pair: &DrawnPair, load: f64, extent: Extent) -> Laid {
     Laid {
         phase: pair.phase.to_bits(),
+        seat: pair.seat,
         load: load.to_bits(),
         cells_per_patch: model.cells_per_patch,
         extent,

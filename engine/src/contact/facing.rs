@@ -126,10 +126,20 @@ impl Facing {
     pub fn touch(&self) -> f64 {
         self.hollows[0].touch
     }
+
+    /// Whether it is the tip corner of the other gear that touches first.
+    pub(super) fn is_at_mate_tip(&self) -> bool {
+        let arc = self.hollows[0].arc;
+        let FlankRange { from, to, ends } = self.range;
+        [from, to]
+            .into_iter()
+            .zip(ends)
+            .any(|(end, by)| end == arc && by == RangeEnd::MateTip)
+    }
 }
 
 /// The gear whose tip is nearer to the contact.
-fn nearer_tip(gears: &GearPair, phase: f64) -> Member {
+pub(super) fn nearer_tip(gears: &GearPair, phase: f64) -> Member {
     let (s_a, s_e) = gears.path_of_contact();
     // Past the middle of the path of contact the contact is nearer to the driving tip, which leaves it at E. A pair that stands
     // just there is told alike however its numbers are rounded.

@@ -1,7 +1,7 @@
 //! All pairs whose flanks face each other at one mesh position, and which of them come near.
 
 use super::drawn::DrawnPair;
-use super::facing::{Facing, Hollow};
+use super::facing::{Facing, Hollow, RangeEnd, nearer_tip};
 use super::meeting::Standing;
 use super::model::MadePair;
 use super::patch::Extent;
@@ -21,6 +21,9 @@ const MOST_RUNOUT: f64 = 2.0;
 /// Where eccentricities come to more than this part of a phase together, pairs are looked at as they stand: what the hollow of a pair as laid tells
 /// of its touch is off by the square of the way from there, and by much more across a kink or beside a corner.
 const LOOKED_AT: f64 = 0.25;
+
+/// Turns to the flanks that touch; each squares what is left.
+const MOST_TURNS: u32 = 4;
 
 /// The pairs whose flanks face each other at one fraction of the mesh period; numbered from the reference pair of the
 /// period. They are looked for outward from the path of contact, as far as is asked.
@@ -75,9 +78,6 @@ impl Near {
     /// How far the deviations of its teeth move the contact under `load` in mesh period `period` of `made` ([`Extent`]).
     pub(super) fn moved(&self, made: MadePair<'_>, (period, load): (i64, f64)) -> i32 {
         let pair = &made.model.pair;
-        let teeth = pair.teeth(period + self.pair);
-        let slopes =
-            Member::BOTH.map(|member| made.deviations.of_gear(member).slope(teeth[member.index()]));
         let Some(facing) = self.drawn.facing() else {
             return 0;
         };
@@ -85,21 +85,46 @@ impl Near {
         if let Some(away) = self.away {
             return Extent::moved(pair, hollow, load, (away, 0.0));
         }
+        let (along, inclined) = self.displaced(made, period, facing);
+        Extent::moved(pair, hollow, load, (along, inclined))
+    }
+
+    /// How far along its `facing` as laid, towards the seat's tip, the flanks touch in mesh period `period` of `made`, and how far the slopes of its teeth
+    /// incline them for each length along.
+    fn displaced(&self, made: MadePair<'_>, period: i64, facing: &Facing) -> (f64, f64) {
+        let pair = &made.model.pair;
+        let teeth = pair.teeth(period + self.pair);
+        let hollow = &facing.hollows[0];
         // Arc over roll length.
         let growth = |member: Member| {
             let r_b = pair.gear(member).base_radius();
             (hollow.roll_lengths[member.index()] / r_b).max(1e-9)
         };
         // Towards the tip of one is towards the root of the other.
-        let inclination = |member: Member| slopes[member.index()] / growth(member);
+        let inclination = |member: Member| {
+            let slope = made.deviations.of_gear(member).slope(teeth[member.index()]);
+            slope / growth(member)
+        };
         let (seat, mate) = (facing.seat, facing.seat.other());
         let ahead = match seat {
             Member::Driving => self.ahead,
             Member::Driven => -self.ahead,
         };
         let along = ahead * pair.base_pitch() * growth(seat);
-        let inclined = inclination(seat) - inclination(mate);
-        Extent::moved(pair, hollow, load, (along, inclined))
+        (along, inclination(seat) - inclination(mate))
+    }
+
+    /// Whether the slopes of its teeth in mesh period `period` of `made` take the contact as far as the tip of the seat's mate.
+    fn is_inclined_to_mate_tip(&self, made: MadePair<'_>, period: i64) -> bool {
+        let Some(facing) = self.drawn.facing() else {
+            return false;
+        };
+        let (along, inclined) = self.displaced(made, period, facing);
+        let hollow = &facing.hollows[0];
+        let [s_1, s_2] = hollow.roll_lengths;
+        // An angle moves the least place of a parabola by its radius.
+        let arc = hollow.arc + along + inclined * s_1 * s_2 / (s_1 + s_2);
+        inclined != 0.0 && arc < facing.range.from && facing.range.ends[0] == RangeEnd::MateTip
     }
 
     /// How it stands in mesh period `period` of `made`, with a driven gear that lags by `lag`.
@@ -234,48 +259,103 @@ impl<'a> Facings<'a> {
                 drawn,
             });
         }
-        let [by_tooth, shift] = shifts(self.made, phase, period + n);
+        let shifts = Shifts::of(self.made, phase, period + n);
         // Along a curve a tooth keeps its own deviation, and so what was laid for it. A gear that runs out far stands elsewhere at every position.
-        let laid = if MOST_RUNOUT * self.runout > 1.0 {
-            shift
+        let (seat, shift, laid) = if MOST_RUNOUT * self.runout > 1.0 {
+            let seat = shifts.nearer_tip;
+            let shift = shifts.on_flanks[seat.index()];
+            (seat, shift, shift)
         } else {
-            (by_tooth * PHASES).round() / PHASES
+            let laid = (shifts.by_tooth * PHASES).round() / PHASES;
+            let seat = nearer_tip(&model.pair, phase + laid);
+            (seat, shifts.on_flanks[0], laid)
         };
         let mut near = Near {
             pair: n,
             ahead: shift - laid,
             away: None,
             touches: Vec::new(),
-            drawn: model.drawn.pair(model, phase + laid),
+            drawn: model.drawn.pair_on(model, phase + laid, seat),
         };
-        let standing = near.standing(self.made, (self.fraction, period), 0.0)?;
-        let touch = |hollow: &Hollow| {
-            let meeting = standing.meeting(&hollow.probe);
-            meeting.gap / meeting.arms[1]
-        };
-        near.touches = near.drawn.facing()?.hollows.iter().map(touch).collect();
-        if self.runout > LOOKED_AT {
+        self.find_touches(&mut near, period)?;
+        if self.runout > LOOKED_AT || near.is_inclined_to_mate_tip(self.made, period) {
             self.look_at_real(&mut near, period);
         }
         Some(near)
     }
 
+    /// Finds when the hollows of `near` touch in mesh period `period`.
+    fn find_touches(&self, near: &mut Near, period: i64) -> Option<()> {
+        let at = |lag: f64| near.standing(self.made, (self.fraction, period), lag);
+        let as_laid = at(0.0)?;
+        let further = |standing: &Standing<'_>, hollow: &Hollow| {
+            let meeting = standing.meeting(&hollow.probe);
+            meeting.gap / meeting.arms[1]
+        };
+        let touch = |hollow: &Hollow| {
+            // A corner pushes in another direction than it moves: what it is said to go on by is a few percent too much or too little.
+            let mut lag = further(&as_laid, hollow);
+            for _ in 0..MOST_TURNS {
+                let step = at(lag).map_or(0.0, |standing| further(&standing, hollow));
+                lag += step;
+                if step.abs() < ROUNDING {
+                    break;
+                }
+            }
+            lag
+        };
+        near.touches = near.drawn.facing()?.hollows.iter().map(touch).collect();
+        Some(())
+    }
+
     /// Looks where and when the flanks of `near` touch first in mesh period `period`, as they stand.
     fn look_at_real(&self, near: &mut Near, period: i64) -> Option<()> {
-        let pair = (&self.made.model.pair, self.made.deviations);
-        let (eta, n) = (self.fraction + period as f64, period + near.pair);
-        let hollows = &near.drawn.facing()?.hollows;
-        let real = Facing::real_on(pair, eta, n, 0.0, near.drawn.facing()?.seat)?;
+        let (mut delta, mut real) = self.real(near, period)?;
+        if real.is_at_mate_tip() {
+            // On its own flank a gear's tip is where cells end, however the gears stand.
+            let model = self.made.model;
+            let seat = near.drawn.seat.other();
+            let mut on_other = Near {
+                drawn: model.drawn.pair_on(model, near.drawn.phase, seat),
+                ..near.clone()
+            };
+            if self.find_touches(&mut on_other, period).is_some()
+                && let Some(found) = self.real(&on_other, period)
+            {
+                *near = on_other;
+                (delta, real) = found;
+            }
+        }
         let first = &real.hollows[0];
         let away = |hollow: &Hollow| first.arc - hollow.arc;
+        let hollows = &near.drawn.facing()?.hollows;
         let nearest = |a: &&Hollow, b: &&Hollow| away(a).abs().total_cmp(&away(b).abs());
         let (i, hollow) = hollows
             .iter()
             .enumerate()
             .min_by(|a, b| nearest(&a.1, &b.1))?;
-        near.touches[i] = first.touch;
+        near.touches[i] = delta;
         near.away = (i == 0).then(|| away(hollow));
         Some(())
+    }
+
+    /// The δ at which the flanks of `near` touch first in mesh period `period`, and how they face each other there.
+    fn real(&self, near: &Near, period: i64) -> Option<(f64, Facing)> {
+        let pair = (&self.made.model.pair, self.made.deviations);
+        let (eta, n) = (self.fraction + period as f64, period + near.pair);
+        let at = |lag: f64| Facing::real_on(pair, eta, n, lag, near.drawn.seat);
+        // Seen from afar a corner touches elsewhere than it does: by the square of the way.
+        let mut lag = 0.0;
+        let mut real = at(lag)?;
+        for _ in 0..MOST_TURNS {
+            let step = real.touch();
+            if step.abs() < ROUNDING {
+                break;
+            }
+            lag += step;
+            real = at(lag)?;
+        }
+        Some((lag + real.touch(), real))
     }
 
     /// Finds the pairs that touch as drawn before δ is `reach`.
@@ -295,19 +375,44 @@ impl<'a> Facings<'a> {
     }
 }
 
-/// By how many mesh periods pair `n` touches as if it had gone on from `phase`, by the deviations of its teeth alone and with gears that run out:
-/// the driving flank touches where the common tangent of both base circles meets it.
-fn shifts(MadePair { model, deviations }: MadePair<'_>, phase: f64, n: i64) -> [f64; 2] {
-    let gears = &model.pair;
-    let angles = placement::angles(gears, phase);
-    let centers = placement::centers(gears, deviations, n, angles);
-    let driving = gears.driving();
-    let between = centers[1] - centers[0];
-    let base = driving.base_radius() + gears.driven().base_radius();
-    let tangent = between.y.atan2(between.x) - (base / between.norm()).min(1.0).acos();
-    let s_1 = driving.base_radius() * (angles[0] + driving.flank().base_half_angle() - tangent);
-    let tooth = gears.tooth(Member::Driving, n);
-    let out = deviations.of_gear(Member::Driving).at(tooth, s_1);
-    let as_drawn = gears.roll_length_of(phase);
-    [as_drawn + out, s_1 + out].map(|s| (s - as_drawn) / gears.base_pitch())
+/// By how many mesh periods a pair touches as if it had gone on.
+struct Shifts {
+    /// By the deviations of its teeth alone.
+    by_tooth: f64,
+    /// With gears that run out, told by where on the driving and where on the driven flank that is: not alike, because the line of action is as long as the
+    /// axes are apart.
+    on_flanks: [f64; 2],
+    /// The gear whose tip is nearer to the contact then.
+    nearer_tip: Member,
+}
+
+impl Shifts {
+    /// Those of pair `n` from `phase` on: the driving flank touches where the common tangent of both base circles meets it.
+    fn of(MadePair { model, deviations }: MadePair<'_>, phase: f64, n: i64) -> Self {
+        let gears = &model.pair;
+        let angles = placement::angles(gears, phase);
+        let centers = placement::centers(gears, deviations, n, angles);
+        let [driving, driven] = Member::BOTH.map(|member| gears.gear(member));
+        let between = centers[1] - centers[0];
+        let base = driving.base_radius() + driven.base_radius();
+        let (apart, tooth) = (between.norm(), gears.tooth(Member::Driving, n));
+        let tangent = between.y.atan2(between.x) - (base / apart).min(1.0).acos();
+        let s_1 = driving.base_radius() * (angles[0] + driving.flank().base_half_angle() - tangent);
+        let out = deviations.of_gear(Member::Driving).at(tooth, s_1);
+        let as_drawn = gears.roll_length_of(phase);
+        let line = (apart * apart - base * base).max(0.0).sqrt();
+        let rolls = [s_1 + out, line - s_1 - out];
+        let shift = |s: f64| (s - as_drawn) / gears.base_pitch();
+        let to_tip = Member::BOTH
+            .map(|member| gears.gear(member).tip_form_roll_length() - rolls[member.index()]);
+        Self {
+            by_tooth: shift(as_drawn + out),
+            on_flanks: [shift(rolls[0]), shift(gears.line_of_action() - rolls[1])],
+            nearer_tip: if to_tip[0] < to_tip[1] {
+                Member::Driving
+            } else {
+                Member::Driven
+            },
+        }
+    }
 }

@@ -1,15 +1,39 @@
 //! The contact as its load vanishes: rigid flanks, turned until the first of them touch.
 
+use std::ops::RangeInclusive;
+
 use super::cells::{MeshContact, PairContact};
 use super::facing::Facing;
 use super::model::PositionError;
 use crate::gear::{GearPair, Member, PairDeviations};
 
 /// Gaps that differ by less than this part of the module close together: rounding of coordinates.
-const TOGETHER: f64 = 1e-9;
+pub(super) const TOGETHER: f64 = 1e-9;
 
 /// Steps to the touching flanks; each squares what is left.
 const MOST_STEPS: u32 = 20;
+
+/// Where the flanks of one pair touch first as the driven gear turns back.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FirstTouch {
+    /// The pair n.
+    pub(super) pair: i64,
+    /// The δ at which they touch.
+    pub(super) delta: f64,
+    /// The gear whose tip corner touches off the path of contact.
+    pub(super) tip_corner: Option<Member>,
+}
+
+impl FirstTouch {
+    /// That of the flanks of `pair` as they face each other in a transverse section.
+    pub(super) fn of(pair: i64, facing: &Facing) -> Self {
+        Self {
+            pair,
+            delta: facing.touch(),
+            tip_corner: facing.off_path.then_some(facing.seat),
+        }
+    }
+}
 
 /// The limit of the contact of `pair` with these `deviations` at the mesh position `eta` as the load goes to zero: δ is the kinematic error of
 /// modified and deviating flanks, negative where a flank stands out towards its mate.
@@ -26,29 +50,24 @@ pub fn light_contact(
     eta: f64,
 ) -> Result<MeshContact, PositionError> {
     let rounding = TOGETHER * pair.driving().data().rack.module;
-    let near = pairs_near(pair, deviations, eta, rounding)?;
+    let touch = |n: i64, lag: f64| {
+        let facing = Facing::real(pair, deviations, eta, n, lag)?;
+        Some(FirstTouch::of(n, &facing))
+    };
+    let apart = 2.0 * deviations.nearest() + rounding;
+    let near = touching_near(on_path(pair, eta, 0.0), apart, |n| touch(n, 0.0));
     let mut lag = 0.0;
-    let mut facing = Vec::new();
+    let mut touches = near.clone();
     for _ in 0..MOST_STEPS {
-        facing = near
-            .iter()
-            .filter_map(|n| Some((*n, Facing::real(pair, deviations, eta, *n, lag)?)))
-            .collect();
-        let least = facing.iter().map(|(_, facing)| facing.touch());
-        let step = least.fold(f64::INFINITY, f64::min);
-        if !step.is_finite() {
-            return Err(PositionError::NoContact);
-        }
-        lag += step;
-        if step.abs() < 1e-6 * rounding {
+        let step = first(&touches);
+        if step.abs() < 1e-6 * rounding || !step.is_finite() {
             break;
         }
+        lag += step;
+        let turned = near.iter().filter_map(|near| touch(near.pair, lag));
+        touches = turned.collect();
     }
-    facing.retain(|(_, facing)| facing.touch() <= rounding);
-    let touching = facing
-        .iter()
-        .map(|(n, facing)| (*n, facing.off_path.then_some(facing.seat)));
-    Ok(MeshContact::unloaded(lag, touching.collect()))
+    MeshContact::of_first(lag, &touches, rounding)
 }
 
 impl MeshContact {
@@ -75,50 +94,72 @@ impl MeshContact {
             iterations: 0,
         }
     }
+
+    /// That of the pairs of `touches` which touch first, or within `rounding` of it, at the δ `lag` more than they say.
+    ///
+    /// # Errors
+    ///
+    /// [`PositionError::NoContact`] if there are none.
+    pub(super) fn of_first(
+        lag: f64,
+        touches: &[FirstTouch],
+        rounding: f64,
+    ) -> Result<Self, PositionError> {
+        let least = first(touches);
+        let touching = touches
+            .iter()
+            .filter(|touch| touch.delta <= least + rounding);
+        let touching: Vec<_> = touching
+            .map(|touch| (touch.pair, touch.tip_corner))
+            .collect();
+        if touching.is_empty() {
+            return Err(PositionError::NoContact);
+        }
+        Ok(Self::unloaded(lag + least, touching))
+    }
 }
 
-/// The pairs one of which touches first, whatever its teeth deviate, rising.
-fn pairs_near(
-    pair: &GearPair,
-    deviations: &PairDeviations,
-    eta: f64,
-    rounding: f64,
-) -> Result<Vec<i64>, PositionError> {
-    let touch = |n: i64| Facing::real(pair, deviations, eta, n, 0.0).map(|facing| facing.touch());
+/// The δ at which the first of `touches` touches; without end if there are none.
+pub(super) fn first(touches: &[FirstTouch]) -> f64 {
+    let each = touches.iter().map(|touch| touch.delta);
+    each.fold(f64::INFINITY, f64::min)
+}
+
+/// The pairs of which at the mesh position `eta` any section, up to `beside` mesh periods ahead of the middle one or behind it, is on the path of
+/// contact of `pair`, and one more to either side.
+pub(super) fn on_path(pair: &GearPair, eta: f64, beside: f64) -> RangeInclusive<i64> {
     let (s_a, s_e) = pair.path_of_contact();
     let periods = |s: f64| (s - pair.roll_length_of(0.0)) / pair.base_pitch();
-    let first = (eta - periods(s_e)).floor() as i64;
-    let last = (eta - periods(s_a)).ceil() as i64;
-    let found = (first..=last).filter_map(|n| Some((n, touch(n)?)));
-    let mut found: Vec<(i64, f64)> = found.collect();
-    let least = |found: &[(i64, f64)]| {
-        let touches = found.iter().map(|found| found.1);
-        touches.fold(f64::INFINITY, f64::min)
-    };
+    let first = (eta - periods(s_e) - beside).floor() as i64;
+    let last = (eta - periods(s_a) + beside).ceil() as i64;
+    first..=last
+}
+
+/// Where the pairs `on_path` and those beside them touch, as `touch` tells, rising by pair: all that come within `apart` and a tenth of δ of the first.
+/// The teeth of two pairs deviate from each other by at most `apart`.
+pub(super) fn touching_near(
+    on_path: RangeInclusive<i64>,
+    apart: f64,
+    touch: impl Fn(i64) -> Option<FirstTouch>,
+) -> Vec<FirstTouch> {
+    let mut found: Vec<FirstTouch> = on_path.clone().filter_map(&touch).collect();
     // Beyond the path of contact gaps as drawn grow from pair to pair, and a lag closes all of them about alike.
-    let most = |found: &[(i64, f64)]| {
-        let least = least(found);
-        least + 0.1 * least.abs() + 2.0 * deviations.nearest() + rounding
+    let most = |found: &[FirstTouch]| {
+        let least = first(found);
+        least + 0.1 * least.abs() + apart
     };
-    for (begin, step) in [(first - 1, -1), (last + 1, 1)] {
+    for (begin, step) in [(on_path.start() - 1, -1), (on_path.end() + 1, 1)] {
         let mut n = begin;
         while let Some(touch) = touch(n) {
-            found.push((n, touch));
-            if touch > most(&found) {
+            found.push(touch);
+            if touch.delta > most(&found) {
                 break;
             }
             n += step;
         }
     }
     let most = most(&found);
-    let mut near: Vec<i64> = found
-        .iter()
-        .filter(|(_, touch)| *touch <= most)
-        .map(|(n, _)| *n)
-        .collect();
-    near.sort_unstable();
-    if near.is_empty() {
-        return Err(PositionError::NoContact);
-    }
-    Ok(near)
+    found.retain(|touch| touch.delta <= most);
+    found.sort_unstable_by_key(|touch| touch.pair);
+    found
 }

@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, VecDeque};
 
 use super::cells::{ContactCells, Laid, MeshCells, MeshContact, Want};
 use super::compliances::{Known, StatedCells};
+use super::drawn::DrawnPair;
 use super::facings::{Facings, Near};
 use super::meeting::Standing;
 use super::model::{MadePair, PositionError, WarmStart};
@@ -208,7 +209,10 @@ impl<'a> Stage<'a> {
     /// The problem on `cells`. A compliance that was met before is not stated anew.
     fn state(&mut self, cells: &ContactCells<'_>) -> Result<ContactProblem, PositionError> {
         let pairs = cells.laid.iter();
-        let pairs = pairs.map(|laid| (laid.pair, laid.drawn.phase.to_bits(), laid.extent));
+        let pairs = pairs.map(|laid| {
+            let DrawnPair { phase, seat, .. } = laid.drawn;
+            (laid.pair, phase.to_bits(), seat, laid.extent)
+        });
         let spec = StatedCells {
             load: self.load.to_bits(),
             pairs: pairs.collect(),

@@ -28,4 +28,4 @@ pub use law::Laws;
 pub use orbit::Orbit;
 pub use oscillator::{Oscillator, State};
 pub use run_up::{Branch, Resonance, ResonanceKind, RunUp, RunUpData};
-pub use table::{FlankRows, ForceTable, Ladder};
+pub use table::{FallingRow, FlankRows, ForceTable, Ladder};

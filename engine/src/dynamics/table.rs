@@ -6,6 +6,23 @@ const RISE: f64 = 1.5;
 /// The least rise of δ from row to row in m, less than an atom.
 const APART: f64 = 1e-14;
 
+/// By how much a computed row may fall below the one before it, in m: rounding of coordinates.
+const ROUNDING: f64 = 1e-12;
+
+/// A row of a table that does not lie beyond that of the load before it.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error(
+    "at mesh position {mesh_position} δ under {load} N is less by {falls} m than under the load before it"
+)]
+pub struct FallingRow {
+    /// The mesh position η at which it falls most.
+    pub mesh_position: f64,
+    /// Its load in N, negative on the other flanks.
+    pub load: f64,
+    /// By how much it falls, in m.
+    pub falls: f64,
+}
+
 /// The loads of a table: 0 and so many more, up to the largest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ladder {
@@ -72,10 +89,43 @@ pub struct Forces {
 }
 
 impl ForceTable {
-    /// A table over `period` mesh periods with these rows of the loaded and of the other flank, a row each load of the `ladder`.
+    /// A table over `period` mesh periods with these rows of the loaded and of the other flank, a row each load of the `ladder`. Rows that rounding
+    /// leaves equal are set apart.
     ///
-    /// Each row has to lie beyond the one before; where rounding has it otherwise, it is put there.
-    pub fn new(period: u32, ladder: Ladder, [mut loaded, mut other]: [FlankRows; 2]) -> Self {
+    /// # Errors
+    ///
+    /// [`FallingRow`] if δ does not rise with the load.
+    pub fn new(
+        period: u32,
+        ladder: Ladder,
+        [loaded, other]: [FlankRows; 2],
+    ) -> Result<Self, FallingRow> {
+        let table = Self::set_apart(period, ladder, [loaded.clone(), other.clone()]);
+        let step = table.step();
+        for (given, found, sign) in [(loaded, &table.loaded, 1.0), (other, &table.other, -1.0)] {
+            let rows = given.delta.iter().zip(&found.delta).zip(&table.loads);
+            for ((given, found), load) in rows {
+                let falls = found
+                    .iter()
+                    .zip(given)
+                    .map(|(found, given)| (found - given).abs());
+                let Some((i, falls)) = falls.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)) else {
+                    continue;
+                };
+                if falls > ROUNDING {
+                    return Err(FallingRow {
+                        mesh_position: i as f64 * step,
+                        load: sign * load,
+                        falls,
+                    });
+                }
+            }
+        }
+        Ok(table)
+    }
+
+    /// With each row beyond the one before.
+    fn set_apart(period: u32, ladder: Ladder, [mut loaded, mut other]: [FlankRows; 2]) -> Self {
         set_apart(&mut loaded.delta, |a, b| a.max(b + APART));
         set_apart(&mut other.delta, |a, b| a.min(b - APART));
         Self {
@@ -208,7 +258,7 @@ impl ForceTable {
 
     /// The table with `by_position` times as many positions and `by_load` times as many loads, of four at least. Along a row: on cubics through
     /// its own, and on the lesser of two branches where pairs of teeth begin or cease to carry. From row to row: so that compliances are met where
-    /// they are known, and as along a row where they are not.
+    /// they are known, and as along a row where they are not. Where that brings two rows together between positions they are set apart.
     pub fn refined(&self, by_position: usize, by_load: usize) -> Self {
         let ladder = Ladder {
             count: (self.ladder.count - 1) * by_load + 1,
@@ -231,7 +281,7 @@ impl ForceTable {
             FlankRows::of_delta(along_positions.collect())
         };
         let flanks = [flank(&self.loaded, 1.0), flank(&self.other, -1.0)];
-        Self::new(self.period, ladder, flanks)
+        Self::set_apart(self.period, ladder, flanks)
     }
 
     /// `delta` at its positions under `loads`, of which every `by_load`-th is its own.
@@ -537,7 +587,42 @@ pub(super) mod tests {
             compliance: Some(compliance.collect()),
         };
         let other = FlankRows::of_delta(rows(-1.0, -3.0));
-        ForceTable::new(1, ladder, [loaded, other])
+        ForceTable::new(1, ladder, [loaded, other]).expect("rows that rise")
+    }
+
+    #[test]
+    fn a_row_that_falls_is_told_and_one_that_rounding_moved_is_set_apart() {
+        let ladder = Ladder {
+            count: 3,
+            largest: 4.0,
+        };
+        let table = |falls: f64, sign: f64| {
+            let rows = |sign: f64, from: f64, falls: f64| {
+                // At the first position it rises.
+                let row = |first: f64, last: f64| vec![from + sign * first, from + sign * last];
+                let rows = [(0.0, 0.0), (1e-6, 2e-6), (3e-6, 2e-6 - falls)];
+                FlankRows::of_delta(rows.map(|(first, last)| row(first, last)).to_vec())
+            };
+            let falling = |of: f64| if of == sign { falls } else { -1e-6 };
+            let flanks = [
+                rows(1.0, 0.0, falling(1.0)),
+                rows(-1.0, -9e-6, falling(-1.0)),
+            ];
+            ForceTable::new(2, ladder, flanks)
+        };
+        for sign in [1.0, -1.0] {
+            let told = table(0.3e-6, sign).expect_err("it falls");
+            assert_eq!((told.mesh_position, told.load), (1.0, 4.0 * sign));
+            assert!((told.falls / 0.3e-6 - 1.0).abs() < 1e-6, "{told}");
+            let apart = table(1e-15, sign).expect("rounding");
+            let flank = if sign > 0.0 {
+                apart.loaded()
+            } else {
+                apart.other()
+            };
+            let rise = sign * (flank.delta[2][1] - flank.delta[1][1]);
+            assert!(rise > 0.0 && rise < 2.0 * APART, "{rise:e}");
+        }
     }
 
     #[test]
@@ -694,7 +779,8 @@ pub(super) mod tests {
                 delta: rows(sign),
                 compliance: Some(compliance.clone()),
             });
-            let table = ForceTable::new(1, ladder, flanks).refined(1, 16);
+            let table = ForceTable::new(1, ladder, flanks).expect("rows that rise");
+            let table = table.refined(1, 16);
             let both = table.loaded.delta.iter().zip(&table.other.delta);
             let missed = table.loads().iter().zip(both).map(|(load, (row, other))| {
                 let delta = at(*load, kink).0;

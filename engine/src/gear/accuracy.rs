@@ -55,7 +55,7 @@ impl Tolerances {
     /// Teeth of one gear as a production of this accuracy makes them.
     ///
     /// A tolerance is 3 c standard deviations wide to each side, c the `capability`. Single pitch deviations are independent and close by
-    /// taking their mean away; so are the slopes of the profiles, which keep theirs; the eccentricity has two components,
+    /// taking their mean away, and displace teeth as wholes; so are the slopes of the profiles, which keep theirs; the eccentricity has two components,
     /// each of σ = F_rT/(6 c), because a runout is twice an eccentricity. F_pT is not enforced. Of `normals`, standard normal
     /// deviates, it takes one for each tooth's pitch, one for each tooth's slope, and two for the eccentricity.
     pub fn draw(
@@ -80,6 +80,7 @@ impl Tolerances {
         });
         ToothDeviations {
             cumulative_pitch: cumulative_pitch.collect(),
+            other_cumulative_pitch: Vec::new(),
             profile_slope,
             lead_slope: Vec::new(),
             eccentricity: match off_center[..] {

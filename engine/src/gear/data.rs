@@ -44,6 +44,8 @@ pub const LEAST_WEB_RIM: f64 = 0.5;
 pub enum DeviationList {
     /// The pitch.
     Pitch,
+    /// The pitch of the other flanks.
+    OtherFlankPitch,
     /// The profile slope.
     ProfileSlope,
     /// The lead slope.

@@ -1,5 +1,7 @@
 //! How the teeth of a gear deviate from each other, and their circle from the axis of rotation.
 
+use std::f64::consts::PI;
+
 use super::{Vector, radial};
 
 /// The gear's own axis beside the axis about which it turns.
@@ -18,6 +20,9 @@ pub struct Eccentricity {
 pub struct ToothDeviations {
     /// The cumulative pitch deviation F_p of each loaded flank, tooth 0 first: a transverse arc on the reference circle (ISO 1328-1).
     pub cumulative_pitch: Vec<f64>,
+    /// That of each other flank, positive in the same sense of rotation. Empty: each tooth is displaced as a whole. Its mean has no meaning: that of
+    /// the loaded flanks takes its place, because the drawing says how thick teeth are in the mean.
+    pub other_cumulative_pitch: Vec<f64>,
     /// The profile slope deviation f_Hα of each loaded flank: nothing at the form circle, this at the tip circle.
     pub profile_slope: Vec<f64>,
     /// The lead slope of each loaded flank, as [`super::LeadModification::Slope`]: nothing removed at the end at −z of the face, this at that at +z.
@@ -30,6 +35,9 @@ pub struct ToothDeviations {
 impl ToothDeviations {
     /// The same said shortest: what deviates by nothing is not there.
     pub(super) fn without_zeros(mut self) -> Self {
+        if self.other_pitch() == self.cumulative_pitch {
+            self.other_cumulative_pitch.clear();
+        }
         for list in [
             &mut self.cumulative_pitch,
             &mut self.profile_slope,
@@ -48,9 +56,10 @@ impl ToothDeviations {
         self.are_teeth_alike() && self.eccentricity.is_none()
     }
 
-    /// Whether no tooth deviates. Of a gear that exists.
+    /// Whether no flank deviates. Of a gear that exists.
     pub fn are_teeth_alike(&self) -> bool {
         self.cumulative_pitch.is_empty()
+            && self.other_cumulative_pitch.is_empty()
             && self.profile_slope.is_empty()
             && self.lead_slope.is_empty()
     }
@@ -59,6 +68,41 @@ impl ToothDeviations {
     pub fn displacement(&self, angle: f64) -> Vector {
         self.eccentricity
             .map_or_else(Vector::zeros, |each| each.displacement(angle))
+    }
+
+    /// The cumulative pitch deviation of each other flank, of the mean of that of the loaded ones. Empty where no tooth is displaced.
+    pub(super) fn other_pitch(&self) -> Vec<f64> {
+        let (loaded, other) = (&self.cumulative_pitch, &self.other_cumulative_pitch);
+        if other.is_empty() {
+            return loaded.clone();
+        }
+        let sum = |arcs: &[f64]| arcs.iter().sum::<f64>();
+        let shift = (sum(loaded) - sum(other)) / other.len() as f64;
+        let shifted: Vec<f64> = other.iter().map(|arc| arc + shift).collect();
+        let are_none = loaded.is_empty() && shifted.iter().all(|arc| *arc == 0.0);
+        if are_none { Vec::new() } else { shifted }
+    }
+
+    /// Those of the mirror image of the gear, whose loaded flanks are the other flanks of this one: teeth are counted the other way round, from the
+    /// tooth `first` of this gear on, which has so many `teeth`. Slopes are those of the loaded flanks and are left behind.
+    pub(super) fn mirrored(&self, teeth: usize, first: usize) -> Self {
+        let turned = |arcs: &[f64]| -> Vec<f64> {
+            let from = |tooth: usize| (first + teeth - tooth) % teeth;
+            let places = (0..arcs.len()).map(from);
+            places.map(|place| 0.0 - arcs[place]).collect()
+        };
+        let to_first = 2.0 * PI * first as f64 / teeth as f64;
+        Self {
+            cumulative_pitch: turned(&self.other_pitch()),
+            other_cumulative_pitch: turned(&self.cumulative_pitch),
+            profile_slope: Vec::new(),
+            lead_slope: Vec::new(),
+            eccentricity: self.eccentricity.map(|each| Eccentricity {
+                direction: to_first - each.direction,
+                ..each
+            }),
+        }
+        .without_zeros()
     }
 }
 

@@ -9,6 +9,7 @@
 //! x axis, and the loaded flank of each tooth lies on its counter-clockwise side.
 
 pub mod accuracy;
+mod backlash;
 pub mod blank;
 pub mod data;
 pub mod deviation;

@@ -158,6 +158,25 @@ impl GearPair {
         }
     }
 
+    /// The pair whose loaded flanks touch as the other flanks of this one do: its mirror image about the line of centers, whose mesh position 0 is
+    /// [`GearPair::other_flanks_later`] and which passes the others the other way round. Blanks stay as they are under the flanks.
+    pub fn mirror_image(&self) -> Self {
+        // The other flank of a driving tooth faces the driven tooth of the pair after its own.
+        let first = [0, 1].map(|n| self.teeth(n));
+        Self {
+            driving: self.driving.mirror_image(first[0][0]),
+            driven: self.driven.mirror_image(first[1][1]),
+            ..*self
+        }
+    }
+
+    /// How many mesh periods after the loaded flank of a driving tooth its other flank passes the pitch point: the thickness of the tooth.
+    pub fn other_flanks_later(&self) -> f64 {
+        let alpha_w = self.working_pressure_angle();
+        let half_angle = self.driving.flank().base_half_angle() - involute_function(alpha_w);
+        2.0 * half_angle / self.driving.pitch_angle()
+    }
+
     /// Slices of the flanks of both gears, one meter long, in plane strain: what a contact is near a line of it.
     pub(crate) fn long_slices(&self) -> Self {
         Self {
@@ -204,7 +223,8 @@ impl GearPair {
             && self.center_distance - other.tip_radius() > gear.root_radius()
     }
 
-    fn at(&self, center_distance: f64) -> Self {
+    /// The same gears at another distance, whether they can mesh there or not.
+    pub(super) fn at(&self, center_distance: f64) -> Self {
         Self::placed(self.driving.clone(), self.driven.clone(), center_distance)
     }
 
@@ -321,34 +341,6 @@ impl GearPair {
         (pitch - thickness(Member::Driving) - thickness(Member::Driven)) * alpha_w.cos()
     }
 
-    /// The least normal backlash of any two teeth: deviations that stand out and eccentric gears take from it.
-    pub fn least_backlash(&self) -> f64 {
-        self.least_backlash_with(&self.deviations())
-    }
-
-    fn least_backlash_with(&self, deviations: &PairDeviations) -> f64 {
-        self.backlash() - deviations.taken_backlash(self.working_pressure_angle())
-    }
-
-    /// Whether teeth that have these `deviations` have room.
-    fn leaves_backlash(&self, deviations: &PairDeviations) -> Result<(), GearPairError> {
-        let tip_radii = self.driving.tip_radius() + self.driven.tip_radius();
-        // Below the base circles together there is no line of action; the backlash decides the nearest distance.
-        let base_radii = self.driving.base_radius() + self.driven.base_radius();
-        let backlash = if self.center_distance <= base_radii {
-            f64::NEG_INFINITY
-        } else {
-            self.least_backlash_with(deviations)
-        };
-        // Rounding of a distance that was typed for no backlash is none.
-        if backlash >= -1e-9 * self.driving.data().rack.module {
-            return Ok(());
-        }
-        let fits = |pair: &Self| pair.least_backlash_with(deviations) >= 0.0;
-        let smallest = self.least_center_distance(base_radii, tip_radii, fits);
-        Err(GearPairError::NegativeBacklash { backlash, smallest })
-    }
-
     /// What the teeth of both gears deviate by.
     pub fn deviations(&self) -> PairDeviations {
         let teeth = Member::BOTH.map(|member| self.gear(member).deviations());
@@ -378,6 +370,18 @@ impl GearPair {
     /// The number of mesh periods after which the contact repeats: the least common multiple of both gears'.
     pub fn period(&self) -> u32 {
         least_common_multiple(Member::BOTH.map(|member| self.period_of(member)))
+    }
+
+    /// As [`GearPair::period_with`], of gears without holes.
+    pub(super) fn period_of_teeth(&self, deviations: &PairDeviations) -> u32 {
+        least_common_multiple(Member::BOTH.map(|member| {
+            let alike = deviations.of_gear(member).is_none();
+            if alike {
+                1
+            } else {
+                self.gear(member).tooth_count()
+            }
+        }))
     }
 
     /// As [`GearPair::period`], of gears that have these `deviations` instead of their own.

@@ -9,6 +9,8 @@ use super::{Eccentricity, Member, SpurGear, ToothDeviations, Vector};
 pub struct GearDeviations {
     /// How far each flank is turned towards its mate, as a length on the base circle. Empty where all stand as drawn.
     turns: Vec<f64>,
+    /// The same turn of each other flank, in the same sense. Empty where each stands as the loaded flank of its tooth does.
+    other_turns: Vec<f64>,
     /// f_Hα of each flank. Empty where none is inclined.
     profile_slopes: Vec<f64>,
     /// What each lead slope removes. Empty where none does.
@@ -22,6 +24,7 @@ impl GearDeviations {
     /// Nothing deviates.
     const NONE: Self = Self {
         turns: Vec::new(),
+        other_turns: Vec::new(),
         profile_slopes: Vec::new(),
         lead_slopes: Vec::new(),
         ends: [0.0, 1.0],
@@ -33,9 +36,15 @@ impl GearDeviations {
         let teeth = teeth.clone().without_zeros();
         // An arc f on the reference circle turns the flank by f/r, which is f cos α along the base tangent.
         let cosine = gear.data().rack.pressure_angle.cos();
-        let arcs = teeth.cumulative_pitch.iter();
+        let turns = |arcs: &[f64]| arcs.iter().map(|arc| arc * cosine).collect();
+        let alike = teeth.other_cumulative_pitch.is_empty();
         Self {
-            turns: arcs.map(|arc| arc * cosine).collect(),
+            turns: turns(&teeth.cumulative_pitch),
+            other_turns: if alike {
+                Vec::new()
+            } else {
+                turns(&teeth.other_pitch())
+            },
             profile_slopes: teeth.profile_slope,
             lead_slopes: teeth.lead_slope,
             ends: [gear.form_roll_length(), gear.tip_roll_length()],
@@ -46,6 +55,7 @@ impl GearDeviations {
     /// Whether every tooth stands as drawn, about the axis of rotation.
     pub fn is_none(&self) -> bool {
         self.turns.is_empty()
+            && self.other_turns.is_empty()
             && self.profile_slopes.is_empty()
             && self.lead_slopes.is_empty()
             && self.eccentricity.is_none()
@@ -65,9 +75,21 @@ impl GearDeviations {
         self.lead_slopes.get(tooth).copied().unwrap_or(0.0)
     }
 
+    /// The most that any lead slope removes or adds.
+    pub fn steepest_lead(&self) -> f64 {
+        let slopes = self.lead_slopes.iter();
+        slopes.fold(0.0, |most, slope| slope.abs().max(most))
+    }
+
     /// What of [`GearDeviations::at`] is alike all along the flank of `tooth`.
     pub fn turn(&self, tooth: usize) -> f64 {
         self.turns.get(tooth).copied().unwrap_or(0.0)
+    }
+
+    /// As [`GearDeviations::turn`] of the other flank of `tooth`, in the same sense of rotation.
+    pub fn other_turn(&self, tooth: usize) -> f64 {
+        let turn = self.other_turns.get(tooth).copied();
+        turn.unwrap_or_else(|| self.turn(tooth))
     }
 
     /// The slope of [`GearDeviations::at`] by the roll length.
@@ -150,16 +172,6 @@ impl PairDeviations {
     /// How far they may bring any two flanks nearer to each other than they are drawn, along the line of action.
     pub fn nearest(&self) -> f64 {
         self.nearest
-    }
-
-    /// What they take of the backlash, where teeth are pressed together at the `working_pressure_angle`.
-    ///
-    /// Where both gears stand nearer by Σe, each flank closes up by Σe sin α_w.
-    pub(super) fn taken_backlash(&self, working_pressure_angle: f64) -> f64 {
-        let each = self.gears.iter().map(|gear| {
-            gear.farthest_out() + 2.0 * gear.eccentricity() * working_pressure_angle.sin()
-        });
-        each.sum()
     }
 }
 

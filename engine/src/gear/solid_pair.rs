@@ -166,17 +166,8 @@ impl SolidPair {
         })
     }
 
-    /// The same pair whose teeth are all as drawn.
-    pub fn as_drawn(&self) -> Self {
-        Self {
-            gears: self.gears.each_ref().map(SolidGear::as_drawn),
-            section: self.section.as_drawn(),
-            ..self.clone()
-        }
-    }
-
     /// The pair whose loaded flanks touch as the other flanks of this one do: turned over about the line of centers, at positions that go the
-    /// other way round. Holes stay where they are under the flanks.
+    /// other way round ([`GearPair::mirror_image`]). Holes stay where they are under the flanks.
     pub fn turned_over(&self) -> Self {
         let Alignment {
             axial_offset,
@@ -202,8 +193,8 @@ impl SolidPair {
         }
         let [low, high] = self.common;
         Self {
-            gears: self.gears.each_ref().map(SolidGear::turned_over),
-            section: self.section.clone(),
+            gears: (self.gears.each_ref()).map(|gear| gear.as_drawn().turned_over()),
+            section: self.section.mirror_image(),
             leads,
             alignment: Alignment {
                 axial_offset: 0.0 - axial_offset,

@@ -16,13 +16,19 @@ document! {
     /// order, and both keep their numbers when the other gear drives.
     pub struct DeviationsDocument as "ToothDeviations", "Tooth deviations" {
         /// How far the loaded flank of each tooth, tooth 0 first, stands from its place towards its mate, as a transverse arc on the
-        /// reference circle (ISO 1328-1). Along the base tangent it is times the cosine of the pressure angle.
+        /// reference circle (ISO 1328-1). Along the base tangent it is times the cosine of the pressure angle. The tooth is displaced as a whole,
+        /// unless `other_flank_pitch_cumulative_um` says otherwise. The same constant for all teeth is a turn of the gear.
         pitch_cumulative_um: Option<Vec<f64>> =
             absent(each_tooth("Cumulative pitch deviations"), "none").not_beside("pitch_single_um"),
         /// The deviation of each tooth, tooth 0 first, against the tooth before it, as a transverse arc on the reference circle (ISO
         /// 1328-1); that of tooth 0 is against the last tooth. Their sum has to be zero within 0.01 um. Summed up they are cumulative
         /// deviations from the last tooth.
         pitch_single_um: Option<Vec<f64>> = absent(each_tooth("Single pitch deviations"), "none"),
+        /// Where the other flank of each tooth stands, tooth 0 first, positive in the same sense of rotation as the deviations of the loaded flanks; absent:
+        /// as they do, each tooth being displaced as a whole. Its mean is shifted to that of the loaded flanks, because the thickness of
+        /// the gear says how thick its teeth are in the mean.
+        other_flank_pitch_cumulative_um: Option<Vec<f64>> =
+            absent(each_tooth("Cumulative pitch deviations of the other flanks"), "as the loaded flanks"),
         /// The slope deviation of the loaded flank of each tooth, tooth 0 first: nothing at the form circle, this much towards the mate at
         /// the tip circle, linear in the roll length.
         profile_slope_um: Option<Vec<f64>> = absent(each_tooth("Profile slope deviations"), "none"),
@@ -64,6 +70,16 @@ impl DeviationsDocument {
         Self {
             pitch_cumulative_um: None,
             pitch_single_um: Some(single.collect()),
+            other_flank_pitch_cumulative_um: (!deviations.other_cumulative_pitch.is_empty()).then(
+                || {
+                    deviations
+                        .other_cumulative_pitch
+                        .iter()
+                        .copied()
+                        .map(told)
+                        .collect()
+                },
+            ),
             profile_slope_um: Some(deviations.profile_slope.iter().copied().map(told).collect()),
             lead_slope_um: (!deviations.lead_slope.is_empty())
                 .then(|| deviations.lead_slope.iter().copied().map(told).collect()),
@@ -81,6 +97,10 @@ impl DeviationsDocument {
         let lists = [
             (Self::pitch_cumulative_um.name, &self.pitch_cumulative_um),
             (Self::pitch_single_um.name, &self.pitch_single_um),
+            (
+                Self::other_flank_pitch_cumulative_um.name,
+                &self.other_flank_pitch_cumulative_um,
+            ),
             (Self::profile_slope_um.name, &self.profile_slope_um),
             (Self::lead_slope_um.name, &self.lead_slope_um),
         ];
@@ -163,6 +183,11 @@ impl DeviationsDocument {
                 None => meters(self.pitch_cumulative_um.as_deref().unwrap_or_default()),
                 Some(values) => summed(values).into_iter().map(from_um).collect(),
             },
+            other_cumulative_pitch: meters(
+                self.other_flank_pitch_cumulative_um
+                    .as_deref()
+                    .unwrap_or_default(),
+            ),
             profile_slope: meters(self.profile_slope_um.as_deref().unwrap_or_default()),
             lead_slope: meters(self.lead_slope_um.as_deref().unwrap_or_default()),
             eccentricity: self.eccentricity.as_ref().map(|eccentricity| Eccentricity {

@@ -183,6 +183,7 @@ impl GearDocument {
                     "The {} deviations are {given}; {needed} are needed, one for each tooth.",
                     match list {
                         DeviationList::Pitch => "pitch",
+                        DeviationList::OtherFlankPitch => "pitch (other flank)",
                         DeviationList::ProfileSlope => "profile slope",
                         DeviationList::LeadSlope => "lead slope",
                     }

@@ -37,7 +37,7 @@ impl Results {
         ];
         let base_radii = self.base_radii();
         Some(MeshForces {
-            table: ForceTable::new(pair.period_mesh_periods, ladder, flanks),
+            table: ForceTable::new(pair.period_mesh_periods, ladder, flanks).ok()?,
             base_radii,
             tooth_count: (TAU * base_radii[0] / (pair.base_pitch_mm * 1e-3)).round(),
             method: self.method.to_string(),

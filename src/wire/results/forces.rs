@@ -27,10 +27,11 @@ answer! {
         #[serde(default)]
         #[schema(required)]
         mesh_stiffness_tangent_n_per_m: Vec<Vec<f64>> = stiffnesses(loaded),
-        /// The backlash along the line of action at each position, in um: no force acts while the approach is less than that of load 0 by up to
-        /// this much.
+        /// The backlash along the line of action at each position, in um, deviations and eccentricity included: no force acts while the approach is less
+        /// than that of load 0 by up to this much.
         backlash_um: Vec<f64> = each(&table.backlash(), to_um),
-        /// The approach at which the other flanks, as drawn, carry each load: one row a load.
+        /// The approach at which the other flanks carry each load: one row a load. Pitch deviations and eccentricity move them as they say; profile and
+        /// lead slopes of single teeth are those of the loaded flanks alone.
         other_flank_transmission_error_um: Vec<Vec<f64>> = all(&other.delta, in_um),
         /// The stiffness of the other flanks under each load, in N/m, in the same order.
         #[serde(default)]

@@ -53,7 +53,7 @@ pub(super) fn does_not_see(case: &Case, forces: Option<&ForcesRequest>) -> Vec<&
 fn forces_do_not_see(forces: Option<&ForcesRequest>) -> Vec<&'static str> {
     let mut unseen = Vec::new();
     if forces.is_some() {
-        unseen.push("the holes under the other flanks where they are: those flanks carry as the mirror image of the loaded ones, as drawn");
+        unseen.push("the holes under the other flanks where they are, and slopes of single teeth on them: those flanks carry as the mirror image of the loaded ones");
     }
     if forces.is_some_and(|forces| forces.dynamics.is_some()) {
         unseen.push("beyond one torsional degree of freedom: in the dynamics, shafts, bearings, housing and the vibrations of the gear bodies");

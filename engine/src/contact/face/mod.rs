@@ -30,7 +30,6 @@ use crate::gear::{Member, SolidPair};
 use crate::run::Run;
 use balance::{Balance, balance};
 use compliance::compliance;
-pub use light::light_face;
 pub use model::{FaceModel, FlankYield};
 use slice::{Loading, Slice, Stretches};
 
@@ -244,34 +243,6 @@ impl FaceModel {
         }
     }
 
-    /// The δ at which the pair touches at the position `eta`, on its theoretical contact lines.
-    pub fn least_touch(&self, eta: f64) -> Option<f64> {
-        self.first_touch(eta).map(|(touch, _)| touch)
-    }
-
-    /// The δ at which the pair touches at the position `eta`, on its theoretical contact lines, and the pair n that does.
-    fn first_touch(&self, eta: f64) -> Option<(f64, i64)> {
-        let mut stretches = Some(self.theoretical_lines(eta));
-        let mut first = None;
-        for _ in 0..=FINEST {
-            let Some(cut) = stretches else { break };
-            let slices = slice::lay(self, eta, &cut, None);
-            let touch = |slice: &Slice| slice.gap / slice.weights[1];
-            let touches = slices.iter().map(|slice| (touch(slice), slice.pair));
-            first = touches.min_by(|a, b| a.0.total_cmp(&b.0));
-            let (least, _) = first?;
-            let gaps: Vec<f64> = slices.iter().map(|slice| touch(slice) - least).collect();
-            stretches = cut.shut(self, &slices, &gaps);
-        }
-        first
-    }
-
-    /// The theoretical contact lines at the position `eta`.
-    fn theoretical_lines(&self, eta: f64) -> Stretches {
-        let (s_a, s_e) = self.pair.section().path_of_contact();
-        Stretches::whole(self, eta, [s_a, s_e].map(|s| self.pair.phase_at(s)))
-    }
-
     /// How far leads, deviations and the axes may bring flanks nearer to each other than their sections are.
     fn nearer(&self) -> f64 {
         const PLACES: usize = 33;
@@ -300,6 +271,7 @@ impl FaceModel {
         };
         let (s_a, s_e) = self.pair.section().path_of_contact();
         let ends = [s_a, s_e].map(|s| self.pair.phase_at(s));
+        let nearest = self.nearest_phases(ends, STEP);
         let outermost = |end: f64, way: f64, other: f64| {
             let mut out = end + way;
             while touches(out) {
@@ -309,6 +281,12 @@ impl FaceModel {
             while !touches(inside) && (inside - other) * way > 0.0 {
                 outside = inside;
                 inside -= way * STEP;
+                // However narrow a stretch is that touches, its nearest phase is not passed by.
+                let first = |a: f64, b: f64| if (b - a) * way > 0.0 { b } else { a };
+                let ahead = nearest
+                    .iter()
+                    .filter(|phase| (outside - **phase) * way > 0.0);
+                inside = ahead.copied().fold(inside, first);
             }
             crate::root_finding::bisect(inside, outside, touches)
         };
@@ -575,7 +553,11 @@ mod tests {
             let contacts: Vec<FaceContact> = (0..16)
                 .map(|i| {
                     let eta = f64::from(i) / 16.0;
-                    let slices = slice::lay(&model, eta, &model.theoretical_lines(eta), None);
+                    let section = model.pair.section();
+                    let (s_a, s_e) = section.path_of_contact();
+                    let phases = [s_a, s_e].map(|s| model.pair.phase_at(s));
+                    let lines = Stretches::whole(&model, eta, phases);
+                    let slices = slice::lay(&model, eta, &lines, None);
                     let balance = balance(compliance(&model, &slices), &slices, load);
                     model.told(&slices, &balance.expect("a balance"), load)
                 })

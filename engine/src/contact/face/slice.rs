@@ -211,23 +211,10 @@ impl<'a> Layer<'a> {
             along,
             roll_lengths: hollow.roll_lengths,
             weights,
-            gap: section_gap + weights[1] * self.opening(n, z, hollow.roll_lengths),
+            gap: section_gap + weights[1] * model.opening(n, z, hollow.roll_lengths),
             factor: self.factor,
             spring,
         }
-    }
-
-    /// By how much leads, axes and deviations open pair `n` at `z`, along the base tangent.
-    fn opening(&self, n: i64, z: f64, roll_lengths: [f64; 2]) -> f64 {
-        let (pair, deviations) = (&self.model.pair, &self.model.deviations);
-        let teeth = pair.section().teeth(n);
-        let out = Member::BOTH.map(|member| {
-            let (g, teeth_of) = (member.index(), deviations.of_gear(member));
-            let (tooth, s) = (teeth[g], roll_lengths[g]);
-            let turn = pair.gear(member).twist() * pair.own_height(member, z);
-            teeth_of.at(tooth, s) + teeth_of.runout(pair.section().gear(member), tooth, s, turn)
-        });
-        pair.lead_gap(deviations, teeth, z) - out[0] - out[1]
     }
 
     /// Whether a contact under `density` may reach an end of the flanks or a kink, or is not that of two parabolas.

@@ -238,6 +238,10 @@ impl SpurGear {
         let needed = self.data.tooth_count as usize;
         for (list, values) in [
             (DeviationList::Pitch, &deviations.cumulative_pitch),
+            (
+                DeviationList::OtherFlankPitch,
+                &deviations.other_cumulative_pitch,
+            ),
             (DeviationList::ProfileSlope, &deviations.profile_slope),
             (DeviationList::LeadSlope, &deviations.lead_slope),
         ] {

@@ -123,9 +123,19 @@ impl SpurGear {
 
     /// The same gear with teeth that do not deviate.
     pub fn as_drawn(&self) -> Self {
+        self.with_deviations(ToothDeviations::default())
+    }
+
+    /// The same drawing with teeth whose other flanks are the loaded ones of this gear, seen in a mirror: tooth 0 is the tooth `first` of this gear.
+    pub(in crate::gear) fn mirror_image(&self, first: usize) -> Self {
+        let teeth = self.data.tooth_count as usize;
+        self.with_deviations(self.data.deviations.mirrored(teeth, first))
+    }
+
+    fn with_deviations(&self, deviations: ToothDeviations) -> Self {
         Self {
             data: GearData {
-                deviations: ToothDeviations::default(),
+                deviations,
                 ..self.data.clone()
             },
             ..self.clone()

@@ -230,6 +230,21 @@ fn deviations_reach_the_engine_and_single_ones_sum_up_from_the_last_tooth() {
 }
 
 #[test]
+fn other_flanks_stand_where_a_list_of_their_own_says() {
+    let given = told(
+        &json!({ "tooth_deviations": { "other_flank_pitch_cumulative_um": alternating(4.0) } }),
+    );
+    near(given.deviations.other_cumulative_pitch[1], -4e-6);
+    assert!(given.deviations.cumulative_pitch.is_empty());
+    let short = json!({ "tooth_deviations": { "other_flank_pitch_cumulative_um": [1.0] } });
+    let place = "tooth_deviations/other_flank_pitch_cumulative_um";
+    fault(&short, place, Code::WrongLength);
+    let far =
+        json!({ "tooth_deviations": { "other_flank_pitch_cumulative_um": alternating(600.0) } });
+    fault(&far, &format!("{place}/0"), Code::OutOfRange);
+}
+
+#[test]
 fn deviations_need_one_number_a_tooth_and_single_ones_have_to_close() {
     let single = |values: &[f64]| json!({ "tooth_deviations": { "pitch_single_um": values } });
     let place = "tooth_deviations/pitch_single_um";
