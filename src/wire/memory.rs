@@ -7,7 +7,7 @@ use meshwright_engine::grid::GridLevel;
 use super::problem::{Code, Problem};
 use super::submission::Submission;
 
-/// Pairs of so many teeth together, on the standard grid or a coarser one, take no more than [`USUAL_MB`], whatever else
+/// Plane pairs of so many teeth together, on the standard grid or a coarser one, take no more than [`USUAL_MB`], whatever else
 /// is asked.
 const USUAL_TEETH: u32 = 200;
 
@@ -23,7 +23,8 @@ pub fn memory_above(submission: &Submission, limit_mb: u64) -> Option<u64> {
         .into_iter()
         .map(|member| case.pair.gear(member).tooth_count())
         .sum();
-    let usual = teeth <= USUAL_TEETH && case.resolution.grid != GridLevel::Fine;
+    let usual =
+        case.faces.is_none() && teeth <= USUAL_TEETH && case.resolution.grid != GridLevel::Fine;
     if usual && limit_mb >= USUAL_MB {
         return None;
     }
