@@ -450,7 +450,7 @@ const FIRST_LOOK: Duration = Duration::from_secs(600);
 const LEAST_STALL: Duration = Duration::from_secs(120);
 
 /// Descriptors that the process needs for itself: the database, its log, files, requests of its own, and the reserve of connections.
-const OWN_DESCRIPTORS: u64 = 80;
+const OWN_DESCRIPTORS: u64 = 128;
 
 /// So many connections have descriptors, of those that the system grants the process.
 fn descriptors_for_connections() -> usize {

@@ -11,7 +11,6 @@ use crate::bench::{Asked, PATIENCE, Said};
 use crate::flood::{make_key, shared_by};
 use crate::process::Process;
 use crate::stores;
-use crate::uploads::large;
 
 const ROWS: u64 = 20_000;
 
@@ -90,24 +89,46 @@ async fn who_reads_a_large_table_on_forty_connections_leaves_the_service_to_othe
     assert!(during < Duration::from_millis(50), "{during:?}");
 }
 
-/// A study of 15 MB, none of whose designs can be built, and how many bytes its document has.
+/// Reads of `url` without a pause, on so many connections; one that is refused comes again after a second, as it is told.
+fn readers(client: &Client, url: &str, key: &str, count: usize) -> JoinSet<()> {
+    let mut readers = JoinSet::new();
+    for _ in 0..count {
+        let request = client.get(url).bearer_auth(key);
+        readers.spawn(async move {
+            loop {
+                let request = request.try_clone().unwrap();
+                match request.send().await {
+                    Ok(answer) if answer.status() == 200 => {
+                        let _ = answer.bytes().await;
+                    }
+                    _ => tokio::time::sleep(Duration::from_secs(1)).await,
+                }
+            }
+        });
+    }
+    readers
+}
+
+/// A study of 14 MB, none of whose designs can be built: where its document is, and how many bytes that has.
 async fn large_study(process: &Process, client: &Client, key: &str) -> (String, u64) {
+    let designs: Vec<Value> = (0..60_000)
+        .map(|i| {
+            let label = format!("{i}-{}", "x".repeat(150));
+            json!({ "label": label, "changes": { "/pair/driven/blank/bore_radius_mm": 60 } })
+        })
+        .collect();
+    let study = json!({ "base": study()["base"], "designs": designs });
     let made = client.post(format!("{}/v1/studies", process.base));
-    let made = made
-        .header("content-type", "application/json")
-        .body(large());
-    let made = made.bearer_auth(key).answer().await;
-    assert_eq!(made.status(), 202);
-    let path = made.headers()["location"].to_str().unwrap().to_owned();
-    let url = format!("{}{path}/document", process.base);
-    let document = client
-        .get(&url)
-        .bearer_auth(key)
-        .answer()
-        .await
-        .body()
-        .await;
-    (url, document.len() as u64)
+    let made = made.bearer_auth(key).json(&study).answer().await;
+    let status = made.status();
+    let path = made
+        .headers()
+        .get("location")
+        .map(|path| path.to_str().unwrap().to_owned());
+    assert_eq!(status, 202, "{}", made.body().await);
+    let url = format!("{}{}/document", process.base, path.unwrap());
+    let document = client.get(&url).bearer_auth(key).answer().await;
+    (url, document.body().await.len() as u64)
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
@@ -169,18 +190,7 @@ async fn who_reads_a_large_document_or_lists_on_sixty_four_connections_leaves_lo
             format!("{}/v1/jobs?limit=200", process.base),
         ),
     ] {
-        let mut readers = JoinSet::new();
-        for _ in 0..64 {
-            let request = client.get(&url).bearer_auth(&reader);
-            readers.spawn(async move {
-                loop {
-                    let request = request.try_clone().unwrap();
-                    if let Ok(answer) = request.send().await {
-                        let _ = answer.bytes().await;
-                    }
-                }
-            });
-        }
+        let mut readers = readers(&client, &url, &reader, 64);
         let mut taken = Vec::new();
         for _ in 0..300 {
             let start = Instant::now();
@@ -209,18 +219,7 @@ async fn a_thousand_readers_of_a_large_table_leave_health_and_other_clients_thei
     let made = made.bearer_auth(&reader).json(&study()).answer().await;
     let path = made.headers()["location"].to_str().unwrap().to_owned();
     let table = format!("{}{path}/results/table.ndjson", process.base);
-    let mut readers = JoinSet::new();
-    for _ in 0..1030 {
-        let request = client.get(&table).bearer_auth(&reader);
-        readers.spawn(async move {
-            loop {
-                let request = request.try_clone().unwrap();
-                if let Ok(answer) = request.send().await {
-                    let _ = answer.bytes().await;
-                }
-            }
-        });
-    }
+    let mut readers = readers(&client, &table, &reader, 1030);
     tokio::time::sleep(Duration::from_secs(2)).await;
     for (what, path) in [
         ("health", "/health/live"),

@@ -13,7 +13,7 @@ use crate::process::Process;
 use crate::stores;
 
 /// A study of 15 MB, none of whose designs can be built: a base without teeth.
-pub(crate) fn large() -> String {
+fn large() -> String {
     let designs: Vec<Value> = (0..60_000)
         .map(|i| {
             let label = format!("{i}-{}", "x".repeat(150));

@@ -22,7 +22,7 @@ const OF_CLIENT: usize = 4;
 
 /// So many connections are accepted beyond the limit: for health checks, which are answered on them at once, and for others until a regular
 /// place is free.
-pub(super) const RESERVE: usize = 16;
+const RESERVE: usize = 64;
 
 /// So long a request waits in the reserve for a regular place.
 const LONGEST_WAIT: Duration = Duration::from_secs(2);
