@@ -76,6 +76,7 @@ async fn a_client_whose_requests_never_come_whole_locks_no_other_one_out() {
                 if stream.write_all(head.as_bytes()).await.is_ok() {
                     let _ = stream.read(&mut [0]).await;
                 }
+                tokio::time::sleep(Duration::from_millis(50)).await;
             }
         });
     }

@@ -119,8 +119,12 @@ impl Connection {
         self.active.load(Ordering::Relaxed) > 0 || !self.writes.is_empty()
     }
 
-    pub(super) fn is_new(&self, now: Instant) -> bool {
-        matches!(*self.identity(), Identity::New(since) if now.saturating_duration_since(since) < NEW)
+    /// For how long it has been there without a request; none if it had one.
+    pub(super) fn new_for(&self, now: Instant) -> Option<Duration> {
+        match *self.identity() {
+            Identity::New(since) => Some(now.saturating_duration_since(since)),
+            Identity::Unauthenticated | Identity::Client(_) => None,
+        }
     }
 
     /// Whose connection it is.

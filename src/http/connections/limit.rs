@@ -12,7 +12,7 @@ use axum::response::{IntoResponse, Response};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, timeout};
 
-use super::connection::{ActiveRequest, Address, Connection, Owner};
+use super::connection::{ActiveRequest, Address, Connection, NEW, Owner};
 use crate::compute::{Budget, Part};
 use crate::http::credential::bearer;
 use crate::wire::{Code, Problem};
@@ -27,7 +27,8 @@ const RESERVE: usize = 64;
 /// So long a request waits in the reserve for a regular place.
 const LONGEST_WAIT: Duration = Duration::from_secs(2);
 
-/// A new connection is spared from eviction as long as no more than one in so many is new.
+/// A new connection is spared from eviction as long as no more than one in so many is new, and for a tenth of the time as long as no more
+/// than half of them are.
 const SPARED: usize = 4;
 
 /// An evicted connection has ended in this time, or a further one is evicted.
@@ -83,13 +84,17 @@ impl Present {
         let mut new = 0;
         for (_, connection) in on_places() {
             *sizes.entry(connection.owner()).or_default() += 1;
-            new += usize::from(connection.is_new(now));
+            new += usize::from(connection.new_for(now).is_some_and(|age| age < NEW));
         }
-        let spares_new = new <= places.most / SPARED;
+        let spared = match new {
+            new if new <= places.most / SPARED => NEW,
+            new if new <= places.most / 2 => NEW / 10,
+            _ => Duration::ZERO,
+        };
         let idle = on_places().filter(|(_, connection)| {
             connection.is_idle(now)
                 && !connection.evict.is_cancelled()
-                && !(spares_new && connection.is_new(now))
+                && connection.new_for(now).is_none_or(|age| age >= spared)
         });
         let chosen = idle.max_by_key(|(number, connection)| {
             let owner = connection.owner();
@@ -276,7 +281,7 @@ mod tests {
     use futures_util::{poll, stream};
     use http_body::Body as _;
 
-    use super::super::connection::{NEW, STALLED};
+    use super::super::connection::STALLED;
     use super::super::stalled_reads::WatchedBody;
     use super::*;
 
@@ -359,7 +364,8 @@ mod tests {
         for _ in 0..5 {
             places.push(enter(&limit, 1).await);
         }
-        assert_eq!(order(&limit, &places, now)[..5], [8, 9, 10, 11, 12]);
+        let soon = now + NEW / 5;
+        assert_eq!(order(&limit, &places, soon)[..5], [8, 9, 10, 11, 12]);
     }
 
     #[tokio::test]

@@ -419,8 +419,10 @@ async fn page(
 ) -> Result<Option<(Bytes, u64)>, Problem> {
     let client = &writer.client;
     let memory = app.bodies.for_answer(client, LARGEST_PIECE).await?;
-    let _turn = turn_to_read(client).await;
+    let turn = turn_to_read(client).await;
     let rows = app.jobs.study_rows(writer.study.id, read, most).await?;
+    // What is written of them has its memory.
+    drop(turn);
     if rows.is_empty() {
         return Ok(None);
     }
@@ -469,8 +471,9 @@ async fn lines(
     }
     // Packed, unpacked, and as lines.
     let memory = app.bodies.for_answer(client, 3 * bytes).await?;
-    let _turn = turn_to_read(client).await;
+    let turn = turn_to_read(client).await;
     let found = app.jobs.study_documents(study, after, count).await?;
+    drop(turn);
     let Some(last) = found.last().map(|line| line.position) else {
         return Ok(None);
     };
