@@ -1,6 +1,6 @@
 //! The jobs over HTTP. A handler takes a document, hands it on, and answers; all work is done below.
 //!
-//! In reading order: what handlers work with; [connections] and their limits;
+//! In reading order: what handlers work with; connections and their limits (`connections`);
 //! the router and its layers; who gets in; how errors become problem documents; what requests are made of (body, client,
 //! parameters, preferences); what answers are made of (bodies and headers, entity tags, packing, pages, the view of a job); the handlers.
 
