@@ -9,7 +9,7 @@ use jiff::SignedDuration;
 use jsonwebtoken::Algorithm;
 
 use crate::compute::{Cores, PreviewRules};
-use crate::http::{Bounds, DoorRules, KeysRule};
+use crate::http::{AccessRules, Bounds, KeysRule};
 use crate::jobs::{Keep, Migrate, Pace, Place, Rules};
 use crate::machine;
 use crate::tokens::{self, Claim, ClaimValue, IssuerUrl, TokenRules};
@@ -218,7 +218,7 @@ pub struct DoorOptions {
           value_parser = clap::value_parser!(i64).range(1..))]
     pub client_design_limit: i64,
 
-    /// Streams of events and waiting requests that one client may have open, at most a quarter of --connections; all together may
+    /// Streams of events and waiting requests that one client may have open, at most an eighth of --connections; all together may
     /// have eight times as many, at most half of --connections.
     #[arg(
         long,
@@ -228,7 +228,8 @@ pub struct DoorOptions {
     )]
     pub client_streams: usize,
 
-    /// Connections at the same time; idle ones give way to new ones.
+    /// Connections at the same time; idle ones are evicted for new ones. One client, or one address without a key, has a quarter of them
+    /// busy at most.
     #[arg(
         long,
         env = "MESHWRIGHT_CONNECTIONS",
@@ -341,11 +342,15 @@ impl Config {
     pub fn memory(&self) -> Memory {
         /// Documents are read one after the other, so that more would not make it faster.
         const MOST_FOR_READING: u64 = 256;
+        /// Answers wait for those who read them. What is large is sent in pieces.
+        const MOST_FOR_ANSWERS: u64 = 256;
         let all = self.memory_mb.unwrap_or_else(|| machine::memory_mb() / 2);
         let reading = (all / 4).clamp(1, MOST_FOR_READING);
+        let answers = (all / 8).clamp(1, MOST_FOR_ANSWERS);
         Memory {
             reading,
-            computing: all.saturating_sub(reading).max(1),
+            answers,
+            computing: all.saturating_sub(reading + answers).max(1),
         }
     }
 
@@ -390,7 +395,7 @@ impl Config {
     }
 
     /// What is allowed to whom.
-    pub fn door_rules(&self) -> DoorRules {
+    pub fn access_rules(&self) -> AccessRules {
         let public = self.public_url.iter().filter_map(|url| {
             let uri: Uri = url.parse().ok()?;
             uri.host().map(str::to_owned)
@@ -399,8 +404,8 @@ impl Config {
             .chain(self.door.allowed_hosts.iter().cloned())
             .collect();
         let loopback = self.listen.ip().is_loopback();
-        let connections = self.bounds().connections;
-        DoorRules {
+        let (connections, streams) = (self.bounds().connections, self.door.client_streams);
+        AccessRules {
             keys: self.door.keys.unwrap_or_default(),
             // Who names somebody that vouches for people wants to know who they are.
             local: loopback && hosts.is_empty() && self.oidc.oidc_issuer.is_none(),
@@ -408,14 +413,11 @@ impl Config {
             strict_hosts: loopback || !hosts.is_empty(),
             hosts,
             requests_per_second: self.door.requests_per_second,
-            strangers_per_second: self.door.requests_without_key,
-            // Each has a connection: one client's leave most of them to others, and those of all half.
-            waiting_per_client: self.door.client_streams.min((connections / 4).max(1)),
-            waiting: self
-                .door
-                .client_streams
-                .saturating_mul(8)
-                .min((connections / 2).max(1)),
+            unauthenticated_per_second: self.door.requests_without_key,
+            // Each has a connection: one client's leave half of those that it may have busy to its other requests, and those of all leave
+            // half to others.
+            waiting_per_client: streams.min((connections / 8).max(1)) as u64,
+            waiting: streams.saturating_mul(8).min((connections / 2).max(1)) as u64,
         }
     }
 
@@ -434,6 +436,8 @@ impl Config {
 pub struct Memory {
     /// For what is sent to the service, while it is read.
     pub reading: u64,
+    /// For answers, until they have left.
+    pub answers: u64,
     /// For what is computed.
     pub computing: u64,
 }
@@ -445,8 +449,8 @@ const FIRST_LOOK: Duration = Duration::from_secs(600);
 /// 30 KB a second. Where connections are short it gives way before that.
 const LEAST_STALL: Duration = Duration::from_secs(120);
 
-/// Descriptors that the process needs for itself: the database, its log, files, and requests of its own.
-const OWN_DESCRIPTORS: u64 = 64;
+/// Descriptors that the process needs for itself: the database, its log, files, requests of its own, and the reserve of connections.
+const OWN_DESCRIPTORS: u64 = 128;
 
 /// So many connections have descriptors, of those that the system grants the process.
 fn descriptors_for_connections() -> usize {

@@ -14,7 +14,7 @@ use tracing::{info, warn};
 use crate::compute::{Previews, Solve};
 use crate::config::{Config, Part};
 use crate::http::{
-    App, Door, Edge, KeysRule, ReadingMemory, Readings, Server, router, router_of_metrics,
+    Access, App, BodyMemory, Edge, KeysRule, Outlines, Readings, Server, router, router_of_metrics,
 };
 use crate::jobs::store::lock::{DatabaseLock, LockError};
 use crate::jobs::{Clock, Jobs, Keeper, Migrate, OpenError, Place, Store, Workers};
@@ -143,10 +143,10 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         deliveries = Some(started.context("webhooks cannot be sent")?);
     }
 
-    let door = Door::new(config.door_rules());
+    let access = Access::new(config.access_rules());
     let has_keys = store.has_keys().await?;
     if has_keys {
-        door.found_keys();
+        access.found_keys();
     }
     let keys_are_off = config.door.keys == Some(KeysRule::None);
     let tokens = match config.oidc.rules().filter(|_| config.role.answers()) {
@@ -156,7 +156,7 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         }
         None => None,
     };
-    let asks_for_keys = door.always_asks_for_keys() || (has_keys && !keys_are_off);
+    let asks_for_keys = access.always_asks_for_keys() || (has_keys && !keys_are_off);
     if config.role.answers() && asks_for_keys && !has_keys && tokens.is_none() {
         warn!(
             "nobody gets in without a key, and there is none yet: make one with `meshwright keys create`"
@@ -183,10 +183,11 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         workers_alive: workers.alive(),
         webhooks,
         tokens,
-        door: Arc::new(door),
+        access: Arc::new(access),
         edge: Arc::new(edge),
         readings: Arc::new(Readings::default()),
-        reading: ReadingMemory::of(config.memory().reading << 20),
+        outlines: Outlines::default(),
+        bodies: BodyMemory::of(config.memory().reading << 20, config.memory().answers << 20),
     };
     let bounds = config.bounds();
     let metrics_server = metrics_listener.map(|listener| {

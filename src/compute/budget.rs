@@ -1,4 +1,5 @@
-//! Something of which there is so much, and which clients share: memory, threads, connections to the database.
+//! Something of which there is a fixed amount, and which clients share: memory, threads, connections, messages under way. Every limit
+//! of this program by client is one of these.
 //!
 //! Who holds least gets the next part, so that a client who asks for everything at once keeps nobody waiting for longer than one
 //! of its parts lasts. A part that does not fit yet lets smaller ones of others who hold no more pass, until they come to as much as
@@ -17,7 +18,9 @@ pub struct Budget(Arc<Shared>);
 #[derive(Debug)]
 struct Shared {
     most: u64,
-    /// Whether who has some takes no more than it leaves.
+    /// One client holds no more than this.
+    most_of_client: u64,
+    /// Whether a client that holds some takes no more than it leaves.
     leaves_as_much: bool,
     state: Mutex<State>,
 }
@@ -51,18 +54,24 @@ pub struct Part {
 impl Budget {
     /// A budget of so much.
     pub fn of(most: u64) -> Self {
-        Self::new(most, false)
+        Self::new(most, most, false)
+    }
+
+    /// A budget of which one client holds no more than `most_of_client`.
+    pub fn limited(most: u64, most_of_client: u64) -> Self {
+        Self::new(most, most_of_client, false)
     }
 
     /// A budget of which a client that has some gets no more than it leaves: for what lasts as long as a client likes, or so long that
     /// nobody should wait for it. Whatever one client asks for, the next one finds something.
     pub fn leaving_as_much(most: u64) -> Self {
-        Self::new(most, true)
+        Self::new(most, most, true)
     }
 
-    fn new(most: u64, leaves_as_much: bool) -> Self {
+    fn new(most: u64, most_of_client: u64, leaves_as_much: bool) -> Self {
         Self(Arc::new(Shared {
             most,
+            most_of_client,
             leaves_as_much,
             state: Mutex::new(State {
                 free: most,
@@ -77,6 +86,12 @@ impl Budget {
     pub async fn take(&self, client: &str, amount: u64) -> Part {
         let (_place, part) = self.queue(client, amount);
         part.await.expect("who waits is answered")
+    }
+
+    /// A part for `client`, if it need not wait for it.
+    pub fn try_take(&self, client: &str, amount: u64) -> Option<Part> {
+        let (_place, mut part) = self.queue(client, amount);
+        part.try_recv().ok()
     }
 
     /// The same for a thread that has nothing else to do; `None` when it is not wanted any more.
@@ -103,7 +118,7 @@ impl Budget {
     /// Waits for a part: a place among those who do, and what is answered.
     fn queue(&self, client: &str, amount: u64) -> (Place, oneshot::Receiver<Part>) {
         let (answer, part) = oneshot::channel();
-        let amount = amount.min(self.0.most);
+        let amount = amount.min(self.0.most).min(self.0.most_of_client);
         let mut state = self.0.state();
         state.arrived += 1;
         let number = state.arrived;
@@ -118,6 +133,11 @@ impl Budget {
         Shared::grant(&self.0);
         let shared = Arc::clone(&self.0);
         (Place { shared, number }, part)
+    }
+
+    /// How much `client` holds.
+    pub fn held(&self, client: &str) -> u64 {
+        self.0.state().held.get(client).copied().unwrap_or_default()
     }
 
     /// How much nobody holds.
@@ -175,7 +195,8 @@ impl State {
                 return false;
             };
             let held = held(waiting);
-            !shared.leaves_as_much || held == 0 || held + waiting.amount <= left
+            held + waiting.amount <= shared.most_of_client
+                && (!shared.leaves_as_much || held == 0 || held + waiting.amount <= left)
         };
         let first = self
             .waiting
@@ -206,19 +227,28 @@ impl State {
     }
 }
 
-impl Drop for Part {
-    fn drop(&mut self) {
+impl Part {
+    /// Gives back all but `amount` of it.
+    pub fn shrink(&mut self, amount: u64) {
+        let back = self.amount.saturating_sub(amount);
         {
             let mut state = self.shared.state();
-            state.free += self.amount;
+            state.free += back;
             if let Some(held) = state.held.get_mut(&self.client) {
-                *held -= self.amount;
+                *held -= back;
                 if *held == 0 {
                     state.held.remove(&self.client);
                 }
             }
         }
+        self.amount -= back;
         Shared::grant(&self.shared);
+    }
+}
+
+impl Drop for Part {
+    fn drop(&mut self) {
+        self.shrink(0);
     }
 }
 
@@ -310,6 +340,19 @@ mod tests {
         drop(unfetched);
         drop(small);
         assert_eq!((budget.free(), budget.waiting()), (10, 0));
+    }
+
+    #[test]
+    fn one_client_holds_no_more_than_its_limit_and_what_it_gives_back_is_free_at_once() {
+        let budget = Budget::limited(10, 4);
+        let mut first = budget.try_take("hog", 3).unwrap();
+        assert!(budget.try_take("hog", 2).is_none());
+        assert!(budget.try_take("other", 4).is_some());
+        first.shrink(1);
+        assert_eq!((budget.held("hog"), budget.free()), (1, 9));
+        assert!(budget.try_take("hog", 3).is_some());
+        drop(first);
+        assert_eq!((budget.held("hog"), budget.waiting()), (0, 0));
     }
 
     #[tokio::test]

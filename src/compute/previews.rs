@@ -357,9 +357,11 @@ impl Admitted {
         work: impl Future<Output = T>,
     ) -> Result<T, PreviewError> {
         tokio::select! {
-            result = work => Ok(result),
+            // Work that was told to stop may have done so already.
+            biased;
             () = self.ticket.replaced.cancelled() => Err(self.replaced()),
             () = self.desk.stop.cancelled() => Err(PreviewError::ShuttingDown),
+            result = work => Ok(result),
             () = sleep_until(deadline) => Err(late),
         }
     }

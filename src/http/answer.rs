@@ -1,13 +1,12 @@
 //! What answers are made of.
 
-use axum::body::{Body, Bytes};
 use axum::http::StatusCode;
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE, HeaderValue, LOCATION, RETRY_AFTER};
 use axum::response::{IntoResponse, Response};
 
 /// A document that is JSON already.
-pub(super) fn json(text: impl Into<Body>) -> Response {
-    ([(CONTENT_TYPE, "application/json")], text.into()).into_response()
+pub(super) fn json(text: impl IntoResponse) -> Response {
+    ([(CONTENT_TYPE, "application/json")], text).into_response()
 }
 
 /// A file that a browser saves under this name.
@@ -22,7 +21,7 @@ pub(super) fn file(media_type: &str, name: &str, body: impl IntoResponse) -> Res
 
 /// What a submission came to, which stands at `address`: 200 where the client is `told_the_end`, 202 otherwise.
 pub(super) fn submitted(
-    view: Bytes,
+    view: impl IntoResponse,
     address: &str,
     has_ended: bool,
     told_the_end: bool,

@@ -5,10 +5,11 @@ use std::sync::atomic::AtomicUsize;
 
 use meshwright_engine::library::Library;
 
-use super::door::Door;
+use super::access::Access;
 use super::edge::Edge;
-use super::memory::ReadingMemory;
+use super::memory::BodyMemory;
 use super::readings::Readings;
+use super::studies::Outlines;
 use crate::compute::Previews;
 use crate::jobs::Jobs;
 use crate::tokens::Tokens;
@@ -29,14 +30,16 @@ pub struct App {
     pub webhooks: Webhooks,
     /// Who gets in by a token, where there is an identity provider.
     pub tokens: Option<Tokens>,
-    /// Who gets in, and how much of the service each gets.
-    pub door: Arc<Door>,
+    /// Who may use the service, and how much of it each may use.
+    pub access: Arc<Access>,
     /// How the service looks from outside.
     pub edge: Arc<Edge>,
     /// Whether this process computes jobs.
     pub computes: bool,
-    /// The memory for what is sent.
-    pub reading: ReadingMemory,
+    /// The memory for the bodies of requests and answers.
+    pub bodies: BodyMemory,
+    /// What has to be known of the tables that are being read.
+    pub outlines: Outlines,
     /// What the last look at the database said.
     pub readings: Arc<Readings>,
 }

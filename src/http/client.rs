@@ -8,8 +8,8 @@ use axum::http::{HeaderMap, Method};
 use jiff::Timestamp;
 
 use super::app::App;
+use super::connections::ActiveRequest;
 use super::credential::{Credential, bearer, no_credential, unauthorized};
-use super::guests::Guest;
 use super::problem::Refusal;
 use crate::jobs::{JobError, KeyRecord, Member, Role};
 use crate::keys::Key;
@@ -149,15 +149,15 @@ impl Caller {
         };
         let client = Arc::from(caller.member.client.as_str());
         if let Some(fingerprint) = fingerprint {
-            app.door.prove(fingerprint);
-            if let Some(guest) = parts.extensions.get::<Arc<Guest>>() {
-                guest.recognize(&client);
+            app.access.remember(fingerprint);
+            if let Some(active) = parts.extensions.get::<Arc<ActiveRequest>>() {
+                active.authenticated(&client)?;
             }
             tracing::Span::current().record("client", &caller.member.client);
         }
         // Who reads the body shares the memory for that by it.
         parts.extensions.insert(ClientName(client));
-        app.door
+        app.access
             .count_request(&caller.member.client, caller.rate)
             .map_err(Refusal::too_often)?;
         Ok(caller)
@@ -179,7 +179,7 @@ impl Caller {
 
     async fn with_key(app: &App, key: Key) -> Result<Self, Problem> {
         let record = recognize(app, &key).await?;
-        app.door.found_keys();
+        app.access.found_keys();
         // What the log says of the request, it says of its key: who did what, and with what answer.
         tracing::Span::current().record("key", &record.id);
         Ok(Self {
@@ -227,13 +227,13 @@ async fn recognize(app: &App, key: &Key) -> Result<KeyRecord, Problem> {
 
 /// Whether a request needs a key.
 async fn asks_for_keys(app: &App, headers: &HeaderMap) -> Result<bool, Problem> {
-    if let Some(asks) = app.door.asks_for_keys(headers) {
+    if let Some(asks) = app.access.asks_for_keys(headers) {
         return Ok(asks);
     }
     let has_keys = app.jobs.store().has_keys().await;
     let has_keys = has_keys.map_err(JobError::from)?;
     if has_keys {
-        app.door.found_keys();
+        app.access.found_keys();
     }
     Ok(has_keys)
 }

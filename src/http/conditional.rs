@@ -1,9 +1,10 @@
 //! Entity tags: a client that has the answer already is told so (RFC 9110, section 13).
 
-use axum::http::header::{CACHE_CONTROL, ETAG, HeaderValue, IF_NONE_MATCH};
+use axum::http::header::{CACHE_CONTROL, CONTENT_ENCODING, ETAG, HeaderValue, IF_NONE_MATCH};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 
+use super::packing::takes_gzip;
 use crate::hash::sha256_hex_of;
 
 /// How long an answer may be kept by who asked for it.
@@ -39,19 +40,27 @@ impl Tag {
         Self(format!("\"{hash}{form}\""))
     }
 
-    /// Whether the client says that it has this.
-    fn is_known(&self, request: &HeaderMap) -> bool {
+    /// The tag of the same answer packed by gzip: it has other bytes, so that it is another one (RFC 9110, section 8.8.3).
+    fn packed(&self) -> Self {
+        Self(format!("{}-gzip\"", self.0.trim_end_matches('"')))
+    }
+
+    /// Which form of this the client says that it has, if it has one that it takes.
+    fn known(&self, request: &HeaderMap) -> Option<Self> {
+        let packed = takes_gzip(request).then(|| self.packed());
         let values = request
             .get_all(IF_NONE_MATCH)
             .iter()
             .filter_map(|value| value.to_str().ok());
-        values
+        let mut known = values
             .flat_map(|value| value.split(','))
             .map(str::trim)
-            .any(|known| {
-                // For If-None-Match a weak tag is as good as a strong one.
-                known == "*" || known.strip_prefix("W/").unwrap_or(known) == self.0
-            })
+            // For If-None-Match a weak tag is as good as a strong one.
+            .map(|known| known.strip_prefix("W/").unwrap_or(known));
+        known.find_map(|known| match &packed {
+            Some(packed) if known == packed.0 => Some(packed.clone()),
+            _ => (known == "*" || known == self.0).then(|| self.clone()),
+        })
     }
 
     /// The answer: that the client has it already, or what `make` gives, with the tag on it.
@@ -65,33 +74,59 @@ impl Tag {
         request: &HeaderMap,
         make: impl Future<Output = Result<Response, E>>,
     ) -> Result<Response, E> {
-        let mut response = if self.is_known(request) {
-            StatusCode::NOT_MODIFIED.into_response()
-        } else {
-            make.await?
+        let (mut response, tag) = match self.known(request) {
+            Some(known) => (StatusCode::NOT_MODIFIED.into_response(), known),
+            None => {
+                let made = make.await?;
+                let is_packed = made.headers().contains_key(CONTENT_ENCODING);
+                (
+                    made,
+                    if is_packed {
+                        self.packed()
+                    } else {
+                        self.clone()
+                    },
+                )
+            }
         };
         let headers = response.headers_mut();
-        let tag = HeaderValue::from_str(&self.0).expect("a hash in quotes is visible ASCII");
+        let tag = HeaderValue::from_str(&tag.0).expect("a hash in quotes is visible ASCII");
         headers.insert(ETAG, tag);
         headers.insert(CACHE_CONTROL, HeaderValue::from_static(keep.value()));
         Ok(response)
     }
 }
 
+/// Gives an answer that is packed now the tag of that form.
+pub(super) fn tag_as_packed(headers: &mut HeaderMap) {
+    let tag = headers.get(ETAG).and_then(|tag| tag.to_str().ok());
+    let packed = tag.map(|tag| Tag(tag.to_owned()).packed());
+    if let Some(tag) = packed.and_then(|tag| HeaderValue::try_from(tag.0).ok()) {
+        headers.insert(ETAG, tag);
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use axum::http::header::ACCEPT_ENCODING;
+
     use super::*;
 
     #[test]
-    fn a_tag_is_known_in_a_list_weak_or_by_a_star() {
+    fn a_tag_is_known_in_a_list_weak_or_by_a_star_and_packed_by_who_takes_that() {
         let tag = Tag::of_hash("abc", "");
-        let known = |value: &'static str| {
-            tag.is_known(&HeaderMap::from_iter([(
-                IF_NONE_MATCH,
-                HeaderValue::from_static(value),
-            )]))
+        let known = |value: &'static str, takes: &'static str| {
+            let headers = [(IF_NONE_MATCH, value), (ACCEPT_ENCODING, takes)];
+            let headers = headers.map(|(name, value)| (name, HeaderValue::from_static(value)));
+            tag.known(&headers.into_iter().collect()).map(|tag| tag.0)
         };
-        assert!(known("\"abc\"") && known("\"x\", W/\"abc\"") && known("*"));
-        assert!(!known("\"x\"") && !known("abc") && !known(""));
+        for value in ["\"abc\"", "\"x\", W/\"abc\"", "*"] {
+            assert_eq!(known(value, "gzip").as_deref(), Some("\"abc\""), "{value}");
+        }
+        let packed = "W/\"abc-gzip\"";
+        assert_eq!(known(packed, "gzip").as_deref(), Some("\"abc-gzip\""));
+        for (value, takes) in [(packed, ""), ("\"x\"", "gzip"), ("abc", ""), ("", "")] {
+            assert_eq!(known(value, takes), None, "{value}");
+        }
     }
 }

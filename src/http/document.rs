@@ -7,7 +7,7 @@ use std::time::Duration;
 use axum::body::{Body, Bytes};
 use axum::extract::{FromRequest, Request};
 use axum::http::HeaderMap;
-use axum::http::header::{CONTENT_ENCODING, CONTENT_TYPE};
+use axum::http::header::{CONTENT_ENCODING, CONTENT_TYPE, EXPECT};
 use futures_util::StreamExt;
 use http_body::Body as _;
 use serde::Deserialize;
@@ -79,14 +79,21 @@ async fn taken(
     let limit = mib * 1024 * 1024;
     let media_type = check_media_type(request.headers(), kind);
     let length = request.body().size_hint().upper();
+    if request.headers().contains_key(EXPECT) {
+        // The client waits with its body until it is told to go on.
+        media_type.clone()?;
+        if length.is_some_and(|length| length > limit as u64) {
+            return Err(too_long(limit));
+        }
+    }
     let length = length.map_or(limit, |length| length.min(limit as u64) as usize);
     let client = request.extensions().get::<ClientName>().cloned();
     let client = client.map_or_else(|| Arc::from(""), |client| client.0);
-    let bytes = app.reading.for_bytes(&client, length).await?;
+    let bytes = app.bodies.for_bytes(&client, length).await?;
     let body = timeout(PATIENCE, read(request.into_body(), limit, length)).await;
     let body = body.map_err(|_| late())??;
     media_type?;
-    let made = app.reading.to_read(&client, &body).await?;
+    let made = app.bodies.to_read(&client, &body).await?;
     Ok((body, [bytes, made]))
 }
 
@@ -173,12 +180,16 @@ async fn read(body: Body, limit: usize, expected: usize) -> Result<Bytes, Proble
         }
     }
     if length > limit {
-        return Err(Problem::new(
-            Code::PayloadTooLarge,
-            format!("The body has more than {limit} bytes, the limit here."),
-        ));
+        return Err(too_long(limit));
     }
     Ok(bytes.into())
+}
+
+fn too_long(limit: usize) -> Problem {
+    Problem::new(
+        Code::PayloadTooLarge,
+        format!("The body has more than {limit} bytes, the limit here."),
+    )
 }
 
 fn late() -> Problem {

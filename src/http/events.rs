@@ -13,9 +13,9 @@ use uuid::Uuid;
 
 use super::app::App;
 use super::client::{Client, Pass};
-use super::door::PlaceToWait;
 use super::parameters::JobId;
 use super::view::JobView;
+use crate::compute::Part;
 use crate::jobs::{News, Progress};
 use crate::wire::{Code, Problem, Status};
 
@@ -115,8 +115,8 @@ pub(super) trait Watching: Send + 'static {
 }
 
 /// A place among those who wait.
-pub(super) fn place(app: &App, client: &str) -> Result<PlaceToWait, Problem> {
-    app.door.place_to_wait(client).ok_or_else(|| {
+pub(super) fn place(app: &App, client: &str) -> Result<Part, Problem> {
+    app.access.place_to_wait(client).ok_or_else(|| {
         Problem::new(
             Code::RateLimited,
             "As many streams of events and waiting requests are open as one client, or all together, may have.",
@@ -126,7 +126,7 @@ pub(super) fn place(app: &App, client: &str) -> Result<PlaceToWait, Problem> {
 
 /// The answer that streams what `watch` sees, and keeps its place as long as that lasts: until there is no more to see, or who
 /// watches would not get in any more.
-pub(super) fn answer(app: App, watch: impl Watching, pass: Pass, place: PlaceToWait) -> Response {
+pub(super) fn answer(app: App, watch: impl Watching, pass: Pass, place: Part) -> Response {
     let events = stream::unfold(
         (app, watch, pass, place, 1_u64),
         async |(app, mut watch, pass, place, count)| {

@@ -1,10 +1,17 @@
 //! Displacements and stresses everywhere in both gears at one mesh position, for those who look inside.
 
+use std::io::Read;
 use std::time::Duration;
 
+use axum::body::{Body, Bytes};
 use axum::http::HeaderMap;
-use axum::http::header::{CONTENT_TYPE, HeaderValue};
+use axum::http::header::{CONTENT_ENCODING, CONTENT_TYPE, HeaderValue, VARY};
 use axum::response::{IntoResponse, Response};
+use bytes::Buf;
+use flate2::Compression;
+use flate2::read::GzDecoder;
+use futures_util::stream;
+use meshwright_engine::analysis;
 use meshwright_engine::gear::Member;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -15,6 +22,8 @@ use uuid::Uuid;
 
 use super::client::Client;
 use super::conditional::{Keep, Tag};
+use super::memory::Held;
+use super::packing::{packed, takes_gzip};
 use super::parameters::{IfNoneMatch, JobId, Parameters, invalid};
 use super::problem::{internal, of_missing_results};
 use crate::jobs::Job;
@@ -25,8 +34,11 @@ use crate::wire::{Code, LoadedEdges, Problem, SOLVER_VERSION, Submission, memory
 const PREVIEWS_LONG: u32 = 4;
 const LONGEST: Duration = Duration::from_secs(60);
 
-/// What volumes of both gears take until they are written, in MB of 2^20 bytes for each tooth.
-const VOLUMES_MB_A_TOOTH: u64 = 4;
+/// What volumes of both gears take until they are written, in bytes for each tooth, and what their file has at most, packed.
+const VOLUME_BYTES: [u64; 2] = [4 << 20, 1 << 20];
+
+/// The same of plates, for each unknown of the estimate: of the field, the numbers and texts of the file, and the file.
+const PLATE_BYTES: [u64; 2] = [400, 40];
 
 /// Where to look.
 #[derive(Deserialize, IntoParams)]
@@ -149,8 +161,8 @@ pub(super) struct File {
     pub(super) media_type: &'static str,
     /// Whether a browser saves it rather than shows it.
     pub(super) saved: bool,
-    /// Whether it has volumes of gears that are seen along their faces.
-    pub(super) has_volumes: bool,
+    /// Whether it has both gears whole, which is large: such a file is packed at once.
+    pub(super) has_grids: bool,
 }
 
 impl File {
@@ -160,7 +172,7 @@ impl File {
             name,
             media_type,
             saved: false,
-            has_volumes: false,
+            has_grids: false,
         }
     }
 
@@ -168,7 +180,7 @@ impl File {
     fn grids(name: &'static str, media_type: &'static str) -> Self {
         Self {
             saved: true,
-            has_volumes: true,
+            has_grids: true,
             ..Self::shown(name, media_type)
         }
     }
@@ -236,26 +248,37 @@ impl Done {
             name,
             media_type,
             saved,
-            has_volumes,
+            has_grids,
         } = file;
-        let case = submission.case();
-        let teeth = Member::BOTH.map(|member| u64::from(case.pair.gear(member).tooth_count()));
-        let volumes = match has_volumes && case.faces.is_some() {
-            true => VOLUMES_MB_A_TOOTH * (teeth[0] + teeth[1]),
-            false => 0,
+        let [made, sent] = match has_grids {
+            true => grid_bytes(&submission),
+            false => [0, 0],
         };
-        let memory = memory_of(&submission) + volumes;
+        let memory = memory_of(&submission) + made.div_ceil(1_000_000);
         let made = async {
+            let held = app.bodies.for_answer(client.name(), sent).await?;
             let library = app.library.clone();
-            let work = move |run: &Run| work(&submission, &library, run);
+            let work = move |run: &Run| {
+                let document = work(&submission, &library, run)?;
+                if has_grids {
+                    let packed = packed(&document, Compression::fast());
+                    packed.map_err(|_| internal())
+                } else {
+                    Ok(document.into())
+                }
+            };
             let most = app.previews.rules().time_limit * PREVIEWS_LONG;
             let within = (memory, most.min(LONGEST));
             let made = app.previews.work(client.name(), None, within, work);
             let document = made.await?.answer;
+            let body = match has_grids {
+                true => packed_or_plain(held.hold(document), request),
+                false => document.into_response(),
+            };
             Ok::<_, Problem>(if saved {
-                super::answer::file(media_type, &format!("{}-{name}", job.id), document)
+                super::answer::file(media_type, &format!("{}-{name}", job.id), body)
             } else {
-                ([(CONTENT_TYPE, media_type)], document).into_response()
+                ([(CONTENT_TYPE, media_type)], body).into_response()
             })
         };
         // What this version of the solver says of the job; another one that answers under the same address may say it otherwise.
@@ -272,6 +295,38 @@ impl Done {
             headers.insert("results-solver-version", version);
         }
         Ok(response)
+    }
+}
+
+/// The bytes that the grids of both gears take until they are written and packed, and those of the packed file.
+fn grid_bytes(submission: &Submission) -> [u64; 2] {
+    let case = submission.case();
+    if case.faces.is_some() {
+        let teeth = Member::BOTH.map(|member| u64::from(case.pair.gear(member).tooth_count()));
+        return VOLUME_BYTES.map(|bytes| bytes * (teeth[0] + teeth[1]));
+    }
+    let unknowns = analysis::estimate(case, None).degrees_of_freedom;
+    PLATE_BYTES.map(|bytes| bytes * unknowns)
+}
+
+/// The body of a packed file: as it is, or unpacked as it is sent.
+fn packed_or_plain(packed: Held, request: &HeaderMap) -> Response {
+    if takes_gzip(request) {
+        let packing = [(CONTENT_ENCODING, "gzip"), (VARY, "accept-encoding")];
+        (packing, packed).into_response()
+    } else {
+        const AT_ONCE: usize = 64 << 10;
+        let mut decoder = GzDecoder::new(packed.0.reader());
+        let pieces = std::iter::from_fn(move || {
+            let mut piece = vec![0; AT_ONCE];
+            let read = decoder.read(&mut piece);
+            read.map(|read| {
+                piece.truncate(read);
+                (read > 0).then(|| Bytes::from(piece))
+            })
+            .transpose()
+        });
+        Body::from_stream(stream::iter(pieces)).into_response()
     }
 }
 
@@ -300,5 +355,34 @@ impl FieldParameters {
             )));
         }
         Ok((torque, position))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::testing::submission;
+
+    #[test]
+    fn the_file_of_plates_and_what_it_is_made_of_take_no_more_than_is_said() {
+        let submission = submission("test-case-2");
+        let library = Library::with_capacity(1 << 20);
+        let place = (submission.case().output_torques[0], 0.25);
+        let found = inside(&submission, place, &library, &Run::unattended()).expect("computed");
+        let Inside::Plates(found) = found else {
+            panic!("a plane pair has plates");
+        };
+        let document =
+            vtu::document(found.gears.each_ref().map(vtu::Piece::from)).expect("written");
+        let sent = packed(&document, Compression::fast())
+            .expect("packed")
+            .len() as u64;
+        let [made, most] = grid_bytes(&submission);
+        println!(
+            "{} bytes, {sent} packed; {made} and {most} said",
+            document.len()
+        );
+        // The text, what it is written from, and the numbers and the field before that.
+        assert!(4 * document.len() as u64 <= made && sent <= most);
     }
 }

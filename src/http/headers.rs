@@ -128,7 +128,7 @@ pub(super) async fn tell(request: Request, next: Next) -> Response {
         return next.run(request).await;
     };
     let begin = SystemTime::now();
-    let method = request.method().to_string();
+    let method = super::metrics::known(request.method());
     // The pattern, not the address: what is alike has one name.
     let route = request.extensions().get::<MatchedPath>();
     let route = route.map_or("none", MatchedPath::as_str).to_owned();
@@ -136,7 +136,7 @@ pub(super) async fn tell(request: Request, next: Next) -> Response {
     let id = id.and_then(|id| id.to_str().ok()).unwrap_or_default();
     let path: String = request.uri().path().chars().take(LONGEST_PATH).collect();
     let mut attributes = vec![
-        KeyValue::new("http.request.method", method.clone()),
+        KeyValue::new("http.request.method", method),
         KeyValue::new("http.route", route.clone()),
         KeyValue::new("url.path", path),
         KeyValue::new("meshwright.request.id", id.to_owned()),

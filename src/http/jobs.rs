@@ -9,6 +9,7 @@ use utoipa::IntoParams;
 use uuid::Uuid;
 
 use super::answer::{json, tell_when_to_return};
+use super::aside::turn_to_read;
 use super::client::Client;
 use super::conditional::{Keep, Tag};
 use super::page::{self, LARGEST_LIMIT, Page, USUAL_LIMIT};
@@ -157,6 +158,7 @@ pub(super) async fn list(
 ) -> Result<Response, Problem> {
     let limit = parameters.limit()?;
     let app = &client.app;
+    let _turn = turn_to_read(client.name()).await;
     let found = app
         .jobs
         .list(client.name(), &parameters.filter()?, limit)

@@ -1,9 +1,17 @@
-//! The memory for what clients send, while it comes and while it is read.
+//! The memory for the bodies of requests and answers, as long as they are here, and for what is made of them.
 
+use std::sync::Arc;
 use std::time::Duration;
 
+use axum::body::{Body, Bytes, to_bytes};
+use axum::extract::{Request, State};
+use axum::middleware::Next;
+use axum::response::{IntoResponse, Response};
+use http_body::Body as _;
 use tokio::time::timeout;
 
+use super::connections::Connection;
+use super::problem::internal;
 use crate::compute::{Budget, Part};
 use crate::wire::{Code, Problem};
 
@@ -14,28 +22,33 @@ const LONGEST_WAIT: Duration = Duration::from_secs(90);
 /// anyway, and what is made of it by the few that are read at the same time.
 pub(super) const SMALL: usize = 64 << 10;
 
+/// An answer of no more bytes is bounded by the connections as well.
+pub(super) const SMALL_ANSWER: usize = 16 << 10;
+
 /// What is made of a document takes so many times its size beside it, for its texts.
 const TIMES_ITS_SIZE: u64 = 3;
 
 /// And so many bytes for each of its values, with what a study makes of them.
 const FOR_A_VALUE: u64 = 150;
 
-/// The memory for what clients send. What a client sends comes as slowly as it likes, so the bytes have a memory of their own, of which
-/// no client has so much that there is none for the next. Only what has come is read, in the memory for that, which is free
-/// again as soon as the processor is done.
+/// The memory for bodies, in three budgets. A client sends and reads as slowly as it likes: the bytes of requests and those of answers
+/// have a budget each, of which no client has so much that there is none for the next. A document is read only when it has come, in
+/// the memory for that, which is free again as soon as the processor is done.
 #[derive(Debug, Clone)]
-pub struct ReadingMemory {
-    bytes: Budget,
+pub struct BodyMemory {
+    sent: Budget,
     made: Budget,
+    answers: Budget,
 }
 
-impl ReadingMemory {
-    /// So many bytes in all.
-    pub fn of(most: u64) -> Self {
-        let bytes = most / 4;
+impl BodyMemory {
+    /// So many bytes in all for what is sent, and so many for answers.
+    pub fn of(sent: u64, answers: u64) -> Self {
+        let bytes = sent / 4;
         Self {
-            bytes: Budget::leaving_as_much(bytes),
-            made: Budget::of(most - bytes),
+            sent: Budget::leaving_as_much(bytes),
+            made: Budget::of(sent - bytes),
+            answers: Budget::leaving_as_much(answers),
         }
     }
 
@@ -52,7 +65,7 @@ impl ReadingMemory {
         if length <= SMALL {
             return Ok(None);
         }
-        part(&self.bytes, client, length as u64).await
+        part(&self.sent, client, length as u64).await
     }
 
     /// The memory for what is made of `document`; none where it is small.
@@ -70,14 +83,113 @@ impl ReadingMemory {
         }
         part(&self.made, client, weight(document)).await
     }
+
+    /// The memory for an answer to `client` while it is made and until it has left: at most so many bytes.
+    ///
+    /// # Errors
+    ///
+    /// `overloaded`, after a while.
+    pub(super) async fn for_answer(
+        &self,
+        client: &str,
+        most: u64,
+    ) -> Result<AnswerMemory, Problem> {
+        if most <= SMALL_ANSWER as u64 {
+            return Ok(AnswerMemory(None));
+        }
+        part(&self.answers, client, most).await.map(AnswerMemory)
+    }
 }
 
 async fn part(budget: &Budget, client: &str, amount: u64) -> Result<Option<Part>, Problem> {
     let part = timeout(LONGEST_WAIT, budget.take(client, amount)).await;
-    part.map(Some).map_err(|_| {
-        let detail = "More is sent at once than is read. Try again in a moment.";
-        Problem::new(Code::Overloaded, detail)
-    })
+    part.map(Some).map_err(|_| overloaded())
+}
+
+fn overloaded() -> Problem {
+    let detail = "More is sent and read at once than there is memory for. Try again in a moment.";
+    Problem::new(Code::Overloaded, detail)
+}
+
+/// The memory for an answer, or for a piece of one.
+#[derive(Debug, Default)]
+pub(super) struct AnswerMemory(Option<Part>);
+
+impl AnswerMemory {
+    /// The bytes of the answer. The memory is held, as much as they take, until the last of them was handed to the system.
+    pub(super) fn hold(self, bytes: impl AsRef<[u8]> + Send + 'static) -> Held {
+        let Some(mut part) = self.0 else {
+            return Held(Bytes::from_owner(bytes));
+        };
+        part.shrink(bytes.as_ref().len() as u64);
+        Held(Bytes::from_owner(Owner { bytes, _part: part }))
+    }
+}
+
+impl AnswerMemory {
+    /// The same of an answer that is here whole.
+    ///
+    /// # Errors
+    ///
+    /// `internal_error` where it is not.
+    pub(super) async fn hold_body(self, answer: Response) -> Result<Response, Problem> {
+        let (parts, body) = answer.into_parts();
+        let bytes = to_bytes(body, usize::MAX).await;
+        let bytes = self.hold(bytes.map_err(|_| internal())?).0;
+        let mut answer = Response::from_parts(parts, bytes.into());
+        answer.extensions_mut().insert(Counted);
+        Ok(answer)
+    }
+}
+
+struct Owner<B> {
+    bytes: B,
+    _part: Part,
+}
+
+impl<B: AsRef<[u8]>> AsRef<[u8]> for Owner<B> {
+    fn as_ref(&self) -> &[u8] {
+        self.bytes.as_ref()
+    }
+}
+
+/// Bytes of an answer that hold their memory.
+#[derive(Debug)]
+pub(super) struct Held(pub(super) Bytes);
+
+impl IntoResponse for Held {
+    fn into_response(self) -> Response {
+        let mut response = Body::from(self.0).into_response();
+        response.extensions_mut().insert(Counted);
+        response
+    }
+}
+
+/// Marks an answer whose body needs no memory, or holds what it needs.
+#[derive(Debug, Clone)]
+pub(super) struct Counted;
+
+/// Lets every other answer hold the memory for its body until that has left, or refuses it where there is none.
+pub(super) async fn hold(
+    State(memory): State<BodyMemory>,
+    request: Request,
+    next: Next,
+) -> Response {
+    let connection = request.extensions().get::<Arc<Connection>>().cloned();
+    let mut response = next.run(request).await;
+    let size = response.body().size_hint().exact();
+    let Some(size) = size.filter(|size| *size > SMALL_ANSWER as u64) else {
+        return response;
+    };
+    if response.extensions_mut().remove::<Counted>().is_some() {
+        return response;
+    }
+    let client = connection.map_or_else(String::new, |connection| connection.client());
+    let Some(part) = memory.answers.try_take(&client, size) else {
+        return overloaded().into_response();
+    };
+    let held = AnswerMemory(Some(part)).hold_body(response).await;
+    held.unwrap_or_else(IntoResponse::into_response)
 }
 
 /// What is made of a document takes so many bytes, about. Every value of JSON but the first stands behind one of three signs, and every
@@ -87,4 +199,24 @@ fn weight(document: &[u8]) -> u64 {
     let is_sign = |byte: &&u8| matches!(byte, b',' | b'[' | b'{' | b'<');
     let values = document.iter().filter(is_sign).count() as u64;
     TIMES_ITS_SIZE * document.len() as u64 + FOR_A_VALUE * values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn an_answer_holds_as_much_memory_as_it_has_bytes_until_the_last_of_them_has_left() {
+        let memory = BodyMemory::of(1 << 20, 1 << 20);
+        let free = || memory.answers.free();
+        let answer = memory.for_answer("a", 600 << 10).await.unwrap();
+        assert_eq!(free(), 424 << 10);
+        let bytes = answer.hold(vec![0_u8; 100 << 10]).0;
+        assert_eq!(free(), 924 << 10);
+        let rest = bytes.slice(50..60);
+        drop(bytes);
+        assert_eq!(free(), 924 << 10, "some of it is still here");
+        drop(rest);
+        assert_eq!(free(), 1 << 20);
+    }
 }

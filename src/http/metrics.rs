@@ -5,6 +5,7 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use axum::extract::{MatchedPath, Request, State};
+use axum::http::Method;
 use axum::http::header::CONTENT_TYPE;
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
@@ -124,7 +125,7 @@ fn recorder() -> &'static PrometheusHandle {
 pub(super) async fn count(request: Request, next: Next) -> Response {
     recorder();
     let start = Instant::now();
-    let method = request.method().to_string();
+    let method = known(request.method());
     // The pattern, not the address: an id in a label would make a series of its own.
     let route = request
         .extensions()
@@ -133,11 +134,18 @@ pub(super) async fn count(request: Request, next: Next) -> Response {
         .to_owned();
     let response = next.run(request).await;
     let status = response.status().as_u16().to_string();
-    metrics::histogram!("meshwright_http_request_duration_seconds", "method" => method.clone(), "route" => route.clone())
+    metrics::histogram!("meshwright_http_request_duration_seconds", "method" => method, "route" => route.clone())
         .record(start.elapsed().as_secs_f64());
     metrics::counter!("meshwright_http_requests_total", "method" => method, "route" => route, "status" => status)
         .increment(1);
     response
+}
+
+/// The method as a label. A client may invent methods, and a label of each would be kept until the process ends.
+pub(super) fn known(method: &Method) -> &'static str {
+    const METHODS: [&str; 7] = ["GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"];
+    let known = METHODS.into_iter().find(|known| *known == method.as_str());
+    known.unwrap_or("other")
 }
 
 /// Get metrics

@@ -17,6 +17,8 @@ use futures_util::{StreamExt, stream};
 use http_body::Body as _;
 
 use super::aside::aside;
+use super::conditional::tag_as_packed;
+use super::memory::Counted;
 use super::problem::internal;
 
 /// What is smaller fits in a packet or two, and packing it would only take time.
@@ -43,6 +45,9 @@ pub(super) async fn pack(request: Request, next: Next) -> Response {
     parts
         .headers
         .insert(CONTENT_ENCODING, HeaderValue::from_static("gzip"));
+    tag_as_packed(&mut parts.headers);
+    // Its bytes are others now.
+    parts.extensions.remove::<Counted>();
     if body.size_hint().exact().is_none() {
         return Response::from_parts(parts, packed_stream(body));
     }

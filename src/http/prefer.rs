@@ -10,7 +10,7 @@ use axum::http::request::Parts;
 use utoipa::IntoParams;
 
 use super::client::Client;
-use super::door::PlaceToWait;
+use crate::compute::Part;
 
 /// Nobody waits longer than this, in seconds.
 pub(super) const LONGEST_WAIT_S: u64 = 60;
@@ -28,14 +28,14 @@ pub(super) struct Wait(
 #[derive(Debug)]
 pub(super) struct Granted {
     seconds: Option<u64>,
-    _place: Option<PlaceToWait>,
+    _place: Option<Part>,
 }
 
 impl Wait {
     /// What is granted to `client`.
     pub(super) fn grant(self, client: &Client) -> Granted {
-        let door = &client.app.door;
-        let place = self.0.and_then(|_| door.place_to_wait(client.name()));
+        let access = &client.app.access;
+        let place = self.0.and_then(|_| access.place_to_wait(client.name()));
         Granted {
             seconds: self.0.map(|seconds| match place {
                 Some(_) => seconds.min(LONGEST_WAIT_S),

@@ -47,7 +47,7 @@ impl Refusal {
     }
 
     /// Too many requests come without a key that is known.
-    pub(super) fn too_many_strangers(wait: Duration) -> Self {
+    pub(super) fn too_many_unauthenticated(wait: Duration) -> Self {
         let detail = format!(
             "More requests came without a key that is known here than are answered; the next is taken in {:.1} s. A key that is known has bounds of its own.",
             wait.as_secs_f64()
@@ -182,10 +182,7 @@ impl From<JobError> for Problem {
                 error!(error = cause, "the database failed");
                 internal()
             }
-            JobError::Damaged(damage) => {
-                error!(error = %damage, "the database is damaged");
-                internal()
-            }
+            JobError::Damaged(damage) => damage.problem(),
         }
     }
 }

@@ -41,10 +41,7 @@ pub(super) async fn answer(app: &App, job: &Job, request: &HeaderMap) -> Result<
     let Some(hash) = &job.document else {
         return Err(of_missing_results(job.status, job.problem.as_ref()));
     };
-    let stored = async {
-        let document = app.jobs.document(job).await?;
-        packed_or_plain(&job.client, document, request).await
-    };
+    let stored = packed_or_plain(app, job, request);
     let mut response = Tag::of_hash(hash, "")
         .answer(Keep::ForGood, request, stored)
         .await?;
@@ -55,18 +52,19 @@ pub(super) async fn answer(app: &App, job: &Job, request: &HeaderMap) -> Result<
 }
 
 /// A document is kept packed, and sent so to those who can unpack it: nobody packs it again.
-async fn packed_or_plain(
-    client: &str,
-    document: Document,
-    request: &HeaderMap,
-) -> Result<Response, Problem> {
+async fn packed_or_plain(app: &App, job: &Job, request: &HeaderMap) -> Result<Response, Problem> {
     let json = [(CONTENT_TYPE, "application/json")];
-    if let Some(packed) = document.gzip().filter(|_| takes_gzip(request)) {
+    let stored = app.jobs.stored(job).await?;
+    // Packed and not, while it is unpacked.
+    let memory = app.bodies.for_answer(&job.client, 2 * stored.bytes).await?;
+    let document = app.jobs.document_of(job, &stored).await?;
+    let packed = document.gzip().map_err(JobError::from)?;
+    if let Some(packed) = packed.filter(|_| takes_gzip(request)) {
         let packing = [(CONTENT_ENCODING, "gzip"), (VARY, "accept-encoding")];
-        return Ok((json, packing, packed).into_response());
+        return Ok((json, packing, memory.hold(packed)).into_response());
     }
-    let text = text_of(client, document).await?;
-    Ok((json, text).into_response())
+    let text = text_of(&job.client, document).await?;
+    Ok((json, memory.hold(text)).into_response())
 }
 
 /// A document of fewer bytes, packed, is unpacked in less time than the way to another thread and back takes.

@@ -167,6 +167,9 @@ fn checked(import: &Import) -> Result<Submission, Vec<Fault>> {
     })
 }
 
+/// The text of the results, what is read of it, and the model take so many times its bytes together.
+const TIMES_THE_RESULTS: u64 = 8;
+
 /// Get a job as a model of a gearbox
 ///
 /// A REXS model, version 2.0, of the submission; of a job that has results with its curves, one load case for each torque.
@@ -179,13 +182,19 @@ fn checked(import: &Import) -> Result<Submission, Vec<Fault>> {
 pub(super) async fn write(client: Client, JobId(id): JobId) -> Result<Response, Problem> {
     let job = client.app.jobs.find(client.name(), id).await?;
     let submission = client.app.jobs.submission(job.id).await?;
-    let document = match &job.document {
+    let stored = match &job.document {
         None => None,
         // Of designs whose statistics alone were kept there are no curves to tell.
-        Some(_) => match client.app.jobs.document(&job).await {
+        Some(_) => match client.app.jobs.stored(&job).await {
             Err(JobError::ResultsNotKept(_)) => None,
-            document => Some(document?),
+            stored => Some(stored?),
         },
+    };
+    let most = TIMES_THE_RESULTS * stored.as_ref().map_or(0, |stored| stored.bytes);
+    let memory = client.app.bodies.for_answer(client.name(), most).await?;
+    let document = match &stored {
+        None => None,
+        Some(stored) => Some(client.app.jobs.document_of(&job, stored).await?),
     };
     let date = job.submitted_at.strftime("%Y-%m-%dT%H:%M:%S+00:00");
     let date = date.to_string();
@@ -200,6 +209,6 @@ pub(super) async fn write(client: Client, JobId(id): JobId) -> Result<Response, 
         };
         Ok::<_, Problem>(model_of(&submission, results.as_ref(), &date))
     });
-    let model = written.await??;
+    let model = memory.hold(written.await??);
     Ok(file("application/xml", &format!("{id}.rexs"), model))
 }

@@ -26,9 +26,9 @@ use utoipa_axum::routes;
 use super::app::App;
 use super::headers::Trace;
 use super::{
-    batch, contact_pattern, docs, door, draw, events, fields, guides, headers, health, jobs,
-    metrics, outline, packing, previews, problem, problem_pages, reference, results, rexs, studies,
-    submit, tables, web, webhooks,
+    access, batch, connections, contact_pattern, docs, draw, events, fields, guides, headers,
+    health, jobs, memory, metrics, outline, packing, previews, problem, problem_pages, reference,
+    results, rexs, studies, submit, tables, web, webhooks,
 };
 use crate::wire::{Code, Problem};
 
@@ -43,7 +43,7 @@ pub fn router(app: App) -> Router {
     docs::add_common_answers(&mut openapi);
     docs::say_whether_keys_are_needed(&mut openapi, edge.asks_for_keys, edge.issuer.as_deref());
     let is_https = edge.public_url.starts_with("https://");
-    let door = Arc::clone(&app.door);
+    let access = Arc::clone(&app.access);
 
     // The outermost layer stands first.
     let layers = ServiceBuilder::new()
@@ -51,7 +51,11 @@ pub fn router(app: App) -> Router {
         .layer(from_fn_with_state(app.jobs.clock().clone(), headers::date))
         .layer(from_fn_with_state(is_https, headers::secure))
         // Before the log, which would be flooded as well.
-        .layer(from_fn_with_state(Arc::clone(&door), door::limit_strangers))
+        .layer(from_fn_with_state(
+            Arc::clone(&access),
+            access::limit_unauthenticated,
+        ))
+        .layer(from_fn(connections::limit))
         .layer(
             TraceLayer::new_for_http()
                 .make_span_with(span)
@@ -60,9 +64,10 @@ pub fn router(app: App) -> Router {
         .layer(from_fn(metrics::count))
         .layer(from_fn(headers::tell))
         .option_layer((!edge.cors_origins.is_empty()).then(|| cors(&edge.cors_origins)))
+        .layer(from_fn_with_state(app.bodies.clone(), memory::hold))
         .layer(from_fn(packing::pack))
         .layer(from_fn_with_state(Arc::clone(&edge), problem::shape))
-        .layer(from_fn_with_state(door, door::check_host))
+        .layer(from_fn_with_state(access, access::check_host))
         .layer(TimeoutLayer::with_status_code(
             StatusCode::SERVICE_UNAVAILABLE,
             REQUEST_TIMEOUT,
@@ -86,8 +91,8 @@ pub fn router_of_metrics(app: App) -> Router {
         .layer(from_fn_with_state(app.jobs.clock().clone(), headers::date))
         .layer(from_fn_with_state(false, headers::secure))
         .layer(from_fn_with_state(
-            Arc::clone(&app.door),
-            door::check_known_host,
+            Arc::clone(&app.access),
+            access::check_known_host,
         ))
         .layer(TimeoutLayer::with_status_code(
             StatusCode::SERVICE_UNAVAILABLE,
@@ -227,7 +232,14 @@ fn span(request: &Request) -> tracing::Span {
     let trace = request.extensions().get::<Trace>();
     let trace = trace.map_or("", |trace| trace.id.as_str());
     tracing::info_span!(
-        "request", method = %request.method(), path = request.uri().path(), request_id = id, trace_id = trace,
-        key = Empty, subject = Empty, token = Empty, client = Empty
+        "request",
+        method = metrics::known(request.method()),
+        path = request.uri().path(),
+        request_id = id,
+        trace_id = trace,
+        key = Empty,
+        subject = Empty,
+        token = Empty,
+        client = Empty
     )
 }

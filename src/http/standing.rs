@@ -12,6 +12,7 @@ use axum::response::{IntoResponse, Response};
 use flate2::Compression;
 
 use super::conditional::{Keep, Tag};
+use super::memory::Counted;
 use super::packing::{packed, takes_gzip};
 use crate::hash::sha256_hex;
 
@@ -43,7 +44,7 @@ impl Standing {
         let hash = self
             .hash
             .get_or_init(|| sha256_hex(&self.plain)[..32].to_owned());
-        let tag = Tag::of_hash(hash, if is_packed { "-gzip" } else { "" });
+        let tag = Tag::of_hash(hash, "");
         let made = async {
             let media_type = [(CONTENT_TYPE, self.media_type)];
             Ok::<_, Infallible>(if is_packed {
@@ -56,6 +57,7 @@ impl Standing {
         let Ok(mut response) = tag.answer(Keep::AskAgain, request, made).await;
         let by = HeaderValue::from_static("accept-encoding");
         response.headers_mut().insert(VARY, by);
+        response.extensions_mut().insert(Counted);
         response
     }
 }

@@ -8,6 +8,7 @@ use super::app::App;
 use super::client::Client;
 use super::document::Document;
 use super::headers::Made;
+use super::memory::{AnswerMemory, SMALL_ANSWER};
 use super::parameters::IdempotencyKey;
 use super::prefer::Wait;
 use super::results::text_of;
@@ -56,7 +57,7 @@ pub(super) async fn submit(
 
     // The job was made: whatever goes wrong from here on, it is told of it.
     let wait = wait.grant(&client);
-    let mut results = None;
+    let (mut results, mut memory) = (None, None);
     if let Some(patience) = wait.patience() {
         if let Ok(now) = client
             .app
@@ -67,11 +68,12 @@ pub(super) async fn submit(
             job = now;
         }
         if client.check_again().await.is_ok() {
-            results = results_of(&client.app, &job).await;
+            (results, memory) = results_of(&client.app, &job).await.unzip();
         }
     }
     let has_waited = wait.patience().is_some();
     let view = JobView::with_results(&job, results, &client.app.edge).to_json();
+    let view = memory.unwrap_or_default().hold(view);
     let (address, has_ended) = (client.app.edge.job(job.id), job.status.has_ended());
     let mut response = answer::submitted(view, &address, has_ended, repeated || has_waited);
     if let Some(made) = made {
@@ -82,9 +84,15 @@ pub(super) async fn submit(
 }
 
 /// The results of a job, where it has some that can be read now. Those that cannot still stand at their address.
-async fn results_of(app: &App, job: &Job) -> Option<Box<RawValue>> {
+async fn results_of(app: &App, job: &Job) -> Option<(Box<RawValue>, AnswerMemory)> {
     job.document.as_ref()?;
-    let document = app.jobs.document(job).await.ok()?;
+    let stored = app.jobs.stored(job).await.ok()?;
+    // Their text, and that of the whole answer.
+    let memory = app
+        .bodies
+        .for_answer(&job.client, 2 * stored.bytes + SMALL_ANSWER as u64);
+    let memory = memory.await.ok()?;
+    let document = app.jobs.document_of(job, &stored).await.ok()?;
     let text = text_of(&job.client, document).await.ok()?;
-    RawValue::from_string(text).ok()
+    Some((RawValue::from_string(text).ok()?, memory))
 }

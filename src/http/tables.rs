@@ -24,6 +24,9 @@ use crate::wire::results::{
 };
 use crate::wire::{Code, Problem, Results};
 
+/// The text of the results, what is read of it, and the table take so many times its bytes together.
+const TIMES_THE_RESULTS: u64 = 4;
+
 /// What a table shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Table {
@@ -259,12 +262,15 @@ pub(super) async fn table(
     };
     let part = torque.map_or_else(|| format!("/{file}"), |torque| format!("/{file}/{torque}"));
     let made = async {
-        let document = client.app.jobs.document(&job).await?;
+        let stored = client.app.jobs.stored(&job).await?;
+        let most = TIMES_THE_RESULTS * stored.bytes;
+        let memory = client.app.bodies.for_answer(client.name(), most).await?;
+        let document = client.app.jobs.document_of(&job, &stored).await?;
         let name = format!("{id}-{file}");
-        aside(client.name(), move |_| {
+        let made = aside(client.name(), move |_| {
             make(&document, wanted, torque, &name)
-        })
-        .await?
+        });
+        memory.hold_body(made.await??).await
     };
     Tag::of_hash(hash, &part)
         .answer(Keep::ForGood, &request, made)

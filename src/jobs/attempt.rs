@@ -19,7 +19,7 @@ use uuid::Uuid;
 use super::job::{Job, Progress};
 use super::live::Entered;
 use super::shop::{Shop, Threads};
-use super::store::{Came, Claim, End, Ended, Packed, Started, StoreError};
+use super::store::{Came, Claim, Damaged, End, Ended, Packed, Started, StoreError};
 use crate::compute::{Budget, Solve, message_of};
 use crate::spans::{self, Span};
 use crate::wire::{Code, Kept, Problem, SOLVER_VERSION, Submission, Summary, memory_of};
@@ -71,6 +71,9 @@ impl Attempt {
         }
     }
 }
+
+/// A job to compute: its id and client, how much of its results is kept, its submission, and its handle.
+type Work = (Uuid, String, Kept, Result<String, Damaged>, Run);
 
 impl Shop {
     /// Has claimed jobs computed, and watches over them: heartbeat, time limit, shutdown. Gives back how often a
@@ -197,11 +200,7 @@ impl Shop {
 
     /// Starts the computations on the worker's own threads: they are long, so they must not sit on a thread that answers requests. A
     /// panic in one is the engine's fault and ends this job only.
-    fn launch(
-        &self,
-        work: Vec<(Uuid, String, Kept, String, Run)>,
-        threads: &Threads,
-    ) -> mpsc::UnboundedReceiver<Told> {
+    fn launch(&self, work: Vec<Work>, threads: &Threads) -> mpsc::UnboundedReceiver<Told> {
         let (sender, receiver) = mpsc::unbounded_channel();
         let pools = threads.for_jobs(work.len());
         let work = Arc::new(Mutex::new(work.into_iter().enumerate()));
@@ -217,8 +216,10 @@ impl Shop {
             pool.spawn(move || {
                 while let Some((place, (id, client, keep, submission, run))) = next() {
                     let begin = clock.steady();
-                    let work =
-                        || solved(&solve, (&memory, client.as_str()), &submission, keep, &run);
+                    let work = || {
+                        let submission = submission.as_ref().map_err(Damaged::problem)?;
+                        solved(&solve, (&memory, client.as_str()), submission, keep, &run)
+                    };
                     let result = catch_unwind(AssertUnwindSafe(work));
                     let result = result.unwrap_or_else(|panic| {
                         error!(job = %id, panic = message_of(&*panic), "the engine panicked");

@@ -11,10 +11,6 @@ use crate::wire::{Design, Kept, RowState, Status, Study, memory_above, too_much_
 /// So many designs are expanded and written in one transaction. Others write in between.
 pub(super) const CHUNK: usize = 500;
 
-/// So many rows of a table are read at a time, and so many documents.
-const ROWS_AT_ONCE: u32 = 500;
-const DOCUMENTS_AT_ONCE: u32 = 8;
-
 /// Whose jobs the designs become.
 pub(super) struct Owner {
     pub(super) study: Uuid,
@@ -73,22 +69,27 @@ impl Jobs {
         }
     }
 
-    /// Some rows of a study that was found, behind the first `after` ones, with what has come of each so far. None left:
+    /// At most so many rows of a study that was found, behind the first `after` ones, with what has come of each so far. None left:
     /// the table is at its end.
     ///
     /// # Errors
     ///
     /// [`JobError::Unavailable`], [`JobError::Database`].
-    pub async fn study_rows(&self, id: Uuid, after: u64) -> Result<Vec<RowState>, JobError> {
+    pub async fn study_rows(
+        &self,
+        id: Uuid,
+        after: u64,
+        most: u32,
+    ) -> Result<Vec<RowState>, JobError> {
         let rows = self
             .store
-            .study_rows(id, position_before(after), ROWS_AT_ONCE)
+            .study_rows(id, position_before(after), most)
             .await?;
         // Hundreds of small documents are read here, which is more than a thread that answers requests should do.
         blocking(move || rows.into_iter().map(row_state).collect()).await
     }
 
-    /// Some results of a study that was found, of the designs behind the position `after` that have results. None left:
+    /// At most so many results of a study that was found, of the designs behind the position `after` that have results. None left:
     /// there are no more now.
     ///
     /// # Errors
@@ -98,12 +99,29 @@ impl Jobs {
         &self,
         id: Uuid,
         after: Option<i64>,
+        most: u32,
     ) -> Result<Vec<DocumentLine>, JobError> {
         let after = after.unwrap_or(-1);
-        Ok(self
-            .store
-            .study_documents(id, after, DOCUMENTS_AT_ONCE)
-            .await?)
+        Ok(self.store.study_documents(id, after, most).await?)
+    }
+
+    /// The bytes of the text of each of these.
+    ///
+    /// # Errors
+    ///
+    /// [`JobError::Unavailable`], [`JobError::Database`].
+    pub async fn study_document_bytes(
+        &self,
+        id: Uuid,
+        after: Option<i64>,
+        most: u32,
+    ) -> Result<Vec<u64>, JobError> {
+        let after = after.unwrap_or(-1);
+        let bytes = self.store.study_document_bytes(id, after, most).await?;
+        let bytes = bytes
+            .into_iter()
+            .map(|bytes| u64::try_from(bytes).unwrap_or_default());
+        Ok(bytes.collect())
     }
 }
 

@@ -86,6 +86,14 @@ pub struct Jobs {
     stop: CancellationToken,
 }
 
+/// A results document in the store.
+#[derive(Debug, Clone)]
+pub struct Stored {
+    hash: String,
+    /// The bytes of its text.
+    pub bytes: u64,
+}
+
 struct Pending {
     job: NewJob,
     answer: oneshot::Sender<Result<Outcome, JobError>>,
@@ -217,7 +225,7 @@ impl Jobs {
     /// [`JobError::NotFound`] if it has been deleted since, [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn submission(&self, id: Uuid) -> Result<String, JobError> {
         let text = self.store.submission(id).await?;
-        text.ok_or(JobError::NotFound(id))
+        Ok(text.ok_or(JobError::NotFound(id))??)
     }
 
     /// The same, to be read rather than shown.
@@ -303,24 +311,53 @@ impl Jobs {
         Ok(Listed::first(found.collect(), limit, |job| job.sequence))
     }
 
-    /// The results of a job that was found successful.
+    /// The results of a job that was found successful: where they are, and how many bytes their text has.
     ///
     /// # Errors
     ///
     /// [`JobError::NotFound`] if it has been deleted since, [`JobError::Ended`] if it has none,
     /// [`JobError::ResultsNotKept`], [`JobError::Unavailable`], [`JobError::Database`].
-    pub async fn document(&self, job: &Job) -> Result<Document, JobError> {
+    pub async fn stored(&self, job: &Job) -> Result<Stored, JobError> {
         let Some(hash) = &job.document else {
             return Err(JobError::Ended(job.status));
         };
-        let document = match job.keep {
-            Kept::Results => self.store.document(hash).await?,
-            Kept::Statistics => self.store.document_of_equal(job.id).await?,
+        let (hash, none) = match job.keep {
+            Kept::Results => (Some(hash.clone()), JobError::NotFound(job.id)),
+            Kept::Statistics => (
+                self.store.document_of_equal(job.id).await?,
+                JobError::ResultsNotKept(job.id),
+            ),
         };
-        document.ok_or(match job.keep {
-            Kept::Results => JobError::NotFound(job.id),
-            Kept::Statistics => JobError::ResultsNotKept(job.id),
-        })
+        let Some(hash) = hash else {
+            return Err(none);
+        };
+        match self.store.document_bytes(&hash).await? {
+            Some(bytes) => Ok(Stored {
+                hash,
+                bytes: u64::try_from(bytes).unwrap_or_default(),
+            }),
+            None => Err(none),
+        }
+    }
+
+    /// The results of a job that was found successful.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Jobs::stored`].
+    pub async fn document(&self, job: &Job) -> Result<Document, JobError> {
+        let stored = self.stored(job).await?;
+        self.document_of(job, &stored).await
+    }
+
+    /// The results of a job that are stored so.
+    ///
+    /// # Errors
+    ///
+    /// [`JobError::NotFound`] if it has been deleted since, [`JobError::Unavailable`], [`JobError::Database`].
+    pub async fn document_of(&self, job: &Job, stored: &Stored) -> Result<Document, JobError> {
+        let document = self.store.document(&stored.hash).await?;
+        document.ok_or(JobError::NotFound(job.id))
     }
 
     /// Ends a job that waits or runs. A job that was cancelled before stays so.

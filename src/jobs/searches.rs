@@ -230,7 +230,7 @@ impl Jobs {
         first: u64,
         end: u64,
     ) -> Result<Vec<RowState>, JobError> {
-        let mut rows = self.study_rows(owner.study, first).await?;
+        let mut rows = self.study_rows(owner.study, first, CHUNK as u32).await?;
         rows.truncate(end.saturating_sub(first) as usize);
         Ok(rows)
     }

@@ -98,6 +98,7 @@ impl Jobs {
                 .store
                 .study_text(id, u64::MAX)
                 .await?
+                .and_then(Result::ok)
                 .unwrap_or_default();
             match Study::parse(document.as_bytes(), &Run::unattended()) {
                 Ok(study) => {
@@ -247,16 +248,27 @@ impl Jobs {
     /// [`JobError::StudyNotFound`] if it has been deleted since, [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn study_text(&self, id: Uuid) -> Result<String, JobError> {
         let text = self.store.study_text(id, u64::MAX).await?;
-        text.ok_or(JobError::StudyNotFound(id))
+        Ok(text.ok_or(JobError::StudyNotFound(id))??)
     }
 
-    /// The same, if it has no more characters than `most`.
+    /// The number of bytes of that.
+    ///
+    /// # Errors
+    ///
+    /// The same.
+    pub async fn study_text_bytes(&self, id: Uuid) -> Result<u64, JobError> {
+        let bytes = self.store.study_text_bytes(id).await?;
+        let bytes = bytes.ok_or(JobError::StudyNotFound(id))?;
+        Ok(u64::try_from(bytes).unwrap_or_default())
+    }
+
+    /// The text, if it has no more characters than `most`.
     ///
     /// # Errors
     ///
     /// [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn short_study_text(&self, id: Uuid, most: u64) -> Result<Option<String>, JobError> {
-        Ok(self.store.study_text(id, most).await?)
+        Ok(self.store.study_text(id, most).await?.transpose()?)
     }
 
     /// Ends a study: what waits or runs of it is dismissed, what has results keeps them. A study that was cancelled

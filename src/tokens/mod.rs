@@ -87,8 +87,7 @@ impl Tokens {
     pub fn start(rules: TokenRules, clock: Clock) -> Result<Self, reqwest::Error> {
         ring::install();
         let provider = Arc::new(Provider::new(rules.issuer.clone(), clock.clone())?);
-        let early = Arc::clone(&provider);
-        tokio::spawn(async move { early.ask_first().await });
+        provider.fetch_first();
         Ok(Self {
             rules: Arc::new(rules),
             provider,

@@ -11,6 +11,8 @@ use reqwest::{Client, StatusCode, Url};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
+use tokio::sync::Semaphore;
+use tokio_util::sync::CancellationToken;
 use tracing::{info, warn};
 
 use super::rules::IssuerUrl;
@@ -21,11 +23,11 @@ use crate::jobs::Clock;
 const TIME_OUT: Duration = Duration::from_secs(5);
 const MOST_BYTES: usize = 256 << 10;
 
-/// While there are keys they are asked for no more often than this, whatever keys tokens name.
-const PATIENCE: SignedDuration = SignedDuration::from_mins(1);
+/// Between two fetches lies at least so much time, whatever keys tokens name.
+const BETWEEN: SignedDuration = SignedDuration::from_secs(5);
 
-/// The same while there are none.
-const IMPATIENCE: SignedDuration = SignedDuration::from_secs(5);
+/// So many requests wait for the fetch under way. A provider that answers nothing holds no more than these, whoever sends them.
+const MOST_WAITING: usize = 64;
 
 /// After so long the keys are asked for anew: one that was withdrawn opens nothing then.
 const FRESH: SignedDuration = SignedDuration::from_mins(10);
@@ -39,16 +41,23 @@ pub(super) struct Provider {
     client: Client,
     clock: Clock,
     state: Mutex<State>,
-    /// Held by who asks the provider; others wait for the answer.
-    asking: Arc<tokio::sync::Mutex<()>>,
 }
 
 #[derive(Default)]
 struct State {
     keys: Option<Keys>,
-    asked: Option<Timestamp>,
+    /// The fetch under way.
+    fetch: Option<Arc<Fetch>>,
+    /// When the last one ended.
+    fetched: Option<Timestamp>,
     /// Whether the last answer was none.
     failed: bool,
+}
+
+/// One fetch of the keys, and those who wait for it.
+struct Fetch {
+    ended: CancellationToken,
+    places: Semaphore,
 }
 
 /// The keys as they were at a time.
@@ -80,47 +89,64 @@ impl Provider {
             client: bounded(TIME_OUT).build()?,
             clock,
             state: Mutex::default(),
-            asking: Arc::default(),
         })
     }
 
-    /// The key of this name. The provider is asked if there is none, or if what is known is old, and not too often.
+    /// Fetches the keys before somebody needs them.
+    pub(super) fn fetch_first(self: &Arc<Self>) {
+        let _ = self.fetch();
+    }
+
+    /// The key of this name. Where there is none, or what is known is old, the keys are fetched, and not too often. All who need them
+    /// wait for one fetch, and take its answer.
     pub(super) async fn key(self: &Arc<Self>, id: &str, algorithm: Algorithm) -> Found {
         let (found, is_fresh) = self.look(id, algorithm);
-        let turn = Arc::clone(&self.asking);
-        let turn = match found {
-            Found::Key(_) if is_fresh => return found,
-            // Who has a key does not wait for somebody else who asks.
-            Found::Key(_) => match turn.try_lock_owned() {
-                Ok(turn) => turn,
-                Err(_) => return found,
-            },
-            Found::Unknown | Found::Unreachable => turn.lock_owned().await,
-        };
-        if self.may_ask() {
-            // It is asked to the end, though who asked may have gone.
-            let this = Arc::clone(self);
-            let asked = tokio::spawn(async move {
-                this.ask().await;
-                drop(turn);
-            });
-            let _ = asked.await;
+        let is_known = matches!(found, Found::Key(_));
+        if is_known && is_fresh {
+            return found;
         }
+        let Some((fetch, is_new)) = self.fetch() else {
+            return found;
+        };
+        // A key that is known waits for no fetch that another request has begun.
+        let place = fetch.places.try_acquire().ok();
+        if place.is_none() || (is_known && !is_new) {
+            return found;
+        }
+        fetch.ended.cancelled().await;
         self.look(id, algorithm).0
     }
 
-    /// Asks for the keys before somebody needs them.
-    pub(super) async fn ask_first(&self) {
-        let _turn = self.asking.lock().await;
-        if self.may_ask() {
-            self.ask().await;
+    /// The fetch under way, and whether it begins now; none if the last one has just ended. It goes on to its end, also when nobody waits any
+    /// more.
+    fn fetch(self: &Arc<Self>) -> Option<(Arc<Fetch>, bool)> {
+        let mut state = self.state();
+        if let Some(fetch) = &state.fetch {
+            return Some((Arc::clone(fetch), false));
         }
+        let now = self.clock.steady();
+        let last = state.fetched.map(|last| last.duration_until(now));
+        if last.is_some_and(|last| last < BETWEEN) {
+            return None;
+        }
+        let fetch = Arc::new(Fetch {
+            ended: CancellationToken::new(),
+            places: Semaphore::new(MOST_WAITING),
+        });
+        state.fetch = Some(Arc::clone(&fetch));
+        let (this, ended) = (Arc::clone(self), fetch.ended.clone());
+        tokio::spawn(async move {
+            this.ask().await;
+            ended.cancel();
+        });
+        Some((fetch, true))
     }
 
     async fn ask(&self) {
-        self.state().asked = Some(self.clock.steady());
-        let fetched = self.fetch().await;
+        let fetched = self.documents().await;
         let mut state = self.state();
+        state.fetch = None;
+        state.fetched = Some(self.clock.steady());
         state.failed = fetched.is_err();
         match fetched {
             Ok(keys) => {
@@ -162,23 +188,11 @@ impl Provider {
         (found, age(keys) < FRESH)
     }
 
-    fn may_ask(&self) -> bool {
-        let state = self.state();
-        let patience = match state.keys {
-            Some(_) => PATIENCE,
-            None => IMPATIENCE,
-        };
-        let now = self.clock.steady();
-        state
-            .asked
-            .is_none_or(|asked| asked.duration_until(now) >= patience)
-    }
-
     fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().expect("nothing panics with this lock")
     }
 
-    async fn fetch(&self) -> Result<Vec<Known>, String> {
+    async fn documents(&self) -> Result<Vec<Known>, String> {
         let discovered: Discovered = self.document(&self.issuer.discovery()).await?;
         if discovered.issuer != self.issuer.text {
             return Err(format!(
@@ -199,7 +213,10 @@ impl Provider {
     }
 
     async fn document<T: DeserializeOwned>(&self, url: &str) -> Result<T, String> {
-        let told = |error: reqwest::Error| told(&error.without_url(), TIME_OUT);
+        let told = |error: reqwest::Error| match error.is_timeout() {
+            true => format!("no answer within {} s", TIME_OUT.as_secs()),
+            false => told(&error.without_url()),
+        };
         let request = self.client.get(url).header(ACCEPT, "application/json");
         let mut answer = request.send().await.map_err(told)?;
         if answer.status() != StatusCode::OK {

@@ -179,6 +179,8 @@ codes! {
         "The identity provider whose tokens this service takes gives no keys now, so that the token of the request cannot be checked. Keys of the service are taken as before. Send the request again after the time in Retry-After."
     Unavailable "unavailable" 503 "The service is shutting down"
         "The service is about to stop and takes no new work. Nothing was stored; send the request again after the time in Retry-After."
+    DocumentDamaged "document-damaged" 500 "A stored document is damaged"
+        "What is read from the database is not what was written: its checksum is another one. Nothing of it is served. The operator finds it in the log and can restore a backup; a job submitted again is computed anew once the damaged one is deleted."
     InternalError "internal-error" 500 "The service failed"
         "Something went wrong that is not your doing. It has been logged under the request's identifier, which the operator can look up."
 }

@@ -76,6 +76,7 @@ async fn a_client_whose_requests_never_come_whole_locks_no_other_one_out() {
                 if stream.write_all(head.as_bytes()).await.is_ok() {
                     let _ = stream.read(&mut [0]).await;
                 }
+                tokio::time::sleep(Duration::from_millis(50)).await;
             }
         });
     }
@@ -103,7 +104,7 @@ async fn the_streams_of_one_client_leave_most_connections_to_others() {
     let job = request.answer().await.document().await;
     let events = format!("/v1/jobs/{}/events", job["id"].as_str().unwrap());
     let mut streams = Vec::new();
-    for _ in 0..16 / 4 {
+    for _ in 0..16 / 8 {
         let stream = bench.get(&events).bearer_auth(&hog).answer().await;
         assert_eq!(stream.status(), 200);
         streams.push(stream);
@@ -112,6 +113,53 @@ async fn the_streams_of_one_client_leave_most_connections_to_others() {
     problem(one_more, 429, "rate_limited").await;
     let answer = bench.get("/v1/jobs").bearer_auth(&other).answer().await;
     assert_eq!(answer.status(), 200);
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn one_client_has_a_quarter_of_the_connections_busy_and_health_is_answered_where_all_are() {
+    let adjust = |config: &mut Config| {
+        config.door.connections = 16;
+        config.previews = 32;
+    };
+    let (bench, _engine) = Bench::steered_with(adjust).await;
+    let mut keys = Vec::new();
+    for client in ["hog", "b", "c", "d", "other"] {
+        keys.push(key_of(&bench, client).await);
+    }
+    // Requests that last, each on a connection of its own.
+    let preview = |key: &str| bench.post("/v1/preview", &submission(1.0)).bearer_auth(key);
+    let mut lasting = tokio::task::JoinSet::new();
+    let (refused, mut refusals) = tokio::sync::mpsc::unbounded_channel();
+    let mut begin = |key: &str, count: usize| {
+        for _ in 0..count {
+            let (request, refused) = (preview(key), refused.clone());
+            lasting.spawn(async move {
+                let _ = refused.send(request.answer().await);
+            });
+        }
+    };
+    begin(&keys[0], 6);
+    for _ in 0..2 {
+        let refusal = refusals.recv().await.unwrap();
+        assert_eq!(refusal.headers()["retry-after"], "1");
+        problem(refusal, 503, "overloaded").await;
+    }
+    let answer = bench.get("/v1/jobs").bearer_auth(&keys[4]).answer().await;
+    assert_eq!(answer.status(), 200, "it leaves three quarters to others");
+    // Four clients have them all.
+    for key in &keys[1..4] {
+        begin(key, 4);
+    }
+    tokio::time::sleep(Duration::from_millis(500)).await;
+    for path in ["/health/live", "/health/ready"] {
+        let start = Instant::now();
+        let request = bench.get(path).header("connection", "close");
+        assert_eq!(request.answer().await.status(), 200);
+        assert!(start.elapsed() < Duration::from_secs(1), "{path}");
+    }
+    let request = bench.get("/v1/jobs").bearer_auth(&keys[4]);
+    let late = request.header("connection", "close").answer().await;
+    problem(late, 503, "overloaded").await;
 }
 
 #[tokio::test]
@@ -143,6 +191,22 @@ async fn a_head_that_is_too_large_is_refused() {
     let read = tokio::time::timeout(PATIENCE, stream.read_to_string(&mut answer));
     read.await.unwrap().unwrap();
     assert!(answer.starts_with("HTTP/1.1 431"), "{answer}");
+}
+
+#[tokio::test]
+async fn a_body_that_is_too_long_is_refused_before_it_is_sent() {
+    let bench = service(|_| {}).await;
+    for (length, media_type) in [(1_u64 << 60, "application/json"), (2, "text/plain")] {
+        let mut stream = connect(&bench).await;
+        let head = format!(
+            "POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Type: {media_type}\r\nContent-Length: {length}\r\nExpect: 100-continue\r\n\r\n"
+        );
+        stream.write_all(head.as_bytes()).await.unwrap();
+        let mut answer = [0; 12];
+        stream.read_exact(&mut answer).await.unwrap();
+        let answer = String::from_utf8_lossy(&answer);
+        assert!(answer.starts_with("HTTP/1.1 41"), "{answer}");
+    }
 }
 
 #[tokio::test]

@@ -8,7 +8,7 @@ use meshwright::http::KeysRule;
 use meshwright::jobs::Clock;
 use meshwright::wire::Code;
 use reqwest::{Method, StatusCode};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::bench::{Asked, Bench, RESULTS, Said, submission};
 
@@ -295,5 +295,41 @@ async fn files_of_the_page_and_of_the_documentation_come_packed_as_they_were_bui
         let mut decoder = flate2::read::GzDecoder::new(packed.as_ref());
         std::io::Read::read_to_end(&mut decoder, &mut unpacked).unwrap();
         assert_eq!(unpacked, plain, "{path}");
+    }
+}
+
+#[tokio::test]
+async fn an_answer_that_is_packed_has_another_tag_than_the_same_as_it_is_and_each_is_known() {
+    let bench = Bench::quick().await;
+    let job = bench.submit(&submission(1.0)).await;
+    bench.ended(&job).await;
+    let torques: Vec<f64> = (1..=40).map(f64::from).collect();
+    let axes = json!([{ "path": "/output_torques_n_m/0", "values": torques }]);
+    let study = json!({ "base": submission(1.0), "axes": axes });
+    let study = bench.post("/v1/studies", &study).answer().await;
+    let study = study.headers()["location"].to_str().unwrap().to_owned();
+    bench.ended(&study).await;
+    for path in [
+        format!("{job}/results"),
+        format!("{study}/results"),
+        format!("{study}/results/table.csv"),
+    ] {
+        let get = async |takes: &str, known: Option<&str>| {
+            let mut request = bench.get(&path).header("accept-encoding", takes);
+            if let Some(known) = known {
+                request = request.header("if-none-match", known);
+            }
+            let answer = request.answer().await;
+            let tag = answer.headers()["etag"].to_str().unwrap().to_owned();
+            let packed = answer.headers().contains_key("content-encoding");
+            (answer.status().as_u16(), tag, packed)
+        };
+        let (plain, packed) = (get("identity", None).await, get("gzip", None).await);
+        assert_eq!((plain.2, packed.2), (false, true), "{path}");
+        assert_ne!(plain.1, packed.1, "{path}");
+        for (takes, (_, tag, _)) in [("identity", &plain), ("gzip", &packed)] {
+            let known = get(takes, Some(tag)).await;
+            assert_eq!((known.0, &known.1), (304, tag), "{path}");
+        }
     }
 }

@@ -31,7 +31,7 @@ pub(crate) async fn shared_by(clients: [&str; 2]) -> (TempDir, Process, [String;
 }
 
 /// Makes a key, as `meshwright keys create` does.
-async fn make_key(database: &Place, client: &str) -> String {
+pub(crate) async fn make_key(database: &Place, client: &str) -> String {
     let store = Store::open(database).await.unwrap();
     let key = Key::random().unwrap();
     let record = KeyRecord {

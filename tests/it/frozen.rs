@@ -12,7 +12,7 @@ use crate::bench::{Asked, submission};
 use crate::process::Process;
 use crate::server;
 
-/// Every request has an answer in this time, whatever the server does: it takes 12 s to say that it does not.
+/// Every request has an answer in this time, whatever the server does: one under way when it freezes takes 12 s.
 const ANSWERED: Duration = Duration::from_secs(20);
 
 /// The processes of the server in `folder`, the first of which is its parent.
@@ -128,6 +128,24 @@ async fn a_server_that_answers_nothing_holds_up_no_request_and_no_end() {
         "the server frozen: ready says so after {told:?}, a look is refused after {:?}, a submission after {:?}; ready again {again:?} after it is back",
         look.1, submit.1
     );
+
+    for round in 1..=3 {
+        signal(&folder, Signal::STOP);
+        let asked = ask(&client, &process, 10.0 + f64::from(round)).await;
+        signal(&folder, Signal::CONT);
+        for (status, took) in asked {
+            assert_eq!(status, 503);
+            assert!(
+                took < Duration::from_millis(5600),
+                "round {round}: {took:?}"
+            );
+        }
+        until(&client, &process, 200).await;
+        println!(
+            "the server frozen, round {round}: a look and a submission are refused after {:?}",
+            asked.map(|(_, took)| took)
+        );
+    }
 
     for what in ["a table locked", "the server frozen"] {
         if what == "a table locked" {

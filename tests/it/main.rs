@@ -49,6 +49,7 @@ mod fleet;
 mod flood;
 mod frozen;
 mod generated;
+mod memory;
 mod one_process;
 mod operators;
 mod readers;

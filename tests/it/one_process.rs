@@ -9,8 +9,9 @@ use std::time::Duration;
 use meshwright::jobs::Place;
 use meshwright::wire::examples;
 use serde_json::{Value, json};
+use sqlx::Connection;
 
-use crate::bench::Bench;
+use crate::bench::{Asked, Bench, problem, submission};
 
 #[tokio::test]
 async fn a_database_is_served_by_one_process_only() {
@@ -19,6 +20,32 @@ async fn a_database_is_served_by_one_process_only() {
     assert!(refusal.to_string().contains("another process"), "{refusal}");
     bench.shut_down().await;
     bench.another().await.unwrap().shut_down().await;
+}
+
+#[tokio::test]
+async fn a_stored_document_that_was_changed_is_not_served() {
+    let bench = Bench::quick().await;
+    let path = bench.submit(&submission(1.0)).await;
+    bench.ended(&path).await;
+    let axes = json!([{ "path": "/output_torques_n_m/0", "values": [1, 2] }]);
+    let study = json!({ "base": submission(1.0), "axes": axes });
+    let study = bench.post("/v1/studies", &study).answer().await;
+    let study = study.headers()["location"].to_str().unwrap().to_owned();
+    bench.ended(&study).await;
+    let database = bench.config.database.file().unwrap();
+    let address = format!("sqlite:{}", database.display());
+    let mut file = sqlx::SqliteConnection::connect(&address).await.unwrap();
+    for words in [
+        "update documents set body = cast(substr(body, 1, 9) || x'07' || substr(body, 11) as blob)",
+        "update submissions set body = replace(body, 'flexible', 'flexibme')",
+        "update study_documents set body = replace(body, 'flexible', 'flexibme')",
+    ] {
+        sqlx::query(words).execute(&mut file).await.unwrap();
+    }
+    for path in [format!("{path}/results"), path, format!("{study}/document")] {
+        let answer = bench.get(&path).header("accept-encoding", "gzip");
+        problem(answer.answer().await, 500, "document_damaged").await;
+    }
 }
 
 #[cfg(unix)]

@@ -58,3 +58,72 @@ async fn every_number_of_the_dashboard_and_of_the_alerts_is_told() {
     let missing: Vec<_> = asked.difference(&told).collect();
     assert!(missing.is_empty(), "{missing:?} of {told:?}");
 }
+
+/// The name and value of each label in a text of numbers.
+fn labels(told: &str) -> BTreeSet<(&str, &str)> {
+    let series = told.lines().filter(|line| !line.starts_with('#'));
+    let labels = series.filter_map(|line| Some(line.split_once('{')?.1.rsplit_once('}')?.0));
+    labels
+        .flat_map(|labels| labels.split("\","))
+        .filter_map(|label| label.split_once("=\""))
+        .map(|(name, value)| (name, value.trim_end_matches('"')))
+        .collect()
+}
+
+#[tokio::test]
+async fn no_label_has_a_value_that_a_client_invents() {
+    let bench = Bench::quick().await;
+    let job = bench.submit(&submission(1.0)).await;
+    bench.ended(&job).await;
+    for number in 0..20 {
+        let method = format!("INVENTED{number}{}", "X".repeat(8000));
+        let method = reqwest::Method::from_bytes(method.as_bytes()).unwrap();
+        for path in ["/v1/jobs", "/invented", &*format!("{job}/invented")] {
+            let request = bench.client.request(method.clone(), bench.url(path));
+            assert!(request.answer().await.status().is_client_error());
+        }
+    }
+    let told = bench.get("/metrics").answer().await.body().await;
+
+    let document = bench.document("/openapi.json").await;
+    let described = document["paths"].as_object().unwrap().keys();
+    let mut routes: BTreeSet<&str> = described.map(String::as_str).collect();
+    routes.extend(["none", "/", "/openapi.json", "/v1/studies/{id}/results.csv"]);
+    let mut seen = BTreeSet::new();
+    for (name, value) in labels(&told) {
+        seen.insert(name);
+        let is_listed = match name {
+            "method" => {
+                let methods = [
+                    "GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "other",
+                ];
+                methods.contains(&value) || meshwright::wire::methods().any(|it| it == value)
+            }
+            // What is no part of the document has one pattern for each of its folders.
+            "route" => {
+                routes.contains(value)
+                    || ["/docs", "/web/", "/guides"]
+                        .iter()
+                        .any(|it| value.starts_with(it))
+            }
+            "status" => {
+                ["successful", "failed"].contains(&value) || matches!(value.parse(), Ok(200..=599))
+            }
+            "code" => {
+                meshwright::wire::Code::ALL
+                    .iter()
+                    .any(|code| code.word() == value)
+                    || value == "none"
+            }
+            "le" => value == "+Inf" || value.parse::<f64>().is_ok(),
+            "kind" | "shelf" | "result" | "waits" => value.len() < 20,
+            _ => false,
+        };
+        assert!(is_listed, "{name} {:.100}", value);
+    }
+    assert!(
+        seen.contains("method") && seen.contains("route"),
+        "{seen:?}"
+    );
+    assert!(told.len() < 200_000, "{} bytes", told.len());
+}

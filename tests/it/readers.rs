@@ -5,9 +5,10 @@ use std::time::{Duration, Instant};
 
 use reqwest::Client;
 use serde_json::{Value, json};
+use tokio::task::JoinSet;
 
 use crate::bench::{Asked, PATIENCE, Said};
-use crate::flood::shared_by;
+use crate::flood::{make_key, shared_by};
 use crate::process::Process;
 use crate::stores;
 
@@ -86,6 +87,167 @@ async fn who_reads_a_large_table_on_forty_connections_leaves_the_service_to_othe
         "a table of {ROWS} rows read on 40 connections: {took:?}; another client's questions meanwhile {during:?} (median), {before:?} before"
     );
     assert!(during < Duration::from_millis(50), "{during:?}");
+}
+
+/// Reads of `url` without a pause, on so many connections; one that is refused comes again after a second, as it is told.
+fn readers(client: &Client, url: &str, key: &str, count: usize) -> JoinSet<()> {
+    let mut readers = JoinSet::new();
+    for _ in 0..count {
+        let request = client.get(url).bearer_auth(key);
+        readers.spawn(async move {
+            loop {
+                let request = request.try_clone().unwrap();
+                match request.send().await {
+                    Ok(answer) if answer.status() == 200 => {
+                        let _ = answer.bytes().await;
+                    }
+                    _ => tokio::time::sleep(Duration::from_secs(1)).await,
+                }
+            }
+        });
+    }
+    readers
+}
+
+/// A study of 14 MB, none of whose designs can be built: where its document is, and how many bytes that has.
+async fn large_study(process: &Process, client: &Client, key: &str) -> (String, u64) {
+    let designs: Vec<Value> = (0..60_000)
+        .map(|i| {
+            let label = format!("{i}-{}", "x".repeat(150));
+            json!({ "label": label, "changes": { "/pair/driven/blank/bore_radius_mm": 60 } })
+        })
+        .collect();
+    let study = json!({ "base": study()["base"], "designs": designs });
+    let made = client.post(format!("{}/v1/studies", process.base));
+    let made = made.bearer_auth(key).json(&study).answer().await;
+    let status = made.status();
+    let path = made
+        .headers()
+        .get("location")
+        .map(|path| path.to_str().unwrap().to_owned());
+    assert_eq!(status, 202, "{}", made.body().await);
+    let url = format!("{}{}/document", process.base, path.unwrap());
+    let document = client.get(&url).bearer_auth(key).answer().await;
+    (url, document.body().await.len() as u64)
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn large_answers_that_nobody_reads_take_no_more_than_their_part_of_the_memory() {
+    let _alone = stores::ALONE.lock().await;
+    let folder = tempfile::tempdir().unwrap();
+    let database = stores::place(&folder).await;
+    let process = Process::start_with(&database, &["--memory-mb", "256", "--cache-mb", "16"]);
+    let client = meshwright::client().timeout(6 * PATIENCE).build().unwrap();
+    let [hog, other] = [
+        make_key(&database, "hog").await,
+        make_key(&database, "other").await,
+    ];
+    let (url, bytes) = large_study(&process, &client, &hog).await;
+    // Each has asked, and reads nothing.
+    let hanging = futures_util::future::join_all((0..80).map(|_| {
+        let request = client.get(&url).bearer_auth(&hog);
+        tokio::time::timeout(Duration::from_secs(8), request.send())
+    }));
+    let hanging = hanging.await;
+    let begun = hanging
+        .iter()
+        .filter(|answer| matches!(answer, Ok(Ok(_))))
+        .count() as u64;
+    assert!(begun >= 1 && begun * bytes < 80 * bytes / 2, "{begun}");
+    // Another client has its own part.
+    let (own, bytes) = large_study(&process, &client, &other).await;
+    let answer = client.get(&own).bearer_auth(&other).answer().await;
+    assert_eq!(answer.bytes().await.unwrap().len() as u64, bytes);
+    let memory = process.peak_memory_mb();
+    println!(
+        "80 answers of {bytes} bytes that nobody reads, --memory-mb 256: {begun} are sent at once, at most {memory:?} MB"
+    );
+    assert!(
+        memory.is_none_or(|memory| memory < 256 + 16 + 150),
+        "{memory:?} MB"
+    );
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[ignore = "it measures, and wants the machine for itself: ./chaos"]
+async fn who_reads_a_large_document_or_lists_on_sixty_four_connections_leaves_looks_at_jobs_to_others()
+ {
+    let (_folder, process, [reader, other]) = shared_by(["reader", "other"]).await;
+    let client = meshwright::client().timeout(6 * PATIENCE).build().unwrap();
+    let (document, _) = large_study(&process, &client, &reader).await;
+    let made = client.post(format!("{}/v1/jobs", process.base));
+    let made = made
+        .bearer_auth(&other)
+        .json(&study()["base"])
+        .answer()
+        .await;
+    let job = made.headers()["location"].to_str().unwrap().to_owned();
+    let job = format!("{}{job}", process.base);
+    for (what, url) in [
+        ("a document of 15 MB", document),
+        (
+            "lists of jobs",
+            format!("{}/v1/jobs?limit=200", process.base),
+        ),
+    ] {
+        let mut readers = readers(&client, &url, &reader, 64);
+        let mut taken = Vec::new();
+        for _ in 0..300 {
+            let start = Instant::now();
+            let answer = client.get(&job).bearer_auth(&other).answer().await;
+            assert_eq!(answer.status(), 200);
+            taken.push(start.elapsed());
+            tokio::time::sleep(Duration::from_millis(10)).await;
+        }
+        readers.shutdown().await;
+        taken.sort();
+        let (median, late) = (taken[150], taken[297]);
+        println!(
+            "{what} read on 64 connections: another client's looks at a job {median:?} (median), {late:?} (99 %)"
+        );
+        assert!(median < Duration::from_millis(20), "{what}: {median:?}");
+        assert!(late < Duration::from_millis(100), "{what}: {late:?}");
+    }
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[ignore = "it measures, and wants the machine for itself: ./chaos"]
+async fn a_thousand_readers_of_a_large_table_leave_health_and_other_clients_their_answers() {
+    let (_folder, process, [reader, other]) = shared_by(["reader", "other"]).await;
+    let client = meshwright::client().timeout(15 * PATIENCE).build().unwrap();
+    let made = client.post(format!("{}/v1/studies", process.base));
+    let made = made.bearer_auth(&reader).json(&study()).answer().await;
+    let path = made.headers()["location"].to_str().unwrap().to_owned();
+    let table = format!("{}{path}/results/table.ndjson", process.base);
+    let mut readers = readers(&client, &table, &reader, 1030);
+    tokio::time::sleep(Duration::from_secs(2)).await;
+    for (what, path) in [
+        ("health", "/health/live"),
+        ("ready", "/health/ready"),
+        ("another client", "/v1/jobs"),
+    ] {
+        let mut taken = Vec::new();
+        for _ in 0..200 {
+            let start = Instant::now();
+            let request = client.get(format!("{}{path}", process.base));
+            let request = request.bearer_auth(&other).header("connection", "close");
+            assert_eq!(request.answer().await.status(), 200, "{what}");
+            taken.push(start.elapsed());
+        }
+        taken.sort();
+        println!(
+            "{what} beside 1,030 readers of a table of {ROWS} rows: {:?} (median), {:?} (99 %)",
+            taken[100], taken[198]
+        );
+        assert!(
+            taken[198] < Duration::from_millis(250),
+            "{what}: {:?}",
+            taken[198]
+        );
+    }
+    let memory = process.peak_memory_mb();
+    println!("at most {memory:?} MB");
+    readers.shutdown().await;
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]

@@ -2,6 +2,7 @@
 
 use std::sync::atomic::{AtomicI64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
 
 use axum::Router;
 use axum::body::Body;
@@ -73,6 +74,8 @@ fn message(head: &Value, claims: &[u8]) -> String {
 enum Keys {
     These(Vec<Value>),
     Nothing,
+    /// No answer at all.
+    Silent,
     /// Text without an end.
     Endless,
     /// Another address, which has them.
@@ -96,9 +99,11 @@ impl Provider {
             json!({ "issuer": issuer, "jwks_uri": issuer.replace("/realm", "/keys") }).to_string();
         let answer = {
             let (keys, asked) = (Arc::clone(&keys), Arc::clone(&asked));
-            move |moved: bool| -> Answer {
+            async move |moved: bool| -> Answer {
                 asked.fetch_add(1, Ordering::SeqCst);
-                match keys.lock().unwrap().clone() {
+                let keys = keys.lock().unwrap().clone();
+                match keys {
+                    Keys::Silent => std::future::pending().await,
                     Keys::These(keys) => json!({ "keys": keys }).to_string().into_response(),
                     Keys::Elsewhere(keys) if moved => {
                         json!({ "keys": keys }).to_string().into_response()
@@ -120,8 +125,8 @@ impl Provider {
                 "/realm/.well-known/openid-configuration",
                 get(async move || discovery),
             )
-            .route("/keys", get(async move || answer(false)))
-            .route("/moved", get(async move || moved(true)));
+            .route("/keys", get(async move || answer(false).await))
+            .route("/moved", get(async move || moved(true).await));
         tokio::spawn(async move { axum::serve(listener, router).await });
         Self {
             issuer,
@@ -451,7 +456,7 @@ async fn hostile_tokens_open_nothing_and_are_told_why() {
 }
 
 #[tokio::test]
-async fn keys_that_nobody_has_are_asked_for_once_a_minute_and_new_ones_are_found() {
+async fn keys_that_nobody_has_are_asked_for_once_in_five_seconds_and_new_ones_are_found() {
     let (mut bench, provider, first) = trusting().await;
     let ahead = Ahead::default();
     ahead.rule(&mut bench).await;
@@ -465,7 +470,7 @@ async fn keys_that_nobody_has_are_asked_for_once_a_minute_and_new_ones_are_found
         let unknown = Signer::new(&format!("unknown-{i}"));
         assert_eq!(status(&unknown).await, StatusCode::UNAUTHORIZED);
     }
-    assert_eq!(provider.asked(), before, "the minute is not over");
+    assert_eq!(provider.asked(), before, "the five seconds are not over");
     // The provider changes its key. Who comes first has it fetched, others who come meanwhile wait for that.
     let second = Signer::new("second");
     provider.give(Keys::These(vec![
@@ -473,7 +478,7 @@ async fn keys_that_nobody_has_are_asked_for_once_a_minute_and_new_ones_are_found
         json!({ "kty": "later" }),
     ]));
     assert_eq!(status(&second).await, StatusCode::UNAUTHORIZED);
-    ahead.go(61);
+    ahead.go(6);
     let all = futures_util::future::join_all((0..10).map(|_| status(&second))).await;
     assert!(
         all.iter().all(|status| *status == StatusCode::OK),
@@ -561,6 +566,54 @@ async fn a_provider_that_gives_no_keys_keeps_nobody_out_who_has_one_of_the_servi
     ahead.go(3600);
     let old = with(&bench, "/v1/jobs", &token).await;
     problem(old, 503, "identity_provider_unavailable").await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn of_the_tokens_that_a_silent_provider_cannot_check_sixty_four_wait_for_one_fetch() {
+    let provider = Provider::with(Keys::Silent).await;
+    let mut bench = Bench::start(
+        |config| provider.configure(config),
+        Arc::new(|_, _| Ok(crate::bench::results())),
+    )
+    .await;
+    let key = key_of(&bench, "ada").await;
+    // The first fetch is over.
+    let ahead = Ahead::default();
+    ahead.rule(&mut bench).await;
+    let token = Signer::new("first").token(&provider.claims("ada"));
+    let refused = with(&bench, "/v1/jobs", &token).await;
+    problem(refused, 503, "identity_provider_unavailable").await;
+    ahead.go(60);
+    let (before, start) = (provider.asked(), Instant::now());
+    let forged: Vec<_> = (0..100)
+        .map(|i| {
+            let token = Signer::new(&format!("forged-{i}")).token(&provider.claims("eve"));
+            let request = bench.get("/v1/jobs").bearer_auth(token);
+            tokio::spawn(async move { (request.answer().await, start.elapsed()) })
+        })
+        .collect();
+    tokio::time::sleep(Duration::from_millis(500)).await;
+    for request in [
+        bench.get("/health/ready"),
+        bench.get("/v1/jobs").bearer_auth(&key),
+    ] {
+        let start = Instant::now();
+        assert_eq!(request.answer().await.status(), StatusCode::OK);
+        assert!(start.elapsed() < Duration::from_secs(1));
+    }
+    let mut at_once = 0;
+    for answer in forged {
+        let (answer, took) = answer.await.unwrap();
+        at_once += usize::from(took < Duration::from_secs(4));
+        assert!(
+            took < Duration::from_secs(8),
+            "one fetch takes five seconds: {took:?}"
+        );
+        assert!(answer.headers().contains_key("retry-after"));
+        problem(answer, 503, "identity_provider_unavailable").await;
+    }
+    assert_eq!(at_once, 100 - 64);
+    assert_eq!(provider.asked(), before + 1);
 }
 
 #[tokio::test]

@@ -115,10 +115,13 @@ async fn follow(
     }
 }
 
+/// So many rows, or documents, are read at a time.
+const AT_ONCE: u32 = 100;
+
 /// Takes the rows that have ended behind those that are here, up to the first one that has not.
 async fn take_rows(jobs: &Jobs, id: Uuid, rows: &mut Vec<RowState>) -> anyhow::Result<()> {
     loop {
-        let read = jobs.study_rows(id, rows.len() as u64).await?;
+        let read = jobs.study_rows(id, rows.len() as u64, AT_ONCE).await?;
         let (before, count) = (rows.len(), read.len());
         let ended = read.into_iter().take_while(|row| row.status.has_ended());
         // The jobs are gone with the database.
@@ -138,7 +141,7 @@ async fn write_results(
     folder: &ResultFolder,
 ) -> anyhow::Result<Option<i64>> {
     loop {
-        let lines = jobs.study_documents(id, written).await?;
+        let lines = jobs.study_documents(id, written, AT_ONCE).await?;
         if lines.is_empty() {
             return Ok(written);
         }

@@ -14,7 +14,7 @@ use serde::Deserialize;
 use utoipa::IntoParams;
 
 use super::answer::{self, json, tell_when_to_return};
-use super::aside::aside;
+use super::aside::{aside, turn_to_read};
 use super::client::Client;
 use super::conditional::{Keep, Tag};
 use super::document::Document;
@@ -28,6 +28,7 @@ use view::StudyView;
 
 pub(super) use events::*;
 pub(super) use population::*;
+pub use table::Outlines;
 pub(super) use table::*;
 
 /// A study may have so many MiB: a hundred thousand designs, each listed with two changes, have a dozen.
@@ -131,6 +132,7 @@ pub(super) async fn list(
         span: page::span(since.as_deref(), before.as_deref())?,
         after: page::cursor(parameters.cursor.as_deref())?,
     };
+    let _turn = turn_to_read(client.name()).await;
     let found = client
         .app
         .jobs
@@ -224,8 +226,11 @@ pub(super) async fn document(
 ) -> Result<Response, Problem> {
     let study = client.app.jobs.find_study(client.name(), id).await?;
     let text = async {
+        let bytes = client.app.jobs.study_text_bytes(study.id).await?;
+        let memory = client.app.bodies.for_answer(client.name(), bytes).await?;
+        let _turn = turn_to_read(client.name()).await;
         let text = client.app.jobs.study_text(study.id).await?;
-        Ok::<_, Problem>(json(text))
+        Ok::<_, Problem>(json(memory.hold(text)))
     };
     let tag = Tag::of(&["study document", &study.id.to_string()]);
     tag.answer(Keep::ForGood, &request, text).await

@@ -101,11 +101,11 @@ async fn document(
     let (text, bytes) = match short {
         Some(text) => (text, None),
         None => {
-            let bytes = app.reading.for_bytes(client, MIB << 20).await?;
+            let bytes = app.bodies.for_bytes(client, MIB << 20).await?;
             (app.jobs.study_text(record.id).await?, bytes)
         }
     };
-    let memory = app.reading.to_read(client, text.as_bytes()).await?;
+    let memory = app.bodies.to_read(client, text.as_bytes()).await?;
     let read = move |run: &Run| {
         let study = Study::parse(text.as_bytes(), run);
         drop((text, bytes));
@@ -169,7 +169,7 @@ async fn submission_of(
         .await;
     }
     // What a search asked for stands in its rows.
-    let rows = app.jobs.study_rows(record.id, u64::from(row)).await?;
+    let rows = app.jobs.study_rows(record.id, u64::from(row), 1).await?;
     aside(client, move |_| {
         let row = rows.first()?;
         study.submission_searched(&row.label, &row.changes)

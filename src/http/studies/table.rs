@@ -1,7 +1,8 @@
-//! The table of a study, and the results behind it. Both are sent as they are read, some rows at a time, so that a table of
-//! ten thousand rows takes the memory of five hundred.
+//! The table of a study, and the results behind it. Both are sent in pieces as they are read, each of which holds its memory until it has
+//! left.
 
-use std::sync::Arc;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, Weak};
 
 use axum::body::{Body, Bytes};
 use axum::extract::Path;
@@ -9,10 +10,12 @@ use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_TYPE, HeaderName, HeaderValue, LINK};
 use axum::response::{IntoResponse, Response};
 use futures_util::stream;
+use meshwright_engine::run::Run;
 use serde::de::IntoDeserializer;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use serde_json::value::RawValue;
+use tokio::sync::OnceCell;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
@@ -26,7 +29,7 @@ use crate::http::conditional::Keep;
 use crate::http::parameters::{IfNoneMatch, StudyId};
 use crate::http::view::with_public_type;
 use crate::jobs::{DocumentLine, JobError, StudyRecord};
-use crate::wire::study_table::{CsvTable, Outline, TableRow};
+use crate::wire::study_table::{CsvTable, Outline, TableRow, Told};
 use crate::wire::{Code, Problem, Results, RowState, StudyResults};
 
 /// Get the table of a study
@@ -214,6 +217,62 @@ async fn send(
     Ok(response)
 }
 
+/// About so many bytes are sent at a time, and so many at most as a rule.
+const PIECE: u64 = 256 << 10;
+const LARGEST_PIECE: u64 = 1 << 20;
+
+/// So many rows are read first, and so many at a time at most.
+const FIRST_ROWS: u32 = 50;
+const MOST_ROWS: u32 = 500;
+
+/// So many documents are read at a time at most.
+const MOST_DOCUMENTS: u32 = 8;
+
+/// What has to be known of all rows before the first one is shown.
+struct Front {
+    pointers: Vec<String>,
+    told: Told,
+    /// Whether no other row beats it, of each row.
+    best: Vec<bool>,
+}
+
+/// The outlines of tables that are being read, by study and version: each is made once for all who read it.
+#[derive(Clone, Default)]
+pub struct Outlines(Arc<Mutex<HashMap<StudyVersion, Weak<OnceCell<Front>>>>>);
+
+type StudyVersion = (Uuid, i64);
+
+impl Outlines {
+    /// The outline of the table of `study`, kept as long as somebody has it.
+    async fn of(
+        &self,
+        app: &App,
+        client: &str,
+        study: &StudyRecord,
+    ) -> Result<Arc<OnceCell<Front>>, Problem> {
+        let cell = {
+            let mut known = self.0.lock().expect("nothing panics with this lock");
+            known.retain(|_, front| front.strong_count() > 0);
+            let place = known.entry((study.id, study.version)).or_default();
+            let cell = place.upgrade().unwrap_or_default();
+            *place = Arc::downgrade(&cell);
+            cell
+        };
+        let make = async || {
+            let add = |outline: &mut Outline, _, state: &RowState| outline.add(state);
+            let outline = over_rows(app, client, study.id, Outline::default(), add).await?;
+            let front = move |_: &Run| Front {
+                pointers: outline.pointers().to_vec(),
+                told: outline.told(),
+                best: outline.front(),
+            };
+            aside(client, front).await
+        };
+        cell.get_or_try_init(make).await?;
+        Ok(cell)
+    }
+}
+
 /// The table, read twice: first for what has to be known before the first row, then row by row.
 async fn table(
     app: App,
@@ -221,13 +280,11 @@ async fn table(
     study: &StudyRecord,
     form: StudyFile,
 ) -> Result<Body, Problem> {
-    let add = |outline: &mut Outline, _, state: &RowState| outline.add(state);
-    let outline = over_rows(&app, &client, study.id, Outline::default(), add).await?;
-    let (pointers, told) = (outline.pointers().to_vec(), outline.told());
-    let front = aside(&client, move |_| outline.front()).await?;
+    let outline = app.outlines.of(&app, &client, study).await?;
+    let front = outline.get().ok_or_else(crate::http::problem::internal)?;
     let (head, foot, layout) = match form {
         StudyFile::Csv => {
-            let csv = CsvTable::new(pointers, told);
+            let csv = CsvTable::new(front.pointers.clone(), front.told);
             (csv.header(), "", Layout::Csv(csv))
         }
         StudyFile::Ndjson => (String::new(), "", Layout::Lines),
@@ -236,14 +293,20 @@ async fn table(
     let writer = RowWriter {
         client,
         study: study.clone(),
-        front,
+        outline,
         layout,
         public_url: Arc::from(app.edge.public_url.as_str()),
     };
-    let rows = stream::unfold(Some((app, Arc::new(writer), 0)), async |at| {
-        let (app, writer, read) = at?;
-        match page(&app, &writer, read).await {
-            Ok(Some((text, count))) => Some((Ok(text), Some((app, writer, read + count)))),
+    let begin = Some((app, Arc::new(writer), 0, FIRST_ROWS));
+    let rows = stream::unfold(begin, async |at| {
+        let (app, writer, read, most) = at?;
+        match page(&app, &writer, read, most).await {
+            Ok(Some((text, count))) => {
+                // Rows that come one after the other have about as many bytes.
+                let fit = PIECE * count / (text.len() as u64).max(1);
+                let most = u32::try_from(fit).unwrap_or(MOST_ROWS).clamp(1, MOST_ROWS);
+                Some((Ok(text), Some((app, writer, read + count, most))))
+            }
             Ok(None) => None,
             // The head has been sent; the connection is cut, so that nobody takes this for the whole table.
             Err(problem) => Some((Err(problem), None)),
@@ -266,7 +329,7 @@ pub(super) async fn over_rows<T: Send + 'static>(
     let mut read = 0;
     loop {
         let _turn = turn_to_read(client).await;
-        let rows = app.jobs.study_rows(study, read).await?;
+        let rows = app.jobs.study_rows(study, read, MOST_ROWS).await?;
         if rows.is_empty() {
             return Ok(made);
         }
@@ -314,7 +377,7 @@ enum Layout {
 struct RowWriter {
     client: Arc<str>,
     study: StudyRecord,
-    front: Vec<bool>,
+    outline: Arc<OnceCell<Front>>,
     layout: Layout,
     public_url: Arc<str>,
 }
@@ -323,8 +386,9 @@ impl RowWriter {
     /// The rows behind the first `read` ones, as text.
     fn write(&self, read: u64, states: Vec<RowState>) -> String {
         let mut text = String::new();
+        let front = self.outline.get().map_or(&[][..], |front| &front.best);
         for (i, state) in (read..).zip(states) {
-            let best = usize::try_from(i).ok().and_then(|i| self.front.get(i));
+            let best = usize::try_from(i).ok().and_then(|i| front.get(i));
             let mut row = TableRow::new(self.study.gear, state, best.copied().unwrap_or(false));
             row.problem = row.problem.map(|problem| self.with_address(problem));
             match &self.layout {
@@ -346,56 +410,77 @@ impl RowWriter {
     }
 }
 
-/// The text of the rows behind the first `read` ones, and how many they are.
+/// The text of at most so many rows behind the first `read` ones, and how many they are.
 async fn page(
     app: &App,
     writer: &Arc<RowWriter>,
     read: u64,
+    most: u32,
 ) -> Result<Option<(Bytes, u64)>, Problem> {
     let client = &writer.client;
-    let _turn = turn_to_read(client).await;
-    let rows = app.jobs.study_rows(writer.study.id, read).await?;
+    let memory = app.bodies.for_answer(client, LARGEST_PIECE).await?;
+    let turn = turn_to_read(client).await;
+    let rows = app.jobs.study_rows(writer.study.id, read, most).await?;
+    // What is written of them has its memory.
+    drop(turn);
     if rows.is_empty() {
         return Ok(None);
     }
     let (count, words) = (rows.len() as u64, Arc::clone(writer));
     let text = aside(client, move |_| words.write(read, rows)).await?;
-    Ok(Some((text.into(), count)))
+    Ok(Some((memory.hold(text).0, count)))
 }
 
 /// The results of every design that has some.
 async fn documents(app: App, client: Arc<str>, study: &StudyRecord) -> Result<Body, Problem> {
     let id = study.id;
     // The first lines are read before anything is sent, so that what fails at once is told as a problem.
-    let first = {
-        let _turn = turn_to_read(&client).await;
-        app.jobs.study_documents(id, None).await?
-    };
-    let begin = Some((app, Some(first), None, client));
-    let lines = stream::unfold(begin, move |at| async move {
-        let (app, ready, after, client) = at?;
-        let _turn = turn_to_read(&client).await;
-        let lines = match ready {
-            Some(lines) => Ok(lines),
-            None => app.jobs.study_documents(id, after).await,
-        };
-        let text = match lines {
-            Ok(lines) if lines.is_empty() => return None,
-            Ok(lines) => {
-                let last = lines.last().map(|line| line.position);
-                let text = aside(&client, move |_| {
-                    lines.iter().map(line).collect::<Result<String, _>>()
-                });
-                (text.await, last)
-            }
-            Err(error) => (Err(error.into()), None),
-        };
-        match text {
-            (Ok(Ok(text)), last) => Some((Ok(Bytes::from(text)), Some((app, None, last, client)))),
-            (Ok(Err(problem)) | Err(problem), _) => Some((Err(problem), None)),
+    let first = lines(&app, &client, id, None).await?;
+    let lines = stream::unfold(Some((app, client, first)), move |at| async move {
+        let (app, client, ready) = at?;
+        let (text, last) = ready?;
+        match lines(&app, &client, id, Some(last)).await {
+            Ok(next) => Some((Ok(text), Some((app, client, next)))),
+            Err(problem) => Some((Err(problem), None)),
         }
     });
     Ok(Body::from_stream(lines))
+}
+
+/// The next lines behind the position `after`, and the position of the last one; none at the end.
+async fn lines(
+    app: &App,
+    client: &str,
+    study: Uuid,
+    after: Option<i64>,
+) -> Result<Option<(Bytes, i64)>, Problem> {
+    let sizes = app
+        .jobs
+        .study_document_bytes(study, after, MOST_DOCUMENTS)
+        .await?;
+    // As many as a piece has, and one in any case.
+    let mut bytes = 0;
+    let fit = sizes.iter().take_while(|size| {
+        let fits = bytes == 0 || bytes + **size <= PIECE;
+        bytes += if fits { **size } else { 0 };
+        fits
+    });
+    let count = fit.count() as u32;
+    if count == 0 {
+        return Ok(None);
+    }
+    // Packed, unpacked, and as lines.
+    let memory = app.bodies.for_answer(client, 3 * bytes).await?;
+    let turn = turn_to_read(client).await;
+    let found = app.jobs.study_documents(study, after, count).await?;
+    drop(turn);
+    let Some(last) = found.last().map(|line| line.position) else {
+        return Ok(None);
+    };
+    let text = aside(client, move |_| {
+        found.iter().map(line).collect::<Result<String, _>>()
+    });
+    Ok(Some((memory.hold(text.await??).0, last)))
 }
 
 fn line(line: &DocumentLine) -> Result<String, Problem> {

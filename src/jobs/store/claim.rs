@@ -6,6 +6,7 @@ use jiff::Timestamp;
 use sqlx::Row;
 
 use super::attempt::Lease;
+use super::documents::{Damaged, checked};
 use super::endings::tell_end;
 use super::rows::{from_row, job_columns};
 use super::shares::{self, Here, Lane};
@@ -20,14 +21,16 @@ use crate::wire::Kept;
 pub(in crate::jobs) struct Started {
     pub(in crate::jobs) job: Job,
     /// The submission with every default filled in, JSON.
-    pub(in crate::jobs) submission: String,
+    pub(in crate::jobs) submission: Result<String, Damaged>,
 }
 
 from_row! {
     Started, |row| {
+        let job: Job = sqlx::FromRow::from_row(row)?;
+        let found = (row.try_get("submission")?, row.try_get("checksum")?);
         Ok(Self {
-            job: sqlx::FromRow::from_row(row)?,
-            submission: row.try_get("submission")?,
+            submission: checked(format_args!("of the job {}", job.id), found),
+            job,
         })
     }
 }

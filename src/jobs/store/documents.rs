@@ -1,18 +1,21 @@
 //! Results documents: packed, and named by the hash of their text.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::io::{Read, Write};
 
 use bytes::Bytes;
-use flate2::Compression;
 use flate2::read::GzDecoder;
 use flate2::write::GzEncoder;
+use flate2::{Compression, Crc};
 use serde_json::json;
+use tracing::error;
 use uuid::Uuid;
 
-use super::statement::{Connection, list, query, query_as};
+use super::statement::{Connection, list, query, query_as, query_scalar};
 use super::{Store, StoreError, dialect};
 use crate::hash::sha256_hex;
+use crate::wire::{Code, Problem};
 
 /// Documents are numbers in decimal: the highest level packs one of 38 KB to 14.3 kB in 1 ms, this one to 15.2 kB in 0.2 ms, and every
 /// job waits for it.
@@ -87,6 +90,7 @@ pub(super) async fn insert_documents(
         bodies.extend_from_slice(&document.body);
         rows.push(json!({
             "hash": hash, "starts": starts, "takes": takes, "size": document.size, "whole": i64::from(document.whole),
+            "checksum": document.whole.then(|| checksum(&document.body)),
         }));
         summaries.extend(summary.map(|summary| json!({ "hash": hash, "body": summary })));
     }
@@ -102,31 +106,74 @@ pub(super) async fn insert_documents(
     Ok(())
 }
 
+/// What is kept beside a document to find out whether it was changed by other means: CRC-32.
+pub(super) fn checksum(body: &[u8]) -> i64 {
+    let mut crc = Crc::new();
+    crc.update(body);
+    crc.sum().into()
+}
+
+/// The text of `what`, if its checksum is the one that was `written` beside it.
+pub(super) fn checked(
+    what: impl fmt::Display,
+    (text, written): (String, Option<i64>),
+) -> Result<String, Damaged> {
+    if written.is_some_and(|written| written != checksum(text.as_bytes())) {
+        return Err(Damaged(what.to_string()));
+    }
+    Ok(text)
+}
+
 /// A document as it is kept.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Document {
     hash: String,
     gzip: bool,
     body: Bytes,
+    /// That of the body when it was written; none where an earlier version wrote it.
+    checksum: Option<i64>,
 }
 
+/// Name, encoding, body and checksum of a document, as they are read.
+pub(super) type Columns = (String, String, Vec<u8>, Option<i64>);
+
 /// What was read is not what was written.
-#[derive(Debug, Clone, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the document {0} is damaged")]
 pub struct Damaged(String);
 
+impl Damaged {
+    /// What clients are told. The cause stands in the log.
+    pub fn problem(&self) -> Problem {
+        error!(error = %self, "the database is damaged");
+        let detail = "A document that is needed was changed since it was stored, by a fault of the disk or by other means. The failure has been logged.";
+        Problem::new(Code::DocumentDamaged, detail)
+    }
+}
+
 impl Document {
-    pub(super) fn kept(hash: String, encoding: &str, body: Vec<u8>) -> Self {
+    pub(super) fn kept((hash, encoding, body, checksum): Columns) -> Self {
         Self {
             hash,
             gzip: encoding == "gzip",
             body: body.into(),
+            checksum,
         }
     }
 
     /// The bytes of a gzip file (RFC 1952), if it is kept as one.
-    pub fn gzip(&self) -> Option<Bytes> {
-        self.gzip.then(|| self.body.clone())
+    ///
+    /// # Errors
+    ///
+    /// [`Damaged`], if its checksum is another one.
+    pub fn gzip(&self) -> Result<Option<Bytes>, Damaged> {
+        if self
+            .checksum
+            .is_some_and(|written| written != checksum(&self.body))
+        {
+            return Err(Damaged(self.hash.clone()));
+        }
+        Ok(self.gzip.then(|| self.body.clone()))
     }
 
     /// The number of its bytes as it is kept.
@@ -162,22 +209,30 @@ impl Store {
         &self,
         hash: &str,
     ) -> Result<Option<Document>, StoreError> {
-        let found: Option<(String, Vec<u8>)> =
-            query_as("select encoding, body from documents where hash = $1 and whole = 1")
-                .bind(hash)
-                .fetch_optional(&self.readers)
-                .await?;
-        Ok(found.map(|(encoding, body)| Document::kept(hash.to_owned(), &encoding, body)))
+        let found = query_as(
+            "select hash, encoding, body, checksum from documents where hash = $1 and whole = 1",
+        );
+        let found = found.bind(hash).fetch_optional(&self.readers).await?;
+        Ok(found.map(Document::kept))
     }
 
-    /// The results document of a successful job, or, where only the statistics of that one were kept, of another one of the same client with the same
-    /// input and solver.
+    /// The number of bytes of the text of a results document, if more of it was kept than its name.
+    pub(in crate::jobs) async fn document_bytes(
+        &self,
+        hash: &str,
+    ) -> Result<Option<i64>, StoreError> {
+        let size = query_scalar("select size from documents where hash = $1 and whole = 1");
+        Ok(size.bind(hash).fetch_optional(&self.readers).await?)
+    }
+
+    /// The hash of the results document of a successful job of which only the statistics were kept: that of another one of the same client with
+    /// the same input and solver.
     pub(in crate::jobs) async fn document_of_equal(
         &self,
         id: Uuid,
-    ) -> Result<Option<Document>, StoreError> {
-        let found: Option<(String, String, Vec<u8>)> = query_as(
-            "select hash, encoding, body from jobs asked
+    ) -> Result<Option<String>, StoreError> {
+        let hash = query_scalar(
+            "select hash from jobs asked
              join jobs equal on equal.client = asked.client and equal.input_hash = asked.input_hash and equal.solver_version = asked.solver_version
              join documents on hash = equal.document
              where asked.id = $1 and equal.status = 'successful' and whole = 1
@@ -186,7 +241,7 @@ impl Store {
         .bind(id.to_string())
         .fetch_optional(&self.readers)
         .await?;
-        Ok(found.map(|(hash, encoding, body)| Document::kept(hash, &encoding, body)))
+        Ok(hash)
     }
 }
 

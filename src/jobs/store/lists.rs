@@ -6,9 +6,10 @@ use std::str::FromStr;
 use jiff::Timestamp;
 use uuid::Uuid;
 
+use super::documents::checked;
 use super::rows::{job_columns, of_table, study_columns};
 use super::statement::{Dialect, Record, Statement, Text, query_as, query_scalar};
-use super::{Store, StoreError, dialect};
+use super::{Damaged, Store, StoreError, dialect};
 use crate::jobs::job::Job;
 use crate::jobs::study::StudyRecord;
 use crate::wire::Status;
@@ -78,12 +79,16 @@ impl Store {
     }
 
     /// The submission of a job, JSON.
-    pub async fn submission(&self, id: Uuid) -> Result<Option<String>, StoreError> {
-        let text = query_scalar("select body from submissions where job = $1")
+    pub async fn submission(
+        &self,
+        id: Uuid,
+    ) -> Result<Option<Result<String, Damaged>>, StoreError> {
+        let found = query_as("select body, checksum from submissions where job = $1");
+        let found = found
             .bind(id.to_string())
             .fetch_optional(&self.readers)
             .await?;
-        Ok(text)
+        Ok(found.map(|found| checked(format_args!("of the job {id}"), found)))
     }
 
     /// The version of the document of a submission.
@@ -146,15 +151,28 @@ impl Store {
     }
 
     /// A study as it was sent, JSON, if it has no more characters than `most`.
-    pub async fn study_text(&self, id: Uuid, most: u64) -> Result<Option<String>, StoreError> {
-        let text = query_scalar(
-            "select body from study_documents where study = $1 and length(body) <= $2",
+    pub async fn study_text(
+        &self,
+        id: Uuid,
+        most: u64,
+    ) -> Result<Option<Result<String, Damaged>>, StoreError> {
+        let found: Option<(String, Option<i64>)> = query_as(
+            "select body, checksum from study_documents where study = $1 and length(body) <= $2",
         )
         .bind(id.to_string())
         .bind(super::column(most))
         .fetch_optional(&self.readers)
         .await?;
-        Ok(text)
+        Ok(found.map(|found| checked(format_args!("of the study {id}"), found)))
+    }
+
+    /// The number of bytes of a study as it was sent.
+    pub async fn study_text_bytes(&self, id: Uuid) -> Result<Option<i64>, StoreError> {
+        let bytes = query_scalar(
+            "select cast(octet_length(body) as bigint) from study_documents where study = $1",
+        );
+        let bytes = bytes.bind(id.to_string()).fetch_optional(&self.readers);
+        Ok(bytes.await?)
     }
 
     /// At most `limit` studies of a client, newest first.

@@ -12,6 +12,7 @@ use sqlx::sqlite::{
     SqliteAutoVacuum, SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous,
 };
 use sqlx::{ConnectOptions, Connection, PgConnection, SqliteConnection};
+use tokio::time::timeout;
 use tracing::{info, warn};
 use uuid::Uuid;
 
@@ -45,8 +46,8 @@ pub enum Migrate {
 /// Connections of one process to a server at most, the one for news aside. A transaction needs one for some milliseconds.
 const CONNECTIONS: u32 = 10;
 
-/// A connection that has been idle for longer is asked whether it still is one.
-const IDLE: Duration = Duration::from_secs(1);
+/// A connection is asked whether the server still answers on it before it is used, for so long at most.
+const PROBING: Duration = Duration::from_secs(2);
 
 /// A connection to a server that cannot be had in this time is not had now.
 const CONNECTING: Duration = Duration::from_secs(5);
@@ -69,7 +70,7 @@ const BUSY: Duration = Duration::from_secs(5);
 /// Files of more bytes are not read through at the start; `meshwright backup` checks them.
 const LARGEST_CHECKED: u64 = 256 << 20;
 
-/// Why a database cannot be opened. Nothing was changed in it.
+/// Why a database cannot be opened. In one of another program, or of a later version, nothing was changed.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
     /// The file is something else.
@@ -80,7 +81,7 @@ pub enum OpenError {
     AnotherProgram,
     /// The file is damaged.
     #[error(
-        "it is damaged ({0}); nothing was changed in it. Restore a backup, or copy what can be read with the sqlite3 program's .recover"
+        "it is damaged ({0}). Restore a backup, or copy what can be read with the sqlite3 program's .recover"
     )]
     Damaged(String),
     /// A later version of this program made it, and this one cannot work on it.
@@ -284,17 +285,15 @@ async fn open_server(address: &str, migrate: Migrate) -> Result<(Pool, Pool), Op
         .max_connections(CONNECTIONS)
         .acquire_timeout(CONNECTING)
         .test_before_acquire(false)
-        // After a restart of the server all idle connections are dead.
+        // After a restart of the server all connections are dead; a frozen one answers none.
         .before_acquire(move |connection, meta| {
             let outdated = renewed.outdates(meta.age);
             Box::pin(async move {
                 if outdated {
                     return Ok(false);
                 }
-                if meta.idle_for < IDLE {
-                    return Ok(true);
-                }
-                Ok(connection.ping().await.is_ok())
+                let answer = timeout(PROBING, connection.ping()).await;
+                Ok(answer.is_ok_and(|answer| answer.is_ok()))
             })
         })
         .connect_with(options)

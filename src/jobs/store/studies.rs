@@ -7,7 +7,7 @@ use jiff::{SignedDuration, Timestamp};
 use serde_json::json;
 use uuid::Uuid;
 
-use super::documents::forget_document;
+use super::documents::{checksum, forget_document};
 use super::endings::note_study;
 use super::statement::{Connection, list, query, query_as, query_scalar};
 use super::submit::{QueueBounds, find_known, insert_jobs, insert_submissions, words};
@@ -380,9 +380,10 @@ async fn insert_study(connection: &mut Connection, study: &NewStudy) -> Result<(
         .bind(study.document_version)
         .fetch_one(&mut *connection)
         .await?;
-    query("insert into study_documents (study, body) values ($1, $2)")
+    query("insert into study_documents (study, body, checksum) values ($1, $2, $3)")
         .bind(&id)
         .bind(&study.document)
+        .bind(checksum(study.document.as_bytes()))
         .execute(&mut *connection)
         .await?;
     if let Some(state) = &study.search {

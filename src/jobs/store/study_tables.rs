@@ -2,7 +2,7 @@
 
 use uuid::Uuid;
 
-use super::statement::query_as;
+use super::statement::{query_as, query_scalar};
 use super::{Document, Store, StoreError};
 
 /// A row as it is read.
@@ -29,8 +29,8 @@ pub struct DocumentLine {
     pub document: Document,
 }
 
-/// Position, label, job; hash, encoding and body of its document.
-type StoredDocument = (i64, String, String, String, String, Vec<u8>);
+/// Position, label and job; what is read of its document.
+type StoredDocument = (i64, String, String, String, String, Vec<u8>, Option<i64>);
 
 impl Store {
     /// At most `limit` rows of a study behind the position `after`, in their order.
@@ -65,7 +65,7 @@ impl Store {
         limit: u32,
     ) -> Result<Vec<DocumentLine>, StoreError> {
         let rows: Vec<StoredDocument> = query_as(
-            "select r.position, r.label, r.job, d.hash, d.encoding, d.body
+            "select r.position, r.label, r.job, d.hash, d.encoding, d.body, d.checksum
              from study_rows r
              join jobs j on j.id = r.job
              join documents d on d.hash = j.document and d.whole = 1
@@ -77,12 +77,32 @@ impl Store {
         .bind(limit)
         .fetch_all(&self.readers)
         .await?;
-        let row = |(position, label, job, hash, encoding, body): StoredDocument| DocumentLine {
-            position,
-            label,
-            job,
-            document: Document::kept(hash, &encoding, body),
-        };
+        let row =
+            |(position, label, job, hash, encoding, body, sum): StoredDocument| DocumentLine {
+                position,
+                label,
+                job,
+                document: Document::kept((hash, encoding, body, sum)),
+            };
         Ok(rows.into_iter().map(row).collect())
+    }
+
+    /// The bytes of the text of each of these.
+    pub(in crate::jobs) async fn study_document_bytes(
+        &self,
+        id: Uuid,
+        after: i64,
+        limit: u32,
+    ) -> Result<Vec<i64>, StoreError> {
+        let bytes = query_scalar(
+            "select d.size
+             from study_rows r
+             join jobs j on j.id = r.job
+             join documents d on d.hash = j.document and d.whole = 1
+             where r.study = $1 and r.position > $2
+             order by r.position limit $3",
+        );
+        let bytes = bytes.bind(id.to_string()).bind(after).bind(limit);
+        Ok(bytes.fetch_all(&self.readers).await?)
     }
 }

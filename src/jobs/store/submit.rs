@@ -6,6 +6,7 @@ use jiff::Timestamp;
 use serde_json::json;
 use uuid::Uuid;
 
+use super::documents::checksum;
 use super::endings::tell_end;
 use super::rows::job_columns;
 use super::statement::{Connection, list, query, query_as};
@@ -303,7 +304,10 @@ pub(super) async fn insert_submissions(
 ) -> Result<(), sqlx::Error> {
     let rows: Vec<_> = jobs
         .iter()
-        .map(|new| json!({ "job": new.id, "body": new.submission }))
+        .map(|new| {
+            let checksum = checksum(new.submission.as_bytes());
+            json!({ "job": new.id, "body": new.submission, "checksum": checksum })
+        })
         .collect();
     let insert = query(dialect::insert_submissions()).bind(list(&rows));
     connection.later(insert).await

@@ -95,8 +95,8 @@ pub(in crate::jobs::store) const KNOWN_AMONG: Words = Some(
 );
 
 pub(in crate::jobs::store) const INSERT_SUBMISSIONS: Words = Some(
-    "insert into submissions (job, body)
-     select job, body from json_to_recordset(cast($1 as json)) as given(job text, body text)",
+    "insert into submissions (job, body, checksum)
+     select job, body, checksum from json_to_recordset(cast($1 as json)) as given(job text, body text, checksum bigint)",
 );
 
 pub(in crate::jobs::store) const INSERT_STUDY_ROWS: Words = Some(
@@ -114,7 +114,8 @@ pub(in crate::jobs::store) const START: Words = Some(concat!(
      where id = any(array(select json_array_elements_text(cast($1 as json))))
      returning ",
     job_columns!(),
-    ", (select body from submissions where job = jobs.id) as submission"
+    ", (select body from submissions where job = jobs.id) as submission,
+     (select checksum from submissions where job = jobs.id) as checksum"
 ));
 
 pub(in crate::jobs::store) const STATES: Words = Some(
@@ -158,11 +159,12 @@ pub(in crate::jobs::store) const INSERT_STUDY: Words =
 
 // One that is kept is locked, so that it is not removed before a job points to it.
 pub(in crate::jobs::store) const INSERT_DOCUMENTS: Words = Some(
-    "insert into documents (hash, encoding, body, size, whole)
-     select hash, 'gzip', substr($2, starts, takes), size, whole
-     from json_to_recordset(cast($1 as json)) as given(hash text, starts int, takes int, size bigint, whole bigint)
+    "insert into documents (hash, encoding, body, size, whole, checksum)
+     select hash, 'gzip', substr($2, starts, takes), size, whole, checksum
+     from json_to_recordset(cast($1 as json)) as given(hash text, starts int, takes int, size bigint, whole bigint, checksum bigint)
      order by hash collate \"C\"
      on conflict (hash) do update set size = excluded.size, whole = greatest(documents.whole, excluded.whole),
+       checksum = case when documents.whole < excluded.whole then excluded.checksum else documents.checksum end,
        body = case when documents.whole < excluded.whole then excluded.body else documents.body end",
 );
 

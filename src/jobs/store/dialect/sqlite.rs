@@ -62,7 +62,8 @@ pub(in crate::jobs::store) const KNOWN_AMONG: Words = Some(
 );
 
 pub(in crate::jobs::store) const INSERT_SUBMISSIONS: Words = Some(
-    "insert into submissions (job, body) select value ->> 'job', value ->> 'body' from json_each($1)",
+    "insert into submissions (job, body, checksum)
+     select value ->> 'job', value ->> 'body', value ->> 'checksum' from json_each($1)",
 );
 
 pub(in crate::jobs::store) const INSERT_STUDY_ROWS: Words = Some(
@@ -79,7 +80,8 @@ pub(in crate::jobs::store) const START: Words = Some(concat!(
      where id in (select value from json_each($1)) and status = 'accepted'
      returning ",
     job_columns!(),
-    ", (select body from submissions where job = jobs.id) as submission"
+    ", (select body from submissions where job = jobs.id) as submission,
+     (select checksum from submissions where job = jobs.id) as checksum"
 ));
 
 pub(in crate::jobs::store) const STATES: Words =
@@ -121,10 +123,12 @@ pub(in crate::jobs::store) const INSERT_STUDY: Words = Some(insert_study!(
 ));
 
 pub(in crate::jobs::store) const INSERT_DOCUMENTS: Words = Some(
-    "insert into documents (hash, encoding, body, size, whole)
-     select value ->> 'hash', 'gzip', coalesce(substr($2, value ->> 'starts', value ->> 'takes'), x''), value ->> 'size', value ->> 'whole'
+    "insert into documents (hash, encoding, body, size, whole, checksum)
+     select value ->> 'hash', 'gzip', coalesce(substr($2, value ->> 'starts', value ->> 'takes'), x''), value ->> 'size', value ->> 'whole',
+            value ->> 'checksum'
      from json_each($1) where true
-     on conflict (hash) do update set body = excluded.body, whole = 1 where documents.whole < excluded.whole",
+     on conflict (hash) do update set body = excluded.body, checksum = excluded.checksum, size = excluded.size, whole = 1
+       where documents.whole < excluded.whole",
 );
 
 pub(in crate::jobs::store) const INSERT_SUMMARIES: Words = Some(

@@ -60,7 +60,12 @@ async fn jobs_results_studies_and_keys_survive_the_upgrade() {
     );
     assert_eq!(jobs[0].elapsed.unwrap().as_micros(), 3000);
     assert_eq!(
-        store.submission(jobs[2].id).await.unwrap().unwrap(),
+        store
+            .submission(jobs[2].id)
+            .await
+            .unwrap()
+            .unwrap()
+            .unwrap(),
         r#"{"input":"b"}"#
     );
     let hash = jobs[0].document.as_deref().unwrap();
@@ -79,7 +84,12 @@ async fn jobs_results_studies_and_keys_survive_the_upgrade() {
     );
     assert_eq!(study.status(), Status::Running);
     assert_eq!(
-        store.study_text(study.id, 99).await.unwrap().unwrap(),
+        store
+            .study_text(study.id, 99)
+            .await
+            .unwrap()
+            .unwrap()
+            .unwrap(),
         r#"{"base":{}}"#
     );
 

@@ -3,6 +3,7 @@
 use uuid::Uuid;
 
 use super::*;
+use crate::jobs::store::statement::query;
 use crate::jobs::store::{Cursor, Filter};
 use crate::wire::Status;
 
@@ -68,6 +69,50 @@ async fn a_job_ends_with_the_very_text_of_its_results() {
     assert_eq!(job.elapsed.unwrap().as_secs(), 3);
     let document = store.document(&job.document.unwrap()).await.unwrap();
     assert_eq!(document.unwrap().text().unwrap(), "{ \"x\": 1.0e0 }");
+}
+
+/// Changes one bit of what is kept.
+async fn flip(store: &Store, words: &'static str) {
+    let mut write = store.begin().await.unwrap();
+    let changed = query(words).execute(&mut *write).await.unwrap();
+    assert_eq!(changed, 1);
+    write.commit().await.unwrap();
+}
+
+#[tokio::test]
+async fn a_document_of_which_a_bit_was_flipped_is_told_as_damaged_and_one_without_a_checksum_is_not_looked_at()
+ {
+    let (store, _folder) = store().await;
+    let job = queued(&store, 1, "a").await;
+    let claim = claim(&store, 2).await;
+    let packed = Packed::of("{ \"x\": 1.0e0 }");
+    store
+        .succeed(claim, end(5), &packed, None, VERSION)
+        .await
+        .unwrap();
+    let hash = find(&store, job.id).await.document.unwrap();
+    let document = async || store.document(&hash).await.unwrap().unwrap();
+    let submission = async || store.submission(job.id).await.unwrap().unwrap();
+    assert!(document().await.gzip().is_ok() && submission().await.is_ok());
+    // The flags of the gzip file, which its own checksum does not see.
+    let words = match store.is_shared() {
+        true => "update documents set body = set_byte(body, 9, 7)",
+        false => {
+            "update documents set body = cast(substr(body, 1, 9) || x'07' || substr(body, 11) as blob)"
+        }
+    };
+    flip(&store, words).await;
+    assert!(document().await.gzip().is_err());
+    flip(&store, "update documents set checksum = null").await;
+    assert!(document().await.gzip().is_ok());
+    flip(
+        &store,
+        "update submissions set body = '[' || substr(body, 2)",
+    )
+    .await;
+    assert!(submission().await.is_err());
+    flip(&store, "update submissions set checksum = null").await;
+    assert!(submission().await.is_ok());
 }
 
 #[tokio::test]

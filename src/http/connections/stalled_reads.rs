@@ -1,4 +1,4 @@
-//! What a client gives of its requests: for how long a request has waited for bytes of it.
+//! Stalled reads: for how long a request has waited for bytes of its body.
 
 use std::pin::Pin;
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -9,14 +9,14 @@ use axum::body::Bytes;
 use http_body::{Body, Frame, SizeHint};
 use tokio::time::Instant;
 
-use super::taking::LEAST_RATE;
+use super::stalled_writes::LEAST_RATE;
 
-/// How far a client has given what it announced.
+/// Since when a connection waits for bytes of a body, if it does.
 #[derive(Debug, Default)]
-pub(super) struct Giving(Mutex<Option<Instant>>);
+pub(super) struct Reads(Mutex<Option<Instant>>);
 
-impl Giving {
-    /// For how long a request has waited for its client, what came in good time aside.
+impl Reads {
+    /// For how long a request has waited for its client, less the time that the bytes were worth which came.
     pub(super) fn stalled_for(&self, now: Instant) -> Option<Duration> {
         let since = *self.since();
         since.map(|since| now.saturating_duration_since(since))
@@ -27,27 +27,27 @@ impl Giving {
     }
 }
 
-/// The body of a request whose coming is watched.
-pub(super) struct Awaited<B> {
+/// The body of a request whose reads are watched.
+pub(super) struct WatchedBody<B> {
     inner: B,
-    giving: Arc<Giving>,
-    /// So much later than it should be is what has come: a byte now and then does not make a client swift.
+    reads: Arc<Reads>,
+    /// How much later than at the least rate the bytes came that are here: a byte now and then does not make a client fast.
     late: Duration,
 }
 
-impl<B> Awaited<B> {
-    pub(super) fn new(inner: B, giving: Arc<Giving>) -> Self {
+impl<B> WatchedBody<B> {
+    pub(super) fn new(inner: B, reads: Arc<Reads>) -> Self {
         Self {
             inner,
-            giving,
+            reads,
             late: Duration::ZERO,
         }
     }
 
-    /// Notes what came of a look for more: so many bytes, or nothing yet.
-    fn note(&mut self, now: Instant, came: Poll<usize>) {
-        let mut since = self.giving.since();
-        match came {
+    /// Notes the result of a poll: so many bytes, or nothing yet.
+    fn note(&mut self, now: Instant, polled: Poll<usize>) {
+        let mut since = self.reads.since();
+        match polled {
             Poll::Pending => {
                 since.get_or_insert_with(|| now.checked_sub(self.late).unwrap_or(now));
             }
@@ -62,7 +62,7 @@ impl<B> Awaited<B> {
     }
 }
 
-impl<B: Body<Data = Bytes> + Unpin> Body for Awaited<B> {
+impl<B: Body<Data = Bytes> + Unpin> Body for WatchedBody<B> {
     type Data = Bytes;
     type Error = B::Error;
 
@@ -89,10 +89,10 @@ impl<B: Body<Data = Bytes> + Unpin> Body for Awaited<B> {
     }
 }
 
-/// Who reads no more of it waits for nobody.
-impl<B> Drop for Awaited<B> {
+/// Who drops the body waits for nothing.
+impl<B> Drop for WatchedBody<B> {
     fn drop(&mut self) {
-        *self.giving.since() = None;
+        *self.reads.since() = None;
     }
 }
 
@@ -101,31 +101,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_trickle_is_no_less_of_a_stall_than_nothing_and_what_comes_swiftly_is_none() {
+    fn a_trickle_is_a_stall_and_a_fast_client_has_none() {
         let start = Instant::now();
         let at = |ms| start + Duration::from_millis(ms);
-        let giving = Arc::new(Giving::default());
-        let mut body = Awaited::new((), Arc::clone(&giving));
+        let reads = Arc::new(Reads::default());
+        let mut body = WatchedBody::new((), Arc::clone(&reads));
         let ms = |stalled: Option<Duration>| stalled.map(|stalled| stalled.as_millis());
 
-        assert_eq!(ms(giving.stalled_for(at(0))), None);
+        assert_eq!(ms(reads.stalled_for(at(0))), None);
         body.note(at(0), Poll::Pending);
         // A byte every 900 ms.
         for i in 1..=3 {
             body.note(at(900 * i), Poll::Ready(1));
-            assert_eq!(
-                ms(giving.stalled_for(at(900 * i))),
-                None,
-                "nobody waits now"
-            );
+            assert_eq!(ms(reads.stalled_for(at(900 * i))), None, "nobody waits now");
             body.note(at(900 * i), Poll::Pending);
         }
-        assert!(ms(giving.stalled_for(at(2700))) > Some(2690));
+        assert!(ms(reads.stalled_for(at(2700))) > Some(2690));
         // All that was late comes at once, and then the next part in its time.
         body.note(at(2700), Poll::Ready(64 << 10));
         body.note(at(2800), Poll::Pending);
-        assert_eq!(ms(giving.stalled_for(at(2900))), Some(100));
+        assert_eq!(ms(reads.stalled_for(at(2900))), Some(100));
         drop(body);
-        assert_eq!(ms(giving.stalled_for(at(9000))), None);
+        assert_eq!(ms(reads.stalled_for(at(9000))), None);
     }
 }

@@ -1,4 +1,4 @@
-//! What a client takes of its answers: whether they have left, for how long it has taken nothing, and when that is too long.
+//! Stalled writes: whether the answers of a connection have left, for how long its client has read nothing, and when it is closed for that.
 
 use std::io::{Error, ErrorKind, IoSlice, Result};
 use std::pin::Pin;
@@ -10,59 +10,59 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::sync::Notify;
 use tokio::time::{Instant, Sleep, sleep_until};
 
-/// Who takes less of an answer than this, in bytes a second, is given up in the end, as who takes nothing.
+/// A client that reads an answer at less than this, in bytes a second, is closed in the end, as one that reads nothing.
 pub(super) const LEAST_RATE: f64 = 4096.0;
 
-/// How far a client has taken what it asked for.
+/// How far the answers of a connection have left.
 #[derive(Debug, Default)]
-pub(super) struct Taking {
+pub(super) struct Writes {
     state: Mutex<State>,
-    taken: Notify,
+    flushed: Notify,
 }
 
 #[derive(Debug, Default)]
 struct State {
-    /// An answer was handed over to be sent, and some of it may still be here.
+    /// An answer is complete, and some of it may not have been written yet.
     unsent: bool,
     /// Since when a write waits for the client.
     stalled: Option<Instant>,
 }
 
-impl Taking {
-    /// An answer is complete; what has not been sent of it waits to be.
-    pub(super) fn hand_over(&self) {
+impl Writes {
+    /// An answer is complete; some of it may wait to be written.
+    pub(super) fn answer_is_complete(&self) {
         self.state().unsent = true;
     }
 
-    /// Whether everything has left.
+    /// Whether everything was written.
     pub(super) fn is_empty(&self) -> bool {
         !self.state().unsent
     }
 
-    /// Comes back when everything has left. The next answer is not made before: of many requests at once one answer lies
-    /// here at a time, and it is the client's own doing when the others wait.
-    pub(super) async fn emptied(&self) {
+    /// Returns when everything was written. The next answer is not made before: of many pipelined requests one answer is in memory
+    /// at a time.
+    pub(super) async fn flushed(&self) {
         loop {
-            let taken = self.taken.notified();
+            let flushed = self.flushed.notified();
             if self.is_empty() {
                 return;
             }
-            taken.await;
+            flushed.await;
         }
     }
 
-    /// For how long the client has taken nothing of what waits for it.
+    /// For how long a write has waited for the client.
     pub(super) fn stalled_for(&self, now: Instant) -> Option<Duration> {
         let since = self.state().stalled;
         since.map(|since| now.saturating_duration_since(since))
     }
 
-    fn everything_left(&self) {
+    fn all_written(&self) {
         let mut state = self.state();
         state.stalled = None;
         if state.unsent {
             state.unsent = false;
-            self.taken.notify_waiters();
+            self.flushed.notify_waiters();
         }
     }
 
@@ -71,24 +71,23 @@ impl Taking {
     }
 }
 
-/// A stream whose writes are watched, and end when the client takes too little for too long.
+/// A stream whose writes are watched, and fail when the client reads too little for too long.
 #[derive(Debug)]
-pub(super) struct Watched<S> {
+pub(super) struct WatchedStream<S> {
     inner: S,
-    taking: Arc<Taking>,
+    writes: Arc<Writes>,
     stall: Duration,
-    /// When the client is given up, while a write waits for it or has done so.
+    /// When the client is given up, once a write has waited for it.
     deadline: Option<Instant>,
     alarm: Pin<Box<Sleep>>,
 }
 
-impl<S> Watched<S> {
-    /// Watches `inner`: a client that takes nothing for `stall` is given up, and so is one that takes a little now and then to
-    /// last for ever.
-    pub(super) fn new(inner: S, taking: Arc<Taking>, stall: Duration) -> Self {
+impl<S> WatchedStream<S> {
+    /// Watches `inner`: a client that reads nothing for `stall` is given up, and so is one that reads a little now and then.
+    pub(super) fn new(inner: S, writes: Arc<Writes>, stall: Duration) -> Self {
         Self {
             inner,
-            taking,
+            writes,
             stall,
             deadline: None,
             alarm: Box::pin(sleep_until(Instant::now())),
@@ -102,12 +101,12 @@ impl<S> Watched<S> {
         written: Poll<Result<usize>>,
     ) -> Poll<Result<usize>> {
         match (&written, self.deadline) {
-            // The usual way asks for no time.
+            // The usual case needs no clock.
             (Poll::Ready(_), None) => {}
             (Poll::Ready(Ok(bytes)), Some(deadline)) => {
                 let earned = Duration::from_secs_f64(*bytes as f64 / LEAST_RATE);
                 self.deadline = Some((deadline + earned).min(Instant::now() + self.stall));
-                self.taking.state().stalled = None;
+                self.writes.state().stalled = None;
             }
             (Poll::Ready(Err(_)), _) => {}
             (Poll::Pending, _) => return self.wait(context),
@@ -118,19 +117,19 @@ impl<S> Watched<S> {
     fn wait(&mut self, context: &mut Context<'_>) -> Poll<Result<usize>> {
         let now = Instant::now();
         let deadline = *self.deadline.get_or_insert(now + self.stall);
-        self.taking.state().stalled.get_or_insert(now);
+        self.writes.state().stalled.get_or_insert(now);
         self.alarm.as_mut().reset(deadline);
         match self.alarm.as_mut().poll(context) {
             Poll::Pending => Poll::Pending,
             Poll::Ready(()) => Poll::Ready(Err(Error::new(
                 ErrorKind::TimedOut,
-                "the client does not take its answer",
+                "the client does not read its answer",
             ))),
         }
     }
 }
 
-impl<S: AsyncRead + Unpin> AsyncRead for Watched<S> {
+impl<S: AsyncRead + Unpin> AsyncRead for WatchedStream<S> {
     fn poll_read(
         mut self: Pin<&mut Self>,
         context: &mut Context<'_>,
@@ -140,7 +139,7 @@ impl<S: AsyncRead + Unpin> AsyncRead for Watched<S> {
     }
 }
 
-impl<S: AsyncWrite + Unpin> AsyncWrite for Watched<S> {
+impl<S: AsyncWrite + Unpin> AsyncWrite for WatchedStream<S> {
     fn poll_write(
         mut self: Pin<&mut Self>,
         context: &mut Context<'_>,
@@ -168,7 +167,7 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for Watched<S> {
         let flushed = Pin::new(&mut self.inner).poll_flush(context);
         if let Poll::Ready(Ok(())) = flushed {
             self.deadline = None;
-            self.taking.everything_left();
+            self.writes.all_written();
         }
         flushed
     }

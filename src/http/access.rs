@@ -1,10 +1,10 @@
-//! Who gets in, and how much of the service each gets: hosts, keys, rates, and those who wait.
+//! Who may use the service, and how much of it each may use: hosts, keys, rates, and requests that wait.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::net::IpAddr;
 use std::num::NonZeroU32;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use axum::extract::{Request, State};
@@ -13,16 +13,15 @@ use axum::http::uri::Authority;
 use axum::http::{HeaderMap, Uri};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
-use governor::clock::{Clock as _, DefaultClock};
-use governor::{DefaultDirectRateLimiter, Quota};
+use tokio::time::Instant;
 
-use super::guests::{Guest, Origin};
+use super::connections::{Address, Connection, Rates, Unauthenticated};
 use super::problem::Refusal;
-use super::strangers::Strangers;
+use crate::compute::{Budget, Part};
 use crate::wire::{Code, Problem};
 
 /// A client may send so many times its requests of a second at once.
-const BURST_SECONDS: u32 = 2;
+const BURST_SECONDS: NonZeroU32 = NonZeroU32::new(2).unwrap();
 
 /// Whether requests need keys.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
@@ -40,7 +39,7 @@ pub enum KeysRule {
 
 /// What is allowed to whom.
 #[derive(Debug, Clone)]
-pub struct DoorRules {
+pub struct AccessRules {
     /// Whether requests need keys.
     pub keys: KeysRule,
     /// Whether only this machine reaches the service, as far as its configuration tells.
@@ -52,37 +51,39 @@ pub struct DoorRules {
     /// Requests a second of one client; 0: any number.
     pub requests_per_second: u32,
     /// Requests a second without a key that is known, of one address; 0: any number.
-    pub strangers_per_second: u32,
+    pub unauthenticated_per_second: u32,
     /// So many requests of one client may wait for something to happen: streams of events, and `Prefer: wait`.
-    pub waiting_per_client: usize,
+    pub waiting_per_client: u64,
     /// So many of all clients together.
-    pub waiting: usize,
+    pub waiting: u64,
 }
 
-/// The door of the service.
+/// The access to the service.
 #[derive(Debug)]
-pub struct Door {
-    rules: DoorRules,
+pub struct Access {
+    rules: AccessRules,
     hosts: HashSet<String>,
     /// By client and rate: the keys of a client may have different ones.
-    rates: Mutex<HashMap<(String, NonZeroU32), Arc<DefaultDirectRateLimiter>>>,
-    waiting: Arc<Mutex<HashMap<String, usize>>>,
+    rates: Rates<(String, NonZeroU32)>,
+    /// Requests that wait for something to happen.
+    waiting: Budget,
     /// Whether a key was seen to be there: one that was ever made never vanishes.
     has_keys: AtomicBool,
-    strangers: Option<Strangers>,
+    unauthenticated: Option<Unauthenticated>,
 }
 
-impl Door {
-    /// A door with these rules.
-    pub fn new(rules: DoorRules) -> Self {
+impl Access {
+    /// Access by these rules.
+    pub fn new(rules: AccessRules) -> Self {
         let own = ["localhost".to_owned()];
         let hosts = rules.hosts.iter().map(|host| host.to_ascii_lowercase());
         Self {
             hosts: hosts.chain(own).collect(),
-            strangers: NonZeroU32::new(rules.strangers_per_second).map(Strangers::new),
+            unauthenticated: NonZeroU32::new(rules.unauthenticated_per_second)
+                .map(Unauthenticated::new),
+            waiting: Budget::limited(rules.waiting, rules.waiting_per_client),
             rules,
-            rates: Mutex::default(),
-            waiting: Arc::default(),
+            rates: Rates::default(),
             has_keys: AtomicBool::new(false),
         }
     }
@@ -111,23 +112,22 @@ impl Door {
         self.has_keys.store(true, Ordering::Relaxed);
     }
 
-    /// What a request got in by, told by its fingerprint, was found to be known.
-    pub(super) fn prove(&self, fingerprint: String) {
-        if let Some(strangers) = &self.strangers {
-            strangers.prove(fingerprint);
+    /// A key or token of this fingerprint was found to be known.
+    pub(super) fn remember(&self, fingerprint: String) {
+        if let Some(unauthenticated) = &self.unauthenticated {
+            unauthenticated.remember(fingerprint);
         }
     }
 
-    /// Counts a request from `origin`, unless its key has been found to be known before. Where nobody needs a key, nobody is a
-    /// stranger.
+    /// Counts a request from `address`, unless its key has been found to be known before, or nobody needs one.
     ///
     /// # Errors
     ///
     /// The time after which it may come again.
-    fn admit(&self, origin: Origin, headers: &HeaderMap) -> Result<(), Duration> {
+    fn count_unauthenticated(&self, address: Address, headers: &HeaderMap) -> Result<(), Duration> {
         let asks = self.asks_for_keys(headers) == Some(true);
-        match self.strangers.as_ref().filter(|_| asks) {
-            Some(strangers) => strangers.admit(origin, headers),
+        match self.unauthenticated.as_ref().filter(|_| asks) {
+            Some(unauthenticated) => unauthenticated.count(address, headers),
             None => Ok(()),
         }
     }
@@ -180,33 +180,14 @@ impl Door {
         let Some(quota) = NonZeroU32::new(rate) else {
             return Ok(());
         };
-        let burst = quota.saturating_mul(NonZeroU32::MIN.saturating_add(BURST_SECONDS - 1));
-        let limiter = {
-            let mut rates = self.rates.lock().expect("nothing panics with this lock");
-            let limiter = rates.entry((client.to_owned(), quota)).or_insert_with(|| {
-                let quota = Quota::per_second(quota).allow_burst(burst);
-                Arc::new(DefaultDirectRateLimiter::direct(quota))
-            });
-            Arc::clone(limiter)
-        };
-        limiter
-            .check()
-            .map_err(|not_until| not_until.wait_time_from(DefaultClock::default().now()))
+        let burst = quota.saturating_mul(BURST_SECONDS).get();
+        let key = (client.to_owned(), quota);
+        self.rates.count(key, quota, burst, Instant::now())
     }
 
-    /// A place among those who wait, kept until it is dropped; `None` if there is none.
-    pub(super) fn place_to_wait(&self, client: &str) -> Option<PlaceToWait> {
-        let mut waiting = self.waiting.lock().expect("nothing panics with this lock");
-        let all: usize = waiting.values().sum();
-        let own = waiting.get(client).copied().unwrap_or_default();
-        if all >= self.rules.waiting || own >= self.rules.waiting_per_client {
-            return None;
-        }
-        waiting.insert(client.to_owned(), own + 1);
-        Some(PlaceToWait {
-            waiting: Arc::clone(&self.waiting),
-            client: client.to_owned(),
-        })
+    /// A place among the requests that wait, kept until it is dropped; `None` if there is none.
+    pub(super) fn place_to_wait(&self, client: &str) -> Option<Part> {
+        self.waiting.try_take(client, 1)
     }
 }
 
@@ -221,22 +202,21 @@ fn came_through_a_proxy(headers: &HeaderMap) -> bool {
 
 /// Refuses requests without a key that is known when too many of them come, and ends their connection: the next ones
 /// on it would be more of the same. Health is asked for by those who keep the service alive.
-pub(super) async fn limit_strangers(
-    State(door): State<Arc<Door>>,
+pub(super) async fn limit_unauthenticated(
+    State(access): State<Arc<Access>>,
     request: Request,
     next: Next,
 ) -> Response {
-    let guest = request.extensions().get::<Arc<Guest>>();
-    let origin = guest.map(|guest| guest.origin);
-    let admitted = match origin.filter(|_| !request.uri().path().starts_with("/health/")) {
-        Some(origin) => door.admit(origin, request.headers()),
-        None => Ok(()),
-    };
-    match admitted {
+    let connection = request.extensions().get::<Arc<Connection>>();
+    let connection = connection.filter(|_| !request.uri().path().starts_with("/health/"));
+    let counted = connection.map_or(Ok(()), |connection| {
+        access.count_unauthenticated(connection.address, request.headers())
+    });
+    match counted {
         Ok(()) => next.run(request).await,
         Err(wait) => {
             metrics::counter!("meshwright_strangers_refused_total").increment(1);
-            let mut response = Refusal::too_many_strangers(wait).into_response();
+            let mut response = Refusal::too_many_unauthenticated(wait).into_response();
             let close = HeaderValue::from_static("close");
             response.headers_mut().insert(CONNECTION, close);
             response
@@ -246,12 +226,12 @@ pub(super) async fn limit_strangers(
 
 /// Refuses requests that were not meant for this service.
 pub(super) async fn check_host(
-    State(door): State<Arc<Door>>,
+    State(access): State<Arc<Access>>,
     request: Request,
     next: Next,
 ) -> Response {
-    let strict = door.rules.strict_hosts;
-    match door.check_host(request.uri(), request.headers(), strict) {
+    let strict = access.rules.strict_hosts;
+    match access.check_host(request.uri(), request.headers(), strict) {
         Ok(()) => next.run(request).await,
         Err(problem) => problem.into_response(),
     }
@@ -259,32 +239,13 @@ pub(super) async fn check_host(
 
 /// The same where nobody needs a key, so that the names have to be known in any case.
 pub(super) async fn check_known_host(
-    State(door): State<Arc<Door>>,
+    State(access): State<Arc<Access>>,
     request: Request,
     next: Next,
 ) -> Response {
-    match door.check_host(request.uri(), request.headers(), true) {
+    match access.check_host(request.uri(), request.headers(), true) {
         Ok(()) => next.run(request).await,
         Err(problem) => problem.into_response(),
-    }
-}
-
-/// A place among those who wait.
-#[derive(Debug)]
-pub(super) struct PlaceToWait {
-    waiting: Arc<Mutex<HashMap<String, usize>>>,
-    client: String,
-}
-
-impl Drop for PlaceToWait {
-    fn drop(&mut self) {
-        let mut waiting = self.waiting.lock().expect("nothing panics with this lock");
-        if let Some(own) = waiting.get_mut(&self.client) {
-            *own -= 1;
-            if *own == 0 {
-                waiting.remove(&self.client);
-            }
-        }
     }
 }
 
@@ -292,35 +253,36 @@ impl Drop for PlaceToWait {
 mod tests {
     use super::*;
 
-    fn door(adjust: impl FnOnce(&mut DoorRules)) -> Door {
-        let mut rules = DoorRules {
+    fn access(adjust: impl FnOnce(&mut AccessRules)) -> Access {
+        let mut rules = AccessRules {
             keys: KeysRule::Careful,
             local: true,
             hosts: vec!["Gears.example".to_owned()],
             strict_hosts: true,
             requests_per_second: 3,
-            strangers_per_second: 2,
+            unauthenticated_per_second: 2,
             waiting_per_client: 2,
             waiting: 3,
         };
         adjust(&mut rules);
-        Door::new(rules)
+        Access::new(rules)
     }
 
-    fn check(door: &Door, hosts: &[&str]) -> Option<Code> {
+    fn check(access: &Access, hosts: &[&str]) -> Option<Code> {
         let mut headers = HeaderMap::new();
         for host in hosts {
             headers.append(HOST, host.parse().unwrap());
         }
         let path = Uri::from_static("/v1/jobs");
-        door.check_host(&path, &headers, door.rules.strict_hosts)
+        access
+            .check_host(&path, &headers, access.rules.strict_hosts)
             .err()
             .map(|problem| problem.code)
     }
 
     #[test]
     fn a_foreign_name_is_refused_and_an_address_is_not() {
-        let strict = door(|_| {});
+        let strict = access(|_| {});
         for host in [
             "localhost",
             "LOCALHOST:8080",
@@ -351,17 +313,17 @@ mod tests {
                 "{hosts:?}"
             );
         }
-        let open = door(|rules| rules.strict_hosts = false);
+        let open = access(|rules| rules.strict_hosts = false);
         assert_eq!(check(&open, &["evil.example"]), None);
         assert_eq!(check(&open, &[]), Some(Code::InvalidParameter));
     }
 
     #[test]
     fn keys_are_needed_wherever_somebody_else_may_be_at_the_other_end() {
-        let asks = |door: &Door, header: Option<&'static str>| {
+        let asks = |access: &Access, header: Option<&'static str>| {
             let headers =
                 header.map(|name| (HeaderName::from_static(name), HeaderValue::from_static("x")));
-            door.asks_for_keys(&headers.into_iter().collect())
+            access.asks_for_keys(&headers.into_iter().collect())
         };
         let passed_on = [
             "forwarded",
@@ -371,7 +333,7 @@ mod tests {
             "x-forwarded-proto",
             "x-real-ip",
         ];
-        let local = door(|_| {});
+        let local = access(|_| {});
         assert_eq!(asks(&local, None), None);
         assert_eq!(asks(&local, Some("x-request-id")), None);
         assert!(
@@ -381,10 +343,10 @@ mod tests {
         );
         local.found_keys();
         assert_eq!(asks(&local, None), Some(true));
-        assert_eq!(asks(&door(|rules| rules.local = false), None), Some(true));
-        let required = door(|rules| rules.keys = KeysRule::Required);
+        assert_eq!(asks(&access(|rules| rules.local = false), None), Some(true));
+        let required = access(|rules| rules.keys = KeysRule::Required);
         assert_eq!(asks(&required, None), Some(true));
-        let none = door(|rules| (rules.keys, rules.local) = (KeysRule::None, false));
+        let none = access(|rules| (rules.keys, rules.local) = (KeysRule::None, false));
         assert!(
             passed_on
                 .iter()
@@ -394,7 +356,7 @@ mod tests {
 
     #[test]
     fn a_client_that_asks_too_often_waits_and_no_other_one_does() {
-        let door = door(|_| {});
+        let door = access(|_| {});
         let taken = (0..20)
             .take_while(|_| door.count_request("a", None).is_ok())
             .count();
@@ -413,7 +375,7 @@ mod tests {
 
     #[test]
     fn two_keys_of_a_client_by_turns_get_no_more_than_both_may() {
-        let door = door(|_| {});
+        let door = access(|_| {});
         let taken = (0..100)
             .filter(|turn| {
                 let rate = if turn % 2 == 0 { 3 } else { 5 };
@@ -425,7 +387,7 @@ mod tests {
 
     #[test]
     fn places_to_wait_are_bounded_for_each_and_for_all() {
-        let door = door(|_| {});
+        let door = access(|_| {});
         let first = door.place_to_wait("a").unwrap();
         let _second = door.place_to_wait("a").unwrap();
         assert!(door.place_to_wait("a").is_none());

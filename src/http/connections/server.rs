@@ -1,9 +1,9 @@
-//! Connections: how many there may be, how long one may say nothing, and how they end.
+//! The server: it accepts connections, serves them, and ends them.
 //!
-//! A connection is busy from the head of a request to the last byte of its answer, and idle otherwise; one whose client gives
-//! nothing of its request, or takes nothing of its answer, is as idle. Idle ones cost little, but each holds a descriptor, of which a process has so many: an
-//! idle one gives way where a new one finds no room, and ends by itself when its client sends no request, or takes nothing, for
-//! a while.
+//! A connection is busy from the head of a request to the last byte of its answer, and idle otherwise; one whose client sends
+//! nothing of its request, or reads nothing of its answer, counts as idle. Idle ones cost little, but each holds a descriptor, of which a
+//! process has a limited number: an idle one is evicted where a new one finds no place, and ends by itself when its client sends no
+//! request, or reads nothing, for a while.
 
 use std::convert::Infallible;
 use std::future::poll_fn;
@@ -15,7 +15,7 @@ use std::time::Duration;
 
 use axum::Router;
 use axum::body::{Body, Bytes};
-use axum::http::{Request, Response};
+use axum::http::Request;
 use http_body::{Body as HttpBody, Frame, SizeHint};
 use hyper::body::Incoming;
 use hyper::server::conn::http1;
@@ -30,9 +30,10 @@ use tokio_util::task::TaskTracker;
 use tower::ServiceExt;
 use tracing::{debug, warn};
 
-use super::giving::Awaited;
-use super::guests::{Busy, Guest, Guests, Place};
-use super::taking::Watched;
+use super::connection::{ActiveRequest, Connection};
+use super::limit::{Admitted, Connections};
+use super::stalled_reads::WatchedBody;
+use super::stalled_writes::WatchedStream;
 
 /// A head is no larger than this, in bytes.
 const LARGEST_HEAD: usize = 32 << 10;
@@ -50,7 +51,7 @@ pub struct Bounds {
     pub connections: usize,
     /// The head of a request is here so long after the connection began or the last answer ended.
     pub head: Duration,
-    /// A client that takes nothing of its answer for so long, or a trickle of it for long, is given up.
+    /// A client that reads nothing of its answer for so long, or a trickle of it for long, is given up.
     pub stall: Duration,
 }
 
@@ -71,16 +72,16 @@ impl Server {
     ) -> Self {
         let connections = TaskTracker::new();
         let kill = CancellationToken::new();
-        let hall = Hall {
+        let accepting = Accepting {
             router,
             bounds,
-            guests: Guests::new(bounds.connections),
+            limit: Connections::new(bounds.connections),
             connections: connections.clone(),
             stop,
             kill: kill.clone(),
         };
         Self {
-            task: tokio::spawn(hall.receive(listener)),
+            task: tokio::spawn(accepting.receive(listener)),
             connections,
             kill,
         }
@@ -107,17 +108,17 @@ impl Server {
     }
 }
 
-/// Where connections come in.
-struct Hall {
+/// What accepts connections.
+struct Accepting {
     router: Router,
     bounds: Bounds,
-    guests: Arc<Guests>,
+    limit: Arc<Connections>,
     connections: TaskTracker,
     stop: CancellationToken,
     kill: CancellationToken,
 }
 
-impl Hall {
+impl Accepting {
     async fn receive(self, listener: TcpListener) {
         loop {
             let accepted = tokio::select! {
@@ -125,13 +126,13 @@ impl Hall {
                 () = self.stop.cancelled() => return,
                 () = self.kill.cancelled() => return,
             };
-            let (stream, place) = accepted;
+            let (stream, admitted) = accepted;
             // An answer is written whole; to wait for more of it would only make the client wait.
             let _ = stream.set_nodelay(true);
             let (router, bounds, stop) = (self.router.clone(), self.bounds, self.stop.clone());
             let kill = self.kill.clone();
             self.connections.spawn(async move {
-                let serve = serve_connection(stream, router, bounds, &place.guest, &stop);
+                let serve = serve_connection(stream, router, bounds, &admitted.connection, &stop);
                 tokio::select! {
                     () = serve => {}
                     () = kill.cancelled() => {}
@@ -140,12 +141,11 @@ impl Hall {
         }
     }
 
-    /// The next connection, once there is room for it. It is taken before there is: by where it comes from others are chosen to
-    /// give way.
-    async fn next(&self, listener: &TcpListener) -> (TcpStream, Place) {
+    /// The next connection, once there is a place for it.
+    async fn next(&self, listener: &TcpListener) -> (TcpStream, Admitted) {
         let (stream, address) = self.accept(listener).await;
-        let place = self.guests.place(Guest::from(address.ip().into())).await;
-        (stream, place)
+        let admitted = self.limit.admit(address.ip().into()).await;
+        (stream, admitted)
     }
 
     async fn accept(&self, listener: &TcpListener) -> (TcpStream, SocketAddr) {
@@ -155,9 +155,9 @@ impl Hall {
             match listener.accept().await {
                 Ok(accepted) => return accepted,
                 Err(error) => {
-                    // Out of descriptors, most likely: those who idle have some.
+                    // Out of descriptors, most likely: idle connections have some.
                     warn!(%error, "no connection can be taken");
-                    self.guests.send_one_away();
+                    self.limit.evict_one();
                     sleep(PAUSE).await;
                 }
             }
@@ -165,13 +165,13 @@ impl Hall {
     }
 }
 
-/// A body that keeps its connection busy until all of it was handed over to be sent.
-struct BusyBody {
+/// A body whose request is active until all of it was handed over to be written.
+struct ActiveBody {
     inner: Body,
-    _busy: Busy,
+    _active: Arc<ActiveRequest>,
 }
 
-impl HttpBody for BusyBody {
+impl HttpBody for ActiveBody {
     type Data = Bytes;
     type Error = axum::Error;
 
@@ -195,25 +195,29 @@ async fn serve_connection<S>(
     stream: S,
     router: Router,
     bounds: Bounds,
-    guest: &Arc<Guest>,
+    connection: &Arc<Connection>,
     stop: &CancellationToken,
 ) where
     S: AsyncRead + AsyncWrite + Unpin,
 {
-    let stream = Watched::new(stream, Arc::clone(&guest.taking), bounds.stall);
+    let stream = WatchedStream::new(stream, Arc::clone(&connection.writes), bounds.stall);
     let service = service_fn(|mut request: Request<Incoming>| {
-        let (router, guest) = (router.clone(), Arc::clone(guest));
-        let busy = Busy::begin(&guest);
+        let (router, connection) = (router.clone(), Arc::clone(connection));
+        let active = Arc::new(ActiveRequest::begin(&connection));
         async move {
-            guest.taking.emptied().await;
-            let giving = Arc::clone(&guest.giving);
-            request.extensions_mut().insert(guest);
-            let request = request.map(|body| Body::new(Awaited::new(body, giving)));
+            connection.writes.flushed().await;
+            let reads = Arc::clone(&connection.reads);
+            request.extensions_mut().insert(connection);
+            request.extensions_mut().insert(Arc::clone(&active));
+            let request = request.map(|body| Body::new(WatchedBody::new(body, reads)));
             let Ok(response) = router.oneshot(request).await;
-            Ok::<_, Infallible>(kept_busy(response, busy))
+            Ok::<_, Infallible>(response.map(|inner| ActiveBody {
+                inner,
+                _active: active,
+            }))
         }
     });
-    let connection = http1::Builder::new()
+    let served = http1::Builder::new()
         .timer(TokioTimer::new())
         .header_read_timeout(bounds.head)
         .max_buf_size(LARGEST_HEAD)
@@ -221,45 +225,41 @@ async fn serve_connection<S>(
         // Every answer of ours has its own, by the clock of the service.
         .auto_date_header(false)
         .serve_connection(TokioIo::new(stream), service);
-    let mut connection = pin!(connection);
+    let mut served = pin!(served);
     let ended = tokio::select! {
-        ended = &mut connection => ended,
-        () = stop.cancelled() => end(connection, guest, LAST_BREATH).await,
-        () = guest.leave.cancelled() => end(connection, guest, Duration::ZERO).await,
+        ended = &mut served => ended,
+        () = stop.cancelled() => end(served, connection, LAST_BREATH).await,
+        () = connection.evict.cancelled() => end(served, connection, Duration::ZERO).await,
     };
     if let Err(error) = ended {
         debug!(%error, "a connection broke");
     }
 }
 
-fn kept_busy(response: Response<Body>, busy: Busy) -> Response<BusyBody> {
-    response.map(|inner| BusyBody { inner, _busy: busy })
-}
-
 /// Ends a connection: with the answer that is under way, or when it has been idle for `patience`. One that has sent half a
-/// head is as idle as one that has sent nothing, and so is one that gives no body, or takes nothing of its answer.
+/// head counts as idle, and so does one that sends no body, or reads nothing of its answer.
 async fn end<I, S>(
-    mut connection: Pin<&mut http1::Connection<I, S>>,
-    guest: &Guest,
+    mut served: Pin<&mut http1::Connection<I, S>>,
+    connection: &Connection,
     patience: Duration,
 ) -> hyper::Result<()>
 where
     I: hyper::rt::Read + hyper::rt::Write + Unpin,
-    S: hyper::service::HttpService<Incoming, ResBody = BusyBody>,
+    S: hyper::service::HttpService<Incoming, ResBody = ActiveBody>,
     S::Error: Into<Box<dyn std::error::Error + Send + Sync>>,
 {
-    connection.as_mut().graceful_shutdown();
+    served.as_mut().graceful_shutdown();
     let mut idle_since = Instant::now();
     loop {
         let wait = sleep(LAST_BREATH / 4);
         tokio::select! {
-            // What has arrived by now is answered.
+            // A request that has arrived by now is answered.
             biased;
-            ended = poll_fn(|context| connection.as_mut().poll(context)) => return ended,
-            () = std::future::ready(()), if patience.is_zero() && guest.is_idle(Instant::now()) => return Ok(()),
+            ended = poll_fn(|context| served.as_mut().poll(context)) => return ended,
+            () = std::future::ready(()), if patience.is_zero() && connection.is_idle(Instant::now()) => return Ok(()),
             () = wait => {}
         }
-        if !guest.is_idle(Instant::now()) {
+        if !connection.is_idle(Instant::now()) {
             idle_since = Instant::now();
         } else if idle_since.elapsed() >= patience {
             return Ok(());
@@ -299,9 +299,10 @@ mod tests {
             stall,
         };
         let (ours, theirs) = duplex(room);
-        let guest = Arc::new(Guest::from(IpAddr::from([127, 0, 0, 1]).into()));
         let serve = async move {
-            serve_connection(ours, router, bounds, &guest, &CancellationToken::new()).await;
+            let address = IpAddr::from([127, 0, 0, 1]).into();
+            let connection = Arc::new(Connection::new(address, &Connections::new(1)));
+            serve_connection(ours, router, bounds, &connection, &CancellationToken::new()).await;
         };
         (tokio::spawn(serve), theirs, made)
     }
@@ -309,7 +310,7 @@ mod tests {
     const REQUEST: &str = "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n";
 
     #[tokio::test]
-    async fn of_many_requests_at_once_one_answer_lies_here_at_a_time() {
+    async fn of_many_pipelined_requests_one_answer_is_in_memory_at_a_time() {
         // The answers are larger than what may be on its way, and much smaller than what is buffered for one.
         let (_, mut client, made) = connect(1 << 10, 2 << 10, PATIENCE);
         let requests = REQUEST.repeat(20);
@@ -328,7 +329,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn who_takes_nothing_is_given_up_whatever_is_buffered() {
+    async fn a_client_that_reads_nothing_is_given_up_whatever_is_buffered() {
         for answer in [1 << 10, 30 << 10, 1 << 20] {
             let (served, mut client, _) = connect(512, answer, Duration::from_millis(20));
             client.write_all(REQUEST.as_bytes()).await.unwrap();
@@ -337,7 +338,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn who_takes_a_trickle_to_last_for_ever_is_given_up() {
+    async fn a_client_that_reads_a_trickle_is_given_up() {
         let (served, mut client, _) = connect(16, 1 << 20, Duration::from_millis(20));
         client.write_all(REQUEST.as_bytes()).await.unwrap();
         let trickle = async {

@@ -1,0 +1,150 @@
+//! Sending a message: one request to an address that may be connected to, of whose answer the status alone is read.
+
+use std::io;
+use std::net::{IpAddr, SocketAddr};
+use std::pin::Pin;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::task::{Context, Poll};
+use std::time::Duration;
+
+use http::header::USER_AGENT;
+use http::{HeaderValue, Request, StatusCode};
+use hyper_rustls::{HttpsConnector, HttpsConnectorBuilder};
+use hyper_util::client::legacy::Client;
+use hyper_util::client::legacy::connect::HttpConnector;
+use hyper_util::client::legacy::connect::dns::Name;
+use hyper_util::rt::TokioExecutor;
+use reqwest::Body;
+use rustls::ClientConfig;
+use rustls_platform_verifier::ConfigVerifierExt;
+use tokio::time::timeout;
+use tokio_util::sync::CancellationToken;
+use tower::Service;
+
+use crate::client::{AGENT, install_encryption, told};
+
+/// One attempt takes so long at most.
+const TIME_OUT: Duration = Duration::from_secs(10);
+
+/// A receiver may send so many informational answers (1xx) before its answer.
+const MOST_INFORMATIONAL: usize = 8;
+
+/// Which addresses may be connected to.
+type Reachable = Arc<dyn Fn(IpAddr) -> bool + Send + Sync>;
+
+/// The client that sends messages. It follows no redirect and uses no proxy.
+pub(super) struct Sender(Client<HttpsConnector<HttpConnector<PublicOnly>>, Body>);
+
+impl Sender {
+    /// A client that connects to these addresses.
+    ///
+    /// # Errors
+    ///
+    /// When there is no encryption to be had.
+    pub(super) fn to(reachable: &Reachable) -> Result<Self, rustls::Error> {
+        install_encryption();
+        let mut tcp = HttpConnector::new_with_resolver(PublicOnly(Arc::clone(reachable)));
+        tcp.enforce_http(false);
+        let connector = HttpsConnectorBuilder::new()
+            .with_tls_config(ClientConfig::with_platform_verifier()?)
+            .https_or_http()
+            .enable_http1()
+            .wrap_connector(tcp);
+        Ok(Self(Client::builder(TokioExecutor::new()).build(connector)))
+    }
+
+    /// Sends a request.
+    ///
+    /// # Errors
+    ///
+    /// Why there is no answer.
+    pub(super) async fn send(&self, mut request: Request<Body>) -> Result<StatusCode, String> {
+        let (enough, count) = (CancellationToken::new(), AtomicUsize::new(0));
+        let stop = enough.clone();
+        hyper::ext::on_informational(&mut request, move |_| {
+            if count.fetch_add(1, Ordering::Relaxed) >= MOST_INFORMATIONAL {
+                stop.cancel();
+            }
+        });
+        let agent = HeaderValue::from_static(AGENT);
+        request.headers_mut().insert(USER_AGENT, agent);
+        let answer = async {
+            tokio::select! {
+                () = enough.cancelled() => Err(format!("it sent more than {MOST_INFORMATIONAL} informational answers")),
+                answer = self.0.request(request) => match answer {
+                    Ok(answer) => Ok(answer.status()),
+                    Err(error) => Err(told(&error)),
+                },
+            }
+        };
+        let answer = timeout(TIME_OUT, answer).await;
+        answer.unwrap_or_else(|_| Err(format!("no answer within {} s", TIME_OUT.as_secs())))
+    }
+}
+
+/// Looks names up, and keeps the addresses that may be connected to. The connection is made to one of these: nobody looks
+/// the name up again.
+#[derive(Clone)]
+struct PublicOnly(Reachable);
+
+impl Service<Name> for PublicOnly {
+    type Response = std::vec::IntoIter<SocketAddr>;
+    type Error = io::Error;
+    type Future = Pin<Box<dyn Future<Output = io::Result<Self::Response>> + Send>>;
+
+    fn poll_ready(&mut self, _: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Poll::Ready(Ok(()))
+    }
+
+    fn call(&mut self, name: Name) -> Self::Future {
+        let reachable = Arc::clone(&self.0);
+        Box::pin(async move {
+            let found = tokio::net::lookup_host((name.as_str(), 0)).await?;
+            let public: Vec<_> = found.filter(|address| reachable(address.ip())).collect();
+            if public.is_empty() {
+                let error = format!("{} has no public address", name.as_str());
+                return Err(io::Error::other(error));
+            }
+            Ok(public.into_iter())
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tokio::io::{AsyncReadExt, AsyncWriteExt};
+    use tokio::net::TcpListener;
+    use tokio::time::Instant;
+
+    use super::*;
+
+    /// What is told of a receiver that says `first` once and `again` for ever.
+    async fn told_of(first: &'static str, again: &'static str) -> Result<StatusCode, String> {
+        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let address = listener.local_addr().unwrap();
+        tokio::spawn(async move {
+            let (mut stream, _) = listener.accept().await.unwrap();
+            let _ = stream.read(&mut [0; 1024]).await;
+            let _ = stream.write_all(first.as_bytes()).await;
+            while stream.write_all(again.as_bytes()).await.is_ok() {
+                tokio::task::yield_now().await;
+            }
+        });
+        let reachable: Reachable = Arc::new(|_| true);
+        let sender = Sender::to(&reachable).unwrap();
+        let request = Request::post(format!("http://{address}/hook"));
+        sender.send(request.body(Body::from("{}")).unwrap()).await
+    }
+
+    #[tokio::test]
+    async fn a_receiver_that_sends_informational_answers_for_ever_is_given_up_at_once() {
+        const EARLY: &str = "HTTP/1.1 103 Early Hints\r\nLink: </a>\r\n\r\n";
+        let start = Instant::now();
+        let told = told_of("", EARLY).await.unwrap_err();
+        assert!(told.contains("informational"), "{told}");
+        assert!(start.elapsed() < TIME_OUT / 2);
+        let answer = "HTTP/1.1 103 Early Hints\r\n\r\nHTTP/1.1 204 No Content\r\n\r\n";
+        assert_eq!(told_of(answer, "").await, Ok(StatusCode::NO_CONTENT));
+    }
+}
