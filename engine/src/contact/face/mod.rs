@@ -103,7 +103,7 @@ pub struct SliceLoad {
     pub force: f64,
     /// Where it touches: roll length on the driving and on the driven gear.
     pub roll_lengths: [f64; 2],
-    /// The largest pressure in Pa; `None` at a sharp tip edge, where it has no limit, and where a line is shorter than it is wide.
+    /// The largest pressure in Pa; `None` at a sharp tip edge, where it has no limit.
     pub pressure: Option<f64>,
     /// Whether a sharp tip edge carries.
     pub at_sharp_edge: bool,
@@ -116,7 +116,7 @@ pub struct SliceLoad {
 /// The contact of the whole mesh at one position and load, along the faces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FaceContact {
-    /// Summed up pair by pair. Its largest pressure is none where a sharp tip edge carries, and that of the slices that have one elsewhere.
+    /// Summed up pair by pair. Its largest pressure is none where a sharp tip edge carries.
     pub mesh: MeshContact,
     /// The slices that carry, pair by pair, along z.
     pub slices: Vec<SliceLoad>,
@@ -458,9 +458,7 @@ impl FaceModel {
                 continue;
             }
             let pressed = slice.spring.pressed(force);
-            // One that is shorter than its contact is wide is the end of a line, whose pressure no line has.
-            let is_line = slice.along > 2.0 * pressed.half_width;
-            let pressure = pressed.pressure.filter(|_| is_line);
+            let pressure = pressed.pressure;
             if let Some(pair) = pairs.last_mut() {
                 pair.share += slice.weights[1] * force / load;
                 pair.fillet = pair.fillet.or(pressed.fillet);
