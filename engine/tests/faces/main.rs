@@ -287,11 +287,10 @@ fn flanks_of_pairs_drawn_at_random_penetrate_nowhere_on_a_net_of_points_over_bot
                 Manufactured::of(model.pair().gear(member))
             });
             let found = net.deepest(*eta);
-            // A slice closes in its middle: beside the last one that carries flanks are left to half of it. Beside a sharp edge they yield as a
-            // wedge does, and where a contact is no longer than wide as no line does, which the half space of the net leaves out. Where a line or
-            // a pair is missed they penetrate by all that load brings them together.
+            // Beside a sharp edge flanks yield as a wedge does, and where a contact is no longer than wide as no line does, which the half space
+            // of the net leaves out. Where a line or a pair is missed they penetrate by all that load brings them together.
             let lines = net.are_lines();
-            let most = if lines { 0.03 } else { 0.1 };
+            let most = if lines { 0.01 } else { 0.05 };
             assert!(
                 found.depth < most * pressed,
                 "seed {seed} at {eta}: {:e} at {:?} of {pressed:e}",
@@ -301,7 +300,7 @@ fn flanks_of_pairs_drawn_at_random_penetrate_nowhere_on_a_net_of_points_over_bot
             looked[usize::from(lines)] += 1;
         }
     }
-    assert_eq!(looked, [51, 69]);
+    assert_eq!(looked, [53, 67]);
 }
 
 #[test]
@@ -518,6 +517,56 @@ fn more_load_presses_farther_and_the_stiffness_is_the_slope() {
             let told = at(load).stiffness;
             assert!((told / slope - 1.0).abs() < 0.02, "{told} {slope}");
         }
+    }
+}
+
+/// The root mean square of what stands in `values`, one mesh period, above the tenth harmonic.
+fn above_the_tenth_harmonic(values: &[f64]) -> f64 {
+    let count = values.len() as f64;
+    let mut rest = values.to_vec();
+    for harmonic in 0..=10 {
+        let angle = |i: usize| 2.0 * std::f64::consts::PI * (harmonic * i) as f64 / count;
+        let part = if harmonic == 0 { 1.0 } else { 2.0 } / count;
+        let each = || values.iter().enumerate();
+        let cosine: f64 = each().map(|(i, value)| value * angle(i).cos()).sum();
+        let sine: f64 = each().map(|(i, value)| value * angle(i).sin()).sum();
+        for (i, rest) in rest.iter_mut().enumerate() {
+            *rest -= part * (cosine * angle(i).cos() + sine * angle(i).sin());
+        }
+    }
+    (rest.iter().map(|value| value * value).sum::<f64>() / count).sqrt()
+}
+
+#[test]
+fn curves_are_as_smooth_as_with_four_times_as_many_slices() {
+    let drawing = Drawing {
+        relief: 10e-6,
+        leads: crowned(),
+        alignment: Alignment {
+            axial_offset: 0.0,
+            in_plane: 8e-6,
+            out_of_plane: 0.0,
+        },
+        ..Drawing::default()
+    };
+    let positions = period(64);
+    let [usual, fine] =
+        [40, 160].map(|slices| contacts(&drawing.model_of(slices), 3000.0, &positions));
+    let differences = |value: fn(&FaceContact) -> f64| -> Vec<f64> {
+        let pairs = usual.iter().zip(&fine);
+        pairs.map(|(a, b)| value(a) - value(b)).collect()
+    };
+    let delta = differences(|contact| contact.mesh.transmission_error);
+    assert!(above_the_tenth_harmonic(&delta) < 0.3e-9);
+    let stiffness = differences(|contact| contact.mesh.stiffness);
+    let mean = fine
+        .iter()
+        .map(|contact| contact.mesh.stiffness)
+        .sum::<f64>()
+        / 64.0;
+    assert!(above_the_tenth_harmonic(&stiffness) < 1e-3 * mean);
+    for (delta, fine) in delta.iter().zip(&fine) {
+        assert!(delta.abs() < 1e-3 * fine.mesh.transmission_error);
     }
 }
 
