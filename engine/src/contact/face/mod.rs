@@ -684,6 +684,7 @@ mod tests {
             face_order: 4,
             web_order: 2,
             web_harmonics: 6,
+            sections: crate::grid::GridLevel::Standard,
         };
         let (run, load) = (Run::unattended(), pair.section().load(60.0));
         let yields = Member::BOTH.map(|member| {
