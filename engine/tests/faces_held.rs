@@ -13,6 +13,7 @@ use meshwright_engine::gear::{
     Alignment, GearData, LeadModification, Member, ModificationData, ReliefData, ReliefShape,
     ReliefStart, SolidGear, SolidPair, Web,
 };
+use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
 use meshwright_engine::ring::teeth::FARTHEST_COUPLED;
 use meshwright_engine::run::Run;
@@ -289,4 +290,42 @@ fn a_few_slices_that_carry_all_of_the_load_press_as_one_line() {
         assert!((carried / load - 1.0).abs() < 1e-9);
         assert!(contact.load_centroid() < 0.0);
     }
+}
+
+#[test]
+fn the_error_estimate_covers_what_the_fine_level_changes() {
+    let gears = [20, -20].map(|hand: i32| {
+        let mut data = gear(20, 8e-3);
+        data.face_width = 12e-3;
+        helical(data, f64::from(hand).to_radians(), 0.0)
+    });
+    let a = 2.0 * gears[0].section().reference_radius() + 0.1e-3;
+    let leads = [
+        vec![LeadModification::Crowning { amount: 4e-6 }],
+        Vec::new(),
+    ];
+    let pair = SolidPair::new(gears, leads, a, Alignment::default()).expect("meshes");
+    let resolution = FaceResolution {
+        face_order: 6,
+        ..FaceResolution::STANDARD
+    };
+    let mut case = along_faces(pair, (resolution, SLICES), &[60.0]);
+    case.resolution.positions_per_mesh_period = 8;
+    case.resolution.error_estimate = true;
+    let standard = solve(&case);
+    case.resolution.error_estimate = false;
+    case.resolution.grid = GridLevel::Fine;
+    let fine = solve(&case);
+    let estimate = standard.evidence.error_estimate.expect("asked for");
+    let of = |analysis: &Analysis| {
+        let curve = &analysis.curves[0];
+        let delta = curve.transmission_error_statistics;
+        (delta.mean, curve.mesh_stiffness_tangent_statistics.mean)
+    };
+    let ((delta, stiffness), (finer, stiffer)) = (of(&standard), of(&fine));
+    // Levels differ, and by no more than is told.
+    assert!((finer / delta - 1.0).abs() > 1e-5);
+    assert!((finer - delta).abs() < estimate.mean && estimate.mean < 0.02 * delta);
+    assert!((stiffer - stiffness).abs() < estimate.mean_stiffness);
+    assert!(fine.evidence.degrees_of_freedom > 2 * standard.evidence.degrees_of_freedom);
 }

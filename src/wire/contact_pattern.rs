@@ -128,8 +128,7 @@ answer! {
         driven_diameter_mm: Vec<f64> = diameters(1),
         /// The load on each for its width, along the transverse line of action, in N/mm.
         load_n_per_mm: Vec<f64> = slices().map(|slice| told(to_n_per_mm(slice.force / slice.length))).collect(),
-        /// The largest pressure on each, in MPa; null at a sharp tip edge, where it has no limit, and at the end of a line that is shorter than
-        /// its contact is wide.
+        /// The largest pressure on each, in MPa; null at a sharp tip edge, where it has no limit.
         #[serde(serialize_with = "or_null")]
         pressure_mpa: Vec<Option<f64>> =
             slices().map(|slice| slice.pressure.map(|pressure| told(to_mpa(pressure)))).collect(),

@@ -70,7 +70,8 @@ document! {
         ),
         /// How fine the finite elements are; each level halves every element. Differences from fine, on the paper's cases: coarse within
         /// 0.2 % of the mean STE, 2 % of peak-to-peak and rms, 0.3 % of the mean stiffness and 4 % of the first three mesh harmonics;
-        /// standard within 0.03, 0.5, 0.1 and 1 %. error_estimate tells it for your pair.
+        /// standard within 0.03, 0.5, 0.1 and 1 %. error_estimate tells it for your pair. In three dimensions coarse has half as many
+        /// slices and elements and two orders less across the face than face_slices and face_order say, fine twice as many and two more.
         grid: GridLevel = word("Grid").or(GridLevel::Standard),
         /// The degree of the polynomials across the face by which three dimensions resolve teeth and rim: 8 within half a percent of
         /// oblique loads, 6 for first looks within one.
@@ -89,7 +90,8 @@ document! {
         stiffness: StiffnessDocument = (),
         /// The formulas of the method load_distribution.
         load_distribution: LoadDistributionDocument = nested("LoadDistribution").or_defaults(),
-        /// Whether a second, finer run tells the discretization error. It takes several times as long.
+        /// Whether a second run tells the discretization error: a finer one, which takes several times as long, or in three dimensions a
+        /// coarser one, which differs by more than a finer one would.
         error_estimate: bool = flag("Error estimate", false),
     }
 }

@@ -110,6 +110,21 @@ impl Place {
     }
 }
 
+impl Faces {
+    /// The same at a grid `level`, of which the standard one has the counts that these are: orders, sections and slices go together.
+    pub(super) fn at(&self, level: GridLevel) -> Self {
+        Self {
+            resolution: self.resolution.at(level),
+            slices: match level {
+                GridLevel::Coarse => self.slices.div_ceil(2),
+                GridLevel::Standard => self.slices,
+                GridLevel::Fine => 2 * self.slices,
+            },
+            ..self.clone()
+        }
+    }
+}
+
 /// A pair under load, and how to compute it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {

@@ -86,10 +86,11 @@ pub fn contact_pattern(
     run: &Run,
 ) -> Result<Option<ContactPattern>, AnalysisError> {
     faer::set_global_parallelism(faer::Par::Seq);
-    let Some(faces) = &case.faces else {
+    let faces = case.faces.as_ref();
+    let Some(faces) = &faces.map(|faces| faces.at(case.resolution.grid)) else {
         return Ok(None);
     };
-    let model = face_model(faces, &yields(faces, faces.resolution, parts, run)?);
+    let model = face_model(faces, &yields(faces, parts, run)?);
     let positions = case.mesh_positions();
     let flanks = Member::BOTH.map(|member| FlankBands::of(&faces.pair, member));
     let map = Map {

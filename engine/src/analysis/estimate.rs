@@ -11,7 +11,7 @@ use crate::assembly::pair::cells_per_patch;
 use crate::contact::facing::Facing;
 use crate::contact::{ContactSolver, default_penalty};
 use crate::gear::{Member, gcd};
-use crate::grid::ToothGrid;
+use crate::grid::{GridLevel, ToothGrid};
 
 /// Seconds of one core for the first contact solution at a fraction of the mesh period, for each further one there, and for a linear
 /// system of the augmented Lagrangian, all with the cells of [`CELLS`]; for a node of a factorized grid; and for a multiplication and
@@ -118,7 +118,7 @@ fn answers(plan: &Plan, pass: &Pass) -> f64 {
 
 /// Seconds of one core for the yield of one gear with nine functions across the face, for its web besides, and for the contact of a slice at a
 /// position. Measured as [`SECONDS`].
-const FACE_SECONDS: [f64; 3] = [0.55, 0.2, 35e-6];
+const FACE_SECONDS: [f64; 3] = [0.55, 0.2, 70e-6];
 
 /// Seconds of one core for the rows that lead to the edges of the holes of one gear. Measured as [`SECONDS`].
 const EDGE_SECONDS: f64 = 1.0;
@@ -150,21 +150,29 @@ fn add_faces(estimate: &mut Estimate, plan: &Plan, faces: &Faces) {
     let case = &plan.loaded;
     let [per_gear, per_web, _] = FACE_SECONDS;
     for (number, pass) in plan.passes.iter().enumerate() {
-        let resolution = pass.along(faces);
+        let resolution = faces.at(pass.level).resolution;
+        let nodes = match pass.level {
+            GridLevel::Coarse => 0.3,
+            GridLevel::Standard => 1.0,
+            GridLevel::Fine => 3.5,
+        };
         for member in Member::BOTH {
             let spec = FaceYieldSpec::new(faces.pair.gear(member), resolution);
             let gear = case.pair.gear(member);
             let webs = f64::from(gear.data().blank.web_in(gear.face_width()).is_some());
             let functions = spec.functions_across() as f64;
             let growth = functions / 9.0;
-            estimate.seconds += per_gear * growth.powf(2.5) + webs * per_web;
-            let bytes = FACE_MEMORY[0] * growth.powi(2) + webs * FACE_MEMORY[1];
+            estimate.seconds +=
+                per_gear * growth.powf(2.5) * nodes * f64::sqrt(nodes) + webs * per_web;
+            let bytes =
+                FACE_MEMORY[0] * growth.powi(2) * nodes * f64::sqrt(nodes) + webs * FACE_MEMORY[1];
             let condensed = spec.condensed_unknowns() as f64;
             estimate.seconds += HOLED_SECONDS * condensed.powi(3);
             estimate.memory += (bytes + HOLED_MEMORY * condensed.powi(2)) as u64;
             if number == 0 {
                 let teeth = f64::from(gear.tooth_count());
-                estimate.degrees_of_freedom += (3.0 * functions * SECTION_NODES * teeth) as u64;
+                estimate.degrees_of_freedom +=
+                    (3.0 * functions * nodes * SECTION_NODES * teeth) as u64;
             }
         }
         if pass.stress {
@@ -183,10 +191,14 @@ fn add_faces(estimate: &mut Estimate, plan: &Plan, faces: &Faces) {
 fn along_faces(plan: &Plan, faces: &Faces) -> f64 {
     let [.., per_slice] = FACE_SECONDS;
     // Two pairs or more carry along all of the face.
-    let slices = faces.slices as f64 * (1.0 + faces.pair.total_contact_ratio());
-    let evened: usize = plan.passes.iter().map(|pass| pass.evened.len()).sum();
-    let tried = EVENING * (evened * plan.loaded.output_torques.len()) as u64;
-    per_slice * slices * (plan.solutions() + tried) as f64
+    let lines = 1.0 + faces.pair.total_contact_ratio();
+    let torques = plan.loaded.output_torques.len() as u64;
+    let of_pass = |pass: &Pass| {
+        let slices = faces.at(pass.level).slices as f64 * lines;
+        let solutions = pass.solutions() + EVENING * pass.evened.len() as u64;
+        per_slice * slices * (torques * solutions) as f64
+    };
+    plan.passes.iter().map(of_pass).sum()
 }
 
 /// Seconds that the contacts of a `pass` of `plan` take in the plane.

@@ -69,10 +69,11 @@ fn of_gears<T: Send>(
     told: impl Fn(&[MovedParts], &Faces, Member, Place) -> T + Sync,
 ) -> Result<Option<Fields<T>>, AnalysisError> {
     faer::set_global_parallelism(faer::Par::Seq);
-    let Some(faces) = &case.faces else {
+    let faces = case.faces.as_ref();
+    let Some(faces) = &faces.map(|faces| faces.at(case.resolution.grid)) else {
         return Ok(None);
     };
-    let yields = yields(faces, faces.resolution, parts, run)?;
+    let yields = yields(faces, parts, run)?;
     let contacts =
         face_model(faces, &yields).contacts(case.pair.load(output_torque), &[eta], run)?;
     let Some(contact) = contacts.first() else {

@@ -3,9 +3,9 @@
 
 use super::AnalysisError;
 use super::between::{Refinement, Sample, Sections, most_further};
-use super::case::{Case, Faces, Method, StiffnessRule};
+use super::case::{Case, Method, StiffnessRule};
 use super::first_order::Checks;
-use crate::assembly::{Blanks, FaceResolution};
+use crate::assembly::Blanks;
 use crate::contact::positions::stages;
 use crate::gear::{Member, SpurGear};
 use crate::grid::GridLevel;
@@ -29,11 +29,18 @@ pub(super) struct Plan {
     pub(super) passes: Vec<Pass>,
 }
 
+/// The level that tells the error of one along faces: the next coarser, which differs by more than a finer one would and costs less; the next finer of the
+/// coarsest.
+fn compared_along_faces(level: GridLevel) -> GridLevel {
+    match level {
+        GridLevel::Coarse | GridLevel::Fine => GridLevel::Standard,
+        GridLevel::Standard => GridLevel::Coarse,
+    }
+}
+
 /// What is computed at one grid level, under each torque.
 pub(super) struct Pass {
     pub(super) level: GridLevel,
-    /// Orders across the face beyond those asked for.
-    further_orders: usize,
     /// The contacts of which the curves tell.
     pub(super) told: Sweep,
     /// Those on rigid blanks that are told beside them.
@@ -70,7 +77,11 @@ impl Plan {
             levels.push(level);
             // Formulas have no grid to refine.
             if case.resolution.error_estimate && case.method != Method::LoadDistribution {
-                levels.push(level.neighbor());
+                levels.push(if case.method.sees_faces() {
+                    compared_along_faces(level)
+                } else {
+                    level.neighbor()
+                });
             }
         }
         let pass = |level| Pass::of(&loaded, level);
@@ -134,7 +145,6 @@ impl Pass {
         let is_cured = answers && case.faces.as_ref().is_some_and(|faces| faces.cure);
         Self {
             level,
-            further_orders: if answers { 0 } else { 2 },
             rigid: Sweep {
                 blanks: Blanks::HoledRigid,
                 positions: if case.method == Method::ProjectedDecomposition {
@@ -165,14 +175,6 @@ impl Pass {
                 && case.stress
                 && matches!(case.method, Method::Flexible | Method::ThreeDimensional),
             told,
-        }
-    }
-
-    /// How finely gears are resolved along their `faces`.
-    pub(super) fn along(&self, faces: &Faces) -> FaceResolution {
-        FaceResolution {
-            face_order: faces.resolution.face_order + self.further_orders,
-            ..faces.resolution
         }
     }
 

@@ -15,7 +15,7 @@ use super::first_order::{OnRound, with_holes};
 use super::plan::{Pass, Sweep};
 use super::warning::{warn_of_corner, warn_of_projection, warn_of_tips, warnings};
 use super::{Analysis, AnalysisError, Case};
-use crate::assembly::{FaceResolution, FaceYield, FaceYieldSpec, Parts};
+use crate::assembly::{FaceYield, FaceYieldSpec, Parts};
 use crate::contact::MeshContact;
 use crate::contact::face::even::{EvenLead, STRIPS, face_load_factor};
 use crate::contact::face::{FaceContact, FaceModel, FlankYield};
@@ -25,20 +25,21 @@ use crate::run::Run;
 /// A tip corner is told of from this part of the load: one of many slices touches nearly always.
 const TOLD: f64 = 0.005;
 
-/// Computes `case` along its faces; at another grid level than its own with other polynomials across them, which tell the error.
+/// Computes `case` along its faces at the grid level of `plan`.
 pub(super) fn solve(
     case: &Case,
     plan: &Pass,
     parts: &dyn Parts,
     run: &Run,
 ) -> Result<Analysis, AnalysisError> {
-    let Some(faces) = &case.faces else {
+    let Some(asked) = &case.faces else {
         return Err(AnalysisError::Discretization {
             member: Member::Driving,
             reason: "nothing is said of its extent along the axis".to_owned(),
         });
     };
-    let yields = yields(faces, plan.along(faces), parts, run)?;
+    let faces = &asked.at(plan.level);
+    let yields = yields(faces, parts, run)?;
     let degrees_of_freedom = yields.iter().map(|of| of.degrees_of_freedom()).sum();
     let mut evidence = Evidence::new(degrees_of_freedom);
     let mut warnings = warnings(case);
@@ -83,7 +84,7 @@ pub(super) fn solve(
         let stresses = stresses.transpose()?;
         let error = solved.error;
         let even = pair.even_lead(load, &solved)?;
-        let mut parts = solved.into_parts(case, faces, sections);
+        let mut parts = solved.into_parts(case, asked, sections);
         parts.stresses = stresses;
         if let Some(face) = &mut parts.face {
             face.cure = even.map(|lead| LeadCure::of(lead, face.face_load_factor));
@@ -270,15 +271,14 @@ impl Solved {
     }
 }
 
-/// What the flanks of both gears yield, resolved along their faces as asked.
+/// What the flanks of both gears yield.
 pub(super) fn yields(
     faces: &Faces,
-    resolution: FaceResolution,
     parts: &dyn Parts,
     run: &Run,
 ) -> Result<[Arc<FaceYield>; 2], AnalysisError> {
     let of = |member: Member| {
-        let spec = FaceYieldSpec::new(faces.pair.gear(member), resolution);
+        let spec = FaceYieldSpec::new(faces.pair.gear(member), faces.resolution);
         let made = parts.face_yield(&spec, run);
         made.map_err(|error| error.of(member))
     };

@@ -8,6 +8,7 @@ use crate::fem::FemError;
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::Cholesky;
 use crate::gear::{Layer, SolidGear};
+use crate::grid::GridLevel;
 use crate::ring::solid::joint::{carried, trace};
 use crate::ring::solid::revolution::{Revolution, last_of};
 use crate::run::Run;
@@ -42,6 +43,8 @@ pub struct Stack {
     pub(crate) across: Vec<AxialBasis>,
     /// The orders of its outer circle in which the holes of layer 1 are seen, if there are any.
     pub(crate) hole_orders: Option<usize>,
+    /// How fine the sections of teeth are.
+    pub(crate) sections: GridLevel,
 }
 
 impl Stack {
@@ -82,6 +85,7 @@ impl Stack {
             layers,
             across,
             hole_orders,
+            sections: resolution.sections,
         }
     }
 

@@ -225,6 +225,7 @@ pub(super) mod tests {
         face_order: 4,
         web_order: 3,
         web_harmonics: 8,
+        sections: crate::grid::GridLevel::Standard,
     };
 
     /// A gear of 30 teeth whose web with five holes stands off the middle by `offset`; one of the holes is larger by `larger`.

@@ -447,6 +447,7 @@ mod tests {
         face_order: 6,
         web_order: 4,
         web_harmonics: 10,
+        sections: crate::grid::GridLevel::Standard,
     };
     const HERE: Place = Place {
         axis: nalgebra::Vector2::new(0.0, 0.0),

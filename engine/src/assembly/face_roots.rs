@@ -326,6 +326,7 @@ mod tests {
             face_order,
             web_order: 3,
             web_harmonics: 8,
+            sections: crate::grid::GridLevel::Standard,
         }
     }
 

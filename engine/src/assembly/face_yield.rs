@@ -32,6 +32,8 @@ pub struct FaceResolution {
     pub web_order: usize,
     /// The orders of its outer circle in which holes of a web are seen.
     pub web_harmonics: usize,
+    /// How fine the sections of teeth are.
+    pub sections: GridLevel,
 }
 
 impl FaceResolution {
@@ -40,6 +42,7 @@ impl FaceResolution {
         face_order: 8,
         web_order: 4,
         web_harmonics: 14,
+        sections: GridLevel::Standard,
     };
 
     /// For first looks: within a percent.
@@ -47,7 +50,23 @@ impl FaceResolution {
         face_order: 6,
         web_order: 3,
         web_harmonics: 10,
+        sections: GridLevel::Standard,
     };
+
+    /// The same at a grid `level` that stands to the standard one as these do: sections, orders across the face and around webs together.
+    pub fn at(self, level: GridLevel) -> Self {
+        let finer = |count: usize, step: usize| match level {
+            GridLevel::Coarse => count.saturating_sub(step),
+            GridLevel::Standard => count,
+            GridLevel::Fine => count + step,
+        };
+        Self {
+            face_order: finer(self.face_order, 2).max(LEAST_ORDER),
+            web_order: finer(self.web_order, 1).max(2),
+            web_harmonics: finer(self.web_harmonics, 4).max(6),
+            sections: level,
+        }
+    }
 
     /// What a face of so many `modules` is resolved by: one that is narrower than its teeth are high has no polynomials finer than their grid.
     pub(super) fn of_width(self, modules: f64) -> Self {
@@ -171,7 +190,7 @@ impl PlainFace {
     pub fn new(stack: &Stack, run: &Run) -> Result<Self, PartError> {
         let gear = &stack.gear;
         let section = gear.section().without_blank();
-        let grid = ToothGrid::of_prism(&section, stack.interface_radius, GridLevel::Standard)?;
+        let grid = ToothGrid::of_prism(&section, stack.interface_radius, stack.sections)?;
         run.check()?;
         let (tooth, carrier) = rayon::join(
             || SolidTooth::new(gear, &grid, &stack.face),
@@ -248,7 +267,7 @@ impl FaceYield {
     ) -> Result<Self, PartError> {
         let axial = Stack::new(gear, resolution).face;
         let section = gear.section().without_blank().with_plain_flanks();
-        let grid = ToothGrid::of_prism(&section, inner_radius, GridLevel::Standard)?;
+        let grid = ToothGrid::of_prism(&section, inner_radius, resolution.sections)?;
         let (compliance, _) = flank_compliance_alone(gear, &grid, &axial, &[])?;
         let flank = FlankFit::new(gear, &axial, &grid.flank_roll_lengths);
         let degrees_of_freedom = 3 * axial.len() * (grid.grid.nodes.len() - grid.arc_nodes.len());
@@ -428,6 +447,7 @@ mod tests {
         face_order: 4,
         web_order: 3,
         web_harmonics: 8,
+        sections: GridLevel::Standard,
     };
 
     fn gear(beta: f64, web: Option<(f64, f64)>, hub: Option<Hub>) -> SolidGear {

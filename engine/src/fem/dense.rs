@@ -59,6 +59,17 @@ impl<T: ComplexField> Cholesky<T> {
 }
 
 impl Cholesky<f64> {
+    /// L, with zeros above the diagonal.
+    pub fn lower(&self) -> Mat<f64> {
+        Mat::from_fn(self.0.nrows(), self.0.ncols(), |row, column| {
+            if row < column {
+                0.0
+            } else {
+                self.0[(row, column)]
+            }
+        })
+    }
+
     /// As [`Cholesky::new`], for matrices that take long: asks `run` after each panel of columns.
     ///
     /// # Errors

@@ -245,6 +245,7 @@ mod tests {
             face_order: 4,
             web_order: 2,
             web_harmonics: 6,
+            sections: crate::grid::GridLevel::Standard,
         };
         let made_by = |parts: &dyn Parts, radius: f64| {
             let spec = FaceYieldSpec::new(&holed(radius), resolution);

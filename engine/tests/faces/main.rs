@@ -8,7 +8,7 @@ use std::sync::Arc;
 use cases::drawn;
 
 use faer::Mat;
-use meshwright_engine::contact::face::{FaceContact, FaceModel, FlankYield, SLICES};
+use meshwright_engine::contact::face::{FaceContact, FaceModel, FlankYield, SLICES, SliceLoad};
 use meshwright_engine::gear::{
     Alignment, BlankRegion, FaceEnds, GearData, Helix, LeadModification, Material, Member,
     ModificationData, Rack, ReliefData, ReliefShape, ReliefStart, SolidGear, SolidPair, TipEdge,
@@ -287,11 +287,10 @@ fn flanks_of_pairs_drawn_at_random_penetrate_nowhere_on_a_net_of_points_over_bot
                 Manufactured::of(model.pair().gear(member))
             });
             let found = net.deepest(*eta);
-            // A slice closes in its middle: beside the last one that carries flanks are left to half of it. Beside a sharp edge they yield as a
-            // wedge does, and where a contact is no longer than wide as no line does, which the half space of the net leaves out. Where a line or
-            // a pair is missed they penetrate by all that load brings them together.
+            // Beside a sharp edge flanks yield as a wedge does, and where a contact is no longer than wide as no line does, which the half space
+            // of the net leaves out. Where a line or a pair is missed they penetrate by all that load brings them together.
             let lines = net.are_lines();
-            let most = if lines { 0.03 } else { 0.1 };
+            let most = if lines { 0.01 } else { 0.05 };
             assert!(
                 found.depth < most * pressed,
                 "seed {seed} at {eta}: {:e} at {:?} of {pressed:e}",
@@ -301,7 +300,7 @@ fn flanks_of_pairs_drawn_at_random_penetrate_nowhere_on_a_net_of_points_over_bot
             looked[usize::from(lines)] += 1;
         }
     }
-    assert_eq!(looked, [51, 69]);
+    assert_eq!(looked, [53, 67]);
 }
 
 #[test]
@@ -521,6 +520,56 @@ fn more_load_presses_farther_and_the_stiffness_is_the_slope() {
     }
 }
 
+/// The root mean square of what stands in `values`, one mesh period, above the tenth harmonic.
+fn above_the_tenth_harmonic(values: &[f64]) -> f64 {
+    let count = values.len() as f64;
+    let mut rest = values.to_vec();
+    for harmonic in 0..=10 {
+        let angle = |i: usize| 2.0 * std::f64::consts::PI * (harmonic * i) as f64 / count;
+        let part = if harmonic == 0 { 1.0 } else { 2.0 } / count;
+        let each = || values.iter().enumerate();
+        let cosine: f64 = each().map(|(i, value)| value * angle(i).cos()).sum();
+        let sine: f64 = each().map(|(i, value)| value * angle(i).sin()).sum();
+        for (i, rest) in rest.iter_mut().enumerate() {
+            *rest -= part * (cosine * angle(i).cos() + sine * angle(i).sin());
+        }
+    }
+    (rest.iter().map(|value| value * value).sum::<f64>() / count).sqrt()
+}
+
+#[test]
+fn curves_are_as_smooth_as_with_four_times_as_many_slices() {
+    let drawing = Drawing {
+        relief: 10e-6,
+        leads: crowned(),
+        alignment: Alignment {
+            axial_offset: 0.0,
+            in_plane: 8e-6,
+            out_of_plane: 0.0,
+        },
+        ..Drawing::default()
+    };
+    let positions = period(64);
+    let [usual, fine] =
+        [40, 160].map(|slices| contacts(&drawing.model_of(slices), 3000.0, &positions));
+    let differences = |value: fn(&FaceContact) -> f64| -> Vec<f64> {
+        let pairs = usual.iter().zip(&fine);
+        pairs.map(|(a, b)| value(a) - value(b)).collect()
+    };
+    let delta = differences(|contact| contact.mesh.transmission_error);
+    assert!(above_the_tenth_harmonic(&delta) < 0.3e-9);
+    let stiffness = differences(|contact| contact.mesh.stiffness);
+    let mean = fine
+        .iter()
+        .map(|contact| contact.mesh.stiffness)
+        .sum::<f64>()
+        / 64.0;
+    assert!(above_the_tenth_harmonic(&stiffness) < 1e-3 * mean);
+    for (delta, fine) in delta.iter().zip(&fine) {
+        assert!(delta.abs() < 1e-3 * fine.mesh.transmission_error);
+    }
+}
+
 #[test]
 fn finer_slices_change_little() {
     for drawing in [
@@ -553,6 +602,128 @@ fn finer_slices_change_little() {
                 );
             }
         }
+    }
+}
+
+/// (2/π E*)⁻¹ of both bodies of steel, and the relative radius of curvature in the normal plane where `slice` touches.
+fn hertz_of(pair: &SolidPair, slice: &SliceLoad) -> (f64, f64) {
+    let steel = Material::STEEL;
+    let modulus = steel.youngs_modulus / (2.0 * (1.0 - steel.poisson_ratio.powi(2)));
+    let [one, other] = slice.roll_lengths;
+    let radius = one * other / (one + other) / pair.base_helix_angle().cos();
+    (modulus, radius)
+}
+
+#[test]
+fn every_slice_has_the_pressure_of_its_line_load_the_ends_of_the_face_included() {
+    for beta in [0.0, 20.0] {
+        let drawing = Drawing {
+            beta,
+            alignment: Alignment {
+                axial_offset: 0.0,
+                in_plane: 0.0,
+                out_of_plane: 150e-6,
+            },
+            leads: [
+                vec![LeadModification::Crowning { amount: 3e-6 }],
+                Vec::new(),
+            ],
+            ..Drawing::default()
+        };
+        let model = drawing.model();
+        let pair = model.pair();
+        let cosine = pair.base_helix_angle().cos();
+        for contact in contacts(&model, 4000.0, &period(6)) {
+            let sharp = contact.slices.iter().any(|slice| slice.at_sharp_edge);
+            let mut largest: f64 = 0.0;
+            for slice in &contact.slices {
+                assert_eq!(slice.pressure.is_none(), slice.at_sharp_edge);
+                // Within the path of contact by more than a contact is wide nothing but two cylinders touch.
+                let s = pair.section().path_of_contact();
+                let inside = slice.roll_lengths[0] - s.0 > 3.0 * slice.half_width
+                    && s.1 - slice.roll_lengths[0] > 3.0 * slice.half_width;
+                let Some(pressure) = slice.pressure.filter(|_| inside) else {
+                    continue;
+                };
+                let (modulus, radius) = hertz_of(pair, slice);
+                let q = slice.normal[0] * cosine / slice.length;
+                let half_width = (4.0 * q * radius / (std::f64::consts::PI * modulus)).sqrt();
+                let hertz = 2.0 * q / (std::f64::consts::PI * half_width);
+                assert!((pressure / hertz - 1.0).abs() < 0.03, "{pressure} {hertz}");
+                largest = largest.max(pressure);
+            }
+            match contact.mesh.peak_pressure {
+                Some(told) => assert!(told >= largest && !sharp),
+                None => assert!(sharp),
+            }
+        }
+    }
+}
+
+/// The complete elliptic integrals K and E of the modulus k, by the arithmetic-geometric mean.
+fn elliptic(k: f64) -> [f64; 2] {
+    let (mut a, mut b, mut c) = (1.0, (1.0 - k * k).sqrt(), k);
+    let (mut sum, mut power) = (0.5 * c * c, 0.5);
+    while c.abs() > 1e-15 {
+        (a, b, c) = (0.5 * (a + b), (a * b).sqrt(), 0.5 * (a - b));
+        power *= 2.0;
+        sum += power * c * c;
+    }
+    let first = std::f64::consts::FRAC_PI_2 / a;
+    [first, first * (1.0 - sum)]
+}
+
+#[test]
+fn crowned_flanks_press_on_each_other_as_hertzs_ellipse() {
+    // Rigid but for the half space under them: 1/(2 R_x) = p_0/(E* b) ((a/b)² E − K) b²/(a² k²), 1/(2 R_y) = p_0/(E* b) (K − E) b²/(a² k²).
+    for (crowning, load) in [
+        (30e-6, 500.0),
+        (100e-6, 500.0),
+        (100e-6, 2000.0),
+        (400e-6, 2000.0),
+    ] {
+        let drawing = Drawing {
+            beta: 0.0,
+            leads: [
+                vec![LeadModification::Crowning { amount: crowning }],
+                Vec::new(),
+            ],
+            ..Drawing::default()
+        };
+        let pair = drawing.pair();
+        let yields = Member::BOTH.map(|member| {
+            let rigid = Manufactured {
+                compliance: 0.0,
+                ..Manufactured::of(pair.gear(member))
+            };
+            Arc::new(rigid) as Arc<dyn FlankYield>
+        });
+        let model = FaceModel::new(pair, yields, SLICES, 20);
+        let contact = contacts(&model, load, &[0.0]).remove(0);
+        let (modulus, radius) = hertz_of(model.pair(), &contact.slices[0]);
+        let along = 20e-3_f64.powi(2) / (8.0 * crowning);
+        // The quotient of the radii rises with a/b.
+        let quotient = |ratio: f64| {
+            let [first, second] = elliptic((1.0 - ratio.powi(-2)).sqrt());
+            (ratio * ratio * second - first) / (first - second)
+        };
+        let (mut low, mut high) = (1.0 + 1e-9, 1e3);
+        for _ in 0..200 {
+            let middle = f64::midpoint(low, high);
+            if quotient(middle) < along / radius {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let k_square = 1.0 - low.powi(-2);
+        let [first, second] = elliptic(k_square.sqrt());
+        // p_0 = 3F/(2π a b), a = low b.
+        let per_width = (low * low * second - first) / (low * low * k_square);
+        let b = (3.0 * load * radius * per_width / (std::f64::consts::PI * low * modulus)).cbrt();
+        let expected = 3.0 * load / (2.0 * std::f64::consts::PI * low * b * b);
+        let told = contact.mesh.peak_pressure.expect("no edge carries");
+        assert!((told / expected - 1.0).abs() < 0.03, "{told} {expected}");
     }
 }
 

@@ -15,8 +15,9 @@ const UP: usize = 40;
 const ACROSS: usize = 37;
 /// Parts of a slice for the half space under it.
 const PARTS: usize = 8;
-/// So many half-widths of a contact beside it are pressed together, and flanks give way there as under a line.
-const PRESSED: f64 = 1.5;
+/// So many half-widths of a contact from where flanks are nearest they are pressed together, and give way as under a line: at a kink or an edge the whole
+/// contact lies on one side of that place.
+const PRESSED: f64 = 2.5;
 
 /// The net of a pair under the forces of one contact.
 pub(crate) struct Net<'a> {

@@ -1,15 +1,24 @@
 //! The balance of forces on slices whose springs are not linear.
 //!
-//! The springs stiffen with the force, so that the forces are those of the least of a convex energy, and there is one balance. Newton's step
-//! from one set of forces to the next is a contact problem with linear springs, which the exact solver of the plane solves; the
-//! way to it is shortened where the energy would rise again before its end. Forces stay in balance with the load all along.
+//! What a line yields smoothly and under its mean loads is told in the middles of its slices and goes straight from one to the next; gaps go straight from the
+//! middles to the ends of slices. So the flanks are pressed by a depth p that is piecewise linear along z, and the line load q(p) of the springs
+//! is continuous and ends where p does. It is integrated over the loaded part of each half slice; its moments are those of the forces in
+//! the middles, so that no work is lost between them:
+//!
+//! ```text
+//! p = δ w − g − P H N,   N = ∫ Pᵀ q(p) dz,   ∫ w q(p) dz = F
+//! ```
+//!
+//! q rises with p, and H = L Lᵀ: with N = L⁻ᵀ y these are the conditions for the least of a convex function of y and δ, and there is one
+//! balance. Newton's way to it is shortened where the function would rise again before its end.
 
-use faer::Mat;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatRef, Par};
 
 use super::compliance::half_space;
-use super::slice::Slice;
-use super::spring::Closing;
-use crate::contact::{ContactError, ContactProblem, PositionError, solve_active_set};
+use super::slice::{Place, Slice};
+use crate::contact::{ContactError, PositionError};
+use crate::fem::dense::Cholesky;
 
 /// Newton steps, of which some eight are taken.
 const MOST_STEPS: u32 = 100;
@@ -17,181 +26,501 @@ const MOST_STEPS: u32 = 100;
 /// Looks for the least energy on the way of one step.
 const MOST_LOOKS: u32 = 40;
 
-/// What counts as no gap, over the δ that the load causes.
-const NO_GAP: f64 = 1e-10;
+/// What counts as no way, over the δ that the load causes.
+const NO_WAY: f64 = 1e-11;
 
-/// What counts as no way, over the largest force.
-const NO_WAY: f64 = 1e-9;
+/// The places of Gauss on half a slice that is loaded, and on the loaded part of one, where the load turns more; and their weights.
+const WHOLE: [[f64; 2]; 2] = [
+    [0.211_324_865_405_187_1, 0.5],
+    [0.788_675_134_594_812_9, 0.5],
+];
+const PART: [[f64; 2]; 4] = [
+    [0.069_431_844_202_973_71, 0.173_927_422_568_726_93],
+    [0.330_009_478_207_571_9, 0.326_072_577_431_273_1],
+    [0.669_990_521_792_428_1, 0.326_072_577_431_273_1],
+    [0.930_568_155_797_026_3, 0.173_927_422_568_726_93],
+];
+
+/// A place that is loaded.
+struct Point {
+    slice: usize,
+    /// The slice towards which it lies, or its own at an end of the line, and the part that it has of what that is moved.
+    beside: usize,
+    share: f64,
+    /// From the middle of the slice (0) to that of its ends (1).
+    end: usize,
+    place: f64,
+    /// The arm about the driven axis.
+    weight: f64,
+    /// The force that it stands for, and how that grows with the depth.
+    force: f64,
+    growth: f64,
+}
+
+/// What the whole load on one slice is.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Carried {
+    /// Normal to the flanks, in N, and how it rises with the load.
+    pub(super) force: f64,
+    pub(super) rise: f64,
+    /// The same, weighed with the arms about the driven axis.
+    pub(super) weighed: f64,
+    /// The part of the slice that is loaded, from its beginning (−1) to its end (1).
+    pub(super) part: [f64; 2],
+}
 
 /// The forces on the slices, and what they leave.
 pub(super) struct Balance {
-    /// Normal to the flanks, in N.
+    /// What each slice carries.
+    pub(super) carried: Vec<Carried>,
+    /// The forces in their middles that stand for all of that, N, and how they rise with the load.
     pub(super) forces: Vec<f64>,
-    /// How they rise with the load.
     pub(super) load_derivative: Vec<f64>,
-    /// g + H N + f(N) − δ w.
+    /// The gaps in their middles that are open; and what is left of one, positive or negative, where a slice carries.
     pub(super) gaps: Vec<f64>,
-    /// The same without f.
+    /// g + H N − δ w.
     without_springs: Vec<f64>,
     pub(super) transmission_error: f64,
     pub(super) stiffness: f64,
     pub(super) iterations: u32,
+    /// Whether springs press farther than they were made for.
+    pub(super) is_strained: bool,
+    points: Vec<Point>,
+    tangent: Tangent,
+    lower: Mat<f64>,
 }
 
-/// Forces, what they open by the linear compliance, and how their springs close up.
+/// Where forces stand that may not be in balance yet.
+#[derive(Clone)]
 struct State {
-    forces: Vec<f64>,
+    /// y = Lᵀ N.
+    y: Vec<f64>,
+    /// L y.
     opened: Vec<f64>,
-    closings: Vec<Closing>,
+    delta: f64,
+}
+
+/// The linear system of a step: 1 + Lᵀ D L, and its answer to δ.
+struct Tangent {
+    factor: Cholesky<f64>,
+    /// Lᵀ d.
+    by_delta: Vec<f64>,
+    answer: Vec<f64>,
+    stiffness: f64,
 }
 
 /// The slices to be balanced.
 struct Problem<'a> {
-    h: Mat<f64>,
     slices: &'a [Slice],
-    gaps: Vec<f64>,
-    weights: Vec<f64>,
+    lower: Mat<f64>,
     load: f64,
 }
 
 /// The balance of `slices` under `load` with the linear compliance `h`.
-pub(super) fn balance(h: Mat<f64>, slices: &[Slice], load: f64) -> Result<Balance, PositionError> {
+pub(super) fn balance(h: &Mat<f64>, slices: &[Slice], load: f64) -> Result<Balance, PositionError> {
+    let mut whole = h.clone();
+    for (i, slice) in slices.iter().enumerate() {
+        whole[(i, i)] += slice.middle.spring.spread();
+    }
+    let points = slices.len();
+    let factor = Cholesky::new(whole);
+    let factor = factor.ok_or(ContactError::NotPositiveDefinite { points })?;
     let problem = Problem {
-        h,
         slices,
-        gaps: slices.iter().map(|slice| slice.gap).collect(),
-        weights: slices.iter().map(|slice| slice.weights[1]).collect(),
+        lower: factor.lower(),
         load,
     };
-    problem.solved()
+    problem.solved(h)
 }
 
 impl Problem<'_> {
-    fn solved(&self) -> Result<Balance, PositionError> {
-        let touches = self.gaps.iter().zip(&self.weights);
-        let touch = touches
-            .map(|(gap, weight)| gap / weight)
-            .fold(f64::INFINITY, f64::min);
-        let mut state = self.even();
-        let mut active: Option<Vec<bool>> = None;
-        let (mut iterations, mut worst) = (0, 0.0);
+    fn solved(self, h: &Mat<f64>) -> Result<Balance, PositionError> {
+        let touches = self
+            .slices
+            .iter()
+            .map(|slice| slice.middle.gap / slice.middle.weights[1]);
+        let touch = touches.fold(f64::INFINITY, f64::min);
+        let mut state = self.even(h);
+        let mut points = self.points(&state);
+        let mut iterations = 0;
         for _ in 0..MOST_STEPS {
-            let linear = self.linear_at(&state)?;
-            let solved = solve_active_set(&linear, self.load, active.as_deref())?;
-            iterations += solved.iterations;
-            let whole = self.step(&mut state, &solved.forces, solved.transmission_error);
-
-            let delta = solved.transmission_error;
-            let without_springs: Vec<f64> = (0..self.slices.len())
-                .map(|i| self.gaps[i] + state.opened[i] - delta * self.weights[i])
+            iterations += 1;
+            let (rest, missing) = self.rest(&state, &points);
+            let points_of = self.slices.len();
+            let tangent = self.tangent(&points);
+            let tangent = tangent.ok_or(ContactError::NotPositiveDefinite { points: points_of })?;
+            // y and δ change by x + x' dδ, so that nothing is missing.
+            let mut way = column(&rest.iter().map(|rest| -rest).collect::<Vec<_>>());
+            tangent.factor.solve_in_place(way.as_mut());
+            let by_way = dot(&tangent.by_delta, way.col_as_slice(0));
+            let delta = (missing + by_way) / tangent.stiffness;
+            let way: Vec<f64> = (way.col_as_slice(0).iter().zip(&tangent.answer))
+                .map(|(way, answer)| way + delta * answer)
                 .collect();
-            let closings = without_springs.iter().zip(&state.closings);
-            let gaps: Vec<f64> = closings.map(|(gap, closing)| gap + closing.depth).collect();
-            worst = gaps
+            let way_opens = product(self.lower.as_ref(), &way);
+            let fall = dot(&rest, &way) - missing * delta;
+            let at = |part: f64| {
+                let go = |from: &[f64], way: &[f64]| -> Vec<f64> {
+                    from.iter()
+                        .zip(way)
+                        .map(|(from, way)| from + part * way)
+                        .collect()
+                };
+                let state = State {
+                    y: go(&state.y, &way),
+                    opened: go(&state.opened, &way_opens),
+                    delta: state.delta + part * delta,
+                };
+                let points = self.points(&state);
+                let (rest, missing) = self.rest(&state, &points);
+                let rise = dot(&rest, &way) - missing * delta;
+                (state, points, rise)
+            };
+            let longest = way_opens
                 .iter()
-                .zip(&state.forces)
-                .map(|(gap, force)| if *force > 0.0 { gap.abs() } else { -gap })
-                .fold(0.0, f64::max);
-            if whole && worst <= NO_GAP * (delta - touch) {
-                return Ok(Balance {
-                    forces: state.forces,
-                    load_derivative: solved.load_derivative,
-                    gaps,
-                    without_springs,
-                    transmission_error: delta,
-                    stiffness: solved.stiffness,
-                    iterations,
-                });
+                .fold(delta.abs(), |most, way| most.max(way.abs()));
+            let is_short = longest <= NO_WAY * (state.delta - touch).abs();
+            let (mut part, mut end) = (1.0, at(1.0));
+            let (mut low, mut high) = ([0.0, fall], [1.0, end.2]);
+            let mut looks = 0;
+            while !is_short && end.2 > 0.5 * fall.abs() && looks < MOST_LOOKS {
+                // The function is convex: its slope vanishes in between.
+                let secant = low[1] / (low[1] - high[1]);
+                part = low[0] + (high[0] - low[0]) * secant.clamp(0.1, 0.9);
+                end = at(part);
+                if end.2 > 0.0 {
+                    high = [part, end.2];
+                } else {
+                    low = [part, end.2];
+                }
+                looks += 1;
             }
-            active = Some(solved.active);
+            (state, points) = (end.0, end.1);
+            if part == 1.0 && is_short {
+                return Ok(self.told((state, points), tangent, h, iterations));
+            }
         }
         Err(PositionError::Contact(ContactError::NotConverged {
             iterations,
-            gap: worst,
+            gap: self.rest(&state, &points).1.abs() / self.load * (state.delta - touch),
             pull: 0.0,
         }))
     }
 
     /// The load spread evenly along all lines.
-    fn even(&self) -> State {
-        let along = self.slices.iter().map(|slice| slice.along);
-        let carried: f64 = along.clone().zip(&self.weights).map(|(h, w)| h * w).sum();
-        let forces: Vec<f64> = along.map(|h| h * self.load / carried).collect();
-        State {
-            opened: product(&self.h, &forces),
-            closings: self.closings(&forces),
-            forces,
-        }
-    }
-
-    /// The contact with springs that go on as they do at `state`.
-    fn linear_at(&self, state: &State) -> Result<ContactProblem, ContactError> {
-        let mut compliance = self.h.clone();
-        let mut gaps = self.gaps.clone();
-        for (i, (closing, force)) in state.closings.iter().zip(&state.forces).enumerate() {
-            compliance[(i, i)] += closing.growth;
-            gaps[i] += closing.depth - closing.growth * force;
-        }
-        ContactProblem::new(compliance, gaps, self.weights.clone())
-    }
-
-    /// Goes from `state` towards the forces `aim` as far as the energy falls; whether it went all the way.
-    fn step(&self, state: &mut State, aim: &[f64], delta: f64) -> bool {
-        let way: Vec<f64> = aim
+    fn even(&self, h: &Mat<f64>) -> State {
+        let weighed = self
+            .slices
             .iter()
-            .zip(&state.forces)
-            .map(|(new, old)| new - old)
+            .map(|slice| slice.along * slice.middle.weights[1]);
+        let density = self.load / weighed.sum::<f64>();
+        let forces: Vec<f64> = self
+            .slices
+            .iter()
+            .map(|slice| density * slice.along)
             .collect();
-        let way_opens = product(&self.h, &way);
-        // How the energy changes on the way. δ does no work on it, as the load is carried all along, and saves digits.
-        let rise = |part: f64, closings: &[Closing]| -> f64 {
-            let each = (0..way.len()).map(|i| {
-                let opened = state.opened[i] + part * way_opens[i];
-                let gap = self.gaps[i] + opened - delta * self.weights[i];
-                way[i] * (gap + closings[i].depth)
-            });
-            each.sum()
-        };
-        let at = |part: f64| {
-            let steps = state.forces.iter().zip(&way);
-            let forces: Vec<f64> = steps
-                .map(|(old, way)| (old + part * way).max(0.0))
-                .collect();
-            let closings = self.closings(&forces);
-            let rise = rise(part, &closings);
-            (forces, closings, rise)
-        };
-        let largest = aim.iter().copied().fold(0.0, f64::max);
-        let is_short = way.iter().all(|way| way.abs() <= NO_WAY * largest);
-        let fall = rise(0.0, &state.closings);
-        let (mut part, mut end) = (1.0, at(1.0));
-        let (mut low, mut high) = ([0.0, fall], [1.0, end.2]);
-        let mut looks = 0;
-        while !is_short && end.2.abs() > 0.5 * fall.abs() && end.2 > 0.0 && looks < MOST_LOOKS {
-            // The energy is convex: its slope vanishes in between.
-            let secant = low[1] / (low[1] - high[1]);
-            part = low[0] + (high[0] - low[0]) * secant.clamp(0.1, 0.9);
-            end = at(part);
-            if end.2 > 0.0 {
-                high = [part, end.2];
-            } else {
-                low = [part, end.2];
-            }
-            looks += 1;
+        let y = column(&forces);
+        let y = self.lower.transpose() * y;
+        let y = y.col_as_slice(0).to_vec();
+        let opened = product(self.lower.as_ref(), &y);
+        let deltas = self.slices.iter().zip(product(h.as_ref(), &forces));
+        let deltas = deltas.map(|(slice, opened)| {
+            let closed = slice.middle.spring.closing_at_end(density * slice.along) * 2.0;
+            (slice.middle.gap + opened + closed) / slice.middle.weights[1]
+        });
+        State {
+            delta: deltas.sum::<f64>() / self.slices.len() as f64,
+            opened,
+            y,
         }
-        for (opened, way) in state.opened.iter_mut().zip(&way_opens) {
-            *opened += part * way;
-        }
-        (state.forces, state.closings) = (end.0, end.1);
-        part == 1.0
     }
 
-    fn closings(&self, forces: &[f64]) -> Vec<Closing> {
-        let springs = self.slices.iter().zip(forces);
-        springs
-            .map(|(slice, force)| slice.spring.closing(*force))
-            .collect()
+    /// The slice beside slice `i` of the same line towards its beginning or its `end`, or itself.
+    fn beside(&self, i: usize, end: usize) -> usize {
+        let slice = &self.slices[i];
+        let other = if end == 0 {
+            i.checked_sub(1)
+        } else {
+            Some(i + 1)
+        };
+        let joins = |other: &usize| {
+            self.slices.get(*other).is_some_and(|other| {
+                let apart = (other.z - slice.z).abs();
+                other.pair == slice.pair && apart < 1.5 * slice.length
+            })
+        };
+        other.filter(joins).unwrap_or(i)
     }
+
+    /// The places that are loaded at `state`.
+    fn points(&self, state: &State) -> Vec<Point> {
+        let mut points = Vec::with_capacity(4 * self.slices.len());
+        let pressed = |gap: f64, weight: f64, opened: f64| state.delta * weight - gap - opened;
+        for (i, slice) in self.slices.iter().enumerate() {
+            let middle = pressed(slice.middle.gap, slice.middle.weights[1], state.opened[i]);
+            for (end, edge) in slice.ends.iter().enumerate() {
+                let beside = self.beside(i, end);
+                let opened = 0.5 * (state.opened[i] + state.opened[beside]);
+                let outer = pressed(edge.gap, edge.weights[1], opened);
+                let turn = middle / (middle - outer);
+                let ([from, to], rule) = match (middle > 0.0, outer > 0.0) {
+                    (true, true) => ([0.0, 1.0], &WHOLE[..]),
+                    (true, false) => ([0.0, turn], &PART[..]),
+                    (false, true) => ([turn, 1.0], &PART[..]),
+                    (false, false) => continue,
+                };
+                for &[gauss, weight] in rule {
+                    let place = from + (to - from) * gauss;
+                    let depth = middle + (outer - middle) * place;
+                    if depth <= 0.0 {
+                        continue;
+                    }
+                    let along = 0.5 * weight * slice.along * (to - from);
+                    let [force, growth] = load(slice, edge, place, depth).map(|of| along * of);
+                    points.push(Point {
+                        slice: i,
+                        beside,
+                        share: 0.5 * place,
+                        end,
+                        place,
+                        weight: slice.middle.weights[1]
+                            + (edge.weights[1] - slice.middle.weights[1]) * place,
+                        force,
+                        growth,
+                    });
+                }
+            }
+        }
+        points
+    }
+
+    /// y − Lᵀ N, and what the load is more than that of `points`.
+    fn rest(&self, state: &State, points: &[Point]) -> (Vec<f64>, f64) {
+        let forces = in_middles(points, self.slices.len(), |point| point.force);
+        let held = self.lower.transpose() * column(&forces);
+        let held = held.col_as_slice(0).iter();
+        let carried: f64 = points.iter().map(|point| point.weight * point.force).sum();
+        let rest = state.y.iter().zip(held).map(|(y, held)| y - held);
+        (rest.collect(), self.load - carried)
+    }
+
+    fn tangent(&self, points: &[Point]) -> Option<Tangent> {
+        let size = self.slices.len();
+        let lower = self.lower.as_ref();
+        // D couples each slice with the next one.
+        let mut middle = vec![[0.0; 2]; size];
+        for point in points {
+            let own = 1.0 - point.share;
+            if point.beside == point.slice {
+                middle[point.slice][0] += point.growth;
+            } else {
+                middle[point.slice][0] += own * own * point.growth;
+                middle[point.beside][0] += point.share * point.share * point.growth;
+                middle[point.slice.min(point.beside)][1] += own * point.share * point.growth;
+            }
+        }
+        let mut moved = Mat::<f64>::zeros(size, size);
+        for j in 0..size {
+            let column = lower.col(j);
+            let target = moved.col_as_slice_mut(j);
+            for i in 0..size {
+                let mut sum = middle[i][0] * column[i];
+                if i > 0 {
+                    sum += middle[i - 1][1] * column[i - 1];
+                }
+                if i + 1 < size {
+                    sum += middle[i][1] * column[i + 1];
+                }
+                target[i] = sum;
+            }
+        }
+        let mut whole = Mat::<f64>::identity(size, size);
+        matmul(
+            whole.as_mut(),
+            Accum::Add,
+            lower.transpose(),
+            moved,
+            1.0,
+            Par::Seq,
+        );
+        let factor = Cholesky::new(whole)?;
+        let grown = in_middles(points, size, |point| point.weight * point.growth);
+        let by_delta = lower.transpose() * column(&grown);
+        let mut answer = by_delta.clone();
+        factor.solve_in_place(answer.as_mut());
+        let (by_delta, answer) = (
+            by_delta.col_as_slice(0).to_vec(),
+            answer.col_as_slice(0).to_vec(),
+        );
+        let each = points.iter();
+        let held: f64 = each
+            .map(|point| point.weight * point.weight * point.growth)
+            .sum();
+        Some(Tangent {
+            stiffness: held - dot(&by_delta, &answer),
+            factor,
+            by_delta,
+            answer,
+        })
+    }
+
+    fn told(
+        self,
+        (state, points): (State, Vec<Point>),
+        tangent: Tangent,
+        h: &Mat<f64>,
+        iterations: u32,
+    ) -> Balance {
+        let size = self.slices.len();
+        let forces = in_middles(&points, size, |point| point.force);
+        let opened_by_delta = product(self.lower.as_ref(), &tangent.answer);
+        let grown = |point: &Point| {
+            let opened = point.at(&opened_by_delta);
+            point.growth * (point.weight - opened) / tangent.stiffness
+        };
+        let mut carried = vec![
+            Carried {
+                part: [1.0, -1.0],
+                ..Carried::default()
+            };
+            size
+        ];
+        for point in &points {
+            let of = &mut carried[point.slice];
+            of.force += point.force;
+            of.rise += grown(point);
+            of.weighed += point.weight * point.force;
+        }
+        let mut gaps = Vec::with_capacity(size);
+        for (i, slice) in self.slices.iter().enumerate() {
+            let middle = state.delta * slice.middle.weights[1] - slice.middle.gap - state.opened[i];
+            gaps.push(-middle);
+            for (end, edge) in slice.ends.iter().enumerate() {
+                let sign = 2.0 * end as f64 - 1.0;
+                let opened = 0.5 * (state.opened[i] + state.opened[self.beside(i, end)]);
+                let outer = state.delta * edge.weights[1] - edge.gap - opened;
+                let turn = sign * middle / (middle - outer);
+                let [low, high] = &mut carried[i].part;
+                let mut take = |place: f64| (*low, *high) = (low.min(place), high.max(place));
+                match (middle > 0.0, outer > 0.0) {
+                    (true, true) => [0.0, sign].into_iter().for_each(&mut take),
+                    (true, false) => [0.0, turn].into_iter().for_each(&mut take),
+                    (false, true) => [turn, sign].into_iter().for_each(&mut take),
+                    (false, false) => {}
+                }
+            }
+        }
+        let opened = product(h.as_ref(), &forces);
+        let spread = self.slices.iter().zip(&forces);
+        let spread = spread.map(|(slice, force)| slice.middle.spring.spread() * force);
+        // Where a slice carries, forces and what they open are to be the same.
+        for (((gap, carried), opened), (spread, told)) in gaps
+            .iter_mut()
+            .zip(&carried)
+            .zip(&opened)
+            .zip(spread.zip(&state.opened))
+        {
+            if carried.force > 0.0 {
+                *gap = opened + spread - told;
+            }
+        }
+        let without_springs = self.slices.iter().zip(&opened);
+        Balance {
+            without_springs: without_springs
+                .map(|(slice, opened)| {
+                    slice.middle.gap + opened - state.delta * slice.middle.weights[1]
+                })
+                .collect(),
+            is_strained: points.iter().any(|point| {
+                let slice = &self.slices[point.slice];
+                let carried = &carried[point.slice];
+                let long = 0.5 * (carried.part[1] - carried.part[0]) * slice.along;
+                !slice.middle.spring.knows(carried.force / long)
+            }),
+            load_derivative: in_middles(&points, size, grown),
+            carried,
+            forces,
+            gaps,
+            transmission_error: state.delta,
+            stiffness: tangent.stiffness,
+            iterations,
+            points,
+            tangent,
+            lower: self.lower,
+        }
+    }
+}
+
+impl Point {
+    /// What is told in the middles of the slices, there.
+    fn at(&self, middles: &[f64]) -> f64 {
+        (1.0 - self.share) * middles[self.slice] + self.share * middles[self.beside]
+    }
+}
+
+impl Balance {
+    /// How what each slice carries changes where gaps open so far, in the middle of each and at both of its ends, under the same load.
+    pub(super) fn change(&self, opened: &[[f64; 3]]) -> Vec<f64> {
+        let size = opened.len();
+        let gap = |point: &Point| {
+            let [begin, middle, end] = opened[point.slice];
+            let outer = [begin, end][point.end];
+            middle + (outer - middle) * point.place
+        };
+        let lost = in_middles(&self.points, size, |point| point.growth * gap(point));
+        let mut way = self.lower.transpose() * column(&lost);
+        self.tangent.factor.solve_in_place(way.as_mut());
+        let each = self.points.iter();
+        let unloaded: f64 = each
+            .map(|point| point.weight * point.growth * gap(point))
+            .sum();
+        let by_way = dot(&self.tangent.by_delta, way.col_as_slice(0));
+        let delta = (unloaded - by_way) / self.stiffness;
+        let way: Vec<f64> = (way.col_as_slice(0).iter().zip(&self.tangent.answer))
+            .map(|(way, answer)| delta * answer - way)
+            .collect();
+        let moved = product(self.lower.as_ref(), &way);
+        let mut changes = vec![0.0; size];
+        for point in &self.points {
+            let pressed = delta * point.weight - gap(point) - point.at(&moved);
+            changes[point.slice] += point.weight * point.growth * pressed;
+        }
+        changes
+    }
+}
+
+/// The load a length at a `place` between the middle of `slice` and one of its ends, closed up by `depth`, and how fast that grows with it.
+fn load(slice: &Slice, end: &Place, place: f64, depth: f64) -> [f64; 2] {
+    let middle = slice.middle.spring.load(depth);
+    if slice.middle.spring.is_hertz() && end.spring.is_hertz() {
+        return middle;
+    }
+    let outer = end.spring.load(depth);
+    [0, 1].map(|i| middle[i] + (outer[i] - middle[i]) * place)
+}
+
+/// What `of` each point, in the middles of so many slices.
+fn in_middles(points: &[Point], slices: usize, of: impl Fn(&Point) -> f64) -> Vec<f64> {
+    let mut sums = vec![0.0; slices];
+    for point in points {
+        let value = of(point);
+        sums[point.slice] += (1.0 - point.share) * value;
+        sums[point.beside] += point.share * value;
+    }
+    sums
+}
+
+fn column(values: &[f64]) -> Mat<f64> {
+    Mat::from_fn(values.len(), 1, |i, _| values[i])
+}
+
+fn dot(one: &[f64], other: &[f64]) -> f64 {
+    one.iter().zip(other).map(|(one, other)| one * other).sum()
+}
+
+fn product(h: MatRef<'_, f64>, values: &[f64]) -> Vec<f64> {
+    let moved = h * column(values);
+    moved.col_as_slice(0).to_vec()
 }
 
 impl Balance {
@@ -217,21 +546,7 @@ impl Balance {
         let z = f64::midpoint(slices[i - 1].z, slices[i].z);
         let far = line().filter(|(k, _)| *k + 1 != i && *k != i);
         let moved = far.map(|(k, other)| self.forces[k] * half_space(other, z));
-        let beside = [i - 1, i].map(|k| slices[k].spring.closing_at_end(self.forces[k]));
+        let beside = [i - 1, i].map(|k| slices[k].middle.spring.closing_at_end(self.forces[k]));
         0.5 * (smooth(i - 1) + smooth(i)) + moved.sum::<f64>() + beside[0] + beside[1]
     }
-}
-
-fn product(h: &Mat<f64>, forces: &[f64]) -> Vec<f64> {
-    let mut moved = vec![0.0; forces.len()];
-    for (column, force) in forces
-        .iter()
-        .enumerate()
-        .filter(|(_, force)| **force != 0.0)
-    {
-        for (moved, entry) in moved.iter_mut().zip(h.col_as_slice(column)) {
-            *moved += entry * force;
-        }
-    }
-    moved
 }

@@ -49,7 +49,7 @@ fn add_smooth(model: &FaceModel, member: Member, slices: &[Slice], h: &mut Mat<f
     for (i, slice) in slices.iter().enumerate() {
         let z = model.pair.own_height(member, slice.z);
         flank.basis(
-            slice.roll_lengths[member.index()],
+            slice.middle.roll_lengths[member.index()],
             z,
             basis.col_as_slice_mut(i),
         );
@@ -91,7 +91,7 @@ fn add_ends(model: &FaceModel, slices: &[Slice], h: &mut Mat<f64>) {
         let yields = &model.yields[member.index()];
         let place = |slice: &Slice| {
             let z = model.pair.own_height(member, slice.z);
-            (slice.roll_lengths[member.index()], z)
+            (slice.middle.roll_lengths[member.index()], z)
         };
         for (column, one) in slices.iter().enumerate() {
             let after = slices.iter().enumerate().skip(column);

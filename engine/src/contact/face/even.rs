@@ -7,10 +7,9 @@
 use faer::Mat;
 use rayon::prelude::*;
 
-use super::balance::{Balance, balance};
+use super::balance::balance;
 use super::slice::{Slice, Stretches};
 use super::{Balanced, FaceModel, add_to_strips, beyond};
-use crate::fem::dense::Cholesky;
 use crate::gear::{LeadModification, Member};
 use crate::run::{Run, Stopped};
 
@@ -46,9 +45,10 @@ type Lead = [f64; 2];
 /// The slices at one position, and their compliance without springs.
 struct Stand {
     slices: Vec<Slice>,
-    /// Their gaps without a further lead, and how far it opens them: a meter of slope, and one of crowning.
-    gaps: Vec<f64>,
-    openings: [Vec<f64>; 2],
+    /// Their gaps without a further lead, at their beginnings, middles and ends, and how far it opens them: a meter of slope, and one of
+    /// crowning.
+    gaps: Vec<[f64; 3]>,
+    openings: [Vec<[f64; 3]>; 2],
     h: Mat<f64>,
 }
 
@@ -148,10 +148,18 @@ impl FaceModel {
             .balanced(eta, load, &Stretches::whole(self, eta, phases))
             .ok()?;
         let width = self.pair.gear(Member::Driving).face_width();
-        let opened = |lead: &LeadModification| -> Vec<f64> {
+        let opened = |lead: &LeadModification| -> Vec<[f64; 3]> {
             let removed = slices.iter().map(|slice| {
-                let z = self.pair.own_height(Member::Driving, slice.z);
-                slice.weights[1] * lead.removed(z, width)
+                let weights = [
+                    slice.ends[0].weights[1],
+                    slice.middle.weights[1],
+                    slice.ends[1].weights[1],
+                ];
+                std::array::from_fn(|i| {
+                    let z = slice.z + 0.5 * (i as f64 - 1.0) * slice.length;
+                    let z = self.pair.own_height(Member::Driving, z);
+                    weights[i] * lead.removed(z, width)
+                })
             });
             removed.collect()
         };
@@ -160,7 +168,7 @@ impl FaceModel {
             opened(&LeadModification::Crowning { amount: 1.0 }),
         ];
         Some(Stand {
-            gaps: slices.iter().map(|slice| slice.gap).collect(),
+            gaps: slices.iter().map(gaps).collect(),
             openings,
             h,
             slices,
@@ -191,59 +199,42 @@ impl FaceModel {
 impl Stand {
     fn strips(&mut self, lead: Lead, load: f64, width: f64) -> Option<Strips> {
         for (i, slice) in self.slices.iter_mut().enumerate() {
-            let opened: f64 = (0..2).map(|k| lead[k] * self.openings[k][i]).sum();
-            slice.gap = self.gaps[i] + opened;
+            let [begin, middle, end] = std::array::from_fn(|place| {
+                let opened: f64 = (0..2).map(|k| lead[k] * self.openings[k][i][place]).sum();
+                self.gaps[i][place] + opened
+            });
+            slice.middle.gap = middle;
+            (slice.ends[0].gap, slice.ends[1].gap) = (begin, end);
         }
-        let balance = balance(self.h.clone(), &self.slices, load).ok()?;
+        let balance = balance(&self.h, &self.slices, load).ok()?;
         let spread = |forces: &[f64]| -> [f64; STRIPS] {
             let mut strips = [0.0; STRIPS];
-            for (slice, force) in self.slices.iter().zip(forces) {
-                let force = slice.weights[1] * force * STRIPS as f64 / load;
-                add_to_strips(&mut strips, width, (slice.z, slice.length, force));
+            for ((slice, carried), force) in self.slices.iter().zip(&balance.carried).zip(forces) {
+                let [from, to] = carried.part;
+                if carried.force > 0.0 {
+                    let z = slice.z + 0.25 * (from + to) * slice.length;
+                    let length = 0.5 * (to - from) * slice.length;
+                    let force = force * STRIPS as f64 / load;
+                    add_to_strips(&mut strips, width, (z, length, force));
+                }
             }
             strips
         };
-        let changes = self.changes(&balance)?;
+        let forces = balance.carried.iter().map(|carried| carried.weighed);
+        let forces: Vec<f64> = forces.collect();
         Some(Strips {
-            loads: spread(&balance.forces),
-            changes: changes.map(|change| spread(&change)),
+            loads: spread(&forces),
+            // Those that touch go on touching, and carry the load.
+            changes: [0, 1].map(|k| spread(&balance.change(&self.openings[k]))),
             delta: balance.transmission_error,
         })
     }
+}
 
-    /// How the forces of `balance` change with either lead: those that touch go on touching, and carry the load.
-    fn changes(&self, balance: &Balance) -> Option<[Vec<f64>; 2]> {
-        let touching = |i: &usize| balance.forces[*i] > 0.0;
-        let active: Vec<usize> = (0..self.slices.len()).filter(touching).collect();
-        let matrix = Mat::from_fn(active.len(), active.len(), |row, column| {
-            let (i, j) = (active[row], active[column]);
-            let growth = if i == j {
-                self.slices[i].spring.closing(balance.forces[i]).growth
-            } else {
-                0.0
-            };
-            self.h[(i, j)] + growth
-        });
-        let weights = |i: usize| self.slices[i].weights[1];
-        let mut solved = Mat::from_fn(active.len(), 3, |row, column| match column {
-            0 => weights(active[row]),
-            _ => self.openings[column - 1][active[row]],
-        });
-        Cholesky::new(matrix)?.solve_in_place(solved.as_mut());
-        let carried = |column: usize| -> f64 {
-            let each = active.iter().enumerate();
-            each.map(|(row, &i)| weights(i) * solved[(row, column)])
-                .sum()
-        };
-        Some([1, 2].map(|column| {
-            let rise = carried(column) / carried(0);
-            let mut change = vec![0.0; self.slices.len()];
-            for (row, &i) in active.iter().enumerate() {
-                change[i] = rise * solved[(row, 0)] - solved[(row, column)];
-            }
-            change
-        }))
-    }
+/// The gaps of `slice` at its beginning, in its middle and at its end.
+fn gaps(slice: &Slice) -> [f64; 3] {
+    let [begin, end] = slice.ends.each_ref().map(|end| end.gap);
+    [begin, slice.middle.gap, end]
 }
 
 impl Strips {

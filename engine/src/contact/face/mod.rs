@@ -1,13 +1,14 @@
 //! Contact along faces: lines that cross the flanks, cut into slices.
 //!
 //! Every transverse section of the pair is a plane pair at another phase, so that what flanks see of each other, where they touch first and
-//! how they push there is what the plane knows ([`crate::contact::facing`]). A slice is a piece of the contact of one section: a nonlinear spring between
-//! the flanks ([`spring`]), Hertz's where it stands free, and the plane's patch of cells where a tip edge, a fillet or a kink is near.
+//! how they push there is what the plane knows ([`crate::contact::facing`]). Along a slice stand nonlinear springs between
+//! the flanks ([`spring`]), Hertz's where they stand free, and the plane's patches of cells where a tip edge, a fillet or a kink is near; the load on them is
+//! integrated over the part of the slice that is pressed, so that nothing steps where the contact ends.
 //! What else gives way is linear: the smooth yield of both gears ([`FlankYield`]), and the half space between
-//! the slices of one line (`compliance`). Newton's method on the springs (`balance`) has the plane's contact problem as its step.
+//! the slices of one line (`compliance`). `balance` finds the depths to which the springs are pressed.
 //!
 //! ```text
-//! g + H N + f(N) − δ w ≥ 0,   N ≥ 0,   wᵀN = F,   w = arm cos β_b
+//! p = δ w − g − H N,   N = ∫ q(p) dz,   ∫ w q(p) dz = F,   w = arm cos β_b
 //! ```
 //!
 //! N is normal to the flanks, F and δ are along the line of action of the transverse section.
@@ -57,10 +58,10 @@ struct Balanced {
 impl Balanced {
     /// The stretches of `of`, of which these are the slices, that are shut, where they are worth to be cut anew.
     fn shut(&self, model: &FaceModel, of: &Stretches) -> Option<Stretches> {
-        let forces = self.balance.forces.iter();
-        let gaps = forces.zip(&self.balance.gaps);
+        let carried = self.balance.carried.iter();
+        let gaps = carried.zip(&self.balance.gaps);
         let gaps: Vec<f64> = gaps
-            .map(|(force, gap)| if *force > 0.0 { 0.0 } else { *gap })
+            .map(|(carried, gap)| if carried.force > 0.0 { 0.0 } else { *gap })
             .collect();
         of.shut(model, &self.slices, &gaps)
     }
@@ -94,15 +95,15 @@ impl Reached {
 pub struct SliceLoad {
     /// The pair n.
     pub pair: i64,
-    /// Its middle, from the middle of the common face.
+    /// The middle of its loaded part, from the middle of the common face.
     pub z: f64,
-    /// Its length along the axis.
+    /// The length of that along the axis.
     pub length: f64,
     /// Its part of the load F along the line of action, in N.
     pub force: f64,
     /// Where it touches: roll length on the driving and on the driven gear.
     pub roll_lengths: [f64; 2],
-    /// The largest pressure in Pa; `None` at a sharp tip edge, where it has no limit, and where a line is shorter than it is wide.
+    /// The largest pressure in Pa; `None` at a sharp tip edge, where it has no limit.
     pub pressure: Option<f64>,
     /// Whether a sharp tip edge carries.
     pub at_sharp_edge: bool,
@@ -112,13 +113,25 @@ pub struct SliceLoad {
     pub normal: [f64; 2],
 }
 
+/// A force in the middle of a slice.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct MiddleLoad {
+    pair: i64,
+    z: f64,
+    roll_lengths: [f64; 2],
+    /// The force N normal to the flanks, and dN/dF.
+    normal: [f64; 2],
+}
+
 /// The contact of the whole mesh at one position and load, along the faces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FaceContact {
-    /// Summed up pair by pair. Its largest pressure is none where a sharp tip edge carries, and that of the slices that have one elsewhere.
+    /// Summed up pair by pair. Its largest pressure is none where a sharp tip edge carries.
     pub mesh: MeshContact,
     /// The slices that carry, pair by pair, along z.
     pub slices: Vec<SliceLoad>,
+    /// The forces in the middles of slices that move the flanks as they do.
+    middles: Vec<MiddleLoad>,
     /// The shares of the load that the tips of the driving and of the driven gear carry off the path of contact.
     pub corner_shares: [f64; 2],
 }
@@ -298,7 +311,7 @@ impl FaceModel {
 
     /// The contact at the position `eta` under `load` of sections in `phases`.
     ///
-    /// A slice closes in its middle. Where few of them carry, so that their length is a large part of the contact, that is cut anew.
+    /// Where few slices carry, so that their length is a large part of the contact, that is cut anew.
     fn contact_within(
         &self,
         eta: f64,
@@ -314,7 +327,7 @@ impl FaceModel {
             let Ok(finer) = self.balanced(eta, load, &stretches) else {
                 break;
             };
-            if stretches.end_under_load(&finer.slices, &finer.balance.forces, &whole) {
+            if stretches.end_under_load(&finer.slices, &finer.balance.carried, &whole) {
                 break;
             }
             balanced = finer;
@@ -325,8 +338,8 @@ impl FaceModel {
 
     /// The balance at the position `eta` under `load` of the slices of `stretches`.
     ///
-    /// A spring that is shorter than its contact is wide is none, and where few of many slices carry they press wider than was thought: then they
-    /// are laid anew, longer.
+    /// No line is shorter than its contact is wide, and where few of many slices carry they press wider than was thought: then they are laid
+    /// anew, longer.
     fn balanced(
         &self,
         eta: f64,
@@ -347,12 +360,13 @@ impl FaceModel {
                 });
             }
             let compliance = compliance(self, &slices);
-            match balance(compliance.clone(), &slices, load) {
+            match balance(&compliance, &slices, load) {
                 Err(PositionError::Contact(ContactError::NotPositiveDefinite { .. }))
                     if heavier < HEAVIEST =>
                 {
                     heavier *= HEAVIER;
                 }
+                Ok(balance) if balance.is_strained && heavier < HEAVIEST => heavier *= HEAVIER,
                 balance => {
                     return Ok(Balanced {
                         balance: balance?,
@@ -367,7 +381,7 @@ impl FaceModel {
     /// What `contact` loads the functions over the flanks of its pairs with: a column for the forces, and one for how they rise with
     /// the load.
     pub fn loads(&self, contact: &FaceContact) -> Vec<PairLoads> {
-        let lines = contact.slices.chunk_by(|one, next| one.pair == next.pair);
+        let lines = contact.middles.chunk_by(|one, next| one.pair == next.pair);
         lines
             .map(|line| PairLoads {
                 pair: line[0].pair,
@@ -376,7 +390,7 @@ impl FaceModel {
             .collect()
     }
 
-    fn load_of_line(&self, member: Member, line: &[SliceLoad]) -> Mat<f64> {
+    fn load_of_line(&self, member: Member, line: &[MiddleLoad]) -> Mat<f64> {
         let flank = &self.yields[member.index()];
         let mut row = vec![0.0; flank.basis_len()];
         let mut load = Mat::zeros(row.len(), 2);
@@ -422,8 +436,8 @@ impl FaceModel {
         let mut at_sharp_edge = false;
         let mut corner_shares = [0.0; 2];
         let mut loads = Vec::new();
-        let forces = balance.forces.iter().zip(&balance.load_derivative);
-        for (slice, (&force, &rise)) in slices.iter().zip(forces) {
+        let mut driving_load = 0.0;
+        for (slice, carried) in slices.iter().zip(&balance.carried) {
             if pairs.last().is_none_or(|pair| pair.pair != slice.pair) {
                 pairs.push(PairContact {
                     pair: slice.pair,
@@ -433,63 +447,74 @@ impl FaceModel {
                     fillet: None,
                 });
             }
-            if force <= 0.0 {
+            if carried.force <= 0.0 {
                 continue;
             }
-            let pressed = slice.spring.pressed(force);
-            // One that is shorter than its contact is wide is the end of a line, whose pressure no line has.
-            let is_line = slice.along > 2.0 * pressed.half_width;
-            let pressure = pressed.pressure.filter(|_| is_line);
+            let [from, to] = carried.part;
+            let (part, middle) = (0.5 * (to - from), 0.5 * (from + to));
+            let pressed = slice
+                .middle
+                .spring
+                .pressed(carried.force / (part * slice.along));
             if let Some(pair) = pairs.last_mut() {
-                pair.share += slice.weights[1] * force / load;
+                pair.share += carried.weighed / load;
                 pair.fillet = pair.fillet.or(pressed.fillet);
             }
             if let Some(member) = pressed.tip_corner {
-                corner_shares[member.index()] += slice.weights[1] * force / load;
+                corner_shares[member.index()] += carried.weighed / load;
             }
+            driving_load += slice.middle.weights[0] * carried.force;
             at_sharp_edge |= pressed.at_sharp_edge;
-            peak_pressure = match (peak_pressure, pressure) {
+            peak_pressure = match (peak_pressure, pressed.pressure) {
                 (Some(one), Some(other)) => Some(one.max(other)),
                 (one, other) => one.or(other),
             };
+            let edge = &slice.ends[usize::from(middle > 0.0)].roll_lengths;
             loads.push(SliceLoad {
                 pair: slice.pair,
-                z: slice.z,
-                length: slice.length,
-                force: slice.weights[1] * force,
-                roll_lengths: slice.roll_lengths,
-                pressure,
+                z: slice.z + 0.5 * middle * slice.length,
+                length: part * slice.length,
+                force: carried.weighed,
+                roll_lengths: [0, 1].map(|g| {
+                    let at = slice.middle.roll_lengths[g];
+                    at + (edge[g] - at) * middle.abs()
+                }),
+                pressure: pressed.pressure,
                 at_sharp_edge: pressed.at_sharp_edge,
                 half_width: pressed.half_width,
-                normal: [force, rise],
+                normal: [carried.force, carried.rise],
             });
         }
-        let forces = balance.forces.iter();
-        let sum = |arm: usize| -> f64 {
-            let weighed = slices.iter().zip(forces.clone());
-            weighed
-                .map(|(slice, force)| slice.weights[arm] * force)
-                .sum()
-        };
-        let complementarity = forces
-            .clone()
-            .zip(&balance.gaps)
-            .map(|(p, g)| (p * g).abs());
+        let forces = balance.forces.iter().zip(&balance.load_derivative);
+        let middles = slices
+            .iter()
+            .zip(forces)
+            .filter(|(_, (force, _))| **force > 0.0);
+        let middles = middles.map(|(slice, (&force, &rise))| MiddleLoad {
+            pair: slice.pair,
+            z: slice.z,
+            roll_lengths: slice.middle.roll_lengths,
+            normal: [force, rise],
+        });
+        let sum: f64 = balance.carried.iter().map(|carried| carried.weighed).sum();
+        let carried = balance.carried.iter().zip(&balance.gaps);
+        let complementarity = carried.map(|(carried, gap)| (carried.force * gap).abs());
         let peak_pressure = peak_pressure.filter(|_| !at_sharp_edge);
         FaceContact {
             mesh: MeshContact {
                 transmission_error: balance.transmission_error,
                 stiffness: balance.stiffness,
-                driving_load: sum(0),
+                driving_load,
                 pairs,
                 peak_pressure,
                 peak_place: PeakPlace::of_slices(&loads, peak_pressure),
-                equilibrium: (sum(1) - load).abs() / load,
+                equilibrium: (sum - load).abs() / load,
                 complementarity: complementarity.fold(0.0, f64::max),
                 penetration: balance.penetration(slices),
                 iterations: balance.iterations,
             },
             slices: loads,
+            middles: middles.collect(),
             corner_shares,
         }
     }
@@ -557,8 +582,9 @@ mod tests {
                     let (s_a, s_e) = section.path_of_contact();
                     let phases = [s_a, s_e].map(|s| model.pair.phase_at(s));
                     let lines = Stretches::whole(&model, eta, phases);
-                    let slices = slice::lay(&model, eta, &lines, None);
-                    let balance = balance(compliance(&model, &slices), &slices, load);
+                    let heavier = HEAVIER;
+                    let slices = slice::lay(&model, eta, &lines, Some(Loading { load, heavier }));
+                    let balance = balance(&compliance(&model, &slices), &slices, load);
                     model.told(&slices, &balance.expect("a balance"), load)
                 })
                 .collect();
@@ -640,6 +666,7 @@ mod tests {
             face_order: 4,
             web_order: 2,
             web_harmonics: 6,
+            sections: crate::grid::GridLevel::Standard,
         };
         let (run, load) = (Run::unattended(), pair.section().load(60.0));
         let yields = Member::BOTH.map(|member| {

@@ -1,6 +1,9 @@
-//! The slices of the contact lines at one position: where each stands, how far its flanks are apart, and its spring.
+//! The slices of the contact lines at one position: where each stands, how far its flanks are apart, and its springs.
+
+use std::sync::Arc;
 
 use super::FaceModel;
+use super::balance::Carried;
 use super::spring::Spring;
 use crate::contact::facing::{Facing, View};
 use crate::contact::half_plane::{hertz, logarithm_factor};
@@ -19,15 +22,23 @@ pub(super) struct Slice {
     /// Its length along the axis, and along the contact line.
     pub(super) length: f64,
     pub(super) along: f64,
+    /// What is in its middle, and where it begins and ends along the axis.
+    pub(super) middle: Place,
+    pub(super) ends: [Place; 2],
+    /// Σ 2(1 − ν²)/(πE).
+    pub(super) factor: f64,
+}
+
+/// A place of a contact line.
+#[derive(Clone)]
+pub(super) struct Place {
     /// Where it touches: roll length on the driving and on the driven gear.
     pub(super) roll_lengths: [f64; 2],
     /// The arms about the driving and the driven axis over the base radii, times cos β_b.
     pub(super) weights: [f64; 2],
     /// The gap along the normal, the spring not pressed.
     pub(super) gap: f64,
-    /// Σ 2(1 − ν²)/(πE).
-    pub(super) factor: f64,
-    pub(super) spring: Spring,
+    pub(super) spring: Arc<Spring>,
 }
 
 /// What slices are laid for.
@@ -45,14 +56,21 @@ pub(super) struct Stretches {
     lines: Vec<ContactLine>,
     /// No slice is longer along the axis.
     longest: f64,
+    /// The slices of each line, were they not shorter than their contact is wide.
+    least: f64,
 }
 
 impl Stretches {
     /// All lines of `model` at the position `eta` on which sections are in `phases`.
     pub(super) fn whole(model: &FaceModel, eta: f64, phases: [f64; 2]) -> Self {
+        let width = model.pair.common_face_width();
+        let longest = width / model.slices as f64;
+        // As many slices on a line while it grows and shrinks, so that nothing steps.
+        let across = (phases[1] - phases[0]) / model.pair.advance().abs();
         Self {
             lines: model.pair.lines(eta, phases),
-            longest: model.pair.common_face_width() / model.slices as f64,
+            longest,
+            least: (width.min(across) / longest - 1e-9).ceil(),
         }
     }
 
@@ -84,17 +102,29 @@ impl Stretches {
             });
         }
         let longest = length(&lines) / model.slices as f64;
-        (longest <= 0.5 * self.longest).then_some(Self { lines, longest })
+        (longest <= 0.5 * self.longest).then_some(Self {
+            lines,
+            longest,
+            least: 1.0,
+        })
     }
 
-    /// Whether of `slices` of these one that carries, as `forces` say, ends where its line goes on, as the `whole` ones have it.
-    pub(super) fn end_under_load(&self, slices: &[Slice], forces: &[f64], whole: &Self) -> bool {
+    /// Whether of `slices` of these one that carries ends where its line goes on, as the `whole` ones have it.
+    pub(super) fn end_under_load(
+        &self,
+        slices: &[Slice],
+        carried: &[Carried],
+        whole: &Self,
+    ) -> bool {
         let is_end = |place: f64, of: &[ContactLine], pair: i64| {
             let ends = of.iter().filter(|line| line.pair == pair);
             let mut places = ends.flat_map(|line| line.heights);
             places.any(|end| (end - place).abs() < 1e-6 * self.longest)
         };
-        let mut loaded = slices.iter().zip(forces).filter(|(_, force)| **force > 0.0);
+        let mut loaded = slices
+            .iter()
+            .zip(carried)
+            .filter(|(_, carried)| carried.force > 0.0);
         loaded.any(|(slice, _)| {
             let half = 0.5 * slice.length;
             [slice.z - half, slice.z + half].into_iter().any(|place| {
@@ -121,7 +151,7 @@ pub(super) fn lay(
     // For each length along a contact line.
     let total = length(&stretches.lines);
     let densities = loading.map(|of| [1.0, of.heavier].map(|times| times * of.load / total));
-    let layer = Layer::new(model, densities, stretches.longest);
+    let layer = Layer::new(model, densities, stretches);
     let lines = stretches.lines.iter();
     lines.flat_map(|line| layer.line(eta, line)).collect()
 }
@@ -135,10 +165,12 @@ struct Layer<'a> {
     densities: Option<[f64; 2]>,
     /// The longest slice along the axis.
     longest: f64,
+    /// How many slices a line has at least.
+    least: f64,
 }
 
 impl<'a> Layer<'a> {
-    fn new(model: &'a FaceModel, densities: Option<[f64; 2]>, longest: f64) -> Self {
+    fn new(model: &'a FaceModel, densities: Option<[f64; 2]>, stretches: &Stretches) -> Self {
         let factors = Member::BOTH.map(|member| {
             let modulus = model.long.gear(member).material().youngs_modulus;
             logarithm_factor(modulus, 1.0)
@@ -148,7 +180,8 @@ impl<'a> Layer<'a> {
             cosine: model.pair.base_helix_angle().cos(),
             factor: factors[0] + factors[1],
             densities,
-            longest,
+            longest: stretches.longest,
+            least: stretches.least,
         }
     }
 
@@ -159,30 +192,61 @@ impl<'a> Layer<'a> {
             let s = 0.5 * pair.section().line_of_action();
             hertz(density, 0.5 * s / self.cosine, self.factor, 1.0).0
         });
-        let shortest = self.longest.max(SHORTEST * half_width * self.cosine);
-        let count = ((to - from) / shortest - 1e-9).ceil().max(1.0);
+        let longest = ((to - from) / self.longest - 1e-9).ceil().max(self.least);
+        let shortest = ((to - from) / (SHORTEST * half_width * self.cosine)).floor();
+        let count = longest.min(shortest).max(1.0);
         let length = (to - from) / count;
+        let along = length / self.cosine;
         let straight = pair.advance() == 0.0;
-        let mut known: Option<Facing> = None;
+        let mut known: Option<(Facing, Place)> = None;
+        let mut place = |z: f64| {
+            let phase = pair.phase(eta, line.pair, z);
+            let (facing, mut place) = match known.take().filter(|_| straight) {
+                Some(known) => known,
+                None => {
+                    let facing = Facing::drawn(&self.model.long, phase)?;
+                    let place = self.place(phase, &facing, along);
+                    (facing, place)
+                }
+            };
+            if straight {
+                known = Some((facing, place.clone()));
+            }
+            place.gap += place.weights[1] * self.model.opening(line.pair, z, place.roll_lengths);
+            Some(place)
+        };
+        // Ends are looked at only where something is pressed.
+        let is_pressed = self.densities.is_some();
+        let mut begin = if is_pressed { place(from) } else { None };
         (0..count as usize)
             .filter_map(|i| {
                 let z = from + (i as f64 + 0.5) * length;
-                let phase = pair.phase(eta, line.pair, z);
-                let facing = match known.take().filter(|_| straight) {
-                    Some(facing) => facing,
-                    None => Facing::drawn(&self.model.long, phase)?,
+                let middle = place(z);
+                let end = if is_pressed {
+                    place(z + 0.5 * length)
+                } else {
+                    None
                 };
-                let slice = self.slice(line.pair, (z, length), (phase, &facing));
-                known = Some(facing);
-                Some(slice)
+                let ends = [begin.take(), end.clone()];
+                begin = end;
+                let middle = middle?;
+                Some(Slice {
+                    pair: line.pair,
+                    z,
+                    length,
+                    along,
+                    ends: ends.map(|end| end.unwrap_or_else(|| middle.clone())),
+                    middle,
+                    factor: self.factor,
+                })
             })
             .collect()
     }
 
-    fn slice(&self, n: i64, (z, length): (f64, f64), (phase, facing): (f64, &Facing)) -> Slice {
-        let model = self.model;
+    /// The place of a line where its section faces the other so, as drawn, on a slice so long `along` the line.
+    fn place(&self, phase: f64, facing: &Facing, along: f64) -> Place {
         let view = View {
-            placement: Placement::drawn(&model.long, phase),
+            placement: Placement::drawn(&self.model.long, phase),
             seat: facing.seat,
         };
         let hollow = &facing.hollows[0];
@@ -190,36 +254,31 @@ impl<'a> Layer<'a> {
         let meeting = view.point(hollow.arc).map(|point| view.meeting(&point));
         let arms = meeting.map_or([1.0, 1.0], |meeting| meeting.arms);
         let weights = arms.map(|arm| arm * self.cosine);
-        let along = length / self.cosine;
         let radius = {
             let [one, other] = hollow.roll_lengths.map(|s| s / self.cosine);
             one * other / (one + other)
         };
-        let (spring, section_gap) = match self.densities {
-            Some([mean, most]) if self.is_crowded(facing, most, radius) => {
-                Spring::patch(&view, facing, (along, self.cosine, self.factor), mean)
+        let of = (along, radius, self.factor);
+        let (spring, gap) = match self.densities {
+            Some(densities) if self.is_crowded(facing, densities[1], radius) => {
+                Spring::patch(&view, facing, self.cosine, of, densities)
             }
-            of => (
-                Spring::hertz(along, radius, self.factor, of.map_or(1.0, |[_, most]| most)),
+            densities => (
+                Spring::hertz(of, densities.unwrap_or([1.0; 2])),
                 hollow.touch * weights[1],
             ),
         };
-        Slice {
-            pair: n,
-            z,
-            length,
-            along,
+        Place {
             roll_lengths: hollow.roll_lengths,
             weights,
-            gap: section_gap + weights[1] * model.opening(n, z, hollow.roll_lengths),
-            factor: self.factor,
-            spring,
+            gap,
+            spring: Arc::new(spring),
         }
     }
 
     /// Whether a contact under `density` may reach an end of the flanks or a kink, or is not that of two parabolas.
     fn is_crowded(&self, facing: &Facing, density: f64, radius: f64) -> bool {
-        const BESIDE: f64 = 1.5;
+        const BESIDE: f64 = 1.1;
         const COMMON_TANGENT: f64 = 0.02;
         let (half_width, _) = hertz(density, radius, self.factor, 1.0);
         let hollow = &facing.hollows[0];
