@@ -206,7 +206,10 @@ impl Spring {
         let u = 0.5 * self.along * (-ln_rho).exp();
         let root = (1.0 + u * u).sqrt();
         // asinh u.
-        let part = ((u + root).ln() - self.spread).max(FLATTEST);
+        let part = (u + root).ln() - self.spread;
+        if part < FLATTEST {
+            return [ln_q + FLATTEST.ln(), 1.0];
+        }
         let rise = 1.0 - exponent * u / (root * part);
         [ln_q + part.ln(), rise.max(FLATTEST)]
     }
