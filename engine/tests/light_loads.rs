@@ -205,6 +205,7 @@ fn of_faces(departure: Departure, beta: f64) -> Case {
         face_order: 4,
         web_order: 2,
         web_harmonics: 6,
+        sections: GridLevel::Standard,
     };
     looked_at(along_faces(
         pair.expect("meshes"),

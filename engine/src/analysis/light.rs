@@ -31,7 +31,8 @@ fn curve(case: &Case, is_refined: bool) -> Result<Curve, AnalysisError> {
     let formulas = (case.method == Method::LoadDistribution)
         .then(|| PairFormulas::new(&case.pair, case.resolution.formulas));
     let rigid = case.faces.as_ref();
-    let rigid = rigid.map(|faces| FaceModel::rigid(faces.pair.clone(), faces.slices));
+    let rigid = rigid
+        .map(|faces| FaceModel::rigid(faces.pair.clone(), faces.at(case.resolution.grid).slices));
     let contact = |&eta: &f64| -> Result<MeshContact, AnalysisError> {
         let contact = match (&formulas, &rigid) {
             (Some(formulas), _) => return load_distribution::light(formulas, eta),

@@ -142,9 +142,9 @@ fn out_of_bounds(seeds: impl Iterator<Item = u64>, count: usize) -> [Vec<String>
                 && apart.rms <= of_lines
                 && line <= of_lines
                 && apart.of_delta <= 2.0 * apart.told;
-            println!("{seed} at {}: {apart:.2e?}", [10, 40][of]);
+            println!("{seed} at {}: {apart:?}", [10, 40][of]);
             if !holds {
-                out[of].push(format!("{seed}: {apart:.2e?}"));
+                out[of].push(format!("{seed}: {apart:?}"));
             }
         }
     }
