@@ -139,9 +139,10 @@ fn one_position_of_one_pair_is_that_of_calculix() {
     // tests/reference/3d: one pair on sectors held 4 mm below the root, 16 kN, 40 um over the face: δ 99.45 um without its penalty, the load
     // at −0.969 to −0.989 mm, the heaviest of ten strips 1.187 to 1.195 of their mean.
     let alone = |data: &mut GearData| {
-        let mut pitch = vec![-300e-6; 40];
-        pitch[0] = 0.0;
-        data.deviations.cumulative_pitch = pitch;
+        // The loaded flanks of all others stand back; whole teeth that did would meet the others' backs.
+        let mut slopes = vec![-300e-6; 40];
+        slopes[0] = 0.0;
+        data.deviations.profile_slope = slopes;
     };
     let slope = vec![LeadModification::Slope { amount: 40e-6 }];
     let pair = reference_pair(20.0, [Vec::new(), slope], alone);

@@ -97,19 +97,6 @@ pub(super) struct Place {
     pub(super) later: i64,
 }
 
-impl Place {
-    /// Those of contacts that tell of their own `positions` alone.
-    pub(super) fn own(positions: &[f64]) -> Vec<Self> {
-        let each = positions.iter().enumerate();
-        each.map(|(contact, &position)| Self {
-            position,
-            contact,
-            later: 0,
-        })
-        .collect()
-    }
-}
-
 impl Faces {
     /// The same at a grid `level`, of which the standard one has the counts that these are: orders, sections and slices go together.
     pub(super) fn at(&self, level: GridLevel) -> Self {
@@ -184,11 +171,11 @@ impl Case {
     /// The places in a curve that contacts at the mesh positions `at` tell of, where those after a mesh period, or those of the whole span, are
     /// known: these positions, and as many mesh periods later as the span has.
     pub(super) fn places(&self, at: &[f64]) -> Vec<Place> {
-        let periods = if self.pair.is_as_drawn() {
-            self.span()
-        } else {
-            1
-        };
+        self.places_after(at, self.contacts_repeat_after())
+    }
+
+    /// The places in a curve that contacts at the mesh positions `at` tell of, which are known to repeat `after` so many mesh periods.
+    pub(super) fn places_after(&self, at: &[f64], after: u32) -> Vec<Place> {
         let of_period = |later: i64| {
             let at = at.iter().enumerate();
             at.map(move |(contact, position)| Place {
@@ -197,7 +184,28 @@ impl Case {
                 later,
             })
         };
-        (0..i64::from(periods)).flat_map(of_period).collect()
+        let times = i64::from(self.span() / after);
+        (0..times)
+            .flat_map(|time| of_period(time * i64::from(after)))
+            .collect()
+    }
+
+    /// The mesh periods after which contact on blanks that are alike all around repeats; the span where teeth deviate.
+    pub(super) fn contacts_repeat_after(&self) -> u32 {
+        if self.pair.is_as_drawn() {
+            1
+        } else {
+            self.span()
+        }
+    }
+
+    /// The mesh periods after which a curve repeats; the span where that is less.
+    pub(super) fn curves_repeat_after(&self) -> u32 {
+        if self.covers_whole_periods() {
+            self.pair.period()
+        } else {
+            self.span()
+        }
     }
 
     /// What holds at the repeating positions, over the whole span.

@@ -110,9 +110,12 @@ fn curve(
     let case = rigid.setup.case;
     let load = case.pair.load(output_torque);
     let step = told.step.unwrap_or(0.0);
-    let loads = [load, load * (1.0 - step), load * (1.0 + step)];
-    let [middle, below, above] = loads.map(|load| Terms::under(rigid, blanks, load));
-    let (middle, [below, above]) = (middle?, [below?, above?]);
+    let under = |load: f64| Terms::under(rigid, blanks, load);
+    let (middle, below, above) = (
+        under(load)?,
+        under(load * (1.0 - step))?,
+        under(load * (1.0 + step))?,
+    );
     let found = |sweep: &Sweep| {
         let (contacts, delta) = middle.at(&sweep.positions)?;
         let stiffness = sweep.stiffness(load, Vec::new, |other| {
@@ -126,11 +129,16 @@ fn curve(
     };
     let (contacts, transmission_error, stiffness) = found(told)?;
     let known = samples(told, &contacts, &transmission_error, &stiffness);
-    let sections = told.sections(case, known, rigid.setup.run, |sweep| {
-        let (contacts, delta, stiffness) = found(sweep)?;
-        evidence.gather(&contacts, load);
-        Ok(samples(sweep, &contacts, &delta, &stiffness))
-    })?;
+    let sections = told.sections(
+        (case, case.contacts_repeat_after()),
+        known,
+        rigid.setup.run,
+        |sweep| {
+            let (contacts, delta, stiffness) = found(sweep)?;
+            evidence.gather(&contacts, load);
+            Ok(samples(sweep, &contacts, &delta, &stiffness))
+        },
+    )?;
     let of_rigid_blank = contacts.iter().map(|contact| contact.transmission_error);
     let parts = CurveParts {
         transmission_error,

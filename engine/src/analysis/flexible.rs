@@ -65,25 +65,23 @@ fn sections<T>(
     evidence: &mut Evidence,
 ) -> Result<Sections, AnalysisError> {
     let case = setup.case;
-    let samples = solved_at_first.samples(&told.positions);
-    told.sections(case, samples, setup.run, |sweep| {
+    let after = case.curves_repeat_after();
+    let samples = solved_at_first.samples(&case.places_after(&told.positions, case.span()));
+    told.sections((case, after), samples, setup.run, |sweep| {
         let further = solved(setup, model, load, sweep, |_, _| ())?;
         evidence.gather(&further.contacts, load);
-        Ok(further.samples(&sweep.positions))
+        Ok(further.samples(&case.places_after(&sweep.positions, after)))
     })
 }
 
 impl<T> Solved<T> {
-    /// What is known at their `positions`.
-    fn samples(&self, positions: &[f64]) -> Vec<Sample> {
-        let each = self.contacts.iter();
-        let deltas: Vec<f64> = each.map(|contact| contact.transmission_error).collect();
-        Sample::of(
-            &Place::own(positions),
-            &self.contacts,
-            &deltas,
-            &self.stiffness,
-        )
+    /// What is known at the `places` that they tell of.
+    fn samples(&self, places: &[Place]) -> Vec<Sample> {
+        let at = |place: &Place| self.contacts[place.contact].transmission_error;
+        let deltas: Vec<f64> = places.iter().map(at).collect();
+        let stiffness = places.iter().map(|place| self.stiffness[place.contact]);
+        let stiffness: Vec<f64> = stiffness.collect();
+        Sample::of(places, &self.contacts, &deltas, &stiffness)
     }
 }
 

@@ -60,7 +60,7 @@ fn curve(case: &Case, is_refined: bool) -> Result<Curve, AnalysisError> {
             samples.extend(found(&ends)?.2);
             samples.sort_by(|a, b| a.position.total_cmp(&b.position));
         }
-        let refinement = Refinement::of(case, positions.len());
+        let refinement = Refinement::of(case, case.contacts_repeat_after(), positions.len());
         refinement.sections(samples, |further| Ok::<_, AnalysisError>(found(further)?.2))?
     } else {
         Sections::of(case, &samples)

@@ -35,9 +35,12 @@ pub(super) fn solve(case: &Case, plan: &Pass, run: &Run) -> Result<Analysis, Ana
             samples.extend(found(&ends, &Run::unattended())?.samples(case, &ends, load));
             samples.sort_by(|a, b| a.position.total_cmp(&b.position));
         }
-        let sections = told.sections(case, samples, run, |sweep| {
-            Ok(found(sweep, run)?.samples(case, sweep, load))
-        })?;
+        let sections = told.sections(
+            (case, case.contacts_repeat_after()),
+            samples,
+            run,
+            |sweep| Ok(found(sweep, run)?.samples(case, sweep, load)),
+        )?;
         let parts = curve_parts(case, (&told.positions, first), sections, load);
         curves.push(parts.into_curve(case, output_torque));
     }

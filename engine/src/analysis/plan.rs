@@ -224,10 +224,11 @@ impl Sweep {
         }
     }
 
-    /// The curve of `case` through `samples` at these positions, and through those that `solve` finds further, with the contacts behind them.
+    /// The curve of `case` through `samples` at these positions, and through those that `solve` finds further, which repeat `after` so many mesh
+    /// periods.
     pub(super) fn sections(
         &self,
-        case: &Case,
+        (case, after): (&Case, u32),
         samples: Vec<Sample>,
         run: &Run,
         mut solve: impl FnMut(&Self) -> Result<Vec<Sample>, AnalysisError>,
@@ -235,7 +236,7 @@ impl Sweep {
         if self.further == 0 {
             return Ok(Sections::of(case, &samples));
         }
-        let refinement = Refinement::of(case, self.positions.len());
+        let refinement = Refinement::of(case, after, self.positions.len());
         let mut left = self.further;
         let sections = refinement.sections(samples, |positions| {
             left -= positions.len();

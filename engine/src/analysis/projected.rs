@@ -111,11 +111,16 @@ impl Expansion<'_> {
         let told = &self.plan.told;
         let found = self.found(load, told)?;
         let run = self.rigid.setup.run;
-        let sections = told.sections(case, found.samples(case, told), run, |sweep| {
-            let further = self.found(load, sweep)?;
-            evidence.gather(&further.contacts, load);
-            Ok(further.samples(case, sweep))
-        })?;
+        let sections = told.sections(
+            (case, case.contacts_repeat_after()),
+            found.samples(case, told),
+            run,
+            |sweep| {
+                let further = self.found(load, sweep)?;
+                evidence.gather(&further.contacts, load);
+                Ok(further.samples(case, sweep))
+            },
+        )?;
         let Found {
             contacts,
             round,

@@ -58,16 +58,25 @@ pub(super) fn solve(
             }
             _ => pair.whole(load, &plan.told)?,
         };
-        let sections =
-            plan.told
-                .sections(case, solved.samples(case, &plan.told), run, |sweep| {
-                    let further = match case.method {
-                        Method::ThreeDimensionalProjected => pair.projected(load, sweep)?,
-                        _ => pair.whole(load, sweep)?,
-                    };
-                    evidence.gather(&further.meshes(), load);
-                    Ok(further.samples(case, sweep))
-                })?;
+        let is_projected = case.method == Method::ThreeDimensionalProjected;
+        let after = if is_projected {
+            case.contacts_repeat_after()
+        } else {
+            case.curves_repeat_after()
+        };
+        let samples = solved.samples(&case.places_after(
+            &plan.told.positions,
+            if is_projected { after } else { case.span() },
+        ));
+        let sections = plan.told.sections((case, after), samples, run, |sweep| {
+            let further = if is_projected {
+                pair.projected(load, sweep)?
+            } else {
+                pair.whole(load, sweep)?
+            };
+            evidence.gather(&further.meshes(), load);
+            Ok(further.samples(&case.places_after(&sweep.positions, after)))
+        })?;
         evidence.gather(&solved.meshes(), load);
         warn_of_tips(&mut warnings, &solved.meshes());
         for member in Member::BOTH {
@@ -239,19 +248,17 @@ impl Solved {
         each.map(|contact| contact.mesh.clone()).collect()
     }
 
-    /// What is known at the places in the curve of `case` that the positions of `sweep` tell of.
-    fn samples(&self, case: &Case, sweep: &Sweep) -> Vec<Sample> {
-        let places = if case.method == Method::ThreeDimensionalProjected {
-            case.places(&sweep.positions)
-        } else {
-            Place::own(&sweep.positions)
+    /// What is known at the `places` that they tell of.
+    fn samples(&self, places: &[Place]) -> Vec<Sample> {
+        // δ and k are known at each of them, or alike at all that a contact tells of.
+        let at = |of: &[f64]| -> Vec<f64> {
+            let each = places.iter().enumerate();
+            let own = of.len() == places.len();
+            each.map(|(i, place)| of[if own { i } else { place.contact }])
+                .collect()
         };
-        Sample::of(
-            &places,
-            &self.meshes(),
-            &self.transmission_error,
-            &self.stiffness,
-        )
+        let (delta, stiffness) = (at(&self.transmission_error), at(&self.stiffness));
+        Sample::of(places, &self.meshes(), &delta, &stiffness)
     }
 
     fn into_parts(self, case: &Case, faces: &Faces, sections: Sections) -> CurveParts {

@@ -37,8 +37,8 @@ pub(in crate::analysis) struct Refinement {
     span: Span,
     /// Positions that may be solved further.
     most: usize,
-    /// Whether contact repeats with the mesh period, so that a position solved in the first tells of all later ones.
-    repeats: bool,
+    /// The mesh periods after which contact repeats: a position solved in the first of them tells of all later ones.
+    repeats_after: u32,
 }
 
 /// How many positions are solved further at most for a curve of so many.
@@ -53,17 +53,17 @@ struct Wanted {
 }
 
 impl Refinement {
-    /// That of a curve of `case` whose contacts are known at `positions`: all of it, or those after which they repeat.
-    pub(in crate::analysis) fn of(case: &Case, positions: usize) -> Self {
+    /// That of a curve of `case` whose contacts repeat after so many mesh periods and are known at so many `positions`.
+    pub(in crate::analysis) fn of(case: &Case, repeats_after: u32, positions: usize) -> Self {
         Self {
             span: Span::of(case),
             most: most_further(positions),
-            repeats: positions < case.positions(),
+            repeats_after,
         }
     }
 
-    /// The sections of the curve through `samples`, and through what `solve` finds further at the mesh positions that it is given; where contact
-    /// repeats they lie in the first mesh period, and it answers for all.
+    /// The sections of the curve through `samples`, and through what `solve` finds further at the mesh positions that it is given. They lie in the
+    /// first of the mesh periods after which contact repeats, and it answers for all.
     ///
     /// # Errors
     ///
@@ -115,12 +115,9 @@ impl Refinement {
             let fraction = (position - first).rem_euclid(1.0);
             let near = |other: &&f64| (*other - fraction).abs() <= SHARED * step;
             let known = fractions.iter().find(near).copied();
-            let place = match known {
-                Some(_) if self.repeats => continue,
-                Some(known) => position + (known - fraction),
-                None if self.repeats => first + fraction,
-                None => position,
-            };
+            let shared = known.map_or(0.0, |known| known - fraction);
+            let repeats_after = f64::from(self.repeats_after);
+            let place = first + (position + shared - first).rem_euclid(repeats_after);
             let beside = |other: f64| (other - place).abs() < NEAREST * step;
             let i = samples.partition_point(|sample| sample.position < place);
             let neighbors = samples[i.saturating_sub(1)..].iter().take(2);
@@ -290,7 +287,7 @@ mod tests {
         let refinement = Refinement {
             span,
             most,
-            repeats: false,
+            repeats_after: span.periods,
         };
         let count = span.per_period * span.periods;
         let positions = (0..count).map(|i| f64::from(i) * span.step());

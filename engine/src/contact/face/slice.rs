@@ -213,7 +213,8 @@ impl<'a> Layer<'a> {
                 known = Some((facing, place.clone()));
             }
             place.gap += place.weights[1] * self.model.opening(line.pair, z, place.roll_lengths);
-            Some(place)
+            // Far off the path a force may turn the driven gear back: flanks touch elsewhere long before they do there.
+            (place.weights[1] > 0.0).then_some(place)
         };
         // Ends are looked at only where something is pressed.
         let is_pressed = self.densities.is_some();

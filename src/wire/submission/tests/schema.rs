@@ -126,8 +126,8 @@ fn a_submission_with_other_fields_or_words_has_another_version() {
     assert_eq!(
         (DOCUMENT_VERSION, sha256_hex(told.join("\n")).as_str()),
         (
-            2,
-            "a046eb98c34ec0ca50389ad1677cd6f1990bc8f11ac6e0ae2f43f2d5c0a802a5"
+            3,
+            "4a584189500fbf8e517dea580ecefa26c2c02f7256cc7086367de4b4d3e4abc1"
         ),
         "{told:#?}"
     );
