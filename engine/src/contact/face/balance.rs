@@ -26,6 +26,10 @@ const MOST_STEPS: u32 = 100;
 /// Looks for the least energy on the way of one step.
 const MOST_LOOKS: u32 = 40;
 
+/// What slices are taken to yield more, in K q, until their compliance is positive definite. Next to slices that are about as short as their contact
+/// is wide the half space of a line without a width is too much, and without this forces of one sign and the other would take energy out of it.
+const SOFTER: [f64; 5] = [0.0, 0.1, 0.2, 0.4, 0.8];
+
 /// What counts as no way, over the δ that the load causes.
 const NO_WAY: f64 = 1e-11;
 
@@ -113,21 +117,27 @@ struct Tangent {
 struct Problem<'a> {
     slices: &'a [Slice],
     lower: Mat<f64>,
+    /// What springs yield more ([`SOFTER`]).
+    softer: f64,
     load: f64,
 }
 
 /// The balance of `slices` under `load` with the linear compliance `h`.
 pub(super) fn balance(h: &Mat<f64>, slices: &[Slice], load: f64) -> Result<Balance, PositionError> {
-    let mut whole = h.clone();
-    for (i, slice) in slices.iter().enumerate() {
-        whole[(i, i)] += slice.middle.spring.spread();
-    }
+    let factor = |softer: f64| {
+        let mut whole = h.clone();
+        for (i, slice) in slices.iter().enumerate() {
+            whole[(i, i)] += slice.middle.spring.spread(softer);
+        }
+        Some((Cholesky::new(whole)?, softer))
+    };
     let points = slices.len();
-    let factor = Cholesky::new(whole);
-    let factor = factor.ok_or(ContactError::NotPositiveDefinite { points })?;
+    let found = SOFTER.into_iter().find_map(factor);
+    let (factor, softer) = found.ok_or(ContactError::NotPositiveDefinite { points })?;
     let problem = Problem {
         slices,
         lower: factor.lower(),
+        softer,
         load,
     };
     problem.solved(h)
@@ -412,7 +422,7 @@ impl Problem<'_> {
         }
         let opened = product(h.as_ref(), &forces);
         let spread = self.slices.iter().zip(&forces);
-        let spread = spread.map(|(slice, force)| slice.middle.spring.spread() * force);
+        let spread = spread.map(|(slice, force)| slice.middle.spring.spread(self.softer) * force);
         // Where a slice carries, forces and what they open are to be the same.
         for (((gap, carried), opened), (spread, told)) in gaps
             .iter_mut()

@@ -151,9 +151,9 @@ impl Spring {
         }
     }
 
-    /// How far a force spread over the slice closes it up besides what [`Spring::load`] says, in m/N.
-    pub(super) fn spread(&self) -> f64 {
-        self.factor * self.spread / self.along
+    /// How far a force spread over the slice closes it up besides what [`Spring::load`] says, and so much `more` in K q, in m/N.
+    pub(super) fn spread(&self, more: f64) -> f64 {
+        self.factor * (self.spread + more) / self.along
     }
 
     /// Whether it is evaluated under the load `q` a length, and does not go on straight.
