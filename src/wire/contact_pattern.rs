@@ -122,6 +122,8 @@ answer! {
         pair_offset: i32 = line.pair_offset,
         /// The middles of the slices, in mm from the middle of the common face.
         z_mm: Vec<f64> = slices().map(|slice| place(slice.z)).collect(),
+        /// How long each of them is loaded along z, in mm; the last ones of a line may be shorter than the others.
+        length_mm: Vec<f64> = slices().map(|slice| place(slice.length)).collect(),
         /// Where they touch the flank of gear 1: the diameter, in mm.
         driving_diameter_mm: Vec<f64> = diameters(0),
         /// Where they touch the flank of gear 2: the diameter, in mm.

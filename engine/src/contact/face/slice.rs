@@ -9,6 +9,7 @@ use crate::contact::facing::{Facing, View};
 use crate::contact::half_plane::{hertz, logarithm_factor};
 use crate::contact::placement::Placement;
 use crate::gear::{ContactLine, Member};
+use crate::root_finding::bisect;
 
 /// No slice is shorter than so many half-widths of its contact: a line that short is none.
 const SHORTEST: f64 = 2.0;
@@ -169,6 +170,13 @@ struct Layer<'a> {
     least: f64,
 }
 
+/// The arms of a force in the first hollow of `facing` about both axes.
+fn arms(view: &View<'_>, facing: &Facing) -> [f64; 2] {
+    // Where flanks face each other the hollow is seen.
+    let point = view.point(facing.hollows[0].arc);
+    point.map_or([1.0, 1.0], |point| view.meeting(&point).arms)
+}
+
 impl<'a> Layer<'a> {
     fn new(model: &'a FaceModel, densities: Option<[f64; 2]>, stretches: &Stretches) -> Self {
         let factors = Member::BOTH.map(|member| {
@@ -186,7 +194,9 @@ impl<'a> Layer<'a> {
     }
 
     fn line(&self, eta: f64, line: &ContactLine) -> Vec<Slice> {
-        let [from, to] = line.heights;
+        let Some([from, to]) = self.driving(eta, line) else {
+            return Vec::new();
+        };
         let pair = &self.model.pair;
         let half_width = self.densities.map_or(0.0, |[_, density]| {
             let s = 0.5 * pair.section().line_of_action();
@@ -213,7 +223,6 @@ impl<'a> Layer<'a> {
                 known = Some((facing, place.clone()));
             }
             place.gap += place.weights[1] * self.model.opening(line.pair, z, place.roll_lengths);
-            // Far off the path a force may turn the driven gear back: flanks touch elsewhere long before they do there.
             (place.weights[1] > 0.0).then_some(place)
         };
         // Ends are looked at only where something is pressed.
@@ -244,17 +253,46 @@ impl<'a> Layer<'a> {
             .collect()
     }
 
-    /// The place of a line where its section faces the other so, as drawn, on a slice so long `along` the line.
-    fn place(&self, phase: f64, facing: &Facing, along: f64) -> Place {
-        let view = View {
+    /// The part of `line` at the position `eta` where a force on its sections drives on. Far off the path it may turn the driven gear back: flanks
+    /// touch elsewhere long before they do there.
+    fn driving(&self, eta: f64, line: &ContactLine) -> Option<[f64; 2]> {
+        const PLACES: u32 = 16;
+        let drives = |z: f64| {
+            let phase = self.model.pair.phase(eta, line.pair, z);
+            let facing = Facing::drawn(&self.model.long, phase);
+            facing.is_none_or(|facing| arms(&self.view(phase, &facing), &facing)[1] > 0.0)
+        };
+        let [from, to] = line.heights;
+        if self.model.pair.advance() == 0.0 {
+            return drives(from).then_some([from, to]);
+        }
+        if drives(from) && drives(to) {
+            return Some([from, to]);
+        }
+        let at = |i: u32| from + (to - from) * f64::from(i) / f64::from(PLACES);
+        let inside = (0..=PLACES).map(at).find(|z| drives(*z))?;
+        let end = |end: f64| {
+            if drives(end) {
+                end
+            } else {
+                bisect(inside, end, drives)
+            }
+        };
+        Some([end(from), end(to)])
+    }
+
+    fn view(&self, phase: f64, facing: &Facing) -> View<'a> {
+        View {
             placement: Placement::drawn(&self.model.long, phase),
             seat: facing.seat,
-        };
+        }
+    }
+
+    /// The place of a line where its section faces the other so, as drawn, on a slice so long `along` the line.
+    fn place(&self, phase: f64, facing: &Facing, along: f64) -> Place {
+        let view = self.view(phase, facing);
         let hollow = &facing.hollows[0];
-        // Where flanks face each other the hollow is seen.
-        let meeting = view.point(hollow.arc).map(|point| view.meeting(&point));
-        let arms = meeting.map_or([1.0, 1.0], |meeting| meeting.arms);
-        let weights = arms.map(|arm| arm * self.cosine);
+        let weights = arms(&view, facing).map(|arm| arm * self.cosine);
         let radius = {
             let [one, other] = hollow.roll_lengths.map(|s| s / self.cosine);
             one * other / (one + other)

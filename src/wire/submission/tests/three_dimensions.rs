@@ -420,9 +420,8 @@ fn a_contact_pattern_tells_every_line_and_the_largest_pressure_of_all() {
                     assert!(diameters.iter().all(|d| ends.contains(d)));
                     assert!(flank.tip_diameter_mm > 2.0 * teeth);
                 }
-                // Slices of one line are equally long.
-                let length = if z.len() > 1 { z[1] - z[0] } else { 0.0 };
-                carried += loads.iter().sum::<f64>() * length;
+                let each = loads.iter().zip(&line.length_mm);
+                carried += each.map(|(load, length)| load * length).sum::<f64>();
                 peak = line
                     .pressure_mpa
                     .iter()
