@@ -124,6 +124,16 @@ struct Problem<'a> {
 
 /// The balance of `slices` under `load` with the linear compliance `h`.
 pub(super) fn balance(h: &Mat<f64>, slices: &[Slice], load: f64) -> Result<Balance, PositionError> {
+    balance_of(h, slices, load, false)
+}
+
+/// The same; where these are the last slices that can be laid, they may yield somewhat more ([`SOFTER`]).
+pub(super) fn balance_of(
+    h: &Mat<f64>,
+    slices: &[Slice],
+    load: f64,
+    is_last: bool,
+) -> Result<Balance, PositionError> {
     let factor = |softer: f64| {
         let mut whole = h.clone();
         for (i, slice) in slices.iter().enumerate() {
@@ -132,7 +142,8 @@ pub(super) fn balance(h: &Mat<f64>, slices: &[Slice], load: f64) -> Result<Balan
         Some((Cholesky::new(whole)?, softer))
     };
     let points = slices.len();
-    let found = SOFTER.into_iter().find_map(factor);
+    let softer = if is_last { &SOFTER[..] } else { &SOFTER[..1] };
+    let found = softer.iter().copied().find_map(factor);
     let (factor, softer) = found.ok_or(ContactError::NotPositiveDefinite { points })?;
     let problem = Problem {
         slices,

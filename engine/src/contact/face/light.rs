@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use faer::Mat;
 
+use super::slice::drives;
 use super::{FaceModel, FlankYield};
 use crate::contact::facing::Facing;
 use crate::contact::light::{FirstTouch, TOGETHER, first, on_path, touching_near};
@@ -65,16 +66,19 @@ impl FaceModel {
     /// to `step`.
     pub(super) fn nearest_phases(&self, [from, to]: [f64; 2], step: f64) -> Vec<f64> {
         let touch = |phase: f64| {
-            Facing::drawn(&self.long, phase).map_or(f64::INFINITY, |facing| facing.touch())
+            let facing = Facing::drawn(&self.long, phase);
+            let facing = facing.filter(|facing| drives(&self.long, phase, facing));
+            facing.map_or(f64::INFINITY, |facing| facing.touch())
         };
         let count = ((to - from) / step).ceil() as usize;
         let found = least_places([from, to], count, self.rounding(), touch);
         found.into_iter().map(|(phase, _)| phase).collect()
     }
 
-    /// How the flanks of pair `n` as drawn face each other at `z`.
+    /// How the flanks of pair `n` as drawn face each other at `z`, where a force between them drives on.
     fn faced(&self, eta: f64, n: i64, z: f64) -> Option<Facing> {
-        Facing::drawn(&self.long, self.pair.phase(eta, n, z))
+        let phase = self.pair.phase(eta, n, z);
+        Facing::drawn(&self.long, phase).filter(|facing| drives(&self.long, phase, facing))
     }
 
     /// By how much leads, axes and deviations open pair `n` at `z`, along the base tangent.

@@ -29,7 +29,7 @@ use super::positions::PositionsError;
 use super::{ContactError, MeshContact, PairContact, PairLoads, PeakPlace, PositionError};
 use crate::gear::{Member, SolidPair};
 use crate::run::Run;
-use balance::{Balance, balance};
+use balance::{Balance, balance_of};
 use compliance::compliance;
 pub use model::{FaceModel, FlankYield};
 use slice::{Loading, Slice, Stretches};
@@ -280,7 +280,9 @@ impl FaceModel {
         const STEP: f64 = 1.0 / 32.0;
         let limit = reach + self.nearer();
         let touches = |phase: f64| {
-            Facing::drawn(&self.long, phase).is_some_and(|facing| facing.touch() <= limit)
+            Facing::drawn(&self.long, phase).is_some_and(|facing| {
+                facing.touch() <= limit && slice::drives(&self.long, phase, &facing)
+            })
         };
         let (s_a, s_e) = self.pair.section().path_of_contact();
         let ends = [s_a, s_e].map(|s| self.pair.phase_at(s));
@@ -347,10 +349,18 @@ impl FaceModel {
         stretches: &Stretches,
     ) -> Result<Balanced, PositionError> {
         let mut heavier = HEAVIER;
+        let mut before: Option<(Vec<Slice>, Mat<f64>)> = None;
         loop {
             let slices = slice::lay(self, eta, stretches, Some(Loading { load, heavier }));
             let (Some(first), Some(last)) = (slices.first(), slices.last()) else {
-                return Err(PositionError::NoContact);
+                // No longer ones can be laid.
+                let (slices, compliance) = before.ok_or(PositionError::NoContact)?;
+                let balance = balance_of(&compliance, &slices, load, true)?;
+                return Ok(Balanced {
+                    balance,
+                    slices,
+                    compliance,
+                });
             };
             let apart = first.pair.abs_diff(last.pair) as usize;
             if apart > self.coupled {
@@ -360,13 +370,18 @@ impl FaceModel {
                 });
             }
             let compliance = compliance(self, &slices);
-            match balance(&compliance, &slices, load) {
+            let is_last = heavier >= HEAVIEST;
+            match balance_of(&compliance, &slices, load, is_last) {
                 Err(PositionError::Contact(ContactError::NotPositiveDefinite { .. }))
-                    if heavier < HEAVIEST =>
+                    if !is_last =>
                 {
                     heavier *= HEAVIER;
+                    before = Some((slices, compliance));
                 }
-                Ok(balance) if balance.is_strained && heavier < HEAVIEST => heavier *= HEAVIER,
+                Ok(balance) if balance.is_strained && !is_last => {
+                    heavier *= HEAVIER;
+                    before = Some((slices, compliance));
+                }
                 balance => {
                     return Ok(Balanced {
                         balance: balance?,
@@ -584,7 +599,7 @@ mod tests {
                     let lines = Stretches::whole(&model, eta, phases);
                     let heavier = HEAVIER;
                     let slices = slice::lay(&model, eta, &lines, Some(Loading { load, heavier }));
-                    let balance = balance(&compliance(&model, &slices), &slices, load);
+                    let balance = balance_of(&compliance(&model, &slices), &slices, load, false);
                     model.told(&slices, &balance.expect("a balance"), load)
                 })
                 .collect();

@@ -8,8 +8,7 @@ use super::spring::Spring;
 use crate::contact::facing::{Facing, View};
 use crate::contact::half_plane::{hertz, logarithm_factor};
 use crate::contact::placement::Placement;
-use crate::gear::{ContactLine, Member};
-use crate::root_finding::bisect;
+use crate::gear::{ContactLine, GearPair, Member};
 
 /// No slice is shorter than so many half-widths of its contact: a line that short is none.
 const SHORTEST: f64 = 2.0;
@@ -170,6 +169,19 @@ struct Layer<'a> {
     least: f64,
 }
 
+/// Whether a force between the flanks of `facing`, which stand so at `phase`, drives on. Far off the path it may turn the driven gear back: flanks
+/// touch elsewhere long before they do there.
+pub(super) fn drives(gears: &GearPair, phase: f64, facing: &Facing) -> bool {
+    arms(&view_of(gears, phase, facing), facing)[1] > 0.0
+}
+
+fn view_of<'a>(gears: &'a GearPair, phase: f64, facing: &Facing) -> View<'a> {
+    View {
+        placement: Placement::drawn(gears, phase),
+        seat: facing.seat,
+    }
+}
+
 /// The arms of a force in the first hollow of `facing` about both axes.
 fn arms(view: &View<'_>, facing: &Facing) -> [f64; 2] {
     // Where flanks face each other the hollow is seen.
@@ -194,9 +206,7 @@ impl<'a> Layer<'a> {
     }
 
     fn line(&self, eta: f64, line: &ContactLine) -> Vec<Slice> {
-        let Some([from, to]) = self.driving(eta, line) else {
-            return Vec::new();
-        };
+        let [from, to] = line.heights;
         let pair = &self.model.pair;
         let half_width = self.densities.map_or(0.0, |[_, density]| {
             let s = 0.5 * pair.section().line_of_action();
@@ -253,44 +263,9 @@ impl<'a> Layer<'a> {
             .collect()
     }
 
-    /// The part of `line` at the position `eta` where a force on its sections drives on. Far off the path it may turn the driven gear back: flanks
-    /// touch elsewhere long before they do there.
-    fn driving(&self, eta: f64, line: &ContactLine) -> Option<[f64; 2]> {
-        const PLACES: u32 = 16;
-        let drives = |z: f64| {
-            let phase = self.model.pair.phase(eta, line.pair, z);
-            let facing = Facing::drawn(&self.model.long, phase);
-            facing.is_none_or(|facing| arms(&self.view(phase, &facing), &facing)[1] > 0.0)
-        };
-        let [from, to] = line.heights;
-        if self.model.pair.advance() == 0.0 {
-            return drives(from).then_some([from, to]);
-        }
-        if drives(from) && drives(to) {
-            return Some([from, to]);
-        }
-        let at = |i: u32| from + (to - from) * f64::from(i) / f64::from(PLACES);
-        let inside = (0..=PLACES).map(at).find(|z| drives(*z))?;
-        let end = |end: f64| {
-            if drives(end) {
-                end
-            } else {
-                bisect(inside, end, drives)
-            }
-        };
-        Some([end(from), end(to)])
-    }
-
-    fn view(&self, phase: f64, facing: &Facing) -> View<'a> {
-        View {
-            placement: Placement::drawn(&self.model.long, phase),
-            seat: facing.seat,
-        }
-    }
-
     /// The place of a line where its section faces the other so, as drawn, on a slice so long `along` the line.
     fn place(&self, phase: f64, facing: &Facing, along: f64) -> Place {
-        let view = self.view(phase, facing);
+        let view = view_of(&self.model.long, phase, facing);
         let hollow = &facing.hollows[0];
         let weights = arms(&view, facing).map(|arm| arm * self.cosine);
         let radius = {
