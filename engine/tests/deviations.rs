@@ -345,10 +345,10 @@ fn nothing_penetrates_where_the_tip_of_a_gear_that_runs_out_far_carries_everythi
             pressure_angle: 20_f64.to_radians(),
             addendum: 4.241685733765527e-3,
             dedendum: 5.100334700792104e-3,
-            tip_radius: 0.6525732149401979e-3,
+            tip_radius: 6.525_732_149_401_98e-4,
         };
         data.profile_shift = shift;
-        data.face_width = 17.404557301851202e-3;
+        data.face_width = 1.740_455_730_185_12e-2;
         data
     };
     let mut driving = made(16, 0.46916258245463155, 7.196344833368129e-3);
