@@ -620,9 +620,9 @@ fn along_faces_the_projection_is_the_whole_solution_without_holes_and_near_it_wi
                 "{error:e} of {delta:e}"
             );
         }
-        // One mesh period instead of ten.
+        // One mesh period of four positions instead of ten; about twelve more between them are solved by both.
         let iterations = |by: &Analysis| by.evidence.contact_iterations;
-        assert!(5 * iterations(&projected) < iterations(&whole));
+        assert!(2 * iterations(&projected) < iterations(&whole));
         let face = |by: &Analysis| by.curves[0].face.clone().expect("along the faces");
         let (one, other) = (face(&projected), face(&whole));
         assert_eq!(one.load_centroid.len(), other.load_centroid.len());

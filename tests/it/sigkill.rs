@@ -148,7 +148,7 @@ async fn a_thousand_decomposition_designs_straight_through_and_killed_half_way()
             1000,
         );
         println!(
-            "1000 designs in {seconds:.2} s, {:.1} a second; the table took {:.3} s; peak memory {:?} MB; database {} MB",
+            "1000 designs in {seconds:.2} s, {:.1} a second; the table took {:.3} s; peak memory {} MB; database {} MB",
             1000.0 / seconds,
             read.elapsed().as_secs_f64(),
             process.peak_memory_mb(),

@@ -6,12 +6,12 @@ use std::path::Path;
 use std::str::FromStr;
 use std::time::Duration;
 
-use sqlx::migrate::{MigrateError, Migrator};
+use sqlx::migrate::{MigrateError, Migration, MigrationType, Migrator};
 use sqlx::postgres::{PgConnectOptions, PgPoolOptions};
 use sqlx::sqlite::{
     SqliteAutoVacuum, SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous,
 };
-use sqlx::{ConnectOptions, Connection, PgConnection, SqliteConnection};
+use sqlx::{ConnectOptions, Connection, PgConnection, SqlSafeStr, SqliteConnection};
 use tokio::time::timeout;
 use tracing::{info, warn};
 use uuid::Uuid;
@@ -24,14 +24,30 @@ use super::private::open_or_make;
 use super::statement::{Dialect, LONGEST_STATEMENT, Pool, Renewal};
 use super::{Place, Store, StoreError};
 
+/// The files of the folder `migrations`: their numbers, what they are called, and their statements.
+mod files {
+    include!(concat!(env!("OUT_DIR"), "/migrations.rs"));
+}
+
 /// What brings the tables up to date. Those of a later version may be there already.
-fn migrations(dialect: Dialect) -> Migrator {
-    let mut migrations = match dialect {
-        Dialect::Sqlite => sqlx::migrate!(),
-        Dialect::Postgres => sqlx::migrate!("migrations/postgres"),
+pub(super) fn migrations(dialect: Dialect) -> Migrator {
+    let files = match dialect {
+        Dialect::Sqlite => files::SQLITE,
+        Dialect::Postgres => files::POSTGRES,
     };
-    migrations.set_ignore_missing(true);
-    migrations
+    let migrations = files.iter().map(|&(version, name, statements)| {
+        let statements = statements.into_sql_str();
+        Migration::new(
+            version,
+            name.into(),
+            MigrationType::Simple,
+            statements,
+            false,
+        )
+    });
+    let mut migrator = Migrator::with_migrations(migrations.collect());
+    migrator.set_ignore_missing(true);
+    migrator
 }
 
 /// Who brings the tables up to date.

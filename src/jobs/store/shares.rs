@@ -9,7 +9,10 @@ use std::collections::BTreeSet;
 
 use uuid::Uuid;
 
+use sqlx::Row;
+
 use super::dialect;
+use super::rows::from_row;
 use super::statement::{Connection, query, query_as};
 
 /// Jobs that stand alone have so many times the part of a study: somebody waits for them, but a study is not to starve.
@@ -66,7 +69,7 @@ pub(super) async fn activate(
 }
 
 /// A lane with work to do.
-#[derive(Debug, Clone, sqlx::FromRow)]
+#[derive(Debug, Clone)]
 pub(super) struct Lane {
     pub(super) client: String,
     /// The id of the study; empty for jobs that stand alone.
@@ -76,7 +79,7 @@ pub(super) struct Lane {
 }
 
 /// What runs in a process, and whether a job waits that is to run alone.
-#[derive(Debug, Clone, Copy, Default, sqlx::FromRow)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Here {
     /// How many jobs run.
     pub(super) running: i64,
@@ -86,12 +89,27 @@ pub(super) struct Here {
     pub(super) waiting: i64,
 }
 
-#[derive(sqlx::FromRow)]
 struct LaneHere {
-    #[sqlx(flatten)]
     lane: Lane,
-    #[sqlx(flatten)]
     here: Here,
+}
+
+from_row! {
+    LaneHere, |row| {
+        Ok(Self {
+            lane: Lane {
+                client: row.try_get("client")?,
+                lane: row.try_get("lane")?,
+                client_due: row.try_get("client_due")?,
+                lane_due: row.try_get("lane_due")?,
+            },
+            here: Here {
+                running: row.try_get("running")?,
+                alone: row.try_get("alone")?,
+                waiting: row.try_get("waiting")?,
+            },
+        })
+    }
 }
 
 /// The lanes with work to do, in the order in which they are due, and what runs in `process`, which is not told where nothing waits.

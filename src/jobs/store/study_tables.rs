@@ -1,12 +1,14 @@
 //! The rows of studies, some at a time: a table of any length is read by short looks, each of which sees the last commit.
 
+use sqlx::Row;
 use uuid::Uuid;
 
+use super::rows::from_row;
 use super::statement::{query_as, query_scalar};
 use super::{Document, Store, StoreError};
 
 /// A row as it is read.
-#[derive(Debug, Clone, sqlx::FromRow)]
+#[derive(Debug, Clone)]
 pub(in crate::jobs) struct StoredRow {
     pub(in crate::jobs) label: String,
     pub(in crate::jobs) changes: String,
@@ -14,6 +16,19 @@ pub(in crate::jobs) struct StoredRow {
     pub(in crate::jobs) status: Option<String>,
     pub(in crate::jobs) summary: Option<String>,
     pub(in crate::jobs) problem: Option<String>,
+}
+
+from_row! {
+    StoredRow, |row| {
+        Ok(Self {
+            label: row.try_get("label")?,
+            changes: row.try_get("changes")?,
+            job: row.try_get("job")?,
+            status: row.try_get("status")?,
+            summary: row.try_get("summary")?,
+            problem: row.try_get("problem")?,
+        })
+    }
 }
 
 /// The results of a design.

@@ -5,6 +5,8 @@ use sqlx::{ConnectOptions, Connection};
 
 use super::*;
 use crate::jobs::store::Filter;
+use crate::jobs::store::open::migrations;
+use crate::jobs::store::statement::Dialect;
 use crate::wire::Status;
 
 /// What the version before this one wrote.
@@ -37,7 +39,7 @@ async fn jobs_results_studies_and_keys_survive_the_upgrade() {
         .filename(&path)
         .create_if_missing(true);
     let mut connection = before.connect().await.unwrap();
-    let mut migrator = sqlx::migrate!();
+    let mut migrator = migrations(Dialect::Sqlite);
     // As it was before the third one.
     migrator.migrations.to_mut().truncate(2);
     migrator
