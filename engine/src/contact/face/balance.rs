@@ -1,16 +1,16 @@
 //! The balance of forces on slices whose springs are not linear.
 //!
-//! What a line yields smoothly and under its mean loads is told in the middles of its slices and goes straight from one to the next; gaps go straight from the
-//! middles to the ends of slices. So the flanks are pressed by a depth p that is piecewise linear along z, and the line load q(p) of the springs
-//! is continuous and ends where p does. It is integrated over the loaded part of each half slice; its moments are those of the forces in
-//! the middles, so that no work is lost between them:
+//! The linear yield of a line is computed in the middles of its slices and interpolated linearly between them; gaps are interpolated linearly from the
+//! middles to the ends of slices. So the depth p by which flanks are pressed together is piecewise linear along z, and the line load q(p) of the springs
+//! is continuous and ends where p does. It is integrated over the loaded part of each half slice. The forces in the middles have
+//! the same moments, so that the work is the same:
 //!
 //! ```text
 //! p = δ w − g − P H N,   N = ∫ Pᵀ q(p) dz,   ∫ w q(p) dz = F
 //! ```
 //!
 //! q rises with p, and H = L Lᵀ: with N = L⁻ᵀ y these are the conditions for the least of a convex function of y and δ, and there is one
-//! balance. Newton's way to it is shortened where the function would rise again before its end.
+//! balance. A step of Newton's method is shortened where the function would rise again before its end.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
@@ -23,17 +23,17 @@ use crate::fem::dense::Cholesky;
 /// Newton steps, of which some eight are taken.
 const MOST_STEPS: u32 = 100;
 
-/// Looks for the least energy on the way of one step.
+/// Evaluations of the energy's slope along one step, at most.
 const MOST_LOOKS: u32 = 40;
 
-/// What slices are taken to yield more, in K q, until their compliance is positive definite. Next to slices that are about as short as their contact
-/// is wide the half space of a line without a width is too much, and without this forces of one sign and the other would take energy out of it.
+/// By how much more slices yield, in K q, until their compliance is positive definite. Beside a slice that is about as short as its contact is wide,
+/// the half space of a line without width yields too much: equal and opposite forces would gain energy from it.
 const SOFTER: [f64; 5] = [0.0, 0.1, 0.2, 0.4, 0.8];
 
-/// What counts as no way, over the δ that the load causes.
+/// A step that moves flanks by less than this part of the δ that the load causes ends the iteration.
 const NO_WAY: f64 = 1e-11;
 
-/// The places of Gauss on half a slice that is loaded, and on the loaded part of one, where the load turns more; and their weights.
+/// The points and weights of Gauss's rules over a loaded half of a slice, and over the loaded part of one, where the load is more curved.
 const WHOLE: [[f64; 2]; 2] = [
     [0.211_324_865_405_187_1, 0.5],
     [0.788_675_134_594_812_9, 0.5],
@@ -45,13 +45,13 @@ const PART: [[f64; 2]; 4] = [
     [0.930_568_155_797_026_3, 0.173_927_422_568_726_93],
 ];
 
-/// A place that is loaded.
+/// A loaded point of integration.
 struct Point {
     slice: usize,
-    /// The slice towards which it lies, or its own at an end of the line, and the part that it has of what that is moved.
+    /// The neighbor on its side, or its own slice at an end of the line, and the weight of that one's middle in the interpolation.
     beside: usize,
     share: f64,
-    /// From the middle of the slice (0) to that of its ends (1).
+    /// On which half of the slice, and where: from the middle (0) to the end (1).
     end: usize,
     place: f64,
     /// The arm about the driven axis.
@@ -61,7 +61,7 @@ struct Point {
     growth: f64,
 }
 
-/// What the whole load on one slice is.
+/// The load on one slice.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Carried {
     /// Normal to the flanks, in N, and how it rises with the load.
@@ -73,28 +73,28 @@ pub(super) struct Carried {
     pub(super) part: [f64; 2],
 }
 
-/// The forces on the slices, and what they leave.
+/// The forces on the slices, and the gaps that are left.
 pub(super) struct Balance {
     /// What each slice carries.
     pub(super) carried: Vec<Carried>,
     /// The forces in their middles that stand for all of that, N, and how they rise with the load.
     pub(super) forces: Vec<f64>,
     pub(super) load_derivative: Vec<f64>,
-    /// The gaps in their middles that are open; and what is left of one, positive or negative, where a slice carries.
+    /// The gaps in their middles; where a slice carries load, its residual.
     pub(super) gaps: Vec<f64>,
     /// g + H N − δ w.
     without_springs: Vec<f64>,
     pub(super) transmission_error: f64,
     pub(super) stiffness: f64,
     pub(super) iterations: u32,
-    /// Whether springs press farther than they were made for.
+    /// Whether springs carry more than they were made for.
     pub(super) is_strained: bool,
     points: Vec<Point>,
     tangent: Tangent,
     lower: Mat<f64>,
 }
 
-/// Where forces stand that may not be in balance yet.
+/// An iterate.
 #[derive(Clone)]
 struct State {
     /// y = Lᵀ N.
@@ -123,16 +123,28 @@ struct Problem<'a> {
 }
 
 /// The balance of `slices` under `load` with the linear compliance `h`.
+///
+/// # Errors
+///
+/// [`ContactError::NotPositiveDefinite`] where slices are so short beside the width of their contact that the compliance is not positive definite.
 pub(super) fn balance(h: &Mat<f64>, slices: &[Slice], load: f64) -> Result<Balance, PositionError> {
-    balance_of(h, slices, load, false)
+    balance_with(h, slices, load, &[0.0])
 }
 
-/// The same; where these are the last slices that can be laid, they may yield somewhat more ([`SOFTER`]).
-pub(super) fn balance_of(
+/// The same for slices that cannot be made longer: they yield more until the compliance is positive definite ([`SOFTER`]).
+pub(super) fn softened_balance(
     h: &Mat<f64>,
     slices: &[Slice],
     load: f64,
-    is_last: bool,
+) -> Result<Balance, PositionError> {
+    balance_with(h, slices, load, &SOFTER)
+}
+
+fn balance_with(
+    h: &Mat<f64>,
+    slices: &[Slice],
+    load: f64,
+    softer: &[f64],
 ) -> Result<Balance, PositionError> {
     let factor = |softer: f64| {
         let mut whole = h.clone();
@@ -142,7 +154,6 @@ pub(super) fn balance_of(
         Some((Cholesky::new(whole)?, softer))
     };
     let points = slices.len();
-    let softer = if is_last { &SOFTER[..] } else { &SOFTER[..1] };
     let found = softer.iter().copied().find_map(factor);
     let (factor, softer) = found.ok_or(ContactError::NotPositiveDefinite { points })?;
     let problem = Problem {
@@ -218,7 +229,7 @@ impl Problem<'_> {
             }
             (state, points) = (end.0, end.1);
             if part == 1.0 && is_short {
-                return Ok(self.told((state, points), tangent, h, iterations));
+                return Ok(self.balanced((state, points), tangent, h, iterations));
             }
         }
         Err(PositionError::Contact(ContactError::NotConverged {
@@ -385,7 +396,8 @@ impl Problem<'_> {
         })
     }
 
-    fn told(
+    /// The balance at its last iterate.
+    fn balanced(
         self,
         (state, points): (State, Vec<Point>),
         tangent: Tangent,
@@ -432,17 +444,11 @@ impl Problem<'_> {
             }
         }
         let opened = product(h.as_ref(), &forces);
-        let spread = self.slices.iter().zip(&forces);
-        let spread = spread.map(|(slice, force)| slice.middle.spring.spread(self.softer) * force);
         // Where a slice carries, forces and what they open are to be the same.
-        for (((gap, carried), opened), (spread, told)) in gaps
-            .iter_mut()
-            .zip(&carried)
-            .zip(&opened)
-            .zip(spread.zip(&state.opened))
-        {
-            if carried.force > 0.0 {
-                *gap = opened + spread - told;
+        for (i, slice) in self.slices.iter().enumerate() {
+            if carried[i].force > 0.0 {
+                let spread = slice.middle.spring.spread(self.softer) * forces[i];
+                gaps[i] = opened[i] + spread - state.opened[i];
             }
         }
         let without_springs = self.slices.iter().zip(&opened);
@@ -473,7 +479,7 @@ impl Problem<'_> {
 }
 
 impl Point {
-    /// What is told in the middles of the slices, there.
+    /// What is given in the middles of the slices, interpolated to this point.
     fn at(&self, middles: &[f64]) -> f64 {
         (1.0 - self.share) * middles[self.slice] + self.share * middles[self.beside]
     }
@@ -520,7 +526,7 @@ fn load(slice: &Slice, end: &Place, place: f64, depth: f64) -> [f64; 2] {
     [0, 1].map(|i| middle[i] + (outer[i] - middle[i]) * place)
 }
 
-/// What `of` each point, in the middles of so many slices.
+/// `of` each point, summed up in the middles of so many slices by the weights of interpolation.
 fn in_middles(points: &[Point], slices: usize, of: impl Fn(&Point) -> f64) -> Vec<f64> {
     let mut sums = vec![0.0; slices];
     for point in points {

@@ -96,7 +96,7 @@ fn add_ends(model: &FaceModel, slices: &[Slice], h: &mut Mat<f64>) {
         for (column, one) in slices.iter().enumerate() {
             let after = slices.iter().enumerate().skip(column);
             for (row, other) in after.take_while(|(_, slice)| slice.pair == one.pair) {
-                // Of what each of them does to the other, which is the same but for where in a slice it is told.
+                // What each of them does to the other is the same but for the point in a slice at which it is taken.
                 let (one_at, other_at) = (place(one), place(other));
                 let both = yields.at_ends(other_at, one_at, one.along)
                     + yields.at_ends(one_at, other_at, other.along);

@@ -1,7 +1,7 @@
 //! Which slope and which crowning of the driving leads would even the load along the face.
 //!
-//! The slices of a few positions are laid once. A lead changes their gaps alone, so that another balance tells the strips of the face, and the springs at
-//! that balance how they change with the lead. From there the lead that makes the heaviest strip lightest is that of a linear problem in two unknowns, within
+//! The slices of a few positions are made once. A lead changes their gaps alone, so that another balance gives the loads of the strips of the face, and the springs at
+//! that balance give their change with the lead. From there the lead that makes the heaviest strip lightest is that of a linear problem in two unknowns, within
 //! a step that grows where the strips follow it and shrinks where they do not.
 
 use faer::Mat;

@@ -1,10 +1,10 @@
 //! Contact along faces: lines that cross the flanks, cut into slices.
 //!
-//! Every transverse section of the pair is a plane pair at another phase, so that what flanks see of each other, where they touch first and
-//! how they push there is what the plane knows ([`crate::contact::facing`]). Along a slice stand nonlinear springs between
-//! the flanks ([`spring`]), Hertz's where they stand free, and the plane's patches of cells where a tip edge, a fillet or a kink is near; the load on them is
-//! integrated over the part of the slice that is pressed, so that nothing steps where the contact ends.
-//! What else gives way is linear: the smooth yield of both gears ([`FlankYield`]), and the half space between
+//! Every transverse section of the pair is a plane pair at another phase: the plane's code says where its flanks touch first, how far they are apart, and
+//! in which direction they push ([`crate::contact::facing`]). Along a slice stand nonlinear springs between
+//! the flanks ([`spring`]): Hertz's, or the plane's patches of cells where a tip edge, a fillet or a kink is near. The line load is
+//! integrated over the loaded part of the slice, so that it is continuous where the contact ends.
+//! The rest of the compliance is linear: the smooth yield of both gears ([`FlankYield`]), and the half space between
 //! the slices of one line (`compliance`). `balance` finds the depths to which the springs are pressed.
 //!
 //! ```text
@@ -29,7 +29,7 @@ use super::positions::PositionsError;
 use super::{ContactError, MeshContact, PairContact, PairLoads, PeakPlace, PositionError};
 use crate::gear::{Member, SolidPair};
 use crate::run::Run;
-use balance::{Balance, balance_of};
+use balance::{Balance, balance, softened_balance};
 use compliance::compliance;
 pub use model::{FaceModel, FlankYield};
 use slice::{Loading, Slice, Stretches};
@@ -40,11 +40,11 @@ pub const SLICES: usize = 40;
 /// How far beyond δ pairs are looked for, as a part of how far the flanks are pressed.
 const BEYOND: f64 = 0.3;
 
-/// How many times the mean load slices are first laid for, and how many times at most.
+/// Slices are first made for a line load of so many times its mean, and for so many times at most.
 const HEAVIER: f64 = 2.5;
 const HEAVIEST: f64 = 200.0;
 
-/// How many times stretches of lines that carry are cut anew, at most.
+/// How many times the loaded parts of lines are cut finer, at most.
 const FINEST: usize = 4;
 
 /// Slices in balance.
@@ -56,21 +56,21 @@ struct Balanced {
 }
 
 impl Balanced {
-    /// The stretches of `of`, of which these are the slices, that are shut, where they are worth to be cut anew.
-    fn shut(&self, model: &FaceModel, of: &Stretches) -> Option<Stretches> {
+    /// The loaded part of each line of `of`, whose slices these are, if together they are less than half a face: they are cut finer then.
+    fn loaded(&self, model: &FaceModel, of: &Stretches) -> Option<Stretches> {
         let carried = self.balance.carried.iter();
         let gaps = carried.zip(&self.balance.gaps);
         let gaps: Vec<f64> = gaps
             .map(|(carried, gap)| if carried.force > 0.0 { 0.0 } else { *gap })
             .collect();
-        of.shut(model, &self.slices, &gaps)
+        of.loaded(model, &self.slices, &gaps)
     }
 }
 
-/// What is found among the flanks within a reach.
+/// What is found among the flanks that touch before δ is as large as was assumed.
 enum Reached {
     Contact(FaceContact),
-    /// Nothing: the first of them touch at this δ.
+    /// None touches: the first of them do at this δ.
     Touch(f64),
 }
 
@@ -193,27 +193,27 @@ impl FaceModel {
         if positions.is_empty() {
             return Ok(Vec::new());
         }
-        // Where lines end decides where slices lie. That is looked for at one place whatever is asked for, so that a position which is
-        // checked by itself is solved as it was among all.
+        // Slices lie where lines end, and lines end where flanks touch before δ is as large as `reach`. That starts from one position, whichever
+        // are asked for, so that a position which is solved by itself has the same slices as among all.
         const LOOKED_FROM: f64 = 0.0;
         let touch = self.least_touch(LOOKED_FROM);
         let touch = touch.ok_or_else(|| at(PositionError::NoContact, LOOKED_FROM))?;
         let mut reach = self
             .first_reach(LOOKED_FROM, load, touch)
             .map_err(|error| at(error, LOOKED_FROM))?;
-        let mut told = false;
+        let mut is_counted = false;
         loop {
             let phases = self.phases_within(reach);
             let solved: Result<Vec<Reached>, PositionsError> = positions
                 .par_iter()
                 .map(|&eta| {
                     let reached = self.reached(eta, load, phases, reach);
-                    run.reached(u64::from(!told))?;
+                    run.reached(u64::from(!is_counted))?;
                     reached.map_err(|error| at(error, eta))
                 })
                 .collect();
             let solved = solved?;
-            told = true;
+            is_counted = true;
             let farthest = solved.iter().map(Reached::delta).fold(reach, f64::max);
             if farthest == reach {
                 let contacts = solved.into_iter().filter_map(Reached::contact);
@@ -223,7 +223,7 @@ impl FaceModel {
         }
     }
 
-    /// The contact at the position `eta` under `load` among the flanks that touch before δ is `reach`, or how far it would take to reach any.
+    /// The contact at the position `eta` under `load` among the flanks that touch before δ is `reach`, or the δ at which the first of them touch.
     fn reached(
         &self,
         eta: f64,
@@ -240,7 +240,7 @@ impl FaceModel {
         }
     }
 
-    /// How far flanks are to be looked for under `load`: a little more than δ at the position `eta`, where the first of them `touch`.
+    /// The δ up to which flanks are looked at under `load`: a little more than δ is at the position `eta`, where the first of them `touch`.
     fn first_reach(&self, eta: f64, load: f64, touch: f64) -> Result<f64, PositionError> {
         let moduli = Member::BOTH.map(|member| self.long.gear(member).material().youngs_modulus);
         // Solid gears yield by about half of this.
@@ -296,7 +296,7 @@ impl FaceModel {
             while !touches(inside) && (inside - other) * way > 0.0 {
                 outside = inside;
                 inside -= way * STEP;
-                // However narrow a stretch is that touches, its nearest phase is not passed by.
+                // A range of phases that touch may be narrower than a step: the phase in it at which flanks are nearest is not stepped over.
                 let first = |a: f64, b: f64| if (b - a) * way > 0.0 { b } else { a };
                 let ahead = nearest
                     .iter()
@@ -313,7 +313,7 @@ impl FaceModel {
 
     /// The contact at the position `eta` under `load` of sections in `phases`.
     ///
-    /// Where few slices carry, so that their length is a large part of the contact, that is cut anew.
+    /// Where few slices carry load, the loaded part of each line is cut into finer ones.
     fn contact_within(
         &self,
         eta: f64,
@@ -322,10 +322,10 @@ impl FaceModel {
     ) -> Result<FaceContact, PositionError> {
         let whole = Stretches::whole(self, eta, phases);
         let mut balanced = self.balanced(eta, load, &whole)?;
-        let mut shut = balanced.shut(self, &whole);
+        let mut loaded = balanced.loaded(self, &whole);
         for _ in 0..FINEST {
-            let Some(stretches) = shut else { break };
-            // Where a line is too short for finer slices, the longer ones stand.
+            let Some(stretches) = loaded else { break };
+            // Where a line is too short for finer slices, the longer ones are kept.
             let Ok(finer) = self.balanced(eta, load, &stretches) else {
                 break;
             };
@@ -333,15 +333,15 @@ impl FaceModel {
                 break;
             }
             balanced = finer;
-            shut = balanced.shut(self, &stretches);
+            loaded = balanced.loaded(self, &stretches);
         }
-        Ok(self.told(&balanced.slices, &balanced.balance, load))
+        Ok(self.summary(&balanced.slices, &balanced.balance, load))
     }
 
     /// The balance at the position `eta` under `load` of the slices of `stretches`.
     ///
-    /// No line is shorter than its contact is wide, and where few of many slices carry they press wider than was thought: then they are laid
-    /// anew, longer.
+    /// No slice is shorter than its contact is wide. Where few of many slices carry, their contact is wider than that of the load for which they were
+    /// made: then longer ones are made.
     fn balanced(
         &self,
         eta: f64,
@@ -349,18 +349,11 @@ impl FaceModel {
         stretches: &Stretches,
     ) -> Result<Balanced, PositionError> {
         let mut heavier = HEAVIER;
-        let mut before: Option<(Vec<Slice>, Mat<f64>)> = None;
-        loop {
-            let slices = slice::lay(self, eta, stretches, Some(Loading { load, heavier }));
+        let mut shorter = None;
+        let (slices, compliance) = loop {
+            let slices = slice::slices_of(self, eta, stretches, Some(Loading { load, heavier }));
             let (Some(first), Some(last)) = (slices.first(), slices.last()) else {
-                // No longer ones can be laid.
-                let (slices, compliance) = before.ok_or(PositionError::NoContact)?;
-                let balance = balance_of(&compliance, &slices, load, true)?;
-                return Ok(Balanced {
-                    balance,
-                    slices,
-                    compliance,
-                });
+                break shorter.ok_or(PositionError::NoContact)?;
             };
             let apart = first.pair.abs_diff(last.pair) as usize;
             if apart > self.coupled {
@@ -370,31 +363,32 @@ impl FaceModel {
                 });
             }
             let compliance = compliance(self, &slices);
-            let is_last = heavier >= HEAVIEST;
-            match balance_of(&compliance, &slices, load, is_last) {
-                Err(PositionError::Contact(ContactError::NotPositiveDefinite { .. }))
-                    if !is_last =>
-                {
-                    heavier *= HEAVIER;
-                    before = Some((slices, compliance));
-                }
-                Ok(balance) if balance.is_strained && !is_last => {
-                    heavier *= HEAVIER;
-                    before = Some((slices, compliance));
-                }
-                balance => {
+            if heavier >= HEAVIEST {
+                break (slices, compliance);
+            }
+            match balance(&compliance, &slices, load) {
+                Ok(balance) if !balance.is_strained => {
                     return Ok(Balanced {
-                        balance: balance?,
+                        balance,
                         slices,
                         compliance,
                     });
                 }
+                Ok(_) | Err(PositionError::Contact(ContactError::NotPositiveDefinite { .. })) => {
+                    heavier *= HEAVIER;
+                    shorter = Some((slices, compliance));
+                }
+                Err(error) => return Err(error),
             }
-        }
+        };
+        Ok(Balanced {
+            balance: softened_balance(&compliance, &slices, load)?,
+            slices,
+            compliance,
+        })
     }
 
-    /// What `contact` loads the functions over the flanks of its pairs with: a column for the forces, and one for how they rise with
-    /// the load.
+    /// The loads of `contact` on the functions over the flanks, pair by pair: a column for the forces, and one for their derivative to the load.
     pub fn loads(&self, contact: &FaceContact) -> Vec<PairLoads> {
         let lines = contact.middles.chunk_by(|one, next| one.pair == next.pair);
         lines
@@ -444,8 +438,8 @@ impl FaceModel {
         sums
     }
 
-    /// What `balance` says of the mesh.
-    fn told(&self, slices: &[Slice], balance: &Balance, load: f64) -> FaceContact {
+    /// The contact of the mesh by `balance`.
+    fn summary(&self, slices: &[Slice], balance: &Balance, load: f64) -> FaceContact {
         let mut pairs: Vec<PairContact> = Vec::new();
         let mut peak_pressure = None::<f64>;
         let mut at_sharp_edge = false;
@@ -598,9 +592,10 @@ mod tests {
                     let phases = [s_a, s_e].map(|s| model.pair.phase_at(s));
                     let lines = Stretches::whole(&model, eta, phases);
                     let heavier = HEAVIER;
-                    let slices = slice::lay(&model, eta, &lines, Some(Loading { load, heavier }));
-                    let balance = balance_of(&compliance(&model, &slices), &slices, load, false);
-                    model.told(&slices, &balance.expect("a balance"), load)
+                    let slices =
+                        slice::slices_of(&model, eta, &lines, Some(Loading { load, heavier }));
+                    let balance = balance(&compliance(&model, &slices), &slices, load);
+                    model.summary(&slices, &balance.expect("a balance"), load)
                 })
                 .collect();
             let deltas = contacts

@@ -41,22 +41,22 @@ pub(super) struct Place {
     pub(super) spring: Arc<Spring>,
 }
 
-/// What slices are laid for.
+/// The load for which slices are made.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Loading {
     /// The load.
     pub(super) load: f64,
-    /// How many times the mean may stand on each length of a contact line: so heavy an edge is looked for beside it, and so heavy no slice is
-    /// shorter than its contact is wide.
+    /// The largest line load that is expected, over the mean one. Under it the contact is so wide that an edge beside it is looked for, and no slice is
+    /// shorter than that width.
     pub(super) heavier: f64,
 }
 
-/// What is cut into slices.
+/// Lines that are cut into slices.
 pub(super) struct Stretches {
     lines: Vec<ContactLine>,
     /// No slice is longer along the axis.
     longest: f64,
-    /// The slices of each line, were they not shorter than their contact is wide.
+    /// At least so many slices a line, unless they would be shorter than their contact is wide.
     least: f64,
 }
 
@@ -74,24 +74,24 @@ impl Stretches {
         }
     }
 
-    /// Where `slices` of these are shut, which have no gap, or may be within half of their length, for which the `gaps` beside them speak; each
-    /// with a slice to either side, and cut into as many as a whole face is. `None` where that is more than half a face.
-    pub(super) fn shut(&self, model: &FaceModel, slices: &[Slice], gaps: &[f64]) -> Option<Self> {
+    /// The loaded part of each line, by the `gaps` of its `slices`: from the first slice that is loaded, or by the gap beside it may be at one of its
+    /// ends, to the last, and one more to either side. It is cut into as many slices as a whole face. `None` where it is more than half a face.
+    pub(super) fn loaded(&self, model: &FaceModel, slices: &[Slice], gaps: &[f64]) -> Option<Self> {
         let mut lines = Vec::new();
         let mut first = 0;
         for line in slices.chunk_by(|one, next| one.pair == next.pair) {
             let gaps = &gaps[first..first + line.len()];
             first += line.len();
-            let may_shut = |i: usize| {
+            let may_be_loaded = |i: usize| {
                 let beside = [i.wrapping_sub(1), i + 1].map(|k| gaps.get(k));
                 let rise = |other: &f64| gaps[i] - (other - gaps[i]).abs() <= 0.0;
                 gaps[i] <= 0.0 || beside.into_iter().flatten().any(rise)
             };
-            let mut shut = (0..line.len()).filter(|&i| may_shut(i));
-            let Some(low) = shut.next() else {
+            let mut loaded = (0..line.len()).filter(|&i| may_be_loaded(i));
+            let Some(low) = loaded.next() else {
                 continue;
             };
-            let high = shut.next_back().unwrap_or(low);
+            let high = loaded.next_back().unwrap_or(low);
             let [low, high] = [low.saturating_sub(1), (high + 1).min(line.len() - 1)];
             lines.push(ContactLine {
                 pair: line[0].pair,
@@ -109,7 +109,7 @@ impl Stretches {
         })
     }
 
-    /// Whether of `slices` of these one that carries ends where its line goes on, as the `whole` ones have it.
+    /// Whether one of the loaded `slices` of these lies at the end of its line, where the `whole` line goes on.
     pub(super) fn end_under_load(
         &self,
         slices: &[Slice],
@@ -139,10 +139,10 @@ fn length(lines: &[ContactLine]) -> f64 {
     lengths.sum()
 }
 
-/// The slices of `stretches` of the lines of `model` at the position `eta`; with the springs that they have under a load, or Hertz's alone.
+/// The slices of `stretches` of `model` at the position `eta`, with the springs for a load, or without one with Hertz's alone.
 ///
-/// Slices of one stretch are equally long, so that they move with their line.
-pub(super) fn lay(
+/// Slices of one line are equally long, so that they move with it.
+pub(super) fn slices_of(
     model: &FaceModel,
     eta: f64,
     stretches: &Stretches,
@@ -151,13 +151,13 @@ pub(super) fn lay(
     // For each length along a contact line.
     let total = length(&stretches.lines);
     let densities = loading.map(|of| [1.0, of.heavier].map(|times| times * of.load / total));
-    let layer = Layer::new(model, densities, stretches);
+    let slicer = Slicer::new(model, densities, stretches);
     let lines = stretches.lines.iter();
-    lines.flat_map(|line| layer.line(eta, line)).collect()
+    lines.flat_map(|line| slicer.line(eta, line)).collect()
 }
 
-/// What all slices of one position have alike.
-struct Layer<'a> {
+/// What all slices of one position have in common.
+struct Slicer<'a> {
     model: &'a FaceModel,
     cosine: f64,
     factor: f64,
@@ -169,7 +169,7 @@ struct Layer<'a> {
     least: f64,
 }
 
-/// Whether a force between the flanks of `facing`, which stand so at `phase`, drives on. Far off the path it may turn the driven gear back: flanks
+/// Whether a force between the flanks of `facing` at `phase` drives the driven gear on. Far off the path of contact it may turn it back; flanks
 /// touch elsewhere long before they do there.
 pub(super) fn drives(gears: &GearPair, phase: f64, facing: &Facing) -> bool {
     arms(&view_of(gears, phase, facing), facing)[1] > 0.0
@@ -182,14 +182,14 @@ fn view_of<'a>(gears: &'a GearPair, phase: f64, facing: &Facing) -> View<'a> {
     }
 }
 
-/// The arms of a force in the first hollow of `facing` about both axes.
+/// The arms about both axes of a force where the gap of `facing` is least.
 fn arms(view: &View<'_>, facing: &Facing) -> [f64; 2] {
-    // Where flanks face each other the hollow is seen.
+    // The place is found wherever flanks face each other.
     let point = view.point(facing.hollows[0].arc);
     point.map_or([1.0, 1.0], |point| view.meeting(&point).arms)
 }
 
-impl<'a> Layer<'a> {
+impl<'a> Slicer<'a> {
     fn new(model: &'a FaceModel, densities: Option<[f64; 2]>, stretches: &Stretches) -> Self {
         let factors = Member::BOTH.map(|member| {
             let modulus = model.long.gear(member).material().youngs_modulus;

@@ -20,10 +20,10 @@ const CELLS: usize = 24;
 /// Below this part of the density that a spring was made for it is taken to be linear.
 const LEAST: f64 = 1e-6;
 
-/// What part of the half space under a slice is told as that under its mean load, in K q; the rest follows the load at each place.
+/// The part of the half space under a slice that belongs to its mean load, in K q; the rest follows the load at each point.
 const SPREAD: f64 = 1.0;
 
-/// The loads a length at which cells are solved: that which they are laid for times powers of this, from `LIGHTEST` such steps below it on.
+/// The line loads at which cells are solved: that for which they are made times powers of this, from `LIGHTEST` such steps below it on.
 const STEP: f64 = 4.0;
 const LIGHTEST: i32 = 5;
 const SOLVED: usize = 8;
@@ -59,8 +59,8 @@ struct Cells {
     scale: f64,
     sharp: [bool; 2],
     active: Mutex<Option<Vec<bool>>>,
-    /// The logarithm of the load that the cells are laid for, and ln ρ and d ln ρ/d ln q at those that are solved.
-    laid_for: f64,
+    /// The logarithm of the load for which the cells are made, and ln ρ and d ln ρ/d ln q at those that are solved.
+    made_for: f64,
     widths: [OnceLock<[f64; 2]>; SOLVED],
 }
 
@@ -99,7 +99,7 @@ impl Spring {
         }
     }
 
-    /// Of two cylinders with this relative radius, on a slice so long `along` its line, laid for a density in the mean and at most.
+    /// Of two cylinders with this relative radius, on a slice so long `along` its line, for a mean and a largest line load.
     pub(super) fn hertz(of: (f64, f64, f64), densities: [f64; 2]) -> Self {
         let (_, radius, factor) = of;
         // ρ = (a/2) e^(−1/2), a² = 2 q R K.
@@ -138,7 +138,7 @@ impl Spring {
                     sharp: Member::BOTH
                         .map(|member| gears.gear(member).data().tip_edge == TipEdge::Sharp),
                     active: Mutex::default(),
-                    laid_for: densities[0].ln(),
+                    made_for: densities[0].ln(),
                     widths: Default::default(),
                     patch,
                     problem,
@@ -254,14 +254,14 @@ impl Cells {
     /// ln ρ under a load a length of this logarithm, and d ln ρ/d ln q: a cubic between those that are solved, straight on beside them.
     fn width(&self, ln_q: f64, factor: f64) -> [f64; 2] {
         let step = STEP.ln();
-        let place = (ln_q - self.laid_for) / step + f64::from(LIGHTEST);
+        let place = (ln_q - self.made_for) / step + f64::from(LIGHTEST);
         let within = place.clamp(0.0, (SOLVED - 1) as f64);
         let first = (within as usize).min(SOLVED - 2);
         let t = within - first as f64;
         let at = |i: usize| {
             *self.widths[i].get_or_init(|| {
                 let steps = i as f64 - f64::from(LIGHTEST);
-                self.solved_width((self.laid_for + steps * step).exp(), factor)
+                self.solved_width((self.made_for + steps * step).exp(), factor)
             })
         };
         if t == 0.0 || t == 1.0 {
