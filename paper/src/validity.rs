@@ -100,7 +100,7 @@ impl Validity {
                 panels,
             };
             let path = folder.join(file);
-            fs::write(&path, figure.to_svg()?)
+            fs::write(&path, figure.to_svg())
                 .with_context(|| format!("{} cannot be written", path.display()))?;
             println!("{}", path.display());
         }

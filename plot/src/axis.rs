@@ -1,9 +1,5 @@
 //! Axes: a range, a scale and the ticks that a reader expects on it.
 
-use std::ops::Range;
-
-use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
-
 /// How values are laid along an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Scale {
@@ -108,63 +104,13 @@ impl Axis {
         &self.ticks
     }
 
-    /// The lower end.
-    pub(crate) fn low(&self) -> f64 {
-        self.low
-    }
-
-    /// The upper end.
-    pub(crate) fn high(&self) -> f64 {
-        self.high
-    }
-
-    /// The place of `value` between the ends, from 0 to 1; what lies beyond an end is put there.
+    /// The part of the way between the ends at which `value` stands, from 0 to 1; what lies beyond an end is put there.
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         let value = value.clamp(self.low, self.high);
         match self.scale {
             Scale::Linear => (value - self.low) / (self.high - self.low),
             Scale::Logarithmic => (value / self.low).ln() / (self.high / self.low).ln(),
         }
-    }
-
-    /// The value at `fraction` of the way between the ends.
-    pub(crate) fn value(&self, fraction: f64) -> f64 {
-        match self.scale {
-            Scale::Linear => self.low + fraction * (self.high - self.low),
-            Scale::Logarithmic => self.low * (self.high / self.low).powf(fraction),
-        }
-    }
-}
-
-impl Ranged for Axis {
-    type FormatOption = NoDefaultFormatting;
-    type ValueType = f64;
-
-    fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
-        from + (self.fraction(*value) * f64::from(to - from)).round() as i32
-    }
-
-    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        // No lines between the ticks.
-        if hint.weight().allow_light_points() {
-            return Vec::new();
-        }
-        self.ticks.iter().map(|(value, _)| *value).collect()
-    }
-
-    fn range(&self) -> Range<f64> {
-        self.low..self.high
-    }
-}
-
-impl ValueFormatter<f64> for Axis {
-    fn format(value: &f64) -> String {
-        value.to_string()
-    }
-
-    fn format_ext(&self, value: &f64) -> String {
-        let named = self.ticks.iter().find(|(tick, _)| tick == value);
-        named.map_or_else(String::new, |(_, name)| name.clone())
     }
 }
 
@@ -222,7 +168,6 @@ mod tests {
     fn decades_are_equally_long() {
         let axis = Axis::decades("", -4, 0);
         assert!((axis.fraction(1e-2) - 0.5).abs() < 1e-12);
-        assert!((axis.value(0.75) - 1e-1).abs() < 1e-12);
-        assert_eq!(axis.format_ext(&1e-4), "10⁻⁴");
+        assert!((axis.fraction(1e-1) - 0.75).abs() < 1e-12);
     }
 }

@@ -1,22 +1,20 @@
 //! Curves and stems over a pair of axes.
 
-use plotters::prelude::*;
-use plotters::style::text_anchor::HPos;
-
 use super::simplify::simplified;
-use super::{Area, Axis, DETAIL, GRID, INK, at, font, thickness, units, write};
+use super::svg::{Anchor, Paint, Place, Svg};
+use super::{Axis, Color, GRID, INK};
 
 /// How far a drawn curve may pass its points, in pixels.
 const TOLERANCE: f64 = 0.15;
 
 /// The room for ticks and labels below and beside a chart, in pixels.
-const BELOW: u32 = 40;
-const BESIDE: u32 = 58;
+const BELOW: f64 = 40.0;
+const BESIDE: f64 = 58.0;
 
 /// The margins of a chart in pixels: above it, with its title, to its left and to its right.
-const ABOVE: u32 = 25;
-const LEFT: u32 = 8;
-const RIGHT: u32 = 18;
+const ABOVE: f64 = 25.0;
+const LEFT: f64 = 8.0;
+const RIGHT: f64 = 18.0;
 
 /// How a series is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,7 +43,7 @@ pub struct Series {
     /// The name in the legend; none if empty.
     pub name: String,
     /// The color.
-    pub color: RGBColor,
+    pub color: Color,
     /// How it is drawn.
     pub look: Look,
     /// The points, in the units of the axes.
@@ -54,7 +52,7 @@ pub struct Series {
 
 impl Series {
     /// A series of points.
-    pub fn new(name: &str, color: RGBColor, look: Look, points: Vec<(f64, f64)>) -> Self {
+    pub fn new(name: &str, color: Color, look: Look, points: Vec<(f64, f64)>) -> Self {
         Self {
             name: name.into(),
             color,
@@ -88,140 +86,131 @@ pub struct Chart {
     pub marks: Vec<Mark>,
 }
 
-pub(crate) type Context<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
-
-/// Where the frame of a panel begins below its top, and ends above its bottom, in pixels.
-pub(crate) fn top() -> f64 {
-    f64::from(ABOVE)
+/// The frame of a panel: two axes, and where they lie.
+pub(crate) struct Frame<'a> {
+    axes: (&'a Axis, &'a Axis),
+    pub(crate) left: f64,
+    pub(crate) right: f64,
+    pub(crate) top: f64,
+    pub(crate) bottom: f64,
 }
 
-pub(crate) fn bottom() -> f64 {
-    f64::from(BELOW)
-}
+impl<'a> Frame<'a> {
+    /// That of a panel of this size, with so much room to its `right`.
+    pub(crate) fn new(axes: (&'a Axis, &'a Axis), (width, height): (f64, f64), right: f64) -> Self {
+        Self {
+            axes,
+            left: LEFT + BESIDE,
+            right: width - right,
+            top: ABOVE,
+            bottom: height - BELOW,
+        }
+    }
 
-/// A panel with its title, its axes and so much room to the `right`.
-pub(crate) fn framed<'a, 'b>(
-    area: &'a Area<'b>,
-    title: &str,
-    (x, y): (&Axis, &Axis),
-    right: u32,
-) -> anyhow::Result<Context<'a, 'b>> {
-    let start = f64::from(LEFT + BESIDE);
-    write(area, title, (start, 13.0), 12.0, (HPos::Left, true))?;
-    let mut context = ChartBuilder::on(area)
-        .margin_top(units(ABOVE))
-        .margin_left(units(LEFT))
-        .margin_right(units(right))
-        .x_label_area_size(units(BELOW))
-        .y_label_area_size(units(BESIDE))
-        .build_cartesian_2d(x.clone(), y.clone())?;
-    context
-        .configure_mesh()
-        .bold_line_style(GRID.stroke_width(thickness(0.75)))
-        .light_line_style(TRANSPARENT)
-        .axis_style(INK.stroke_width(thickness(0.75)))
-        .set_all_tick_mark_size(units(3))
-        .label_style(font(11.0))
-        .axis_desc_style(font(11.5))
-        .x_desc(&x.label)
-        .y_desc(&y.label)
-        .draw()?;
-    Ok(context)
+    /// The place of a point; what lies beyond an end of an axis is put there.
+    pub(crate) fn at(&self, (x, y): (f64, f64)) -> Place {
+        (self.across(x), self.up(y))
+    }
+
+    fn across(&self, x: f64) -> f64 {
+        self.left + self.axes.0.fraction(x) * (self.right - self.left)
+    }
+
+    fn up(&self, y: f64) -> f64 {
+        self.bottom + self.axes.1.fraction(y) * (self.top - self.bottom)
+    }
+
+    /// Whether both axes reach the point.
+    fn shows(&self, (x, y): (f64, f64)) -> bool {
+        self.axes.0.shows(x) && self.axes.1.shows(y)
+    }
+
+    /// Draws the `title`, both axes with their labels, ticks and names, and a grid.
+    pub(crate) fn draw(&self, svg: &mut Svg, title: &str) {
+        const LINE: f64 = 0.75;
+        const TICK: f64 = 3.0;
+        const NAME: f64 = 11.0;
+        const LABEL: f64 = 11.5;
+        let Self {
+            left,
+            right,
+            top,
+            bottom,
+            axes,
+        } = *self;
+        svg.heading(title, (left, 13.0), 12.0);
+        let across = axes.0.ticks().iter();
+        let across = across.map(|(value, name)| (self.across(*value), name));
+        let up = axes.1.ticks().iter();
+        let up = up.map(|(value, name)| (self.up(*value), name));
+        for (x, _) in across.clone() {
+            svg.path([(x, bottom), (x, top)], GRID, LINE);
+        }
+        for (y, _) in up.clone() {
+            svg.path([(left, y), (right, y)], GRID, LINE);
+        }
+        svg.path([(left, top), (left, bottom), (right, bottom)], INK, LINE);
+        for (x, name) in across {
+            svg.path([(x, bottom), (x, bottom + TICK)], INK, LINE);
+            svg.text(name, (x, bottom + TICK + 8.0), NAME, Anchor::Middle);
+        }
+        for (y, name) in up {
+            svg.path([(left - TICK, y), (left, y)], INK, LINE);
+            svg.text(name, (left - TICK - 3.0, y), NAME, Anchor::End);
+        }
+        let middle = (f64::midpoint(left, right), f64::midpoint(top, bottom));
+        svg.text(
+            &axes.0.label,
+            (middle.0, bottom + BELOW - 10.0),
+            LABEL,
+            Anchor::Middle,
+        );
+        svg.upward(&axes.1.label, (LEFT + 6.0, middle.1), LABEL);
+    }
 }
 
 impl Chart {
-    pub(crate) fn draw(&self, area: &Area<'_>, size: (u32, u32)) -> anyhow::Result<()> {
-        let mut context = framed(area, &self.title, (&self.x, &self.y), RIGHT)?;
+    pub(crate) fn draw(&self, svg: &mut Svg, size: (f64, f64)) {
+        let frame = Frame::new((&self.x, &self.y), size, RIGHT);
+        frame.draw(svg, &self.title);
         for mark in &self.marks {
-            self.draw_mark(&mut context, mark)?;
+            let x = frame.across(mark.x);
+            svg.path(
+                [(x, frame.top), (x, frame.bottom)],
+                Color(140, 140, 140),
+                1.0,
+            );
+            svg.text(&mark.name, (x + 4.0, frame.top + 8.0), 11.0, Anchor::Start);
         }
-        let frame = (
-            f64::from(size.0 - LEFT - BESIDE - RIGHT),
-            f64::from(size.1 - BELOW - ABOVE),
-        );
         for series in &self.series {
-            self.draw_series(&mut context, series, frame)?;
+            draw_series(svg, &frame, series);
         }
-        Ok(())
     }
+}
 
-    fn draw_mark(&self, context: &mut Context<'_, '_>, mark: &Mark) -> anyhow::Result<()> {
-        let (x, low, high) = (mark.x, self.y.low(), self.y.high());
-        let style = RGBColor(140, 140, 140).stroke_width(thickness(1.0));
-        context.draw_series([PathElement::new([(x, low), (x, high)], style)])?;
-        let label =
-            EmptyElement::at((x, high)) + Text::new(mark.name.clone(), at(4.0, 3.0), font(11.0));
-        context.draw_series([label])?;
-        Ok(())
-    }
-
-    fn draw_series(
-        &self,
-        context: &mut Context<'_, '_>,
-        series: &Series,
-        frame: (f64, f64),
-    ) -> anyhow::Result<()> {
-        let finite = series
-            .points
-            .iter()
-            .copied()
-            .filter(|(x, y)| x.is_finite() && y.is_finite());
-        match (series.look, line_width(series.look)) {
-            (_, Some(width)) => {
-                let path = self.path(finite, frame);
-                let style = series.color.stroke_width(thickness(width));
-                context.draw_series([PathElement::new(path, style)])?;
+fn draw_series(svg: &mut Svg, frame: &Frame<'_>, series: &Series) {
+    let points = series.points.iter().copied();
+    let finite = points.filter(|(x, y)| x.is_finite() && y.is_finite());
+    let Some(width) = line_width(series.look) else {
+        for point in finite.filter(|point| frame.shows(*point)) {
+            let place = frame.at(point);
+            if series.look == Look::Stems {
+                svg.path([(place.0, frame.bottom), place], series.color, 1.0);
             }
-            (look, None) => {
-                let inside = finite.filter(|&(x, y)| self.x.shows(x) && self.y.shows(y));
-                for point in inside {
-                    self.draw_point(context, point, series.color, look)?;
-                }
-            }
+            draw_point(svg, place, series.color, (series.look, 1.0));
         }
-        Ok(())
-    }
+        return;
+    };
+    let places: Vec<Place> = finite.map(|point| frame.at(point)).collect();
+    svg.path(simplified(&places, TOLERANCE), series.color, width);
+}
 
-    /// The path of a line, simplified in pixels.
-    fn path(
-        &self,
-        points: impl Iterator<Item = (f64, f64)>,
-        (width, height): (f64, f64),
-    ) -> Vec<(f64, f64)> {
-        let pixels: Vec<(f64, f64)> = points
-            .map(|(x, y)| (self.x.fraction(x) * width, self.y.fraction(y) * height))
-            .collect();
-        simplified(&pixels, TOLERANCE)
-            .into_iter()
-            .map(|(u, v)| (self.x.value(u / width), self.y.value(v / height)))
-            .collect()
-    }
-
-    fn draw_point(
-        &self,
-        context: &mut Context<'_, '_>,
-        point: (f64, f64),
-        color: RGBColor,
-        look: Look,
-    ) -> anyhow::Result<()> {
-        let line = color.stroke_width(thickness(1.0));
-        if look == Look::Stems {
-            let foot = (point.0, self.y.low());
-            context.draw_series([PathElement::new([foot, point], line)])?;
-        }
-        let radius = DETAIL as i32;
-        match look {
-            Look::Crosses => context
-                .draw_series([Cross::new(point, 3 * radius, line)])
-                .map(|_| ())?,
-            Look::Rings => context
-                .draw_series([Circle::new(point, 3 * radius, line)])
-                .map(|_| ())?,
-            _ => context
-                .draw_series([Circle::new(point, 2 * radius, color.filled())])
-                .map(|_| ())?,
-        }
-        Ok(())
+/// What stands at a point, where it is drawn by lines of a `width`.
+fn draw_point(svg: &mut Svg, place: Place, color: Color, (look, width): (Look, f64)) {
+    match look {
+        Look::Crosses => svg.cross(place, 3.0, color, width),
+        Look::Rings => svg.circle(place, 3.0, Paint::Line(color, width)),
+        _ => svg.circle(place, 2.0, Paint::Fill(color)),
     }
 }
 
@@ -236,26 +225,13 @@ fn line_width(look: Look) -> Option<f64> {
 }
 
 /// A sample of `look` for a legend, with its middle 12 pixels right of `place`.
-pub(crate) fn draw_sample(
-    area: &Area<'_>,
-    (x, y): (f64, f64),
-    color: RGBColor,
-    look: Look,
-) -> anyhow::Result<()> {
-    let middle = at(x + 12.0, y);
-    let radius = DETAIL as i32;
-    let line = color.stroke_width(thickness(line_width(look).unwrap_or(1.25)));
-    match look {
-        Look::Line | Look::ThinLine | Look::WideLine => {
-            area.draw(&PathElement::new([at(x, y), at(x + 24.0, y)], line))?
+pub(crate) fn draw_sample(svg: &mut Svg, (x, y): Place, color: Color, look: Look) {
+    match (look, line_width(look)) {
+        (_, Some(width)) => svg.path([(x, y), (x + 24.0, y)], color, width),
+        (Look::Patch, None) => {
+            let corners = [(x + 4.0, y - 6.0), (x + 20.0, y + 6.0)];
+            svg.rectangle(corners, Paint::Fill(color));
         }
-        Look::Crosses => area.draw(&Cross::new(middle, 3 * radius, line))?,
-        Look::Rings => area.draw(&Circle::new(middle, 3 * radius, line))?,
-        Look::Patch => {
-            let corners = [at(x + 4.0, y - 6.0), at(x + 20.0, y + 6.0)];
-            area.draw(&Rectangle::new(corners, color.filled()))?;
-        }
-        Look::Dots | Look::Stems => area.draw(&Circle::new(middle, 2 * radius, color.filled()))?,
+        (look, None) => draw_point(svg, (x + 12.0, y), color, (look, 1.25)),
     }
-    Ok(())
 }

@@ -3,10 +3,9 @@
 use std::f64::consts::PI;
 
 use meshwright_engine::gear::{GearPair, Hole, HoleShape, Member, SpurGear, Vector, radial};
-use plotters::prelude::*;
-use plotters::style::text_anchor::HPos;
 
-use super::{Area, INK, Look, at, thickness, write};
+use super::svg::{Paint, Place, Svg};
+use super::{Color, INK, Look, WHITE};
 
 /// The points of one flank and of one fillet.
 const FLANK_POINTS: u32 = 5;
@@ -16,13 +15,13 @@ const FILLET_POINTS: u32 = 4;
 #[derive(Debug, Clone)]
 pub enum Shape {
     /// A filled region with a thin border.
-    Region(Vec<Vector>, RGBColor),
+    Region(Vec<Vector>, Color),
     /// A filled disk with a thin border.
-    Disk(Vector, f64, RGBColor),
+    Disk(Vector, f64, Color),
     /// A circle.
-    Circle(Vector, f64, RGBColor),
+    Circle(Vector, f64, Color),
     /// A line.
-    Line(Vector, Vector, RGBColor),
+    Line(Vector, Vector, Color),
 }
 
 /// Shapes under a title, in one scale.
@@ -35,46 +34,40 @@ pub struct Drawing {
     /// The shapes, each over those before it.
     pub shapes: Vec<Shape>,
     /// What the fills and the circles mean.
-    pub legend: Vec<(String, RGBColor, Look)>,
+    pub legend: Vec<(String, Color, Look)>,
 }
 
 impl Drawing {
-    pub(crate) fn draw(&self, area: &Area<'_>, size: (u32, u32)) -> anyhow::Result<()> {
+    pub(crate) fn draw(&self, svg: &mut Svg, (width, height): (f64, f64)) {
         const TITLE: f64 = 20.0;
-        write(area, &self.title, (12.0, 9.0), 12.0, (HPos::Left, true))?;
-        let (width, height) = (f64::from(size.0), f64::from(size.1) - TITLE);
+        const LINE: f64 = 1.0;
+        svg.heading(&self.title, (12.0, 9.0), 12.0);
+        let height = height - TITLE;
         let (low, high) = self.window;
         let scale = (width / (high.x - low.x)).min(height / (high.y - low.y));
         let middle = (low + high) / 2.0;
-        let place = |p: Vector| {
-            at(
+        let place = |p: Vector| -> Place {
+            (
                 width / 2.0 + (p.x - middle.x) * scale,
                 TITLE + height / 2.0 - (p.y - middle.y) * scale,
             )
         };
-        let border = RGBColor(85, 85, 85).stroke_width(thickness(1.0));
-        let reach = |radius: f64| at(radius * scale, 0.0).0;
         for shape in &self.shapes {
             match shape {
                 Shape::Region(points, fill) => {
-                    let points: Vec<_> = points.iter().map(|&p| place(p)).collect();
-                    area.draw(&Polygon::new(points, fill.filled()))?;
+                    svg.region(points.iter().map(|&p| place(p)), Paint::Bordered(*fill));
                 }
                 Shape::Disk(center, radius, fill) => {
-                    area.draw(&Circle::new(place(*center), reach(*radius), fill.filled()))?;
-                    area.draw(&Circle::new(place(*center), reach(*radius), border))?;
+                    svg.circle(place(*center), radius * scale, Paint::Bordered(*fill));
                 }
                 Shape::Circle(center, radius, color) => {
-                    let line = color.stroke_width(thickness(1.0));
-                    area.draw(&Circle::new(place(*center), reach(*radius), line))?;
+                    svg.circle(place(*center), radius * scale, Paint::Line(*color, LINE));
                 }
                 Shape::Line(from, to, color) => {
-                    let line = color.stroke_width(thickness(1.0));
-                    area.draw(&PathElement::new([place(*from), place(*to)], line))?;
+                    svg.path([place(*from), place(*to)], *color, LINE);
                 }
             }
         }
-        Ok(())
     }
 }
 
@@ -118,7 +111,7 @@ pub fn window(pair: &GearPair) -> (Vector, Vector) {
 }
 
 /// The gear with its teeth, web, bore and holes, filled with `fill`.
-pub fn gear(gear: &SpurGear, place: Placement, fill: RGBColor) -> Vec<Shape> {
+pub fn gear(gear: &SpurGear, place: Placement, fill: Color) -> Vec<Shape> {
     let mut shapes = vec![Shape::Region(outline(gear, place), fill)];
     shapes.extend(web_edges(gear, place));
     shapes.extend(openings(gear, place));

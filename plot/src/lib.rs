@@ -1,47 +1,40 @@
 //! Figures as SVG: charts of named series, order spectra, and drawings of gears.
 //!
-//! Read in this order: [`axis`], [`chart`] (curves and stems), [`drawing`] (shapes, and the true outline of a gear), [`map`] (fields by color),
-//! `simplify` (what keeps the files small). Nothing here knows what the figures are about.
+//! Read in this order: `svg` (its elements), [`axis`], [`chart`] (curves and stems), [`drawing`] (shapes, and the true outline of a gear), [`map`] (fields by
+//! color), `simplify` (what keeps the files small). Nothing here knows what the figures are about.
 
 pub mod axis;
 pub mod chart;
 pub mod drawing;
 pub mod map;
 mod simplify;
+mod svg;
 
-use plotters::coord::Shift;
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use svg::{Anchor, Svg};
 
 pub use axis::Axis;
-pub use plotters::style::{RGBColor, WHITE};
-
 pub use chart::{Chart, Look, Mark, Series};
 pub use drawing::{Drawing, Shape};
 pub use map::Map;
-
-/// Units of a figure per pixel: plotters rounds to whole units, and a curve wants quarters of a pixel.
-const DETAIL: u32 = 4;
+pub use svg::{Color, WHITE};
 
 /// Lettering and frames.
-pub const INK: RGBColor = RGBColor(38, 38, 38);
+pub const INK: Color = Color(38, 38, 38);
 /// Grid lines.
-const GRID: RGBColor = RGBColor(226, 226, 226);
+const GRID: Color = Color(226, 226, 226);
 /// The colors of series, alike in all figures and told apart by readers who do not see red and green.
-pub const PALETTE: [RGBColor; 7] = [
-    RGBColor(38, 38, 38),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 114, 178),
-    RGBColor(0, 145, 105),
-    RGBColor(180, 80, 140),
-    RGBColor(210, 145, 0),
-    RGBColor(70, 165, 215),
+pub const PALETTE: [Color; 7] = [
+    Color(38, 38, 38),
+    Color(213, 94, 0),
+    Color(0, 114, 178),
+    Color(0, 145, 105),
+    Color(180, 80, 140),
+    Color(210, 145, 0),
+    Color(70, 165, 215),
 ];
 
 /// The height of the figure's title and of its legend, in pixels.
 const HEAD: u32 = 26;
-
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// One panel of a figure.
 pub enum Panel {
@@ -67,44 +60,31 @@ pub struct Figure {
 
 impl Figure {
     /// The figure as an SVG document.
-    ///
-    /// # Errors
-    ///
-    /// If the drawing library fails; with a string to write to, it has no reason to.
-    pub fn to_svg(&self) -> anyhow::Result<String> {
+    pub fn to_svg(&self) -> String {
         let (width, height) = self.panel_size;
         let columns = self.columns.max(1);
         let rows = (self.panels.len() as u32).div_ceil(columns);
         let legend = self.legend();
         let head = if legend.is_empty() { HEAD } else { 2 * HEAD };
-        let size = (columns * width, rows * height + head);
-        let mut svg = String::new();
-        {
-            let canvas = (size.0 * DETAIL, size.1 * DETAIL);
-            let root = SVGBackend::with_string(&mut svg, canvas).into_drawing_area();
-            root.fill(&WHITE)?;
-            write(&root, &self.title, (10.0, 15.0), 15.0, (HPos::Left, true))?;
-            draw_legend(&root, &legend)?;
-            for (i, panel) in (0..).zip(&self.panels) {
-                let corner = (i % columns * width, i / columns * height + head);
-                let area = root.clone().shrink(
-                    (units(corner.0), units(corner.1)),
-                    (units(width), units(height)),
-                );
-                match panel {
-                    Panel::Chart(chart) => chart.draw(&area, self.panel_size)?,
-                    Panel::Drawing(drawing) => drawing.draw(&area, self.panel_size)?,
-                    Panel::Map(map) => map.draw(&area, self.panel_size)?,
-                }
-            }
-            root.present()?;
+        let mut svg = Svg::new((columns * width, rows * height + head), INK);
+        svg.heading(&self.title, (10.0, 15.0), 15.0);
+        draw_legend(&mut svg, &legend);
+        for (i, panel) in (0..).zip(&self.panels) {
+            let corner = (i % columns * width, i / columns * height + head);
+            let size = (f64::from(width), f64::from(height));
+            let corner = (f64::from(corner.0), f64::from(corner.1));
+            svg.group(corner, |svg| match panel {
+                Panel::Chart(chart) => chart.draw(svg, size),
+                Panel::Drawing(drawing) => drawing.draw(svg, size),
+                Panel::Map(map) => map.draw(svg, size),
+            });
         }
-        Ok(compact(&svg, size))
+        svg.end()
     }
 
     /// Every name in the panels once, with how it looks.
-    fn legend(&self) -> Vec<(&str, RGBColor, Look)> {
-        let mut entries: Vec<(&str, RGBColor, Look)> = Vec::new();
+    fn legend(&self) -> Vec<(&str, Color, Look)> {
+        let mut entries: Vec<(&str, Color, Look)> = Vec::new();
         let mut add = |name, color, look| {
             if entries.iter().all(|&(known, ..)| known != name) {
                 entries.push((name, color, look));
@@ -133,86 +113,13 @@ impl Figure {
     }
 }
 
-/// Pixels in units of the drawing library.
-fn units(pixels: u32) -> i32 {
-    (pixels * DETAIL) as i32
-}
-
-/// A pixel position in units of the drawing library.
-fn at(x: f64, y: f64) -> (i32, i32) {
-    let scale = f64::from(DETAIL);
-    ((x * scale).round() as i32, (y * scale).round() as i32)
-}
-
-/// A line width in pixels in units of the drawing library.
-fn thickness(pixels: f64) -> u32 {
-    (pixels * f64::from(DETAIL)).round() as u32
-}
-
-/// A font of `pixels` in height.
-fn font(pixels: f64) -> TextStyle<'static> {
-    // The backend divides sizes by 1.24, its estimate of a line's height over the font's.
-    ("sans-serif", pixels * 1.24 * f64::from(DETAIL))
-        .into_font()
-        .color(&INK)
-}
-
-/// Writes `text` with its middle line at `place`, in pixels.
-fn write(
-    area: &Area<'_>,
-    text: &str,
-    place: (f64, f64),
-    size: f64,
-    (side, bold): (HPos, bool),
-) -> anyhow::Result<()> {
-    let mut style = font(size).pos(Pos::new(side, VPos::Center));
-    if bold {
-        style.font = style.font.style(FontStyle::Bold);
-    }
-    area.draw_text(text, &style, at(place.0, place.1))?;
-    Ok(())
-}
-
-fn draw_legend(root: &Area<'_>, entries: &[(&str, RGBColor, Look)]) -> anyhow::Result<()> {
+fn draw_legend(svg: &mut Svg, entries: &[(&str, Color, Look)]) {
     let (mut x, y) = (12.0, 1.45 * f64::from(HEAD));
     for &(name, color, look) in entries {
-        chart::draw_sample(root, (x, y), color, look)?;
-        write(root, name, (x + 30.0, y), 12.0, (HPos::Left, false))?;
+        chart::draw_sample(svg, (x, y), color, look);
+        svg.text(name, (x + 30.0, y), 12.0, Anchor::Start);
         x += 30.0 + 6.9 * name.chars().count() as f64 + 18.0;
     }
-    Ok(())
-}
-
-/// `svg` at `size` pixels, without what says nothing.
-fn compact(svg: &str, size: (u32, u32)) -> String {
-    let (width, height) = size;
-    let canvas = format!(
-        "width=\"{}\" height=\"{}\"",
-        width * DETAIL,
-        height * DETAIL
-    );
-    let svg = svg
-        .replacen(
-            &canvas,
-            &format!("width=\"{width}\" height=\"{height}\""),
-            1,
-        )
-        .replace(" opacity=\"1\"", "")
-        .replace(" \"/>", "\"/>")
-        // A region has a border, which the drawing library would write as a second list of the same points.
-        .replace(
-            "<polygon ",
-            &format!("<polygon stroke=\"#555\" stroke-width=\"{DETAIL}\" "),
-        );
-    const FONT_SIZE: &str = "font-size=\"";
-    let mut parts = svg.split(FONT_SIZE);
-    let mut rounded = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        let (number, rest) = part.split_once('"').unwrap_or((part, ""));
-        let number: f64 = number.parse().unwrap_or_default();
-        rounded.push_str(&format!("{FONT_SIZE}{}\"{rest}", number.round()));
-    }
-    rounded
 }
 
 #[cfg(test)]
@@ -237,21 +144,18 @@ mod tests {
 
     #[test]
     fn a_figure_is_of_the_size_that_it_says_and_names_its_series_once() {
-        let svg = chart(vec![0.0, 0.5, 0.2]).to_svg().expect("drawn");
-        assert!(svg.starts_with("<svg width=\"300\" height=\"252\" viewBox=\"0 0 1200 1008\""));
+        let svg = chart(vec![0.0, 0.5, 0.2]).to_svg();
+        assert!(svg.starts_with("<svg width=\"300\" height=\"252\" viewBox=\"0 0 300 252\""));
         assert!(svg.trim_end().ends_with("</svg>") && svg.contains("A &lt; B"));
-        assert_eq!(svg.matches("\ny\n").count(), 1);
+        assert_eq!(svg.matches(">y</text>").count(), 1);
     }
 
     #[test]
     fn what_is_no_number_and_what_lies_outside_the_frame_is_not_drawn() {
-        let svg = chart(vec![0.5, f64::NAN, f64::INFINITY, 1e9, 0.5])
-            .to_svg()
-            .expect("drawn");
+        let svg = chart(vec![0.5, f64::NAN, f64::INFINITY, 1e9, 0.5]).to_svg();
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
-        let coordinates = svg
-            .split(['"', ',', ' '])
-            .filter_map(|word| word.parse::<i64>().ok());
-        assert!(coordinates.into_iter().all(|number| number.abs() <= 1200));
+        let words = svg.split(['"', ',', ' ']);
+        let coordinates = words.filter_map(|word| word.parse::<f64>().ok());
+        assert!(coordinates.into_iter().all(|number| number.abs() <= 300.0));
     }
 }

@@ -1,28 +1,27 @@
 //! A field over a pair of axes, told by color.
 
-use plotters::prelude::*;
-use plotters::style::text_anchor::HPos;
-
-use super::{Area, Axis, INK, at, chart, write};
+use super::chart::Frame;
+use super::svg::{Anchor, Paint, Svg};
+use super::{Axis, Color, INK};
 
 /// The room for the scale of colors to the right, in pixels.
-const SCALE: u32 = 84;
+const SCALE: f64 = 84.0;
 
 /// Colors that are told apart; neighbors that have the same are one rectangle.
 const SHADES: u32 = 32;
 
 /// From nothing to the most: rising in darkness, so that it reads in gray and to those who do not see red and green.
-const RAMP: [RGBColor; 6] = [
-    RGBColor(255, 247, 214),
-    RGBColor(254, 217, 142),
-    RGBColor(247, 162, 80),
-    RGBColor(222, 95, 54),
-    RGBColor(160, 38, 61),
-    RGBColor(78, 14, 60),
+const RAMP: [Color; 6] = [
+    Color(255, 247, 214),
+    Color(254, 217, 142),
+    Color(247, 162, 80),
+    Color(222, 95, 54),
+    Color(160, 38, 61),
+    Color(78, 14, 60),
 ];
 
 /// What has no value to tell.
-pub const BEYOND: RGBColor = RGBColor(0, 114, 178);
+pub const BEYOND: Color = Color(0, 114, 178);
 
 /// The value of a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,38 +52,36 @@ pub struct Map {
 }
 
 impl Map {
-    pub(crate) fn draw(&self, area: &Area<'_>, size: (u32, u32)) -> anyhow::Result<()> {
-        let (_, height) = size;
-        let mut context = chart::framed(area, &self.title, (&self.x.0, &self.y.0), SCALE)?;
-        let place = |(low, high): (f64, f64), i: usize, count: usize| {
+    pub(crate) fn draw(&self, svg: &mut Svg, size: (f64, f64)) {
+        let frame = Frame::new((&self.x.0, &self.y.0), size, SCALE);
+        frame.draw(svg, &self.title);
+        let place = |[low, high]: [f64; 2], i: usize, count: usize| {
             low + (high - low) * i as f64 / count as f64
         };
         for (r, row) in self.rows.iter().enumerate() {
-            let [y_low, y_high] = self.y.1;
-            let ends = [r, r + 1].map(|i| place((y_low, y_high), i, self.rows.len()));
+            let ends = [r, r + 1].map(|i| place(self.y.1, i, self.rows.len()));
             let mut from = 0;
             for run in row.chunk_by(|one, next| self.color(*one) == self.color(*next)) {
                 let to = from + run.len();
                 if let Some(color) = self.color(run[0]) {
-                    let [x_low, x_high] = self.x.1;
-                    let sides = [from, to].map(|i| place((x_low, x_high), i, row.len()));
+                    let sides = [from, to].map(|i| place(self.x.1, i, row.len()));
                     let corners = [(sides[0], ends[0]), (sides[1], ends[1])];
-                    context.draw_series([Rectangle::new(corners, color.filled())])?;
+                    svg.rectangle(corners.map(|corner| frame.at(corner)), Paint::Fill(color));
                 }
                 from = to;
             }
         }
-        self.draw_scale(area, (f64::from(size.0 - SCALE) + 4.0, f64::from(height)))
+        self.draw_scale(svg, &frame);
     }
 
     /// What stands for cells beyond the scale, if there are any.
-    pub(crate) fn legend(&self) -> Option<(&str, RGBColor)> {
+    pub(crate) fn legend(&self) -> Option<(&str, Color)> {
         let any = self.rows.iter().flatten().any(|cell| *cell == Cell::Beyond);
         any.then_some((&self.beyond, BEYOND))
     }
 
     /// The color of a cell, if it has any.
-    fn color(&self, cell: Cell) -> Option<RGBColor> {
+    fn color(&self, cell: Cell) -> Option<Color> {
         match cell {
             Cell::Empty => None,
             Cell::Beyond => Some(BEYOND),
@@ -97,38 +94,43 @@ impl Map {
         }
     }
 
-    fn draw_scale(&self, area: &Area<'_>, (left, height): (f64, f64)) -> anyhow::Result<()> {
-        let (top, bottom, width) = (chart::top(), height - chart::bottom(), 14.0);
-        let level = |part: f64| bottom + (top - bottom) * part;
+    /// The scale of colors, to the right of the frame.
+    fn draw_scale(&self, svg: &mut Svg, frame: &Frame<'_>) {
+        let (left, width) = (frame.right + 4.0, 14.0);
+        let level = |part: f64| frame.bottom + (frame.top - frame.bottom) * part;
         for shade in 0..SHADES {
             let part = |shade: u32| f64::from(shade) / f64::from(SHADES);
             let color = shaded(f64::from(shade) / f64::from(SHADES - 1));
             let corners = [
-                at(left, level(part(shade + 1))),
-                at(left + width, level(part(shade))),
+                (left, level(part(shade + 1))),
+                (left + width, level(part(shade))),
             ];
-            area.draw(&Rectangle::new(corners, color.filled()))?;
+            svg.rectangle(corners, Paint::Fill(color));
         }
-        let frame = [at(left, top), at(left + width, bottom)];
-        area.draw(&Rectangle::new(frame, INK.stroke_width(2)))?;
+        let corners = [(left, frame.top), (left + width, frame.bottom)];
+        svg.rectangle(corners, Paint::Line(INK, 0.5));
         for (value, name) in self.scale.ticks() {
             let place = (left + width + 5.0, level(self.scale.fraction(*value)));
-            write(area, name, place, 11.0, (HPos::Left, false))?;
+            svg.text(name, place, 11.0, Anchor::Start);
         }
-        let label = (left, top - 12.0);
-        write(area, &self.scale.label, label, 11.0, (HPos::Left, false))
+        svg.text(
+            &self.scale.label,
+            (left, frame.top - 12.0),
+            11.0,
+            Anchor::Start,
+        );
     }
 }
 
 /// The color at `part` of the ramp.
-fn shaded(part: f64) -> RGBColor {
+fn shaded(part: f64) -> Color {
     let place = part.clamp(0.0, 1.0) * (RAMP.len() - 1) as f64;
     let first = (place as usize).min(RAMP.len() - 2);
     let (one, next, rest) = (RAMP[first], RAMP[first + 1], place - first as f64);
     let mixed = |one: u8, next: u8| {
         (f64::from(one) + rest * (f64::from(next) - f64::from(one))).round() as u8
     };
-    RGBColor(
+    Color(
         mixed(one.0, next.0),
         mixed(one.1, next.1),
         mixed(one.2, next.2),

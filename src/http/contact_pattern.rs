@@ -75,7 +75,7 @@ pub(super) async fn svg(
     JobId(id): JobId,
     request: HeaderMap,
 ) -> Result<Response, Problem> {
-    let write = |pattern: &ContactPattern| Ok(pictures::contact_pattern(pattern)?.into_bytes());
+    let write = |pattern: &ContactPattern| Ok(pictures::contact_pattern(pattern).into_bytes());
     let file = File::shown("contact-pattern.svg", "image/svg+xml");
     answer(&client, id, &which, &request, file, write).await
 }

@@ -36,10 +36,10 @@ pub(super) async fn outline(
         let submission = Submission::parse(&document)?;
         let pair = &submission.case().pair;
         if as_picture {
-            return pictures::pair(pair).map(pictures::answer);
+            return Ok(pictures::answer(pictures::pair(pair)));
         }
         let outline = PairOutline::of(pair).to_json().map_err(|_| internal())?;
-        Ok(json(outline))
+        Ok::<_, Problem>(json(outline))
     });
     let mut response = made.await??;
     let headers = response.headers_mut();

@@ -6,11 +6,9 @@ use meshwright_engine::analysis::contact_pattern::{ContactPattern, PatternCurve,
 use meshwright_engine::gear::GearPair;
 use meshwright_plot::map::Cell;
 use meshwright_plot::{
-    Axis, Chart, Drawing, Figure, Look, Map, Mark, PALETTE, Panel, RGBColor, Series, drawing,
+    Axis, Chart, Color, Drawing, Figure, Look, Map, Mark, PALETTE, Panel, Series, drawing,
 };
 
-use super::problem::internal;
-use crate::wire::Problem;
 use crate::wire::results::{CurveDocument, ResonanceDocument, ResonanceKindName};
 
 /// Width and height of a picture in pixels.
@@ -35,7 +33,7 @@ pub(super) enum Picture {
 
 impl Picture {
     /// The picture of these curves; `None` if they have nothing that it shows.
-    pub(super) fn draw(self, curves: &[&CurveDocument]) -> Option<Result<String, Problem>> {
+    pub(super) fn draw(self, curves: &[&CurveDocument]) -> Option<String> {
         let chart = match self {
             Self::TransmissionError => over_period(curves, "transmission error in µm", |curve| {
                 curve.transmission_error_um.clone()
@@ -64,8 +62,8 @@ impl Picture {
 }
 
 /// The pair at mesh position 0, as it is cut.
-pub(super) fn pair(pair: &GearPair) -> Result<String, Problem> {
-    const STEEL: [RGBColor; 2] = [RGBColor(188, 203, 217), RGBColor(214, 207, 191)];
+pub(super) fn pair(pair: &GearPair) -> String {
+    const STEEL: [Color; 2] = [Color(188, 203, 217), Color(214, 207, 191)];
     let [driving, driven] = drawing::placements(pair);
     let mut shapes = drawing::gear(pair.driving(), driving, STEEL[0]);
     shapes.extend(drawing::gear(pair.driven(), driven, STEEL[1]));
@@ -86,7 +84,7 @@ pub(super) fn pair(pair: &GearPair) -> Result<String, Problem> {
 }
 
 /// The largest pressure over the period on both flanks, under each load.
-pub(super) fn contact_pattern(pattern: &ContactPattern) -> Result<String, Problem> {
+pub(super) fn contact_pattern(pattern: &ContactPattern) -> String {
     let pressures = pattern.curves.iter().flat_map(|curve| &curve.largest);
     let limited = pressures.flatten().flatten().filter_map(|cell| match cell {
         Pressure::Of(pressure) => Some(*pressure),
@@ -128,7 +126,7 @@ pub(super) fn contact_pattern(pattern: &ContactPattern) -> Result<String, Proble
         panel_size: (480, 300),
         panels: panels.collect(),
     };
-    drawn(&figure)
+    figure.to_svg()
 }
 
 /// A number without digits that say nothing.
@@ -141,21 +139,14 @@ pub(super) fn answer(svg: String) -> Response {
     ([(CONTENT_TYPE, "image/svg+xml")], svg).into_response()
 }
 
-fn svg(title: &str, panel: Panel, panel_size: (u32, u32)) -> Result<String, Problem> {
+fn svg(title: &str, panel: Panel, panel_size: (u32, u32)) -> String {
     let figure = Figure {
         title: title.to_owned(),
         columns: 1,
         panel_size,
         panels: vec![panel],
     };
-    drawn(&figure)
-}
-
-fn drawn(figure: &Figure) -> Result<String, Problem> {
-    figure.to_svg().map_err(|error| {
-        tracing::error!(%error, "a picture could not be drawn");
-        internal()
-    })
+    figure.to_svg()
 }
 
 fn torque_of(curve: &CurveDocument) -> String {
@@ -163,7 +154,7 @@ fn torque_of(curve: &CurveDocument) -> String {
 }
 
 /// The colors of curves, one after the other.
-fn colors() -> impl Iterator<Item = &'static RGBColor> {
+fn colors() -> impl Iterator<Item = &'static Color> {
     PALETTE.iter().skip(2).chain(&PALETTE).cycle()
 }
 
@@ -422,10 +413,7 @@ mod tests {
     fn every_picture_is_drawn_and_says_its_unit_and_torque() {
         let curve = curve();
         for (picture, words) in ALL {
-            let svg = picture
-                .draw(&[&curve])
-                .expect("has what it shows")
-                .expect("drawn");
+            let svg = picture.draw(&[&curve]).expect("has what it shows");
             assert!(svg.starts_with("<svg"), "{picture:?}");
             for word in words {
                 assert!(svg.contains(word), "{picture:?} lacks {word}");
@@ -446,7 +434,7 @@ mod tests {
     #[test]
     fn a_pair_is_drawn_with_its_holes() {
         let submission = submission("test-case-2");
-        let svg = pair(&submission.case().pair).expect("drawn");
+        let svg = pair(&submission.case().pair);
         // A bore each and ten holes, each a filled disk.
         assert!(
             svg.matches("<circle").count() >= 12,

@@ -300,9 +300,9 @@ fn make(
             })
         }
         File::Picture(picture) => {
-            let svg = picture.draw(&curves).unwrap_or_else(|| {
+            let svg = picture.draw(&curves).ok_or_else(|| {
                 let detail = "These results have nothing that this shows.";
-                Err(Problem::new(Code::NotFound, detail))
+                Problem::new(Code::NotFound, detail)
             });
             svg.map(pictures::answer)
         }

@@ -90,7 +90,7 @@ impl Measure {
             .with_context(|| format!("{} cannot be created", self.output.display()))?;
         self.write("measured.md", &report::text(&measured))?;
         for growth in &measured.growth {
-            self.write(&growth.file(), &report::figure(growth).to_svg()?)?;
+            self.write(&growth.file(), &report::figure(growth).to_svg())?;
         }
         tell(&format!("{} is complete.", self.output.display()));
         Ok(())

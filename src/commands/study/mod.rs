@@ -74,7 +74,7 @@ impl Study {
                 folder.write("best.json", &format!("{best}\n"))?;
             }
             if let Some(picture) = picture(&study, &results, population.as_ref(), search.as_ref()) {
-                folder.write("picture.svg", &picture.to_svg()?)?;
+                folder.write("picture.svg", &picture.to_svg())?;
             }
         }
         match (&search, &population) {
@@ -172,7 +172,7 @@ mod tests {
         assert!(path.join("results/00002-8R34.json").exists());
 
         let drawn = picture(&study(), &results, None, None).expect("seven designs");
-        let svg = drawn.to_svg().expect("can be drawn");
+        let svg = drawn.to_svg();
         assert!(svg.contains("mass of both gears in kg"), "{svg}");
         assert!(svg.contains("that no other beats"), "{svg}");
         let text = short_table(&results, Duration::from_secs(2));
@@ -199,7 +199,7 @@ mod tests {
         let found = population(&study, &computed).expect("a population");
         assert_eq!((found.size, found.done, found.failed), (80, 80, 0));
         let drawn = picture(&study, &results(&study, computed), Some(&found), None);
-        let svg = drawn.expect("two torques").to_svg().expect("can be drawn");
+        let svg = drawn.expect("two torques").to_svg();
         assert!(svg.contains("p95"), "{svg}");
         let text = spread_table(&found, Duration::from_secs(2));
         assert!(

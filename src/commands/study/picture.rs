@@ -1,6 +1,6 @@
 //! What a study came to, as a picture.
 
-use meshwright_plot::{Axis, Chart, Figure, Look, PALETTE, Panel, RGBColor, Series};
+use meshwright_plot::{Axis, Chart, Color, Figure, Look, PALETTE, Panel, Series};
 
 use crate::wire::study_table::TableRow;
 use crate::wire::{PopulationResults, SearchState, Study as StudyDocument, StudyResults};
@@ -8,9 +8,9 @@ use crate::wire::{PopulationResults, SearchState, Study as StudyDocument, StudyR
 /// The quantity that is shown of a population.
 const SHOWN: &str = "transmission_error_um.peak_to_peak";
 
-const BASE: RGBColor = PALETTE[2];
-const BEST: RGBColor = PALETTE[1];
-const OTHER: RGBColor = PALETTE[0];
+const BASE: Color = PALETTE[2];
+const BEST: Color = PALETTE[1];
+const OTHER: Color = PALETTE[0];
 
 /// The picture of a study: of a search how its goal fell, and the front of two goals; of a population the spread of the peak-to-peak value over
 /// torque, or over itself where there is one torque; of others the peak-to-peak value over mass. None where nothing was computed.

@@ -2,7 +2,7 @@
 
 use meshwright_engine::analysis::Curve;
 use meshwright_engine::analysis::spectrum::harmonics;
-use meshwright_plot::RGBColor;
+use meshwright_plot::Color;
 
 use super::super::computed::{METHODS, TestCase, line, method_name};
 use super::{Illustration, over_revolution};
@@ -41,7 +41,7 @@ const AXES: [Axes; 3] = [
 
 /// The lines and colors of the methods: the projected one lies over the flexible one.
 const LINES: [Look; 3] = [Look::WideLine, Look::Line, Look::Line];
-const COLORS: [RGBColor; 3] = [RGBColor(125, 125, 125), PALETTE[1], PALETTE[2]];
+const COLORS: [Color; 3] = [Color(125, 125, 125), PALETTE[1], PALETTE[2]];
 
 const FILES: [&str; 3] = [
     "fig-06-case-1.svg",

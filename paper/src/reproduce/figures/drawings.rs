@@ -2,7 +2,7 @@
 
 use anyhow::Context;
 use meshwright_engine::gear::{SpurGear, Vector};
-use meshwright_plot::{RGBColor, WHITE};
+use meshwright_plot::{Color, WHITE};
 
 use super::super::cases::{HOLE_CIRCLES, HOLE_COUNTS, design_name};
 use super::super::computed::Computed;
@@ -10,23 +10,23 @@ use super::Illustration;
 use meshwright_plot::drawing::{Placement, gear, openings, outline, placements, window};
 use meshwright_plot::{Drawing, Figure, Look, Panel, Shape};
 
-const ELASTIC: RGBColor = RGBColor(190, 208, 226);
-const RIGID: RGBColor = RGBColor(150, 150, 150);
-const DROPPED: RGBColor = RGBColor(236, 226, 214);
-const CIRCLE: RGBColor = RGBColor(213, 94, 0);
+const ELASTIC: Color = Color(190, 208, 226);
+const RIGID: Color = Color(150, 150, 150);
+const DROPPED: Color = Color(236, 226, 214);
+const CIRCLE: Color = Color(213, 94, 0);
 
-const PARTS: [(&str, RGBColor, Look); 3] = [
+const PARTS: [(&str, Color, Look); 3] = [
     ("elastic", ELASTIC, Look::Patch),
     ("rigid", RIGID, Look::Patch),
     ("interface circle R_w", CIRCLE, Look::Line),
 ];
-const CHOICE: [(&str, RGBColor, Look); 3] = [
+const CHOICE: [(&str, Color, Look); 3] = [
     ("kept by the paper", ELASTIC, Look::Patch),
     ("dropped", DROPPED, Look::Patch),
     ("hole circle R", CIRCLE, Look::Line),
 ];
 
-fn legend(entries: &[(&str, RGBColor, Look)]) -> Vec<(String, RGBColor, Look)> {
+fn legend(entries: &[(&str, Color, Look)]) -> Vec<(String, Color, Look)> {
     entries
         .iter()
         .map(|&(name, color, look)| (name.to_owned(), color, look))

@@ -32,7 +32,7 @@ impl Illustration {
             file,
             title: figure.title.clone(),
             caption,
-            svg: figure.to_svg()?,
+            svg: figure.to_svg(),
         })
     }
 }
