@@ -1,13 +1,15 @@
 //! Which designs to compute next.
 //!
-//! One goal is searched by CMA-ES, several by an evolution of the front (MODE with the update of NSGA-II), both of the crate fcmaes. Either begins
-//! with points that fill the cube evenly. CMA-ES goes on from the best of them and learns in which directions goals fall; once it has settled, another
-//! one begins elsewhere with twice as many points, as long as there are evaluations left.
+//! One goal is searched by CMA-ES, two by an evolution of the front. Either begins with points that fill the cube evenly. CMA-ES goes on from the best of
+//! them and learns in which directions goals fall; once it has settled, another one begins elsewhere with twice as many points, as long as there are
+//! evaluations left.
 
-use fcmaes_core::{Cmaes, CmaesParams, Fitness, Mode, ModeParams, Rng};
 use meshwright_sample::REPLICATES;
 use meshwright_sample::points::{Points, Sampling};
 
+use crate::chance::Chance;
+use crate::cmaes::Cmaes;
+use crate::evolution::Evolution;
 use crate::outcome::{Outcome, best};
 use crate::space::{Axis, Known, count};
 
@@ -25,7 +27,7 @@ const HEAVIEST: f64 = 1e30;
 pub struct Problem {
     /// The variables; at least one.
     pub axes: Vec<Axis>,
-    /// The number of goals; at least one.
+    /// The number of goals: one or two.
     pub goals: usize,
     /// The number of conditions.
     pub conditions: usize,
@@ -40,21 +42,21 @@ pub struct Problem {
 /// A search under way.
 pub struct Driver {
     problem: Problem,
-    evolution: Evolution,
+    way: Way,
     /// Designs asked for.
     asked: u32,
     /// Points of the even beginning that have been used.
     spread: u32,
     known: Known,
-    rng: Rng,
+    chance: Chance,
     pending: Vec<Vec<f64>>,
 }
 
-enum Evolution {
+enum Way {
     /// So many evenly spread points are asked for.
     Beginning(usize),
     One(Box<Descent>),
-    Several(Box<Mode>),
+    Two(Evolution),
 }
 
 /// CMA-ES, and what conditions weigh in what it is told.
@@ -62,8 +64,7 @@ struct Descent {
     cmaes: Cmaes,
     size: usize,
     /// The points as CMA-ES asked for them, or as they were moved.
-    told: Vec<Vec<f64>>,
-    moved: bool,
+    points: Vec<Vec<f64>>,
     /// Whether the points that it asked for last hardly differ.
     is_narrow: bool,
     weights: Vec<f64>,
@@ -76,11 +77,11 @@ impl Driver {
     pub fn new(problem: Problem) -> Self {
         let size = problem.size();
         Self {
-            evolution: Evolution::Beginning(size),
+            way: Way::Beginning(size),
             asked: 0,
             spread: 0,
             known: Known::default(),
-            rng: Rng::new(u64::from(problem.seed)),
+            chance: Chance::new(problem.seed),
             pending: Vec::new(),
             problem,
         }
@@ -92,12 +93,15 @@ impl Driver {
         if left == 0 || self.is_exhausted() {
             return Vec::new();
         }
-        self.pending = match &mut self.evolution {
-            Evolution::Beginning(size) => {
-                let size = *size;
-                self.spread_points(size)
+        self.pending = match &self.way {
+            Way::Beginning(size) => self.spread_points(*size),
+            Way::One(_) => self.descended(),
+            Way::Two(evolution) => {
+                let asked = evolution.ask(&mut self.chance);
+                let designs = asked.iter().map(|point| self.problem.snapped(point));
+                let designs = designs.collect();
+                self.without_repeats(designs)
             }
-            Evolution::One(_) | Evolution::Several(_) => self.evolved(),
         };
         let designs: Vec<Vec<f64>> = self.pending.iter().take(left).cloned().collect();
         self.asked += designs.len() as u32;
@@ -118,22 +122,17 @@ impl Driver {
         if outcomes.len() < self.pending.len() || self.is_exhausted() {
             return;
         }
-        match &mut self.evolution {
-            Evolution::Beginning(size) => {
+        match &mut self.way {
+            Way::Beginning(size) => {
                 let size = *size;
-                self.evolution = self.begun(size, outcomes);
+                self.way = self.begun(size, outcomes);
             }
-            Evolution::One(descent) => {
+            Way::One(descent) => {
                 if descent.tell(outcomes) {
-                    self.evolution =
-                        Evolution::Beginning((2 * descent.size).min(4 * self.problem.size()));
+                    self.way = Way::Beginning((2 * descent.size).min(4 * self.problem.size()));
                 }
             }
-            Evolution::Several(mode) => {
-                let rows: Vec<Vec<f64>> =
-                    outcomes.iter().map(|one| self.problem.row(one)).collect();
-                mode.tell(&rows);
-            }
+            Way::Two(evolution) => evolution.tell(&self.pending, outcomes),
         }
     }
 
@@ -158,36 +157,28 @@ impl Driver {
         self.without_repeats(spread)
     }
 
-    /// The designs that the evolution asks for.
-    fn evolved(&mut self) -> Vec<Vec<f64>> {
-        let asked = match &mut self.evolution {
-            Evolution::One(descent) => descent.cmaes.ask(),
-            Evolution::Several(mode) => mode.ask(),
-            Evolution::Beginning(_) => return Vec::new(),
+    /// The designs that the descent asks for.
+    fn descended(&mut self) -> Vec<Vec<f64>> {
+        let Way::One(descent) = &mut self.way else {
+            return Vec::new();
         };
-        let snapped: Vec<Vec<f64>> = asked
-            .iter()
-            .map(|point| self.problem.snapped(point))
-            .collect();
+        descent.points = descent.cmaes.ask(&mut self.chance);
+        descent.is_narrow = is_narrow(&descent.points);
+        let generation = descent.generation;
+        let points = descent.points.iter();
+        let snapped: Vec<Vec<f64>> = points.map(|point| self.problem.snapped(point)).collect();
         let mut designs = snapped.clone();
-        if let Evolution::One(descent) = &self.evolution {
-            self.problem.look_beside(&mut designs, descent.generation);
-        }
+        self.problem.look_beside(&mut designs, generation);
         let designs = self.without_repeats(designs);
-        if let Evolution::One(descent) = &mut self.evolution {
-            descent.moved = designs != snapped;
-            descent.is_narrow = is_narrow(&asked);
-            descent.told = asked;
-            for (i, (told, design)) in descent.told.iter_mut().zip(&designs).enumerate() {
-                for (k, axis) in self.problem.axes.iter().enumerate() {
-                    if snapped[i][k] != design[k] {
-                        told[k] = axis.middle(design[k]);
+        if let Way::One(descent) = &mut self.way {
+            // It is told where designs were moved to.
+            descent.points.truncate(designs.len());
+            for ((point, design), snapped) in descent.points.iter_mut().zip(&designs).zip(&snapped)
+            {
+                for (i, axis) in self.problem.axes.iter().enumerate() {
+                    if snapped[i] != design[i] {
+                        point[i] = axis.middle(design[i]);
                     }
-                }
-                if descent.moved {
-                    // CMA-ES divides by how far a point that was moved is from the middle, which may stand in the same corner.
-                    let inward = 1.0 - 1e-6 * (i + 1) as f64;
-                    told.iter_mut().for_each(|u| *u = 0.5 + (*u - 0.5) * inward);
                 }
             }
         }
@@ -218,8 +209,8 @@ impl Driver {
                 let reach = 1 + i64::from(tries / 8);
                 moved.clone_from(&design);
                 for _ in 0..reach {
-                    let i = self.rng.int_below(moved.len() as i64) as usize;
-                    let up = self.rng.int_below(2) == 0;
+                    let i = self.chance.below(moved.len());
+                    let up = self.chance.happens(0.5);
                     moved[i] = self.problem.axes[i].beyond(moved[i], if up { 1.0 } else { -1.0 });
                 }
             }
@@ -230,50 +221,19 @@ impl Driver {
     }
 
     /// What follows the evenly spread points.
-    fn begun(&mut self, size: usize, outcomes: &[Outcome]) -> Evolution {
-        let (axes, seed) = (self.problem.axes.len(), self.rng.next_u64());
-        let [low, high] = [0.0, 1.0].map(|end| vec![end; axes]);
+    fn begun(&self, size: usize, outcomes: &[Outcome]) -> Way {
         if self.problem.goals > 1 {
-            let values = self.problem.goals + self.problem.conditions + 1;
-            let fitness = Fitness::bounded(axes, values, &low, &high);
-            let parameters = ModeParams {
-                popsize: size as i32,
-                seed,
-                ..ModeParams::default()
-            };
-            let mut mode = Mode::new(
-                fitness,
-                self.problem.goals,
-                self.problem.conditions + 1,
-                None,
-                &parameters,
-            );
-            let rows: Vec<Vec<f64>> = outcomes.iter().map(|one| self.problem.row(one)).collect();
-            mode.set_population(&self.pending, &rows);
-            return Evolution::Several(Box::new(mode));
+            return Way::Two(Evolution::new(size, &self.pending, outcomes));
         }
         let first =
             (0..outcomes.len()).min_by(|i, j| outcomes[*i].order(&outcomes[*j]).then(i.cmp(j)));
         let first = &self.pending[best(outcomes).or(first).unwrap_or(0)];
-        let guess: Vec<f64> = self
-            .problem
-            .axes
-            .iter()
-            .zip(first)
-            .map(|(axis, u)| axis.middle(*u))
-            .collect();
-        let parameters = CmaesParams {
-            popsize: size as i32,
-            max_evaluations: u64::from(self.problem.evaluations),
-            seed,
-            ..CmaesParams::default()
-        };
-        let fitness = Fitness::bounded(axes, 1, &low, &high);
-        Evolution::One(Box::new(Descent {
-            cmaes: Cmaes::new(fitness, &guess, &[FIRST_STEP], &parameters),
+        let axes = self.problem.axes.iter().zip(first);
+        let from: Vec<f64> = axes.map(|(axis, u)| axis.middle(*u)).collect();
+        Way::One(Box::new(Descent {
+            cmaes: Cmaes::new(&from, FIRST_STEP, size),
             size,
-            told: Vec::new(),
-            moved: false,
+            points: Vec::new(),
             is_narrow: false,
             weights: first_weights(outcomes, self.problem.conditions),
             generation: 0,
@@ -336,25 +296,6 @@ impl Problem {
             }
         }
     }
-
-    /// Goals, violations and refusal of a design, for the evolution of a front.
-    fn row(&self, outcome: &Outcome) -> Vec<f64> {
-        /// Above every goal, and small enough to be calculated with.
-        const WORST: f64 = 1e30;
-        match outcome {
-            Outcome::Computed { goals, violations } => goals
-                .iter()
-                .chain(violations)
-                .chain(&[0.0])
-                .copied()
-                .collect(),
-            Outcome::Refused(distance) => {
-                let mut row = vec![WORST; self.goals + self.conditions];
-                row.push(1.0 + distance);
-                row
-            }
-        }
-    }
 }
 
 /// Whether points differ by less than what is worth looking at, on every axis.
@@ -397,13 +338,9 @@ impl Descent {
     fn tell(&mut self, outcomes: &[Outcome]) -> bool {
         let merits = self.merits(outcomes);
         self.weigh(outcomes, &merits);
-        if self.moved {
-            self.cmaes.tell_x(&merits, &self.told);
-        } else {
-            self.cmaes.tell(&merits);
-        }
+        self.cmaes.tell(&self.points, &merits);
         self.generation += 1;
-        self.is_narrow || self.cmaes.stop() != 0
+        self.is_narrow
     }
 
     /// What CMA-ES is to make small: the goal and what violations weigh; above all of that, by their distance, what cannot be had.

@@ -31,7 +31,7 @@ impl Outcome {
     }
 
     /// Compares two by how nearly they are feasible: the less the better.
-    fn by_feasibility(&self, other: &Self) -> Ordering {
+    pub(crate) fn by_feasibility(&self, other: &Self) -> Ordering {
         match (self, other) {
             (Self::Refused(own), Self::Refused(other)) => own.total_cmp(other),
             (Self::Refused(_), _) => Ordering::Greater,
@@ -54,7 +54,7 @@ impl Outcome {
     }
 
     /// The goals of a design that is feasible.
-    fn goals_if_feasible(&self) -> Option<&[f64]> {
+    pub(crate) fn goals_if_feasible(&self) -> Option<&[f64]> {
         match self {
             Self::Computed { goals, .. } if self.is_feasible() => Some(goals),
             _ => None,
@@ -124,12 +124,20 @@ pub fn front(outcomes: &[Outcome]) -> Vec<usize> {
     feasible.sort_by(|(i, a), (j, b)| lexical(a, b).then(i.cmp(j)));
     let mut front: Vec<(usize, &[f64])> = Vec::new();
     for (i, goals) in feasible {
-        let beaten = front
-            .iter()
-            .any(|(_, other)| other.iter().zip(goals).all(|(other, own)| other <= own));
-        if !beaten {
+        let is_beaten = front.iter().any(|(_, other)| is_no_worse(other, goals));
+        if !is_beaten {
             front.push((i, goals));
         }
     }
     front.into_iter().map(|(i, _)| i).collect()
+}
+
+/// Whether `one` is as good as the `other` in every goal.
+fn is_no_worse(one: &[f64], other: &[f64]) -> bool {
+    one.iter().zip(other).all(|(one, other)| one <= other)
+}
+
+/// Whether `one` is as good as the `other` in every goal, and better in one.
+pub(crate) fn beats(one: &[f64], other: &[f64]) -> bool {
+    is_no_worse(one, other) && one != other
 }

@@ -263,3 +263,87 @@ fn two_goals_come_to_the_front_of_binh_and_korn() {
     let [x, _] = [all[best(&outcomes).expect("a design")].0[0] * 5.0, 0.0];
     assert!((1.0..4.0).contains(&x), "{x}");
 }
+
+/// Two bowls with their middles apart, stretched along axes that are turned against the variables: the front is the straight line between the middles.
+fn bowls(u: &[f64]) -> Outcome {
+    let from = |middle: [f64; 4]| -> f64 {
+        let x: Vec<f64> = u.iter().zip(middle).map(|(u, middle)| u - middle).collect();
+        // Sums and differences of neighbors are orthogonal.
+        let turned = [x[0] + x[1], x[0] - x[1], x[2] + x[3], x[2] - x[3]];
+        let stretched = turned.iter().zip([1.0, 30.0, 3.0, 10.0]);
+        stretched.map(|(x, stretch)| stretch * x * x).sum()
+    };
+    computed(
+        vec![from([0.3, 0.4, 0.6, 0.2]), from([0.7, 0.5, 0.5, 0.6])],
+        &[],
+    )
+}
+
+/// The first problem of Zitzler, Deb and Thiele with five variables: the front is y = 1 − √x, at zeros of all variables but the first.
+fn zdt1(u: &[f64]) -> Outcome {
+    let g = 1.0 + 9.0 * meshwright_sample::mean(&u[1..]).expect("variables");
+    computed(vec![u[0], g * (1.0 - (u[0] / g).sqrt())], &[])
+}
+
+/// The area between a corner and the front, over that of the rectangle to the best of both goals.
+fn area_behind(all: &[(Vec<f64>, Outcome)], corner: [f64; 2]) -> f64 {
+    let outcomes: Vec<Outcome> = all.iter().map(|(_, outcome)| outcome.clone()).collect();
+    let (mut area, mut top) = (0.0, corner[1]);
+    for i in front(&outcomes) {
+        let goals = outcomes[i].goals_if_feasible().expect("it is on the front");
+        if goals[0] < corner[0] && goals[1] < top {
+            area += (corner[0] - goals[0]) * (top - goals[1]);
+            top = goals[1];
+        }
+    }
+    area / (corner[0] * corner[1])
+}
+
+#[test]
+fn the_front_of_two_goals_is_far_nearer_than_that_of_designs_at_random() {
+    // The areas behind the whole fronts: of the bowls by their closed form, f and (1 - √f)² times the value at the other middle; of the other 1 - 1/3 + what
+    // lies between it and the corner.
+    let across = {
+        let Outcome::Computed { goals, .. } = bowls(&[0.7, 0.5, 0.5, 0.6]) else {
+            unreachable!("it is computed")
+        };
+        goals[0]
+    };
+    let cases: [(Function, usize, [f64; 2], f64); 2] = [
+        (bowls, 4, [across; 2], 1.0 - 1.0 / 6.0),
+        (
+            zdt1,
+            5,
+            [1.1; 2],
+            (0.1 * 1.1 + 1.0 * 0.1 + 2.0 / 3.0) / 1.21,
+        ),
+    ];
+    for (function, axes, corner, whole) in cases {
+        let missing = |all: &[(Vec<f64>, Outcome)]| whole - area_behind(all, corner);
+        let mut found = Vec::new();
+        let mut random = Vec::new();
+        for seed in 0..15 {
+            let two = Problem {
+                goals: 2,
+                ..problem(axes, 0, 500, seed)
+            };
+            found.push(missing(&searched(&two, function)));
+            let mut chance = crate::chance::Chance::new(seed);
+            let drawn = (0..500).map(|_| {
+                let u: Vec<f64> = (0..axes).map(|_| chance.even()).collect();
+                let outcome = function(&u);
+                (u, outcome)
+            });
+            random.push(missing(&drawn.collect::<Vec<_>>()));
+        }
+        for list in [&mut found, &mut random] {
+            list.sort_by(f64::total_cmp);
+        }
+        assert!(found[0] > 0.0, "more than there is: {found:?}");
+        assert!(found[7] < 0.1 * random[7], "{found:?} {random:?}");
+        assert!(
+            found[14] < 0.7 * random[0],
+            "the worst against the best at random: {found:?} {random:?}"
+        );
+    }
+}
