@@ -99,7 +99,7 @@ codes! {
     TorqueNotPositive "torque-not-positive" 422 "A torque is not positive"
         "The output torque loads the driven gear against the motion and must not be negative; 0 is light load, the limit that gives the kinematic error. Reversed load is the mirrored pair."
     TooLarge "too-large" 422 "The work asked for is too large"
-        "A submission may have at most 60 torques and 20,000 positions, a preview fewer, counted as mesh periods times positions per mesh period times torques. The detail says how many were asked for and what would fit: fewer positions, fewer torques or a shorter span. /v1/limits tells the limits."
+        "A submission may have at most 60 torques and 20,000 positions, 200,000 with a projected method on teeth that do not deviate, a preview fewer, counted as mesh periods times positions per mesh period times torques. The detail says how many were asked for and what would fit: fewer positions, fewer torques or a shorter span. /v1/limits tells the limits."
     ModelRefused "model-refused" 422 "The model has no pair that can be taken"
         "The body is no REXS model, or none of its cylindrical stages is a pair of external gears that can be computed. The detail says why of each, with its component and attribute."
     NotConverged "not-converged" 422 "The contact did not converge"
