@@ -17,7 +17,7 @@ document! {
     /// Two spur or helical gears at a center distance, the first driving the second.
     pub struct PairDocument as "Pair", "Gear pair" {
         /// The operating center distance, not the reference one. Teeth have to reach each other with a contact ratio of at least one,
-        /// without negative backlash and without interference.
+        /// without negative backlash and without interference. What the last digits of printed numbers take from the backlash is taken for none.
         center_distance_mm: f64 = number("Center distance", "mm", 0.5, 52_500.0),
         /// The helix angle at the reference circle: positive where the driving gear is right-handed and the driven one left-handed. Module,
         /// pressure angle, rack and profile shift are those of the normal section then. Other than 0 it needs three dimensions.

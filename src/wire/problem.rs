@@ -61,7 +61,7 @@ codes! {
     ContactRatioBelowOne "contact-ratio-below-one" 422 "The contact ratio is below one"
         "The teeth reach each other, but the path of contact is shorter than the base pitch: between one pair and the next nothing would carry the load. nearest is the largest center distance, rounded down, at which the contact ratio is at least one."
     NegativeBacklash "negative-backlash" 422 "The backlash is negative"
-        "At this center distance the teeth are thicker than the spaces that they enter, at least at the worst of them: pitch and slope deviations that stand out, and eccentricity, take from the backlash. nearest is the smallest distance, rounded up, without negative backlash; less profile shift helps as well. Zero backlash is accepted with a warning."
+        "At this center distance the teeth are thicker than the spaces that they enter, at least at the worst of them: pitch and slope deviations that stand out, and eccentricity, take from the backlash. nearest is the smallest distance, rounded up, without negative backlash; less profile shift helps as well. Zero backlash is accepted with a warning, and so is what the last printed digits of distance, profile shifts and module explain."
     Interference "interference" 422 "A tip enters a fillet"
         "The tips of one gear reach below the involute flank of the other, into its fillet or root, where the motion would not be conjugate. nearest is the smallest center distance, rounded up, that avoids it; a shorter addendum helps as well."
     Undercut "undercut" 422 "The flank is undercut"

@@ -87,7 +87,7 @@ pub enum DeviationsError {
 /// Two spur gears at a center distance, the first driving the second.
 ///
 /// A value of this type can mesh: the contact ratio is at least one, the backlash is not negative and no tip enters a
-/// fillet. Lengths are in meters, angles in radians.
+/// fillet. Where the last printed digits ([`super::printed`]) leave too little room for the other flanks, they are moved back. Lengths are in meters, angles in radians.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GearPair {
     driving: SpurGear,

@@ -51,9 +51,9 @@ document! {
         /// The number of teeth Z. Few teeth need profile shift against undercut. Internal gears, whose number is negative by some programs, are not
         /// computed.
         tooth_count: u32 = number("Number of teeth", "1", 4.0, 1_000.0).negative_means(INTERNAL),
-        /// The module m, the same for both gears.
+        /// The module m, the same for both gears. Where they differ in printed digits only, that with more digits is taken for both.
         pub(super) module_mm: f64 = number("Module", "mm", 0.1, 50.0),
-        /// The pressure angle of the basic rack, the same for both gears.
+        /// The pressure angle of the basic rack, the same for both gears but for printed digits.
         pub(super) pressure_angle_deg: f64 = number("Pressure angle", "deg", 10.0, 40.0).or(20.0),
         /// The profile shift x in modules, positive outward.
         profile_shift: f64 = number("Profile shift coefficient", "1", -2.0, 2.0).or(0.0),

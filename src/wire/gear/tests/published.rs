@@ -3,7 +3,8 @@
 use serde_json::{Value, json};
 
 use crate::wire::testing::{and, parse, put, with};
-use crate::wire::{Code, Validation, WarningCode, validate};
+use crate::wire::warning::WarningCode;
+use crate::wire::{Code, Validation, validate};
 
 /// A gear with the blank that the rows of the table have.
 fn gear(tooth_count: u32, module: f64, face_width: f64, bore: f64, more: &Value) -> Value {
@@ -126,7 +127,7 @@ fn what_the_last_digits_do_not_explain_is_refused_with_a_distance_that_is_no_ten
         (error.code, error.nearest),
         (Code::NegativeBacklash, Some(100.0))
     );
-    // Without the last digits the pair of KHK fits at 125.0000000026 mm, by the closed form.
+    // At 125 mm the pair of KHK lacks 0.9 nm of backlash: by the closed form it fits from 125.000001 mm on.
     let error = parse(&khk(124.99, &json!({})))
         .expect_err("jams")
         .errors
