@@ -50,7 +50,7 @@ export class Beginnings {
     if (pointer.endsWith("/profile_modifications")) return this.#modification(pointer, kindOf(this.api, kind.items.kind === "variants" ? kind.items.variants[0] : kind.items.schema));
     if (pointer.endsWith("/lead_modifications")) return { kind: "crowning", amount_um: 5 };
     if (!pointer.endsWith("/holes")) return this.#begin(kind.items);
-    return values.length ? between(values.at(-1), 1.2 * this.limits.least_ligament_mm) : this.object(pointer, kind);
+    return values.length ? between(values.at(-1), 1.2 * this.limits.least_ligament_modules * this.#gear(pointer).module_mm) : this.object(pointer, kind);
   }
 
   #gear(pointer) {

@@ -14,6 +14,7 @@ answer! {
         let faces = case.faces.as_ref().map(|faces| &faces.pair);
         let rack = &pair.driving().data().rack;
         let width = faces.map_or(pair.common_face_width(), SolidPair::common_face_width);
+        let normal = faces.map_or(1.0, |pair| pair.base_helix_angle().cos());
     } {
         /// The operating center distance a, in mm.
         center_distance_mm: f64 = to_mm(pair.center_distance()),
@@ -25,11 +26,17 @@ answer! {
         base_pitch_mm: f64 = to_mm(pair.base_pitch()),
         /// The number of mesh periods after which the contact repeats.
         period_mesh_periods: u32 = pair.period(),
-        /// The normal backlash, along the line of action, in mm, of teeth as drawn.
-        backlash_mm: f64 = to_mm(pair.backlash()),
-        /// The least backlash over the true period, in mm: what the pitch deviations of teeth in mesh at the same time, slopes that stand out and
+        /// The normal backlash j_bn of ISO 21771, in mm, of teeth as drawn: across the flanks in the normal section. Straight teeth have it along the line of
+        /// action.
+        backlash_mm: f64 = to_mm(pair.backlash() * normal),
+        /// The transverse backlash along the line of action, in mm, of teeth as drawn: the normal one over the cosine of the helix angle at the base
+        /// circles. Force tables have it so.
+        #[serde(default = "untold")]
+        #[schema(required)]
+        backlash_transverse_mm: f64 = to_mm(pair.backlash()),
+        /// The least normal backlash over the true period, in mm: what the pitch deviations of teeth in mesh at the same time, slopes that stand out and
         /// eccentricity leave of it.
-        least_backlash_mm: f64 = to_mm(pair.least_backlash()),
+        least_backlash_mm: f64 = to_mm(pair.least_backlash() * normal),
         /// The face width on which the gears touch, in mm: the smaller of the two.
         contact_width_mm: f64 = to_mm(width),
         /// The helix angle at the base circles, in degrees, without a sign; absent, as what follows, for plane methods. With a helix all other values of the
@@ -98,6 +105,7 @@ answer! {
         let solid = case.faces.as_ref().map(|faces| faces.pair.gear(member));
         // What rounding leaves of holes that balance each other has no direction.
         let noise = 1e-12 * gear.mass() * gear.tip_radius();
+        let normal = solid.map_or(1.0, |solid| solid.helix_angle_at(gear.tip_radius()).cos());
         let [sliding_a, sliding_e] = pair.specific_sliding(member);
         let imbalance = Some(gear.imbalance()).filter(|imbalance| imbalance.norm() > noise);
     } {
@@ -130,8 +138,16 @@ answer! {
         #[serde(default = "untold")]
         #[schema(required)]
         working_pitch_diameter_mm: f64 = to_mm(2.0 * pair.working_radius(member)),
-        /// The thickness of a tooth along its tip circle, in mm.
-        tip_thickness_mm: f64 = to_mm(gear.tip_thickness()),
+        /// The thickness s_an of a tooth on its tip circle in the normal section (ISO 21771), in mm.
+        tip_thickness_mm: f64 = to_mm(gear.tip_thickness() * normal),
+        /// The same in the transverse section, along the tip circle, in mm.
+        #[serde(default = "untold")]
+        #[schema(required)]
+        tip_thickness_transverse_mm: f64 = to_mm(gear.tip_thickness()),
+        /// The tip clearance, in mm: from the tip circle of this gear to the root circle of the other one.
+        #[serde(default = "untold")]
+        #[schema(required)]
+        tip_clearance_mm: f64 = to_mm(pair.tip_clearance(member)),
         /// The specific sliding of this flank at A, where a pair of teeth comes into contact: the sliding velocity over the velocity at which the
         /// contact runs along the flank. Absent where it has no bound, on the base circle.
         specific_sliding_a?: f64 = sliding_a,

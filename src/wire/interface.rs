@@ -21,7 +21,7 @@ document! {
 }
 
 const RADIUS: Optional<Number> = absent(
-    number("Interface radius of holed gears", "mm", 0.1, 7_500.0),
+    number("Interface radius of holed gears", "mm", 0.1, 25_000.0),
     "for each holed gear one module below its root circle, or halfway to the holes where they come closer",
 );
 

@@ -1,5 +1,6 @@
 //! The pair of a submission, and what is wrong with gears that cannot mesh.
 
+use meshwright_engine::gear::printed::{differ_in_digits_only, last_unit};
 use meshwright_engine::gear::{
     Alignment, GearPair, GearPairError, Helix, Member, SolidPair, SolidPairError, SpurGear,
 };
@@ -7,14 +8,17 @@ use meshwright_engine::gear::{
 use super::declare::{Errors, absent, document, nested, number};
 use super::gear::{GearDocument, LeadModificationDocument};
 use super::problem::{Code, FieldError};
-use super::units::{Side, from_mm, from_um, plain, rounded_inward, significant, to_mm};
+use super::units::{
+    Side, from_mm, from_um, plain, rounded_inward, rounded_to_unit, significant, to_mm,
+};
+use super::warning::WarningDocument;
 
 document! {
     /// Two spur or helical gears at a center distance, the first driving the second.
     pub struct PairDocument as "Pair", "Gear pair" {
         /// The operating center distance, not the reference one. Teeth have to reach each other with a contact ratio of at least one,
-        /// without negative backlash and without interference.
-        center_distance_mm: f64 = number("Center distance", "mm", 0.5, 20_000.0),
+        /// without negative backlash and without interference. What the last digits of printed numbers take from the backlash is taken for none.
+        center_distance_mm: f64 = number("Center distance", "mm", 0.5, 52_500.0),
         /// The helix angle at the reference circle: positive where the driving gear is right-handed and the driven one left-handed. Module,
         /// pressure angle, rack and profile shift are those of the normal section then. Other than 0 it needs three dimensions.
         helix_angle_deg: f64 = number("Helix angle", "deg", -45.0, 45.0).or(0.0),
@@ -43,6 +47,13 @@ document! {
 }
 
 impl PairDocument {
+    /// The cosine of the helix angle at the base circles: sin β_b = sin β cos α_n.
+    fn cos_base_helix(&self) -> f64 {
+        let sin = self.helix_angle_deg.to_radians().sin();
+        let sin = sin * self.driving.pressure_angle_deg.to_radians().cos();
+        (1.0 - sin * sin).sqrt()
+    }
+
     /// The helix of the gear `member`.
     pub(super) fn helix(&self, member: Member) -> Helix {
         let beta = self.helix_angle_deg.to_radians();
@@ -161,13 +172,16 @@ impl PairDocument {
         make: impl Fn(&GearDocument, Member) -> Result<G, Vec<FieldError>>,
     ) -> Option<[G; 2]> {
         let mismatches = self.mismatches();
+        let Self {
+            driving, driven, ..
+        } = &self.with_all_digits();
         let matched = errors.report(if mismatches.is_empty() {
             Ok(())
         } else {
             Err(mismatches)
         });
-        let driving = errors.report(make(&self.driving, Member::Driving));
-        let driven = errors.report(make(&self.driven, Member::Driven));
+        let driving = errors.report(make(driving, Member::Driving));
+        let driven = errors.report(make(driven, Member::Driven));
         matched?;
         Some([driving?, driven?])
     }
@@ -180,8 +194,10 @@ impl PairDocument {
     ) -> Option<FieldError> {
         let mm = |value: f64| plain(to_mm(value));
         let a = plain(self.center_distance_mm);
-        let nearest =
-            |bound: f64, side: Side| nearest_distance(driving, driven, to_mm(bound), side);
+        let is_backlash = matches!(error, GearPairError::NegativeBacklash { .. });
+        let nearest = |bound: f64, side: Side| {
+            nearest_distance(driving, driven, to_mm(bound), side, is_backlash)
+        };
         let (code, detail, nearest) = match *error {
             GearPairError::ModuleMismatch { .. } | GearPairError::PressureAngleMismatch { .. } => {
                 return self.mismatches().into_iter().next();
@@ -217,7 +233,7 @@ impl PairDocument {
                     };
                     format!(
                         "At the center distance {a} mm the normal backlash is {} mm{worst}",
-                        mm(backlash)
+                        mm(backlash * self.cos_base_helix())
                     )
                 } else {
                     format!(
@@ -236,6 +252,8 @@ impl PairDocument {
             ),
         };
         let advice = match (nearest, code) {
+            // The digits of such a distance are those that matter.
+            (Some(least), Code::NegativeBacklash) => format!("; it takes at least {least} mm."),
             (Some(most), Code::TeethDoNotReach | Code::ContactRatioBelowOne) => {
                 format!("; continuous meshing needs at most {} mm.", plain(most))
             }
@@ -250,31 +268,105 @@ impl PairDocument {
         Some(error.nearest(nearest))
     }
 
+    /// What has to be the same in both gears, and of these what is not written alike.
+    fn unlike(&self) -> impl Iterator<Item = Unlike> {
+        let of_both = |value: fn(&GearDocument) -> f64| [value(&self.driving), value(&self.driven)];
+        let same = [
+            Unlike {
+                what: "module",
+                unit: GearDocument::module_mm.spec.unit,
+                code: Code::ModuleMismatch,
+                name: GearDocument::module_mm.name,
+                values: of_both(|gear| gear.module_mm),
+            },
+            Unlike {
+                what: "pressure angle",
+                unit: GearDocument::pressure_angle_deg.spec.unit,
+                code: Code::PressureAngleMismatch,
+                name: GearDocument::pressure_angle_deg.name,
+                values: of_both(|gear| gear.pressure_angle_deg),
+            },
+        ];
+        same.into_iter()
+            .filter(|Unlike { values, .. }| values[0] != values[1])
+    }
+
     /// What has to be the same in both gears and is not.
     fn mismatches(&self) -> Vec<FieldError> {
-        let of_both = |value: fn(&GearDocument) -> f64| (value(&self.driving), value(&self.driven));
-        let same = [
-            (
-                ("module", "mm", Code::ModuleMismatch),
-                GearDocument::module_mm.name,
-                of_both(|gear| gear.module_mm),
-            ),
-            (
-                ("pressure angle", "deg", Code::PressureAngleMismatch),
-                GearDocument::pressure_angle_deg.name,
-                of_both(|gear| gear.pressure_angle_deg),
-            ),
-        ];
-        let different = same.into_iter().filter(|(.., (one, other))| one != other);
-        let told = different.map(|((what, unit, code), name, (driving, driven))| {
+        let different = self.unlike().filter(|unlike| unlike.taken().is_none());
+        let told = different.map(|unlike| {
+            let Unlike {
+                what,
+                unit,
+                code,
+                name,
+                values: [driving, driven],
+            } = unlike;
+            // All digits, because those that differ may be the last.
             let detail = format!(
-                "The driven gear has {what} {} {unit}, the driving gear {} {unit}; gears that mesh have the same.",
-                plain(driven),
-                plain(driving)
+                "The driven gear has {what} {driven} {unit}, the driving gear {driving} {unit}; gears that mesh have the same."
             );
             FieldError::new(format!("/pair/driven/{name}"), code, detail).nearest(driving)
         });
         told.collect()
+    }
+
+    /// The same pair with module and pressure angle as the gear has them that says more of their digits.
+    fn with_all_digits(&self) -> Self {
+        let mut pair = self.clone();
+        for unlike in self.unlike() {
+            let Some((value, _)) = unlike.taken() else {
+                continue;
+            };
+            for gear in [&mut pair.driving, &mut pair.driven] {
+                match unlike.code {
+                    Code::ModuleMismatch => gear.module_mm = value,
+                    _ => gear.pressure_angle_deg = value,
+                }
+            }
+        }
+        pair
+    }
+
+    /// Of module and pressure angle which value is taken for a gear that says fewer digits of it.
+    pub(super) fn digits_taken(&self) -> Vec<WarningDocument> {
+        let taken = self.unlike().filter_map(|unlike| {
+            let (value, member) = unlike.taken()?;
+            let Unlike {
+                what, unit, values, ..
+            } = unlike;
+            let detail = format!(
+                "The {member} gear has {what} {} {unit}, the {} gear {value} {unit}: one value but for the digits printed; {value} {unit} is taken for both.",
+                values[member.index()],
+                member.other()
+            );
+            Some(WarningDocument::of_digits(member, (value, unit), detail))
+        });
+        taken.collect()
+    }
+}
+
+/// A number that is not written alike in both gears.
+struct Unlike {
+    what: &'static str,
+    unit: &'static str,
+    code: Code,
+    name: &'static str,
+    values: [f64; 2],
+}
+
+impl Unlike {
+    /// The value with more digits, where the two differ in nothing else, and the gear that has fewer.
+    fn taken(&self) -> Option<(f64, Member)> {
+        let [driving, driven] = self.values;
+        if !differ_in_digits_only(driving, driven) {
+            return None;
+        }
+        Some(if last_unit(driven) < last_unit(driving) {
+            (driven, Member::Driving)
+        } else {
+            (driving, Member::Driven)
+        })
     }
 }
 
@@ -283,10 +375,24 @@ fn deviates(gear: &SpurGear) -> bool {
     !gear.deviations().is_none()
 }
 
-/// The first center distance in mm, from `bound` inward in units of the fifth digit, at which the gears mesh.
-fn nearest_distance(driving: &SpurGear, driven: &SpurGear, bound: f64, side: Side) -> Option<f64> {
+/// The first center distance in mm, from `bound` inward in units of the fifth digit, at which the gears mesh; where it is the `backlash` that decides, in
+/// units of a tenth of a micrometer, which is less than printed digits leave open.
+fn nearest_distance(
+    driving: &SpurGear,
+    driven: &SpurGear,
+    bound: f64,
+    side: Side,
+    backlash: bool,
+) -> Option<f64> {
     const MOST_STEPS: u32 = 3;
+    let rounded = |steps| {
+        if backlash {
+            rounded_to_unit(bound, side, steps, -4)
+        } else {
+            rounded_inward(bound, side, steps)
+        }
+    };
     (0..MOST_STEPS)
-        .map(|steps| rounded_inward(bound, side, steps))
+        .map(rounded)
         .find(|&distance| GearPair::new(driving.clone(), driven.clone(), from_mm(distance)).is_ok())
 }

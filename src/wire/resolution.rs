@@ -65,7 +65,7 @@ document! {
         /// How many mesh periods are computed. A span shorter than the true period gives curves and statistics marked as partial and no
         /// spectrum; a longer one has to be a whole multiple of it.
         pub(super) span_mesh_periods: Option<u32> = absent(
-            number("Mesh periods", "1", 1.0, 20_000.0),
+            number("Mesh periods", "1", 1.0, 200_000.0),
             "the true period of the pair, which is filled in",
         ),
         /// How fine the finite elements are; each level halves every element. Differences from fine, on the paper's cases: coarse within

@@ -16,8 +16,10 @@ use super::geometry::PairGeometry;
 use super::problem::{Code, FieldError, Problem};
 use super::resolution::ResolutionDocument;
 use super::results::Results;
-use super::submission::{MOST_POSITIONS, MOST_TAGS, MOST_TORQUES, SOLVER_VERSION, Submission};
-use super::units::{plain, to_mm, to_um};
+use super::submission::{
+    MOST_POSITIONS, MOST_PROJECTED_POSITIONS, MOST_TAGS, MOST_TORQUES, SOLVER_VERSION, Submission,
+};
+use super::units::{plain, to_um};
 use super::warning::WarningDocument;
 
 /// Computes `submission`.
@@ -235,7 +237,7 @@ pub fn validate(submission: &Submission) -> Validation {
         valid: true,
         submission: submission.clone(),
         pair: PairGeometry::of(case),
-        warnings: warnings.iter().map(WarningDocument::of).collect(),
+        warnings: submission.warnings(&warnings),
         estimate: EstimateDocument::of(submission),
     }
 }
@@ -252,6 +254,8 @@ view! {
         torques: usize = MOST_TORQUES,
         /// The most positions times torques.
         positions: u64 = MOST_POSITIONS,
+        /// The same of the projected methods on teeth that do not deviate.
+        projected_positions: u64 = MOST_PROJECTED_POSITIONS,
         /// The most positions in a mesh period.
         positions_per_mesh_period: u32 = counts(positions)[1],
         /// The most holes in a gear.
@@ -270,7 +274,7 @@ view! {
         tag_length: usize = MOST_TAGS.1,
         /// The most designs of a study.
         designs: usize = super::study::MOST_DESIGNS,
-        /// The least material around a hole, in mm.
-        least_ligament_mm: f64 = to_mm(LEAST_LIGAMENT),
+        /// The least material around a hole, in modules.
+        least_ligament_modules: f64 = LEAST_LIGAMENT,
     }
 }

@@ -80,6 +80,11 @@ pub(super) fn rounded_inward(bound: f64, side: Side, steps: u32) -> f64 {
         return bound;
     }
     let unit_exponent = bound.abs().log10().floor() as i32 - 4;
+    rounded_to_unit(bound, side, steps, unit_exponent)
+}
+
+/// The same of a value that is a whole number of 10 to the power `unit_exponent`.
+pub(super) fn rounded_to_unit(bound: f64, side: Side, steps: u32, unit_exponent: i32) -> f64 {
     let in_units = if unit_exponent < 0 {
         bound * 10_f64.powi(-unit_exponent)
     } else {

@@ -1,6 +1,7 @@
 //! What a reader should know beside the numbers.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 use meshwright_engine::analysis::{
     FEW_POSITIONS, FormulaQuantity, FormulaRange, PLANE_RIM, PLANE_WEB, Warning,
@@ -9,7 +10,7 @@ use meshwright_engine::gear::Member;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::units::{plain, significant, to_mm, to_mpa, to_n_per_mm, to_um};
+use super::units::{Side, plain, rounded_to_unit, significant, to_mm, to_mpa, to_n_per_mm, to_um};
 
 /// A warning: the result stands, but with something to know.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -28,6 +29,10 @@ pub struct WarningDocument {
     /// The unit of that number.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unit: Option<Cow<'static, str>>,
+    /// Values that would help, by the paths of their fields in a submission, ready to be taken over.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[schema(required = false)]
+    pub changes: BTreeMap<String, f64>,
     /// Where the service has a guide that says more.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub guide: Option<Cow<'static, str>>,
@@ -40,6 +45,10 @@ pub struct WarningDocument {
 pub enum WarningCode {
     /// The teeth fit without any backlash; only the loaded flanks are solved.
     ZeroBacklash,
+    /// Module or pressure angle of the gears differ in printed digits only; the value with more digits is taken for both.
+    PrintedDigits,
+    /// The tips of a gear nearly touch the root circle of the other one.
+    SmallTipClearance,
     /// The material around the holes is thinner than one module.
     ThinLigament,
     /// A web or its rim is thinner than a plane model can stand for.
@@ -109,13 +118,50 @@ impl WarningDocument {
     /// The document of `warning`.
     pub fn of(warning: &Warning) -> Self {
         use WarningCode as Code;
+        let mut changes = BTreeMap::new();
         let (code, gear, number, detail) = match *warning {
-            Warning::ZeroBacklash => (
+            Warning::ZeroBacklash { moved_back } => (
                 Code::ZeroBacklash,
                 None,
                 None,
-                "The nominal backlash is zero; only the loaded flanks are solved.".to_owned(),
+                // A tenth of a nanometer is rounding of our own.
+                if moved_back < 1e-10 {
+                    "The nominal backlash is zero; only the loaded flanks are solved.".to_owned()
+                } else {
+                    format!(
+                        "The backlash is {} um short of zero, no more than the last printed digits explain: the other flanks are taken so much farther back, and the backlash is zero. Only the loaded flanks are solved.",
+                        plain(significant(to_um(moved_back), 2))
+                    )
+                },
             ),
+            Warning::SmallTipClearance {
+                member,
+                clearance,
+                shortened,
+            } => {
+                let (clearance, told) = (to_mm(clearance), small_clearance(member, clearance));
+                let advice = match shortened {
+                    None => "The racks leave no more: a larger dedendum of the other gear or a smaller addendum does.".to_owned(),
+                    Some((shortening, diameters)) => {
+                        let [driving, driven] = diameters.map(tip_diameter);
+                        changes = Member::BOTH
+                            .map(|member| format!("/pair/{member}/tip_diameter_mm"))
+                            .into_iter()
+                            .zip([driving, driven])
+                            .collect();
+                        format!(
+                            "Gear programs shorten the tips of both gears by {} mm so that the clearance of the racks stays; their tip diameters are {driving} mm and {driven} mm then.",
+                            plain(significant(to_mm(shortening), 4)),
+                        )
+                    }
+                };
+                (
+                    Code::SmallTipClearance,
+                    Some(member),
+                    Some((clearance, "mm")),
+                    format!("{told} {advice}"),
+                )
+            }
             Warning::ThinLigament { member, ligament } => (
                 Code::ThinLigament,
                 Some(member),
@@ -248,7 +294,27 @@ impl WarningDocument {
             gear: gear.map(GearName::from),
             value: number.map(|(value, _)| value),
             unit: number.map(|(_, unit)| unit.into()),
+            changes,
             guide: code.guide().map(Cow::from),
+        }
+    }
+}
+
+impl WarningDocument {
+    /// That `value`, with its unit, is taken for `member`, which says fewer of its digits.
+    pub(super) fn of_digits(
+        member: Member,
+        (value, unit): (f64, &'static str),
+        detail: String,
+    ) -> Self {
+        Self {
+            code: WarningCode::PrintedDigits,
+            detail,
+            gear: Some(member.into()),
+            value: Some(value),
+            unit: Some(unit.into()),
+            changes: BTreeMap::new(),
+            guide: None,
         }
     }
 }
@@ -304,6 +370,27 @@ fn out_of_range(found: &FormulaRange) -> (f64, &'static str, String) {
     let (first, rest) = formula.split_at(1);
     let sentence = format!("{}{rest} was published for {range}.", first.to_uppercase());
     (told[0], unit, sentence)
+}
+
+/// How little room the tips of a gear have.
+fn small_clearance(member: Member, clearance: f64) -> String {
+    let other = member.other();
+    if clearance < 0.0 {
+        format!(
+            "The tips of the {member} gear reach {} mm below the root circle of the {other} gear.",
+            plain(significant(to_mm(-clearance), 4))
+        )
+    } else {
+        format!(
+            "The tips of the {member} gear clear the root circle of the {other} gear by {} mm, less than 0.1 modules.",
+            plain(significant(to_mm(clearance), 4))
+        )
+    }
+}
+
+/// A tip diameter in mm as drawings have it, no larger than this one in meters.
+fn tip_diameter(diameter: f64) -> f64 {
+    rounded_to_unit(to_mm(diameter), Side::AtMost, 0, -3)
 }
 
 /// What to make of a web so many times as thick as the face is wide, under a rim of so many modules.

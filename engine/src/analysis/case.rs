@@ -32,6 +32,14 @@ impl Method {
             Self::ThreeDimensional | Self::ThreeDimensionalProjected
         )
     }
+
+    /// Whether it solves blanks that are alike all around, and adds what holes change at first order.
+    pub fn is_projected(self) -> bool {
+        matches!(
+            self,
+            Self::ProjectedDecomposition | Self::ThreeDimensionalProjected
+        )
+    }
 }
 
 /// How the tangent stiffness is obtained.

@@ -138,10 +138,6 @@ impl Pass {
             positions,
             step,
         };
-        let is_projected = matches!(
-            case.method,
-            Method::ProjectedDecomposition | Method::ThreeDimensionalProjected
-        );
         let is_cured = answers && case.faces.as_ref().is_some_and(|faces| faces.cure);
         Self {
             level,
@@ -161,7 +157,7 @@ impl Pass {
             } else {
                 Vec::new()
             },
-            checks: if is_projected {
+            checks: if case.method.is_projected() {
                 Checks::of(case)
             } else {
                 Checks::NONE

@@ -3,11 +3,14 @@
 use super::at_speed::CurveDynamics;
 use super::{Case, Curve, Method, Statistics};
 use crate::contact::MeshContact;
-use crate::gear::{Member, SpurGear};
+use crate::gear::{GearPair, Member, SpurGear};
 use crate::load_distribution::{FormulaRange, out_of_range};
 
 /// Backlash below this, in modules, counts as none.
 const NO_BACKLASH: f64 = 1e-6;
+
+/// Tip clearances below this, in modules, are told: racks leave 0.2 to 0.3.
+const LEAST_TIP_CLEARANCE: f64 = 0.1;
 
 /// Beyond this ratio of the face widths a plane model is told to be doubtful: the load spreads over the wider gear's width by bending it, which
 /// a plane does not see.
@@ -37,7 +40,20 @@ pub const PLANE_RIM: [f64; 2] = [3.5, 2.0];
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Warning {
     /// The teeth fit without any backlash; only the loaded flanks are solved.
-    ZeroBacklash,
+    ZeroBacklash {
+        /// By how much the other flanks are moved back, in meters, because the last printed digits leave no room.
+        moved_back: f64,
+    },
+    /// Little room between the tips of a gear and the root circle of the other one.
+    SmallTipClearance {
+        /// The gear whose tips they are.
+        member: Member,
+        /// The clearance in meters.
+        clearance: f64,
+        /// By how much gear programs shorten the tips of both gears, in meters, and the tip diameters that follow, driving and driven; none where the racks
+        /// themselves leave no more.
+        shortened: Option<(f64, [f64; 2])>,
+    },
     /// Material around the holes thinner than one module.
     ThinLigament {
         /// The gear.
@@ -123,11 +139,13 @@ pub enum Warning {
 pub fn warnings(case: &Case) -> Vec<Warning> {
     let pair = &case.pair;
     let mut warnings = Vec::new();
-    if pair.backlash() < NO_BACKLASH * pair.driving().data().rack.module {
-        warnings.push(Warning::ZeroBacklash);
+    let moved_back = pair.moved_back();
+    if moved_back > 0.0 || pair.backlash() < NO_BACKLASH * pair.driving().data().rack.module {
+        warnings.push(Warning::ZeroBacklash { moved_back });
     }
     for member in Member::BOTH {
         let gear = pair.gear(member);
+        warnings.extend(small_tip_clearance(pair, member));
         if let Some(ligament) = gear
             .least_ligament()
             .filter(|&ligament| ligament < gear.data().rack.module)
@@ -164,6 +182,22 @@ pub fn warnings(case: &Case) -> Vec<Warning> {
         warnings.extend(outside.into_iter().map(Warning::FormulaRange));
     }
     warnings
+}
+
+/// Warns of tips that nearly touch the root circle of the other gear.
+fn small_tip_clearance(pair: &GearPair, member: Member) -> Option<Warning> {
+    let clearance = pair.tip_clearance(member);
+    // Rounding of what was typed at the limit is not below it.
+    let least = LEAST_TIP_CLEARANCE * pair.gear(member).normal_rack().module;
+    let shortening = pair.usual_tip_shortening();
+    (clearance < least * (1.0 - 1e-9)).then(|| Warning::SmallTipClearance {
+        member,
+        clearance,
+        shortened: (shortening > 0.0).then(|| {
+            let shorter = |member| 2.0 * (pair.gear(member).tip_radius() - shortening);
+            (shortening, Member::BOTH.map(shorter))
+        }),
+    })
 }
 
 /// Warns of a web and a rim that a plane takes for stiffer than they are.

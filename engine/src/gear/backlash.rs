@@ -19,42 +19,39 @@ impl GearPair {
     /// The least backlash over the true period, along the line of action as [`GearPair::backlash`]: what pitch deviations of teeth in mesh at the same
     /// time, slopes that stand out and eccentricities leave of it.
     pub fn least_backlash(&self) -> f64 {
-        self.least_backlash_with(&self.deviations())
+        // Where the other flanks were moved back to touch, rounding leaves some last bits.
+        (self.backlash() - self.taken_backlash(&self.deviations())).max(0.0)
     }
 
-    fn least_backlash_with(&self, deviations: &PairDeviations) -> f64 {
-        self.backlash() - self.taken_backlash(deviations)
-    }
-
-    /// Whether teeth that have these `deviations` have room.
-    pub(super) fn leaves_backlash(&self, deviations: &PairDeviations) -> Result<(), GearPairError> {
+    /// By how much the other flanks of teeth that have these `deviations` have to be moved back for room: nothing, or as much as the last printed digits
+    /// explain.
+    pub(super) fn shortfall(&self, deviations: &PairDeviations) -> Result<f64, GearPairError> {
         let base_radii = self.driving().base_radius() + self.driven().base_radius();
         let tip_radii = self.driving().tip_radius() + self.driven().tip_radius();
         // Below the base circles together there is no line of action; the backlash decides the nearest distance.
         let is_possible = self.center_distance() > base_radii;
-        let backlash = if is_possible {
-            self.least_backlash_with(deviations)
-        } else {
-            f64::NEG_INFINITY
-        };
-        // Rounding of a distance that was typed for no backlash is none.
-        let rounding = 1e-9 * self.driving().data().rack.module;
-        if backlash >= -rounding {
-            return Ok(());
-        }
         // What is taken hardly changes with the distance.
         let mut taken = if is_possible {
-            self.backlash() - backlash
+            self.taken_backlash(deviations)
         } else {
             0.0
         };
+        let backlash = if is_possible {
+            self.drawn_backlash() - taken
+        } else {
+            f64::NEG_INFINITY
+        };
+        if backlash >= -self.backlash_in_last_digits() {
+            return Ok((-backlash).max(0.0));
+        }
+        let rounding = 1e-9 * self.driving().data().rack.module;
         let mut smallest = tip_radii;
         for _ in 0..8 {
-            let fits = |a: f64| self.at(a).backlash() >= taken;
+            let fits = |a: f64| self.at(a).drawn_backlash() >= taken;
             smallest = bisect(tip_radii, base_radii, fits);
             let there = self.at(smallest);
             let needed = there.taken_backlash(deviations);
-            if there.backlash() >= needed - 0.5 * rounding {
+            if there.drawn_backlash() >= needed - 0.5 * rounding {
                 break;
             }
             taken = needed;

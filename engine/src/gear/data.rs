@@ -2,8 +2,8 @@
 
 use super::{BlankRegion, Material, ModificationData, Rack, TipEdge, ToothDeviations};
 
-/// The least material, in meters, between a hole and its neighbor, the bore or the root circle.
-pub const LEAST_LIGAMENT: f64 = 0.5e-3;
+/// The least material between a hole and its neighbor, the bore or the root circle, in modules (of the normal section).
+pub const LEAST_LIGAMENT: f64 = 0.25;
 
 /// The least thickness of a tooth at its tip circle, in modules; below it the tooth counts as pointed.
 pub const LEAST_TIP_THICKNESS: f64 = 0.05;

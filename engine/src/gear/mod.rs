@@ -1,8 +1,8 @@
 //! What the drawing says: racks, flanks, teeth, their modifications and deviations, blanks and the pair they make.
 //!
 //! Read in this order: [`involute`] (one flank), [`rack`] (the tool and the fillet it leaves), [`modification`]
-//! and [`tip`] (what is taken off it), [`deviation`] (what teeth differ by) and [`accuracy`] (how far they may), [`blank`], [`material`], [`data`] (what a drawing says),
-//! [`spur`], `mass` and `outline` (a whole gear), [`solid`] (the same with an extent along its axis), [`member`] and [`pair`] (two of them at a center distance), [`pair_deviations`] (what their teeth differ by),
+//! and [`tip`] (what is taken off it), [`deviation`] (what teeth differ by) and [`accuracy`] (how far they may), [`blank`], [`material`], [`data`] (what a drawing says), [`thickness`] (how it says how thick teeth are),
+//! [`spur`], `mass` and `outline` (a whole gear), [`solid`] (the same with an extent along its axis), [`member`] and [`pair`] (two of them at a center distance), [`pair_deviations`] (what their teeth differ by), [`printed`] (what the last digits of a drawing leave open),
 //! [`lead`] and [`solid_pair`] (two of them along their faces).
 //!
 //! Every gear is described in its own frame: the center of the gear is the origin, the centerline of tooth 0 is the
@@ -22,10 +22,12 @@ pub mod modification;
 mod outline;
 pub mod pair;
 pub mod pair_deviations;
+pub mod printed;
 pub mod rack;
 pub mod solid;
 pub mod solid_pair;
 pub mod spur;
+pub mod thickness;
 pub mod tip;
 
 pub use accuracy::{Normals, Tolerances, total_pitch_deviation};
@@ -46,6 +48,7 @@ pub use rack::Rack;
 pub use solid::{Hand, Helix, Hub, Layer, SolidGear, SolidGearError};
 pub use solid_pair::{Alignment, ContactLine, SolidPair, SolidPairError};
 pub use spur::SpurGear;
+pub use thickness::{MeasuredTeeth, Thickness};
 pub use tip::TipEdge;
 
 /// A point or vector of the plane, in meters.

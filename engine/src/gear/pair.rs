@@ -87,7 +87,7 @@ pub enum DeviationsError {
 /// Two spur gears at a center distance, the first driving the second.
 ///
 /// A value of this type can mesh: the contact ratio is at least one, the backlash is not negative and no tip enters a
-/// fillet. Lengths are in meters, angles in radians.
+/// fillet. Where the last printed digits ([`super::printed`]) leave too little room for the other flanks, they are moved back. Lengths are in meters, angles in radians.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GearPair {
     driving: SpurGear,
@@ -96,6 +96,8 @@ pub struct GearPair {
     working_pressure_angle: f64,
     line_of_action: f64,
     pitch_roll_length: f64,
+    /// By how much the other flanks are moved back, where the last printed digits leave them too little room.
+    moved_back: f64,
 }
 
 impl GearPair {
@@ -122,8 +124,8 @@ impl GearPair {
                 driven: rack_2.pressure_angle,
             });
         }
-        let pair = Self::placed(driving, driven, center_distance);
-        pair.check()?;
+        let mut pair = Self::placed(driving, driven, center_distance);
+        pair.moved_back = pair.check()?;
         Ok(pair)
     }
 
@@ -137,6 +139,7 @@ impl GearPair {
             driving,
             driven,
             center_distance,
+            moved_back: 0.0,
         }
     }
 
@@ -154,6 +157,7 @@ impl GearPair {
         Self {
             driving: self.driving.as_drawn(),
             driven: self.driven.as_drawn(),
+            moved_back: (-self.drawn_backlash()).max(0.0),
             ..*self
         }
     }
@@ -186,7 +190,8 @@ impl GearPair {
         }
     }
 
-    fn check(&self) -> Result<(), GearPairError> {
+    /// By how much the other flanks have to be moved back, of gears that can mesh.
+    fn check(&self) -> Result<f64, GearPairError> {
         let tip_radii = self.driving.tip_radius() + self.driven.tip_radius();
         let center_distance = self.center_distance;
         if center_distance >= tip_radii {
@@ -197,7 +202,7 @@ impl GearPair {
                 largest,
             });
         }
-        self.leaves_backlash(&self.deviations())?;
+        let moved_back = self.shortfall(&self.deviations())?;
         for member in Member::BOTH {
             if !self.clears(member) {
                 let smallest = self
@@ -212,7 +217,7 @@ impl GearPair {
                 largest: self.largest_center_distance(),
             });
         }
-        Ok(())
+        Ok(moved_back)
     }
 
     /// Whether the other gear's tips stay on the flank of `member` and clear of its root.
@@ -329,8 +334,35 @@ impl GearPair {
         self.gear(member).flank().radius(lowest)
     }
 
-    /// The normal backlash j_bn, along the line of action.
+    /// The tip clearance of `member`: from its tip to the root circle of the other gear, negative where it would cut into it.
+    pub fn tip_clearance(&self, member: Member) -> f64 {
+        let (gear, other) = (self.gear(member), self.gear(member.other()));
+        self.center_distance - gear.tip_radius() - other.root_radius()
+    }
+
+    /// By how much gear programs shorten tips so that the clearance stays that of the racks, dedendum less addendum: what both shifts are more than the
+    /// center distance is more than that of unshifted gears. Not positive where nothing is lost.
+    pub fn usual_tip_shortening(&self) -> f64 {
+        let shifted = Member::BOTH.map(|member| {
+            let gear = self.gear(member);
+            gear.reference_radius() + gear.profile_shift_length()
+        });
+        shifted[0] + shifted[1] - self.center_distance
+    }
+
+    /// The backlash along the line of action (of a helical gear its transverse one), not negative.
     pub fn backlash(&self) -> f64 {
+        self.drawn_backlash() + self.moved_back
+    }
+
+    /// By how much the other flanks are moved back from where they are drawn, along the line of action: what teeth that touch on both flanks lack of
+    /// room by no more than the last printed digits explain.
+    pub fn moved_back(&self) -> f64 {
+        self.moved_back
+    }
+
+    /// The backlash along the line of action of flanks where they are drawn, negative where they have no room.
+    pub(super) fn drawn_backlash(&self) -> f64 {
         let alpha_w = self.working_pressure_angle();
         let thickness = |member| {
             let half_angle =
@@ -433,8 +465,7 @@ impl PairDeviations {
             fits.map_err(|error| DeviationsError::Gear { member, error })?;
         }
         let deviations = Self::of([&pair.driving, &pair.driven], teeth);
-        pair.leaves_backlash(&deviations)
-            .map_err(DeviationsError::Pair)?;
+        pair.shortfall(&deviations).map_err(DeviationsError::Pair)?;
         Ok(deviations)
     }
 }

@@ -234,7 +234,12 @@ impl SolidGear {
 
     /// The helix angle β_b at the base circle, without a sign: tan β_b = |τ| r_b.
     pub fn base_helix_angle(&self) -> f64 {
-        (self.twist().abs() * self.section.base_radius()).atan()
+        self.helix_angle_at(self.section.base_radius())
+    }
+
+    /// The helix angle β_y at `radius`, without a sign: tan β_y = |τ| r_y.
+    pub fn helix_angle_at(&self, radius: f64) -> f64 {
+        (self.twist().abs() * radius).atan()
     }
 
     /// The face width b.
@@ -435,7 +440,7 @@ fn around(offset: f64, width: f64) -> [f64; 2] {
 }
 
 /// α_t by tan α_t = tan α_n/cos β; α_n itself of straight teeth.
-fn transverse_angle(normal: f64, cos: f64) -> f64 {
+pub(super) fn transverse_angle(normal: f64, cos: f64) -> f64 {
     if cos == 1.0 {
         normal
     } else {

@@ -197,7 +197,7 @@ impl Gear<'_> {
     /// The profile shift with which the teeth come out as thick as they are.
     fn generated_shift(&self) -> f64 {
         let angle = self.number("pressure_angle_deg").to_radians();
-        let thicker = mm_of_um(self.number("tooth_thickness_deviation_um"));
+        let thicker = to_mm(self.section.data().thickness_deviation);
         let normal = thicker * self.helix_angle_deg.to_radians().cos();
         self.number("profile_shift") + normal / (2.0 * self.number("module_mm") * angle.tan())
     }

@@ -28,11 +28,11 @@ impl Property {
     }
 }
 
-/// That a field cannot be given together with another one.
+/// That a field cannot be given together with some others.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::wire) struct Exclusion {
-    pub(in crate::wire) other: &'static str,
-    /// Whether one of the two has to be given.
+    pub(in crate::wire) others: &'static [&'static str],
+    /// Whether one of them has to be given.
     pub(in crate::wire) is_one_needed: bool,
 }
 
@@ -146,17 +146,16 @@ pub(in crate::wire) fn object(title: &str, about: &str, properties: Vec<Property
         .collect();
     let mut pairs: Vec<([&str; 2], bool)> = Vec::new();
     for property in &properties {
-        if let Some(Exclusion {
-            other,
-            is_one_needed,
-        }) = property.exclusion
-        {
+        let Some(exclusion) = property.exclusion else {
+            continue;
+        };
+        for &other in exclusion.others {
             // Either of the two may say so, or both.
             if !pairs
                 .iter()
                 .any(|(pair, _)| *pair == [other, property.name])
             {
-                pairs.push(([property.name, other], is_one_needed));
+                pairs.push(([property.name, other], exclusion.is_one_needed));
             }
         }
     }

@@ -33,6 +33,8 @@ pub(in crate::wire) struct Number {
     fitted: Option<fn(f64, &ObjectReader<'_>) -> f64>,
     /// How a value below zero is refused.
     negative: Code,
+    /// What a value below zero means elsewhere, and why it is refused.
+    meaning: Option<&'static str>,
 }
 
 /// A number of a submission, within bounds, that has to be given.
@@ -50,6 +52,7 @@ pub(in crate::wire) const fn number(
         preset: Preset::Needed,
         fitted: None,
         negative: Code::OutOfRange,
+        meaning: None,
     }
 }
 
@@ -83,6 +86,12 @@ impl Number {
         Self { negative, ..self }
     }
 
+    /// A value below zero is refused as what it means elsewhere.
+    pub(in crate::wire) const fn negative_means(self, meaning: &'static str) -> Self {
+        let meaning = Some(meaning);
+        Self { meaning, ..self }
+    }
+
     /// What stands for it where it is not given, for a gear of `module`.
     pub(in crate::wire) fn preset(&self, module: Option<f64>) -> Option<f64> {
         match self.preset {
@@ -106,8 +115,10 @@ impl Number {
                 "" | "1" => String::new(),
                 unit => format!(" {unit}"),
             };
+            let meaning = self.meaning.filter(|_| value < 0.0);
+            let meaning = meaning.map_or(String::new(), |meaning| format!("{meaning}; "));
             let detail = format!(
-                "{place} is {}{unit}; it has to {}lie between {}{unit} and {}{unit}.",
+                "{place} is {}{unit}; {meaning}it has to {}lie between {}{unit} and {}{unit}.",
                 plain(value),
                 if self.or_zero { "be 0 or " } else { "" },
                 plain(least),
@@ -260,8 +271,13 @@ mod tests {
     fn a_value_outside_its_bounds_is_answered_with_the_nearer_bound() {
         let teeth = GearDocument::tooth_count.spec;
         let (code, detail, nearest) = teeth.check(-3.0, "/z", true).expect_err("negative");
-        assert_eq!((code, nearest), (Code::OutOfRange, 5.0));
-        assert!(detail.contains("-3"), "{detail}");
+        assert_eq!((code, nearest), (Code::OutOfRange, 4.0));
+        assert!(
+            detail.contains("-3") && detail.contains("internal gears are not computed"),
+            "{detail}"
+        );
+        let (_, detail, _) = teeth.check(3.0, "/z", true).expect_err("three teeth");
+        assert!(!detail.contains("internal"), "{detail}");
         let module = GearDocument::module_mm.spec;
         let (_, detail, nearest) = module.check(1e308, "/m", false).expect_err("enormous");
         assert_eq!(nearest, 50.0);

@@ -10,7 +10,7 @@ use super::{Declared, Exclusion, Kind, Named, Node, ObjectReader, Place};
 enum Absent {
     /// This. Null is as good.
     Means(&'static str),
-    /// That another field stands in its place; where that is absent too, what would stand for the value by itself.
+    /// That another field stands in its place; where those are absent too, what would stand for the value by itself.
     Unless,
     /// That another field stands in its place; one of the two has to be given.
     OneOf,
@@ -21,41 +21,40 @@ enum Absent {
 pub(in crate::wire) struct Optional<S> {
     pub(in crate::wire) spec: S,
     absent: Absent,
-    /// The field that cannot be given together with it.
-    other: Option<&'static str>,
+    /// The fields that cannot be given together with it.
+    others: &'static [&'static str],
     /// Whether it is left out where it is absent, instead of being written as null.
     left_out: bool,
 }
 
-const fn optional<S>(spec: S, absent: Absent, other: Option<&'static str>) -> Optional<S> {
+const fn optional<S>(spec: S, absent: Absent, others: &'static [&'static str]) -> Optional<S> {
     Optional {
         spec,
         absent,
-        other,
+        others,
         left_out: false,
     }
 }
 
 /// Absent, it means `meaning`.
 pub(in crate::wire) const fn absent<S>(spec: S, meaning: &'static str) -> Optional<S> {
-    optional(spec, Absent::Means(meaning), None)
+    optional(spec, Absent::Means(meaning), &[])
 }
 
-/// Read and filled in by itself, unless the field `other` is given.
-pub(in crate::wire) const fn unless<S>(other: &'static str, spec: S) -> Optional<S> {
-    optional(spec, Absent::Unless, Some(other))
+/// Read and filled in by itself, unless one of the fields `others` is given.
+pub(in crate::wire) const fn unless<S>(others: &'static [&'static str], spec: S) -> Optional<S> {
+    optional(spec, Absent::Unless, others)
 }
 
-/// Either this or the field `other`.
-pub(in crate::wire) const fn or_else<S>(other: &'static str, spec: S) -> Optional<S> {
-    optional(spec, Absent::OneOf, Some(other))
+/// Either this or one of the fields `others`.
+pub(in crate::wire) const fn or_else<S>(others: &'static [&'static str], spec: S) -> Optional<S> {
+    optional(spec, Absent::OneOf, others)
 }
 
 impl<S: Copy> Optional<S> {
-    /// Refused together with the field `other`.
-    pub(in crate::wire) const fn not_beside(self, other: &'static str) -> Self {
-        let other = Some(other);
-        Self { other, ..self }
+    /// Refused together with the fields `others`.
+    pub(in crate::wire) const fn not_beside(self, others: &'static [&'static str]) -> Self {
+        Self { others, ..self }
     }
 
     /// Not written where it is absent.
@@ -88,17 +87,21 @@ impl<T: Kind> Kind for Option<T> {
         if reader.is_refused(name) {
             return Some(None);
         }
-        if let Some(other) = spec.other {
+        for &other in spec.others {
             reader.refuse_both(name, other);
-            if reader.present(other).is_some() {
-                return Some(None);
-            }
+        }
+        if spec
+            .others
+            .iter()
+            .any(|other| reader.present(other).is_some())
+        {
+            return Some(None);
         }
         match (node, spec.absent) {
             (Some(node), _) => Self::read(node, &reader.place_of(name), spec),
             (None, Absent::Means(_)) => Some(None),
             (None, Absent::Unless) => T::absent(reader, name, &spec.spec).map(Some),
-            (None, Absent::OneOf) => reader.missing_one_of(&[name, spec.other.unwrap_or_default()]),
+            (None, Absent::OneOf) => reader.missing_one_of(&[&[name], spec.others].concat()),
         }
     }
 
@@ -116,8 +119,8 @@ impl<T: Kind> Kind for Option<T> {
             Absent::Unless => T::is_needed(&spec.spec),
             Absent::OneOf => true,
         };
-        spec.other.map(|other| Exclusion {
-            other,
+        (!spec.others.is_empty()).then_some(Exclusion {
+            others: spec.others,
             is_one_needed,
         })
     }
@@ -130,9 +133,9 @@ impl<T: Kind> Kind for Option<T> {
     }
 
     fn describe(about: &str, spec: &Self::Spec) -> Value {
-        let about = match spec.other {
-            None => about.to_owned(),
-            Some(other) => format!("{about} Not together with {other}."),
+        let about = match spec.others {
+            [] => about.to_owned(),
+            others => format!("{about} Not together with {}.", others.join(" or ")),
         };
         let mut schema = or_null(T::describe(&about, &spec.spec));
         if let Absent::Means(meaning) = spec.absent {
@@ -175,15 +178,15 @@ mod tests {
         /// Something whose fields exclude each other.
         struct Thing as "Thing", "Thing" {
             /// One of the two has to be given.
-            length: Option<f64> = or_else("angle", number("Length", "m", 0.0, 9.0)),
+            length: Option<f64> = or_else(&["angle"], number("Length", "m", 0.0, 9.0)),
             /// The other one.
-            angle: Option<f64> = or_else("length", number("Angle", "rad", 0.0, 9.0)),
+            angle: Option<f64> = or_else(&["length"], number("Angle", "rad", 0.0, 9.0)),
             /// One of the two may be given.
-            chamfer: Option<f64> = absent(number("Chamfer", "m", 0.0, 9.0), "none").not_beside("rounding"),
+            chamfer: Option<f64> = absent(number("Chamfer", "m", 0.0, 9.0), "none").not_beside(&["rounding"]),
             /// The other one.
             rounding: Option<f64> = absent(number("Rounding", "m", 0.0, 9.0), "none"),
             /// One has a default, in whose place the other may stand.
-            width: Option<f64> = unless("share", number("Width", "m", 0.0, 9.0).or(1.0)),
+            width: Option<f64> = unless(&["share"], number("Width", "m", 0.0, 9.0).or(1.0)),
             /// The other one.
             share: Option<f64> = absent(number("Share", "1", 0.0, 9.0), "the width decides"),
         }

@@ -10,7 +10,7 @@ document! {
     /// What carries the teeth: everything between the bore and the root circle.
     pub struct BlankDocument as "Blank", "Blank" {
         /// The radius on which the hub is rigid: at least 5 % of the root radius, and a module below it.
-        pub(super) bore_radius_mm: f64 = number("Bore radius", "mm", 0.02, 7_500.0),
+        pub(super) bore_radius_mm: f64 = number("Bore radius", "mm", 0.02, 25_000.0),
         /// The holes of the blank: a pattern, or a list of patterns.
         pub(super) holes: HolesDocument = (),
         /// A ring that is thinner, or thicker, than the face is wide.
@@ -25,9 +25,9 @@ document! {
     /// region.
     pub struct WebDocument as "Web", "Web" {
         /// Where the web begins: at the bore, or at least 0.1 modules outside of it.
-        pub(super) inner_radius_mm: f64 = number("Inner radius of the web", "mm", 0.02, 7_500.0),
+        pub(super) inner_radius_mm: f64 = number("Inner radius of the web", "mm", 0.02, 25_000.0),
         /// Where the web ends: at least half a module below the root circle, and 0.1 modules outside of its inner radius.
-        pub(super) outer_radius_mm: f64 = number("Outer radius of the web", "mm", 0.1, 7_500.0),
+        pub(super) outer_radius_mm: f64 = number("Outer radius of the web", "mm", 0.1, 25_000.0),
         /// Its thickness, symmetric to the middle of the face: 1 % to four times the face width. A web as thick as the face is wide is
         /// none.
         pub(super) thickness_mm: f64 = number("Thickness of the web", "mm", 0.001, 8_000.0),
@@ -40,7 +40,7 @@ document! {
     /// The ring on the bore where it is not as wide as the face.
     pub struct HubDocument as "Hub", "Hub" {
         /// Where the hub ends: between the bore and the rim.
-        pub(super) outer_radius_mm: f64 = number("Outer radius of the hub", "mm", 0.02, 7_500.0),
+        pub(super) outer_radius_mm: f64 = number("Outer radius of the hub", "mm", 0.02, 25_000.0),
         /// Its width: at least that of the web that stands on it.
         pub(super) width_mm: f64 = number("Width of the hub", "mm", 0.1, 4_000.0),
         /// Where its middle stands from that of the face.

@@ -10,15 +10,15 @@ use super::holes::{PatternDocument, SlotDocument};
 use super::proportions::check_between;
 use crate::wire::declare::{Declared, Number};
 use crate::wire::problem::Code;
-use crate::wire::units::{Side, plain, rounded_inward, to_mm};
+use crate::wire::units::{Side, from_mm, plain, rounded_inward, to_mm};
 
 impl GearDocument {
     /// Two holes, by their places in the list, or the ends of one slot leave too little between them.
     pub(super) fn overlap_fault(&self, [one, other]: [usize; 2], ligament: f64) -> Fault {
         let holes = &self.blank.holes;
         let (first, second) = (holes.pattern_of(one), holes.pattern_of(other));
-        let missing = to_mm(LEAST_LIGAMENT) - to_mm(ligament);
-        let detail = left("between them", ligament);
+        let missing = self.least_ligament_mm() - to_mm(ligament);
+        let detail = self.left("between them", ligament);
         if first == second {
             return self.overlap_within(first, [one, other], missing, detail);
         }
@@ -39,7 +39,7 @@ impl GearDocument {
         missing: f64,
         detail: String,
     ) -> Fault {
-        let (least, code) = (to_mm(LEAST_LIGAMENT), Code::HolesOverlap);
+        let (least, code) = (self.least_ligament_mm(), Code::HolesOverlap);
         let document = &self.blank.holes.patterns()[pattern];
         let width = self.half_width(pattern);
         let apart = self.apart(one, other);
@@ -64,12 +64,12 @@ impl GearDocument {
     /// A hole leaves too little below the root circle or around the bore.
     pub(super) fn breach_fault(&self, code: Code, hole: usize, ligament: f64) -> Fault {
         let pattern = self.blank.holes.pattern_of(hole);
-        let missing = to_mm(LEAST_LIGAMENT) - to_mm(ligament);
+        let missing = self.least_ligament_mm() - to_mm(ligament);
         let (place, sign, side) = match code {
             Code::HolesBreachRim => ("below the root circle", -1.0, Side::AtMost),
             _ => ("around the bore", 1.0, Side::AtLeast),
         };
-        let detail = left(place, ligament);
+        let detail = self.left(place, ligament);
         // The width of the holes is to blame, unless none would do: then it is their circle.
         self.narrower(pattern, missing, code, &detail)
             .unwrap_or_else(|| {
@@ -94,7 +94,8 @@ impl GearDocument {
             plain(to_mm(inner)),
             plain(to_mm(outer))
         );
-        let (low, high) = (inner + LEAST_LIGAMENT, outer - LEAST_LIGAMENT);
+        let least = from_mm(self.least_ligament_mm());
+        let (low, high) = (inner + least, outer - least);
         if to - from > high - low {
             let missing = to_mm((low - from).max(to - high));
             let narrower = self.narrower(pattern, missing, code, &detail);
@@ -223,6 +224,23 @@ impl GearDocument {
         )
     }
 
+    /// The least material around a hole.
+    fn least_ligament_mm(&self) -> f64 {
+        LEAST_LIGAMENT * self.module_mm
+    }
+
+    /// What is left at `place`, as a sentence.
+    fn left(&self, place: &str, ligament: f64) -> String {
+        if ligament < 0.0 {
+            let too_far = plain(to_mm(-ligament));
+            return format!("The holes leave nothing {place}: they cut {too_far} mm too far.");
+        }
+        let (left, least) = (plain(to_mm(ligament)), plain(self.least_ligament_mm()));
+        format!(
+            "The holes leave {left} mm {place}; at least {LEAST_LIGAMENT} modules, {least} mm, have to stay."
+        )
+    }
+
     /// The least width of a web, and of what stands between it and the bore.
     fn least_web_mm(&self) -> f64 {
         0.1 * self.module_mm
@@ -232,15 +250,4 @@ impl GearDocument {
 /// A number of the web.
 fn web(declared: Declared<Number>) -> Field {
     Field::of("blank/web/", declared)
-}
-
-/// What is left at `place`, as a sentence.
-fn left(place: &str, ligament: f64) -> String {
-    if ligament < 0.0 {
-        let too_far = plain(to_mm(-ligament));
-        format!("The holes leave nothing {place}: they cut {too_far} mm too far.")
-    } else {
-        let (left, least) = (plain(to_mm(ligament)), to_mm(LEAST_LIGAMENT));
-        format!("The holes leave {left} mm {place}; at least {least} mm has to stay.")
-    }
 }

@@ -19,7 +19,7 @@ document! {
         /// reference circle (ISO 1328-1). Along the base tangent it is times the cosine of the pressure angle. The tooth is displaced as a whole,
         /// unless `other_flank_pitch_cumulative_um` says otherwise. The same constant for all teeth is a turn of the gear.
         pitch_cumulative_um: Option<Vec<f64>> =
-            absent(each_tooth("Cumulative pitch deviations"), "none").not_beside("pitch_single_um"),
+            absent(each_tooth("Cumulative pitch deviations"), "none").not_beside(&["pitch_single_um"]),
         /// The deviation of each tooth, tooth 0 first, against the tooth before it, as a transverse arc on the reference circle (ISO
         /// 1328-1); that of tooth 0 is against the last tooth. Their sum has to be zero within 0.01 um. Summed up they are cumulative
         /// deviations from the last tooth.

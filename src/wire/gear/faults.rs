@@ -1,12 +1,14 @@
 //! What prevents a gear, told by field, with the bound beyond which it could be made.
 
-use meshwright_engine::gear::data::{LEAST_RIM, LEAST_TIP_THICKNESS};
-use meshwright_engine::gear::{DeviationList, GearError};
+use std::f64::consts::PI;
 
-use super::GearDocument;
+use meshwright_engine::gear::data::{LEAST_RIM, LEAST_TIP_THICKNESS};
+use meshwright_engine::gear::{DeviationList, GearError, Helix};
+
 use super::blank::BlankDocument;
 use super::field::{Field, ReliefPlace};
 use super::relief::{ReliefEnd, StartWay};
+use super::{GearDocument, LEAST_RACK_TIP_RADIUS};
 use crate::wire::problem::Code;
 use crate::wire::units::{Side, from_mm, plain, to_mm, to_um};
 
@@ -51,9 +53,30 @@ impl Fault {
 }
 
 impl GearDocument {
-    pub(super) fn fault(&self, error: &GearError) -> Fault {
+    pub(super) fn fault(&self, error: &GearError, helix: Helix) -> Fault {
         let mm = |value: f64| plain(to_mm(value));
         match *error {
+            // A rack so deep that it comes to a point, whatever its rounding.
+            GearError::RackTipRadius { largest, .. }
+                if to_mm(largest) < LEAST_RACK_TIP_RADIUS * self.module_mm =>
+            {
+                let rack = self.data(helix).rack;
+                let (sin, cos) = rack.pressure_angle.sin_cos();
+                let rounding = from_mm(LEAST_RACK_TIP_RADIUS * self.module_mm);
+                let deepest =
+                    to_mm((PI * rack.module / 4.0 - rounding * (1.0 - sin) / cos) * cos / sin);
+                Fault::new(
+                    Field::of("", Self::dedendum_mm),
+                    Code::OutOfRange,
+                    format!(
+                        "At a pressure angle of {} deg a rack with a dedendum of {} mm comes to a point; at most {} mm leaves room for a rounding of {LEAST_RACK_TIP_RADIUS} modules.",
+                        plain(self.pressure_angle_deg),
+                        plain(self.dedendum_mm),
+                        plain(deepest)
+                    ),
+                    Some((deepest, Side::AtMost)),
+                )
+            }
             GearError::RackTipRadius {
                 tip_radius,
                 largest,
@@ -99,7 +122,7 @@ impl GearDocument {
                         mm(largest_addendum)
                     )
                 },
-                Some((self.tip_said(to_mm(largest_addendum)), Side::AtMost)),
+                Some((self.tip_said(to_mm(largest_addendum), helix), Side::AtMost)),
             ),
             GearError::NoFlank {
                 tip_radius,
@@ -114,7 +137,8 @@ impl GearDocument {
                 ),
                 Some((
                     self.tip_said(
-                        to_mm(form_radius) - self.shifted_radius_mm() + 0.1 * self.module_mm,
+                        to_mm(form_radius) - self.shifted_radius_mm(helix) + 0.1 * self.module_mm,
+                        helix,
                     ),
                     Side::AtLeast,
                 )),
@@ -142,16 +166,15 @@ impl GearDocument {
                 ),
                 Some((to_mm(largest), Side::AtMost)),
             ),
-            GearError::TeethTooThick { deviation, largest } => Fault::new(
-                Field::of("", Self::tooth_thickness_deviation_um),
-                Code::TeethTooThick,
-                format!(
+            GearError::TeethTooThick { deviation, largest } => {
+                let detail = format!(
                     "Teeth thicker by {} um leave no space between their fillets; at most {} um.",
                     plain(to_um(deviation)),
                     plain(to_um(largest))
-                ),
-                Some((to_um(largest), Side::AtMost)),
-            ),
+                );
+                let bound = (largest, Side::AtMost);
+                self.thickness_fault(helix, Code::TeethTooThick, detail, bound)
+            }
             GearError::TipEdgeTooLarge { amount, largest } => Fault::new(
                 self.tip_edge_field().0,
                 Code::TipEdgeTooLarge,

@@ -25,18 +25,18 @@ document! {
     pub struct PatternDocument as "Holes", "Holes" {
         /// The number N of equal, evenly spaced holes.
         count: Option<u32> =
-            unless("at_deg", number("Number of holes", "1", 1.0, MOST_HOLES as f64)).left_out(),
+            unless(&["at_deg"], number("Number of holes", "1", 1.0, MOST_HOLES as f64)).left_out(),
         /// The radius R of the circle through the holes' centers.
-        pub(super) circle_radius_mm: f64 = number("Radius of the hole circle", "mm", 0.1, 7_500.0),
+        pub(super) circle_radius_mm: f64 = number("Radius of the hole circle", "mm", 0.1, 25_000.0),
         /// The radius r of each hole: at least 1 % of the root radius. At least 0.5 mm of material has to be left between holes, to the
         /// bore and to the root circle; below one module there is a warning.
         radius_mm: Option<f64> =
-            unless("slot", number("Radius of a hole", "mm", 0.05, 3_750.0)).left_out(),
+            unless(&["slot"], number("Radius of a hole", "mm", 0.05, 12_500.0)).left_out(),
         /// The shape of the holes, where they are not round.
         pub(super) slot: Option<SlotDocument> = absent(nested("Slot"), "round holes").left_out(),
         /// The angle of a hole's center from the centerline of tooth 0 of its own gear, positive towards the loaded flank of that tooth.
         phase_deg: Option<f64> =
-            unless("at_deg", number("Phase of the holes", "deg", -360.0, 360.0).or(0.0)).left_out(),
+            unless(&["at_deg"], number("Phase of the holes", "deg", -360.0, 360.0).or(0.0)).left_out(),
         /// The angle of each hole's center from the centerline of tooth 0 of its own gear, positive towards the loaded flank of that
         /// tooth; instead of count and phase_deg. Unequal angles spread the order of the holes over those of a revolution.
         at_deg: Option<Vec<f64>> = absent(
@@ -52,7 +52,7 @@ document! {
     /// A kidney along the hole circle, with round ends.
     pub struct SlotDocument as "Slot", "Slot" {
         /// The width across the hole circle, which is the diameter of the round ends: at least 2 % of the root radius.
-        width_mm: f64 = number("Width of a slot", "mm", 0.1, 7_500.0),
+        width_mm: f64 = number("Width of a slot", "mm", 0.1, 25_000.0),
         /// The angle between the centers of the ends; with 0 the slot is a round hole.
         pub(super) angle_deg: f64 = number("Angle of a slot", "deg", 0.0, 350.0),
     }

@@ -1,6 +1,6 @@
 //! The gears of a submission, and what is wrong with those that cannot be made.
 //!
-//! The document by its parts: `tip`, `relief`, `modification`, `deviation`, `lead`, `material`, `blank` and `holes`; `solid` is the gear along its axis. Then what prevents
+//! The document by its parts: `tip`, `relief`, `modification`, `thickness`, `deviation`, `lead`, `material`, `blank` and `holes`; `solid` is the gear along its axis. Then what prevents
 //! a gear (`proportions`, `faults`, `blank_faults`), which fields could change (`field`), and the values that together would do (`repair`).
 
 mod blank;
@@ -18,8 +18,9 @@ mod repair;
 mod solid;
 #[cfg(test)]
 mod tests;
+mod thickness;
 
-use meshwright_engine::gear::{GearData, Rack, TipEdge, ToothDeviations};
+use meshwright_engine::gear::{GearData, Helix, Rack, TipEdge, ToothDeviations};
 
 pub use blank::{BlankDocument, HubDocument, WebDocument};
 pub use deviation::{DeviationsDocument, EccentricityDocument};
@@ -33,12 +34,13 @@ pub use material::MaterialDocument;
 pub(super) use modification::MOST_ENTRIES;
 pub use modification::{CrowningDocument, ModificationDocument, SlopeDocument, TableDocument};
 pub use relief::{ReliefEnd, RootReliefDocument, StartDocument, StartWay, TipReliefDocument};
+pub use thickness::{BallsDocument, SpanDocument};
 
 use super::declare::{
     EACH, Errors, Kind as _, Node, ObjectReader, Place, absent, document, list, nested, number,
     unless,
 };
-use super::units::{Side, from_mm, from_um, rounded_inward};
+use super::units::{Side, from_mm, rounded_inward};
 
 /// The most profile modifications of one gear, beside its tip relief.
 pub(super) const MOST_MODIFICATIONS: usize = 16;
@@ -46,23 +48,24 @@ pub(super) const MOST_MODIFICATIONS: usize = 16;
 document! {
     /// A spur or helical gear as its drawing describes it.
     pub struct GearDocument as "Gear", "Gear" {
-        /// The number of teeth Z. Few teeth need profile shift against undercut.
-        tooth_count: u32 = number("Number of teeth", "1", 5.0, 300.0),
-        /// The module m, the same for both gears.
+        /// The number of teeth Z. Few teeth need profile shift against undercut. Internal gears, whose number is negative by some programs, are not
+        /// computed.
+        tooth_count: u32 = number("Number of teeth", "1", 4.0, 1_000.0).negative_means(INTERNAL),
+        /// The module m, the same for both gears. Where they differ in printed digits only, that with more digits is taken for both.
         pub(super) module_mm: f64 = number("Module", "mm", 0.1, 50.0),
-        /// The pressure angle of the basic rack, the same for both gears.
-        pub(super) pressure_angle_deg: f64 = number("Pressure angle", "deg", 12.0, 32.0).or(20.0),
+        /// The pressure angle of the basic rack, the same for both gears but for printed digits.
+        pub(super) pressure_angle_deg: f64 = number("Pressure angle", "deg", 10.0, 40.0).or(20.0),
         /// The profile shift x in modules, positive outward.
         profile_shift: f64 = number("Profile shift coefficient", "1", -2.0, 2.0).or(0.0),
         /// The tip radius is the reference radius plus the addendum plus the profile shift; tips are not shortened. Between 0.2 and 2
         /// modules.
         addendum_mm: Option<f64> = unless(
-            "tip_diameter_mm",
+            &["tip_diameter_mm"],
             number("Addendum of the basic rack", "mm", 0.02, 100.0).or_modules(1.0),
         ),
         /// The diameter of the tip circle, said instead of the addendum, which it then decides: the same bounds hold for that.
         tip_diameter_mm: Option<f64> =
-            absent(number("Tip diameter", "mm", 0.1, 16_000.0), "the addendum decides"),
+            absent(number("Tip diameter", "mm", 0.1, 52_500.0), "the addendum decides"),
         /// The root radius is the reference radius less the dedendum plus the profile shift. Between 0.5 and 2.5 modules.
         dedendum_mm: f64 = number("Dedendum of the basic rack", "mm", 0.05, 125.0).or_modules(1.25),
         /// The radius of the rack's tip rounding, which generates the fillet. At least 0.05 modules, and it has to fit between the
@@ -71,15 +74,35 @@ document! {
             .or_modules(0.38)
             .fitted(usual_tip_radius),
         /// How much thicker the teeth are than the rack leaves them, as a transverse arc on the reference circle; negative is thinner and
-        /// gives backlash. Half a module to either side, and a space has to be left between fillets.
-        tooth_thickness_deviation_um: f64 =
+        /// gives backlash. Half a module to either side, and a space has to be left between fillets. A drawing may say the thickness in another way;
+        /// at most one of them is given.
+        tooth_thickness_deviation_um: Option<f64> = unless(
+            &["tooth_thickness_deviation_normal_um", "span_measurement", "ball_measurement"],
             number("Deviation of the tooth thickness", "um", -25_000.0, 25_000.0).or(0.0),
+        ),
+        /// A_sn: the same as an arc in the normal section, as drawings of helical gears say it.
+        tooth_thickness_deviation_normal_um: Option<f64> = absent(
+            number("Deviation of the tooth thickness (normal section)", "um", -25_000.0, 25_000.0),
+            "said in another way",
+        )
+        .not_beside(&["tooth_thickness_deviation_um", "span_measurement", "ball_measurement"])
+        .left_out(),
+        /// W_k: the thickness by a span over several teeth.
+        span_measurement: Option<SpanDocument> =
+            absent(nested("Span measurement"), "said in another way")
+                .not_beside(&["tooth_thickness_deviation_um", "tooth_thickness_deviation_normal_um", "ball_measurement"])
+                .left_out(),
+        /// M_dK: the thickness by a size over two balls.
+        ball_measurement: Option<BallsDocument> =
+            absent(nested("Ball measurement"), "said in another way")
+                .not_beside(&["tooth_thickness_deviation_um", "tooth_thickness_deviation_normal_um", "span_measurement"])
+                .left_out(),
         /// The radius of an arc between flank and tip circle, tangent to both, on both flanks alike: 0, or at least 0.01 modules.
         tip_rounding_mm: Option<f64> = absent(
             number("Rounding of the tip edges", "mm", 0.001, 50.0).or_zero(),
             "sharp edges",
         )
-        .not_beside("tip_chamfer_mm"),
+        .not_beside(&["tip_chamfer_mm"]),
         /// How far below the tip circle a cut at 45 deg begins, on both flanks alike: 0, or at least 0.01 modules.
         tip_chamfer_mm: Option<f64> = absent(
             number("Chamfer of the tip edges", "mm", 0.001, 50.0).or_zero(),
@@ -104,6 +127,13 @@ document! {
     }
 }
 
+/// The least rounding of a rack's tip, in modules.
+const LEAST_RACK_TIP_RADIUS: f64 = 0.05;
+
+/// What programs mean by a negative number of teeth.
+const INTERNAL: &str =
+    "an internal gear, and internal gears are not computed: both gears have outer teeth here";
+
 /// The rounding of a rack's tip where none is given: `usual`, or the largest that fits between its flanks. In mm.
 fn usual_tip_radius(usual: f64, gear: &ObjectReader<'_>) -> f64 {
     let read = |name| gear.number(name);
@@ -125,7 +155,8 @@ fn usual_tip_radius(usual: f64, gear: &ObjectReader<'_>) -> f64 {
     if usual <= largest {
         usual
     } else {
-        rounded_inward(largest, Side::AtMost, 0)
+        // Where none fits it is the dedendum that is too large.
+        rounded_inward(largest, Side::AtMost, 0).max(LEAST_RACK_TIP_RADIUS * module)
     }
 }
 
@@ -151,40 +182,45 @@ impl GearDocument {
     }
 
     /// The radius from which the addendum counts, in mm: the reference radius plus the profile shift.
-    fn shifted_radius_mm(&self) -> f64 {
-        self.module_mm * (f64::from(self.tooth_count) / 2.0 + self.profile_shift)
+    fn shifted_radius_mm(&self, helix: Helix) -> f64 {
+        let half = f64::from(self.tooth_count) / 2.0;
+        if helix.angle == 0.0 {
+            self.module_mm * (half + self.profile_shift)
+        } else {
+            self.module_mm * (half / helix.angle.cos() + self.profile_shift)
+        }
     }
 
     /// The addendum in mm, however the tip circle is said.
-    fn addendum(&self) -> f64 {
+    fn addendum(&self, helix: Helix) -> f64 {
         match self.tip_diameter_mm {
-            Some(diameter) => diameter / 2.0 - self.shifted_radius_mm(),
+            Some(diameter) => diameter / 2.0 - self.shifted_radius_mm(helix),
             None => self.addendum_mm.unwrap_or(self.module_mm),
         }
     }
 
     /// What the field of the tip circle would say of another addendum, in mm.
-    fn tip_said(&self, addendum: f64) -> f64 {
+    fn tip_said(&self, addendum: f64, helix: Helix) -> f64 {
         match self.tip_diameter_mm {
-            Some(_) => 2.0 * (self.shifted_radius_mm() + addendum),
+            Some(_) => 2.0 * (self.shifted_radius_mm(helix) + addendum),
             None => addendum,
         }
     }
 
-    /// What the engine is told.
-    fn data(&self) -> GearData {
+    /// What the engine is told, of the normal section where the teeth wind by `helix`.
+    fn data(&self, helix: Helix) -> GearData {
         GearData {
             tooth_count: self.tooth_count,
             rack: Rack {
                 module: from_mm(self.module_mm),
                 pressure_angle: self.pressure_angle_deg.to_radians(),
-                addendum: from_mm(self.addendum()),
+                addendum: from_mm(self.addendum(helix)),
                 dedendum: from_mm(self.dedendum_mm),
                 tip_radius: from_mm(self.rack_tip_radius_mm),
             },
             profile_shift: self.profile_shift,
             face_width: from_mm(self.face_width_mm),
-            thickness_deviation: from_um(self.tooth_thickness_deviation_um),
+            thickness_deviation: self.thickness_deviation(helix).unwrap_or(0.0),
             tip_edge: match (self.tip_rounding_mm, self.tip_chamfer_mm) {
                 (Some(radius), _) if radius > 0.0 => TipEdge::Rounded(from_mm(radius)),
                 (None, Some(depth)) if depth > 0.0 => TipEdge::Chamfered(from_mm(depth)),

@@ -55,10 +55,10 @@ document! {
         /// Where the entries of the table stand, each larger than the one before: roll lengths, from the base circle along the path of
         /// contact.
         roll_length_mm: Option<Vec<f64>> =
-            or_else("diameter_mm", entries("Roll lengths", number("", "mm", 0.0, 2_000.0))),
+            or_else(&["diameter_mm"], entries("Roll lengths", number("", "mm", 0.0, 20_000.0))),
         /// Where the entries of the table stand, each larger than the one before: diameters, not below the base circle.
         diameter_mm: Option<Vec<f64>> =
-            or_else("roll_length_mm", entries("Diameters", number("", "mm", 0.1, 16_000.0))),
+            or_else(&["roll_length_mm"], entries("Diameters", number("", "mm", 0.1, 52_500.0))),
         /// The material taken off at each entry, normal to the flank; linear between entries, the first and the last held beyond them.
         /// Negative adds.
         removed_um: Vec<f64> = entries("Material removed", number("", "um", -1_000.0, 1_000.0)),

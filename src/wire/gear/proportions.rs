@@ -2,20 +2,23 @@
 
 use meshwright_engine::gear::{Helix, SpurGear};
 
-use super::GearDocument;
 use super::blank::BlankDocument;
 use super::faults::Fault;
 use super::field::Field;
 use super::holes::HolesDocument;
 use super::relief::Relief;
+use super::{GearDocument, LEAST_RACK_TIP_RADIUS};
 use crate::wire::problem::{Code, FieldError};
 use crate::wire::units::{Side, from_mm, plain};
 
 impl GearDocument {
     /// Makes the gear, or tells the first thing that prevents it.
     pub(super) fn made(&self, helix: Helix) -> Result<SpurGear, Fault> {
-        self.check_proportions()?;
-        let gear = self.section(helix).map_err(|error| self.fault(&error))?;
+        self.check_proportions(helix)?;
+        let gear = self
+            .section(helix)
+            .map_err(|error| self.fault(&error, helix))?;
+        self.check_gauge(&gear, helix)?;
         // A relief that begins where it ends is a step, which no grid and no contact search can follow.
         let short = self.relief_places().find_map(|place| {
             let relief = self.relief(place).filter(Relief::is_there)?;
@@ -33,12 +36,17 @@ impl GearDocument {
         }
     }
 
-    fn check_proportions(&self) -> Result<(), Fault> {
+    fn check_proportions(&self, helix: Helix) -> Result<(), Fault> {
         let m = self.module_mm;
-        self.check_addendum()?;
+        self.check_addendum(helix)?;
         for (declared, value, least, most) in [
             (Self::dedendum_mm, self.dedendum_mm, 0.5, 2.5),
-            (Self::rack_tip_radius_mm, self.rack_tip_radius_mm, 0.05, 2.0),
+            (
+                Self::rack_tip_radius_mm,
+                self.rack_tip_radius_mm,
+                LEAST_RACK_TIP_RADIUS,
+                2.0,
+            ),
         ] {
             let (field, said) = (
                 Field::of("", declared),
@@ -46,14 +54,7 @@ impl GearDocument {
             );
             check_between(field, value, least * m, most * m, &said)?;
         }
-        let half = 500.0 * m;
-        check_between(
-            Field::of("", Self::tooth_thickness_deviation_um),
-            self.tooth_thickness_deviation_um,
-            -half,
-            half,
-            "half a module to either side",
-        )?;
+        self.check_thickness(helix)?;
         let (edge, broken) = self.tip_edge_field();
         if broken > 0.0 {
             let least = 0.01 * m;
@@ -81,11 +82,11 @@ impl GearDocument {
     }
 
     /// The addendum has its bounds in modules, and they are those of the tip diameter too.
-    fn check_addendum(&self) -> Result<(), Fault> {
-        let said = |modules: f64| self.tip_said(modules * self.module_mm);
+    fn check_addendum(&self, helix: Helix) -> Result<(), Fault> {
+        let said = |modules: f64| self.tip_said(modules * self.module_mm, helix);
         check_between(
             self.tip_field(),
-            self.tip_diameter_mm.unwrap_or_else(|| self.addendum()),
+            self.tip_diameter_mm.unwrap_or_else(|| self.addendum(helix)),
             said(0.2),
             said(2.0),
             "an addendum of 0.2 to 2 modules",

@@ -139,7 +139,7 @@ impl StartWay {
             (Self::Diameter, _) => Declared::new(
                 "diameter_mm",
                 "The relief starts at this diameter.",
-                number("Start diameter", "mm", 0.1, 16_000.0),
+                number("Start diameter", "mm", 0.1, 52_500.0),
             ),
             (Self::RollAngle, _) => Declared::new(
                 "roll_angle_deg",

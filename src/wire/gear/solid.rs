@@ -13,7 +13,7 @@ use crate::wire::units::{plain, to_mm};
 impl GearDocument {
     /// The transverse section of the gear that winds by `helix`.
     pub(super) fn section(&self, helix: Helix) -> Result<SpurGear, GearError> {
-        let data = self.data();
+        let data = self.data(helix);
         if helix.angle == 0.0 {
             return SpurGear::new(data);
         }
@@ -28,20 +28,9 @@ impl GearDocument {
             Err(_) => match SolidGear::new(on_solid, helix, 0.0, None) {
                 Err(SolidGearError::Section(error)) => Err(error),
                 Ok(gear) => Ok(gear.section().clone()),
-                Err(_) => SpurGear::new(self.data()),
+                Err(_) => SpurGear::new(self.data(helix)),
             },
         }
-    }
-
-    /// The same gear with its tip said by the addendum: a tip diameter stands on the reference circle of the transverse section.
-    fn tip_by_addendum(&self, helix: Helix) -> Self {
-        let mut gear = self.clone();
-        if let Some(diameter) = gear.tip_diameter_mm.take() {
-            let reference = self.module_mm * f64::from(self.tooth_count) / helix.angle.cos();
-            let shift = self.profile_shift * self.module_mm;
-            gear.addendum_mm = Some((diameter - reference) / 2.0 - shift);
-        }
-        gear
     }
 
     /// The gear along its axis, if it can be made.
@@ -54,14 +43,9 @@ impl GearDocument {
         pointer: &str,
         helix: Helix,
     ) -> Result<SolidGear, Vec<FieldError>> {
-        let drawn = if helix.angle == 0.0 {
-            self.clone()
-        } else {
-            self.tip_by_addendum(helix)
-        };
-        drawn.to_gear(pointer, helix)?;
+        self.to_gear(pointer, helix)?;
         let made = SolidGear::new(
-            drawn.data(),
+            self.data(helix),
             helix,
             self.blank.web_offset(),
             self.blank.hub_data(),

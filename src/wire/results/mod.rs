@@ -59,7 +59,7 @@ answer! {
         frequencies?: Frequencies = Frequencies::of_case(case),
         /// What to know beside the numbers.
         #[serde(deserialize_with = "known")]
-        warnings: Vec<WarningDocument> = all(&analysis.warnings, WarningDocument::of),
+        warnings: Vec<WarningDocument> = submission.warnings(&analysis.warnings),
         /// One curve for each output torque, in the order of the submission.
         curves: Vec<CurveDocument> =
             analysis.curves.iter().enumerate().map(|(i, curve)| CurveDocument::of(case, curve, dynamics(i))).collect(),

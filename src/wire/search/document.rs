@@ -72,9 +72,9 @@ document! {
     /// What is to be small: a quantity, or a cost.
     pub(in crate::wire) struct GoalDocument as "SearchGoal", "Goal" {
         /// The quantity.
-        quantity: Option<QuantityName> = or_else("cost", ()),
+        quantity: Option<QuantityName> = or_else(&["cost"], ()),
         /// The cost: the sum of variables, each times its weight.
-        cost: Option<Vec<CostDocument>> = or_else("quantity", list("Cost", EACH, MOST).not_empty(Code::MissingField, "name what costs")),
+        cost: Option<Vec<CostDocument>> = or_else(&["quantity"], list("Cost", EACH, MOST).not_empty(Code::MissingField, "name what costs")),
         /// Which torque it is told of.
         torques: Torques = word("Torques").or(Torques::Largest),
         /// The percentile over the members of the population that is told of it.

@@ -13,6 +13,9 @@ use crate::wire::units::{Side, plain, rounded_inward};
 /// The most positions times torques of one submission.
 pub(in crate::wire) const MOST_POSITIONS: u64 = 20_000;
 
+/// The same of the projected methods on teeth that do not deviate: they solve one mesh period, and add what holes do to it at each position.
+pub(in crate::wire) const MOST_PROJECTED_POSITIONS: u64 = 200_000;
+
 /// The most mesh periods of a run-up: of its true period, at all speeds, under all torques.
 const MOST_PERIODS_RUN: u64 = 200_000;
 
@@ -169,13 +172,16 @@ impl Document {
     }
 
     pub(super) fn check_size(&self, purpose: Purpose, pair: &GearPair, errors: &Errors) {
+        let most = if self.method.is_projected() && pair.is_as_drawn() {
+            MOST_PROJECTED_POSITIONS
+        } else {
+            MOST_POSITIONS
+        };
         let (limit, said) = match purpose {
-            Purpose::Job => (MOST_POSITIONS, format!("the limit is {MOST_POSITIONS}")),
+            Purpose::Job => (most, format!("the limit is {most}")),
             Purpose::Preview { most_positions } => (
                 most_positions,
-                format!(
-                    "the limit of a preview is {most_positions}, that of POST /v1/jobs {MOST_POSITIONS}"
-                ),
+                format!("the limit of a preview is {most_positions}, that of POST /v1/jobs {most}"),
             ),
         };
         let resolution = &self.resolution;

@@ -2,13 +2,13 @@
 
 use meshwright_engine::analysis::forces::{ForcesRequest, MORE_POSITIONS};
 use meshwright_engine::analysis::spectrum::RotationSpeed;
-use meshwright_engine::analysis::{Case, Faces, Method};
+use meshwright_engine::analysis::{Case, Faces, Method, Warning};
 use meshwright_engine::assembly::FaceResolution;
 
 mod checks;
 mod document;
 
-pub(super) use checks::MOST_POSITIONS;
+pub(super) use checks::{MOST_POSITIONS, MOST_PROJECTED_POSITIONS};
 #[cfg(test)]
 pub(super) use document::OUTPUT_TORQUE;
 pub(super) use document::{MOST_TAGS, MOST_TORQUES, TAGS};
@@ -24,6 +24,7 @@ use super::pair::PairDocument;
 use super::problem::{FieldError, Problem};
 use super::resolution::ResolutionDocument;
 use super::size::{MOST_VALUES, refuse_many_values};
+use super::warning::WarningDocument;
 use crate::hash::sha256_hex;
 
 /// The version of the solver, which a result belongs to.
@@ -206,6 +207,13 @@ impl Submission {
     /// What the engine is asked.
     pub fn case(&self) -> &Case {
         &self.case
+    }
+
+    /// What to know of the document itself: what of it is not taken as it is written. Then the warnings of the engine.
+    pub(super) fn warnings(&self, of_engine: &[Warning]) -> Vec<WarningDocument> {
+        let own = self.document.pair.digits_taken().into_iter();
+        own.chain(of_engine.iter().map(WarningDocument::of))
+            .collect()
     }
 
     /// What the engine is asked beside the curves.

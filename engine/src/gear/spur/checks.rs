@@ -69,13 +69,14 @@ impl SpurGear {
             });
         }
         let blank = &self.data.blank;
+        let least = LEAST_LIGAMENT * self.normal_rack.module;
         for (place, ligament) in blank.ligaments(self.root_radius()) {
             // Written so that a ligament that is not a number is refused as well.
-            if ligament >= LEAST_LIGAMENT {
+            if ligament >= least {
                 continue;
             }
             let with = |hole: usize, gained: f64| {
-                blank.holes[hole].half_width() + gained * (ligament - LEAST_LIGAMENT)
+                blank.holes[hole].half_width() + gained * (ligament - least)
             };
             return Err(match place {
                 Ligament::Between(one, other) => GearError::HolesOverlap {

@@ -172,7 +172,7 @@ impl SpurGear {
     }
 
     /// The rack across its own teeth: of a spur gear that of the drawing.
-    pub(in crate::gear) fn normal_rack(&self) -> &Rack {
+    pub(crate) fn normal_rack(&self) -> &Rack {
         &self.normal_rack
     }
 
@@ -339,7 +339,7 @@ impl SpurGear {
         PI * (mean.powi(2) - self.bore_radius().powi(2))
     }
 
-    fn profile_shift_length(&self) -> f64 {
+    pub(in crate::gear) fn profile_shift_length(&self) -> f64 {
         self.data.profile_shift * self.data.rack.module
     }
 

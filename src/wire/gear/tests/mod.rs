@@ -1,6 +1,8 @@
 //! What real drawings say of a gear: what is read, told to the engine, echoed and refused.
 
 mod blank;
+mod generated;
+mod published;
 mod teeth;
 
 use meshwright_engine::gear::GearData;
