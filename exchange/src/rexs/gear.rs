@@ -70,8 +70,10 @@ impl<'a> Gear<'a> {
         };
         let (mut tools, mut settings) = (steps("tool"), steps("manufacturing_settings"));
         if tools.is_empty() {
-            // Before version 1.3 the gear refers to its tools.
-            tools = model.related("ordered_reference", ("origin", gear), "referenced");
+            // Before version 1.3 the gear refers to its tools, or its flank does.
+            let referring = std::iter::once(gear).chain(flanks.first().copied());
+            let referenced = |of| model.related("ordered_reference", ("origin", of), "referenced");
+            tools = referring.flat_map(referenced).collect();
             tools.retain(|tool| tool.kind.ends_with("_tool"));
         }
         if settings.is_empty() {
@@ -158,16 +160,16 @@ impl<'a> Gear<'a> {
                 return;
             }
         }
-        let chamfers = |name| {
-            self.tool
-                .map(|tool| (tool, self.reading.number(tool, name, DEG)))
-        };
-        let said = self.of_flanks("tooth_tip_chamfer", MM).is_some();
-        if let Some((tool, Some(angle))) = chamfers("chamfer_angle").filter(|_| !said)
-            && angle != 0.0
-        {
-            let detail = "The tool breaks the tip edges; no tooth_tip_chamfer of the flanks says by how much.";
-            self.reading.wrong(tool.place_of("chamfer_angle"), detail);
+        let Some(tool) = self.tool else { return };
+        let name = "chamfer_angle";
+        let breaks = self
+            .reading
+            .number(tool, name, DEG)
+            .is_some_and(|angle| angle != 0.0);
+        if breaks && self.of_flanks("tooth_tip_chamfer", MM).is_none() {
+            let detail =
+                "It breaks the tip edges; no tooth_tip_chamfer of the flanks says by how much.";
+            self.reading.wrong(tool.place_of(name), detail);
         }
     }
 

@@ -430,7 +430,8 @@ fn a_problem_of_the_submission_leads_back_to_the_model() {
 
 #[test]
 fn every_valid_example_comes_back_as_the_same_pair() {
-    let quick = json!({ "positions_per_mesh_period": 8, "span_mesh_periods": 1, "grid": "coarse" });
+    let quick =
+        json!({ "positions_per_mesh_period": 40, "span_mesh_periods": 1, "grid": "coarse" });
     let library = Library::with_capacity(256 << 20);
     let solved = |submission: &Submission| {
         let solved = solve(submission, &library, &Run::unattended()).expect("computed");
@@ -443,7 +444,7 @@ fn every_valid_example_comes_back_as_the_same_pair() {
             .as_str()
             .is_some_and(|method| method.starts_with("three_dimensional"));
         let quick = if along_faces {
-            json!({ "positions_per_mesh_period": 8, "span_mesh_periods": 1, "face_order": 4, "face_slices": 20 })
+            json!({ "positions_per_mesh_period": 40, "span_mesh_periods": 1, "face_order": 4, "face_slices": 20 })
         } else {
             quick.clone()
         };
@@ -459,14 +460,7 @@ fn every_valid_example_comes_back_as_the_same_pair() {
         let back = parse(&submission);
         let back = back.unwrap_or_else(|problem| panic!("{}: {problem:?}", example.name));
         assert_eq!(gone.method(), back.method());
-        let [mut there, mut again] = [there, solved(&back)];
-        for results in [&mut there, &mut again] {
-            // Of two curves that differ in their last bits other positions may be solved further, of few positions to some effect.
-            for curve in results["curves"].as_array_mut().expect("curves") {
-                curve["statistics"] = Value::Null;
-                curve["spectrum"] = Value::Null;
-            }
-        }
+        let again = solved(&back);
         for part in ["pair", "frequencies", "curves"] {
             assert_alike(&there[part], &again[part], example.name);
         }
@@ -1010,9 +1004,9 @@ fn pairs_at_the_border_of_what_can_be_computed_are_read_as_they_stand() {
 fn what_would_make_another_flank_is_refused_by_its_place() {
     let of_kind = String::from_utf8_lossy(model!("relief-of-a-kind-not-known.rexs"));
     let Refused(faults) = refused(&of_kind);
-    assert_eq!(faults.len(), 2, "{faults:?}");
-    for (fault, id) in faults.iter().zip([70, 71]) {
-        let place = format!("component {id} (triangular_tip_relief), tip_relief_depth");
+    assert_eq!(faults.len(), 1, "{faults:?}");
+    for fault in &faults {
+        let place = "component 51 (triangular_tip_relief), tip_relief_depth";
         assert_eq!(fault.place, place);
         assert!(
             fault.detail.contains("triangular_tip_relief is not known"),
