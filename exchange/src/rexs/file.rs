@@ -318,6 +318,12 @@ impl Component {
         Some(found)
     }
 
+    /// The number of an attribute, if it is one, which is not read by that.
+    pub(super) fn glance(&self, id: &str, unit: Unit) -> Option<f64> {
+        let found = self.attributes.iter().find(|attribute| attribute.id == id);
+        found?.number(unit).ok()
+    }
+
     /// How a person finds it in the file.
     pub(super) fn place(&self) -> String {
         let mut place = format!("component {} ({}", self.id, self.kind);

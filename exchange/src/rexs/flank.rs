@@ -250,7 +250,7 @@ impl<'a> Gear<'a> {
     /// The shape of a relief, one of those in `known`.
     fn shape(&self, relief: &'a Component, known: &[&str]) -> Option<&'a str> {
         let name = "shape_of_relief";
-        if relief.attribute(name).is_none() {
+        if !self.reading.is_chosen(relief, name) {
             self.reading.assumed(relief, name, "linear");
             return Some("linear");
         }
@@ -422,10 +422,9 @@ impl<'a> Gear<'a> {
         let Some(said) = reading.number(relief, &at, MM) else {
             return Some(());
         };
-        let ends = self.flank_ends().map(|ends| ends.map(|s| self.diameter(s)));
         let (name, end) = match names.kind {
             "tip_relief" => ("tip circle", Some(2.0 * self.tip_radius())),
-            _ => ("form circle", ends.map(|ends| ends[0])),
+            _ => ("form circle", self.form_length().map(|s| self.diameter(s))),
         };
         if end.is_some_and(|end| (said - end).abs() <= 2.0 * SAME) {
             return Some(());
@@ -465,8 +464,10 @@ impl<'a> Gear<'a> {
         let range = self.range(crowning, &names[1][0], from, to)?;
         let highest = "profile_highest_point";
         if let Some(at) = reading.number(crowning, highest, MM) {
-            let ends = range.or_else(|| self.flank_ends());
-            let middle = ends.map(|[from, to]| self.diameter(f64::midpoint(from, to)));
+            let whole = || Some([self.form_length()?, self.tip_length()]);
+            let middle = range
+                .or_else(whole)
+                .map(|[from, to]| self.diameter(f64::midpoint(from, to)));
             if middle.is_none_or(|middle| (at - middle).abs() > 0.01 * self.module) {
                 let detail = format!(
                     "It is {at} mm; a crowning is highest midway between its ends here{}. A profile_slope beside it says the rest.",
@@ -483,7 +484,7 @@ impl<'a> Gear<'a> {
             None => Some(vec![
                 json!({ "kind": "crowning", "amount_um": um_of_mm(tip) }),
             ]),
-            Some(range) => self.over_flank(tip, 0.0, range),
+            Some(range) => Some(self.over_flank(tip, 0.0, range)),
         }
     }
 
@@ -510,7 +511,7 @@ impl<'a> Gear<'a> {
                 let amount = um_of_mm(amount);
                 Some(vec![json!({ "kind": "slope", "amount_um": amount })])
             }
-            Some(range) => self.over_flank(0.0, amount, range),
+            Some(range) => Some(self.over_flank(0.0, amount, range)),
         }
     }
 
@@ -549,14 +550,10 @@ impl<'a> Gear<'a> {
         if from.is_none() && to.is_none() {
             return Some(None);
         }
-        let ends = self.flank_ends();
-        let from = from.or(ends.map(|ends| ends[0]));
-        let to = to.or(ends.map(|ends| ends[1]));
-        let range = from
-            .zip(to)
-            .filter(|(from, to)| to - from > 0.05 * self.module);
-        let Some((from, to)) = range.filter(|_| ends.is_some()) else {
-            let detail = "The flank is undercut, or nothing of it lies between the diameters where the amount is said.";
+        let from = from.or_else(|| self.form_length());
+        let to = to.unwrap_or_else(|| self.tip_length());
+        let Some(from) = from.filter(|from| to - from > 0.05 * self.module) else {
+            let detail = "Nothing of the flank lies between the diameters where the amount is said, or it is undercut and only one of them is.";
             self.reading.wrong(of.place_of(name), detail);
             return None;
         };
@@ -565,17 +562,25 @@ impl<'a> Gear<'a> {
 
     /// What takes off `crowning` at both ends of a range of roll lengths and nothing in its middle, and `slope` at the end of it and
     /// nothing at its beginning: over the whole flank, from its form circle to its tip circle, as a submission has it.
-    fn over_flank(&self, crowning: f64, slope: f64, [from, to]: [f64; 2]) -> Option<Vec<Value>> {
-        let [form, tip] = self.flank_ends()?;
-        let (middle, half) = (f64::midpoint(form, tip), 0.5 * (tip - form));
-        // c(s) = crowning (e/h)^2 + slope (1 + e/h)/2, with e = s - s_m and h of the range, about the middle of the flank.
-        let h = 0.5 * (to - from);
-        let e = (middle - f64::midpoint(from, to)) / h;
-        let (value, rise) = (
-            crowning * e * e + 0.5 * slope * (1.0 + e),
-            (2.0 * crowning * e + 0.5 * slope) * half / h,
-        );
+    fn over_flank(&self, crowning: f64, slope: f64, [from, to]: [f64; 2]) -> Vec<Value> {
         let um = |length: f64| significant(um_of_mm(length), DIGITS);
+        let (tip, h) = (self.tip_length(), 0.5 * (to - from));
+        // c(s) = crowning e^2 + slope (1 + e)/2, with e how far s is from the middle of the range, in halves of it.
+        let place = |s: f64| (s - f64::midpoint(from, to)) / h;
+        let value = |e: f64| crowning * e * e + 0.5 * slope * (1.0 + e);
+        let Some(form) = self.form_length() else {
+            // Of an undercut flank it is not known here where it begins.
+            let places = (0..=PIECES).map(|i| tip * f64::from(i) / f64::from(PIECES));
+            let places: Vec<f64> = places.map(|s| significant(s, DIGITS)).collect();
+            let removed: Vec<f64> = places.iter().map(|s| um(value(place(*s)))).collect();
+            return vec![
+                json!({ "kind": "table", "roll_length_mm": places, "removed_um": removed }),
+            ];
+        };
+        // The same about the middle of the flank.
+        let half = 0.5 * (tip - form);
+        let e = place(f64::midpoint(form, tip));
+        let rise = (2.0 * crowning * e + 0.5 * slope) * half / h;
         let mut found = Vec::new();
         if crowning != 0.0 {
             let amount = um(crowning * (half / h).powi(2));
@@ -584,11 +589,11 @@ impl<'a> Gear<'a> {
         if rise.abs() > NOTHING {
             found.push(json!({ "kind": "slope", "amount_um": um(2.0 * rise) }));
         }
-        found.extend(self.constant(value - rise, |removed| {
+        found.extend(self.constant(value(e) - rise, |removed| {
             let end = significant(tip, DIGITS);
             json!({ "kind": "table", "roll_length_mm": [0.0, end], "removed_um": removed })
         }));
-        Some(found)
+        found
     }
 
     /// A table that takes off the same everywhere, unless that is nothing.
@@ -597,6 +602,9 @@ impl<'a> Gear<'a> {
         (removed.abs() > NOTHING).then(|| table([um, um]))
     }
 }
+
+/// The pieces of a table in place of a parabola, which it leaves by less than a thousandth of its height.
+const PIECES: u32 = 48;
 
 /// Less than this is nothing, in mm: a thousandth of a nanometer.
 const NOTHING: f64 = 1e-9;

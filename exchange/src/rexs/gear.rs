@@ -334,9 +334,13 @@ impl<'a> Gear<'a> {
         }
     }
 
-    /// The roll lengths of the form circle, where the straight flank of the rack ends, and of the tip circle; none where the rack cuts
-    /// into the flank.
-    pub(super) fn flank_ends(&self) -> Option<[f64; 2]> {
+    /// The roll length at the tip circle.
+    pub(super) fn tip_length(&self) -> f64 {
+        self.roll_length(2.0 * self.tip_radius())
+    }
+
+    /// The roll length of the form circle, where the straight flank of the rack ends; none where the rack cuts into the flank.
+    pub(super) fn form_length(&self) -> Option<f64> {
         let (module, angle) = (self.module, self.pressure_angle_deg.to_radians());
         let dedendum = self.dedendum().0;
         let mut rack = Rack {
@@ -352,8 +356,7 @@ impl<'a> Gear<'a> {
         let depth = rack.straight_depth() - self.profile_shift * module;
         let sine = self.transverse_angle().sin();
         let form = self.reference_radius() * sine - depth / sine;
-        let tip = self.roll_length(2.0 * self.tip_radius());
-        (form >= 0.0 && tip > form).then_some([form, tip])
+        (form >= 0.0 && self.tip_length() > form).then_some(form)
     }
 
     /// From where addendum and dedendum count.

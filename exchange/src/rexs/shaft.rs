@@ -44,7 +44,7 @@ impl<'a> Reading<'a> {
             .into_iter()
             .filter(|part| part.kind == "shaft_section")
             .filter_map(|section| {
-                let number = |name| self.number(section, name, MM);
+                let number = |name| section.glance(name, MM);
                 let begin = number("outer_diameter_begin")?;
                 let end = number("outer_diameter_end").unwrap_or(begin);
                 let Some(middle) = middle else {
@@ -63,7 +63,16 @@ impl<'a> Reading<'a> {
         }
         // Where two meet, the thicker one.
         seats.sort_by(|one, other| other.0.total_cmp(&one.0));
-        seats.first().copied()
+        let (diameter, section) = *seats.first()?;
+        for name in [
+            "u_coordinate_on_shaft",
+            "length",
+            "outer_diameter_begin",
+            "outer_diameter_end",
+        ] {
+            section.attribute(name);
+        }
+        Some((diameter, section))
     }
 
     /// Where the middle of the face of `gear` stands on its shaft, in mm: by both places in space, or by that on the shaft.

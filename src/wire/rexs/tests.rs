@@ -1146,6 +1146,30 @@ fn a_profile_is_crowned_and_sloped_as_is_said_between_two_diameters() {
         let is = removed(&sloped, diameter);
         assert!((is - should).abs() < 1e-6, "{diameter}: {is} {should}");
     }
+    // Of an undercut flank it is not known here where it begins: its points are told. A program writes `false` for a word that was not chosen.
+    let sun = String::from_utf8_lossy(model!("sun-17-teeth.rexs"));
+    let crowning =
+        at("tip", "37") + &at("root", "33") + &said("shape_of_profile_crowning", "", "false");
+    let crowned = taken(&referring(
+        &sun,
+        &[12, 13],
+        &part("profile_crowning", &crowning),
+    ));
+    let table = field(&crowned, "/pair/driving/profile_modifications/0");
+    let list = |name: &str| -> Vec<f64> {
+        let cells = table[name].as_array().expect("a list").iter();
+        cells.map(|cell| cell.as_f64().expect("a number")).collect()
+    };
+    let base = 17.0 * 20_f64.to_radians().cos();
+    let roll = |diameter: f64| (0.25 * diameter * diameter - base * base).sqrt();
+    let (from, to) = (roll(33.0), roll(37.0));
+    let (places, amounts) = (list("roll_length_mm"), list("removed_um"));
+    assert_eq!((places.len(), amounts.len()), (49, 49));
+    assert!((places[48] - roll(38.0)).abs() < 1e-9);
+    for (place, is) in places.iter().zip(amounts) {
+        let should = 8.0 * ((place - f64::midpoint(from, to)) / (0.5 * (to - from))).powi(2);
+        assert!((is - should).abs() < 1e-6, "{place}: {is} {should}");
+    }
     let below = part("profile_crowning", &(at("tip", "51") + &at("root", "44")));
     assert_refused(
         &referring(&plain, &[12, 13], &below),
