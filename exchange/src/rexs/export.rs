@@ -229,6 +229,7 @@ impl Gear<'_> {
         }
         for (attribute, value) in [
             (own::HOLES, &blank["holes"]),
+            (own::SHAFT, &blank["shaft"]),
             (own::DEVIATIONS, &self.document["tooth_deviations"]),
         ] {
             if !value.is_null() {

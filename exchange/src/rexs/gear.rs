@@ -560,13 +560,16 @@ impl<'a> Gear<'a> {
         let said = inner(self.gear).filter(|(diameter, _)| *diameter > 0.0);
         let said = said.or_else(|| self.body.and_then(inner));
         let said = said.or_else(|| inner(self.gear));
-        let (radius, mut blank) = match (bore, said) {
-            (Some(bore), _) => (bore, json!({ "bore_radius_mm": bore })),
-            (None, Some((diameter, of))) if diameter > 0.0 => {
+        let own = reading.json(self.gear, own::SHAFT);
+        let own = own.and_then(|own| Some((own["radius_mm"].as_f64()?, own)));
+        let (radius, mut blank) = match (bore, own, said) {
+            (Some(bore), ..) => (bore, json!({ "bore_radius_mm": bore })),
+            (None, Some((radius, shaft)), _) => (radius, json!({ "shaft": shaft })),
+            (None, None, Some((diameter, of))) if diameter > 0.0 => {
                 reading.from(format!("{pointer}/bore_radius_mm"), of, "inner_diameter");
                 (diameter / 2.0, json!({ "bore_radius_mm": diameter / 2.0 }))
             }
-            (None, solid) => {
+            (None, None, solid) => {
                 let Some((diameter, section)) = reading.seat(self.gear) else {
                     let detail = "It has no inner_diameter above 0, neither has a gear_body of it, and no shaft_section under it says how thick its shaft is. The hub is rigid on the bore, so that it needs one; say it by --bore-radius MM.";
                     reading.wrong(self.gear.place(), detail);

@@ -32,6 +32,8 @@ mod own {
     pub(super) const METHOD: &str = "custom_meshwright_method";
     /// Of a gear: the holes of the blank, the JSON of a submission.
     pub(super) const HOLES: &str = "custom_meshwright_holes";
+    /// Of a gear that is of one piece with its shaft: that, the JSON of a submission.
+    pub(super) const SHAFT: &str = "custom_meshwright_shaft";
     /// Of a gear: the deviations of the teeth, the JSON of a submission.
     pub(super) const DEVIATIONS: &str = "custom_meshwright_tooth_deviations";
     /// Of a gear: the radius of the tip edges.

@@ -56,7 +56,7 @@ impl<'a> Reading<'a> {
                 let inside = (-SAME_PLACE..=length + SAME_PLACE).contains(&(middle - from));
                 inside.then_some((begin + (end - begin) * part.clamp(0.0, 1.0), section))
             })
-            .filter(|(diameter, _)| !(*diameter <= 0.0))
+            .filter(|(diameter, _)| diameter.is_nan() || *diameter > 0.0)
             .collect();
         if middle.is_none() && seats.iter().any(|(diameter, _)| *diameter != seats[0].0) {
             return None;
