@@ -12,7 +12,7 @@ mod wire;
 
 use libfuzzer_sys::fuzz_target;
 use meshwright_engine::run::Run;
-use meshwright_exchange::rexs::{Choices, import, is_xml};
+use meshwright_exchange::rexs::{Choices, import, is_model};
 use wire::{Preview, Problem, Searching, Study, Submission, model_of};
 
 /// So many designs of a study are expanded.
@@ -41,7 +41,7 @@ fn check_model(bytes: &[u8]) {
 }
 
 fuzz_target!(|bytes: &[u8]| {
-    if is_xml(bytes) {
+    if is_model(bytes) {
         check_model(bytes);
         return;
     }

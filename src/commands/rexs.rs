@@ -16,7 +16,7 @@ use crate::wire::{Submission, model_of};
 pub(crate) enum Rexs {
     /// Write the submission that a pair of a model comes to.
     Import {
-        /// The model, REXS 1.4 to 2 as XML; - reads standard input.
+        /// The model, REXS 1.0 to 2 as XML, as JSON or zipped; - reads standard input.
         model: PathBuf,
         /// Where to write the submission.
         #[arg(long, short, default_value = "-")]

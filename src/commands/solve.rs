@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
-use meshwright_exchange::rexs::is_xml;
+use meshwright_exchange::rexs::is_model;
 
 use super::document::{EXIT_PROBLEM, is_dash, read, told, write};
 use super::rexs::ModelChoices;
@@ -21,7 +21,7 @@ const LIBRARY_BYTES: usize = 512 << 20;
 /// Compute one submission, or one pair of a REXS model.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Solve {
-    /// The submission, or a REXS model as XML; - reads standard input.
+    /// The submission, or a REXS model as XML, as JSON or zipped; - reads standard input.
     submission: PathBuf,
     /// Where to write the results document; - writes standard output. Without it, only the table is printed.
     #[arg(long, short)]
@@ -68,7 +68,7 @@ impl Solve {
 
     /// The submission, out of a model if the document is one. What is wrong is printed.
     fn submission(&self, document: &[u8]) -> Option<Submission> {
-        if is_xml(document) {
+        if is_model(document) {
             return self.model.submission(document);
         }
         if let Some(option) = self.model.given() {

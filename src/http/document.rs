@@ -1,5 +1,6 @@
 //! The body of a request: a JSON document of bounded size.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
@@ -10,12 +11,15 @@ use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_ENCODING, CONTENT_TYPE, EXPECT};
 use futures_util::StreamExt;
 use http_body::Body as _;
+use meshwright_engine::run::Run;
+use meshwright_exchange::rexs::{Refused, is_packed, unpacked};
 use serde::Deserialize;
 use tokio::time::timeout;
 use utoipa::IntoResponses;
 use utoipa::openapi::{RefOr, Response};
 
 use super::app::App;
+use super::aside::aside;
 use super::client::ClientName;
 use crate::compute::Part;
 use crate::wire::{Code, Problem};
@@ -38,7 +42,7 @@ impl<const MIB: usize> FromRequest<App> for Document<MIB> {
     type Rejection = Problem;
 
     async fn from_request(request: Request, app: &App) -> Result<Self, Problem> {
-        let (body, memory) = taken(request, app, MIB, "json").await?;
+        let (body, memory) = taken(request, app, MIB, &["json"]).await?;
         Ok(Self(body, memory))
     }
 }
@@ -69,15 +73,21 @@ fn declared((status, sentence): (&str, String)) -> (String, RefOr<Response>) {
     (status.to_owned(), Response::new(sentence).into())
 }
 
-/// The body of `request`, of the media type `kind` and `mib` MiB at most, and the memory for it.
+/// The name of the client that sent `request`.
+fn client_of(request: &Request) -> Arc<str> {
+    let client = request.extensions().get::<ClientName>();
+    client.map_or_else(|| Arc::from(""), |client| Arc::clone(&client.0))
+}
+
+/// The body of `request`, of one of the media types `kinds` and `mib` MiB at most, and the memory for it.
 async fn taken(
     request: Request,
     app: &App,
     mib: usize,
-    kind: &str,
+    kinds: &[&str],
 ) -> Result<(Bytes, Memory), Problem> {
     let limit = mib * 1024 * 1024;
-    let media_type = check_media_type(request.headers(), kind);
+    let media_type = check_media_type(request.headers(), kinds);
     let length = request.body().size_hint().upper();
     if request.headers().contains_key(EXPECT) {
         // The client waits with its body until it is told to go on.
@@ -87,8 +97,7 @@ async fn taken(
         }
     }
     let length = length.map_or(limit, |length| length.min(limit as u64) as usize);
-    let client = request.extensions().get::<ClientName>().cloned();
-    let client = client.map_or_else(|| Arc::from(""), |client| client.0);
+    let client = client_of(&request);
     let bytes = app.bodies.for_bytes(&client, length).await?;
     let body = timeout(PATIENCE, read(request.into_body(), limit, length)).await;
     let body = body.map_err(|_| late())??;
@@ -111,29 +120,46 @@ impl<const MIB: usize> Document<MIB> {
     }
 }
 
-/// A model of a gearbox may have so many MiB.
-const XML_MIB: usize = 4;
+/// A model of a gearbox may have so many MiB, unpacked.
+const MODEL_MIB: usize = 4;
 
-/// The bytes of a request's XML document, and the memory that it takes.
-pub(super) struct XmlDocument(pub(super) Bytes, pub(super) Memory);
+/// The media types of the containers of a model.
+pub(super) const MODEL_TYPES: &[&str] = &["xml", "json", "zip"];
 
-impl FromRequest<App> for XmlDocument {
+/// The bytes of a request's model of a gearbox, unpacked, and the memory that it takes.
+pub(super) struct ModelDocument(pub(super) Bytes, pub(super) Memory);
+
+impl FromRequest<App> for ModelDocument {
     type Rejection = Problem;
 
     async fn from_request(request: Request, app: &App) -> Result<Self, Problem> {
-        let (body, memory) = taken(request, app, XML_MIB, "xml").await?;
-        Ok(Self(body, memory))
+        let client = client_of(&request);
+        let (body, memory) = taken(request, app, MODEL_MIB, MODEL_TYPES).await?;
+        if !is_packed(&body) {
+            return Ok(Self(body, memory));
+        }
+        // What comes out of an archive takes the memory that it would take had it been sent so.
+        let limit = MODEL_MIB * 1024 * 1024;
+        let bytes = app.bodies.for_bytes(&client, limit).await?;
+        let unpack = move |_: &Run| unpacked(&body, limit).map(Cow::into_owned);
+        let model = aside(&client, unpack).await?;
+        let refuse =
+            |refused: Refused| Problem::new(Code::ModelRefused, refused.to_string().trim_end());
+        let model = model.map_err(refuse)?;
+        let made = app.bodies.to_read(&client, &model).await?;
+        Ok(Self(model.into(), [bytes, made]))
     }
 }
 
-impl IntoResponses for XmlDocument {
+impl IntoResponses for ModelDocument {
     fn responses() -> BTreeMap<String, RefOr<Response>> {
-        refusals(XML_MIB, "XML").into_iter().map(declared).collect()
+        let refusals = refusals(MODEL_MIB, "XML, JSON or a zip archive");
+        refusals.into_iter().map(declared).collect()
     }
 }
 
-/// Whether the body is declared as `json` or `xml`, by whichever of its names.
-fn check_media_type(headers: &HeaderMap, kind: &str) -> Result<(), Problem> {
+/// Whether the body is declared as one of `kinds`, by whichever of its names.
+fn check_media_type(headers: &HeaderMap, kinds: &[&str]) -> Result<(), Problem> {
     let refuse = |detail: String| Err(Problem::new(Code::UnsupportedMediaType, detail));
     if headers
         .get(CONTENT_ENCODING)
@@ -141,10 +167,13 @@ fn check_media_type(headers: &HeaderMap, kind: &str) -> Result<(), Problem> {
     {
         return refuse("Send the body without a Content-Encoding.".to_owned());
     }
+    let wanted: Vec<String> = kinds
+        .iter()
+        .map(|kind| format!("application/{kind}"))
+        .collect();
+    let wanted = wanted.join(" or ");
     let Some(given) = headers.get(CONTENT_TYPE) else {
-        return refuse(format!(
-            "Send the body with Content-Type: application/{kind}."
-        ));
+        return refuse(format!("Send the body with Content-Type: {wanted}."));
     };
     let essence = given
         .to_str()
@@ -154,15 +183,20 @@ fn check_media_type(headers: &HeaderMap, kind: &str) -> Result<(), Problem> {
         .unwrap_or_default()
         .trim()
         .to_ascii_lowercase();
-    let known = match essence.strip_prefix("application/") {
-        Some(name) => name == kind || name.ends_with(&format!("+{kind}")),
-        None => kind == "xml" && essence == "text/xml",
+    let known = |kind: &&str| match essence.strip_prefix("application/") {
+        Some(name) => {
+            name == *kind
+                || name.ends_with(&format!("+{kind}"))
+                // What browsers call an archive, and a file whose name they do not know.
+                || (*kind == "zip" && ["x-zip-compressed", "octet-stream"].contains(&name))
+        }
+        None => *kind == "xml" && essence == "text/xml",
     };
-    if known {
+    if kinds.iter().any(|kind| known(kind)) {
         return Ok(());
     }
     refuse(format!(
-        "Send the body with Content-Type: application/{kind}, not {essence:?}."
+        "Send the body with Content-Type: {wanted}, not {essence:?}."
     ))
 }
 

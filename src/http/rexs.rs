@@ -3,7 +3,7 @@
 use axum::Json;
 use axum::response::Response;
 use meshwright_engine::run::Run;
-use meshwright_exchange::rexs::{Choices, Fault, Import, NotRead, import, stages};
+use meshwright_exchange::rexs::{Choices, Fault, Import, NotRead, Refused, import, stages};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::{IntoParams, ToSchema};
@@ -11,11 +11,11 @@ use utoipa::{IntoParams, ToSchema};
 use super::answer::file;
 use super::aside::aside;
 use super::client::{Client, Onlooker};
-use super::document::XmlDocument;
+use super::document::ModelDocument;
 use super::parameters::{JobId, Parameters};
 use super::problem::internal;
 use crate::jobs::JobError;
-use crate::wire::{Code, Problem, Submission, model_of, view};
+use crate::wire::{Code, FieldError, Problem, Submission, model_of, view};
 
 /// Stages beyond this number are not looked at.
 const MOST_STAGES: usize = 20;
@@ -73,23 +73,26 @@ view! {
 
 /// Read a model of a gearbox
 ///
-/// Takes a REXS model, version 1.4 to 2 as XML, and answers with the submission that each of its cylindrical stages comes to, and with
-/// what was not read. Makes no job.
+/// Takes a REXS model, version 1.0 to 2 as XML, as JSON or as either in a zip archive, and answers with the submission that each of its
+/// cylindrical stages comes to, and with what was not read. Makes no job.
 #[utoipa::path(
     post, path = "/v1/rexs", tag = "Reference", operation_id = "read_model",
-    request_body(content = String, content_type = "application/xml", description = "The model."),
+    request_body(
+        content((String = "application/xml"), (Value = "application/json"), (Value = "application/zip")),
+        description = "The model, in any of its containers.",
+    ),
     params(ModelParameters),
     responses(
         (status = 200, description = "The submissions.", body = ModelView),
         (status = 400, description = "A parameter is not understood."),
-        XmlDocument,
-        (status = 422, description = "It is no model, or none of its stages can be taken; the detail says why."),
+        ModelDocument,
+        (status = 422, description = "It is no model, or none of its stages can be taken; the errors say why of each."),
     ),
 )]
 pub(super) async fn read(
     onlooker: Onlooker,
     Parameters(parameters): Parameters<ModelParameters>,
-    XmlDocument(model, memory): XmlDocument,
+    ModelDocument(model, memory): ModelDocument,
 ) -> Result<Json<ModelView>, Problem> {
     let read = move |_: &Run| {
         let view = model_view(&model, &parameters);
@@ -100,10 +103,10 @@ pub(super) async fn read(
 }
 
 fn model_view(model: &[u8], parameters: &ModelParameters) -> Result<ModelView, Problem> {
-    let refuse = |refused: &dyn std::fmt::Display| {
-        Problem::new(Code::ModelRefused, refused.to_string().trim_end())
-    };
-    let found = stages(model).map_err(|refused| refuse(&refused))?;
+    let found = stages(model).map_err(|Refused(faults)| {
+        let errors = faults.into_iter().map(|fault| of_model(None, fault));
+        refusal(errors.collect())
+    })?;
     let wanted: Vec<Option<i64>> = match parameters.stage {
         None if found.len() > 1 => found.into_iter().take(MOST_STAGES).map(Some).collect(),
         stage => vec![stage],
@@ -115,6 +118,7 @@ fn model_view(model: &[u8], parameters: &ModelParameters) -> Result<ModelView, P
         refused: Vec::new(),
     };
     let mut not_read: Option<Vec<NotRead>> = None;
+    let mut errors = Vec::new();
     for stage in wanted {
         let choices = Choices {
             stage,
@@ -122,8 +126,14 @@ fn model_view(model: &[u8], parameters: &ModelParameters) -> Result<ModelView, P
             method: parameters.method.clone(),
             bore_radii: parameters.bore_radius_mm.into_iter().collect(),
         };
-        let taken = import(model, &choices).map_err(|refused| refused.0);
-        match taken.and_then(|import| Ok((checked(&import)?, import))) {
+        let taken = import(model, &choices).map_err(|Refused(faults)| {
+            let faults = faults.into_iter();
+            faults
+                .map(|fault| of_model(stage, fault))
+                .collect::<Vec<_>>()
+        });
+        let taken = taken.and_then(|import| Ok((checked(stage, &import)?, import)));
+        match taken {
             Ok((submission, import)) => {
                 view.submissions.push(submission);
                 // What one stage reads has been read.
@@ -138,30 +148,57 @@ fn model_view(model: &[u8], parameters: &ModelParameters) -> Result<ModelView, P
                 let assumed = remarks.filter(|remark| !remark.starts_with("Not read"));
                 view.assumed.extend(assumed);
             }
-            Err(faults) => view.refused.extend(faults.into_iter().map(RefusedView::of)),
+            Err(faults) => errors.extend(faults),
         }
     }
     if view.submissions.is_empty() {
-        let faults = view.refused.into_iter();
-        let faults = faults.map(|RefusedView { place, detail }| Fault { place, detail });
-        let refused = meshwright_exchange::rexs::Refused(faults.collect());
-        return Err(refuse(&refused));
+        return Err(refusal(errors));
     }
+    let refused = errors.into_iter().map(|(fault, _)| RefusedView::of(fault));
+    view.refused = refused.collect();
     let not_read = not_read.unwrap_or_default().into_iter();
     view.not_read = not_read.map(NotReadView::of).collect();
     Ok(view)
 }
 
+/// What is wrong with a model at a place of it, and with the field of the submission that would come of it.
+type Wrong = (Fault, FieldError);
+
+/// What is wrong with a model itself: no field of a submission is.
+fn of_model(stage: Option<i64>, fault: Fault) -> Wrong {
+    let error = FieldError::new("", Code::ModelRefused, "");
+    told(stage, fault, error)
+}
+
+/// The error with the place and the words of the fault, after the stage that it is of.
+fn told(stage: Option<i64>, fault: Fault, error: FieldError) -> Wrong {
+    let stage = stage.map_or_else(String::new, |stage| format!("Stage {stage}: "));
+    let detail = format!("{stage}{}: {}", fault.place, fault.detail);
+    (fault, FieldError { detail, ..error })
+}
+
+/// The problem of a model of which nothing can be taken.
+fn refusal(wrong: Vec<Wrong>) -> Problem {
+    let (faults, errors) = wrong.into_iter().unzip();
+    let detail = Refused(faults).to_string();
+    Problem {
+        errors,
+        ..Problem::new(Code::ModelRefused, detail.trim_end())
+    }
+}
+
 /// The submission, if it can be computed; what is wrong is told where it stands in the model.
-fn checked(import: &Import) -> Result<Submission, Vec<Fault>> {
+fn checked(stage: Option<i64>, import: &Import) -> Result<Submission, Vec<Wrong>> {
     let parsed = Submission::parse(import.submission.to_string().as_bytes());
     parsed.map_err(|problem| {
         let errors = problem.errors.into_iter();
-        let faults = errors.map(|error| Fault {
-            place: import
-                .origin(&error.pointer)
-                .map_or(error.pointer, str::to_owned),
-            detail: error.detail,
+        let faults = errors.map(|error| {
+            let place = import.origin(&error.pointer);
+            let fault = Fault {
+                place: place.unwrap_or(&error.pointer).to_owned(),
+                detail: error.detail.clone(),
+            };
+            told(stage, fault, error)
         });
         faults.collect()
     })

@@ -186,8 +186,10 @@ async fn a_model_is_read_and_a_job_is_written_as_one_over_http() {
     let distance = |of: &Value| of["pair"]["center_distance_mm"].clone();
     assert_eq!(distance(&again["submissions"][0]), distance(&submission));
 
+    let text = post(model.clone(), "text/plain").await.unwrap();
+    problem(text, 415, "unsupported_media_type").await;
     let json = post("{}".to_owned(), "application/json").await.unwrap();
-    problem(json, 415, "unsupported_media_type").await;
+    problem(json, 422, "model_refused").await;
     for nothing in ["no model", "<model version=\"1.4\"/>"] {
         let refused = post(nothing.to_owned(), "application/xml").await.unwrap();
         problem(refused, 422, "model_refused").await;
@@ -200,4 +202,112 @@ async fn a_model_is_read_and_a_job_is_written_as_one_over_http() {
         detail.contains("component 2 (cylindrical_stage \"Stage\"), center_distance"),
         "{detail}"
     );
+}
+
+#[tokio::test]
+async fn a_model_is_read_in_every_container_and_a_refused_one_says_why_of_each_stage() {
+    let bench = Bench::real().await;
+    let post = |model: Vec<u8>, media_type: &'static str, query: &'static str| {
+        let request = bench.client.post(bench.url(&format!("/v1/rexs{query}")));
+        request
+            .header("content-type", media_type)
+            .body(model)
+            .send()
+    };
+    let file = |name: &str| {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/rexs");
+        std::fs::read(folder.join(name)).unwrap()
+    };
+    let mut plain = None;
+    for (name, media_type) in [
+        ("both-drive-false.rexs", "application/xml"),
+        ("umlaut-latin-1.rexs", "text/xml; charset=ISO-8859-1"),
+        ("json.rexsj", "application/json"),
+        ("zipped.rexsz", "application/zip"),
+        ("zipped.rexsz", "application/x-zip-compressed"),
+        ("json.rexsj", "application/octet-stream"),
+    ] {
+        let read = post(file(name), media_type, "").await.unwrap();
+        assert_eq!(read.status(), StatusCode::OK, "{name}");
+        let submissions = read.document().await["submissions"].clone();
+        assert_eq!(submissions[0]["pair"]["center_distance_mm"], 60.5);
+        let plain = plain.get_or_insert_with(|| submissions.clone());
+        assert_eq!(*plain, submissions, "{name}");
+    }
+    // More than may be sent is not unpacked either: 4 MiB of spaces in 4 kB.
+    let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    archive
+        .start_file("a.rexs", zip::write::SimpleFileOptions::default())
+        .unwrap();
+    std::io::Write::write_all(&mut archive, &vec![b' '; (4 << 20) + 1]).unwrap();
+    let bomb = archive.finish().unwrap().into_inner();
+    assert!(bomb.len() < 8192, "{}", bomb.len());
+    let bomb = problem(
+        post(bomb, "application/zip", "").await.unwrap(),
+        422,
+        "model_refused",
+    );
+    let bomb = bomb.await;
+    assert!(
+        bomb["detail"].as_str().unwrap().contains("4194304"),
+        "{bomb}"
+    );
+
+    // Each stage has its own reasons: here what the model lacks, and what the pair would be.
+    let two = String::from_utf8(file("two-stages-torque-at-input.rexs")).unwrap();
+    let two = two.replacen(r#"unit="mm">90.5<"#, r#"unit="mm">120<"#, 1);
+    let width = r#"<attribute id="face_width" unit="mm">20</attribute>"#;
+    let two = two.replacen(width, "", 1);
+    let refused = post(two.into_bytes(), "application/xml", "").await.unwrap();
+    let refused = problem(refused, 422, "model_refused").await;
+    let errors = refused["errors"].as_array().unwrap();
+    assert_eq!(errors.len(), 2, "{errors:?}");
+    for (error, pointer, code, detail) in [
+        (
+            &errors[0],
+            "",
+            "model_refused",
+            "Stage 2: component 10 (cylindrical_gear): It has no face_width",
+        ),
+        (
+            &errors[1],
+            "/pair/center_distance_mm",
+            "teeth_do_not_reach",
+            "Stage 3: component 3 (cylindrical_stage \"Second\"), center_distance: ",
+        ),
+    ] {
+        assert_eq!(error["pointer"], pointer);
+        assert_eq!(error["code"], code);
+        let told = error["detail"].as_str().unwrap();
+        assert!(told.starts_with(detail), "{told}");
+    }
+    assert!(errors[1]["nearest"].as_f64().unwrap() < 120.0);
+}
+
+#[test]
+fn every_file_of_another_program_is_read_or_refused_by_its_place_on_the_command_line() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/rexs");
+    let mut read = 0;
+    for file in std::fs::read_dir(folder).unwrap() {
+        let file = file.unwrap().path();
+        let stage = [path("--stage"), path("3")];
+        let mut arguments = vec![path("rexs"), path("import"), &file];
+        let name = file.file_name().unwrap().to_string_lossy();
+        if name.starts_with("two-stages") {
+            arguments.extend(stage);
+        }
+        let ran = meshwright(&arguments);
+        let told = String::from_utf8_lossy(&ran.stderr);
+        if ran.status.success() {
+            let submission: Value = serde_json::from_slice(&ran.stdout).unwrap();
+            assert!(submission["pair"].is_object(), "{name}");
+            assert!(told.contains("Assumed: "), "{name}: {told}");
+            read += 1;
+        } else {
+            assert_eq!(ran.status.code(), Some(2), "{name}: {told}");
+            // Where it stands in the model.
+            assert!(told.contains("component "), "{name}: {told}");
+        }
+    }
+    assert!(read >= 9, "{read}");
 }

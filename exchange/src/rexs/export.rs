@@ -6,7 +6,8 @@ use meshwright_engine::analysis::Case;
 use meshwright_engine::gear::{Member, SpurGear};
 use serde_json::Value;
 
-use super::gear::{GENERATED_SHIFT, ROOT, ReliefNames, TIP};
+use super::flank::{ROOT, ReliefNames, TIP};
+use super::gear::GENERATED_SHIFT;
 use super::import::HELIX_ANGLE;
 use super::own;
 use super::unit::{DEG, KG_PER_DM3, MM, MPA, MUM, N_M, N_PER_MM, NONE, PER_MINUTE, Unit, mm_of_um};
@@ -228,6 +229,7 @@ impl Gear<'_> {
         }
         for (attribute, value) in [
             (own::HOLES, &blank["holes"]),
+            (own::SHAFT, &blank["shaft"]),
             (own::DEVIATIONS, &self.document["tooth_deviations"]),
         ] {
             if !value.is_null() {

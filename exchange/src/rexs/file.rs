@@ -3,14 +3,14 @@
 use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fmt::Write as _;
+use std::ops::RangeInclusive;
 
 use roxmltree::{Document, Node, ParsingOptions};
 
+use super::container::{decoded, of_file, unpacked};
 use super::fault::{Fault, Refused};
-use super::markup;
 use super::unit::Unit;
-
-pub(super) const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
+use super::{json, markup};
 
 /// The largest file that is read. Whole gearboxes with their results have a few megabytes.
 const MOST_BYTES: usize = 32 << 20;
@@ -25,12 +25,14 @@ const MOST_LOAD_CASES: usize = 1000;
 /// Faults beyond this number are not looked for: each says its line, which is counted from the top.
 const MOST_FAULTS: usize = 100;
 
-/// The first version whose names are read, and the last main version.
-const VERSIONS: ((u32, u32), u32) = ((1, 4), 2);
+/// The main versions whose names are read.
+const VERSIONS: RangeInclusive<u32> = 1..=2;
 
 /// A whole model.
 #[derive(Debug)]
 pub(super) struct Model {
+    /// The main version, and the one after it.
+    pub(super) version: (u32, u32),
     pub(super) components: Vec<Component>,
     pub(super) relations: Vec<Relation>,
     /// What is different in each load case, after its identifier.
@@ -60,6 +62,8 @@ pub(super) struct Attribute {
     unit: Option<String>,
     /// The text; `None` where there is a list in its place.
     text: Option<String>,
+    /// Its numbers, if it is a list of three.
+    vector: Option<[f64; 3]>,
     pub(super) read: Cell<bool>,
 }
 
@@ -69,72 +73,47 @@ pub(super) struct Relation {
     pub(super) kind: String,
     pub(super) order: i64,
     /// The role of each component in it.
-    refs: Vec<(String, i64)>,
+    pub(super) refs: Vec<(String, i64)>,
+}
+
+/// What a file says, not yet checked.
+#[derive(Debug, Default)]
+pub(super) struct Content {
+    pub(super) components: Vec<Component>,
+    pub(super) relations: Vec<Relation>,
+    pub(super) load_cases: Vec<(i64, LoadCase)>,
+    pub(super) faults: Vec<Fault>,
 }
 
 impl Model {
-    /// Reads a file. Its size is bounded, and document types are refused, so that there are no entities to expand or to fetch.
+    /// Reads a file in any of its containers. Its size is bounded, and document types are refused, so that there are no entities to
+    /// expand or to fetch.
     pub(super) fn read(bytes: &[u8]) -> Result<Self, Refused> {
-        let whole = |detail: String| Refused::from(Fault::new("the file", detail));
-        if bytes.len() > MOST_BYTES {
-            return Err(whole(format!(
-                "It has {} bytes; at most {MOST_BYTES} are read.",
-                bytes.len()
-            )));
-        }
-        let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
-        let text = std::str::from_utf8(bytes).map_err(|error| {
-            whole(format!(
-                "It is no UTF-8 after byte {}, which REXS has to be.",
-                error.valid_up_to()
-            ))
-        })?;
-        markup::check(text).map_err(whole)?;
-        let options = ParsingOptions {
-            allow_dtd: false,
-            nodes_limit: MOST_NODES,
-            ..ParsingOptions::default()
+        let bytes = unpacked(bytes, MOST_BYTES)?;
+        let text = decoded(&bytes).map_err(of_file)?;
+        let read = if text.trim_start().starts_with('{') {
+            json::content(&text)
+        } else {
+            content(&text)
         };
-        let document = Document::parse_with_options(text, options)
-            .map_err(|error| whole(format!("It cannot be read as XML: {error}.")))?;
-        let root = document.root_element();
-        if root.tag_name().name() != "model" {
-            return Err(whole(format!(
-                "It begins with <{}>; a REXS model begins with <model>.",
-                root.tag_name().name()
-            )));
-        }
-        check_version(root.attribute("version").unwrap_or_default()).map_err(whole)?;
-        Self::of(root)
+        let (version, content) = read.map_err(of_file)?;
+        let version = version_of(&version).map_err(of_file)?;
+        Self::of(content, version)
     }
 
-    fn of(root: Node<'_, '_>) -> Result<Self, Refused> {
-        let all = |name: &'static str| root.children().filter(move |node| is(*node, name));
-        let inner = |outer: &'static str, name: &'static str| {
-            all(outer).flat_map(move |node| node.children().filter(move |node| is(*node, name)))
-        };
-        let mut faults = Vec::new();
-        let components: Vec<Component> = inner("components", "component")
-            .filter_map(|node| Component::of(node, &mut faults))
-            .collect();
-        let cases = inner("load_spectrum", "load_case").count();
-        if cases > MOST_LOAD_CASES {
+    fn of(content: Content, version: (u32, u32)) -> Result<Self, Refused> {
+        let Content {
+            components,
+            relations,
+            mut load_cases,
+            mut faults,
+        } = content;
+        if load_cases.len() > MOST_LOAD_CASES {
+            let cases = load_cases.len();
             let detail =
                 format!("There are {cases} load cases; at most {MOST_LOAD_CASES} are read.");
             faults.push(Fault::new("the load spectrum", detail));
         }
-        let load_cases = inner("load_spectrum", "load_case")
-            .take(MOST_LOAD_CASES)
-            .map(|case| {
-                let id = whole_number(case, "id").unwrap_or_default();
-                let components = case.children().filter(|node| is(*node, "component"));
-                let read = components.filter_map(|node| Component::of(node, &mut faults));
-                (
-                    id,
-                    read.map(|component| (component.id, component)).collect(),
-                )
-            })
-            .collect();
         let mut index = HashMap::new();
         for (i, component) in components.iter().enumerate() {
             if index.insert(component.id, i).is_some() {
@@ -142,10 +121,17 @@ impl Model {
                 faults.push(Fault::new(component.place(), detail));
             }
         }
-        let relations: Vec<Relation> = inner("relations", "relation").map(Relation::of).collect();
+        let in_cases = load_cases
+            .iter_mut()
+            .flat_map(|(_, case)| case.values_mut());
+        for component in in_cases.filter(|component| component.kind.is_empty()) {
+            if let Some(same) = index.get(&component.id) {
+                component.kind.clone_from(&components[*same].kind);
+            }
+        }
         for relation in &relations {
             for (role, id) in &relation.refs {
-                if !index.contains_key(id) {
+                if !index.contains_key(id) && faults.len() < MOST_FAULTS {
                     let place = format!("relation of type {}, role {role}", relation.kind);
                     let detail = format!("There is no component {id}.");
                     faults.push(Fault::new(place, detail));
@@ -154,6 +140,7 @@ impl Model {
         }
         if faults.is_empty() {
             Ok(Self {
+                version,
                 components,
                 relations,
                 load_cases,
@@ -197,16 +184,63 @@ impl Model {
     }
 }
 
-/// That the names of `version` are known here.
-fn check_version(version: &str) -> Result<(), String> {
-    let mut parts = version.split('.').map(|part| part.parse::<u32>().ok());
+/// The main version and the next, if the names of `version` are known here.
+fn version_of(version: &str) -> Result<(u32, u32), String> {
+    let mut parts = version.split('.').map(|part| part.trim().parse().ok());
     let said = parts.next().flatten().zip(parts.next().unwrap_or(Some(0)));
-    match said {
-        Some(said) if (VERSIONS.0..=(VERSIONS.1, u32::MAX)).contains(&said) => Ok(()),
-        _ => Err(format!(
-            "It is of REXS version \"{version}\"; 1.4 to 2 are read. Earlier ones arrange flanks otherwise."
-        )),
+    said.filter(|(main, _)| VERSIONS.contains(main))
+        .ok_or_else(|| format!("It is of REXS version \"{version}\"; 1.0 to 2 are read."))
+}
+
+/// What the text of a file in XML says, and its version.
+///
+/// # Errors
+///
+/// A sentence, if it is no XML of a model.
+fn content(text: &str) -> Result<(String, Content), String> {
+    markup::check(text)?;
+    let options = ParsingOptions {
+        allow_dtd: false,
+        nodes_limit: MOST_NODES,
+        ..ParsingOptions::default()
+    };
+    let document = Document::parse_with_options(text, options)
+        .map_err(|error| format!("It cannot be read as XML: {error}."))?;
+    let root = document.root_element();
+    if root.tag_name().name() != "model" {
+        return Err(format!(
+            "It begins with <{}>; a REXS model begins with <model>.",
+            root.tag_name().name()
+        ));
     }
+    let all = |name: &'static str| root.children().filter(move |node| is(*node, name));
+    let inner = |outer: &'static str, name: &'static str| {
+        all(outer).flat_map(move |node| node.children().filter(move |node| is(*node, name)))
+    };
+    let mut faults = Vec::new();
+    let mut read = |node: Node<'_, '_>| Component::of(node, &mut faults);
+    let components = inner("components", "component")
+        .filter_map(&mut read)
+        .collect();
+    let load_cases = inner("load_spectrum", "load_case")
+        .map(|case| {
+            let components = case.children().filter(|node| is(*node, "component"));
+            let components = components.filter_map(&mut read);
+            let components = components.map(|component| (component.id, component));
+            (
+                whole_number(case, "id").unwrap_or_default(),
+                components.collect(),
+            )
+        })
+        .collect();
+    let content = Content {
+        components,
+        relations: inner("relations", "relation").map(Relation::of).collect(),
+        load_cases,
+        faults,
+    };
+    let version = root.attribute("version").unwrap_or_default();
+    Ok((version.to_owned(), content))
 }
 
 /// Elements are known by their names, in the namespace of the standard or in none.
@@ -235,22 +269,41 @@ impl Component {
             faults.push(Fault::new(at_line(node), detail));
             return None;
         };
+        let name = node.attribute("name").unwrap_or_default();
+        let attributes = node.children().filter(|node| is(*node, "attribute"));
+        let attributes = attributes.map(Attribute::of).collect();
+        Self::new(id, kind.to_owned(), name.to_owned(), attributes, faults)
+    }
+
+    /// A component; what is wrong with it is added to `faults`.
+    pub(super) fn new(
+        id: i64,
+        kind: String,
+        name: String,
+        attributes: Vec<Attribute>,
+        faults: &mut Vec<Fault>,
+    ) -> Option<Self> {
+        if faults.len() >= MOST_FAULTS {
+            return None;
+        }
         let mut component = Self {
             id,
-            kind: kind.to_owned(),
-            name: node.attribute("name").unwrap_or_default().to_owned(),
-            attributes: Vec::new(),
+            kind,
+            name,
+            attributes,
             met: Cell::new(false),
         };
         let mut seen = HashSet::new();
-        for child in node.children().filter(|node| is(*node, "attribute")) {
-            let attribute = Attribute::of(child);
-            if !seen.insert(attribute.id.clone()) {
+        for attribute in &component.attributes {
+            if !seen.insert(&attribute.id) {
                 let place = component.place_of(&attribute.id);
                 faults.push(Fault::new(place, "It stands there twice."));
             }
-            component.attributes.push(attribute);
         }
+        // An empty one says nothing.
+        component
+            .attributes
+            .retain(|attribute| attribute.text.as_deref() != Some(""));
         Some(component)
     }
 
@@ -263,6 +316,12 @@ impl Component {
         self.met.set(true);
         found.read.set(true);
         Some(found)
+    }
+
+    /// The number of an attribute, if it is one, which is not read by that.
+    pub(super) fn glance(&self, id: &str, unit: Unit) -> Option<f64> {
+        let found = self.attributes.iter().find(|attribute| attribute.id == id);
+        found?.number(unit).ok()
     }
 
     /// How a person finds it in the file.
@@ -284,12 +343,32 @@ impl Component {
 
 impl Attribute {
     fn of(node: Node<'_, '_>) -> Self {
-        let list = node.children().any(|child| child.is_element());
+        let list = node.children().find(|child| child.is_element());
         let text: String = node.children().filter_map(|child| child.text()).collect();
+        let cells = list.into_iter().flat_map(|list| list.children());
+        let cells = cells.filter(|cell| is(*cell, "c"));
+        let numbers = cells.take(4).map(|cell| cell.text()?.trim().parse().ok());
+        let numbers: Option<Vec<f64>> = numbers.collect();
+        Self::new(
+            node.attribute("id").unwrap_or_default().to_owned(),
+            node.attribute("unit").map(str::to_owned),
+            list.is_none().then_some(text),
+            numbers.and_then(|numbers| numbers.try_into().ok()),
+        )
+    }
+
+    /// An attribute whose text is `text`; none is a list, of three numbers where it is a `vector`.
+    pub(super) fn new(
+        id: String,
+        unit: Option<String>,
+        text: Option<String>,
+        vector: Option<[f64; 3]>,
+    ) -> Self {
         Self {
-            id: node.attribute("id").unwrap_or_default().to_owned(),
-            unit: node.attribute("unit").map(str::to_owned),
-            text: (!list).then(|| text.trim().to_owned()),
+            id,
+            unit,
+            vector,
+            text: text.map(|text| text.trim().to_owned()),
             read: Cell::new(false),
         }
     }
@@ -309,6 +388,16 @@ impl Attribute {
                 unit.known()
             )
         })
+    }
+
+    /// Its three numbers in `unit`, if it is a list of so many.
+    pub(super) fn vector(&self, unit: Unit) -> Option<[f64; 3]> {
+        let numbers = self.vector?;
+        let converted = numbers.map(|number| unit.convert(number, self.unit.as_deref()));
+        let [Some(u), Some(v), Some(w)] = converted else {
+            return None;
+        };
+        Some([u, v, w])
     }
 
     /// Its word.

@@ -1,34 +1,36 @@
 //! From the components of one gear to the gear of a submission.
 
+use meshwright_engine::gear::Rack;
+use meshwright_engine::gear::data::LEAST_RIM;
 use serde_json::{Map, Value, json};
 
 use super::file::Component;
 use super::own;
 use super::reading::Reading;
-use super::unit::{DEG, KG_PER_DM3, MM, MPA, NONE, Unit, um_of_mm};
+use super::unit::{DEG, KG_PER_DM3, MM, MM_OR_NONE, MPA, NONE, Unit, um_of_mm};
 use crate::significant;
 
 /// What two ways to say one radius may differ by, in mm, to be the same.
-const SAME: f64 = 5e-4;
+pub(super) const SAME: f64 = 5e-4;
 
 /// The digits of what is computed from several attributes.
-const DIGITS: usize = 12;
+pub(super) const DIGITS: usize = 12;
 
 /// A gear and what belongs to it.
 pub(super) struct Gear<'a> {
-    reading: &'a Reading<'a>,
-    gear: &'a Component,
+    pub(super) reading: &'a Reading<'a>,
+    pub(super) gear: &'a Component,
     /// Both flanks, or one if the model has one.
     flanks: Vec<&'a Component>,
     /// Those of them that are loaded: one if the model says which, else all.
-    loaded: Vec<&'a Component>,
+    pub(super) loaded: Vec<&'a Component>,
     tool: Option<&'a Component>,
-    /// The settings of the manufacturing steps, in their order.
+    /// The settings of the manufacturing steps, in their order; before version 1.3 the flank has them itself.
     settings: Vec<&'a Component>,
     body: Option<&'a Component>,
     material: Option<&'a Component>,
     /// The basic numbers, without which nothing else can be read.
-    module: f64,
+    pub(super) module: f64,
     tooth_count: f64,
     profile_shift: f64,
     pressure_angle_deg: f64,
@@ -66,7 +68,19 @@ impl<'a> Gear<'a> {
                 model.related("manufacturing_step", ("workpiece", flank), role)
             })
         };
-        let (tools, settings) = (steps("tool"), steps("manufacturing_settings"));
+        let (mut tools, mut settings) = (steps("tool"), steps("manufacturing_settings"));
+        if tools.is_empty() {
+            // Before version 1.3 the gear refers to its tools, or its flank does.
+            let referring = std::iter::once(gear).chain(flanks.first().copied());
+            let referenced = |of| model.related("ordered_reference", ("origin", of), "referenced");
+            tools = referring.flat_map(referenced).collect();
+            tools.retain(|tool| tool.kind.ends_with("_tool"));
+        }
+        if settings.is_empty() {
+            let of_flank = flanks.iter().copied();
+            let mut says = of_flank.filter(|flank| flank.attribute(GENERATED_SHIFT).is_some());
+            settings.extend(says.next());
+        }
         let bodies = model.related("assembly", ("assembly", gear), "part");
         let body = bodies.into_iter().find(|part| part.kind == "gear_body");
         let material = |of| {
@@ -89,7 +103,7 @@ impl<'a> Gear<'a> {
             gear,
             flanks,
             loaded,
-            tool: (tools.into_iter().next()).filter(|tool| tool.kind == "rack_shaped_tool"),
+            tool: tools.first().copied().filter(|tool| tool.kind == RACK),
             settings,
             body,
             material: material(gear).or_else(|| material(body?)),
@@ -110,8 +124,53 @@ impl<'a> Gear<'a> {
             angle.unwrap_or_else(|| found.assumed("normal_pressure_angle", "20 deg", 20.0));
         found.profile_shift =
             shift.unwrap_or_else(|| found.assumed("addendum_modification_coefficient", "0", 0.0));
+        if let Some(other) = tools.first().filter(|tool| tool.kind != RACK) {
+            let detail = "It cuts the root, which is known here as a rack_shaped_tool cuts it.";
+            reading.wrong(other.place(), detail);
+        }
         found.refuse_other_rack();
+        found.refuse_steps();
+        if found.material.is_none() {
+            found.material = reading.shaft_of(gear).and_then(material);
+            if let Some(material) = found.material {
+                reading.remark(format!(
+                    "Assumed: {} has no material; taken is that of its shaft, {}.",
+                    gear.place(),
+                    material.place()
+                ));
+            }
+        }
         Some(found)
+    }
+
+    /// A rack that leaves an undercut for the grinding wheel, and a rest of it, make another root than ours.
+    fn refuse_steps(&self) {
+        let of_tool = ["protuberance_amount", "protuberance_amount_factor"];
+        let of_tool = of_tool.map(|name| (self.tool, name));
+        let of_flanks = self.flanks.iter();
+        let of_flanks = of_flanks.map(|flank| (Some(*flank), "remaining_protuberance"));
+        for (of, name) in of_tool.into_iter().chain(of_flanks) {
+            let Some(of) = of else { continue };
+            let number = self.reading.number(of, name, MM_OR_NONE);
+            if let Some(amount) = number.filter(|amount| *amount != 0.0) {
+                let detail = format!(
+                    "It is {amount}: a protuberance leaves another root, which is not known here."
+                );
+                self.reading.wrong(of.place_of(name), detail);
+                return;
+            }
+        }
+        let Some(tool) = self.tool else { return };
+        let name = "chamfer_angle";
+        let breaks = self
+            .reading
+            .number(tool, name, DEG)
+            .is_some_and(|angle| angle != 0.0);
+        if breaks && self.of_flanks("tooth_tip_chamfer", MM).is_none() {
+            let detail =
+                "It breaks the tip edges; no tooth_tip_chamfer of the flanks says by how much.";
+            self.reading.wrong(tool.place_of(name), detail);
+        }
     }
 
     /// A rack of another module and angle can generate the same flanks, but its numbers mean another root then.
@@ -184,8 +243,21 @@ impl<'a> Gear<'a> {
         put("face_width_mm", json!(face_width?), of_gear("face_width"));
         let (name, tip, from) = self.tip();
         put(name, json!(tip), from);
-        let (dedendum, from) = self.dedendum();
-        put("dedendum_mm", json!(dedendum), from);
+        if let Some((of, attribute)) = from {
+            // However the submission says it.
+            reading.from(format!("{pointer}/addendum_mm"), of, attribute);
+        }
+        let (dedendum, from_root) = self.dedendum();
+        let root = 2.0 * (self.shifted_radius() - dedendum);
+        if let Some((of, attribute)) = from.filter(|_| 2.0 * self.tip_radius() <= root) {
+            let detail = format!(
+                "It is {tip} mm; a tip circle lies outside the root circle, {} mm.",
+                significant(root, 8)
+            );
+            reading.wrong(of.place_of(attribute), detail);
+            return None;
+        }
+        put("dedendum_mm", json!(dedendum), from_root);
         if let Some((radius, from)) = self.rack_tip_radius() {
             put("rack_tip_radius_mm", json!(radius), Some(from));
         }
@@ -235,6 +307,58 @@ impl<'a> Gear<'a> {
         self.module * self.tooth_count / (2.0 * self.cosine)
     }
 
+    /// The pressure angle in the transverse section, in radians.
+    fn transverse_angle(&self) -> f64 {
+        (self.pressure_angle_deg.to_radians().tan() / self.cosine).atan()
+    }
+
+    pub(super) fn base_radius(&self) -> f64 {
+        self.reference_radius() * self.transverse_angle().cos()
+    }
+
+    /// How long the path from the base circle to a diameter of the flank is.
+    pub(super) fn roll_length(&self, diameter: f64) -> f64 {
+        let square = 0.25 * diameter * diameter - self.base_radius().powi(2);
+        square.max(0.0).sqrt()
+    }
+
+    /// The diameter that a roll length leads to.
+    pub(super) fn diameter(&self, roll_length: f64) -> f64 {
+        2.0 * self.base_radius().hypot(roll_length)
+    }
+
+    pub(super) fn tip_radius(&self) -> f64 {
+        match self.tip() {
+            ("tip_diameter_mm", diameter, _) => 0.5 * diameter,
+            (_, addendum, _) => self.shifted_radius() + addendum,
+        }
+    }
+
+    /// The roll length at the tip circle.
+    pub(super) fn tip_length(&self) -> f64 {
+        self.roll_length(2.0 * self.tip_radius())
+    }
+
+    /// The roll length of the form circle, where the straight flank of the rack ends; none where the rack cuts into the flank.
+    pub(super) fn form_length(&self) -> Option<f64> {
+        let (module, angle) = (self.module, self.pressure_angle_deg.to_radians());
+        let dedendum = self.dedendum().0;
+        let mut rack = Rack {
+            module,
+            pressure_angle: angle,
+            addendum: module,
+            dedendum,
+            tip_radius: 0.0,
+        };
+        // As a submission has it where it is not said.
+        let usual = (0.38 * module).min(rack.largest_tip_radius());
+        rack.tip_radius = self.rack_tip_radius().map_or(usual, |(radius, _)| radius);
+        let depth = rack.straight_depth() - self.profile_shift * module;
+        let sine = self.transverse_angle().sin();
+        let form = self.reference_radius() * sine - depth / sine;
+        (form >= 0.0 && self.tip_length() > form).then_some(form)
+    }
+
     /// From where addendum and dedendum count.
     fn shifted_radius(&self) -> f64 {
         self.reference_radius() + self.profile_shift * self.module
@@ -253,6 +377,7 @@ impl<'a> Gear<'a> {
             Some((significant(diameter, DIGITS), name))
         };
         let diameter = self.reading.number(self.gear, of_circle, MM);
+        let diameter = diameter.filter(|diameter| *diameter != 0.0);
         let diameter = diameter.map(|d| (d, of_circle)).or_else(height);
         let flank = || self.flanks.first().map(|flank| (*flank, of_profile));
         match (addendum, diameter) {
@@ -276,6 +401,38 @@ impl<'a> Gear<'a> {
         Some((shift, settings))
     }
 
+    /// What the first tool leaves on each flank, normal to it, for another step; the teeth are cut so much thicker, and the root so much
+    /// less deep.
+    fn allowance(&self) -> f64 {
+        let steps = self
+            .settings
+            .first()
+            .copied()
+            .map(|of| (of, "machining_allowance"));
+        let flank = self.flanks.first().copied();
+        let of_flank = flank.map(|of| (of, "machining_allowance"));
+        let of_tool = self.tool.into_iter().flat_map(|of| {
+            let names = [
+                "machining_allowance_din_3972",
+                "machining_allowance_din_3972_1952",
+            ];
+            names.map(|name| (of, name))
+        });
+        let places = steps.into_iter().chain(of_flank).chain(of_tool);
+        let mut said = places.filter_map(|(of, name)| {
+            let amount = self.reading.number(of, name, MM)?;
+            Some((amount, of, name)).filter(|_| amount != 0.0)
+        });
+        let Some((amount, of, name)) = said.next() else {
+            return 0.0;
+        };
+        self.reading.remark(format!(
+            "Assumed: the tool stands out by {}, {amount} mm on each flank, when it cuts the root.",
+            of.place_of(name)
+        ));
+        amount
+    }
+
     /// The dedendum, from the tool that cuts the root or from the root diameter; the diameter holds where they disagree.
     fn dedendum(&self) -> (f64, Option<(&'a Component, &'static str)>) {
         let of_circle = "root_diameter";
@@ -288,7 +445,12 @@ impl<'a> Gear<'a> {
             // The tool stands where it generates the teeth, which may be off the nominal profile shift.
             let first = self.settings.first();
             let generated = first.and_then(|settings| self.generated_shift(settings));
-            let off = generated.map_or(0.0, |(shift, _)| shift - self.profile_shift);
+            let off = match generated {
+                Some((shift, _)) => shift - self.profile_shift,
+                None => {
+                    self.allowance() / (self.module * self.pressure_angle_deg.to_radians().sin())
+                }
+            };
             Some((significant(reach - off * self.module, DIGITS), (tool, name)))
         });
         let diameter = self.reading.number(self.gear, of_circle, MM);
@@ -336,6 +498,13 @@ impl<'a> Gear<'a> {
             let (radius, name) = by_factor.or(by_length)?;
             Some((significant(radius, DIGITS), (tool, name)))
         });
+        // Before version 1.3 the flank may say it.
+        let name = "tool_edge_radius";
+        let of_flank = || {
+            let radius = self.of_flanks(name, MM).filter(|radius| *radius > 0.0)?;
+            Some((radius, (*self.flanks.first()?, name)))
+        };
+        let found = found.or_else(of_flank);
         if found.is_none() {
             let said = "0.38 modules, or the largest that fits";
             self.assumed("rack_shaped_tool with a tip radius", said, 0.0);
@@ -346,7 +515,10 @@ impl<'a> Gear<'a> {
     /// How much thicker than nominal the teeth are on the reference circle, by the shift of the last step that says one, in um.
     fn thickness_deviation(&self) -> Option<(f64, &'a Component)> {
         let mut shifts = self.settings.iter().rev();
-        let (shift, settings) = shifts.find_map(|settings| self.generated_shift(settings))?;
+        let finished = "addendum_modification_coefficient_after_finishing";
+        let of_flank = || Some((self.of_flanks(finished, NONE)?, *self.flanks.first()?));
+        let generated = shifts.find_map(|settings| self.generated_shift(settings));
+        let (shift, settings) = generated.or_else(of_flank)?;
         let off = (shift - self.profile_shift) * self.module;
         let thicker = 2.0 * off * self.pressure_angle_deg.to_radians().tan() / self.cosine;
         // Of a difference of two numbers near each other fewer digits are left.
@@ -383,32 +555,48 @@ impl<'a> Gear<'a> {
     fn blank(&self, pointer: &str, bore: Option<f64>, dedendum: f64) -> Option<Value> {
         let reading = self.reading;
         let pointer = format!("{pointer}/blank");
-        let inner = |of: &'a Component| {
-            let diameter = reading
-                .number(of, "inner_diameter", MM)
-                .filter(|d| *d > 0.0)?;
-            Some((diameter / 2.0, of))
-        };
-        let (of_gear, of_body) = (inner(self.gear), self.body.and_then(inner));
-        let said = of_gear.or(of_body);
-        let radius = match (bore, said) {
-            (Some(bore), _) => bore,
-            (None, Some((radius, of))) => {
+        let root = self.shifted_radius() - dedendum;
+        let inner = |of: &'a Component| Some((reading.number(of, "inner_diameter", MM)?, of));
+        let said = inner(self.gear).filter(|(diameter, _)| *diameter > 0.0);
+        let said = said.or_else(|| self.body.and_then(inner));
+        let said = said.or_else(|| inner(self.gear));
+        let own = reading.json(self.gear, own::SHAFT);
+        let own = own.and_then(|own| Some((own["radius_mm"].as_f64()?, own)));
+        let (radius, mut blank) = match (bore, own, said) {
+            (Some(bore), ..) => (bore, json!({ "bore_radius_mm": bore })),
+            (None, Some((radius, shaft)), _) => (radius, json!({ "shaft": shaft })),
+            (None, None, Some((diameter, of))) if diameter > 0.0 => {
                 reading.from(format!("{pointer}/bore_radius_mm"), of, "inner_diameter");
-                radius
+                (diameter / 2.0, json!({ "bore_radius_mm": diameter / 2.0 }))
             }
-            (None, None) => {
-                let detail = "It has no inner_diameter above 0, and neither has a gear_body of it. The hub is rigid on the bore, so that it needs one; say it by --bore-radius MM.";
-                reading.wrong(self.gear.place(), detail);
-                return None;
+            (None, None, solid) => {
+                let Some((diameter, section)) = reading.seat(self.gear) else {
+                    let detail = "It has no inner_diameter above 0, neither has a gear_body of it, and no shaft_section under it says how thick its shaft is. The hub is rigid on the bore, so that it needs one; say it by --bore-radius MM.";
+                    reading.wrong(self.gear.place(), detail);
+                    return None;
+                };
+                // Where it says to have no bore, or nothing would be left of it around one, it is of one piece with its shaft.
+                let radius = diameter / 2.0;
+                let solid = solid.is_some() || root - radius < LEAST_RIM * self.module;
+                let blank = if solid {
+                    self.on_solid_shaft(&pointer, radius, section)?
+                } else {
+                    reading.remark(format!(
+                        "Assumed: {} has no inner_diameter; taken is the outer diameter of its shaft under it, {diameter} mm of {}.",
+                        self.gear.place(),
+                        section.place()
+                    ));
+                    reading.from(format!("{pointer}/bore_radius_mm"), section, SECTION);
+                    json!({ "bore_radius_mm": radius })
+                };
+                (radius, blank)
             }
         };
-        let mut blank = json!({ "bore_radius_mm": radius });
         if let Some(holes) = reading.json(self.gear, own::HOLES) {
             reading.from(format!("{pointer}/holes"), self.gear, own::HOLES);
             blank["holes"] = holes;
         }
-        if let Some(web) = self.web(radius, self.shifted_radius() - dedendum) {
+        if let Some(web) = self.web(radius, root) {
             blank["web"] = web;
             if let Some(offset) = self
                 .body
@@ -421,6 +609,26 @@ impl<'a> Gear<'a> {
             blank["hub"] = hub;
         }
         Some(blank)
+    }
+
+    /// The blank of a gear that is of one piece with its shaft, whose radius under the teeth is `radius`, in mm.
+    fn on_solid_shaft(&self, pointer: &str, radius: f64, section: &'a Component) -> Option<Value> {
+        let told = format!(
+            "{} is of one piece with its shaft, whose radius under it is {radius} mm by {}",
+            self.gear.place(),
+            section.place()
+        );
+        let reading = self.reading;
+        if !SOLID_SHAFTS {
+            let detail = format!(
+                "{told}; a gear without a bore cannot be computed. Say one by --bore-radius MM."
+            );
+            reading.wrong(section.place_of(SECTION), detail);
+            return None;
+        }
+        reading.remark(format!("Assumed: {told}."));
+        reading.from(format!("{pointer}/shaft/radius_mm"), section, SECTION);
+        Some(json!({ "shaft": { "radius_mm": radius } }))
     }
 
     /// The web between a rim, which lies under the root circle, and the bore, unless we wrote where it begins.
@@ -450,229 +658,27 @@ impl<'a> Gear<'a> {
             }
         }
     }
-
-    /// The modifications of the loaded flanks, tip reliefs first.
-    fn modifications(&self, pointer: &str) -> Option<Vec<Value>> {
-        let of_each: Vec<Vec<Value>> = self
-            .loaded
-            .iter()
-            .map(|flank| self.modifications_of(flank))
-            .collect::<Option<_>>()?;
-        let mut of_each = of_each.into_iter();
-        let first = of_each.next().unwrap_or_default();
-        if of_each.any(|other| other != first) {
-            let detail = "Its flanks are modified differently, and no loaded_tooth_flank of a cylindrical_stage_gear_data says which is loaded.";
-            self.reading.wrong(self.gear.place(), detail);
-            return None;
-        }
-        for (i, modification) in first.iter().enumerate() {
-            // The first tip relief has a field of its own.
-            let short = first[0]["kind"] == "tip_relief";
-            let field = match i {
-                0 if short => format!("{pointer}/tip_relief"),
-                i => format!("{pointer}/profile_modifications/{}", i - usize::from(short)),
-            };
-            let kind = modification["kind"].as_str().unwrap_or_default();
-            let flank = self.loaded.first()?;
-            self.reading.from(field, flank, &format!("its {kind}"));
-        }
-        Some(first)
-    }
-
-    fn modifications_of(&self, flank: &'a Component) -> Option<Vec<Value>> {
-        let model = self.reading.model;
-        let parts = model.related("reference", ("origin", flank), "referenced");
-        let of_kind =
-            |kind: &'static str| parts.iter().copied().filter(move |part| part.kind == kind);
-        let mut modifications = Vec::new();
-        for tip in of_kind("tip_relief") {
-            modifications.push(self.relief(tip, &TIP)?);
-        }
-        for root in of_kind("root_relief") {
-            modifications.push(self.relief(root, &ROOT)?);
-        }
-        for crowning in of_kind("profile_crowning") {
-            modifications.push(self.crowning(crowning)?);
-        }
-        for slope in of_kind("profile_slope") {
-            let amount = um_of_mm(needed(self.reading, slope, "profile_slope", MM)?);
-            self.reading.remark(format!(
-                "Assumed: a positive profile_slope of {} takes material off at the tip.",
-                slope.place()
-            ));
-            modifications.push(json!({ "kind": "slope", "amount_um": amount }));
-        }
-        match self.reading.json(flank, own::TABLES) {
-            Some(Value::Array(tables)) => modifications.extend(tables),
-            Some(_) => {
-                let detail = "A list of profile tables is expected, as a submission has them.";
-                self.reading.wrong(flank.place_of(own::TABLES), detail);
-            }
-            None => {}
-        }
-        Some(modifications)
-    }
-
-    /// The modifications of the leads of the loaded flanks.
-    fn leads(&self) -> Option<Vec<Value>> {
-        let of_each = self.loaded.iter().map(|flank| self.leads_of(flank));
-        let mut of_each = of_each.collect::<Option<Vec<_>>>()?.into_iter();
-        let first = of_each.next().unwrap_or_default();
-        if of_each.any(|other| other != first) {
-            let detail = "The leads of its flanks are modified differently, and no loaded_tooth_flank of a cylindrical_stage_gear_data says which is loaded.";
-            self.reading.wrong(self.gear.place(), detail);
-            return None;
-        }
-        Some(first)
-    }
-
-    fn leads_of(&self, flank: &'a Component) -> Option<Vec<Value>> {
-        let reading = self.reading;
-        let parts = reading
-            .model
-            .related("reference", ("origin", flank), "referenced");
-        let mut leads = Vec::new();
-        for part in &parts {
-            match part.kind.as_str() {
-                "helix_crowning" => leads.push(self.helix_crowning(part)?),
-                "helix_slope" => {
-                    let amount = um_of_mm(needed(reading, part, "helix_slope", MM)?);
-                    reading.remark(format!(
-                        "Assumed: a positive helix_slope of {} takes material off at the +z end of the face, towards which the driving gear is seen to turn counter-clockwise.",
-                        part.place()
-                    ));
-                    leads.push(json!({ "kind": "slope", "amount_um": amount }));
-                }
-                _ => {}
-            }
-        }
-        match reading.json(flank, own::LEADS) {
-            Some(Value::Array(others)) => leads.extend(others),
-            Some(_) => {
-                let detail = "A list of lead modifications is expected, as a submission has them.";
-                reading.wrong(flank.place_of(own::LEADS), detail);
-            }
-            None => {}
-        }
-        Some(leads)
-    }
-
-    fn helix_crowning(&self, crowning: &'a Component) -> Option<Value> {
-        let reading = self.reading;
-        let names = [
-            "helix_crowning_amount_datum_face",
-            "helix_crowning_amount_non_datum_face",
-        ];
-        let [one, other] = names.map(|name| reading.number(crowning, name, MM));
-        let Some(amount) = one.or(other) else {
-            let detail = format!("It has neither {} nor {}.", names[0], names[1]);
-            reading.wrong(crowning.place(), detail);
-            return None;
-        };
-        if let Some(other) = other.filter(|other| (other - amount).abs() > 1e-4) {
-            let detail = format!(
-                "It takes off {amount} mm at the datum face and {other} mm at the other; a crowning has the same at both here. A helix_slope beside it says the rest."
-            );
-            reading.wrong(crowning.place(), detail);
-            return None;
-        }
-        Some(json!({ "kind": "crowning", "amount_um": um_of_mm(amount) }))
-    }
-
-    fn relief(&self, relief: &'a Component, names: &ReliefNames) -> Option<Value> {
-        let reading = self.reading;
-        let amount = um_of_mm(needed(reading, relief, names.depth, MM)?);
-        let name = "shape_of_relief";
-        let said = reading.choice(relief, name, &["linear", "parabolic"]);
-        if relief.attribute(name).is_none() {
-            reading.assumed(relief, name, "linear");
-        }
-        let shape = said.unwrap_or("linear");
-        if names.kind == "tip_relief"
-            && let Some(at) = reading.number(relief, "tip_relief_evaluation_reference", MM)
-        {
-            let (name, value, _) = self.tip();
-            let tip = if name == "tip_diameter_mm" {
-                value
-            } else {
-                2.0 * (self.shifted_radius() + value)
-            };
-            if (at - tip).abs() > 2.0 * SAME {
-                let detail = format!(
-                    "The depth is said at {at} mm; a relief has its amount at the tip circle here, {tip} mm."
-                );
-                reading.wrong(relief.place_of("tip_relief_evaluation_reference"), detail);
-                return None;
-            }
-        }
-        let diameter = reading.number(relief, names.diameter, MM);
-        let start = match diameter {
-            Some(diameter) => json!({ "diameter_mm": diameter }),
-            None => match reading.number(relief, names.length, MM) {
-                Some(length) => json!({ names.roll_length: length }),
-                None => {
-                    let detail = format!(
-                        "It has neither {} nor {}: where does it begin?",
-                        names.diameter, names.length
-                    );
-                    reading.wrong(relief.place(), detail);
-                    return None;
-                }
-            },
-        };
-        Some(json!({ "kind": names.kind, "amount_um": amount, "shape": shape, "start": start }))
-    }
-
-    fn crowning(&self, crowning: &'a Component) -> Option<Value> {
-        let reading = self.reading;
-        let tip = needed(reading, crowning, "profile_crowning_at_tip", MM)?;
-        let root = reading
-            .number(crowning, "profile_crowning_at_root", MM)
-            .unwrap_or(tip);
-        if (tip - root).abs() > 1e-4 {
-            let detail = format!(
-                "It takes off {tip} mm at the tip and {root} mm at the root; a crowning has the same at both here. A profile_slope beside it says the rest."
-            );
-            reading.wrong(crowning.place(), detail);
-            return None;
-        }
-        // A circle and a parabola of so little height are the same to a millionth of it.
-        let shapes = ["parabolic", "circular"];
-        reading.choice(crowning, "shape_of_profile_crowning", &shapes);
-        Some(json!({ "kind": "crowning", "amount_um": um_of_mm(tip) }))
-    }
 }
+
+/// Whether a submission can have `blank.shaft`.
+const SOLID_SHAFTS: bool = false;
+
+/// The tool whose root is known.
+const RACK: &str = "rack_shaped_tool";
+
+/// The attribute of a section of a shaft that says how thick it is.
+const SECTION: &str = "outer_diameter_begin";
 
 /// The profile shift of a manufacturing step.
 pub(super) const GENERATED_SHIFT: &str = "generated_addendum_modification_coefficient";
 
-/// How the attributes of a relief are called, in the model and in a submission.
-pub(super) struct ReliefNames {
-    pub(super) kind: &'static str,
-    pub(super) depth: &'static str,
-    pub(super) diameter: &'static str,
-    pub(super) length: &'static str,
-    pub(super) roll_length: &'static str,
-}
-
-pub(super) const TIP: ReliefNames = ReliefNames {
-    kind: "tip_relief",
-    depth: "tip_relief_depth",
-    diameter: "tip_relief_datum_diameter",
-    length: "tip_relief_datum_length",
-    roll_length: "roll_length_from_tip_mm",
-};
-
-pub(super) const ROOT: ReliefNames = ReliefNames {
-    kind: "root_relief",
-    depth: "root_relief_depth",
-    diameter: "root_relief_datum_diameter",
-    length: "root_relief_datum_length",
-    roll_length: "roll_length_from_form_mm",
-};
-
 /// A number that has no default.
-fn needed(reading: &Reading<'_>, of: &Component, attribute: &str, unit: Unit) -> Option<f64> {
+pub(super) fn needed(
+    reading: &Reading<'_>,
+    of: &Component,
+    attribute: &str,
+    unit: Unit,
+) -> Option<f64> {
     let number = reading.number(of, attribute, unit);
     if number.is_none() && of.attribute(attribute).is_none() {
         let detail = format!("It has no {attribute}, which has no default.");

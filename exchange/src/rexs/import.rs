@@ -34,10 +34,13 @@ pub struct NotRead {
 }
 
 impl Import {
-    /// Where in the model the field at `pointer` of the submission is from.
+    /// Where in the model the field at `pointer` of the submission is from, or what that field is a part of.
     pub fn origin(&self, pointer: &str) -> Option<&str> {
         let found = self.origins.iter().find(|(field, _)| field == pointer);
-        found.map(|(_, place)| place.as_str())
+        match found {
+            Some((_, place)) => Some(place),
+            None => self.origin(pointer.rsplit_once('/')?.0),
+        }
     }
 }
 
@@ -229,20 +232,21 @@ impl<'a> Reading<'a> {
         });
         let drives = data.map(|data| self.choice(data?, "is_driving_gear", &["true", "false"]));
         let swapped = match drives {
-            [Some("true"), Some("true")] | [Some("false"), Some("false")] => {
-                let detail = "Its two gears say the same of is_driving_gear; exactly one drives.";
+            [Some("true"), Some("true")] => {
+                let detail = "Both of its gears say is_driving_gear; exactly one drives.";
                 self.wrong(component.place(), detail);
                 return None;
             }
-            [Some("true"), _] | [_, Some("false")] => false,
-            [Some("false"), _] | [_, Some("true")] => true,
-            _ => {
+            [Some("false"), Some("false")] | [None, None] => {
                 self.remark(format!(
-                    "Assumed: {} drives; no is_driving_gear says which gear does.",
+                    "Assumed: gear_1 drives, {}; no is_driving_gear says which gear does.",
                     first.place()
                 ));
                 false
             }
+            [Some("true"), _] | [_, Some("false")] => false,
+            [Some("false"), _] | [_, Some("true")] => true,
+            _ => false,
         };
         let order = if swapped { [1, 0] } else { [0, 1] };
         component.met.set(true);

@@ -1,9 +1,14 @@
 //! The torques and the speed of a stage.
 
+use std::cell::LazyCell;
+
 use super::file::{Component, LoadCase};
+use super::gear::DIGITS;
 use super::import::Stage;
 use super::reading::Reading;
+use super::shaft::{Train, Turning, torque_of};
 use super::unit::{N_M, NONE, PER_MINUTE, Unit};
+use crate::significant;
 
 impl<'a> Reading<'a> {
     /// The output torques: those that the caller says, else one for each load case, else that of the model itself.
@@ -11,9 +16,13 @@ impl<'a> Reading<'a> {
         if !self.choices.torques.is_empty() {
             return Some(self.choices.torques.clone());
         }
+        let train = &LazyCell::new(|| Train::of(self.model));
+        let behind =
+            [0, 1].map(|from| LazyCell::new(move || train.loads_behind(self, stage, from)));
+        let behind = |from: usize| behind[from].as_deref();
         let mut torques: Vec<f64> = Vec::new();
         for (id, case) in &self.model.load_cases {
-            match self.output_torque(stage, Some(case)) {
+            match self.output_torque(stage, &behind, Some(case)) {
                 Some(torque) if !torques.contains(&torque) => torques.push(torque),
                 Some(_) => {}
                 None => self.remark(format!(
@@ -22,10 +31,10 @@ impl<'a> Reading<'a> {
             }
         }
         if torques.is_empty() {
-            torques.extend(self.output_torque(stage, None));
+            torques.extend(self.output_torque(stage, &behind, None));
         }
         if torques.is_empty() {
-            let detail = "No torque is said: neither by the torque of a cylindrical_stage_gear_data, nor by a single external_load on a shaft that carries one gear of this stage alone. Say it by --torque N_M, on the driven gear.";
+            let detail = "No torque is said: neither by the torque of a cylindrical_stage_gear_data, nor by every external_load on the shafts on one side of it. Say it by --torque N_M, on the driven gear.";
             self.wrong(stage.component.place(), detail);
             return None;
         }
@@ -33,37 +42,36 @@ impl<'a> Reading<'a> {
     }
 
     /// The torque on the driven gear, without its sign. Without friction that on the driving gear says it as well.
-    fn output_torque(&self, stage: &Stage<'a>, case: Option<&'a LoadCase>) -> Option<f64> {
+    fn output_torque<'b>(
+        &self,
+        stage: &Stage<'a>,
+        behind: &impl Fn(usize) -> Option<&'b [Turning<'a>]>,
+        case: Option<&'a LoadCase>,
+    ) -> Option<f64>
+    where
+        'a: 'b,
+    {
         let on = |i: usize| {
             let data = stage.gear_data[i];
             let of_data = data.and_then(|data| self.number_in(case, data, "torque", N_M));
-            of_data
-                .or_else(|| self.torque_of_shaft(stage.gears[i], case))
-                .map(f64::abs)
+            of_data.map(f64::abs).or_else(|| {
+                let loads = behind(i)?;
+                let torque = torque_of(self, loads, case)?;
+                // A load on its own shaft turns as fast as the gear.
+                if loads.iter().any(|(_, speed)| *speed != 1.0) {
+                    self.remark(format!(
+                        "Assumed: the torque of {} is carried over the shafts from {} without losses.",
+                        stage.component.place(),
+                        names(loads)
+                    ));
+                }
+                Some(significant(torque, DIGITS))
+            })
         };
         on(1).or_else(|| {
             let teeth = |i: usize| self.number(stage.gears[i], "number_of_teeth", NONE);
-            Some(on(0)? * teeth(1)? / teeth(0)?)
+            Some(significant(on(0)? * teeth(1)? / teeth(0)?, DIGITS))
         })
-    }
-
-    /// The external torque on the shaft of `gear`, where it can only act on this gear.
-    fn torque_of_shaft(&self, gear: &'a Component, case: Option<&'a LoadCase>) -> Option<f64> {
-        let shafts = self.model.related("assembly", ("part", gear), "assembly");
-        let shaft = shafts.into_iter().find(|shaft| shaft.kind == "shaft")?;
-        let parts = self.model.related("assembly", ("assembly", shaft), "part");
-        if parts.iter().filter(|part| is_gear(part)).count() != 1 {
-            return None;
-        }
-        let loads = parts.iter().filter(|part| part.kind == "external_load");
-        let torques: Vec<f64> = loads
-            .filter_map(|load| self.number_in(case, load, "torque_around_u_axis", N_M))
-            .filter(|torque| *torque != 0.0)
-            .collect();
-        match torques.as_slice() {
-            [one] => Some(*one),
-            _ => None,
-        }
     }
 
     /// The speed of the driving gear without its sign, if the model knows exactly one.
@@ -97,7 +105,7 @@ impl<'a> Reading<'a> {
     }
 
     /// A number as the case has it, else as the component itself has it.
-    fn number_in(
+    pub(super) fn number_in(
         &self,
         case: Option<&'a LoadCase>,
         of: &Component,
@@ -113,9 +121,8 @@ impl<'a> Reading<'a> {
     }
 }
 
-fn is_gear(component: &Component) -> bool {
-    matches!(
-        component.kind.as_str(),
-        "cylindrical_gear" | "ring_gear" | "bevel_gear" | "worm_gear" | "worm_wheel"
-    )
+/// The loads in one sentence, the first of them if there are many.
+fn names(loads: &[Turning<'_>]) -> String {
+    let places = loads.iter().take(3).map(|(load, _)| load.place());
+    places.collect::<Vec<_>>().join(" and ")
 }

@@ -1,32 +1,30 @@
 //! REXS, the gearbox exchange format of the FVA: a pair of cylindrical gears out of a model, and a pair with its curves as a model.
 //!
-//! A model is a list of components with attributes, relations between components, and load cases. Read in this order: `file` (the
-//! XML as such), `unit` (what its numbers are in), `fault` (what is wrong with a model), `reading`, `import` with `gear` and `load`, and `export`.
+//! A model is a list of components with attributes, relations between components, and load cases. Read in this order: `container` (XML,
+//! JSON or an archive), `file` with `json` and `markup` (what it says), `unit` (what its numbers are in), `fault` (what is wrong with a
+//! model), `reading`, `import` with `gear`, `flank`, `shaft` and `load`, and `export`.
 //!
-//! Names are those of versions 1.4 to 2.0. What the format has no words for stands in attributes `custom_meshwright_...`.
+//! Names are those of versions 1.0 to 2.0. What the format has no words for stands in attributes `custom_meshwright_...`.
 
+mod container;
 mod export;
 mod fault;
 mod file;
+mod flank;
 mod gear;
 mod import;
+mod json;
 mod load;
 mod markup;
 mod reading;
+mod shaft;
 mod unit;
 
+pub use container::{is_model, is_packed, unpacked};
 pub use export::export;
 pub use fault::{Fault, Refused};
 pub use import::{Import, NotRead, import, stages};
 pub use reading::Choices;
-
-/// Whether a document is XML rather than JSON, by its first character.
-pub fn is_xml(document: &[u8]) -> bool {
-    let text = document
-        .strip_prefix(file::BYTE_ORDER_MARK)
-        .unwrap_or(document);
-    text.trim_ascii_start().first() == Some(&b'<')
-}
 
 /// The attributes that only this program writes and reads, each named once for both directions.
 mod own {
@@ -34,6 +32,8 @@ mod own {
     pub(super) const METHOD: &str = "custom_meshwright_method";
     /// Of a gear: the holes of the blank, the JSON of a submission.
     pub(super) const HOLES: &str = "custom_meshwright_holes";
+    /// Of a gear that is of one piece with its shaft: that, the JSON of a submission.
+    pub(super) const SHAFT: &str = "custom_meshwright_shaft";
     /// Of a gear: the deviations of the teeth, the JSON of a submission.
     pub(super) const DEVIATIONS: &str = "custom_meshwright_tooth_deviations";
     /// Of a gear: the radius of the tip edges.

@@ -82,6 +82,11 @@ impl<'a> Reading<'a> {
         word.ok().filter(|word| !word.is_empty())
     }
 
+    /// Whether one of several words is said. A program writes `false` where none was chosen.
+    pub(super) fn is_chosen(&self, of: &'a Component, attribute: &str) -> bool {
+        !matches!(self.word(of, attribute), None | Some("false"))
+    }
+
     /// One of the words that an attribute may have here.
     pub(super) fn choice(
         &self,
@@ -92,6 +97,9 @@ impl<'a> Reading<'a> {
         let word = self.word(of, attribute)?;
         if words.contains(&word) {
             return Some(word);
+        }
+        if !self.is_chosen(of, attribute) {
+            return None;
         }
         let short: String = word.chars().take(40).collect();
         let detail = format!("It is \"{short}\"; known here: {}.", words.join(", "));

@@ -11,7 +11,7 @@ const DIGITS: usize = 15;
 pub(super) struct Unit {
     /// As the standard writes it.
     pub(super) name: &'static str,
-    /// Other units, without spaces, and what one of them is: a factor and a divisor, so that powers of ten round once.
+    /// Other units, as [`plain`] writes them, and what one of them is: a factor and a divisor, so that powers of ten round once.
     others: &'static [(&'static str, f64, f64)],
 }
 
@@ -22,33 +22,38 @@ pub(super) const NONE: Unit = Unit {
 
 pub(super) const MM: Unit = Unit {
     name: "mm",
+    others: &[("mum", 1.0, 1e3), ("cm", 10.0, 1.0), ("m", 1e3, 1.0)],
+};
+
+/// Of attributes of which only matters whether they are zero.
+pub(super) const MM_OR_NONE: Unit = Unit {
+    name: "mm",
     others: &[
+        ("none", 1.0, 1.0),
+        ("", 1.0, 1.0),
+        ("-", 1.0, 1.0),
         ("mum", 1.0, 1e3),
-        ("um", 1.0, 1e3),
-        ("µm", 1.0, 1e3),
-        ("cm", 10.0, 1.0),
-        ("m", 1e3, 1.0),
     ],
 };
 
 pub(super) const DEG: Unit = Unit {
     name: "deg",
-    others: &[("°", 1.0, 1.0), ("rad", 180.0, std::f64::consts::PI)],
+    others: &[("rad", 180.0, std::f64::consts::PI)],
 };
 
 pub(super) const MPA: Unit = Unit {
     name: "MPa",
     others: &[
-        ("N/mm^2", 1.0, 1.0),
+        ("N/mm2", 1.0, 1.0),
         ("Pa", 1.0, 1e6),
-        ("N/m^2", 1.0, 1e6),
+        ("N/m2", 1.0, 1e6),
         ("GPa", 1e3, 1.0),
     ],
 };
 
 pub(super) const KG_PER_DM3: Unit = Unit {
     name: "kg / dm^3",
-    others: &[("g/cm^3", 1.0, 1.0), ("kg/m^3", 1.0, 1e3)],
+    others: &[("g/cm3", 1.0, 1.0), ("t/m3", 1.0, 1.0), ("kg/m3", 1.0, 1e3)],
 };
 
 pub(super) const N_M: Unit = Unit {
@@ -59,6 +64,8 @@ pub(super) const N_M: Unit = Unit {
 pub(super) const PER_MINUTE: Unit = Unit {
     name: "1 / min",
     others: &[
+        ("rpm", 1.0, 1.0),
+        ("U/min", 1.0, 1.0),
         ("1/s", 60.0, 1.0),
         ("Hz", 60.0, 1.0),
         ("rad/s", 30.0, std::f64::consts::PI),
@@ -76,11 +83,10 @@ const fn written_alone(name: &'static str) -> Unit {
 impl Unit {
     /// `value` in this unit, if `said` is one that is known here. An attribute that says none has the unit of the standard.
     pub(super) fn convert(self, value: f64, said: Option<&str>) -> Option<f64> {
-        let squeezed = |text: &str| text.split_whitespace().collect::<String>();
-        let Some(said) = said.map(squeezed) else {
+        let Some(said) = said.map(plain) else {
             return Some(value);
         };
-        if said == squeezed(self.name) {
+        if said == plain(self.name) {
             return Some(value);
         }
         let (_, factor, divisor) = self.others.iter().find(|(name, ..)| *name == said)?;
@@ -94,6 +100,32 @@ impl Unit {
             .chain(others.filter(|name| !name.is_empty()))
             .collect();
         names.join(", ")
+    }
+}
+
+/// A unit as it is compared: without spaces, signs of multiplication and of powers, its other characters as the standard writes them.
+fn plain(unit: &str) -> String {
+    let mut plain = String::new();
+    for character in unit.chars() {
+        match character {
+            '^' | '*' | '·' | '⋅' | '×' => {}
+            '²' => plain.push('2'),
+            '³' => plain.push('3'),
+            '¹' => plain.push('1'),
+            '⁻' | '−' => plain.push('-'),
+            '°' | 'º' => plain.push_str("deg"),
+            // The sign for micro, and the Greek letter.
+            '\u{B5}' | '\u{3BC}' => plain.push_str("mu"),
+            white if white.is_whitespace() => {}
+            other => plain.push(other),
+        }
+    }
+    match plain.as_str() {
+        "um" => "mum".to_owned(),
+        "degree" | "degrees" => "deg".to_owned(),
+        "min-1" => "1/min".to_owned(),
+        "s-1" => "1/s".to_owned(),
+        _ => plain,
     }
 }
 
@@ -121,6 +153,8 @@ mod tests {
             (0.00051, "cm"),
             (5.1e-6, "m"),
             (5.1e-6, " m "),
+            (5.1, "\u{3BC}m"),
+            (5.1, "\u{B5}m"),
         ] {
             assert_eq!(MM.convert(value, Some(unit)), Some(0.0051), "{unit}");
         }
@@ -136,6 +170,31 @@ mod tests {
         assert_eq!(MPA.convert(210_000.0, Some("N / mm^2")), Some(210_000.0));
         assert_eq!(MPA.convert(2.1e11, Some("Pa")), Some(210_000.0));
         assert_eq!(KG_PER_DM3.convert(7850.0, Some("kg / m^3")), Some(7.85));
+        for unit in ["N / mm^2", "N/mm^2", "N/mm²", "N/mm2", "N / mm²", "MPa"] {
+            assert_eq!(
+                MPA.convert(210_000.0, Some(unit)),
+                Some(210_000.0),
+                "{unit}"
+            );
+        }
+        for unit in ["kg / dm^3", "kg/dm³", "kg/dm3", "g/cm³", "t/m³"] {
+            assert_eq!(KG_PER_DM3.convert(7.85, Some(unit)), Some(7.85), "{unit}");
+        }
+        for unit in ["N m", "Nm", "N·m", "N*m", "N⋅m"] {
+            assert_eq!(N_M.convert(115.0, Some(unit)), Some(115.0), "{unit}");
+        }
+        for unit in ["1 / min", "1/min", "min^-1", "min⁻¹", "rpm"] {
+            assert_eq!(
+                PER_MINUTE.convert(1500.0, Some(unit)),
+                Some(1500.0),
+                "{unit}"
+            );
+        }
+        for unit in ["deg", "°", "º", "degree"] {
+            assert_eq!(DEG.convert(20.0, Some(unit)), Some(20.0), "{unit}");
+        }
+        // A thousandth of a pascal is no million of them.
+        assert_eq!(MPA.convert(210_000.0, Some("mPa")), None);
         assert_eq!(N_M.convert(0.115, Some("kN m")), Some(115.0));
         assert_eq!(N_M.convert(115_000.0, Some("N mm")), Some(115.0));
         assert_eq!(PER_MINUTE.convert(25.0, Some("1 / s")), Some(1500.0));
