@@ -19,6 +19,7 @@ mod units;
 
 mod kept;
 pub mod problem;
+pub mod refusals;
 pub mod status;
 
 pub mod forces;

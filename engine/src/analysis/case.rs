@@ -32,6 +32,16 @@ impl Method {
             Self::ThreeDimensional | Self::ThreeDimensionalProjected
         )
     }
+
+    /// Whether it tells stresses at roots and holes.
+    pub fn tells_stress(self) -> bool {
+        matches!(self, Self::Flexible | Self::ThreeDimensional)
+    }
+
+    /// Whether it sees the holes of the blanks.
+    pub fn sees_holes(self) -> bool {
+        self != Self::LoadDistribution
+    }
 }
 
 /// How the tangent stiffness is obtained.

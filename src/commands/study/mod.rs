@@ -40,7 +40,7 @@ impl Study {
     /// code 2.
     pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
         let document = read(&self.study)?;
-        let study = match StudyDocument::parse(&document, &Run::unattended()) {
+        let study = match StudyDocument::submitted(&document, &Run::unattended()) {
             Ok(study) => study,
             Err(problem) => {
                 eprint!("{}", told(&problem));
@@ -181,6 +181,55 @@ mod tests {
             "{text}"
         );
         assert!(text.contains("14R34: "), "{text}");
+    }
+
+    #[test]
+    fn a_search_whose_confirmation_fails_says_so_first_and_why_members_failed_last() {
+        use crate::wire::refusals::RefusalState;
+        use crate::wire::search::{ConfirmedDesign, FoundDesign};
+        let search = include_str!("../../../api/examples/search-holes.json");
+        let search = StudyDocument::parse(search.as_bytes(), &Run::unattended()).unwrap();
+        let state = crate::wire::SearchState {
+            evaluations: 3,
+            best: Some(FoundDesign {
+                row: 1,
+                values: serde_json::Map::new(),
+                feasible: false,
+                goals: vec![Some(1.0)],
+                conditions: vec![Some(25.0), Some(0.0)],
+                failed_share: Some(0.25),
+            }),
+            confirmed: Some(ConfirmedDesign {
+                row: 9,
+                feasible: Some(false),
+                goals: vec![Some(1.1)],
+                conditions: vec![Some(25.0), Some(43.3)],
+                error_estimate: None,
+                problem: None,
+            }),
+            member_refusals: vec![RefusalState {
+                code: "too_large".to_owned(),
+                count: 5,
+                detail: "Too many positions.".to_owned(),
+            }],
+            ..Default::default()
+        };
+        let text = search_table(&search, &state, Duration::from_secs(2));
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(
+            lines[0].starts_with("NOT FEASIBLE: ") && lines[0].contains("43.3"),
+            "{text}"
+        );
+        assert!(
+            text.contains("25.0 % of its members have no results"),
+            "{text}"
+        );
+        let last = lines.last().unwrap();
+        assert!(
+            last.starts_with("3 designs in ")
+                && last.ends_with("5 members failed: 5 too_large; the first: Too many positions."),
+            "{text}"
+        );
     }
 
     #[test]

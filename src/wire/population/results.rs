@@ -6,13 +6,14 @@ use meshwright_engine::gear::Member;
 use meshwright_sample::histogram::histogram;
 use meshwright_sample::influence::{Ranked, of_group};
 use meshwright_sample::points::Sampling;
-use meshwright_sample::{BATCHES, Estimate, mean, percentile, standard_deviation};
+use meshwright_sample::{Estimate, mean, percentile, standard_deviation};
 use serde::Serialize;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
 use super::{GEARS, Gauge, Population, Source};
 use crate::wire::declare::Node;
+use crate::wire::refusals::{RefusalState, Refusals};
 use crate::wire::status::Status;
 use crate::wire::study::Study;
 use crate::wire::study_table::{Of, QUANTITIES, RowState, Summary};
@@ -39,8 +40,10 @@ pub struct PopulationResults {
     pub size: u64,
     /// Members that have come to an end, whichever.
     pub done: u64,
-    /// Members that could not be built or computed. No number here knows of them.
+    /// Members that could not be built or computed. Of them only `failed_share` knows.
     pub failed: u64,
+    /// Why they could not, the most common reason first.
+    pub refusals: Vec<RefusalState>,
     /// What is told of each quantity: those of the pair once, those of a curve for each torque. Left out are those that the method does not tell.
     pub quantities: Vec<QuantityDocument>,
     /// The share of gears whose total cumulative pitch deviation is beyond the tolerance F_pT of their class, which their law does not
@@ -78,8 +81,10 @@ pub struct QuantityDocument {
     pub largest: f64,
     /// The members, by their place in the table, that have the smallest, the middle and the largest value.
     pub members: ExtremesDocument,
-    /// Percentiles, linear between neighboring members.
+    /// Percentiles of the members that have this quantity, linear between neighbors.
     pub percentiles: Vec<PercentileDocument>,
+    /// The share of the members so far that could not be built or computed, from 0 to 1: percentiles do not know of them.
+    pub failed_share: f64,
     /// How many members have which values.
     pub histogram: HistogramDocument,
     /// What makes which part of the variance. Empty where nothing varies.
@@ -149,6 +154,7 @@ pub struct PopulationSample {
     torques: Range<usize>,
     done: u64,
     failed: u64,
+    refusals: Refusals,
     /// Members that have results, in the order of the table.
     members: Vec<u32>,
     /// Of each quantity of the pair, in the order of [`QUANTITIES`]: the members' numbers, NaN where a member has none.
@@ -190,6 +196,7 @@ impl PopulationSample {
             torques,
             done: 0,
             failed: 0,
+            refusals: Refusals::default(),
             members: Vec::new(),
         })
     }
@@ -203,6 +210,7 @@ impl PopulationSample {
     pub fn add(&mut self, member: u32, row: &RowState) {
         self.done += u64::from(row.status.has_ended());
         self.failed += u64::from(row.status == Status::Failed);
+        self.refusals.note(row.problem.as_ref());
         let Some(summary) = &row.summary else {
             return;
         };
@@ -306,6 +314,7 @@ impl PopulationSample {
             size: self.population.size() as u64,
             done: self.done,
             failed: self.failed,
+            refusals: self.refusals.told(),
             quantities,
             beyond_total_pitch_tolerance: BeyondDocument {
                 driving: share(Member::Driving),
@@ -341,6 +350,7 @@ impl PopulationSample {
                 largest: largest.0,
             },
             percentiles: self.percentiles(&sorted, &values, column),
+            failed_share: self.failed as f64 / self.done.max(1) as f64,
             histogram: HistogramDocument {
                 edges: histogram.edges,
                 counts: histogram.counts,
@@ -355,21 +365,16 @@ impl PopulationSample {
         values: &[f64],
         column: &[f64],
     ) -> Vec<PercentileDocument> {
-        let mut batches: [Vec<f64>; BATCHES] = Default::default();
-        for (member, value) in sorted {
-            batches[meshwright_sample::batch(*member)].push(*value);
-        }
         let pairs: Vec<[f64; 2]> = GEARS
             .into_iter()
             .flat_map(|gear| pairs_of(&self.population, gear, &self.members, column))
             .collect();
-        let estimate = |percent: f64| match self.population.points.sampling {
-            Sampling::Sobol => percentile::of_batches(values, &batches, percent),
-            Sampling::Random => {
-                let limit = percentile::percentile(values, percent);
-                let effect =
-                    percentile::design_effect(&pairs, values.len(), limit, percent / 100.0);
-                percentile::of_independent(values, percent, effect)
+        let estimate = |percent: f64| {
+            let limit = percentile::percentile(values, percent);
+            let effect = percentile::design_effect(&pairs, values.len(), limit, percent / 100.0);
+            match self.population.points.sampling {
+                Sampling::Sobol => percentile::of_replicates(sorted, percent, effect),
+                Sampling::Random => percentile::of_independent(values, percent, effect),
             }
         };
         let told = PERCENTS.into_iter().map(|percent| {

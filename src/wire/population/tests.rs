@@ -287,6 +287,10 @@ fn numbers_are_those_of_their_definitions() {
         (found["output_torque_n_m"].as_f64(), found["count"].as_u64()),
         (Some(50.0), Some(993))
     );
+    // Percentiles are of the members computed; beside them stands how many were not, and why.
+    assert_eq!(found["failed_share"].as_f64(), Some(10.0 / 1003.0));
+    assert_eq!(results["refusals"][0]["code"], "not_converged");
+    assert_eq!(results["refusals"][0]["count"], 10);
     let mean = values.iter().sum::<f64>() / n;
     let close = |found: &Value, expected: f64| {
         let found = found.as_f64().unwrap();

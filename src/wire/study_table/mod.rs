@@ -19,7 +19,7 @@ use super::warning::GearName;
 
 pub use self::csv::CsvTable;
 pub use pareto::{Outline, Told};
-pub(in crate::wire) use quantity::{Needs, Of, QUANTITIES, Quantity};
+pub(in crate::wire) use quantity::{Of, QUANTITIES, Quantity};
 pub use row::{RowCurve, RowState, TableRow};
 pub use summary::Summary;
 

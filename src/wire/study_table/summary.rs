@@ -112,6 +112,10 @@ impl Summary {
 }
 
 impl GearSummary {
+    pub(super) fn has_no_holes(&self) -> bool {
+        self.least_ligament_mm.is_none()
+    }
+
     fn of(gear: &GearGeometry) -> Self {
         Self {
             mass_kg: Some(gear.mass_kg),
