@@ -154,6 +154,35 @@ impl Case {
         self.span().is_multiple_of(self.pair.period())
     }
 
+    /// The pair as it is drawn, where teeth deviate and a spectrum tells what the order of holes comes to: what the holes alone make of it. By the method
+    /// that takes holes to the first order, whose contacts repeat with the mesh.
+    pub(super) fn holes_alone(&self) -> Option<Self> {
+        let is_told = self.covers_whole_periods() && self.method.sees_holes();
+        if !is_told || self.pair.is_as_drawn() || self.holed().is_empty() {
+            return None;
+        }
+        Some(Self {
+            pair: self.pair.as_drawn(),
+            faces: self.faces.as_ref().map(|faces| Faces {
+                pair: faces.pair.as_drawn(),
+                cure: false,
+                ..faces.clone()
+            }),
+            method: match self.method {
+                Method::Flexible => Method::ProjectedDecomposition,
+                Method::ThreeDimensional => Method::ThreeDimensionalProjected,
+                other => other,
+            },
+            resolution: Resolution {
+                span_mesh_periods: None,
+                error_estimate: false,
+                ..self.resolution.clone()
+            },
+            stress: false,
+            ..self.clone()
+        })
+    }
+
     /// The positions of one curve.
     pub fn positions(&self) -> usize {
         self.span() as usize * self.resolution.positions_per_mesh_period as usize

@@ -28,7 +28,7 @@ pub mod solid_pair;
 pub mod spur;
 pub mod tip;
 
-pub use accuracy::{Normals, Tolerances, total_pitch_deviation};
+pub use accuracy::{Inspection, Normals, Passed, Tolerances};
 pub use blank::{BlankRegion, Hole, HolePattern, HoleShape, Ligament, Moments, Symmetry, Web};
 pub use data::{DeviationList, GearData, GearError};
 pub use deviation::{Eccentricity, ToothDeviations};

@@ -239,6 +239,7 @@ mod tests {
         document["base"]["method"] = json!("load_distribution");
         document.as_object_mut().unwrap().remove("designs");
         document.as_object_mut().unwrap().remove("constant_mass");
+        document["name"] = json!("Center distances of the spring");
         document["population"] = json!({ "size": 80, "vary": [
             { "path": "/pair/center_distance_mm", "kind": "uniform", "low": 100.45, "high": 100.55 }
         ] });
@@ -250,6 +251,30 @@ mod tests {
         let drawn = picture(&study, &results(&study, computed), Some(&found), None);
         let svg = drawn.expect("two torques").to_svg().expect("can be drawn");
         assert!(svg.contains("p95"), "{svg}");
+        assert!(svg.contains("Center distances of the spring"), "{svg}");
+        // One torque has a histogram, which names it and the percentiles.
+        document["base"]["output_torques_n_m"] = json!([115]);
+        let one =
+            StudyDocument::parse(document.to_string().as_bytes(), &Run::unattended()).unwrap();
+        let of_one = compute(&one, None).unwrap();
+        let spread = population(&one, &of_one).expect("a population");
+        let drawn = picture(&one, &results(&one, of_one), Some(&spread), None);
+        let svg = drawn.expect("one torque").to_svg().expect("can be drawn");
+        let peaks = spread
+            .quantities
+            .iter()
+            .find(|quantity| quantity.name.ends_with("peak_to_peak"));
+        let p95 = peaks
+            .unwrap()
+            .percentiles
+            .iter()
+            .find(|one| one.percent == 95.0)
+            .unwrap()
+            .value;
+        assert!(
+            svg.contains("115 N m, p5 ") && svg.contains(&format!("p95 {p95:.3}")),
+            "{svg}"
+        );
         let text = spread_table(&found, Duration::from_secs(2));
         assert!(
             text.contains("80 of 80 members computed in 2.00 s, 40.0 a second."),

@@ -11,9 +11,12 @@ use serde::Serialize;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-use super::{GEARS, Gauge, Population, Source};
+use super::document::GearAccuracy;
+use super::{GEARS, Population, Source};
 use crate::wire::declare::Node;
+use crate::wire::draw::Accuracy;
 use crate::wire::refusals::{RefusalState, Refusals};
+use crate::wire::search::sees_faces;
 use crate::wire::status::Status;
 use crate::wire::study::Study;
 use crate::wire::study_table::{Of, QUANTITIES, RowState, Summary};
@@ -46,14 +49,16 @@ pub struct PopulationResults {
     pub refusals: Vec<RefusalState>,
     /// What is told of each quantity: those of the pair once, those of a curve for each torque. Left out are those that the method does not tell.
     pub quantities: Vec<QuantityDocument>,
-    /// The share of gears whose total cumulative pitch deviation is beyond the tolerance F_pT of their class, which their law does not
-    /// enforce; null where teeth are not drawn.
+    /// The share of gears whose total cumulative pitch deviation, measured from the bore, is beyond the tolerance F_pT of their class: none of those that are
+    /// inspected. Null where teeth are not drawn.
     pub beyond_total_pitch_tolerance: BeyondDocument,
+    /// The share of the gears made that the inspection rejected, found from the first members; null where teeth are not drawn, or not inspected.
+    pub rejected_by_inspection: BeyondDocument,
 }
 
-/// The share of gears beyond a tolerance.
+/// A share of the gears.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, ToSchema)]
-#[schema(as = BeyondTolerance, title = "Share beyond a tolerance")]
+#[schema(as = BeyondTolerance, title = "Share of gears")]
 pub struct BeyondDocument {
     /// Of the driving gears, from 0 to 1.
     pub driving: Option<f64>,
@@ -174,20 +179,48 @@ struct CurveColumns {
 #[derive(Debug)]
 struct Sources {
     base: Node,
-    gauges: [Option<Gauge>; 2],
-    exceeded: [u64; 2],
+    accuracies: [Option<Accuracy>; 2],
+    counted: [Counted; 2],
+}
+
+/// What is counted of the gears of the members.
+#[derive(Debug, Default, Clone, Copy)]
+struct Counted {
+    /// Gears that were looked at.
+    gears: u64,
+    /// Of these, beyond F_pT.
+    exceeded: u64,
+    /// Gears that were made for them, and leads.
+    made: u64,
+    leads: u64,
+}
+
+impl Counted {
+    /// So many numbers are drawn at most to tell what an inspection rejects.
+    const MOST_DRAWN: u64 = 4_000_000;
+
+    /// The part of the gears made that passed, teeth and leads being independent.
+    fn passed(&self) -> f64 {
+        let part = |made: u64| self.gears as f64 / made.max(1) as f64;
+        part(self.made)
+            * if self.leads > 0 {
+                part(self.leads)
+            } else {
+                1.0
+            }
+    }
 }
 
 impl PopulationSample {
     /// No member so far of the population that `study` is; none if it is none. Of the curves it knows those of `torques`, counted from 0.
     pub fn new(study: &Study, torques: Range<usize>) -> Option<Self> {
         let population = study.population()?.clone();
-        let gauges = population.gauges(study.base());
+        let accuracies = population.accuracies(study.base());
         Some(Self {
             sources: Sources {
                 base: study.base().clone(),
-                gauges,
-                exceeded: [0, 0],
+                accuracies,
+                counted: Default::default(),
             },
             gear: study.gear(),
             of_pair: vec![Vec::new(); QUANTITIES.len()],
@@ -262,12 +295,13 @@ impl PopulationSample {
         }
     }
 
-    /// Looks whether the gears of a member keep F_pT.
+    /// Looks whether the gears of a member keep F_pT, and how many were made for those that passed.
     fn measure(&mut self, member: u32) {
         for gear in GEARS {
-            let Some(accuracy) = &self.population.accuracy[gear as usize] else {
+            let Some(asked) = &self.population.accuracy[gear as usize] else {
                 continue;
             };
+            let counted = &mut self.sources.counted[gear as usize];
             let own = self.population.varies(gear).then(|| {
                 let mut submission = self.sources.base.clone();
                 let values = self.population.values(member);
@@ -275,12 +309,27 @@ impl PopulationSample {
                     let value = Node::Number(value);
                     submission.put(varied.path.steps(), value);
                 }
-                self.population.gauges(&submission)[gear as usize].clone()
+                self.population.accuracies(&submission)[gear as usize].clone()
             });
-            let gauge = own.unwrap_or_else(|| self.sources.gauges[gear as usize].clone());
-            if let Some(gauge) = gauge {
-                let teeth = self.population.teeth(member, gear, accuracy, &gauge);
-                self.sources.exceeded[gear as usize] += u64::from(gauge.is_exceeded(&teeth));
+            let accuracy = own.unwrap_or_else(|| self.sources.accuracies[gear as usize].clone());
+            let Some(accuracy) = accuracy else {
+                continue;
+            };
+            let teeth = u64::from(accuracy.inspection.tooth_count());
+            if asked.inspected && teeth * (counted.made + counted.leads) > Counted::MOST_DRAWN {
+                continue;
+            }
+            let Some(passed) = self.population.teeth(member, gear, &accuracy) else {
+                continue;
+            };
+            let total = accuracy.inspection.total_pitch_deviation(&passed.teeth);
+            counted.gears += 1;
+            counted.exceeded += u64::from(total > accuracy.inspection.tolerances.total_pitch);
+            counted.made += u64::from(passed.attempts);
+            let sees_faces = self.sources.base.at(&["method"]).is_some_and(sees_faces);
+            if asked.inspected && sees_faces {
+                let leads = self.population.lead_slopes(member, gear, &accuracy);
+                counted.leads += leads.map_or(0, |leads| u64::from(leads.attempts));
             }
         }
     }
@@ -304,9 +353,13 @@ impl PopulationSample {
         for curve in &self.of_curves {
             quantities.extend(named(&curve.columns, curve.output_torque_n_m));
         }
-        let share = |gear: Member| {
-            let drawn = self.population.draws_teeth_of(gear) && !self.members.is_empty();
-            drawn.then(|| self.sources.exceeded[gear as usize] as f64 / self.members.len() as f64)
+        let of_gears = |tell: &dyn Fn(&Counted, &GearAccuracy) -> Option<f64>| {
+            let [driving, driven] = GEARS.map(|gear| {
+                let accuracy = self.population.accuracy[gear as usize].as_ref()?;
+                let counted = &self.sources.counted[gear as usize];
+                (counted.gears > 0).then(|| tell(counted, accuracy))?
+            });
+            BeyondDocument { driving, driven }
         };
         PopulationResults {
             id,
@@ -316,10 +369,12 @@ impl PopulationSample {
             failed: self.failed,
             refusals: self.refusals.told(),
             quantities,
-            beyond_total_pitch_tolerance: BeyondDocument {
-                driving: share(Member::Driving),
-                driven: share(Member::Driven),
-            },
+            beyond_total_pitch_tolerance: of_gears(&|counted, _| {
+                Some(counted.exceeded as f64 / counted.gears as f64)
+            }),
+            rejected_by_inspection: of_gears(&|counted, accuracy| {
+                accuracy.inspected.then(|| 1.0 - counted.passed())
+            }),
         }
     }
 

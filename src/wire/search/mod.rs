@@ -417,7 +417,7 @@ pub(super) fn confirming(method: Option<&Node>) -> Vec<(Pointer, Value)> {
 }
 
 /// Whether the method of this name sees the faces.
-pub(super) fn sees_faces(name: &Node) -> bool {
+pub(in crate::wire) fn sees_faces(name: &Node) -> bool {
     let mut methods = Method::OPTIONS.iter();
     methods.any(|(word, method, _)| {
         matches!(name, Node::Text(name) if name == word) && method.sees_faces()

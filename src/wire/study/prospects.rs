@@ -4,7 +4,8 @@ use meshwright_engine::run::Run;
 
 use super::faults::look_around;
 use super::{Plan, Study};
-use crate::wire::declare::Errors;
+use crate::wire::declare::{Errors, Node};
+use crate::wire::pointer::Pointer;
 use crate::wire::population::Population;
 use crate::wire::problem::{Code, FieldError, Problem};
 use crate::wire::search::{Role, Search};
@@ -28,11 +29,41 @@ impl Study {
         let study = Self::parse(document, run)?;
         let errors = Errors::default();
         match &study.plan {
-            Plan::Population(population) => study.try_members(population, &errors, run)?,
-            Plan::Search(search) => study.try_designs(search, &errors, run)?,
+            Plan::Population(population) => {
+                study.inspect(population, "/population", &errors);
+                if errors.count() == 0 {
+                    study.try_members(population, &errors, run)?;
+                }
+            }
+            Plan::Search(search) => {
+                // A variable may make other gears of them, or make them better.
+                let varies = |path: &Pointer| {
+                    path.last(1)
+                        .iter()
+                        .any(|last| last == "capability" || last == "tooth_count")
+                };
+                if let Some(population) = search.population()
+                    && !search.paths_of_variables().any(varies)
+                {
+                    study.inspect(population, "/search/population", &errors);
+                }
+                if errors.count() == 0 {
+                    study.try_designs(search, &errors, run)?;
+                }
+            }
             Plan::Axes(_) | Plan::Designs(_) => {}
         }
         errors.settle(Some(study))
+    }
+
+    /// Refuses gears of which hardly any would pass their inspection.
+    fn inspect(&self, population: &Population, at: &str, errors: &Errors) {
+        let mut base = self.base.clone();
+        for varied in population.varied() {
+            let value = varied.told(varied.median());
+            base.put(varied.path.steps(), Node::of(&value));
+        }
+        population.refuse_hopeless(&base, at, errors);
     }
 
     /// Refuses a population of which no member can be built; of a large one, whose first ones all fail for one reason.

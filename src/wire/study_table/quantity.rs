@@ -61,6 +61,8 @@ enum Needs {
     Method(fn(Method) -> bool),
     /// A span of whole true periods, of which there is a spectrum.
     WholePeriods,
+    /// Teeth that deviate.
+    Deviations,
     /// No torque of 0.
     Load,
 }
@@ -91,6 +93,9 @@ impl Needs {
                     case.span(),
                     case.pair.period()
                 )
+            }),
+            Self::Deviations => case.pair.is_as_drawn().then(|| {
+                "teeth do not deviate, so that it is hole_order_um; ask for that, or for a percent of a population with accuracy".to_owned()
             }),
             Self::Load => case.output_torques.contains(&0.0).then(|| {
                 "there is none at the torque 0; leave it out of /base/output_torques_n_m".to_owned()
@@ -158,6 +163,11 @@ pub(in crate::wire) const QUANTITIES: &[Quantity] = &[
             let none = design.driving.has_no_holes() && design.driven.has_no_holes();
             none.then_some(0.0)
         }),
+    curve("hole_order_of_holes_um", CurveSummary::hole_order_of_holes).needs(&[
+        Needs::Method(Method::sees_holes),
+        Needs::WholePeriods,
+        Needs::Deviations,
+    ]),
     curve("mesh_order_um", |curve, _| curve.mesh_order()).needs(&[Needs::WholePeriods]),
     curve("peak_contact_pressure_mpa", |curve, _| {
         curve.peak_contact_pressure_mpa
