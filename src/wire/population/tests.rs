@@ -556,7 +556,7 @@ fn a_population_of_which_no_member_can_be_is_refused_with_the_reason() {
     let errors = refused(&json!({ "base": made, "population": population }));
     assert_eq!(
         (&*errors[0].pointer, errors[0].code),
-        ("/base/resolution/span_mesh_periods", Code::TooLarge)
+        ("/base/resolution/positions_per_mesh_period", Code::TooLarge)
     );
     assert!(
         errors[0].detail.contains("None of 50 members") && errors[0].detail.contains("2465"),
@@ -578,7 +578,7 @@ fn a_population_of_which_no_member_can_be_is_refused_with_the_reason() {
     let errors = refused(&search(&relieved));
     assert_eq!(
         (&*errors[0].pointer, errors[0].code),
-        ("/base/resolution/span_mesh_periods", Code::TooLarge)
+        ("/base/resolution/positions_per_mesh_period", Code::TooLarge)
     );
     relieved["resolution"]["span_mesh_periods"] = json!(29);
     assert_eq!(testing::study(&search(&relieved)).err(), None);
