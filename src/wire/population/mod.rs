@@ -205,13 +205,13 @@ impl Population {
 
     /// Everything that differs between members and of which it is known how much of the variance it makes.
     ///
-    /// Gears that an inspector passes are of one law, and two pairs of one gear tell what it makes of the variance. Where fields of the gear differ
-    /// as well, its tolerances may, and two members may not get the same gear.
+    /// Gears that an inspector passes are of one law, and two pairs of one gear tell what it makes of the variance. Where its tolerances
+    /// differ between members, two of them may not get the same gear.
     fn sources(&self) -> Vec<Source<'_>> {
         let fields = self.varied.iter().map(|varied| Source::Field(&varied.path));
         let is_of_one_law = |gear: &Member| {
             let accuracy = self.accuracy[*gear as usize].as_ref();
-            accuracy.is_some_and(|accuracy| !accuracy.inspected || !self.varies(*gear))
+            accuracy.is_some_and(|accuracy| !accuracy.inspected || !self.varies_tolerances(*gear))
         };
         let teeth = GEARS.into_iter().filter(is_of_one_law);
         fields.chain(teeth.map(Source::Teeth)).collect()
@@ -244,10 +244,27 @@ impl Population {
         }
     }
 
-    /// Whether a field of `gear` is varied, which its tolerances may depend on.
+    /// Whether a field of `gear` is varied, which what its teeth are measured by may depend on.
     fn varies(&self, gear: Member) -> bool {
         let mut paths = self.varied.iter().map(|varied| &varied.path);
         paths.any(|path| path.starts_with(&["pair", gear.word()]))
+    }
+
+    /// Whether the tolerances of `gear` differ between members: by what is varied of the size of its teeth.
+    fn varies_tolerances(&self, gear: Member) -> bool {
+        const SIZES: [&str; 4] = [
+            "tooth_count",
+            "module_mm",
+            "pressure_angle_deg",
+            "face_width_mm",
+        ];
+        let mut paths = self.varied.iter().map(|varied| &varied.path);
+        paths.any(|path| {
+            let of_gear = SIZES
+                .iter()
+                .any(|size| path.starts_with(&["pair", gear.word(), size]));
+            of_gear || path.starts_with(&["pair", "helix_angle_deg"])
+        })
     }
 }
 
