@@ -317,7 +317,7 @@ async fn a_search_that_is_cancelled_keeps_what_is_there() {
     assert_eq!(kept["status"], "dismissed");
     assert_eq!(kept["search"], study["search"]);
     let best = bench.job(&format!("{path}/best")).await;
-    assert_eq!(best["method"], "load_distribution");
+    assert_eq!(best["method"], "flexible");
 }
 
 #[tokio::test]

@@ -154,8 +154,8 @@ impl Case {
         self.span().is_multiple_of(self.pair.period())
     }
 
-    /// The pair as it is drawn, where teeth deviate and a spectrum tells what the order of holes comes to: what the holes alone make of it. By the method
-    /// that takes holes to the first order, whose contacts repeat with the mesh.
+    /// The pair as it is drawn, where teeth deviate and a spectrum tells what the order of holes comes to: what the holes alone make of it. By the same
+    /// method, which takes at most as long again; along faces by the one that takes holes to the first order, where a contact is dear.
     pub(super) fn holes_alone(&self) -> Option<Self> {
         let is_told = self.covers_whole_periods() && self.method.sees_holes();
         if !is_told || self.pair.is_as_drawn() || self.holed().is_empty() {
@@ -169,7 +169,6 @@ impl Case {
                 ..faces.clone()
             }),
             method: match self.method {
-                Method::Flexible => Method::ProjectedDecomposition,
                 Method::ThreeDimensional => Method::ThreeDimensionalProjected,
                 other => other,
             },
