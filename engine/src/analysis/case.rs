@@ -175,7 +175,7 @@ impl Case {
             resolution: Resolution {
                 span_mesh_periods: None,
                 error_estimate: false,
-                ..self.resolution.clone()
+                ..self.resolution
             },
             stress: false,
             ..self.clone()
