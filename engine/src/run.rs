@@ -43,6 +43,11 @@ impl Run {
         Self::new(Arc::default(), |_, _| {})
     }
 
+    /// A handle for work beside this one, which nobody watches: it stops with this one and counts for nothing.
+    pub fn unwatched(&self) -> Self {
+        Self::new(Arc::clone(&self.stop), |_, _| {})
+    }
+
     /// Announces `count` more positions of work.
     pub fn expect(&self, count: u64) {
         self.total.fetch_add(count, Ordering::Relaxed);

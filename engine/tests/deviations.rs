@@ -8,7 +8,7 @@ use cases::{Made, case, gear};
 use meshwright_engine::analysis::{Method, analyze, pair_model};
 use meshwright_engine::contact::{MeshContact, light_contact};
 use meshwright_engine::gear::{
-    Eccentricity, GearData, GearPair, Member, ModificationData, Rack, SpurGear,
+    Eccentricity, GearData, GearPair, HolePattern, Member, ModificationData, Rack, SpurGear,
 };
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
@@ -391,4 +391,41 @@ fn nothing_penetrates_where_the_tip_of_a_gear_that_runs_out_far_carries_everythi
         }
     }
     assert!(worst < 2e-3, "{worst:e} at {at}");
+}
+
+#[test]
+fn what_the_holes_alone_make_of_their_order_is_that_of_the_pair_as_drawn() {
+    let driving = gear(20, 5e-3);
+    let mut driven = gear(20, 4e-3);
+    driven.blank.holes = HolePattern {
+        count: 4,
+        circle_radius: 10.5e-3,
+        radius: 3e-3,
+        phase: 0.1,
+    }
+    .holes();
+    let order = |driving: &GearData, driven: &GearData| {
+        let mut case = case(pair(driving.clone(), driven.clone()), &[30.0]);
+        case.resolution.positions_per_mesh_period = 10;
+        let answer = analyze(&case, &Library::default(), &Run::unattended()).expect("computed");
+        let spectrum = answer.curves[0].spectrum.clone().expect("whole periods");
+        spectrum.line("H_N").expect("there are holes").clone()
+    };
+    let drawn = order(&driving, &driven);
+    assert_eq!(drawn.of_holes, None, "it says so itself");
+    // Pitch errors of the order of the holes, and of others.
+    let pitch = |tooth: u32| {
+        let angle = 2.0 * PI * f64::from(tooth) / 20.0;
+        1e-6 * ((4.0 * angle).cos() + 2.0 * angle.sin())
+    };
+    let mut made = driven.clone();
+    made.deviations.cumulative_pitch = (0..20).map(pitch).collect();
+    let told = order(&driving, &made);
+    let alone = told.of_holes.expect("teeth deviate");
+    assert_eq!(alone, drawn.transmission_error, "to the last digit");
+    assert!(
+        (told.transmission_error / alone - 1.0).abs() > 0.3,
+        "{:e}: the pitch errors have a part in it",
+        told.transmission_error
+    );
 }

@@ -55,7 +55,7 @@ fuzz_target!(|bytes: &[u8]| {
     if let Err(problem) = Preview::parse(bytes, 4000) {
         check(&problem);
     }
-    match Study::parse(bytes, &Run::unattended()) {
+    match Study::submitted(bytes, &Run::unattended()) {
         Ok(study) => {
             if let Some(mut search) = Searching::new(study.clone()) {
                 for row in 0..search.ask().min(DESIGNS) {

@@ -49,8 +49,10 @@ impl Ranked {
             .collect();
         let parts = parts.unwrap_or_default();
         let limits = Estimate::of_parts(value, &parts);
-        // Fewer members lie farther apart; what that makes of the estimate bounds what is left of it in the whole.
-        let apart = crate::mean(&parts).map_or(0.0, |mean| (mean - value).abs());
+        // Fewer members lie farther apart; what that makes of the estimate bounds what is left of it in the whole. A third of the way to each limit is
+        // added because shares of batches are not normal.
+        let half = limits.high.map_or(0.0, |high| high - value);
+        let apart = half / 3.0 + crate::mean(&parts).map_or(0.0, |mean| (mean - value).abs());
         Some(bounded(Estimate {
             value,
             low: limits.low.map(|low| low - apart),
@@ -94,30 +96,47 @@ fn is_nothing(variance: f64, mean: f64) -> bool {
 }
 
 /// The share of a group of inputs, its members together: of pairs that have the whole group in common and nothing else, the covariance
-/// over the variance. Limits are those of a mean of independent pairs. None where nothing varies.
+/// over the variance. Limits are those of the jackknife, taken of artanh of the share, whose law is nearer to the normal one, and somewhat wider, because that of
+/// squares is askew. None where nothing varies.
 pub fn of_group(pairs: &[[f64; 2]]) -> Option<Estimate> {
     const FEWEST: usize = 8;
+    let middle = pairs.iter().flatten().sum::<f64>() / (2 * pairs.len()) as f64;
+    let moments = |[a, b]: [f64; 2]| {
+        let (a, b) = (a - middle, b - middle);
+        [a + b, a * b, (a * a + b * b) / 2.0]
+    };
+    let each = pairs.iter().copied().map(moments);
+    let all = each.clone().fold([0.0; 3], |sum, own| {
+        [sum[0] + own[0], sum[1] + own[1], sum[2] + own[2]]
+    });
+    // Of `n` pairs with these sums: the covariance about their mean over the variance.
+    let share = |[sum, product, square]: [f64; 3], n: f64| {
+        let of_mean = sum * sum / (4.0 * n);
+        (product - of_mean) / (square - of_mean)
+    };
     let n = pairs.len() as f64;
-    let mean = pairs.iter().flatten().sum::<f64>() / (2.0 * n);
-    let products = pairs.iter().map(|[a, b]| (a - mean) * (b - mean));
-    let squares = pairs
-        .iter()
-        .map(|[a, b]| ((a - mean).powi(2) + (b - mean).powi(2)) / 2.0);
-    let variance = squares.clone().sum::<f64>() / n;
-    if pairs.is_empty() || is_nothing(variance, mean) {
+    if pairs.is_empty() || is_nothing(all[2] / n, middle) {
         return None;
     }
-    let value = products.clone().sum::<f64>() / n / variance;
-    // To first order the ratio is off by the mean of these.
-    let parts = products
-        .zip(squares)
-        .map(|(product, square)| (product - value * square) / variance);
-    let spread = (parts.map(|part| part * part).sum::<f64>() / n).sqrt();
-    let half = (pairs.len() >= FEWEST).then(|| 1.96 * spread / n.sqrt());
+    let value = share(all, n);
+    // Where pairs are equal artanh has no limit.
+    let stretched = |share: f64| libm::atanh(share.clamp(-0.999_999, 0.999_999));
+    let half = (pairs.len() >= FEWEST).then(|| {
+        let left_out = each.map(|own| {
+            let rest = [all[0] - own[0], all[1] - own[1], all[2] - own[2]];
+            stretched(share(rest, n - 1.0))
+        });
+        let left_out: Vec<f64> = left_out.collect();
+        let spread = crate::standard_deviation(&left_out).unwrap_or(0.0) * (n - 1.0).sqrt();
+        // Student's factor for n - 1 degrees of freedom; the room was measured.
+        let student = 1.96 + 2.4 / (n - 1.0) + 3.0 / (n - 1.0).powi(2);
+        (1.0 + 2.0 / n.sqrt()) * student * spread
+    });
+    let limit = |half: f64| libm::tanh(stretched(value) + half);
     Some(bounded(Estimate {
         value,
-        low: half.map(|half| value - half),
-        high: half.map(|half| value + half),
+        low: half.map(|half| limit(-half)),
+        high: half.map(limit),
     }))
 }
 
@@ -192,24 +211,59 @@ mod tests {
     }
 
     #[test]
-    fn limits_of_shares_hold_the_truth_nineteen_times_of_twenty() {
+    fn limits_of_shares_of_fields_hold_the_truth() {
         for sampling in [Sampling::Sobol, Sampling::Random] {
-            let (mut held, mut asked) = (0.0, 0.0);
-            for seed in 0..60 {
-                let points = Points { sampling, seed };
-                // y = x1 + 2 x2: shares 1/5 and 4/5.
-                let at = |member| [points.at(member, 0), points.at(member, 1)];
-                for (axis, truth) in [0.2, 0.8].into_iter().enumerate() {
+            for count in [64, 256, 1024] {
+                let mut held = [0; 2];
+                for seed in 0..200 {
+                    let points = Points { sampling, seed };
+                    // y = x1 + 2 x2: shares 1/5 and 4/5.
+                    let at = |member| [points.at(member, 0), points.at(member, 1)];
                     let members: Vec<(u32, [f64; 2])> =
-                        (0..1024).map(|member| (member, at(member))).collect();
-                    let found = share(&members, axis, |x| x[0] + 2.0 * x[1]);
-                    held += f64::from(u8::from(
-                        found.low.unwrap() <= truth && truth <= found.high.unwrap(),
-                    ));
-                    asked += 1.0;
+                        (0..count).map(|member| (member, at(member))).collect();
+                    for (axis, truth) in [0.2, 0.8].into_iter().enumerate() {
+                        let found = share(&members, axis, |x| x[0] + 2.0 * x[1]);
+                        held[axis] +=
+                            u32::from(found.low.unwrap() <= truth && truth <= found.high.unwrap());
+                    }
                 }
+                // 200 seeds tell a share of 95 % within 3 %.
+                assert!(
+                    held.iter().all(|held| *held >= 184),
+                    "{sampling:?} {count}: {held:?}"
+                );
             }
-            assert!(held / asked > 0.85, "{sampling:?}: {}", held / asked);
+        }
+    }
+
+    #[test]
+    fn limits_of_shares_of_groups_hold_the_truth() {
+        // What is common and what is each one's own are normal, of variances 3 and 7; as they are, and as exponents of a tenth of them, which is askew: of a
+        // log-normal law the share is (exp(c) - 1)/(exp(c + d) - 1).
+        let (common, own) = (0.3_f64, 0.7_f64);
+        let askew = (common.exp() - 1.0) / ((common + own).exp() - 1.0);
+        for (make, truth) in [
+            ((|z| z) as fn(f64) -> f64, common),
+            (f64::exp as fn(f64) -> f64, askew),
+        ] {
+            for count in [16, 32, 128, 512] {
+                let held = (0..400).filter(|seed| {
+                    let points = Points {
+                        sampling: Sampling::Random,
+                        seed: *seed,
+                    };
+                    let normal = |pair, axis| crate::normal::quantile(points.at(pair, axis));
+                    let pair = |pair| {
+                        let both = common.sqrt() * normal(pair, 0);
+                        [1, 2].map(|axis| make(both + own.sqrt() * normal(pair, axis)))
+                    };
+                    let pairs: Vec<[f64; 2]> = (0..count).map(pair).collect();
+                    let found = of_group(&pairs).unwrap();
+                    found.low.unwrap() <= truth && truth <= found.high.unwrap()
+                });
+                let held = held.count();
+                assert!(held >= 368, "{count} pairs, {truth}: {held} of 400");
+            }
         }
     }
 

@@ -1,16 +1,16 @@
 //! Teeth drawn at random within the tolerances of an accuracy class.
 
-use meshwright_engine::gear::{Helix, Normals, SpurGear, Tolerances, total_pitch_deviation};
+use meshwright_engine::gear::{Helix, Inspection, Normals, Passed, Tolerances, ToothDeviations};
 use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::declare::{
-    EACH, Errors, Kind as _, Node, Number, Place, answer, document, flag, nested, number,
+    EACH, Errors, Flag, Kind as _, Node, Number, Place, answer, document, flag, nested, number,
 };
 use super::gear::{DeviationsDocument, GearDocument};
-use super::problem::Problem;
+use super::problem::{Code, FieldError, Problem};
 use super::size::{MOST_VALUES, refuse_many_values};
-use super::units::{significant, to_um};
+use super::units::{plain, significant, to_um};
 
 document! {
     /// Teeth to draw at random for a gear. Deviations that the gear has are not looked at.
@@ -28,6 +28,10 @@ document! {
         /// Whether the slopes of the leads are drawn too, which only methods in three dimensions take. The other deviations are the same with
         /// them and without them.
         lead_slopes: bool = flag("Lead slopes", false),
+        /// Whether the gear is one that has passed an inspection: each single pitch within f_pT, the cumulative pitch measured from the bore within F_pT, the
+        /// runout within F_rT, and the slopes within theirs. Gears that do not pass are drawn again; without an inspection the first one is
+        /// taken as it is.
+        inspected: bool = INSPECTED,
     }
 }
 
@@ -37,32 +41,139 @@ pub(super) const CLASS: Number = number("Accuracy class", "1", 1.0, 11.0);
 /// How well a process keeps its tolerances.
 pub(super) const CAPABILITY: Number = number("Process capability", "1", 0.1, 10.0).or(1.0);
 
+/// Whether gears that are not of their class are rejected and drawn again.
+pub(super) const INSPECTED: Flag = flag("Inspected", true);
+
 /// What random numbers are drawn from.
 pub(super) const SEED: Number = number("Seed", "1", 0.0, 4_294_967_295.0).or(1.0);
 
 /// What is asked: teeth for a gear, of an accuracy, from a seed.
 pub struct Draw {
-    gear: SpurGear,
-    class: u32,
-    capability: f64,
+    accuracy: Accuracy,
     seed: u64,
     lead_slopes: bool,
 }
 
 impl DrawDocument {
-    /// What is asked, if its gear can be made; what prevents it is reported to `errors`.
+    /// What is asked, if its gear can be made and may pass; what prevents it is reported to `errors`.
     fn made(self, errors: &Errors) -> Option<Draw> {
         let made = self
             .gear
             .without_deviations()
             .to_gear("/gear", Helix::right(self.helix_angle_deg.to_radians()));
-        Some(Draw {
-            gear: errors.report(made)?,
-            class: self.iso_1328_class,
+        let gear = errors.report(made)?;
+        let accuracy = Accuracy {
+            inspection: Inspection::of(&gear, self.iso_1328_class),
             capability: self.capability,
+            is_inspected: self.inspected,
+        };
+        accuracy.refuse_hopeless(self.lead_slopes, "/capability", errors)?;
+        Some(Draw {
+            accuracy,
             seed: u64::from(self.seed),
             lead_slopes: self.lead_slopes,
         })
+    }
+}
+
+/// How accurately a gear is made, and whether it is inspected.
+///
+/// Leads are drawn and inspected by themselves: they are independent of the other deviations, so that the law is that of whole gears that are drawn again, and the
+/// same teeth have them and have them not.
+#[derive(Debug, Clone)]
+pub(super) struct Accuracy {
+    pub(super) inspection: Inspection,
+    pub(super) capability: f64,
+    pub(super) is_inspected: bool,
+}
+
+impl Accuracy {
+    /// Of so many gears made one has to pass.
+    const MOST_FOR_ONE: usize = 100;
+
+    /// Teeth with their eccentricity, of the standard normal deviates of each attempt.
+    pub(super) fn teeth<N: Iterator<Item = f64>>(
+        &self,
+        normals: impl Fn(u32) -> N,
+    ) -> Option<Passed> {
+        let (tolerances, count) = (&self.inspection.tolerances, self.inspection.tooth_count());
+        self.passed(|attempt| tolerances.draw(count, self.capability, normals(attempt)))
+    }
+
+    /// Slopes of the leads of those teeth.
+    pub(super) fn lead_slopes<N: Iterator<Item = f64>>(
+        &self,
+        normals: impl Fn(u32) -> N,
+    ) -> Option<Passed> {
+        let (tolerances, count) = (&self.inspection.tolerances, self.inspection.tooth_count());
+        self.passed(|attempt| ToothDeviations {
+            lead_slope: tolerances.draw_lead_slopes(count, self.capability, normals(attempt)),
+            ..ToothDeviations::default()
+        })
+    }
+
+    fn passed(&self, draw: impl Fn(u32) -> ToothDeviations) -> Option<Passed> {
+        if self.is_inspected {
+            self.inspection.first_that_passes(draw)
+        } else {
+            let (teeth, attempts) = (draw(0), 1);
+            Some(Passed { teeth, attempts })
+        }
+    }
+
+    /// Refuses a capability at which fewer than one gear in a hundred would pass, those with `lead_slopes` by them too, and names the least one at which
+    /// so many do.
+    pub(super) fn refuse_hopeless(
+        &self,
+        lead_slopes: bool,
+        pointer: &str,
+        errors: &Errors,
+    ) -> Option<()> {
+        const MADE: usize = 4000;
+        if !self.is_inspected {
+            return Some(());
+        }
+        let (tolerances, count) = (&self.inspection.tolerances, self.inspection.tooth_count());
+        let part = |gear: usize| {
+            // Any gears will do, the same ones for everybody.
+            let normals = |stream| Normals::of_attempt(0, stream, gear as u32);
+            let mut teeth = tolerances.draw(count, self.capability, normals(0));
+            if lead_slopes {
+                teeth.lead_slope = tolerances.draw_lead_slopes(count, self.capability, normals(1));
+            }
+            self.inspection.largest_part(&teeth)
+        };
+        let needed = MADE / Self::MOST_FOR_ONE;
+        let mut parts = Vec::new();
+        let mut passed = 0;
+        for gear in 0..MADE {
+            parts.push(part(gear));
+            passed += usize::from(parts[gear] <= 1.0);
+            if passed == needed {
+                return Some(());
+            }
+        }
+        // Deviations are in inverse proportion to the capability.
+        parts.sort_by(f64::total_cmp);
+        let capability = (100.0 * self.capability * parts[needed - 1]).ceil() / 100.0;
+        let detail = format!(
+            "{pointer} is {}; of gears with {count} teeth fewer than one in a hundred would pass the inspection of their class. At {} one in a hundred does; or take \"inspected\": false.",
+            plain(self.capability),
+            plain(capability)
+        );
+        errors.push(FieldError::new(pointer, Code::OutOfRange, detail).nearest(capability));
+        None
+    }
+
+    /// That none of very many gears has passed.
+    pub(super) fn none_passed(&self, pointer: &str) -> FieldError {
+        let detail = format!(
+            "None of {} gears with {} teeth passed the inspection of their class at a capability of {}.",
+            Inspection::MOST_ATTEMPTS,
+            self.inspection.tooth_count(),
+            plain(self.capability)
+        );
+        FieldError::new(pointer, Code::OutOfRange, detail)
     }
 }
 
@@ -90,8 +201,11 @@ answer! {
 pub struct DrawnDeviations {
     /// What the teeth deviate by, ready for a gear of a submission.
     tooth_deviations: DeviationsDocument,
-    /// F_p: the total cumulative pitch deviation of these teeth, in um. It may be more than `total_pitch`, which is not enforced.
+    /// F_p: the total cumulative pitch deviation of these teeth, measured from the bore, so that the eccentricity counts, in um. Without an
+    /// inspection it may be more than `total_pitch`.
     total_pitch_deviation_um: f64,
+    /// The gears that were drawn before this one and did not pass; 0 without an inspection.
+    gears_rejected: u32,
     /// What the class allows, in um.
     tolerances_um: TolerancesDocument,
 }
@@ -116,20 +230,39 @@ impl Draw {
     }
 
     /// The teeth.
-    pub fn drawn(&self) -> DrawnDeviations {
-        let tolerances = Tolerances::of(&self.gear, self.class);
-        let normals = Normals::new(self.seed, 0);
-        let (count, capability) = (self.gear.tooth_count(), self.capability);
-        let mut teeth = tolerances.draw(count, capability, normals);
-        if self.lead_slopes {
-            let normals = Normals::new(self.seed, 1);
-            teeth.lead_slope = tolerances.draw_lead_slopes(count, capability, normals);
+    ///
+    /// # Errors
+    ///
+    /// `out_of_range`, if none of very many gears passes.
+    pub fn drawn(&self) -> Result<DrawnDeviations, Problem> {
+        let normals = |stream| move |attempt| Normals::of_attempt(self.seed, stream, attempt);
+        let passed = self.accuracy.teeth(normals(0));
+        let leads = self
+            .lead_slopes
+            .then(|| self.accuracy.lead_slopes(normals(1)));
+        let (
+            Some(Passed {
+                mut teeth,
+                attempts,
+            }),
+            Some(leads),
+        ) = (passed, leads.map_or(Some(None), |leads| leads.map(Some)))
+        else {
+            let error = self.accuracy.none_passed("/capability");
+            return Err(Problem::of_fields(vec![error]));
+        };
+        let mut rejected = attempts - 1;
+        if let Some(leads) = leads {
+            rejected += leads.attempts - 1;
+            teeth.lead_slope = leads.teeth.lead_slope;
         }
-        DrawnDeviations {
-            total_pitch_deviation_um: told(total_pitch_deviation(&teeth)),
+        let inspection = &self.accuracy.inspection;
+        Ok(DrawnDeviations {
+            total_pitch_deviation_um: told(inspection.total_pitch_deviation(&teeth)),
+            gears_rejected: rejected,
             tooth_deviations: DeviationsDocument::of(&teeth),
-            tolerances_um: TolerancesDocument::of(&tolerances),
-        }
+            tolerances_um: TolerancesDocument::of(&inspection.tolerances),
+        })
     }
 }
 
@@ -138,7 +271,6 @@ mod tests {
     use serde_json::{Value, json};
 
     use super::*;
-    use crate::wire::Code;
     use crate::wire::testing::{and, example, parse};
 
     fn standard_pair() -> Value {
@@ -147,7 +279,7 @@ mod tests {
 
     fn drawn(document: &Value) -> Result<Value, Problem> {
         let draw = Draw::parse(document.to_string().as_bytes())?;
-        Ok(serde_json::to_value(draw.drawn()).expect("JSON"))
+        Ok(serde_json::to_value(draw.drawn()?).expect("JSON"))
     }
 
     #[test]
@@ -173,7 +305,14 @@ mod tests {
         let total = answer["total_pitch_deviation_um"]
             .as_f64()
             .expect("a number");
-        assert!((1e6 * total_pitch_deviation(teeth) - total).abs() < 2e-4);
+        let inspection = Inspection::of(parsed.case().pair.driven(), 6);
+        assert!((1e6 * inspection.total_pitch_deviation(teeth) - total).abs() < 2e-4);
+        assert!(
+            total
+                <= answer["tolerances_um"]["total_pitch"]
+                    .as_f64()
+                    .expect("a number")
+        );
         // What the gear has already is not looked at.
         let again = json!({ "gear": submission["pair"]["driven"], "iso_1328_class": 6, "seed": 3 });
         assert_eq!(answer, drawn(&again).expect("drawn"));
@@ -205,6 +344,73 @@ mod tests {
         let expected = 2_f64.sqrt() * (0.001 * d + 0.8 + 5.0);
         assert!((told(&helical, "single_pitch") - expected).abs() < 1e-8);
         assert!(told(&helical, "helix_slope") > told(&without, "helix_slope"));
+    }
+
+    #[test]
+    fn gears_that_are_not_of_their_class_are_drawn_again_unless_nobody_inspects_them() {
+        let mut gear = standard_pair()["pair"]["driven"].clone();
+        gear["tooth_count"] = json!(85);
+        let asked = |seed: u64, more: Value| {
+            let asked =
+                json!({ "gear": gear, "iso_1328_class": 6, "seed": seed, "lead_slopes": true });
+            drawn(&and(asked, &more)).expect("drawn")
+        };
+        let number = |answer: &Value, pointer: &str| {
+            answer
+                .pointer(pointer)
+                .and_then(Value::as_f64)
+                .expect(pointer)
+        };
+        let beyond = |answer: &Value| {
+            number(answer, "/total_pitch_deviation_um")
+                > number(answer, "/tolerances_um/total_pitch")
+        };
+        let (mut rejected, mut out_of_class) = (0.0, 0);
+        for seed in 0..40 {
+            let (inspected, as_made) = (
+                asked(seed, json!({})),
+                asked(seed, json!({ "inspected": false })),
+            );
+            assert!(!beyond(&inspected));
+            out_of_class += u32::from(beyond(&as_made));
+            assert_eq!(as_made["gears_rejected"], 0);
+            rejected += number(&inspected, "/gears_rejected");
+            if inspected["gears_rejected"] == 0 {
+                assert_eq!(inspected, as_made, "the first one has passed");
+            }
+        }
+        // 59 % are beyond F_pT, and 80 % pass by each of the others that has 85 numbers: about three of four gears do not pass.
+        assert!((14..34).contains(&out_of_class), "{out_of_class}");
+        assert!((60.0..240.0).contains(&rejected), "{rejected}");
+        // What was drawn before there was an inspection, to the last digit.
+        let earlier = json!({ "gear": standard_pair()["pair"]["driven"], "iso_1328_class": 6, "seed": 3, "inspected": false });
+        let teeth = &drawn(&earlier).expect("drawn")["tooth_deviations"];
+        assert_eq!(teeth["pitch_single_um"][0], EARLIER[0]);
+        assert_eq!(teeth["profile_slope_um"][49], EARLIER[1]);
+        assert_eq!(teeth["eccentricity"]["amount_um"], EARLIER[2]);
+    }
+
+    /// By version 0.4.0.
+    const EARLIER: [f64; 3] = [3.2817, -1.4894, 0.3353];
+
+    #[test]
+    fn where_fewer_than_one_gear_in_a_hundred_would_pass_the_capability_is_named_that_is_needed() {
+        let mut gear = standard_pair()["pair"]["driven"].clone();
+        gear["tooth_count"] = json!(150);
+        let asked = |capability: f64| {
+            drawn(&json!({ "gear": gear, "iso_1328_class": 6, "capability": capability }))
+        };
+        let problem = asked(0.67).expect_err("none of 20,000 passes");
+        let error = &problem.errors[0];
+        assert_eq!(
+            (&*error.pointer, error.code),
+            ("/capability", Code::OutOfRange)
+        );
+        let needed = error.nearest.expect("it is named");
+        assert!((0.75..1.0).contains(&needed), "{needed}");
+        assert!(asked(needed).is_ok());
+        assert!(asked(needed - 0.02).is_err());
+        assert!(asked(1.0).is_ok(), "8 % pass");
     }
 
     #[test]

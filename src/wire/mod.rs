@@ -1,6 +1,6 @@
 //! The JSON documents of the interface as types, in the units of those who read them.
 //!
-//! Read in this order: [`problem`] (what goes wrong), [`submission`] with its parts [`pair`], [`gear`] and
+//! Read in this order: [`problem`] (what goes wrong), [`refusals`] (how often), [`submission`] with its parts [`pair`], [`gear`] and
 //! [`resolution`], [`forces`] (what is asked), [`geometry`], [`outline`], [`edges`], [`contact_pattern`], [`warning`], [`results`] and `rexs` (what is answered), [`solve`](mod@solve)
 //! (what leads from the one to the other) and [`examples`](mod@examples); [`preview`], a submission that is answered at
 //! once; [`draw`], teeth at random; then [`study`] and [`study_table`], many submissions at once, [`population`], a study of what is made, and [`search`], a study that chooses its designs itself. `declare`, `units`, `size`, `edit` and `pointer` carry
@@ -19,6 +19,7 @@ mod units;
 
 mod kept;
 pub mod problem;
+pub mod refusals;
 pub mod status;
 
 pub mod forces;

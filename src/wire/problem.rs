@@ -90,6 +90,8 @@ codes! {
         "The axial offset leaves less than a tenth of the narrower face in common. nearest is the largest offset to the same side that leaves so much."
     NeedsThreeDimensions "needs-three-dimensions" 422 "The plane does not know this"
         "A helix angle, lead modifications and slopes, a misalignment, an axial offset, a hub of its own width and a web beside the middle of the face are known in three dimensions alone: the method three_dimensional takes them. nearest is the value that the plane takes."
+    QuantityNotTold "quantity-not-told" 422 "This is not told"
+        "What is asked for, or what a goal or a bound of a search goes by, is not told by the submission: its method does not know it, a part of the true period has no orders, or nobody asks for it. The detail says what would tell it. A bound on what is not told could be kept by every design."
     NotInThreeDimensions "not-in-three-dimensions" 422 "Not told in three dimensions"
         "The method three_dimensional does not tell this yet; a plane method does. Leave the field out, or choose another method."
     BoreTooLarge "bore-too-large" 422 "The bore is too large"

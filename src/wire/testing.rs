@@ -19,7 +19,7 @@ pub(crate) fn parse(document: &Value) -> Result<Submission, Problem> {
 
 /// The study that `document` is, or why it is none.
 pub(crate) fn study(document: &Value) -> Result<Study, Problem> {
-    Study::parse(document.to_string().as_bytes(), &Run::unattended())
+    Study::submitted(document.to_string().as_bytes(), &Run::unattended())
 }
 
 /// The submission that the example of this name is.

@@ -277,7 +277,8 @@ async fn a_search_over_members_takes_the_percentile_that_its_table_has() {
 async fn a_search_that_is_cancelled_keeps_what_is_there() {
     let (bench, mut engine) = Bench::steered().await;
     let mut study = reliefs(400);
-    // What the engine that is steered tells.
+    // What the engine that is steered tells, and a method that may tell it.
+    study["base"]["method"] = json!("flexible");
     study["search"]["minimize"] = json!([{ "quantity": "hole_order_um" }]);
     study["search"]["subject_to"] = json!([]);
     let path = begun(&bench, &study).await;
@@ -316,7 +317,7 @@ async fn a_search_that_is_cancelled_keeps_what_is_there() {
     assert_eq!(kept["status"], "dismissed");
     assert_eq!(kept["search"], study["search"]);
     let best = bench.job(&format!("{path}/best")).await;
-    assert_eq!(best["method"], "load_distribution");
+    assert_eq!(best["method"], "flexible");
 }
 
 #[tokio::test]
@@ -351,6 +352,7 @@ async fn a_search_begins_no_generation_after_its_time() {
     let (bench, mut engine) = Bench::steered_with(|_| {}).await;
     let mut study = reliefs(400);
     study["search"]["seconds"] = json!(1);
+    study["base"]["method"] = json!("flexible");
     study["search"]["minimize"] = json!([{ "quantity": "hole_order_um" }]);
     study["search"]["subject_to"] = json!([{ "quantity": "hole_order_um", "at_most": 1e-3 }]);
     let path = begun(&bench, &study).await;

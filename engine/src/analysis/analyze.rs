@@ -27,10 +27,28 @@ const FIRST_COUPLED: usize = 4;
 pub fn analyze(case: &Case, parts: &dyn Parts, run: &Run) -> Result<Analysis, AnalysisError> {
     let plan = Plan::of(case);
     run.expect(plan.solutions());
-    carried_out(&plan, parts, run)
+    answered(&plan, parts, run)
 }
 
-/// The answer to the case of `plan`.
+/// The answer to the case of `plan`, and what the holes alone make where teeth deviate.
+pub(super) fn answered(
+    plan: &Plan,
+    parts: &dyn Parts,
+    run: &Run,
+) -> Result<Analysis, AnalysisError> {
+    let mut analysis = carried_out(plan, parts, run)?;
+    if let Some(drawn) = plan.asked.holes_alone() {
+        let alone = carried_out(&Plan::of(&drawn), parts, &run.unwatched())?;
+        for (curve, alone) in analysis.curves.iter_mut().zip(&alone.curves) {
+            if let (Some(own), Some(alone)) = (&mut curve.spectrum, &alone.spectrum) {
+                own.tell_holes_alone(alone);
+            }
+        }
+    }
+    Ok(analysis)
+}
+
+/// The curves of the case of `plan`.
 pub(super) fn carried_out(
     plan: &Plan,
     parts: &dyn Parts,

@@ -40,6 +40,16 @@ impl Method {
             Self::ProjectedDecomposition | Self::ThreeDimensionalProjected
         )
     }
+
+    /// Whether it tells stresses at roots and holes.
+    pub fn tells_stress(self) -> bool {
+        matches!(self, Self::Flexible | Self::ThreeDimensional)
+    }
+
+    /// Whether it sees the holes of the blanks.
+    pub fn sees_holes(self) -> bool {
+        self != Self::LoadDistribution
+    }
 }
 
 /// How the tangent stiffness is obtained.
@@ -150,6 +160,34 @@ impl Case {
     /// Whether the span is a whole multiple of the true period, so that a spectrum exists.
     pub fn covers_whole_periods(&self) -> bool {
         self.span().is_multiple_of(self.pair.period())
+    }
+
+    /// The pair as it is drawn, where teeth deviate and a spectrum tells what the order of holes comes to: what the holes alone make of it. By the same
+    /// method, which takes at most as long again; along faces by the one that takes holes to the first order, where a contact is dear.
+    pub(super) fn holes_alone(&self) -> Option<Self> {
+        let is_told = self.covers_whole_periods() && self.method.sees_holes();
+        if !is_told || self.pair.is_as_drawn() || self.holed().is_empty() {
+            return None;
+        }
+        Some(Self {
+            pair: self.pair.as_drawn(),
+            faces: self.faces.as_ref().map(|faces| Faces {
+                pair: faces.pair.as_drawn(),
+                cure: false,
+                ..faces.clone()
+            }),
+            method: match self.method {
+                Method::ThreeDimensional => Method::ThreeDimensionalProjected,
+                other => other,
+            },
+            resolution: Resolution {
+                span_mesh_periods: None,
+                error_estimate: false,
+                ..self.resolution
+            },
+            stress: false,
+            ..self.clone()
+        })
     }
 
     /// The positions of one curve.

@@ -1,6 +1,6 @@
 //! The force table of a case, by its own method, and what is answered with it.
 
-use super::analyze::carried_out;
+use super::analyze::{answered, carried_out};
 use super::at_speed::{CurveDynamics, DynamicsRequest, dynamics};
 use super::curve::Curve;
 use super::plan::Plan;
@@ -69,7 +69,7 @@ pub fn analyze_with_forces(
 ) -> Result<(Analysis, Forces), AnalysisError> {
     let (plan, table) = (Plan::of(case), TablePlan::of(case, request.table));
     run.expect(plan.solutions() + table.solutions());
-    let mut analysis = carried_out(&plan, parts, run)?;
+    let mut analysis = answered(&plan, parts, run)?;
     let table = table.table(parts, run)?;
     let curves = request.dynamics.iter().flat_map(|dynamics| {
         let curves = analysis.curves.iter();

@@ -167,9 +167,7 @@ impl Pass {
             } else {
                 Vec::new()
             },
-            stress: answers
-                && case.stress
-                && matches!(case.method, Method::Flexible | Method::ThreeDimensional),
+            stress: answers && case.stress && case.method.tells_stress(),
             told,
         }
     }

@@ -24,6 +24,8 @@ pub struct NamedOrder {
     pub transmission_error: f64,
     /// The amplitude of k in N/m.
     pub mesh_stiffness_tangent: f64,
+    /// Of an order of holes, where teeth deviate: the amplitude of δ in meters that the pair has as it is drawn.
+    pub of_holes: Option<f64>,
 }
 
 /// Single-sided amplitudes and phases: y = Σ A cos(2π k j/n + phase), no window; the mean is left out.
@@ -102,6 +104,14 @@ impl Spectrum {
         }
     }
 
+    /// Takes the orders of holes from the spectrum of the pair as it is drawn.
+    pub(super) fn tell_holes_alone(&mut self, drawn: &Self) {
+        let of_holes = |line: &&mut NamedOrder| matches!(&line.kind, OrderKind::Cause { cause, .. } if cause.holes);
+        for line in self.named.iter_mut().filter(of_holes) {
+            line.of_holes = drawn.line(&line.label).map(|own| own.transmission_error);
+        }
+    }
+
     /// The named line with this label.
     pub fn line(&self, label: &str) -> Option<&NamedOrder> {
         self.named.iter().find(|line| line.label == label)
@@ -138,6 +148,7 @@ fn named(
         kind: known.kind,
         transmission_error: ste[index].0,
         mesh_stiffness_tangent: stiffness[index].0,
+        of_holes: None,
     };
     lines.into_iter().map(line).collect()
 }

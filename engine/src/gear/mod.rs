@@ -30,7 +30,7 @@ pub mod spur;
 pub mod thickness;
 pub mod tip;
 
-pub use accuracy::{Normals, Tolerances, total_pitch_deviation};
+pub use accuracy::{Inspection, Normals, Passed, Tolerances};
 pub use blank::{BlankRegion, Hole, HolePattern, HoleShape, Ligament, Moments, Symmetry, Web};
 pub use data::{DeviationList, GearData, GearError};
 pub use deviation::{Eccentricity, ToothDeviations};

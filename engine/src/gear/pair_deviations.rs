@@ -32,7 +32,7 @@ impl GearDeviations {
     };
 
     /// What `teeth`, lists of deviations that fit `gear`, do to its flanks.
-    fn of(gear: &SpurGear, teeth: &ToothDeviations) -> Self {
+    pub(super) fn of(gear: &SpurGear, teeth: &ToothDeviations) -> Self {
         let teeth = teeth.clone().without_zeros();
         // An arc f on the reference circle turns the flank by f/r, which is f cos α along the base tangent.
         let cosine = gear.data().rack.pressure_angle.cos();

@@ -95,6 +95,15 @@ pub struct SolidPair {
 }
 
 impl SolidPair {
+    /// The same pair with teeth that do not deviate.
+    pub fn as_drawn(&self) -> Self {
+        Self {
+            gears: self.gears.each_ref().map(SolidGear::as_drawn),
+            section: self.section.as_drawn(),
+            ..self.clone()
+        }
+    }
+
     /// Sets two gears, driving and driven, with their modified `leads` at the operating `center_distance`.
     ///
     /// # Errors

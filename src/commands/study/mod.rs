@@ -40,7 +40,7 @@ impl Study {
     /// code 2.
     pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
         let document = read(&self.study)?;
-        let study = match StudyDocument::parse(&document, &Run::unattended()) {
+        let study = match StudyDocument::submitted(&document, &Run::unattended()) {
             Ok(study) => study,
             Err(problem) => {
                 eprint!("{}", told(&problem));
@@ -184,12 +184,62 @@ mod tests {
     }
 
     #[test]
+    fn a_search_whose_confirmation_fails_says_so_first_and_why_members_failed_last() {
+        use crate::wire::refusals::RefusalState;
+        use crate::wire::search::{ConfirmedDesign, FoundDesign};
+        let search = include_str!("../../../api/examples/search-holes.json");
+        let search = StudyDocument::parse(search.as_bytes(), &Run::unattended()).unwrap();
+        let state = crate::wire::SearchState {
+            evaluations: 3,
+            best: Some(FoundDesign {
+                row: 1,
+                values: serde_json::Map::new(),
+                feasible: false,
+                goals: vec![Some(1.0)],
+                conditions: vec![Some(25.0), Some(0.0)],
+                failed_share: Some(0.25),
+            }),
+            confirmed: Some(ConfirmedDesign {
+                row: 9,
+                feasible: Some(false),
+                goals: vec![Some(1.1)],
+                conditions: vec![Some(25.0), Some(43.3)],
+                error_estimate: None,
+                problem: None,
+            }),
+            member_refusals: vec![RefusalState {
+                code: "too_large".to_owned(),
+                count: 5,
+                detail: "Too many positions.".to_owned(),
+            }],
+            ..Default::default()
+        };
+        let text = search_table(&search, &state, Duration::from_secs(2));
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(
+            lines[0].starts_with("NOT FEASIBLE: ") && lines[0].contains("43.3"),
+            "{text}"
+        );
+        assert!(
+            text.contains("25.0 % of its members have no results"),
+            "{text}"
+        );
+        let last = lines.last().unwrap();
+        assert!(
+            last.starts_with("3 designs in ")
+                && last.ends_with("5 members failed: 5 too_large; the first: Too many positions."),
+            "{text}"
+        );
+    }
+
+    #[test]
     fn a_population_leaves_what_its_members_come_to() {
         let mut document: Value =
             serde_json::from_str(crate::wire::examples::STUDY_SECTION_5).unwrap();
         document["base"]["method"] = json!("load_distribution");
         document.as_object_mut().unwrap().remove("designs");
         document.as_object_mut().unwrap().remove("constant_mass");
+        document["name"] = json!("Center distances of the spring");
         document["population"] = json!({ "size": 80, "vary": [
             { "path": "/pair/center_distance_mm", "kind": "uniform", "low": 100.45, "high": 100.55 }
         ] });
@@ -201,6 +251,30 @@ mod tests {
         let drawn = picture(&study, &results(&study, computed), Some(&found), None);
         let svg = drawn.expect("two torques").to_svg();
         assert!(svg.contains("p95"), "{svg}");
+        assert!(svg.contains("Center distances of the spring"), "{svg}");
+        // One torque has a histogram, which names it and the percentiles.
+        document["base"]["output_torques_n_m"] = json!([115]);
+        let one =
+            StudyDocument::parse(document.to_string().as_bytes(), &Run::unattended()).unwrap();
+        let of_one = compute(&one, None).unwrap();
+        let spread = population(&one, &of_one).expect("a population");
+        let drawn = picture(&one, &results(&one, of_one), Some(&spread), None);
+        let svg = drawn.expect("one torque").to_svg().expect("can be drawn");
+        let peaks = spread
+            .quantities
+            .iter()
+            .find(|quantity| quantity.name.ends_with("peak_to_peak"));
+        let p95 = peaks
+            .unwrap()
+            .percentiles
+            .iter()
+            .find(|one| one.percent == 95.0)
+            .unwrap()
+            .value;
+        assert!(
+            svg.contains("115 N m, p5 ") && svg.contains(&format!("p95 {p95:.3}")),
+            "{svg}"
+        );
         let text = spread_table(&found, Duration::from_secs(2));
         assert!(
             text.contains("80 of 80 members computed in 2.00 s, 40.0 a second."),

@@ -20,7 +20,7 @@ pub(super) fn picture(
     population: Option<&PopulationResults>,
     search: Option<&SearchState>,
 ) -> Option<Figure> {
-    let (title, charts) = match (search, population) {
+    let (kind, charts) = match (search, population) {
         (Some(search), _) => ("A search", of_search(study, search)),
         (None, Some(population)) => ("A population", of_population(population)),
         (None, None) => ("A study", vec![of_designs(&results.rows)?]),
@@ -29,7 +29,7 @@ pub(super) fn picture(
         return None;
     }
     Some(Figure {
-        title: title.to_owned(),
+        title: study.name().unwrap_or(kind).to_owned(),
         columns: 1,
         panel_size: (760, 340),
         panels: charts.into_iter().map(Panel::Chart).collect(),
@@ -124,7 +124,15 @@ fn of_population(population: &PopulationResults) -> Vec<Chart> {
         outline.push((quantity.largest, 0.0));
         let series = Series::new("", OTHER, Look::Line, outline);
         let axes = ("peak-to-peak transmission error in µm", "members");
-        chart("", axes, true, vec![series])
+        let torque = quantity.output_torque_n_m;
+        let torque = torque.map(|torque| format!("{torque} N m"));
+        let shown = [5.0, 50.0, 95.0];
+        let percentiles = quantity.percentiles.iter();
+        let percentiles = percentiles
+            .filter(|percentile| shown.contains(&percentile.percent))
+            .map(|percentile| format!("p{} {:.3}", percentile.percent, percentile.value));
+        let told: Vec<String> = torque.into_iter().chain(percentiles).collect();
+        chart(&told.join(", "), axes, true, vec![series])
     });
     bars.collect()
 }

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use crate::wire::refusals::{RefusalState, Refusals};
 use crate::wire::study_table::TableRow;
 use crate::wire::warning::GearName;
 use crate::wire::{PopulationResults, SearchState, Study as StudyDocument, StudyResults};
@@ -26,10 +27,29 @@ pub(super) fn search_table(
     let mut text = String::new();
     let names = study.goals().join(", ");
     let conditions = study.conditions().join(", ");
+    let confirmed = search.confirmed.as_ref();
+    let failed = confirmed.filter(|confirmed| confirmed.feasible == Some(false));
     let mut say = |line: String| {
         text.push_str(line.trim_end());
         text.push('\n');
     };
+    if let Some(confirmed) = failed {
+        say(match &confirmed.problem {
+            Some(problem) => format!(
+                "NOT FEASIBLE: the best design has no results on the fine grid: {}",
+                problem["detail"].as_str().unwrap_or_default()
+            ),
+            None => format!(
+                "NOT FEASIBLE: on the fine grid the best design does not keep {}: {}",
+                if conditions.is_empty() {
+                    "its goals"
+                } else {
+                    &conditions
+                },
+                numbers(&confirmed.conditions)
+            ),
+        });
+    }
     match &search.best {
         None => say(search
             .why_nothing()
@@ -40,7 +60,7 @@ pub(super) fn search_table(
                 best.row,
                 numbers(&best.goals)
             ));
-            if !best.feasible {
+            if !best.feasible && failed.is_none() {
                 say(
                     "  It does not keep every condition; no design that was looked at does."
                         .to_owned(),
@@ -52,6 +72,12 @@ pub(super) fn search_table(
             if !best.conditions.is_empty() {
                 say(format!("  {conditions}: {}", numbers(&best.conditions)));
             }
+            if let Some(share) = best.failed_share.filter(|share| *share > 0.0) {
+                say(format!(
+                    "  {:.1} % of its members have no results, and count as beyond every bound",
+                    100.0 * share
+                ));
+            }
         }
     }
     if search.front.len() > 1 {
@@ -62,33 +88,47 @@ pub(super) fn search_table(
             say(format!("  {}  at {values}", numbers(&design.goals)));
         }
     }
-    if let Some(confirmed) = &search.confirmed {
+    if let Some(confirmed) = confirmed {
         let goals = numbers(&confirmed.goals);
         match &confirmed.error_estimate {
             Some(estimate) => say(format!(
                 "once more on the fine grid: {goals}; another grid level changes the peak-to-peak value by {:.4} um, the mean by {:.4} um",
                 estimate.transmission_error_peak_to_peak_um, estimate.transmission_error_mean_um
             )),
-            None => {
-                let problem = confirmed.problem.as_ref();
-                let detail = problem.and_then(|problem| problem["detail"].as_str());
-                say(format!("not confirmed: {}", detail.unwrap_or_default()));
-            }
+            None => say("once more on the fine grid: no results".to_owned()),
+        }
+        if !conditions.is_empty() {
+            say(format!(
+                "  {conditions}: {}",
+                numbers(&confirmed.conditions)
+            ));
         }
     }
-    for refusal in &search.refusals {
-        say(format!(
-            "{} designs refused, {}; the first: {}",
-            refusal.count, refusal.code, refusal.detail
-        ));
-    }
     say(format!(
-        "{} designs in {} generations, {:.2} s.",
+        "{} designs in {} generations, {:.2} s.{}{}",
         search.evaluations,
         search.generations.len(),
-        elapsed.as_secs_f64()
+        elapsed.as_secs_f64(),
+        why_others_failed("designs", &search.refusals),
+        why_others_failed("members", &search.member_refusals),
     ));
     text
+}
+
+/// What is told of some that have no results, behind what is told of those that have some.
+fn why_others_failed(what: &str, refusals: &[RefusalState]) -> String {
+    let count: u64 = refusals.iter().map(|refusal| refusal.count).sum();
+    if count == 0 {
+        return String::new();
+    }
+    let reasons = refusals.iter().map(|refusal| {
+        format!(
+            "{} {}; the first: {}",
+            refusal.count, refusal.code, refusal.detail
+        )
+    });
+    let reasons: Vec<String> = reasons.collect();
+    format!(" {count} {what} failed: {}", reasons.join(" "))
 }
 
 /// A line for each quantity of a population and each torque, and what makes the peak-to-peak values vary.
@@ -153,10 +193,11 @@ pub(super) fn spread_table(results: &PopulationResults, elapsed: Duration) -> St
     }
     let seconds = elapsed.as_secs_f64();
     text.push_str(&format!(
-        "{} of {} members computed in {seconds:.2} s, {:.1} a second.\n",
+        "{} of {} members computed in {seconds:.2} s, {:.1} a second.{}\n",
         results.done - results.failed,
         results.size,
         (results.done - results.failed) as f64 / seconds.max(1e-9),
+        why_others_failed("members", &results.refusals),
     ));
     text
 }
@@ -247,6 +288,10 @@ pub(super) fn short_table(results: &StudyResults, elapsed: Duration) -> String {
         .iter()
         .filter(|row| row.problem.is_some())
         .collect();
+    let mut refusals = Refusals::default();
+    failed
+        .iter()
+        .for_each(|row| refusals.note(row.problem.as_ref()));
     for row in failed.iter().take(MOST_PRINTED) {
         let detail = row
             .problem
@@ -256,10 +301,11 @@ pub(super) fn short_table(results: &StudyResults, elapsed: Duration) -> String {
     }
     let seconds = elapsed.as_secs_f64();
     text.push_str(&format!(
-        "{} of {} designs computed in {seconds:.2} s, {:.1} a second.\n",
+        "{} of {} designs computed in {seconds:.2} s, {:.1} a second.{}\n",
         computed.len(),
         results.total,
         computed.len() as f64 / seconds.max(1e-9),
+        why_others_failed("designs", &refusals.told()),
     ));
     text
 }

@@ -63,7 +63,7 @@ pub(super) async fn submit(
     IdempotencyKey(key): IdempotencyKey,
     Document(document, memory): Document<MIB>,
 ) -> Result<Response, Problem> {
-    let read = move |run: &Run| (Study::parse(&document, run), memory);
+    let read = move |run: &Run| (Study::submitted(&document, run), memory);
     let (study, _memory) = aside(client.name(), read).await?;
     let study = study?;
     let submitted = client

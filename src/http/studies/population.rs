@@ -24,8 +24,8 @@ use crate::wire::{
 /// Get what a population comes to
 ///
 /// Mean, spread, percentiles with their confidence limits, a histogram and influences of every quantity, as far as the study has come; it can
-/// be asked at any time. A percentile's limits are order statistics where members are random, and follow from the independent scramblings where
-/// they are Sobol' points. The share of a field is found by ranks, that of a gear's teeth from pairs of members that have
+/// be asked at any time. A percentile's limits are order statistics, drawn together as far as Sobol' points settle sooner than random members; there are none where
+/// the members are too few to carry them. The share of a field is found by ranks, that of a gear's teeth from pairs of members that have
 /// the gear in common.
 #[utoipa::path(
     get, path = "/v1/studies/{id}/results/population", tag = "Studies", operation_id = "get_study_population",

@@ -29,7 +29,7 @@ pub(super) use node::{Node, escaped};
 pub(super) use number::{Number, number};
 pub(super) use optional::{Optional, absent, or_else, or_null, unless};
 pub(super) use reader::{ObjectReader, Place};
-pub(super) use words::{Choice, OneWord, Text, flag, is_short_text, text, word, words};
+pub(super) use words::{Choice, Flag, OneWord, Text, flag, is_short_text, text, word, words};
 
 /// The named schemas that others refer to.
 pub(super) type Named = Vec<(&'static str, Value)>;

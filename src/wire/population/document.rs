@@ -5,7 +5,7 @@ use meshwright_sample::points::Sampling;
 use crate::wire::declare::{
     EACH, Number, Text, absent, document, list, nested, number, tagged, text, word, words,
 };
-use crate::wire::draw::{CAPABILITY, CLASS, SEED};
+use crate::wire::draw::{CAPABILITY, CLASS, INSPECTED, SEED};
 
 /// The most varied fields. With two numbers for each gear's eccentricity behind them they are fewer than the axes of the points.
 const MOST_VARIED: usize = 100;
@@ -56,6 +56,9 @@ document! {
         pub(super) iso_1328_class: u32 = CLASS,
         /// How many times three standard deviations of a deviation fit into its tolerance.
         pub(super) capability: f64 = CAPABILITY,
+        /// Whether gears that are not of their class are rejected and drawn again, as an inspector does: those beyond f_pT, beyond F_pT measured from
+        /// the bore, beyond F_rT or beyond the tolerances of slopes.
+        pub(super) inspected: bool = INSPECTED,
     }
 }
 

@@ -10,18 +10,18 @@ mod results;
 mod tests;
 
 use meshwright_engine::analysis::Method;
-use meshwright_engine::gear::{
-    Helix, Member, Normals, SpurGear, Tolerances, ToothDeviations, total_pitch_deviation,
-};
+use meshwright_engine::gear::{Helix, Inspection, Member, Normals, Passed, SpurGear};
 use meshwright_sample::law::Law;
 use meshwright_sample::normal;
 use meshwright_sample::points::Points;
 use serde_json::{Value, json};
 
 use super::declare::{Choice as _, Errors, Node};
+use super::draw::Accuracy;
 use super::gear::{DeviationsDocument, GearDocument};
 use super::pair::PairDocument;
 use super::pointer::Pointer;
+use super::search::sees_faces;
 use super::units::significant;
 use document::GearAccuracy;
 pub(super) use document::PopulationDocument;
@@ -130,57 +130,56 @@ impl Population {
             };
             let made = document.clone().without_deviations();
             let made = errors.report(made.to_gear(&format!("/pair/{gear}"), helix))?;
-            let gauge = Gauge::of(&made, accuracy);
-            let mut teeth = self.teeth(member, gear, accuracy, &gauge);
-            if method.sees_faces() {
-                teeth.lead_slope = self.lead_slopes(member, gear, accuracy, &gauge);
+            let accuracy = accuracy.of(&made);
+            let mut passed = self.teeth(member, gear, &accuracy);
+            if method.sees_faces()
+                && let Some(own) = &mut passed
+            {
+                let leads = self.lead_slopes(member, gear, &accuracy);
+                match leads {
+                    Some(leads) => own.teeth.lead_slope = leads.teeth.lead_slope,
+                    None => passed = None,
+                }
             }
+            let Some(Passed { teeth, .. }) = passed else {
+                errors.push(accuracy.none_passed(&format!("/pair/{gear}/tooth_deviations")));
+                return None;
+            };
             document.set_deviations(DeviationsDocument::of(&teeth));
         }
         Some(())
     }
 
-    /// The teeth that `gear` has in a member.
+    /// The teeth that `gear` has in a member; none if none of very many gears passes.
     ///
     /// The eccentricity, two numbers that act on the whole, stands on axes of the points behind those of the fields; the teeth, hundreds
-    /// of numbers of which none matters by itself, are random.
-    fn teeth(
-        &self,
-        member: u32,
-        gear: Member,
-        accuracy: &GearAccuracy,
-        gauge: &Gauge,
-    ) -> ToothDeviations {
+    /// of numbers of which none matters by itself, are random, and so is all of a gear that is drawn again.
+    fn teeth(&self, member: u32, gear: Member, accuracy: &Accuracy) -> Option<Passed> {
         let drawn = self.drawn_for(member, gear);
-        let normals = self.normals(1, drawn, gear);
         let first = self.varied.len() as u32 + 2 * gear as u32;
-        let eccentricity =
-            [first, first + 1].map(|axis| normal::quantile(self.points.at(drawn, axis)));
-        let teeth = normals.take(2 * gauge.tooth_count as usize);
-        gauge.tolerances.draw(
-            gauge.tooth_count,
-            accuracy.capability,
-            teeth.chain(eccentricity),
-        )
+        let teeth = 2 * accuracy.inspection.tooth_count() as usize;
+        accuracy.teeth(|attempt| {
+            let mut normals = self.normals(1, drawn, gear, attempt);
+            let own: Vec<f64> = normals.by_ref().take(teeth).collect();
+            let eccentricity = if attempt == 0 {
+                [first, first + 1].map(|axis| normal::quantile(self.points.at(drawn, axis)))
+            } else {
+                std::array::from_fn(|_| normals.next().unwrap_or_default())
+            };
+            own.into_iter().chain(eccentricity)
+        })
     }
 
     /// How the leads of that gear slope, by numbers of their own: the same teeth have them and have them not.
-    fn lead_slopes(
-        &self,
-        member: u32,
-        gear: Member,
-        accuracy: &GearAccuracy,
-        gauge: &Gauge,
-    ) -> Vec<f64> {
-        let normals = self.normals(3, self.drawn_for(member, gear), gear);
-        let tolerances = &gauge.tolerances;
-        tolerances.draw_lead_slopes(gauge.tooth_count, accuracy.capability, normals)
+    fn lead_slopes(&self, member: u32, gear: Member, accuracy: &Accuracy) -> Option<Passed> {
+        let drawn = self.drawn_for(member, gear);
+        accuracy.lead_slopes(|attempt| self.normals(3, drawn, gear, attempt))
     }
 
-    /// The numbers for `gear` as it is `drawn` for a member; those from another `first` stream are independent.
-    fn normals(&self, first: u64, drawn: u32, gear: Member) -> Normals {
+    /// The numbers for an attempt at `gear` as it is `drawn` for a member; those from another `first` stream are independent.
+    fn normals(&self, first: u64, drawn: u32, gear: Member, attempt: u32) -> Normals {
         let stream = (u64::from(gear as u8) + first) << 32 | u64::from(drawn);
-        Normals::new(u64::from(self.points.seed), stream)
+        Normals::of_attempt(u64::from(self.points.seed), stream, attempt)
     }
 
     /// The member for which the gear of `member` was drawn first: every gear of some batches stands in two pairs, so that what two pairs
@@ -204,15 +203,22 @@ impl Population {
         !alone && !drawn.is_empty() && drawn[meshwright_sample::batch(member) % drawn.len()] == gear
     }
 
-    /// Everything that differs between members.
+    /// Everything that differs between members and of which it is known how much of the variance it makes.
+    ///
+    /// Gears that an inspector passes are of one law, and two pairs of one gear tell what it makes of the variance. Where its tolerances
+    /// differ between members, two of them may not get the same gear.
     fn sources(&self) -> Vec<Source<'_>> {
         let fields = self.varied.iter().map(|varied| Source::Field(&varied.path));
-        let teeth = GEARS.into_iter().filter(|gear| self.draws_teeth_of(*gear));
+        let is_of_one_law = |gear: &Member| {
+            let accuracy = self.accuracy[*gear as usize].as_ref();
+            accuracy.is_some_and(|accuracy| !accuracy.inspected || !self.varies_tolerances(*gear))
+        };
+        let teeth = GEARS.into_iter().filter(is_of_one_law);
         fields.chain(teeth.map(Source::Teeth)).collect()
     }
 
-    /// What the teeth of a base are measured by, gear by gear; none where they are not drawn, or its gear cannot be made.
-    fn gauges(&self, base: &Node) -> [Option<Gauge>; 2] {
+    /// How accurately the gears of a base are made; none where they are not drawn, or a gear cannot be made.
+    fn accuracies(&self, base: &Node) -> [Option<Accuracy>; 2] {
         GEARS.map(|gear| {
             let accuracy = self.accuracy[gear as usize].as_ref()?;
             let document = GearDocument::at(base.at(&["pair", gear.word()])?)?;
@@ -222,34 +228,53 @@ impl Population {
             };
             let helix = Helix::right(angle.unwrap_or(0.0).to_radians());
             let made = document.without_deviations().to_gear("", helix).ok()?;
-            Some(Gauge::of(&made, accuracy))
+            Some(accuracy.of(&made))
         })
     }
 
-    /// Whether a field of `gear` is varied, which its tolerances may depend on.
+    /// Refuses gears of a base, which has the middle of each law, of which fewer than one in a hundred would pass the inspection, at the place `at` of the
+    /// population.
+    pub(super) fn refuse_hopeless(&self, base: &Node, at: &str, errors: &Errors) {
+        let sees_faces = base.at(&["method"]).is_some_and(sees_faces);
+        for (gear, accuracy) in GEARS.into_iter().zip(self.accuracies(base)) {
+            if let Some(accuracy) = accuracy {
+                let pointer = format!("{at}/accuracy/{gear}/capability");
+                accuracy.refuse_hopeless(sees_faces, &pointer, errors);
+            }
+        }
+    }
+
+    /// Whether a field of `gear` is varied, which what its teeth are measured by may depend on.
     fn varies(&self, gear: Member) -> bool {
         let mut paths = self.varied.iter().map(|varied| &varied.path);
         paths.any(|path| path.starts_with(&["pair", gear.word()]))
     }
-}
 
-/// What teeth are drawn and measured by.
-#[derive(Debug, Clone)]
-struct Gauge {
-    tolerances: Tolerances,
-    tooth_count: u32,
-}
-
-impl Gauge {
-    fn of(gear: &SpurGear, accuracy: &GearAccuracy) -> Self {
-        Self {
-            tolerances: Tolerances::of(gear, accuracy.iso_1328_class),
-            tooth_count: gear.tooth_count(),
-        }
+    /// Whether the tolerances of `gear` differ between members: by what is varied of the size of its teeth.
+    fn varies_tolerances(&self, gear: Member) -> bool {
+        const SIZES: [&str; 4] = [
+            "tooth_count",
+            "module_mm",
+            "pressure_angle_deg",
+            "face_width_mm",
+        ];
+        let mut paths = self.varied.iter().map(|varied| &varied.path);
+        paths.any(|path| {
+            let of_gear = SIZES
+                .iter()
+                .any(|size| path.starts_with(&["pair", gear.word(), size]));
+            of_gear || path.starts_with(&["pair", "helix_angle_deg"])
+        })
     }
+}
 
-    /// Whether teeth deviate by more in total than the tolerance F_pT.
-    fn is_exceeded(&self, teeth: &ToothDeviations) -> bool {
-        total_pitch_deviation(teeth) > self.tolerances.total_pitch
+impl GearAccuracy {
+    /// That of `gear`.
+    fn of(&self, gear: &SpurGear) -> Accuracy {
+        Accuracy {
+            inspection: Inspection::of(gear, self.iso_1328_class),
+            capability: self.capability,
+            is_inspected: self.inspected,
+        }
     }
 }

@@ -6,13 +6,17 @@ use meshwright_engine::gear::Member;
 use meshwright_sample::histogram::histogram;
 use meshwright_sample::influence::{Ranked, of_group};
 use meshwright_sample::points::Sampling;
-use meshwright_sample::{BATCHES, Estimate, mean, percentile, standard_deviation};
+use meshwright_sample::{Estimate, mean, percentile, standard_deviation};
 use serde::Serialize;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-use super::{GEARS, Gauge, Population, Source};
+use super::document::GearAccuracy;
+use super::{GEARS, Population, Source};
 use crate::wire::declare::Node;
+use crate::wire::draw::Accuracy;
+use crate::wire::refusals::{RefusalState, Refusals};
+use crate::wire::search::sees_faces;
 use crate::wire::status::Status;
 use crate::wire::study::Study;
 use crate::wire::study_table::{Of, QUANTITIES, RowState, Summary};
@@ -39,18 +43,22 @@ pub struct PopulationResults {
     pub size: u64,
     /// Members that have come to an end, whichever.
     pub done: u64,
-    /// Members that could not be built or computed. No number here knows of them.
+    /// Members that could not be built or computed. Of them only `failed_share` knows.
     pub failed: u64,
+    /// Why they could not, the most common reason first.
+    pub refusals: Vec<RefusalState>,
     /// What is told of each quantity: those of the pair once, those of a curve for each torque. Left out are those that the method does not tell.
     pub quantities: Vec<QuantityDocument>,
-    /// The share of gears whose total cumulative pitch deviation is beyond the tolerance F_pT of their class, which their law does not
-    /// enforce; null where teeth are not drawn.
+    /// The share of gears whose total cumulative pitch deviation, measured from the bore, is beyond the tolerance F_pT of their class: none of those that are
+    /// inspected. Null where teeth are not drawn.
     pub beyond_total_pitch_tolerance: BeyondDocument,
+    /// The share of the gears made that the inspection rejected, found from the first members; null where teeth are not drawn, or not inspected.
+    pub rejected_by_inspection: BeyondDocument,
 }
 
-/// The share of gears beyond a tolerance.
+/// A share of the gears.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, ToSchema)]
-#[schema(as = BeyondTolerance, title = "Share beyond a tolerance")]
+#[schema(as = BeyondTolerance, title = "Share of gears")]
 pub struct BeyondDocument {
     /// Of the driving gears, from 0 to 1.
     pub driving: Option<f64>,
@@ -78,8 +86,10 @@ pub struct QuantityDocument {
     pub largest: f64,
     /// The members, by their place in the table, that have the smallest, the middle and the largest value.
     pub members: ExtremesDocument,
-    /// Percentiles, linear between neighboring members.
+    /// Percentiles of the members that have this quantity, linear between neighbors.
     pub percentiles: Vec<PercentileDocument>,
+    /// The share of the members so far that could not be built or computed, from 0 to 1: percentiles do not know of them.
+    pub failed_share: f64,
     /// How many members have which values.
     pub histogram: HistogramDocument,
     /// What makes which part of the variance. Empty where nothing varies.
@@ -149,6 +159,7 @@ pub struct PopulationSample {
     torques: Range<usize>,
     done: u64,
     failed: u64,
+    refusals: Refusals,
     /// Members that have results, in the order of the table.
     members: Vec<u32>,
     /// Of each quantity of the pair, in the order of [`QUANTITIES`]: the members' numbers, NaN where a member has none.
@@ -168,20 +179,48 @@ struct CurveColumns {
 #[derive(Debug)]
 struct Sources {
     base: Node,
-    gauges: [Option<Gauge>; 2],
-    exceeded: [u64; 2],
+    accuracies: [Option<Accuracy>; 2],
+    counted: [Counted; 2],
+}
+
+/// What is counted of the gears of the members.
+#[derive(Debug, Default, Clone, Copy)]
+struct Counted {
+    /// Gears that were looked at.
+    gears: u64,
+    /// Of these, beyond F_pT.
+    exceeded: u64,
+    /// Gears that were made for them, and leads.
+    made: u64,
+    leads: u64,
+}
+
+impl Counted {
+    /// So many numbers are drawn at most to tell what an inspection rejects.
+    const MOST_DRAWN: u64 = 4_000_000;
+
+    /// The part of the gears made that passed, teeth and leads being independent.
+    fn passed(&self) -> f64 {
+        let part = |made: u64| self.gears as f64 / made.max(1) as f64;
+        part(self.made)
+            * if self.leads > 0 {
+                part(self.leads)
+            } else {
+                1.0
+            }
+    }
 }
 
 impl PopulationSample {
     /// No member so far of the population that `study` is; none if it is none. Of the curves it knows those of `torques`, counted from 0.
     pub fn new(study: &Study, torques: Range<usize>) -> Option<Self> {
         let population = study.population()?.clone();
-        let gauges = population.gauges(study.base());
+        let accuracies = population.accuracies(study.base());
         Some(Self {
             sources: Sources {
                 base: study.base().clone(),
-                gauges,
-                exceeded: [0, 0],
+                accuracies,
+                counted: Default::default(),
             },
             gear: study.gear(),
             of_pair: vec![Vec::new(); QUANTITIES.len()],
@@ -190,6 +229,7 @@ impl PopulationSample {
             torques,
             done: 0,
             failed: 0,
+            refusals: Refusals::default(),
             members: Vec::new(),
         })
     }
@@ -203,6 +243,7 @@ impl PopulationSample {
     pub fn add(&mut self, member: u32, row: &RowState) {
         self.done += u64::from(row.status.has_ended());
         self.failed += u64::from(row.status == Status::Failed);
+        self.refusals.note(row.problem.as_ref());
         let Some(summary) = &row.summary else {
             return;
         };
@@ -254,12 +295,13 @@ impl PopulationSample {
         }
     }
 
-    /// Looks whether the gears of a member keep F_pT.
+    /// Looks whether the gears of a member keep F_pT, and how many were made for those that passed.
     fn measure(&mut self, member: u32) {
         for gear in GEARS {
-            let Some(accuracy) = &self.population.accuracy[gear as usize] else {
+            let Some(asked) = &self.population.accuracy[gear as usize] else {
                 continue;
             };
+            let counted = &mut self.sources.counted[gear as usize];
             let own = self.population.varies(gear).then(|| {
                 let mut submission = self.sources.base.clone();
                 let values = self.population.values(member);
@@ -267,12 +309,27 @@ impl PopulationSample {
                     let value = Node::Number(value);
                     submission.put(varied.path.steps(), value);
                 }
-                self.population.gauges(&submission)[gear as usize].clone()
+                self.population.accuracies(&submission)[gear as usize].clone()
             });
-            let gauge = own.unwrap_or_else(|| self.sources.gauges[gear as usize].clone());
-            if let Some(gauge) = gauge {
-                let teeth = self.population.teeth(member, gear, accuracy, &gauge);
-                self.sources.exceeded[gear as usize] += u64::from(gauge.is_exceeded(&teeth));
+            let accuracy = own.unwrap_or_else(|| self.sources.accuracies[gear as usize].clone());
+            let Some(accuracy) = accuracy else {
+                continue;
+            };
+            let teeth = u64::from(accuracy.inspection.tooth_count());
+            if asked.inspected && teeth * (counted.made + counted.leads) > Counted::MOST_DRAWN {
+                continue;
+            }
+            let Some(passed) = self.population.teeth(member, gear, &accuracy) else {
+                continue;
+            };
+            let total = accuracy.inspection.total_pitch_deviation(&passed.teeth);
+            counted.gears += 1;
+            counted.exceeded += u64::from(total > accuracy.inspection.tolerances.total_pitch);
+            counted.made += u64::from(passed.attempts);
+            let sees_faces = self.sources.base.at(&["method"]).is_some_and(sees_faces);
+            if asked.inspected && sees_faces {
+                let leads = self.population.lead_slopes(member, gear, &accuracy);
+                counted.leads += leads.map_or(0, |leads| u64::from(leads.attempts));
             }
         }
     }
@@ -296,9 +353,13 @@ impl PopulationSample {
         for curve in &self.of_curves {
             quantities.extend(named(&curve.columns, curve.output_torque_n_m));
         }
-        let share = |gear: Member| {
-            let drawn = self.population.draws_teeth_of(gear) && !self.members.is_empty();
-            drawn.then(|| self.sources.exceeded[gear as usize] as f64 / self.members.len() as f64)
+        let of_gears = |tell: &dyn Fn(&Counted, &GearAccuracy) -> Option<f64>| {
+            let [driving, driven] = GEARS.map(|gear| {
+                let accuracy = self.population.accuracy[gear as usize].as_ref()?;
+                let counted = &self.sources.counted[gear as usize];
+                (counted.gears > 0).then(|| tell(counted, accuracy))?
+            });
+            BeyondDocument { driving, driven }
         };
         PopulationResults {
             id,
@@ -306,11 +367,14 @@ impl PopulationSample {
             size: self.population.size() as u64,
             done: self.done,
             failed: self.failed,
+            refusals: self.refusals.told(),
             quantities,
-            beyond_total_pitch_tolerance: BeyondDocument {
-                driving: share(Member::Driving),
-                driven: share(Member::Driven),
-            },
+            beyond_total_pitch_tolerance: of_gears(&|counted, _| {
+                Some(counted.exceeded as f64 / counted.gears as f64)
+            }),
+            rejected_by_inspection: of_gears(&|counted, accuracy| {
+                accuracy.inspected.then(|| 1.0 - counted.passed())
+            }),
         }
     }
 
@@ -341,6 +405,7 @@ impl PopulationSample {
                 largest: largest.0,
             },
             percentiles: self.percentiles(&sorted, &values, column),
+            failed_share: self.failed as f64 / self.done.max(1) as f64,
             histogram: HistogramDocument {
                 edges: histogram.edges,
                 counts: histogram.counts,
@@ -355,21 +420,16 @@ impl PopulationSample {
         values: &[f64],
         column: &[f64],
     ) -> Vec<PercentileDocument> {
-        let mut batches: [Vec<f64>; BATCHES] = Default::default();
-        for (member, value) in sorted {
-            batches[meshwright_sample::batch(*member)].push(*value);
-        }
         let pairs: Vec<[f64; 2]> = GEARS
             .into_iter()
             .flat_map(|gear| pairs_of(&self.population, gear, &self.members, column))
             .collect();
-        let estimate = |percent: f64| match self.population.points.sampling {
-            Sampling::Sobol => percentile::of_batches(values, &batches, percent),
-            Sampling::Random => {
-                let limit = percentile::percentile(values, percent);
-                let effect =
-                    percentile::design_effect(&pairs, values.len(), limit, percent / 100.0);
-                percentile::of_independent(values, percent, effect)
+        let estimate = |percent: f64| {
+            let limit = percentile::percentile(values, percent);
+            let effect = percentile::design_effect(&pairs, values.len(), limit, percent / 100.0);
+            match self.population.points.sampling {
+                Sampling::Sobol => percentile::of_replicates(sorted, percent, effect),
+                Sampling::Random => percentile::of_independent(values, percent, effect),
             }
         };
         let told = PERCENTS.into_iter().map(|percent| {

@@ -1,5 +1,6 @@
 //! What is drawn, what is refused, and what the members tell.
 
+use meshwright_engine::gear::ToothDeviations;
 use meshwright_engine::run::Run;
 use serde_json::{Value, json};
 
@@ -287,6 +288,10 @@ fn numbers_are_those_of_their_definitions() {
         (found["output_torque_n_m"].as_f64(), found["count"].as_u64()),
         (Some(50.0), Some(993))
     );
+    // Percentiles are of the members computed; beside them stands how many were not, and why.
+    assert_eq!(found["failed_share"].as_f64(), Some(10.0 / 1003.0));
+    assert_eq!(results["refusals"][0]["code"], "not_converged");
+    assert_eq!(results["refusals"][0]["count"], 10);
     let mean = values.iter().sum::<f64>() / n;
     let close = |found: &Value, expected: f64| {
         let found = found.as_f64().unwrap();
@@ -380,7 +385,7 @@ fn influences_are_those_that_the_result_was_made_of() {
 fn gears_beyond_the_total_pitch_tolerance_are_counted() {
     // At a tenth of the capability the single pitches are ten times as wide as the class: nearly all are beyond; at ten times, none.
     for (capability, least, most) in [(0.1, 0.95, 1.0), (10.0, 0.0, 0.0)] {
-        let asked = |vary: Value| json!({ "size": 40, "vary": vary, "accuracy": { "driven": { "iso_1328_class": 6, "capability": capability } } });
+        let asked = |vary: Value| json!({ "size": 40, "vary": vary, "accuracy": { "driven": { "iso_1328_class": 6, "capability": capability, "inspected": false } } });
         // A varied face of the same gear is measured by its own tolerances, and F_pT does not depend on it.
         let face = json!([{ "path": "/pair/driven/face_width_mm", "kind": "uniform", "low": 19, "high": 21 }]);
         let beyond = [json!([]), face].map(|vary| {
@@ -393,6 +398,197 @@ fn gears_beyond_the_total_pitch_tolerance_are_counted() {
             assert!((least..=most).contains(&share), "{capability}: {share}");
         }
     }
+}
+
+#[test]
+fn gears_that_an_inspector_rejects_are_drawn_again_and_told() {
+    let asked = |inspected: bool| {
+        let gear = json!({ "iso_1328_class": 6, "capability": 0.8, "inspected": inspected });
+        study(json!({ "size": 200, "accuracy": { "driven": gear } }))
+    };
+    let results = told(&asked(true), |_| Some(1.0));
+    assert_eq!(results["beyond_total_pitch_tolerance"]["driven"], 0.0);
+    assert_eq!(results["rejected_by_inspection"]["driving"], Value::Null);
+    let rejected = results["rejected_by_inspection"]["driven"]
+        .as_f64()
+        .unwrap();
+    let as_made = told(&asked(false), |_| Some(1.0));
+    assert_eq!(as_made["rejected_by_inspection"]["driven"], Value::Null);
+    assert!(
+        as_made["beyond_total_pitch_tolerance"]["driven"]
+            .as_f64()
+            .unwrap()
+            > 0.02
+    );
+    // The same share by looking at gears that nobody has looked at.
+    let inspection = |design: &Design| {
+        let gear = design
+            .submission
+            .as_ref()
+            .unwrap()
+            .case()
+            .pair
+            .driven()
+            .clone();
+        Inspection::of(&gear, 6).largest_part(gear.deviations())
+    };
+    let more = study(json!({ "size": 2000, "seed": 9, "accuracy": {
+        "driven": { "iso_1328_class": 6, "capability": 0.8, "inspected": false } } }));
+    let beyond = (0..2000).filter(|row| inspection(&more.design(*row).unwrap()) > 1.0);
+    let expected = beyond.count() as f64 / 2000.0;
+    // Four standard errors of 200 gears that passed.
+    assert!((rejected - expected).abs() < 0.13, "{rejected} {expected}");
+    let (inspected, as_made) = (asked(true), asked(false));
+    for row in 0..200 {
+        let designs = [&inspected, &as_made].map(|study| study.design(row).unwrap());
+        // Deviations are told in tenths of a nanometer, so that a pitch may seem beyond by as much.
+        assert!(inspection(&designs[0]) < 1.0 + 1e-4);
+        let passes = inspection(&designs[1]) < 1.0 - 1e-4;
+        assert!(
+            !passes || designs[0] == designs[1],
+            "what passes at once is taken"
+        );
+    }
+}
+
+#[test]
+fn uninspected_members_are_those_of_earlier_versions() {
+    let gear = |class: u32| json!({ "iso_1328_class": class, "inspected": false });
+    let mut base = testing::example("standard-pair");
+    base["method"] = json!("load_distribution");
+    let population =
+        json!({ "size": 8, "seed": 7, "accuracy": { "driving": gear(6), "driven": gear(8) } });
+    let whole = testing::study(&json!({ "base": base, "population": population })).unwrap();
+    let told = testing::echo(whole.design(5).unwrap().submission.as_ref().unwrap());
+    let teeth = &told["pair"]["driven"]["tooth_deviations"];
+    // By version 0.4.0.
+    assert_eq!(teeth["pitch_single_um"][0], 4.5995);
+    assert_eq!(teeth["pitch_single_um"][1], -4.1209);
+    assert_eq!(teeth["profile_slope_um"][49], 3.5585);
+    assert_eq!(
+        teeth["eccentricity"],
+        json!({ "amount_um": 2.5801, "phase_deg": 92.5506 })
+    );
+}
+
+#[test]
+fn shares_of_inspected_gears_are_those_that_the_result_was_made_of() {
+    // At this capability most gears are rejected, so that the teeth of a gear are no longer independent of each other.
+    let accuracy = |class: u32| json!({ "iso_1328_class": class, "capability": 0.6 });
+    let asked = |vary: Value| json!({ "size": 2048, "vary": vary, "accuracy": { "driving": accuracy(5), "driven": accuracy(6) } });
+    let whole = study(asked(json!([distance()])));
+    let total = |design: &Design| {
+        let gear = design
+            .submission
+            .as_ref()
+            .unwrap()
+            .case()
+            .pair
+            .driven()
+            .clone();
+        1e6 * Inspection::of(&gear, 6).total_pitch_deviation(gear.deviations())
+    };
+    // What passed of the driven gear as a whole, of the driving one in one tooth, and the distance.
+    let parts = |design: &Design| {
+        [
+            3.0 * moved(design),
+            stands_out(design, Member::Driving),
+            total(design),
+        ]
+    };
+    let designs: Vec<Design> = (0..2048).map(|row| whole.design(row).unwrap()).collect();
+    let all: Vec<[f64; 3]> = designs.iter().map(parts).collect();
+    let variance = |part: usize| {
+        let values: Vec<f64> = all.iter().map(|parts| parts[part]).collect();
+        meshwright_sample::standard_deviation(&values)
+            .unwrap()
+            .powi(2)
+    };
+    let variances = [0, 1, 2].map(variance);
+    let sum: f64 = variances.iter().sum();
+    let results = told(&whole, |design| Some(parts(design).iter().sum()));
+    assert!(
+        results["rejected_by_inspection"]["driven"]
+            .as_f64()
+            .unwrap()
+            > 0.5
+    );
+    let influences = quantity(&results, RANGE)["influences"]
+        .as_array()
+        .unwrap()
+        .clone();
+    assert_eq!(influences.len(), 3);
+    for (found, variance) in influences.iter().zip(variances) {
+        let number = |name: &str| found[name].as_f64().unwrap();
+        let expected = variance / sum;
+        assert!(
+            (number("share") - expected).abs() < 0.1,
+            "{found} {expected}"
+        );
+        assert!(
+            number("low") - 0.02 <= expected && expected <= number("high") + 0.02,
+            "{found} {expected}"
+        );
+    }
+    // Where the face of a gear varies, so do its tolerances, and two members need not get one gear: its share is not told.
+    let face =
+        json!([{ "path": "/pair/driven/face_width_mm", "kind": "uniform", "low": 19, "high": 21 }]);
+    let mut short = asked(face);
+    short["size"] = json!(64);
+    let results = told(&study(short), |design| {
+        Some(stands_out(design, Member::Driving))
+    });
+    let influences = quantity(&results, RANGE)["influences"].as_array().unwrap();
+    let told: Vec<&Value> = influences
+        .iter()
+        .filter_map(|one| one.get("accuracy"))
+        .collect();
+    assert_eq!(told, ["driving"]);
+}
+
+#[test]
+fn a_population_of_which_no_member_can_be_is_refused_with_the_reason() {
+    let refused = |document: &Value| testing::study(document).expect_err("refused").errors;
+    // As made, 29 and 85 teeth come back together after 2465 mesh periods.
+    let mut made = testing::example("test-case-3");
+    made["pair"]["center_distance_mm"] = json!(114.5);
+    let population = json!({ "size": 50, "accuracy": { "driven": { "iso_1328_class": 6 }, "driving": { "iso_1328_class": 6 } } });
+    let errors = refused(&json!({ "base": made, "population": population }));
+    assert_eq!(
+        (&*errors[0].pointer, errors[0].code),
+        ("/base/resolution/positions_per_mesh_period", Code::TooLarge)
+    );
+    assert!(
+        errors[0].detail.contains("None of 50 members") && errors[0].detail.contains("2465"),
+        "{:?}",
+        errors[0]
+    );
+    let mut short = made.clone();
+    short["resolution"]["span_mesh_periods"] = json!(29);
+    assert!(testing::study(&json!({ "base": short, "population": population })).is_ok());
+    let search = |base: &Value| {
+        json!({ "base": base, "search": {
+        "variables": [{ "path": "/pair/driving/tip_relief/amount_um", "low": 1, "high": 10 }],
+        "minimize": [{ "quantity": "transmission_error_um.peak_to_peak", "percent": 50 }],
+        "population": population, "evaluations": 10 } })
+    };
+    let mut relieved = made.clone();
+    relieved["pair"]["driving"]["tip_relief"] =
+        json!({ "amount_um": 5, "start": { "radial_length_mm": 0.8 } });
+    let errors = refused(&search(&relieved));
+    assert_eq!(
+        (&*errors[0].pointer, errors[0].code),
+        ("/base/resolution/positions_per_mesh_period", Code::TooLarge)
+    );
+    relieved["resolution"]["span_mesh_periods"] = json!(29);
+    assert_eq!(testing::study(&search(&relieved)).err(), None);
+    // Fewer than one gear in a hundred of this capability would pass.
+    let gear = json!({ "iso_1328_class": 6, "capability": 0.3 });
+    let errors = refused(&document(
+        json!({ "size": 10, "accuracy": { "driven": gear } }),
+    ));
+    assert_eq!(errors[0].pointer, "/population/accuracy/driven/capability");
+    assert!(errors[0].nearest.unwrap() > 0.3 && errors[0].nearest.unwrap() < 1.0);
 }
 
 #[test]

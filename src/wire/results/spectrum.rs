@@ -65,6 +65,9 @@ answer! {
         transmission_error_um: f64 = to_um(line.transmission_error),
         /// The amplitude of the tangent stiffness, in N/m.
         mesh_stiffness_tangent_n_per_m: f64 = line.mesh_stiffness_tangent,
+        /// Of an order of holes, where teeth deviate: the amplitude of the transmission error that the holes alone make, in um. It is that of the pair as
+        /// drawn; along faces by the method that takes holes to the first order.
+        transmission_error_of_holes_um?: f64 = line.of_holes.map(to_um),
     }
 }
 

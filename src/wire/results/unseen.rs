@@ -64,15 +64,9 @@ fn forces_do_not_see(forces: Option<&ForcesRequest>) -> Vec<&'static str> {
 
 /// Why stresses that were asked for are not all there.
 fn stress_not_told(case: &Case) -> Option<&'static str> {
-    match case.method {
-        _ if !case.stress => None,
-        Method::Flexible | Method::ThreeDimensional => Some(
-            "stress under the contact itself, and concentrated where regions of unlike thickness meet: stress tells roots and hole edges",
-        ),
-        _ => Some(
-            "stress: it was asked for, and only the methods flexible and three_dimensional tell it",
-        ),
-    }
+    case.stress.then_some(
+        "stress under the contact itself, and concentrated where regions of unlike thickness meet: stress tells roots and hole edges",
+    )
 }
 
 /// What is left out of modified, broken and deviating teeth, as far as the gears of `case` have them.

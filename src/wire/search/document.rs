@@ -4,9 +4,7 @@ use std::sync::LazyLock;
 
 use meshwright_search::space::Axis;
 
-use super::{
-    Condition, Goal, MOST_EVALUATIONS, Measure, OF_POPULATION, Search, Variable, sees_faces,
-};
+use super::{Condition, Goal, MOST_EVALUATIONS, Measure, OF_POPULATION, Search, Variable};
 use crate::wire::declare::{
     EACH, Errors, Kind, Node, Number, Place, Text, absent, document, list, nested, number, or_else,
     text, word, words,
@@ -16,7 +14,7 @@ use crate::wire::pointer::{NumberKind, Pointer, Schema};
 use crate::wire::population::{Population, PopulationDocument, number_at, rises};
 use crate::wire::problem::Code;
 use crate::wire::study::MOST_DESIGNS;
-use crate::wire::study_table::{Needs, QUANTITIES, Quantity};
+use crate::wire::study_table::{QUANTITIES, Quantity};
 use crate::wire::units::plain;
 
 /// The most variables, conditions, and parts of a cost.
@@ -167,7 +165,6 @@ impl Search {
             return None;
         }
         let reader = Reader {
-            base,
             population: varied,
             variables: &variables,
         };
@@ -334,7 +331,6 @@ impl VariableDocument {
 
 /// What goals and conditions are read with.
 struct Reader<'a> {
-    base: Option<&'a Node>,
     population: Option<&'a Population>,
     variables: &'a [Variable],
 }
@@ -386,7 +382,7 @@ impl Reader<'_> {
         })
     }
 
-    /// A measure of designs, if the base asks for what it needs.
+    /// A measure of designs. Whether they tell it is looked at once they can be put together.
     fn measure(
         &self,
         QuantityName(quantity): QuantityName,
@@ -400,27 +396,6 @@ impl Reader<'_> {
                 "{place} is given, and the search has no population whose percentile it could be."
             );
             return place.wrong(Code::MissingField, detail, None);
-        }
-        let of_base = |field: &str| self.base.and_then(|base| base.at(&[field]));
-        let place_of_it = place.of("quantity");
-        match quantity.needs {
-            Needs::Field(field)
-                if matches!(of_base(field), None | Some(Node::Null | Node::Bool(false))) =>
-            {
-                let detail = format!(
-                    "{} is told where the submission asks for it; give /base/{field}.",
-                    quantity.name
-                );
-                return place_of_it.wrong(Code::MissingField, detail, None);
-            }
-            Needs::Faces if !of_base("method").is_some_and(sees_faces) => {
-                let detail = format!(
-                    "{} is told by the method three_dimensional; give /base/method.",
-                    quantity.name
-                );
-                return place_of_it.wrong(Code::NeedsThreeDimensions, detail, None);
-            }
-            Needs::Nothing | Needs::Field(_) | Needs::Faces => {}
         }
         Some(Measure {
             quantity,

@@ -19,24 +19,42 @@ enum Worst {
     Smallest,
 }
 
+impl Worst {
+    /// Beyond every number, in the direction that hurts.
+    fn beyond(self) -> f64 {
+        match self {
+            Self::Largest => f64::INFINITY,
+            Self::Smallest => f64::NEG_INFINITY,
+        }
+    }
+}
+
 impl Measure {
-    /// Its value for a design; none if the design does not tell it.
+    /// Its value for a design; none if the design does not tell it. A member without results lies beyond every number, and so does a percentile that falls
+    /// among such members.
     fn of(
         &self,
         design: &Summary,
-        members: &[Summary],
+        members: &[Option<Summary>],
         gear: GearName,
         worst: Worst,
     ) -> Option<f64> {
         let at = |place: usize| match self.percent {
             None => self.at(design, place, gear),
             Some(percent) => {
-                let told = members
-                    .iter()
-                    .filter_map(|member| self.at(member, place, gear));
+                let told = members.iter().map(|member| {
+                    let value = member.as_ref().and_then(|one| self.at(one, place, gear));
+                    value.unwrap_or(worst.beyond())
+                });
                 let mut values: Vec<f64> = told.collect();
                 values.sort_by(f64::total_cmp);
-                (!values.is_empty()).then(|| percentile(&values, percent))
+                let found = (!values.is_empty()).then(|| percentile(&values, percent))?;
+                // Between a number and what lies beyond all there is nothing but that.
+                Some(if found.is_finite() {
+                    found
+                } else {
+                    worst.beyond()
+                })
             }
         };
         let torques = match self.quantity.of {
@@ -57,13 +75,18 @@ impl Measure {
             Of::Pair(of) => of(design),
             Of::Curve(of) => of(design.curves().get(torque)?, gear),
         };
-        told.or(self.quantity.absent)
+        told.or_else(|| (self.quantity.absent)(design))
     }
 }
 
 impl Condition {
     /// What it is about, and by how much it fails as a share of its limit; none if the design does not tell it.
-    fn of(&self, design: &Summary, members: &[Summary], gear: GearName) -> Option<(f64, f64)> {
+    fn of(
+        &self,
+        design: &Summary,
+        members: &[Option<Summary>],
+        gear: GearName,
+    ) -> Option<(f64, f64)> {
         let mut told = 0.0;
         let mut violation: f64 = 0.0;
         let share = |beyond: f64, limit: f64| {
@@ -96,12 +119,35 @@ pub(super) struct Judged {
 }
 
 impl Search {
+    /// Whether `design` keeps every condition that is about designs as they are drawn, and tells every such goal; none where all it could tell holds, and
+    /// others are about members.
+    pub(super) fn is_kept_as_drawn(&self, design: &Summary, gear: GearName) -> Option<bool> {
+        let drawn = |measure: &Measure| measure.percent.is_none();
+        let keeps = |one: &Condition| {
+            let told = one.of(design, &[], gear);
+            told.is_some_and(|(_, violation)| violation == 0.0)
+        };
+        let tells = |goal: &Goal| match goal {
+            Goal::Quantity(measure) if drawn(measure) => {
+                let told = measure.of(design, &[], gear, Worst::Largest);
+                told.is_some_and(f64::is_finite)
+            }
+            Goal::Quantity(_) | Goal::Cost(_) => true,
+        };
+        let (own, others): (Vec<&Condition>, Vec<&Condition>) =
+            self.conditions.iter().partition(|one| drawn(&one.measure));
+        if !own.into_iter().all(keeps) || !self.goals.iter().all(tells) {
+            return Some(false);
+        }
+        others.is_empty().then_some(true)
+    }
+
     /// What a design comes to, its variables having these values.
     pub(super) fn judge(
         &self,
         values: &[f64],
         design: &Summary,
-        members: &[Summary],
+        members: &[Option<Summary>],
         gear: GearName,
     ) -> Judged {
         let goals: Vec<Option<f64>> = self
@@ -131,8 +177,9 @@ impl Search {
         let known: Option<Vec<f64>> = goals.iter().copied().collect();
         let outcome = match (known, violations) {
             (Some(goals), Some(violations)) => Outcome::Computed { goals, violations },
-            // It can be had, and does not tell what it is to be judged by: a pressure at a sharp corner has no limit.
-            _ => Outcome::Refused(0.0),
+            // It can be had, and does not tell what it is to be judged by: a pressure at a sharp corner has no limit, and too many members may
+            // have no results.
+            _ => Outcome::Refused(failed_share(members).unwrap_or(0.0)),
         };
         let told = |(value, _): (f64, f64)| Some(value).filter(|value| value.is_finite());
         Judged {
@@ -144,6 +191,12 @@ impl Search {
             goals,
         }
     }
+}
+
+/// The share of members that have no results; none without members.
+pub(super) fn failed_share(members: &[Option<Summary>]) -> Option<f64> {
+    let failed = members.iter().filter(|member| member.is_none()).count();
+    (!members.is_empty()).then(|| failed as f64 / members.len() as f64)
 }
 
 /// How far a row without results is from having some: by which share of itself each wrong field would have to change.

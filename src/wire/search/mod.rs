@@ -11,6 +11,8 @@ mod state;
 mod tests;
 
 use meshwright_engine::analysis::Method;
+use meshwright_sample::REPLICATES;
+use meshwright_sample::points::{Points, Sampling};
 use meshwright_search::driver::Problem as Space;
 use meshwright_search::space::Axis;
 use serde_json::{Map, Value, json};
@@ -144,13 +146,13 @@ impl Search {
         }
     }
 
-    fn members(&self) -> usize {
+    pub(super) fn members(&self) -> usize {
         self.population
             .as_ref()
             .map_or(0, |(_, population)| population.size())
     }
 
-    fn looks_at_members(&self) -> bool {
+    pub(super) fn looks_at_members(&self) -> bool {
         let of_goals = self.goals.iter().filter_map(|goal| match goal {
             Goal::Quantity(measure) => Some(measure),
             Goal::Cost(_) => None,
@@ -310,6 +312,43 @@ impl Search {
         })
     }
 
+    /// Designs that show what may come of the search before anything is computed: the base, the ends of each variable, and some spread evenly.
+    pub(super) fn trials(&self, base: &Node) -> impl Iterator<Item = Map<String, Value>> {
+        const SPREAD: u32 = 32;
+        let points = Points {
+            sampling: Sampling::Sobol,
+            seed: self.seed,
+        };
+        let spread = (0..SPREAD).map(move |place| {
+            let axes = self.variables.iter().zip(0..);
+            let point: Vec<f64> = axes
+                .map(|(variable, axis)| variable.axis.snapped(points.at(place * REPLICATES, axis)))
+                .collect();
+            self.changes_at(&point)
+        });
+        let start = self.start(base).map(|point| self.changes_at(&point));
+        let ends = self.ends().map(|(_, _, changes)| changes);
+        start.into_iter().chain(ends).chain(spread)
+    }
+
+    /// The quantities that it goes by, of designs as they are drawn or as a `percent` of their members: where each is asked for.
+    pub(super) fn asked(&self, percent: bool) -> Vec<(String, &'static Quantity, Option<String>)> {
+        let goals = (0..).zip(&self.goals).filter_map(|(i, goal)| match goal {
+            Goal::Quantity(measure) => Some(("minimize", i, measure)),
+            Goal::Cost(_) => None,
+        });
+        let conditions = (0..).zip(&self.conditions);
+        let conditions = conditions.map(|(i, one)| ("subject_to", i, &one.measure));
+        let asked = goals.chain(conditions);
+        asked
+            .filter(|(.., measure)| measure.percent.is_some() == percent)
+            .map(|(list, i, measure)| {
+                let pointer = format!("/search/{list}/{i}/quantity");
+                (pointer, measure.quantity, None)
+            })
+            .collect()
+    }
+
     /// The path of a variable.
     pub(super) fn path_of(&self, variable: usize) -> &Pointer {
         &self.variables[variable].path
@@ -378,7 +417,7 @@ pub(super) fn confirming(method: Option<&Node>) -> Vec<(Pointer, Value)> {
 }
 
 /// Whether the method of this name sees the faces.
-pub(super) fn sees_faces(name: &Node) -> bool {
+pub(in crate::wire) fn sees_faces(name: &Node) -> bool {
     let mut methods = Method::OPTIONS.iter();
     methods.any(|(word, method, _)| {
         matches!(name, Node::Text(name) if name == word) && method.sees_faces()

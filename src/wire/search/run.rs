@@ -1,16 +1,12 @@
 //! A search under way: which rows come next, and what came of those that are there.
 
-use std::collections::BTreeMap;
-
 use meshwright_search::driver::Driver;
 use meshwright_search::outcome::{Outcome, best, front};
 use serde_json::{Map, Value};
 
-use super::measure::{Judged, distance};
-use super::{
-    ConfirmedDesign, FoundDesign, GenerationState, RefusalState, Role, Search, SearchEnd,
-    SearchState,
-};
+use super::measure::{Judged, distance, failed_share};
+use super::{ConfirmedDesign, FoundDesign, GenerationState, Role, Search, SearchEnd, SearchState};
+use crate::wire::refusals::Refusals;
 use crate::wire::study::{Design, Study};
 use crate::wire::study_table::{RowState, Summary};
 
@@ -25,7 +21,9 @@ pub struct Searching {
     generations: Vec<GenerationState>,
     /// Rows of generations that have ended.
     rows: u64,
-    refusals: BTreeMap<String, RefusalState>,
+    refusals: Refusals,
+    /// Why members of designs that could be had could not.
+    member_refusals: Refusals,
     /// The designs of the generation that is being looked at, and what came of the first of them.
     asked: Vec<Asked>,
     fresh: Vec<Outcome>,
@@ -51,13 +49,15 @@ struct Candidate {
     values: Map<String, Value>,
     goals: Vec<Option<f64>>,
     conditions: Vec<Option<f64>>,
+    failed_share: Option<f64>,
 }
 
 /// Rows of one design.
 struct Looked {
     row: u64,
     nominal: RowState,
-    members: Vec<Summary>,
+    /// None of those without results.
+    members: Vec<Option<Summary>>,
 }
 
 impl Searching {
@@ -71,7 +71,8 @@ impl Searching {
             outcomes: Vec::new(),
             generations: Vec::new(),
             rows: 0,
-            refusals: BTreeMap::new(),
+            refusals: Refusals::default(),
+            member_refusals: Refusals::default(),
             asked: Vec::new(),
             fresh: Vec::new(),
             looked: None,
@@ -174,7 +175,8 @@ impl Searching {
     pub fn tell(&mut self, row: RowState) {
         match &mut self.looked {
             Some(design) if matches!(Role::of_label(&row.label), Some(Role::Member(..))) => {
-                design.members.extend(row.summary);
+                self.member_refusals.note(row.problem.as_ref());
+                design.members.push(row.summary);
             }
             _ => {
                 self.finish_design();
@@ -233,6 +235,7 @@ impl Searching {
             nominal,
             members,
         } = looked;
+        self.refusals.note(nominal.problem.as_ref());
         let search = self.search();
         let values: Vec<f64> = search
             .variables
@@ -251,29 +254,14 @@ impl Searching {
                 }
             }
         };
-        if let Some(problem) = &nominal.problem {
-            self.note_refusal(problem);
-        }
         self.candidates.push(Candidate {
             row,
             values: changes,
             goals: judged.goals,
             conditions: judged.conditions,
+            failed_share: failed_share(&members),
         });
         judged.outcome
-    }
-
-    fn note_refusal(&mut self, problem: &Value) {
-        let text = |name: &str| problem[name].as_str().unwrap_or_default().to_owned();
-        let refusal = self
-            .refusals
-            .entry(text("code"))
-            .or_insert_with(|| RefusalState {
-                code: text("code"),
-                count: 0,
-                detail: text("detail"),
-            });
-        refusal.count += 1;
     }
 
     /// The best design once more, as it is to be confirmed; none where no design keeps every condition.
@@ -288,7 +276,6 @@ impl Searching {
     /// What came of the best design once more.
     pub fn confirm(&mut self, row: &RowState) {
         let search = self.search();
-        let about_members = |percent: Option<f64>| percent.is_some();
         let values: Vec<f64> = search
             .variables
             .iter()
@@ -303,23 +290,16 @@ impl Searching {
             .summary
             .as_ref()
             .map(|summary| search.judge(&values, summary, &[], self.study.gear()));
-        let conditions = judged
-            .as_ref()
-            .map_or_else(Vec::new, |judged| judged.conditions.clone());
-        let told = search
-            .conditions
-            .iter()
-            .all(|one| !about_members(one.measure.percent));
-        let feasible = judged.as_ref().and_then(|judged| match &judged.outcome {
-            Outcome::Computed { violations, .. } => {
-                Some(violations.iter().all(|violation| *violation == 0.0))
-            }
-            Outcome::Refused(_) => None,
-        });
+        let feasible = match &row.summary {
+            Some(summary) => search.is_kept_as_drawn(summary, self.study.gear()),
+            None => Some(false),
+        };
+        let (goals, conditions) =
+            judged.map_or_else(Default::default, |judged| (judged.goals, judged.conditions));
         self.confirmed = Some(ConfirmedDesign {
             row: self.rows,
-            feasible: feasible.filter(|_| told),
-            goals: judged.map_or_else(Vec::new, |judged| judged.goals),
+            feasible,
+            goals,
             conditions,
             error_estimate: row.summary.as_ref().and_then(Summary::error_estimate),
             problem: row.problem.clone(),
@@ -336,10 +316,15 @@ impl Searching {
                 feasible: self.outcomes[i].is_feasible(),
                 goals: candidate.goals.clone(),
                 conditions: candidate.conditions.clone(),
+                failed_share: candidate.failed_share,
             }
         };
-        let mut refusals: Vec<RefusalState> = self.refusals.values().cloned().collect();
-        refusals.sort_by(|a, b| b.count.cmp(&a.count).then(a.code.cmp(&b.code)));
+        let confirmed = self.confirmed.as_ref();
+        let has_failed = confirmed.is_some_and(|confirmed| confirmed.feasible == Some(false));
+        let best = best(&self.outcomes).map(found).map(|best| FoundDesign {
+            feasible: best.feasible && !has_failed,
+            ..best
+        });
         let front = if self.search().goals.len() > 1 {
             front(&self.outcomes)
         } else {
@@ -347,10 +332,11 @@ impl Searching {
         };
         SearchState {
             evaluations: self.candidates.len() as u64,
-            best: best(&self.outcomes).map(found),
+            best,
             front: front.into_iter().map(found).collect(),
             generations: self.generations.clone(),
-            refusals,
+            refusals: self.refusals.told(),
+            member_refusals: self.member_refusals.told(),
             ended_by: self.ended_by,
             confirmed: self.confirmed.clone(),
         }
@@ -360,9 +346,18 @@ impl Searching {
 impl SearchState {
     /// Why nothing was found, in a sentence; none if something was.
     pub fn why_nothing(&self) -> Option<String> {
-        let most = self.refusals.first().filter(|_| self.best.is_none())?;
+        if self.best.is_some() {
+            return None;
+        }
+        if let Some(most) = self.refusals.first() {
+            return Some(format!(
+                "None of the {} designs could be had; {} of them for one reason, {}: {}",
+                self.evaluations, most.count, most.code, most.detail
+            ));
+        }
+        let most = self.member_refusals.first()?;
         Some(format!(
-            "None of the {} designs could be had; {} of them for one reason, {}: {}",
+            "Of none of the {} designs enough members could be had; {} were not for one reason, {}: {}",
             self.evaluations, most.count, most.code, most.detail
         ))
     }

@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
-use crate::wire::problem::{Code, Problem};
+use crate::wire::problem::Problem;
+use crate::wire::refusals::RefusalState;
 use crate::wire::results::ErrorEstimateDocument;
 
 /// How far a search has come, as of its last generation that has ended.
@@ -24,6 +25,9 @@ pub struct SearchState {
     /// Why designs could not be had, the most common reason first.
     #[serde(default)]
     pub refusals: Vec<RefusalState>,
+    /// The same of members of designs that could be had.
+    #[serde(default)]
+    pub member_refusals: Vec<RefusalState>,
     /// Why no further designs are asked for; null while some are.
     #[serde(default)]
     pub ended_by: Option<SearchEnd>,
@@ -41,12 +45,16 @@ pub struct FoundDesign {
     /// The variables: JSON pointers and values.
     #[schema(value_type = Object)]
     pub values: Map<String, Value>,
-    /// Whether it keeps every condition.
+    /// Whether it keeps every condition; of the best design, whether it also does on the fine grid, once that has been computed.
     pub feasible: bool,
     /// Its goals, in the order of `minimize`.
     pub goals: Vec<Option<f64>>,
     /// What the conditions are about, in the order of `subject_to`.
     pub conditions: Vec<Option<f64>>,
+    /// The share of its members that could not be built or computed; null where it is not looked at over members. In a percentile such a member lies
+    /// beyond every number, in the direction that hurts; one that falls among them is null.
+    #[serde(default)]
+    pub failed_share: Option<f64>,
 }
 
 /// A generation of a search.
@@ -57,19 +65,6 @@ pub struct GenerationState {
     pub best: Option<f64>,
     /// The designs of the generation that keep every condition.
     pub feasible: u32,
-}
-
-/// Why some designs could not be had.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-#[schema(as = Refusal, title = "Refusal")]
-pub struct RefusalState {
-    /// The code of their problem.
-    #[schema(value_type = Code)]
-    pub code: String,
-    /// So many designs.
-    pub count: u64,
-    /// What was wrong with the first of them.
-    pub detail: String,
 }
 
 /// Why a search asks for no further designs.
@@ -91,7 +86,8 @@ pub enum SearchEnd {
 pub struct ConfirmedDesign {
     /// Its place in the table, from 0.
     pub row: u64,
-    /// Whether it keeps every condition there; null where conditions are about members, which are not computed again.
+    /// Whether it keeps every condition there, false where there are no results. Null where all that are about the design as it is drawn are
+    /// kept, and others are about members, which are not computed again.
     pub feasible: Option<bool>,
     /// Its goals there, in the order of `minimize`; null where they are about members.
     pub goals: Vec<Option<f64>>,

@@ -385,9 +385,11 @@ fn what_is_wrong_with_a_search_is_refused_with_its_place() {
         front("noise") => "/search/minimize/0/quantity", WrongType;
         with("minimize", json!([])) => "/search/minimize", MissingField;
         with("minimize", json!([{}])) => "/search/minimize/0", MissingField;
-        front("stress.driven.root_mpa") => "/search/minimize/0/quantity", MissingField;
-        front("face_load_factor") => "/search/minimize/0/quantity", NeedsThreeDimensions;
-        bounds(json!([{ "quantity": "face_load_factor", "at_most": 1.2 }])) => "/search/subject_to/0/quantity", NeedsThreeDimensions;
+        front("stress.driven.root_mpa") => "/search/minimize/0/quantity", QuantityNotTold;
+        front("hole_order_um") => "/search/minimize/0/quantity", QuantityNotTold;
+        front("dynamic_transmission_error_um.peak_to_peak") => "/search/minimize/0/quantity", QuantityNotTold;
+        front("face_load_factor") => "/search/minimize/0/quantity", QuantityNotTold;
+        bounds(json!([{ "quantity": "face_load_factor", "at_most": 1.2 }])) => "/search/subject_to/0/quantity", QuantityNotTold;
         with("minimize", json!([{ "quantity": RANGE, "percent": 95 }])) => "/search/minimize/0/percent", MissingField;
         with("minimize", json!([{ "cost": [{ "path": "/pair/center_distance_mm", "weight": 1 }] }]))
             => "/search/minimize/0/cost/0/path", UnknownField;
@@ -423,6 +425,250 @@ fn what_is_wrong_with_a_search_is_refused_with_its_place() {
             "{study}"
         );
     }
+}
+
+/// Holes of the driven gear of the standard pair on another circle, under one condition.
+fn circles(changes: &Value, condition: Value) -> Value {
+    json!({ "base": and(example("design-10r34"), changes), "search": {
+        "variables": [{ "path": "/pair/driven/blank/holes/circle_radius_mm", "low": 30, "high": 34.5 }],
+        "minimize": [{ "quantity": RANGE }],
+        "subject_to": [condition],
+        "evaluations": 12,
+    } })
+}
+
+#[test]
+fn a_bound_that_no_design_tells_is_refused_with_what_would_tell_it() {
+    let hole_stress = json!({ "quantity": "stress.driven.hole_mpa", "at_most": 20 });
+    let hole_order = json!({ "quantity": "hole_order_um", "at_most": 0.01 });
+    let one_period = json!({ "resolution": { "span_mesh_periods": 1 } });
+    let stressed = json!({ "stress": true, "output_torques_n_m": [115, 0] });
+    let place = "/search/subject_to/0/quantity";
+    for (study, expected, what) in [
+        // The method drops the stress, which no longer goes with it either.
+        (
+            circles(
+                &json!({ "method": "projected_decomposition", "stress": true }),
+                hole_stress.clone(),
+            ),
+            vec![place, "/base/stress"],
+            "flexible",
+        ),
+        (
+            circles(&json!({}), hole_stress.clone()),
+            vec![place],
+            "/base/stress",
+        ),
+        (
+            circles(&stressed, hole_stress.clone()),
+            vec![place],
+            "torque 0",
+        ),
+        (
+            circles(&one_period, hole_order.clone()),
+            vec![place],
+            "true period of 5 mesh periods",
+        ),
+        (
+            circles(
+                &json!({ "method": "load_distribution" }),
+                hole_order.clone(),
+            ),
+            vec![place],
+            "projected_decomposition",
+        ),
+    ] {
+        let problem = testing::study(&study).expect_err("it is refused");
+        let told: Vec<&str> = problem.errors.iter().map(|error| &*error.pointer).collect();
+        assert_eq!(told, expected, "{problem:?}");
+        for error in &problem.errors {
+            assert_eq!(error.code, Code::QuantityNotTold);
+            assert!(error.detail.contains(what), "{}", error.detail);
+        }
+    }
+    let told = json!({ "stress": true });
+    assert_eq!(testing::study(&circles(&told, hole_stress)).err(), None);
+    assert_eq!(
+        testing::study(&circles(&json!({}), hole_order.clone())).err(),
+        None
+    );
+
+    // Members that deviate have a longer period than the design as it is drawn.
+    let mut of_members = circles(
+        &json!({ "resolution": { "span_mesh_periods": 5 } }),
+        hole_order,
+    );
+    of_members["search"]["population"] =
+        json!({ "size": 4, "accuracy": { "driven": { "iso_1328_class": 6 } } });
+    of_members["search"]["minimize"][0]["percent"] = json!(50);
+    assert_eq!(
+        testing::study(&of_members).err(),
+        None,
+        "it is about the drawn design"
+    );
+    of_members["search"]["subject_to"][0]["percent"] = json!(50);
+    let problem = testing::study(&of_members).expect_err("members do not tell it");
+    assert_eq!(problem.errors[0].pointer, place);
+}
+
+#[test]
+fn a_design_without_holes_has_no_hole_order_and_one_that_does_not_tell_it_has_none_that_would_do() {
+    let at = |name: &str, changes: &Value| {
+        let submission = testing::parse(&and(example(name), changes));
+        let library = Library::with_capacity(1 << 20);
+        let results = solve(&submission.expect("valid"), &library, &Run::unattended());
+        Summary::of(&results.expect("computed")).expect("finite")
+    };
+    let bound = json!({ "quantity": "hole_order_um", "at_most": 0.01 });
+    let study = study(&circles(&json!({}), bound)).expect("a search");
+    let search = study.search().expect("it is one");
+    let solid = at("standard-pair", &json!({ "method": "load_distribution" }));
+    let judged = search.judge(&[34.0], &solid, &[], GearName::Driven);
+    assert_eq!(judged.conditions, [Some(0.0)], "there are no holes");
+    // One mesh period of five has no orders.
+    let partial = json!({ "method": "projected_decomposition",
+        "resolution": { "positions_per_mesh_period": 8, "grid": "coarse", "span_mesh_periods": 1 } });
+    let partial = at("design-10r34", &partial);
+    let judged = search.judge(&[34.0], &partial, &[], GearName::Driven);
+    assert_eq!(judged.conditions, [None]);
+    assert!(!judged.outcome.is_feasible());
+}
+
+/// A row of `design` in which the peak-to-peak value is this, or which has failed.
+fn told_row(design: &Design, range: Option<f64>) -> RowState {
+    use crate::wire::results::{Results, STUB};
+    let outcome = range
+        .ok_or_else(|| crate::wire::Problem::new(Code::NotConverged, "No contact."))
+        .and_then(|range| {
+            let mut results = Results::read(STUB).expect("a results document");
+            results.curves.truncate(1);
+            let values = &mut results.curves[0].statistics.transmission_error_um;
+            values.peak_to_peak = range;
+            Summary::of(&results)
+        });
+    RowState::computed(design.label.clone(), design.changes.clone(), outcome)
+}
+
+#[test]
+fn a_confirmation_that_fails_leaves_the_best_design_not_feasible() {
+    let bounded = |at_most: f64| {
+        let mut search = reliefs();
+        search["subject_to"] = json!([{ "quantity": RANGE, "at_most": at_most }]);
+        let mut search = searching(search);
+        let designs = asked(&mut search);
+        for design in &designs {
+            search.tell(told_row(design, Some(1.0)));
+        }
+        assert!(search.state().best.expect("a best one").feasible);
+        let confirmation = search.confirmation().expect("it is feasible");
+        (search, confirmation)
+    };
+    for (range, expected) in [(Some(1.9), true), (Some(2.1), false), (None, false)] {
+        let (mut search, confirmation) = bounded(2.0);
+        search.confirm(&told_row(&confirmation, range));
+        let state = search.state();
+        let confirmed = state.confirmed.expect("confirmed");
+        assert_eq!(confirmed.feasible, Some(expected), "{range:?}");
+        assert_eq!(state.best.expect("a best one").feasible, expected);
+        assert_eq!(confirmed.problem.is_some(), range.is_none());
+    }
+    // A condition about members is not looked at again, and one about the drawn design that fails beside it fails.
+    for (range, expected) in [(1.9, None), (2.1, Some(false))] {
+        let mut search = reliefs();
+        search["population"] =
+            json!({ "size": 2, "accuracy": { "driven": { "iso_1328_class": 6 } } });
+        search["subject_to"] = json!([
+            { "quantity": RANGE, "at_most": 2 }, { "quantity": RANGE, "at_most": 2, "percent": 50 },
+        ]);
+        let mut search = searching(search);
+        for design in asked(&mut search) {
+            search.tell(told_row(&design, Some(1.0)));
+        }
+        let confirmation = search.confirmation().expect("it is feasible");
+        search.confirm(&told_row(&confirmation, Some(range)));
+        assert_eq!(
+            search.state().confirmed.expect("confirmed").feasible,
+            expected
+        );
+    }
+}
+
+#[test]
+fn a_member_without_results_lies_beyond_every_bound_in_the_direction_that_hurts() {
+    // Of four members one fails. The median lies between the second and the third of the others whichever side it stands on; the 95th percentile,
+    // and the 5th where much is wanted, lie beside it.
+    let judged = |quantity: &str, bound: &str, percent: u32| {
+        let mut search = reliefs();
+        search["population"] =
+            json!({ "size": 4, "accuracy": { "driven": { "iso_1328_class": 6 } } });
+        search["minimize"] =
+            json!([{ "cost": [{ "path": "/pair/driving/tip_relief/amount_um", "weight": 1 }] }]);
+        let mut condition = json!({ "quantity": quantity, "percent": percent });
+        condition[bound] = json!(if bound == "at_most" { 1e6 } else { -1e6 });
+        search["subject_to"] = json!([condition]);
+        let mut search = searching(search);
+        let designs = asked(&mut search);
+        for design in &designs {
+            let failed = design.label.ends_with("member 2");
+            let range = 1.0 + f64::from(u8::from(design.label.ends_with("member 3")));
+            search.tell(told_row(design, (!failed).then_some(range)));
+        }
+        search.state()
+    };
+    for (bound, percent, kept) in [
+        ("at_most", 50, true),
+        ("at_most", 95, false),
+        ("at_least", 50, true),
+        ("at_least", 5, false),
+        ("at_least", 95, true),
+        ("at_most", 5, true),
+    ] {
+        let state = judged(RANGE, bound, percent);
+        let best = state.best.expect("a best one");
+        assert_eq!(best.feasible, kept, "{bound} p{percent}");
+        assert_eq!(best.conditions[0].is_some(), kept, "{bound} p{percent}");
+        assert_eq!(best.failed_share, Some(0.25));
+        let told = &state.member_refusals[0];
+        assert_eq!(
+            (&*told.code, &*told.detail),
+            ("not_converged", "No contact.")
+        );
+        assert!(state.refusals.is_empty(), "the designs themselves were had");
+    }
+    // 1, 1, 2 and what lies beyond: the median is 1.5; with it on the other side it is 1.
+    let median = |bound| {
+        judged(RANGE, bound, 50)
+            .best
+            .expect("a best one")
+            .conditions[0]
+    };
+    assert_eq!(
+        [median("at_most"), median("at_least")],
+        [Some(1.5), Some(1.0)]
+    );
+}
+
+#[test]
+fn a_goal_that_falls_among_members_without_results_is_null_and_not_feasible() {
+    let mut search = reliefs();
+    search["population"] = json!({ "size": 32, "accuracy": { "driven": { "iso_1328_class": 6 } } });
+    search["minimize"] = json!([{ "quantity": RANGE, "percent": 95 }]);
+    let mut search = searching(search);
+    // 15 of 32 fail.
+    for design in asked(&mut search) {
+        let failed = (0..15).any(|member| design.label.ends_with(&format!("member {member}")));
+        search.tell(told_row(&design, (!failed).then_some(1.0)));
+    }
+    let state = search.state();
+    assert_eq!(state.best, None);
+    assert!(
+        state
+            .generations
+            .iter()
+            .all(|generation| generation.feasible == 0)
+    );
+    let why = state.why_nothing().expect("nothing was found");
+    assert!(why.contains("not_converged"), "{why}");
 }
 
 #[test]

@@ -215,7 +215,7 @@ fn place_of_change(design: usize, path: &Pointer) -> String {
     format!("/designs/{design}/changes/{}", escaped(path.text()))
 }
 
-fn look_around(round: usize, run: &Run) -> Result<(), Problem> {
+pub(super) fn look_around(round: usize, run: &Run) -> Result<(), Problem> {
     if round.is_multiple_of(BETWEEN_LOOKS) {
         run.check()
             .map_err(|_| Problem::new(Code::Stopped, "Nobody waits for this study any more."))?;

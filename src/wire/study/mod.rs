@@ -12,6 +12,7 @@ mod constant_mass;
 mod document;
 mod faults;
 mod labels;
+mod prospects;
 mod schema;
 mod size;
 #[cfg(test)]

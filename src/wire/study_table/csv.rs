@@ -5,7 +5,7 @@ use super::row::{RowCurve, TableRow};
 use crate::wire::csv::CsvWriter;
 
 /// The columns behind the label and the changes.
-const FIXED: [&str; 10] = [
+const FIXED: [&str; 12] = [
     "job",
     "status",
     "method",
@@ -14,6 +14,8 @@ const FIXED: [&str; 10] = [
     "least_ligament_mm",
     "polar_inertia_kg_m2",
     "pair_mass_kg",
+    "contact_ratio",
+    "backlash_mm",
     "pareto",
     "output_torque_n_m",
 ];
@@ -32,6 +34,9 @@ const STRESSES: [&str; 8] = [
 
 /// How even the load is along the face, in the tables of studies that see it.
 const FACE_LOAD_FACTOR: &str = "face_load_factor";
+
+/// What holes alone make of their order, in the tables of studies whose teeth deviate.
+const HOLES_ALONE: &str = "hole_order_of_holes_um";
 
 /// The last columns.
 const LAST: [&str; 4] = [
@@ -78,7 +83,9 @@ impl CsvTable {
         }
         let stresses = STRESSES.into_iter().filter(|_| self.told.stress);
         let faces = [FACE_LOAD_FACTOR].into_iter().filter(|_| self.told.faces);
-        for name in stresses.chain(faces).chain(LAST) {
+        let alone = [HOLES_ALONE].into_iter();
+        let alone = alone.filter(|_| self.told.holes_alone);
+        for name in stresses.chain(faces).chain(alone).chain(LAST) {
             text.text(name);
         }
         text.end_line();
@@ -113,6 +120,8 @@ impl CsvTable {
             row.least_ligament_mm,
             row.polar_inertia_kg_m2,
             row.pair_mass_kg,
+            row.contact_ratio,
+            row.backlash_mm,
         ] {
             text.number(number);
         }
@@ -147,6 +156,9 @@ fn cells_of_curve(text: &mut CsvWriter, curve: Option<&RowCurve>, told: Told) {
     }
     if told.faces {
         text.number(curve.and_then(|curve| curve.face_load_factor));
+    }
+    if told.holes_alone {
+        text.number(curve.and_then(|curve| curve.hole_order_of_holes_um));
     }
     text.number(curve.and_then(|curve| curve.hole_order_um));
     text.number(curve.and_then(|curve| curve.mesh_order_um));

@@ -19,7 +19,7 @@ use super::warning::GearName;
 
 pub use self::csv::CsvTable;
 pub use pareto::{Outline, Told};
-pub(in crate::wire) use quantity::{Needs, Of, QUANTITIES, Quantity};
+pub(in crate::wire) use quantity::{Of, QUANTITIES, Quantity};
 pub use row::{RowCurve, RowState, TableRow};
 pub use summary::Summary;
 
@@ -71,6 +71,7 @@ pub fn csv(rows: &[TableRow]) -> String {
     let told = Told {
         stress: statistics.any(|statistics| statistics.stress.is_some()),
         faces: curves().any(|curve| curve.face_load_factor.is_some()),
+        holes_alone: curves().any(|curve| curve.hole_order_of_holes_um.is_some()),
     };
     let table = CsvTable::new(pointers, told);
     table.header() + &table.lines(rows)

@@ -24,6 +24,8 @@ pub struct Told {
     pub stress: bool,
     /// How even the load is along the face.
     pub faces: bool,
+    /// What holes alone make of their order.
+    pub holes_alone: bool,
 }
 
 impl Outline {
@@ -44,6 +46,7 @@ impl Outline {
         let summary = row.summary.as_ref();
         self.told.stress |= summary.is_some_and(Summary::has_stress);
         self.told.faces |= summary.is_some_and(Summary::has_faces);
+        self.told.holes_alone |= summary.is_some_and(Summary::has_holes_alone);
         self.rows += 1;
     }
 

@@ -1,7 +1,11 @@
 //! The numbers of a design by name: what populations tell and searches minimize.
 
+use meshwright_engine::analysis::Method;
+
 use super::summary::{CurveSummary, Summary};
+use crate::wire::declare::Choice as _;
 use crate::wire::results::{GearPeakStress, StatisticsValues};
+use crate::wire::submission::Submission;
 use crate::wire::warning::GearName;
 
 /// A number of a design.
@@ -12,9 +16,9 @@ pub(in crate::wire) struct Quantity {
     /// Where it stands.
     pub(in crate::wire) of: Of,
     /// What a submission has to have for it.
-    pub(in crate::wire) needs: Needs,
-    /// What it is as good as for a design that has none: the ligament beside holes that there are not.
-    pub(in crate::wire) absent: Option<f64>,
+    needs: &'static [Needs],
+    /// What it is as good as for a design that has none, such as the ligament beside holes that there are not. None where it is only not told.
+    pub(in crate::wire) absent: fn(&Summary) -> Option<f64>,
 }
 
 impl PartialEq for Quantity {
@@ -24,31 +28,80 @@ impl PartialEq for Quantity {
 }
 
 impl Quantity {
-    const fn needs(self, field: &'static str) -> Self {
-        let needs = Needs::Field(field);
+    const fn needs(self, needs: &'static [Needs]) -> Self {
         Self { needs, ..self }
     }
 
-    const fn needs_faces(self) -> Self {
-        let needs = Needs::Faces;
-        Self { needs, ..self }
-    }
-
-    const fn or(self, absent: f64) -> Self {
-        let absent = Some(absent);
+    const fn or(self, absent: fn(&Summary) -> Option<f64>) -> Self {
         Self { absent, ..self }
+    }
+
+    /// Whether it is a stress.
+    pub(in crate::wire) fn is_stress(&self) -> bool {
+        self.needs
+            .iter()
+            .any(|needs| matches!(needs, Needs::Stress))
+    }
+
+    /// What of `submission` stands against telling it, and what would tell it; none where it is told.
+    pub(in crate::wire) fn not_told(&self, submission: &Submission) -> Option<String> {
+        let mut needs = self.needs.iter();
+        needs.find_map(|needs| needs.unmet(submission))
     }
 }
 
 /// What a submission has to have for a number to be told.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::wire) enum Needs {
-    /// It is always told.
-    Nothing,
-    /// The field by which it is asked for.
-    Field(&'static str),
-    /// A method that sees the faces.
-    Faces,
+enum Needs {
+    /// Stresses that are asked for.
+    Stress,
+    /// A run-up that is asked for.
+    Dynamics,
+    /// One of some methods.
+    Method(fn(Method) -> bool),
+    /// A span of whole true periods, of which there is a spectrum.
+    WholePeriods,
+    /// Teeth that deviate.
+    Deviations,
+    /// No torque of 0.
+    Load,
+}
+
+impl Needs {
+    fn unmet(self, submission: &Submission) -> Option<String> {
+        let case = submission.case();
+        match self {
+            Self::Stress => {
+                (!case.stress).then(|| "the submission has to ask for it by /base/stress".to_owned())
+            }
+            Self::Dynamics => submission
+                .forces()
+                .is_none_or(|forces| forces.dynamics.is_none())
+                .then(|| "the submission has to ask for it by /base/dynamics".to_owned()),
+            Self::Method(tells) => (!tells(case.method)).then(|| {
+                let told = Method::OPTIONS.iter().filter(|(_, method, _)| tells(*method));
+                let told: Vec<&str> = told.map(|(word, ..)| *word).collect();
+                format!(
+                    "the method {} does not tell it; {} would",
+                    case.method.word(),
+                    told.join(", ")
+                )
+            }),
+            Self::WholePeriods => (!case.covers_whole_periods()).then(|| {
+                format!(
+                    "/base/resolution/span_mesh_periods is {}, a part of the true period of {} mesh periods; leave it out, or give whole periods",
+                    case.span(),
+                    case.pair.period()
+                )
+            }),
+            Self::Deviations => case.pair.is_as_drawn().then(|| {
+                "teeth do not deviate, so that it is hole_order_um; ask for that, or for a percent of a population with accuracy".to_owned()
+            }),
+            Self::Load => case.output_torques.contains(&0.0).then(|| {
+                "there is none at the torque 0; leave it out of /base/output_torques_n_m".to_owned()
+            }),
+        }
+    }
 }
 
 /// Where a number of a design stands.
@@ -72,10 +125,17 @@ const fn quantity(name: &'static str, of: Of) -> Quantity {
     Quantity {
         name,
         of,
-        needs: Needs::Nothing,
-        absent: None,
+        needs: &[],
+        absent: |_| None,
     }
 }
+
+/// What stresses need.
+const STRESS: &[Needs] = &[
+    Needs::Method(Method::tells_stress),
+    Needs::Stress,
+    Needs::Load,
+];
 
 /// Every number that has a name.
 pub(in crate::wire) const QUANTITIES: &[Quantity] = &[
@@ -97,30 +157,40 @@ pub(in crate::wire) const QUANTITIES: &[Quantity] = &[
     curve("mesh_stiffness_tangent_n_per_m.peak_to_peak", |curve, _| {
         Some(stiffness(curve)?.peak_to_peak)
     }),
-    curve("hole_order_um", CurveSummary::hole_order).or(0.0),
-    curve("mesh_order_um", |curve, _| curve.mesh_order()),
+    curve("hole_order_um", CurveSummary::hole_order)
+        .needs(&[Needs::Method(Method::sees_holes), Needs::WholePeriods])
+        .or(|design| {
+            let none = design.driving.has_no_holes() && design.driven.has_no_holes();
+            none.then_some(0.0)
+        }),
+    curve("hole_order_of_holes_um", CurveSummary::hole_order_of_holes).needs(&[
+        Needs::Method(Method::sees_holes),
+        Needs::WholePeriods,
+        Needs::Deviations,
+    ]),
+    curve("mesh_order_um", |curve, _| curve.mesh_order()).needs(&[Needs::WholePeriods]),
     curve("peak_contact_pressure_mpa", |curve, _| {
         curve.peak_contact_pressure_mpa
     })
-    .or(f64::INFINITY),
+    .or(|_| Some(f64::INFINITY)),
     curve("stress.driving.root_mpa", |curve, _| {
         Some(stress(curve, GearName::Driving)?.root_mpa)
     })
-    .needs("stress"),
+    .needs(STRESS),
     curve("stress.driving.hole_mpa", |curve, _| {
         stress(curve, GearName::Driving)?.hole_mpa
     })
-    .needs("stress")
-    .or(0.0),
+    .needs(STRESS)
+    .or(|design| design.driving.has_no_holes().then_some(0.0)),
     curve("stress.driven.root_mpa", |curve, _| {
         Some(stress(curve, GearName::Driven)?.root_mpa)
     })
-    .needs("stress"),
+    .needs(STRESS),
     curve("stress.driven.hole_mpa", |curve, _| {
         stress(curve, GearName::Driven)?.hole_mpa
     })
-    .needs("stress")
-    .or(0.0),
+    .needs(STRESS)
+    .or(|design| design.driven.has_no_holes().then_some(0.0)),
     pair("mass_kg.driving", |design| design.driving.mass_kg),
     pair("mass_kg.driven", |design| design.driven.mass_kg),
     pair("mass_removed_percent.driving", |design| {
@@ -132,18 +202,19 @@ pub(in crate::wire) const QUANTITIES: &[Quantity] = &[
     pair("least_ligament_mm.driving", |design| {
         design.driving.least_ligament_mm
     })
-    .or(f64::INFINITY),
+    .or(|_| Some(f64::INFINITY)),
     pair("least_ligament_mm.driven", |design| {
         design.driven.least_ligament_mm
     })
-    .or(f64::INFINITY),
+    .or(|_| Some(f64::INFINITY)),
     pair("contact_ratio", |design| design.contact_ratio),
     pair("backlash_mm", |design| design.backlash_mm),
     curve("dynamic_transmission_error_um.peak_to_peak", |curve, _| {
         curve.dynamic_peak_to_peak_um
     })
-    .needs("dynamics"),
-    curve("face_load_factor", |curve, _| curve.face_load_factor).needs_faces(),
+    .needs(&[Needs::Dynamics]),
+    curve("face_load_factor", |curve, _| curve.face_load_factor)
+        .needs(&[Needs::Method(Method::sees_faces), Needs::Load]),
 ];
 
 fn ste(curve: &CurveSummary) -> Option<&StatisticsValues> {

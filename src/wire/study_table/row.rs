@@ -82,6 +82,10 @@ pub struct TableRow {
     pub polar_inertia_kg_m2: Option<f64>,
     /// The mass of both gears, in kg.
     pub pair_mass_kg: Option<f64>,
+    /// The contact ratio, as in the results.
+    pub contact_ratio: Option<f64>,
+    /// The backlash, in mm, as in the results.
+    pub backlash_mm: Option<f64>,
     /// Whether no other design of the study is at least as good in everything and better in something, of those that
     /// were computed by the same method at the same torques so far. Compared are the mass of both gears (less is
     /// better), the largest peak-to-peak transmission error over the torques (less), and the mean tangent stiffness,
@@ -111,6 +115,9 @@ pub struct RowCurve {
     /// The amplitude of the transmission error at the order of the holes, H_N, in um. Where the holes of both gears make
     /// different orders it is that of the study's gear. Null without holes or spectrum.
     pub hole_order_um: Option<f64>,
+    /// What the holes alone make of it, in um: where teeth deviate, pitch errors and runout have a part in that order too. Absent where none deviate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hole_order_of_holes_um: Option<f64>,
     /// The amplitude of the transmission error at the mesh order, H_Z2, in um; null without spectrum.
     pub mesh_order_um: Option<f64>,
     /// K_Hbeta, the load of the heaviest of ten strips of the face over the mean; absent for methods that do not see the face, and at torque 0.
@@ -132,6 +139,8 @@ impl TableRow {
             job: state.job,
             status: state.status,
             pair_mass_kg: summary.pair_mass(),
+            contact_ratio: summary.contact_ratio,
+            backlash_mm: summary.backlash_mm,
             method: summary.method,
             mass_kg: own.mass_kg,
             mass_removed_percent: own.mass_removed_percent,
@@ -152,6 +161,7 @@ impl RowCurve {
     fn of(gear: GearName, curve: CurveSummary) -> Self {
         Self {
             hole_order_um: curve.hole_order(gear),
+            hole_order_of_holes_um: curve.hole_order_of_holes(gear),
             mesh_order_um: curve.mesh_order(),
             output_torque_n_m: curve.output_torque_n_m,
             face_load_factor: curve.face_load_factor,

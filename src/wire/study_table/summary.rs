@@ -61,6 +61,9 @@ pub(in crate::wire) struct CurveSummary {
     pub(super) face_load_factor: Option<f64>,
     /// Amplitudes of the transmission error, in um, by the names of their orders.
     pub(super) orders: BTreeMap<String, f64>,
+    /// Those that the holes alone make, where teeth deviate.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    orders_of_holes: BTreeMap<String, f64>,
 }
 
 /// Method and torques: what has to be the same for a comparison to mean something.
@@ -112,6 +115,10 @@ impl Summary {
 }
 
 impl GearSummary {
+    pub(super) fn has_no_holes(&self) -> bool {
+        self.least_ligament_mm.is_none()
+    }
+
     fn of(gear: &GearGeometry) -> Self {
         Self {
             mass_kg: Some(gear.mass_kg),
@@ -140,6 +147,10 @@ impl CurveSummary {
                 .and_then(|pressures| pressures.into_iter().reduce(f64::max)),
             dynamic_peak_to_peak_um: ranges.copied().reduce(f64::max),
             face_load_factor: curve.face.as_ref().map(|face| face.face_load_factor),
+            orders_of_holes: shown
+                .clone()
+                .filter_map(|line| Some((line.label.clone(), line.transmission_error_of_holes_um?)))
+                .collect(),
             orders: shown
                 .map(|line| (line.label.clone(), line.transmission_error_um))
                 .collect(),
@@ -150,18 +161,27 @@ impl CurveSummary {
 impl CurveSummary {
     /// The amplitude at the order of the holes; where both gears make an order of their own, that of `gear`.
     pub(super) fn hole_order(&self, gear: GearName) -> Option<f64> {
-        let own = match gear {
-            GearName::Driving => DRIVING_HOLE_ORDER,
-            GearName::Driven => DRIVEN_HOLE_ORDER,
-        };
-        let found = self.orders.get(HOLE_ORDER).or_else(|| self.orders.get(own));
-        found.copied()
+        of_holes(&self.orders, gear)
+    }
+
+    /// What the holes alone make of it, where teeth deviate.
+    pub(super) fn hole_order_of_holes(&self, gear: GearName) -> Option<f64> {
+        of_holes(&self.orders_of_holes, gear)
     }
 
     /// The amplitude at the mesh order.
     pub(super) fn mesh_order(&self) -> Option<f64> {
         self.orders.get(MESH_ORDER).copied()
     }
+}
+
+/// The amplitude at the order of the holes; where both gears make an order of their own, that of `gear`.
+fn of_holes(orders: &BTreeMap<String, f64>, gear: GearName) -> Option<f64> {
+    let own = match gear {
+        GearName::Driving => DRIVING_HOLE_ORDER,
+        GearName::Driven => DRIVEN_HOLE_ORDER,
+    };
+    orders.get(HOLE_ORDER).or_else(|| orders.get(own)).copied()
 }
 
 impl Summary {
@@ -187,6 +207,12 @@ impl Summary {
             .iter()
             .filter_map(|curve| curve.statistics.as_ref());
         statistics.any(|statistics| statistics.stress.is_some())
+    }
+
+    /// Whether it tells what holes alone make.
+    pub(super) fn has_holes_alone(&self) -> bool {
+        let mut curves = self.curves.iter();
+        curves.any(|curve| !curve.orders_of_holes.is_empty())
     }
 
     /// Whether it tells how even the load is along the face.

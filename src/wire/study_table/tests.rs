@@ -204,16 +204,16 @@ fn the_csv_has_a_line_for_each_row_and_torque_and_names_joined_by_dots() {
         lines,
         [
             "label,changes./pair/driven/blank/holes/count,changes./method,job,status,method,mass_kg,mass_removed_percent,\
-             least_ligament_mm,polar_inertia_kg_m2,pair_mass_kg,pareto,output_torque_n_m,\
+             least_ligament_mm,polar_inertia_kg_m2,pair_mass_kg,contact_ratio,backlash_mm,pareto,output_torque_n_m,\
              statistics.transmission_error_um.mean,statistics.transmission_error_um.rms,\
              statistics.transmission_error_um.peak_to_peak,statistics.mesh_stiffness_tangent_n_per_m.mean,\
              statistics.mesh_stiffness_tangent_n_per_m.rms,statistics.mesh_stiffness_tangent_n_per_m.peak_to_peak,\
              hole_order_um,mesh_order_um,problem.code,problem.detail",
-            "10R34,10,flexible,00000000-0000-0000-0000-000000000000,successful,flexible,0.9,25.0,5.5,0.0009,1.9,true,\
+            "10R34,10,flexible,00000000-0000-0000-0000-000000000000,successful,flexible,0.9,25.0,5.5,0.0009,1.9,1.61,0.34,true,\
              115.0,13.79,0.38,1.7,220000000.0,24000000.0,68000000.0,0.31,0.42,,",
-            "10R34,10,flexible,00000000-0000-0000-0000-000000000000,successful,flexible,0.9,25.0,5.5,0.0009,1.9,true,\
+            "10R34,10,flexible,00000000-0000-0000-0000-000000000000,successful,flexible,0.9,25.0,5.5,0.0009,1.9,1.61,0.34,true,\
              20.0,13.79,0.38,2.5,220000000.0,24000000.0,68000000.0,,,,",
-            "\"a, \"\"b\"\"\",,,,failed,,,,,,,false,,,,,,,,,,holes_overlap,\"Too many, \"\"far\"\" too many.\"",
+            "\"a, \"\"b\"\"\",,,,failed,,,,,,,,,false,,,,,,,,,,holes_overlap,\"Too many, \"\"far\"\" too many.\"",
             "",
         ]
     );
@@ -282,6 +282,32 @@ fn the_load_along_the_face_is_told_by_those_who_see_it() {
     assert!(json[1]["curves"][0].get("face_load_factor").is_none());
     let plane = csv(&table(GearName::Driven, vec![plain]));
     assert!(!plane.contains("face_load_factor"));
+}
+
+#[test]
+fn what_holes_alone_make_stands_beside_their_order_where_teeth_deviate() {
+    let mut document = document(0.9, [1.7, 2.5], 2.2e8);
+    document["curves"][0]["spectrum"]["named"][0]["transmission_error_of_holes_um"] = json!(0.12);
+    let mut deviating = state("deviating", 0.9, [1.7, 2.5], 2.2e8);
+    deviating.summary = Some(summary(&document));
+    // It is kept with the row.
+    let kept = deviating.summary.as_ref().expect("computed").to_json();
+    deviating.summary = serde_json::from_str(&kept).expect("the same");
+    let plain = state("plain", 0.9, [1.7, 2.5], 2.2e8);
+    let rows = table(GearName::Driven, vec![deviating, plain.clone()]);
+    let json = serde_json::to_value(&rows).expect("JSON");
+    assert_eq!(json[0]["curves"][0]["hole_order_of_holes_um"], 0.12);
+    assert_eq!(json[0]["curves"][0]["hole_order_um"], 0.31);
+    assert!(json[1]["curves"][0].get("hole_order_of_holes_um").is_none());
+    let text = csv(&rows);
+    assert_eq!(
+        column(&text, "hole_order_of_holes_um"),
+        ["0.12", "", "", ""]
+    );
+    assert_eq!(column(&text, "contact_ratio"), ["1.61"; 4]);
+    assert_eq!(column(&text, "backlash_mm"), ["0.34"; 4]);
+    let as_drawn = csv(&table(GearName::Driven, vec![plain]));
+    assert!(!as_drawn.contains("hole_order_of_holes_um"));
 }
 
 #[test]

@@ -1,10 +1,11 @@
 //! Whether the fields of a submission go together: torques, interface, span, forces and size.
 
+use meshwright_engine::analysis::Method;
 use meshwright_engine::gear::{GearPair, SpurGear};
 
 use super::Purpose;
 use super::document::{Document, OUTPUT_TORQUE};
-use crate::wire::declare::Errors;
+use crate::wire::declare::{Choice as _, Errors};
 use crate::wire::forces::{DynamicsQuestion, ForceTableQuestion, SpeedRange};
 use crate::wire::problem::{Code, FieldError};
 use crate::wire::resolution::{ContactSolverDocument, ResolutionDocument};
@@ -26,6 +27,24 @@ impl Document {
         for (i, &torque) in self.output_torques_n_m.iter().enumerate() {
             let pointer = format!("/{}/{i}", Self::output_torques_n_m.name);
             refuse_large_torque(pair, torque, pointer, errors);
+        }
+    }
+
+    /// Refuses stresses that the method does not tell.
+    pub(super) fn check_stress(&self, errors: &Errors) {
+        if self.stress && !self.method.tells_stress() {
+            let pointer = format!("/{}", Self::stress.name);
+            let told = Method::OPTIONS.iter();
+            let told: Vec<&str> = told
+                .filter(|(_, method, _)| method.tells_stress())
+                .map(|(word, ..)| *word)
+                .collect();
+            let detail = format!(
+                "{pointer} is asked for, and the method {} does not tell it; {} do.",
+                self.method.word(),
+                told.join(" and ")
+            );
+            errors.push(FieldError::new(pointer, Code::QuantityNotTold, detail));
         }
     }
 

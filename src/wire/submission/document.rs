@@ -43,8 +43,8 @@ document! {
             number("Speed of the driving gear", "1/min", 1e-3, 1e6),
             "no frequencies beside the orders",
         ),
-        /// Whether the methods `flexible` and `three_dimensional` also tell the largest von Mises stress at the tensile root fillets and
-        /// at the edges of the holes, position by position, and where it is.
+        /// Whether the largest von Mises stress at the tensile root fillets and at the edges of the holes is told too, position by position, and
+        /// where it is. The methods `flexible` and `three_dimensional` tell it; with another one it is refused.
         pub(super) stress: bool = flag("Stress", false),
         /// The rows in which three dimensions tell the load along the face.
         pub(super) face_load: FaceRows = word("Load along the face").or(FaceRows::Mean),

@@ -101,6 +101,7 @@ impl Document {
             Some(solid) => solid.section().clone(),
             None => self.pair.to_pair(errors)?,
         };
+        self.check_stress(errors);
         self.check_torques(&pair, errors);
         self.check_interface(&pair, errors);
         self.check_span(&pair, errors);

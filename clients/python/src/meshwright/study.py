@@ -91,6 +91,7 @@ class PopulationTable:
 
 def _spread(quantity: dict[str, Any]) -> dict[str, Any]:
     line = {name: quantity[name] for name in ("name", "output_torque_n_m", "count", "mean", "standard_deviation", "smallest", "largest")}
+    line["failed_share"] = quantity.get("failed_share")
     for percentile in quantity["percentiles"]:
         name = f"p{percentile['percent']:g}"
         line |= {name: percentile["value"], f"{name}_low": percentile["low"], f"{name}_high": percentile["high"]}
@@ -98,7 +99,7 @@ def _spread(quantity: dict[str, Any]) -> dict[str, Any]:
 
 
 def _lines(row: dict[str, Any]) -> list[dict[str, Any]]:
-    own = {name: row.get(name) for name in ("label", "status", "pareto", "mass_kg", "mass_removed_percent", "least_ligament_mm", "pair_mass_kg")}
+    own = {name: row.get(name) for name in ("label", "status", "pareto", "mass_kg", "mass_removed_percent", "least_ligament_mm", "pair_mass_kg", "contact_ratio", "backlash_mm")}
     own["problem"] = row["problem"]["detail"] if row.get("problem") else None
     lines = []
     for curve in row["curves"] or [{}]:
@@ -114,6 +115,7 @@ def _lines(row: dict[str, Any]) -> list[dict[str, Any]]:
                 "peak_to_peak_um": ste.get("peak_to_peak"),
                 "mean_stiffness_n_per_m": stiffness.get("mean"),
                 "hole_order_um": curve.get("hole_order_um"),
+                "hole_order_of_holes_um": curve.get("hole_order_of_holes_um"),
                 "mesh_order_um": curve.get("mesh_order_um"),
             }
         )
