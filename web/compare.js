@@ -94,7 +94,7 @@ export class Compare {
 
   /** A line for each quantity that any of the designs tells, the best of designs at one torque marked. */
   #quantities(designs) {
-    const columns = designs.flatMap(({ results }) => results.curves.map((curve) => ({ curve, results })));
+    const columns = designs.flatMap(({ results }, i) => results.curves.map((curve) => ({ curve, results, live: i === 0 })));
     const stressed = columns.some(({ curve }) => curve.stress);
     const alongFaces = columns.some(({ curve }) => curve.face);
     return QUANTITIES.filter(([name]) => (stressed || !STRESSES.includes(name)) && (alongFaces || name !== "K_Hβ")).map(([name, unit, read, print, less]) => {
@@ -102,7 +102,7 @@ export class Compare {
       const cells = columns.map(({ curve: { output_torque_n_m: torque } }, i) => {
         const rivals = values.filter((value, k) => value !== undefined && columns[k].curve.output_torque_n_m === torque);
         const best = values[i] !== undefined && isBest(values[i], rivals, less);
-        return h("td", { className: best ? "best" : "" }, values[i] === undefined ? "–" : print(values[i]), best ? h("span", { className: "visually-hidden" }, " best") : null);
+        return h("td", { className: [best ? "best" : "", columns[i].live ? "live" : ""].join(" ").trim() }, values[i] === undefined ? "–" : print(values[i]), best ? h("span", { className: "visually-hidden" }, " best") : null);
       });
       return h("tr", {}, h("th", { scope: "row" }, name, unit ? h("small", {}, ` ${unit}`) : null), ...cells);
     });

@@ -158,7 +158,7 @@ export async function benchSteps(service) {
     await page.locator("#start").selectOption("standard-pair");
     await changed(page, "p-p", long);
     await tab(page, "jobs");
-    const row = page.locator("#jobs tbody tr", { hasText: "successful" }).first();
+    const row = page.locator("#jobs-list tbody tr", { hasText: "successful" }).first();
     await row.waitFor();
     previews.length = 0;
     await row.locator("button", { hasText: "Open" }).click();
@@ -407,7 +407,7 @@ export async function benchSteps(service) {
       assert.ok(bytes.length > 3000, `${kind} has ${bytes.length} bytes`);
     }
     await tab(page, "jobs");
-    await page.locator("#jobs tbody tr", { hasText: "successful" }).first().locator("button", { hasText: "More files" }).click();
+    await page.locator("#jobs-list tbody tr", { hasText: "successful" }).first().locator("button", { hasText: "More files" }).click();
     const { name, bytes } = await downloaded(page, () => page.locator("#jobs button", { hasText: "Run-up, CSV" }).first().click());
     assert.match(name, /run-up\.csv$/);
     assert.match(bytes.toString(), /contact_lost/);
@@ -1050,12 +1050,12 @@ export async function benchSteps(service) {
     page.on("request", (request) => { if (/v1\/preview$/.test(request.url())) asked.push(request.url()); });
     await open(page, service);
     await tab(page, "jobs");
-    const rows = page.locator("#jobs tbody tr");
+    const rows = page.locator("#jobs-list tbody tr");
     const submit = async (words) => {
       const made = page.waitForResponse((answer) => answer.url().endsWith("/v1/jobs") && answer.request().method() === "POST");
       await page.locator("#jobs button.primary").click();
       await made;
-      await page.waitForFunction((text) => document.querySelector("#jobs tbody .of-design")?.innerText.replace(/\s+/g, " ").includes(text), words);
+      await page.waitForFunction((text) => document.querySelector("#jobs-list tbody .of-design")?.innerText.replace(/\s+/g, " ").includes(text), words);
     };
     // Other tags are no other design: nothing is computed again for them.
     asked.length = 0;
@@ -1069,7 +1069,7 @@ export async function benchSteps(service) {
     await submit("50/50, 8×r7.5@34 flexible the design on the page");
     // The one of before differs by what has been changed since, and by nothing that is a default.
     const words = async (index) => (await rows.nth(index).locator(".of-design").innerText()).replace(/\s+/g, " ");
-    await page.waitForFunction(() => /Number of holes/.test(document.querySelectorAll("#jobs tbody .of-design")[1].innerText));
+    await page.waitForFunction(() => /Number of holes/.test(document.querySelectorAll("#jobs-list tbody .of-design")[1].innerText));
     assert.match(await words(1), /^as built, 10 holes .*flexible (Number of holes, driven gear 10; Output torques 115|Output torques 115; Number of holes, driven gear 10)$/);
     await axe(page);
     // It is opened with its tags, and is the design on the page then.
@@ -1083,7 +1083,7 @@ export async function benchSteps(service) {
     await changing(page, async () => (await field(page, `${HOLES}`)).selectOption({ index: 0 }));
     assert.equal(await page.locator("#position").getAttribute("max"), "1");
     await changing(page, () => page.locator("#undo").click());
-    await page.waitForFunction(() => /the design on the page/.test(document.querySelectorAll("#jobs tbody .of-design")[1].innerText) && /Number of holes, driven gear 8/.test(document.querySelectorAll("#jobs tbody .of-design")[0].innerText));
+    await page.waitForFunction(() => /the design on the page/.test(document.querySelectorAll("#jobs-list tbody .of-design")[1].innerText) && /Number of holes, driven gear 8/.test(document.querySelectorAll("#jobs-list tbody .of-design")[0].innerText));
     // Those of studies stand there when they are wanted; there are more than a page of all.
     const before = await rows.count();
     await page.locator("#jobs-of-studies").check();
@@ -1093,12 +1093,12 @@ export async function benchSteps(service) {
     await older.waitFor();
     assert.equal(await rows.count(), 20);
     await older.click();
-    await page.waitForFunction(() => document.querySelectorAll("#jobs tbody tr").length > 20);
+    await page.waitForFunction(() => document.querySelectorAll("#jobs-list tbody tr").length > 20);
     await page.locator("#jobs-of-studies").uncheck();
-    await page.waitForFunction((count) => document.querySelectorAll("#jobs tbody tr").length === count, before);
+    await page.waitForFunction((count) => document.querySelectorAll("#jobs-list tbody tr").length === count, before);
     // A phone has no room for columns.
     await page.setViewportSize({ width: 390, height: 844 });
-    assert.equal(await page.locator("#jobs .scroll").evaluate((scroll) => scroll.scrollWidth - scroll.clientWidth), 0);
+    assert.equal(await page.locator("#jobs-list").evaluate((scroll) => scroll.scrollWidth - scroll.clientWidth), 0);
   });
 
   await step("a link is copied where pages may not use the clipboard, or it says that it is not", service, async (page) => {
