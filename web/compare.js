@@ -2,7 +2,7 @@
 
 import { extent, h, fixed, number } from "./dom.js";
 import { differences, told } from "./design.js";
-import { csvOf, save } from "./download.js";
+import { csvOf, fileOfDesign, save } from "./download.js";
 import { largest, largestStress } from "./headline.js";
 import { looks } from "./charts.js";
 
@@ -53,7 +53,7 @@ export class Compare {
     this.note = h("p", { className: "note" });
     const button = (name, id, work) => h("button", { type: "button", id, on: { click: work } }, name);
     place.append(this.table, this.note, h("div", { className: "buttons wrap" },
-      button("Compare methods", "methods", onMethods), button("Table as CSV", "table-csv", () => save("meshwright-designs.csv", "text/csv", designsCsv(this.designs)))));
+      button("Compare methods", "methods", onMethods), button("Table as CSV", "table-csv", () => save(fileOfDesign(this.designs[0].name, "designs.csv"), "text/csv", designsCsv(this.designs)))));
   }
 
   /** Shows `designs`, the live one first. */
@@ -76,7 +76,7 @@ export class Compare {
   /** The name of a design over its columns, and what can be done with a kept one. */
   #head(design, i, colors) {
     const swatch = h("span", { className: "swatch" });
-    swatch.style.borderColor = colors.series[design.look % 7];
+    swatch.style.borderColor = colors.series(design.look);
     const { curves, method } = design.results;
     const how = h("small", {}, `${method.replace(/_/g, " ")}${curves[0].statistics.partial ? ", partial" : ""}`);
     const span = { colSpan: curves.length, scope: curves.length > 1 ? "colgroup" : "col" };

@@ -3,6 +3,7 @@
 import { follow, hasEnded, json, post, ProblemError, request } from "./api.js";
 import { differences, nameOf, told } from "./design.js";
 import { debounced, h, number } from "./dom.js";
+import { fileOfDesign } from "./download.js";
 import { filesOf, saveFile } from "./files.js";
 import { read } from "./inputs.js";
 
@@ -169,7 +170,7 @@ export function jobs(place, design, form, onOpen, onStudy) {
     const address = `v1/jobs/${job.id}`;
     const button = (name, work) => h("button", { type: "button", on: { click: () => act(work) }, ariaLabel: `${name} ${job.id.slice(-6)}` }, name);
     // A file changes no job: the rows stay as they are under the pointer.
-    const file = (words, name) => h("button", { type: "button", ariaLabel: `${words} ${job.id.slice(-6)}`, on: { click: () => attempt(() => saveFile(job.id, name, job.id)) } }, words);
+    const file = (words, name) => h("button", { type: "button", ariaLabel: `${words} ${job.id.slice(-6)}`, on: { click: () => attempt(() => saveFile(job.id, name, fileOfDesign(documents.has(job.id) ? nameOf(documents.get(job.id)) : "", `${job.id.slice(-6)}-`))) } }, words);
     const open = async () => onOpen((await json(address)).submission, job.status === "successful" ? await json(`${address}/results`) : null);
     // What else there is depends on what was asked for.
     const more = h("button", { type: "button", ariaLabel: `More files of ${job.id.slice(-6)}`, on: { click: () => attempt(async () => {

@@ -8,7 +8,7 @@ import { Compare } from "./compare.js";
 import { isSolid, needsSolid } from "./dimensions.js";
 import { Design, fromFragment, nameOf, same, toFragment } from "./design.js";
 import { Deformation } from "./deformed.js";
-import { save } from "./download.js";
+import { fileOfDesign, save } from "./download.js";
 import { Drawing, indexAt } from "./drawing.js";
 import { exporting } from "./export.js";
 import { cured, wordsOfCure } from "./face.js";
@@ -392,7 +392,7 @@ async function openFilled(submission, results) {
 
 function keep(entry) {
   const taken = design.kept.map(({ look }) => look);
-  const look = [1, 2, 3, 4, 5, 6].find((each) => !taken.includes(each)) ?? 1 + (design.kept.length % 6);
+  const look = Array.from({ length: taken.length + 1 }, (_, i) => i + 1).find((each) => !taken.includes(each));
   const names = design.kept.map(({ name }) => name);
   const name = [entry.name, ...Array.from({ length: 99 }, (_, i) => `${entry.name} (${i + 2})`)].find((each) => !names.includes(each));
   design.keep([...design.kept, { ...entry, name, look }]);
@@ -436,11 +436,16 @@ async function print() {
   window.print();
 }
 
+// However somebody prints, a report comes of it: of the design, or where that is not computed yet of the one before, under its name.
+addEventListener("beforeprint", () => {
+  if (live && form) byId("sheet").replaceChildren(sheet(live));
+});
+
 async function picture(kind) {
   const page = await report();
   if (!page) return;
-  if (kind === "svg") save("meshwright-report.svg", "image/svg+xml", fileOf(page));
-  else save("meshwright-report.png", "image/png", await pictureOf(page));
+  if (kind === "svg") save(fileOfDesign(live.name, "report.svg"), "image/svg+xml", fileOf(page));
+  else save(fileOfDesign(live.name, "report.png"), "image/png", await pictureOf(page));
 }
 
 async function share() {
@@ -491,6 +496,10 @@ function setUpButtons() {
   addEventListener("keydown", (event) => {
     if (!(event.ctrlKey || event.metaKey) || event.altKey || event.target.closest("textarea, dialog")) return;
     const key = event.key.toLowerCase();
+    if (key === "p" && live && form) {
+      event.preventDefault();
+      return void print();
+    }
     const work = key === "z" ? (event.shiftKey ? "redo" : "undo") : key === "y" ? "redo" : null;
     if (!work) return;
     event.preventDefault();

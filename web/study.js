@@ -4,7 +4,7 @@
 import { json, request } from "./api.js";
 import { h, fixed, number } from "./dom.js";
 import { at, nameOf, withValue } from "./design.js";
-import { save } from "./download.js";
+import { fileOfDesign, save } from "./download.js";
 import { figure } from "./figure.js";
 import { allGiven, given, numeric } from "./inputs.js";
 import { offer } from "./offer.js";
@@ -97,7 +97,7 @@ export function study(place, design, form, onOpen) {
   function show(results, address) {
     last = results;
     draw(results);
-    const csv = h("button", { type: "button", on: { click: async () => save("study.csv", "text/csv", await (await request(`${address}/results/table.csv`)).blob()) } }, "Table as CSV");
+    const csv = h("button", { type: "button", on: { click: async () => save(fileOfDesign(results.name ?? "", "study.csv"), "text/csv", await (await request(`${address}/results/table.csv`)).blob()) } }, "Table as CSV");
     out.replaceChildren(h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Designs of the study" }, tableOf(results.rows)), h("div", { className: "buttons" }, csv));
   }
 

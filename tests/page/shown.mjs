@@ -223,4 +223,219 @@ export async function shownSteps(service) {
     assert.equal((await designOf(page)).pair.center_distance_mm, 104.2);
     assert.equal(await page.locator("#form .field-offer").count(), 0);
   });
+
+  await step("edits along the face are computed by the projected method, which is marked, and in full where that is asked for", service, async (page) => {
+    const asked = [];
+    page.on("request", (request) => { if (/v1\/(preview|jobs)$/.test(request.url()) && request.method() === "POST") asked.push(JSON.parse(request.postData()).method); });
+    await openDesign(page, service, HELICAL);
+    await settled(page);
+    assert.ok(await page.locator("#projected").isHidden(), "a design that comes whole is computed as it says");
+    await (await field(page, "/output_torques_n_m")).fill("140");
+    await settled(page);
+    assert.deepEqual(asked, ["three_dimensional", "three_dimensional_projected"]);
+    assert.match(await page.locator("#projected").innerText(), /Projected/);
+    const projected = await answer(page, "p-p");
+    await axe(page);
+    // What is exported and kept says which method it is of.
+    await tab(page, "export");
+    const { submission, results } = JSON.parse((await downloaded(page, () => page.locator("[data-download=json]").click())).bytes);
+    assert.deepEqual([submission.method, results.method], ["three_dimensional_projected", "three_dimensional_projected"]);
+    assert.equal((await designOf(page)).method, "three_dimensional");
+    await page.locator("#pin").click();
+    await page.locator("#whole").click();
+    await page.waitForFunction(() => document.querySelector("#projected").hidden && !document.body.classList.contains("busy"));
+    assert.equal(asked.at(-1), "three_dimensional");
+    const whole = await answer(page, "p-p");
+    assert.ok(Math.abs(whole - projected) < 0.1 * whole, `${projected} and ${whole} µm`);
+    await tab(page, "compare");
+    assert.match(await page.locator("#table thead").innerText(), /three dimensional[\s\S]*three dimensional projected/);
+    // Both methods are read in full where they are chosen.
+    const select = await field(page, "/method");
+    const [text, room] = await select.evaluate((element) => {
+      const canvas = document.createElement("canvas").getContext("2d");
+      const { font, paddingLeft, paddingRight } = getComputedStyle(element);
+      canvas.font = font;
+      return [canvas.measureText("three dimensional projected").width, element.clientWidth - parseFloat(paddingLeft) - parseFloat(paddingRight)];
+    });
+    assert.ok(room >= text, `${room} px for ${text} px`);
+  }, { viewport: { width: 1280, height: 800 } });
+
+  await step("the time that is left is that of the pace at which it goes now", service, async (page) => {
+    await page.goto(service.url);
+    const said = await page.evaluate(async () => {
+      const { remaining } = await import(new URL("web/dom.js", document.baseURI));
+      // 60 s for the gears, of which 3 % tell, then a percent each 0.65 s: 65 s before the end.
+      let now = 0;
+      const left = remaining(null, () => now);
+      const all = [];
+      const tell = (at, done) => { now = 1000 * at; all.push([at, done, left(done, 100)]); };
+      for (const [at, done] of [[20, 1], [40, 2], [60, 3]]) tell(at, done);
+      for (let done = 4; done <= 100; done += 1) tell(60 + 0.65 * (done - 3), done);
+      // A third in ten seconds: twenty more. Of too few nothing is said; what was expected counts before anything is known.
+      const of = (done, total, expected) => { let at = 0; const words = remaining(expected, () => at); at = 10_000; return words(done, total); };
+      return { all, of: [of(5, 15), of(2, 15), of(15, 15), of(5, 155), of(0, 100, 60_000)] };
+    });
+    assert.deepEqual(said.of, [", about 20 s more", "", "", ", about 5 min more", ", about 50 s more"]);
+    for (const [at, done, words] of said.all.filter(([, done]) => done > 6 && done < 98)) {
+      const told = Number(/about (\d+) s/.exec(words)?.[1]);
+      const true_ = 60 + 0.65 * 97 - at;
+      assert.ok(told > 0.7 * true_ - 1 && told < 1.4 * true_ + 1, `${done} %: ${words} for ${true_} s`);
+    }
+  });
+
+  await step("what was computed is found again after a reload: a sweep, a population, a search that runs, kept designs and the way back", service, async (page) => {
+    await open(page, service);
+    const from = await answer(page, "p-p");
+    await page.locator("#pin").click();
+    await changing(page, async () => (await field(page, `${HOLES}/radius_mm`)).fill("6"));
+    await changed(page, "p-p", from);
+    await page.locator("#pin").click();
+    await tab(page, "sweep");
+    await page.locator("#sweep-from").fill("20");
+    await page.locator("#sweep-run").click();
+    await page.locator("#sweep .scatter .strong").waitFor();
+    const found = await page.locator("#sweep .out p").first().innerText();
+    await tab(page, "population");
+    await page.locator("#population-size").fill("24");
+    await page.locator("#population-torques").fill("60 115");
+    await page.locator("#population button[type=submit]").click();
+    await page.waitForFunction(() => /24 of 24 members, successful/.test(document.querySelector("#population [role=status]").innerText));
+    const good = await page.locator("#population .out p").first().innerText();
+    await tab(page, "study");
+    await page.locator("#search summary").click();
+    await page.locator("#search-evaluations").fill("4000");
+    await page.locator("#search-run").click();
+    await page.locator("#search-state", { hasText: "of at most" }).waitFor();
+    await page.waitForTimeout(500);
+
+    // The page has not asked for anything yet, and the kept designs are there.
+    let go = null;
+    const waits = new Promise((resolve) => { go = resolve; });
+    await page.route("**/v1/preview", async (route) => { await waits; await route.continue(); });
+    await page.reload();
+    await page.waitForFunction(() => document.querySelector("#undo").disabled === false);
+    assert.equal(await page.locator("#against option").count(), 0);
+    go();
+    await settled(page);
+    await page.unroute("**/v1/preview");
+    await tab(page, "compare");
+    assert.equal(await page.locator("#table thead textarea").count(), 2);
+    // A third one has a color of its own, as have a tenth and all between.
+    for (let i = 0; i < 8; i += 1) await page.locator("#pin").click();
+    await page.waitForFunction(() => document.querySelectorAll("#table thead textarea").length === 10);
+    const colors = await page.locator("#table .swatch").evaluateAll((all) => all.map((each) => getComputedStyle(each).borderTopColor));
+    assert.equal(new Set(colors).size, 11, colors.join());
+    await axe(page);
+    for (let i = 0; i < 8; i += 1) await page.locator("#undo").click();
+    await page.locator("#undo").click();
+    await changing(page, () => page.locator("#undo").click());
+    await settled(page);
+    assert.equal(await answer(page, "p-p"), from);
+    assert.equal((await designOf(page)).pair.driven.blank.holes.radius_mm, 7.5);
+
+    const back = async (words) => {
+      await tab(page, "jobs");
+      await page.locator("#studies tr", { hasText: words }).first().locator("button", { hasText: "Go to it" }).click();
+    };
+    await back("searched");
+    await page.locator("#search-state", { hasText: "of at most" }).waitFor();
+    await page.locator("#search button", { hasText: "Cancel" }).click();
+    await page.waitForFunction(() => /designs looked at, dismissed/.test(document.querySelector("#search-state").innerText));
+    await back("torque sweep");
+    await page.locator("#sweep .scatter .strong").waitFor();
+    assert.equal(await page.locator("#sweep .out p").first().innerText(), found);
+    assert.equal(await page.locator("#sweep-from").inputValue(), "20");
+    assert.ok(await page.locator("#sweep .outdated").isVisible(), "the design is another one now");
+    await back("as made");
+    await page.locator("#population .scatter").first().waitFor();
+    assert.equal(await page.locator("#population .out p").first().innerText(), good);
+    await tab(page, "jobs");
+    await axe(page);
+  });
+
+  await step("a spectrum has levels, its names cross no mark, and the shares of pairs have no colors of designs", service, async (page) => {
+    await open(page, service);
+    const found = await page.evaluate(async () => {
+      const of = (name) => import(new URL(`web/${name}.js`, document.baseURI));
+      const [{ placedNames, linesOf, PANELS }, { looks }] = await Promise.all([of("series"), of("charts")]);
+      // A name of a low order between tall neighbors.
+      const stems = [[40, 0.5], [50, 0.1], [60, 0.6], [100, 0.3]].map(([order, value]) => ({ order, value }));
+      const names = stems.map(({ order, value }) => ({ order, value, label: `H_${order}` }));
+      const placed = placedNames(names, { stems, mark: 3, px: (order) => 2 * order, py: (value) => 300 - 300 * value, left: 0, right: 400, letter: 11, widthOf: (label) => 7 * label.length });
+      const crossing = placed.filter(({ x, y, label }) => stems.some(({ order, value }) => Math.abs(2 * order - x) < 3.5 * label.length + 3 && 300 - 300 * value - 3 < y));
+      const { series, parts } = looks();
+      // Eighty-three periods, at forty positions each.
+      const mesh_position = Array.from({ length: 3320 }, (_, i) => i / 40);
+      const curve = { mesh_position, load_shares: [0, -1].map((pair_offset) => ({ pair_offset, share: mesh_position.map((at) => (pair_offset === 0 ? at % 1 : 1 - (at % 1))) })), statistics: {} };
+      const share = PANELS.find(({ id }) => id === "share");
+      const [most] = linesOf(share, [{ results: { curves: [curve] }, name: "" }], true);
+      return { placed: placed.length, crossing: crossing.map(({ label }) => label), shared: parts.filter((color) => Array.from({ length: 12 }, (_, i) => series(i)).includes(color)), span: most.span, ends: [Math.min(...most.values), Math.max(...most.values)] };
+    });
+    assert.deepEqual(found.crossing, []);
+    assert.ok(found.placed >= 3);
+    assert.deepEqual(found.shared, []);
+    assert.deepEqual([Math.round(found.span), ...found.ends.map(Math.round)], [83, 50, 100]);
+    // 0.02 beside 0.53 is 28 dB below it, and seen.
+    await page.locator("#spectrum-scale").selectOption("db");
+    await tab(page, "export");
+    const svg = (await downloaded(page, () => page.locator("[data-download=svg]").click())).bytes.toString();
+    assert.match(svg, /Spectrum of the transmission error in dB re 0\.001 µm/);
+    await tab(page, "curves");
+    await axe(page);
+    const heights = await page.evaluate((text) => {
+      const document_ = new DOMParser().parseFromString(text, "image/svg+xml");
+      const spectrum = [...document_.querySelectorAll("svg svg")].find((each) => each.getAttribute("aria-label")?.startsWith("Spectrum"));
+      return [...spectrum.querySelectorAll("line:not(.grid)")].map((line) => Number(line.getAttribute("y1")) - Number(line.getAttribute("y2"))).filter((height) => height > 0);
+    }, svg);
+    const [most, least] = [Math.max(...heights), Math.min(...heights.filter((height) => height > 5))];
+    assert.ok(heights.length > 5 && least > 0.05 * most, heights.join());
+  });
+
+  await step("files carry the name of their design, and however somebody prints, a report of one page comes of it", service, async (page) => {
+    await open(page, service);
+    await tab(page, "export");
+    const { name } = await downloaded(page, () => page.locator("[data-download=csv]").click());
+    assert.equal(name, "meshwright-50-50-10xr7.5-34-curves.csv");
+    await tab(page, "curves");
+    const pages = async () => [...(await page.pdf({ preferCSSPageSize: true })).toString("latin1").matchAll(/\/Type\s*\/Page\b/g)].length;
+    assert.equal(await pages(), 1);
+    assert.match(await page.locator("#sheet > svg").getAttribute("aria-label"), /Report of 50\/50, 10×r7\.5@34/);
+    await page.evaluate(() => { window.printed = 0; window.print = () => { window.printed += 1; }; document.querySelector("#sheet").replaceChildren(); });
+    await changing(page, async () => (await field(page, `${HOLES}/count`)).fill("8"));
+    await page.keyboard.press("Control+p");
+    await page.waitForFunction(() => window.printed === 1);
+    assert.match(await page.locator("#sheet > svg").getAttribute("aria-label"), /8×r7\.5@34/);
+  });
+
+  for (const [width, height] of [[390, 844], [1280, 800], [1920, 1080]]) {
+    await step(`nothing moves that somebody reads at ${width} px, and the design is near its answers`, service, async (page) => {
+      await page.addInitScript(() => {
+        window.shift = 0;
+        new PerformanceObserver((list) => { for (const each of list.getEntries()) if (!each.hadRecentInput) window.shift += each.value; }).observe({ type: "layout-shift", buffered: true });
+      });
+      for (const design of [null, HELICAL]) {
+        if (design) await openDesign(page, service, design);
+        else await open(page, service);
+        await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+        await settled(page);
+        await page.waitForTimeout(300);
+        const shift = await page.evaluate(() => window.shift);
+        assert.ok(shift < 0.1, `layout shift ${shift.toFixed(3)}`);
+      }
+      const top = await page.locator(".form-panel").evaluate((panel) => panel.getBoundingClientRect().top);
+      assert.ok(top < height, `the form begins at ${top} px`);
+      // Whatever is typed, its answer is in view.
+      await (await field(page, "/output_torques_n_m")).scrollIntoViewIfNeeded();
+      const answers = await page.locator("#answer-p-p").boundingBox();
+      assert.ok(answers.y >= 0 && answers.y + answers.height < height, JSON.stringify(answers));
+    }, { viewport: { width, height } });
+  }
+
+  await step("teeth are said to be drawn as a production makes them, where some are beyond their class", service, async (page) => {
+    await open(page, service);
+    await tab(page, "population");
+    const words = await page.locator("#population").innerText();
+    assert.doesNotMatch(words, /drawn within the class/);
+    assert.match(words, /beyond the total pitch tolerance/);
+  });
 }
