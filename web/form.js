@@ -19,8 +19,11 @@ const MULTIPLES = { addendum_mm: 1, dedendum_mm: 1.25, rack_tip_radius_mm: 0.38 
 
 const MEMBERS = ["driving", "driven"];
 
+/** The thickness of teeth, as drawings say it. */
+const THICKNESSES = ["tooth_thickness_deviation_um", "tooth_thickness_deviation_normal_um", "span_measurement", "ball_measurement"];
 /** Fields that stand in place of each other: one that gets a value takes those of the others away. */
 const INSTEAD = {
+  ...Object.fromEntries(THICKNESSES.map((name) => [name, THICKNESSES.filter((other) => other !== name)])),
   radius_mm: ["slot"], slot: ["radius_mm"], at_deg: ["count", "phase_deg"], count: ["at_deg"], phase_deg: ["at_deg"],
   tip_diameter_mm: ["addendum_mm"], addendum_mm: ["tip_diameter_mm"], tip_rounding_mm: ["tip_chamfer_mm"], tip_chamfer_mm: ["tip_rounding_mm"],
 };
@@ -338,9 +341,19 @@ export class Form {
       const { changes, told } = intoSolid(this.design);
       return this.#follow({ changes: { ...changes, [pointer]: value }, told: told.slice(1) }, "mend");
     }
+    this.design.setAll({ [pointer]: value, ...further, ...(value === undefined ? {} : this.#displaced(pointer)) }, "form");
+  }
+
+  /** Takes values by their pointers, as a warning offers them. */
+  take(changes) {
+    this.design.setAll({ ...changes, ...Object.assign({}, ...Object.keys(changes).map((pointer) => this.#displaced(pointer))) }, "mend");
+  }
+
+  /** What goes where a field gets a value: those that it stands in place of. */
+  #displaced(pointer) {
     const holder = pointer.slice(0, pointer.lastIndexOf("/") + 1);
-    const others = value === undefined ? [] : (INSTEAD[pointer.slice(holder.length)] ?? []).filter((name) => this.design.get(holder + name) !== undefined);
-    this.design.setAll({ [pointer]: value, ...further, ...Object.fromEntries(others.map((name) => [holder + name, undefined])) }, "form");
+    const others = (INSTEAD[pointer.slice(holder.length)] ?? []).filter((name) => this.design.get(holder + name) !== undefined);
+    return Object.fromEntries(others.map((name) => [holder + name, undefined]));
   }
 
   #remember(member) {

@@ -18,13 +18,14 @@ const done = (request) => new Promise((resolve, reject) => {
   request.onerror = () => reject(request.error);
 });
 
-const opened = (() => {
-  const request = indexedDB.open(NAME, 1);
-  request.onupgradeneeded = () => request.result.createObjectStore(TABS);
-  return done(request);
-})();
+let opened = null;
 
 async function store(mode) {
+  if (!opened) {
+    const request = indexedDB.open(NAME, 1);
+    request.onupgradeneeded = () => request.result.createObjectStore(TABS);
+    opened = done(request);
+  }
   return (await opened).transaction(TABS, mode).objectStore(TABS);
 }
 

@@ -212,7 +212,9 @@ function showWarnings(warnings) {
   button.textContent = `${warnings.length} ${warnings.length === 1 ? "warning" : "warnings"}`;
   const guide = (path) => (path ? [" ", h("a", { href: path.replace(/^\//, "") }, "The guide says why")] : []);
   const solid = (code) => (code === "web_outside_plane_model" ? [" ", h("button", { type: "button", on: { click: () => form?.compute(true) } }, "Compute it in three dimensions")] : []);
-  byId("warnings").replaceChildren(...warnings.map(({ code, detail, guide: path }) => h("li", {}, form?.inWords(detail) ?? detail, ...guide(path), ...solid(code))));
+  // What would mend it, by the pointers of the fields.
+  const change = (changes = {}) => (Object.keys(changes).length ? [" ", h("button", { type: "button", on: { click: () => form?.take(changes) } }, `Use ${Object.entries(changes).map(([pointer, value]) => `${form?.named(pointer) ?? pointer} ${number(value, 7)}`).join(", ")}`)] : []);
+  byId("warnings").replaceChildren(...warnings.map(({ code, detail, guide: path, changes }) => h("li", {}, form?.inWords(detail) ?? detail, ...guide(path), ...solid(code), ...change(changes))));
   if (!warnings.length) showWarned(false);
 }
 

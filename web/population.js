@@ -54,7 +54,7 @@ export function population(place, design, form, limits, onOpen) {
   const missing = h("p", { className: "outdated", role: "status", hidden: true });
   const out = h("div", { className: "out" });
   place.replaceChildren(
-    h("p", { className: "note" }, "Every member has teeth of its own, drawn as a production of the class of ISO 1328-1 makes them, in place of those that the design may give, and fields that vary by a law. A production has gears beyond the total pitch tolerance F_pT of its class: how many stands with what was found. ", h("a", { href: "guides/how-good-will-they-be" }, "How good will they be?")),
+    h("p", { className: "note" }, "Every member has teeth of its own, made by the class of ISO 1328-1 in place of those that the design may give, and fields that vary by a law. How many are beyond the total pitch tolerance F_pT of their class, or were rejected by its inspection, stands with what was found. ", h("a", { href: "guides/how-good-will-they-be" }, "How good will they be?")),
     h("form", { on: { submit: (event) => { event.preventDefault(); start(); }, input: () => foresee() } },
       h("div", { className: "line" }, h("label", { htmlFor: size.id }, "Members"), size, ...classes.flatMap((each, i) => [h("label", { htmlFor: each.id }, `teeth of the ${["driving", "driven"][i]} gear`), each])),
       ...laws.map((each) => each.element),
@@ -180,12 +180,13 @@ export function population(place, design, form, limits, onOpen) {
     const told = (value) => (value === null ? "?" : fixed(value * factor, 3));
     const at95 = `95 of 100 pairs stay below ${told(p95.value)} ${unit} ${p95.low === null || p95.high === null ? "(too few members to say how surely)" : `(with 95 % confidence between ${told(p95.low)} and ${told(p95.high)})`}; half are below ${told(percentile(one, 50).value)}.`;
     const beyond = Object.entries(results.beyond_total_pitch_tolerance).filter(([, share]) => share !== null).map(([gear, share]) => `${fixed(100 * share, 1)} % of the ${gear} gears are beyond F_pT of their class.`);
+    const rejected = Object.entries(results.rejected_by_inspection ?? {}).filter(([, share]) => share !== null).map(([gear, share]) => `${fixed(100 * share, 1)} % of the ${gear} gears made were rejected by the inspection.`);
     const member = (name, number) => h("button", { type: "button", on: { click: () => open(address, number) } }, `Open the ${name} member`);
     const pictures = [
       figure({ lines: [outlineOf(one.histogram, factor)], x: `${words} in ${unit}`, y: "members", title: `Histogram of the ${words}` }),
       ...(all.length > 1 ? [figure({ lines: [[95, "5 4"], [50, null], [5, "2 3"]].map(([percent, dash]) => ({ name: `${percent} % are below`, color: "currentColor", dash: dash?.split(" "), x: all.map((each) => each.output_torque_n_m), y: all.map((each) => percentile(each, percent).value * factor) })), x: "output torque in N m", y: `${words} in ${unit}`, title: `Percentiles of the ${words} over the torque` })] : []),
     ];
-    out.replaceChildren(h("p", {}, at95, " ", beyond.join(" ")), ...pictures, influencesOf(one), h("div", { className: "buttons" }, member("median", one.members.median), member("smallest", one.members.smallest), member("largest", one.members.largest)));
+    out.replaceChildren(h("p", {}, at95, " ", [...beyond, ...rejected].join(" ")), ...pictures, influencesOf(one), h("div", { className: "buttons" }, member("median", one.members.median), member("smallest", one.members.smallest), member("largest", one.members.largest)));
   }
 
   /** What makes the variance, as bars with their limits. */

@@ -100,8 +100,9 @@ export function search(place, design, form, onOpen) {
   }
 
   function show(found, address, about) {
-    const parts = about.search.minimize.map(({ quantity }) => QUANTITIES[quantity]);
-    const held = about.search.subject_to.map(({ quantity }) => QUANTITIES[quantity]);
+    // A search that another client has asked for may have other quantities.
+    const called = ({ quantity }) => QUANTITIES[quantity] ?? [String(quantity), ""];
+    const [parts, held] = [about.search.minimize, about.search.subject_to ?? []].map((asked) => asked.map(called));
     const told = (values, names) => names.map(([words, unit], i) => `${words} ${values?.[i] === null || values?.[i] === undefined ? "?" : number(values[i], 4)} ${unit}`.trim()).join(", ");
     const { best, front, confirmed, generations } = found;
     if (!best) return out.replaceChildren();

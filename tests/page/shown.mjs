@@ -438,4 +438,21 @@ export async function shownSteps(service) {
     assert.doesNotMatch(words, /drawn within the class/);
     assert.match(words, /beyond the total pitch tolerance/);
   });
+
+  await step("where the largest pressure stands is told, and what a warning would change is done by its button", service, async (page) => {
+    // What is warned of here is made up: a service of this version warns of no such thing of this pair.
+    await page.route("**/v1/preview", async (route) => {
+      const response = await route.fetch();
+      const results = await response.json();
+      if (JSON.parse(route.request().postData()).pair.driven.tip_diameter_mm === undefined) results.warnings = [{ code: "small_tip_clearance", detail: "The tips are near.", changes: { "/pair/driving/tip_diameter_mm": 103.2, "/pair/driven/tip_diameter_mm": 103.4 } }];
+      await route.fulfill({ response, json: results });
+    });
+    await open(page, service);
+    await page.locator("#answer-pressure .name").click();
+    assert.match(await page.locator("#about-pressure").innerText(), /It stands at mesh position [\d.]+, pair -?\d+, ⌀ [\d.]+ mm of the driving gear, ⌀ [\d.]+ mm of the driven gear/);
+    await page.locator("#warned").click();
+    await changing(page, () => page.locator("#warnings button", { hasText: "Tip diameter, driving gear 103.2, Tip diameter, driven gear 103.4" }).click());
+    const { driving, driven } = (await designOf(page)).pair;
+    assert.deepEqual([driving.tip_diameter_mm, driven.tip_diameter_mm, driving.addendum_mm, driven.addendum_mm], [103.2, 103.4, undefined, undefined]);
+  });
 }
