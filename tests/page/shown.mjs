@@ -2,6 +2,7 @@
 
 import assert from "node:assert/strict";
 import { answer, axe, changed, changing, designOf, downloaded, field, open, openDesign, settled, step, tab } from "./harness.mjs";
+import { start } from "./service.mjs";
 import { HELICAL } from "./solid.mjs";
 
 const HOLES = "/pair/driven/blank/holes";
@@ -439,7 +440,7 @@ export async function shownSteps(service) {
     assert.match(words, /beyond the total pitch tolerance/);
   });
 
-  await step("where the largest pressure stands is told, and what a warning would change is done by its button", service, async (page) => {
+  await step("where the largest stress stands is told, and what a warning would change is done by its button", service, async (page) => {
     // What is warned of here is made up: a service of this version warns of no such thing of this pair.
     await page.route("**/v1/preview", async (route) => {
       const response = await route.fetch();
@@ -448,11 +449,24 @@ export async function shownSteps(service) {
       await route.fulfill({ response, json: results });
     });
     await open(page, service);
-    await page.locator("#answer-pressure .name").click();
-    assert.match(await page.locator("#about-pressure").innerText(), /It stands at mesh position [\d.]+, pair -?\d+, ⌀ [\d.]+ mm of the driving gear, ⌀ [\d.]+ mm of the driven gear/);
+    await changing(page, async () => (await field(page, "/stress")).check());
+    await page.locator("#answer-stress .name").click();
+    assert.match(await page.locator("#about-stress").innerText(), /It stands at mesh position [\d.]+, .*⌀ [\d.]+ mm of the (driving|driven) gear/);
     await page.locator("#warned").click();
     await changing(page, () => page.locator("#warnings button", { hasText: "Tip diameter, driving gear 103.2, Tip diameter, driven gear 103.4" }).click());
     const { driving, driven } = (await designOf(page)).pair;
     assert.deepEqual([driving.tip_diameter_mm, driven.tip_diameter_mm, driving.addendum_mm, driven.addendum_mm], [103.2, 103.4, undefined, undefined]);
   });
+
+  // Previews of a second: the flanks of a job may take four of these, or as long as the job.
+  const short = await start({ MESHWRIGHT_PREVIEW_TIME_LIMIT_SECONDS: "1" });
+  await step("the contact pattern of a job comes however long it takes, with a clock", short, async (page) => {
+    await openDesign(page, short, { ...HELICAL, resolution: { ...HELICAL.resolution, positions_per_mesh_period: 40 } });
+    await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+    await settled(page);
+    await page.locator("#chart-pattern button").click();
+    await page.locator("#chart-pattern [role=status]", { hasText: /at every position, about \d+ s more/ }).waitFor();
+    await page.locator("#chart-pattern svg").nth(1).waitFor();
+  });
+  await short.stop();
 }
