@@ -92,7 +92,7 @@ export function namesOf(spectra, last) {
 
 /**
  * The names of orders where there is room for them, the tallest first and those of holes and mesh before all: none over another, nor over one of the `stems` `{ order, value }`, of
- * which a mark stands on top; a name rises above the stems beside it. `{ label, x, y }`, centered over their lines.
+ * which a mark stands on top; a name rises above the stems and names beside it. `{ label, x, y }`, centered over their lines.
  */
 export function placedNames(names, { stems = [], mark = 0, px, py, left, right, top = 0, letter, widthOf }) {
   const taken = [];
@@ -103,9 +103,13 @@ export function placedNames(names, { stems = [], mark = 0, px, py, left, right, 
     const x = Math.min(Math.max(px(order), left + width / 2), right - width / 2);
     // Stems reach from their mark to the foot: above the highest of those below the name there is room.
     const beside = marks.filter(([at]) => Math.abs(at - x) < width / 2 + 2 + mark).map(([, level]) => level);
-    const y = Math.min(py(value), ...beside) - 0.5 * letter - mark;
-    const box = [x - width / 2 - 2, y - letter, x + width / 2 + 2, y + 2];
-    if (box[1] < top || taken.some((other) => box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3])) return [];
+    let y = Math.min(py(value), ...beside) - 0.5 * letter - mark;
+    const boxAt = (level) => [x - width / 2 - 2, level - letter, x + width / 2 + 2, level + 2];
+    const under = (box) => taken.find((other) => box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3]);
+    // Above another name, but no farther from its line than two of them.
+    for (let i = 0; i < 2; i += 1) y = (under(boxAt(y))?.[1] ?? y + 2) - 2;
+    const box = boxAt(y);
+    if (box[1] < top || under(box)) return [];
     taken.push(box);
     return [{ label, x, y }];
   });
