@@ -137,7 +137,6 @@ function onValid(submission) {
 /** How long the design takes that is computed now, `{ seconds, since, rests }`, told as a clock where it is more than a moment. */
 function onExpect(expected) {
   clearTimeout(onExpect.timer);
-  document.body.classList.toggle("rests", Boolean(expected?.rests));
   if (!expected || expected.seconds < 2 * OTHER / 1000) return;
   const whole = timeOf(1000 * expected.seconds);
   const tick = () => {
@@ -247,7 +246,7 @@ function onProgress(job) {
   const { id, progress_percent: done = 0, begun, expected, status, away } = job;
   if (onProgress.id !== id) onProgress.left = remaining(expected, () => performance.now() - begun);
   onProgress.id = id;
-  byId("state").textContent = away ? "The service does not answer; a job goes on." : status === "accepted" ? "A job waits for its turn." : `A job: ${done} %${onProgress.left(done, 100)}.`;
+  byId("state").textContent = away ? "The service does not answer; a job goes on." : status === "accepted" ? "A job waits for its turn." : done < 100 ? `A job: ${done} %${onProgress.left(done, 100)}.` : "A job: every position is solved, and the results are put together.";
 }
 
 /** The last good curve stays; what is wrong stands above it and at its field. */

@@ -894,7 +894,7 @@ export async function benchSteps(service) {
       new MutationObserver(() => { const words = document.querySelector("#problem").innerText; if (words) window.told.push(words); }).observe(document.querySelector("#problem"), { childList: true });
     });
     const teeth = await field(page, "/pair/driven/tooth_count");
-    const refused = page.waitForResponse((answer) => answer.url().endsWith("/v1/preview") && answer.status() === 422);
+    const refused = page.waitForResponse((answer) => /\/v1\/(preview|validate)$/.test(answer.url()) && answer.status() === 422);
     await teeth.press("Control+a");
     await teeth.press("5");
     await refused;

@@ -458,6 +458,69 @@ export async function shownSteps(service) {
     assert.deepEqual([driving.tip_diameter_mm, driven.tip_diameter_mm, driving.addendum_mm, driven.addendum_mm], [103.2, 103.4, undefined, undefined]);
   });
 
+  await step("a stage of an electric drive is typed from a report, and what stands on the page is its own from the first number to the last", service, async (page) => {
+    page.setDefaultTimeout(900_000);
+    await open(page, service);
+    await page.locator("#start").selectOption("new pair");
+    await settled(page);
+    const asked = [];
+    page.on("request", (request) => { if (/v1\/(preview|jobs)$/.test(request.url()) && request.method() === "POST") asked.push(JSON.parse(request.postData())); });
+    const pressed = async (pointer) => (await field(page, pointer)).check();
+    const typed = async (pointer, text) => {
+      const input = await field(page, pointer);
+      await input.click();
+      await input.press("Control+a");
+      await input.pressSequentially(text);
+    };
+    for (const [name, text] of [["driving/module_mm", "1,75"], ["driving/tooth_count", "27"], ["driven/tooth_count", "83"], ["driving/profile_shift", "0,25"], ["driven/profile_shift", "-0,05"], ["driving/face_width_mm", "26"], ["driven/face_width_mm", "24"], ["driven/blank/bore_radius_mm", "25"], ["center_distance_mm", "104,2"], ["helix_angle_deg", "22"]]) await typed(`/pair/${name}`, text);
+    assert.equal((await designOf(page)).pair.center_distance_mm, 104.2, "what was typed stays");
+    const blank = "/pair/driven/blank";
+    await pressed(`${blank}/web`);
+    for (const [name, text] of [["inner_radius_mm", "36"], ["outer_radius_mm", "69"], ["thickness_mm", "7"], ["offset_mm", "3"]]) await typed(`${blank}/web/${name}`, text);
+    await pressed(`${blank}/hub`);
+    for (const [name, text] of [["outer_radius_mm", "36"], ["width_mm", "32"]]) await typed(`${blank}/hub/${name}`, text);
+    await (await field(page, `${blank}/holes`)).selectOption({ index: 1 });
+    await pressed(`${blank}/holes/slot`);
+    for (const [name, text] of [["count", "6"], ["circle_radius_mm", "52,5"], ["slot/width_mm", "12"], ["slot/angle_deg", "30"]]) await typed(`${blank}/holes/${name}`, text);
+    for (const gear of ["driving", "driven"]) {
+      await pressed(`/pair/${gear}/tip_relief`);
+      await typed(`/pair/${gear}/tip_relief/amount_um`, "12");
+      await typed(`/pair/${gear}/tip_relief/start/radial_length_mm`, "0,88");
+    }
+    const leads = page.locator("#form fieldset.list", { has: page.locator("legend", { hasText: /lead modifications/i }) }).first();
+    await leads.evaluate((element) => { for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true; });
+    await leads.locator(":scope > button").click();
+    await page.evaluate(() => {
+      window.drawn = [];
+      document.addEventListener("drawn", ({ detail }) => window.drawn.push(detail.submission.output_torques_n_m[0]));
+    });
+    await typed("/output_torques_n_m", "180");
+    await page.waitForFunction(() => document.body.classList.contains("other"));
+    const gray = await standing(page);
+    assert.equal(gray.color, gray.faint, "numbers of another design do not stand bold");
+    await settled(page);
+    assert.deepEqual(await page.evaluate(() => window.drawn), [180], "no half-typed torque was computed");
+    const known = (pair) => ({ z: [pair.driving.tooth_count, pair.driven.tooth_count], x: [pair.driving.profile_shift, pair.driven.profile_shift], relief: [pair.driving.tip_relief, pair.driven.tip_relief], leads: pair.driving.lead_modifications, web: pair.driven.blank.web, hub: pair.driven.blank.hub, slot: pair.driven.blank.holes.slot, a: pair.center_distance_mm, beta: pair.helix_angle_deg });
+    const design = await designOf(page);
+    assert.deepEqual(known(design.pair), known(STAGE.pair));
+    // Marked as projected, and to the last digit what the service says of it.
+    assert.ok(await page.locator("#projected").isVisible());
+    const { statistics, face } = await page.evaluate(async (submission) => {
+      const { resultsOf } = await import(new URL("web/preview.js", document.baseURI));
+      return (await resultsOf(submission)).curves[0];
+    }, { ...design, method: "three_dimensional_projected" });
+    assert.equal(await answer(page, "p-p"), Number(statistics.transmission_error_um.peak_to_peak.toFixed(3)));
+    assert.equal(await answer(page, "face"), Number(face.face_load_factor.toFixed(3)));
+    // All 83 periods are seen, in envelopes; the mesh order beside that of the holes by its level.
+    assert.match(await page.locator("#chart-share .legend").innerText(), /most load/);
+    await page.locator("#spectrum-scale").selectOption("db");
+    await axe(page);
+    await page.reload();
+    await settled(page);
+    assert.ok(await page.locator("#undo").isEnabled());
+    assert.deepEqual((await designOf(page)).pair, design.pair);
+  });
+
   // Previews of a second: the flanks of a job may take four of these, or as long as the job.
   const short = await start({ MESHWRIGHT_PREVIEW_TIME_LIMIT_SECONDS: "1" });
   await step("the contact pattern of a job comes however long it takes, with a clock", short, async (page) => {
