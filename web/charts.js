@@ -1,16 +1,25 @@
 // Curves over the true period and the spectrum, one design beside the other, zoomed together.
 
 import uPlot from "./vendor/uplot.js";
-import { fixed, h, number, s } from "./dom.js";
+import { extent, fixed, h, number, s } from "./dom.js";
 import { cellsOf, cssOf, faceOf, SCALE, scaleOf, wordsOfFace } from "./face.js";
 import { figure } from "./figure.js";
 import { linesOf, namesOf, ordersOf, PANELS, partialSpectrum, placedNames, wordsOf, wordsOfSpectrum } from "./series.js";
 
 /** Where a mesh period has fewer pixels the curve is shown by its envelope. */
 const LEAST_PIXELS = 14;
+/** Levels of the spectrum are above so many um. */
+const REFERENCE = 0.001;
 const SPECTRUM = { id: "spectrum", title: "Spectrum of the transmission error", unit: "µm" };
 const X_TITLE = "mesh position in mesh periods";
 const ORDER_TITLE = "order per revolution of the driven gear";
+
+/** So many colors of designs are chosen; further ones go around the circle of hues by the golden angle, so that no two are the same. */
+const CHOSEN = 7;
+const further = (look, lightness) => `oklch(${lightness} ${0.1 + 0.03 * (look % 3)} ${(look * 137.508) % 360})`;
+
+/** The color of a line: of its design, or of the part that it is of, which never has that of a design. */
+const colorOf = ({ look, part }, colors) => (part === undefined ? colors.series(look) : colors.parts[part % colors.parts.length]);
 
 /** The colors and letters of the page as it looks now. */
 export function looks() {
@@ -19,7 +28,8 @@ export function looks() {
   const of = (name) => style.getPropertyValue(name).trim();
   return {
     ink: of("--ink"), grid: of("--grid"), faint: of("--faint"), accent: of("--accent"), panel: of("--panel"),
-    series: [1, 2, 3, 4, 5, 6, 7].map((i) => of(`--series-${i}`)),
+    series: (look) => (look < CHOSEN ? of(`--series-${look + 1}`) : further(look, of("--lightness"))),
+    parts: ["--line-of-action", "--faint", "--steel-2-edge", "--steel-edge"].map(of),
     rem, height: parseFloat(of("--chart-height")), font: `${0.75 * rem}px system-ui, sans-serif`,
   };
 }
@@ -28,6 +38,8 @@ export class Charts {
   #panels = new Map();
   #position = 0;
   #range = null;
+  /** Whether the spectrum has levels in place of amplitudes. */
+  decibels = false;
 
   /**
    * Charts in `place`. `onPosition` is told where a pointer is, `onRange` which mesh periods are shown: two numbers, or null for all; `onEveryPosition` that
@@ -38,19 +50,30 @@ export class Charts {
     // What stands in every chart is named once, above them.
     this.legend = h("p", { className: "legend shared", hidden: true });
     place.append(this.legend);
-    for (const panel of [...PANELS, SPECTRUM]) {
+    // What some designs alone have stands last, so that it moves nothing when it comes.
+    const isRare = ({ rare }) => Boolean(rare);
+    for (const panel of [...PANELS.filter((each) => !isRare(each)), SPECTRUM, ...PANELS.filter(isRare)]) {
       const canvas = h("div", { className: "canvas", aria: { hidden: "true" } });
       const legend = h("p", { className: "legend" });
       const words = h("p", { className: "visually-hidden", id: `words-${panel.id}` });
       const below = h("p", { className: "note", hidden: true });
-      const element = h("figure", { className: "chart", id: `chart-${panel.id}`, aria: { label: panel.title, describedby: words.id } },
-        h("figcaption", {}, h("strong", {}, panel.title), ` in ${panel.unit}`, legend), canvas, below, words);
+      const element = h("figure", { className: "chart", id: `chart-${panel.id}`, hidden: isRare(panel), aria: { label: panel.title, describedby: words.id } },
+        h("figcaption", {}, h("strong", {}, panel.title), ...(panel === SPECTRUM ? [h("label", {}, "in ", this.#scale())] : [` in ${panel.unit}`]), legend), canvas, below, words);
       place.append(element);
       this.#panels.set(panel.id, { ...panel, canvas, legend, words, below, figure: element, plot: null, shape: "", width: null, seen: true, late: false });
     }
     new ResizeObserver(() => this.#resize()).observe(place);
     const sight = new IntersectionObserver((entries) => entries.forEach(({ target, isIntersecting }) => this.#sees(target, isIntersecting)), { rootMargin: "100px" });
     for (const panel of this.#panels.values()) sight.observe(panel.figure);
+  }
+
+  /** The choice of the scale of the spectrum. */
+  #scale() {
+    const choose = (event) => {
+      this.decibels = event.target.value === "db";
+      if (this.shown) this.show(this.shown);
+    };
+    return h("select", { id: "spectrum-scale", ariaLabel: "Scale of the spectrum", on: { change: choose } }, h("option", { value: "um" }, "µm"), h("option", { value: "db" }, `dB re ${REFERENCE} µm`));
   }
 
   /** Draws everything anew, because the page looks different. */
@@ -104,11 +127,11 @@ export class Charts {
       const common = { title: panel.title, y: `${panel.title} in ${panel.unit}`, colors, width, height, heading: true };
       if (panel.id === "spectrum") {
         const spectra = this.#spectra();
-        const stems = spectra.map(({ name, look, orders }) => ({ name, color: colors.series[look % 7], x: orders.map(([order]) => order), y: orders.map(([, value]) => value) }));
-        return figure({ ...common, x: ORDER_TITLE, stems, names: namesOf(spectra, this.#lastOrder()) });
+        const stems = spectra.map(({ name, look, orders }) => ({ name, color: colors.series(look), x: orders.map(([order]) => order), y: orders.map(([, value]) => this.#level(value)) }));
+        return figure({ ...common, y: `${panel.title} in ${this.#unit()}`, yRange: this.decibels ? this.#levels(spectra) : null, x: ORDER_TITLE, stems, names: this.#names(spectra) });
       }
       if (panel.along) return faceFigure(faceOf(this.shown[0].results.curves[0]), { ...common, xRange: this.#range, panel });
-      const lines = linesOf(panel, this.shown).map((line) => ({ ...line, color: colors.series[line.look % 7], x: closed(line), y: [...line.values, line.open ? null : line.values[0]] }));
+      const lines = linesOf(panel, this.shown, this.#crowded(panel, linesOf(panel, this.shown), width)).map((line) => ({ ...line, color: colorOf(line, colors), x: closed(line), y: [...line.values, line.open ? null : line.values[0]] }));
       return figure({ ...common, x: X_TITLE, lines, xRange: this.#range });
     });
   }
@@ -133,7 +156,9 @@ export class Charts {
   }
 
   #curves(panel, colors) {
-    const wanted = linesOf(panel, this.shown);
+    const all = linesOf(panel, this.shown);
+    const crowded = all.length > 0 && this.#crowded(panel, all);
+    const wanted = crowded && panel.whole ? linesOf(panel, this.shown, true) : all;
     panel.figure.hidden = wanted.length === 0;
     if (!wanted.length) return;
     panel.empty = !wanted.some(({ values }) => values.some((value) => value !== null));
@@ -147,11 +172,7 @@ export class Charts {
     }
     panel.span = Math.max(...wanted.map(({ span }) => span));
     const [from, end] = this.#range ?? [0, panel.span];
-    const room = Math.floor(this.#width(panel) / LEAST_PIXELS);
-    const crowded = end - from > room;
-    // Pairs of teeth have no envelope: as many mesh periods are shown as can be told apart.
-    const many = crowded && !panel.note;
-    const to = crowded && panel.note ? from + room : end;
+    const [many, to] = [crowded, end];
     const lines = many ? wanted.flatMap((line) => envelopeOf(line, from, to)) : wanted.map((line) => ({ ...line, at: closed(line), values: [...line.values, line.open ? null : line.values[0]] }));
     const tables = lines.map((line) => [line.at, line.values]);
     const data = uPlot.join(tables, tables.map(() => [2]));
@@ -163,16 +184,22 @@ export class Charts {
       panel.plot.setData(data, false);
     }
     panel.plot.setScale("x", { min: from, max: to });
-    const note = many ? "envelope; zoom in for the curve" : to < end ? `${room} mesh periods, ${panel.note}` : panel.note;
+    const note = many ? (panel.whole ? "that of most load; zoom in for each" : "envelope; zoom in") : panel.note;
     panel.legend.replaceChildren(...(note ? [h("span", {}, note)] : []), ...(wanted.length > 1 && panel.ofLive && !panel.note ? wanted.map((line) => sample(line, colors)) : []));
+  }
+
+  /** Whether so many mesh periods are shown that they cannot be told apart. */
+  #crowded(panel, lines, width = this.#width(panel)) {
+    const [from, to] = this.#range ?? [0, Math.max(...lines.map(({ span }) => span))];
+    return to - from > Math.floor(width / LEAST_PIXELS);
   }
 
   #make(panel, data, lines, colors, many) {
     panel.plot?.destroy();
     const options = {
       ...this.#common(panel, colors, X_TITLE), scales: { x: { time: false, auto: false }, y: { range: yRange } },
-      series: [{}, ...lines.map(({ name, look, dash }) => ({ label: name, stroke: colors.series[look % 7], width: (many ? 0.05 : 0.1) * colors.rem, dash: many ? [] : dash, points: { show: false }, spanGaps: false }))],
-      bands: many ? lines.flatMap(({ look }, i) => (i % 2 ? [] : [{ series: [i + 1, i + 2], fill: `color-mix(in srgb, ${colors.series[look % 7]} 35%, transparent)` }])) : [],
+      series: [{}, ...lines.map(({ name, dash, ...line }) => ({ label: name, stroke: colorOf(line, colors), width: (many ? 0.05 : 0.1) * colors.rem, dash: many ? [] : dash, points: { show: false }, spanGaps: false }))],
+      bands: many ? lines.flatMap((line, i) => (i % 2 ? [] : [{ series: [i + 1, i + 2], fill: `color-mix(in srgb, ${colorOf(line, colors)} 35%, transparent)` }])) : [],
       hooks: { setCursor: [(plot) => this.#follow(plot)], setSelect: [(plot) => this.#select(plot)] },
     };
     panel.plot = new uPlot(options, data, panel.canvas);
@@ -270,14 +297,35 @@ export class Charts {
     });
   }
 
+  /** An amplitude in um as it is drawn: as it is, or as a level. */
+  #level(value) {
+    return this.decibels ? 20 * Math.log10(value / REFERENCE) : value;
+  }
+
+  #unit() {
+    return this.decibels ? `dB re ${REFERENCE} µm` : "µm";
+  }
+
+  /** From what is noise, or what is a thousandth of the largest, to the largest, in steps of 10 dB. */
+  #levels(spectra) {
+    const [least, most] = extent(spectra.flatMap(({ orders }) => orders.map(([, value]) => this.#level(value)))) ?? [0, 20];
+    const top = 10 * Math.ceil(most / 10 + 0.3);
+    return [Math.max(10 * Math.floor(least / 10), top - 80), top];
+  }
+
+  #names(spectra) {
+    return namesOf(spectra, this.#lastOrder()).map((name) => ({ ...name, value: this.#level(name.value) }));
+  }
+
   #spectrum(panel, colors) {
     const wanted = this.#spectra();
     panel.figure.hidden = wanted.length === 0;
     if (!wanted.length) return;
     const last = this.#lastOrder();
-    panel.names = namesOf(wanted, last);
-    const data = uPlot.join(wanted.map(({ orders }) => (orders.length ? [orders.map(([order]) => order), orders.map(([, value]) => value)] : [[this.shown[0].teeth], [null]])));
-    const shape = JSON.stringify([wanted.map(({ name, look }) => [name, look]), last]);
+    panel.names = this.#names(wanted);
+    panel.levels = this.decibels ? this.#levels(wanted) : null;
+    const data = uPlot.join(wanted.map(({ orders }) => (orders.length ? [orders.map(([order]) => order), orders.map(([, value]) => this.#level(value))] : [[this.shown[0].teeth], [null]])));
+    const shape = JSON.stringify([wanted.map(({ name, look }) => [name, look]), last, panel.levels]);
     if (panel.shape !== shape || !panel.plot) {
       this.#makeSpectrum(panel, data, wanted, colors, last);
       panel.shape = shape;
@@ -297,8 +345,8 @@ export class Charts {
     const options = {
       ...this.#common(panel, colors, ORDER_TITLE), padding: [16, 14, 0, 0],
       cursor: { y: false, drag: { x: true, y: false, dist: 6 } },
-      scales: { x: { time: false, range: ({ data: [orders] }, least, most) => (least === orders[0] && most === orders.at(-1) ? [0, last] : [Math.max(0, least), Math.min(last, most)]) }, y: { range: (_, __, most) => [0, (most ?? 1) * 1.15] } },
-      series: [{}, ...wanted.map(({ name, look }) => ({ label: name, stroke: colors.series[look % 7], paths: () => null, points: { show: false } }))],
+      scales: { x: { time: false, range: ({ data: [orders] }, least, most) => (least === orders[0] && most === orders.at(-1) ? [0, last] : [Math.max(0, least), Math.min(last, most)]) }, y: { range: (_, __, most) => panel.levels ?? [0, (most ?? 1) * 1.15] } },
+      series: [{}, ...wanted.map(({ name, look }) => ({ label: name, stroke: colors.series(look), paths: () => null, points: { show: false } }))],
       hooks: { draw: [(plot) => drawStems(plot, panel.names, colors)] },
     };
     panel.plot = new uPlot(options, data, panel.canvas);
@@ -338,7 +386,7 @@ function drawCells(plot, face) {
 
 /** The load along a face as a drawing: the map, or the mean. */
 function faceFigure(face, { panel, xRange = null, ...common }) {
-  if (!face.every) return figure({ ...common, x: "z in mm", lines: [{ x: face.z, y: face.rows[0], color: common.colors?.series[0] }] });
+  if (!face.every) return figure({ ...common, x: "z in mm", lines: [{ x: face.z, y: face.rows[0], color: common.colors?.series(0) }] });
   const [from, to] = xRange ?? [0, face.span];
   // As many cells as can be seen: each position of a long period would make a file of megabytes.
   const cells = cellsOf(face, [from, to], (to - from) / common.width).map(({ z, part, ...cell }) => ({ ...cell, y: z, color: cssOf(part) }));
@@ -372,9 +420,10 @@ function yRange(_, least, most) {
 }
 
 /** A piece of a line beside its name. */
-function sample({ name, look, dash }, colors) {
-  const line = s("line", { x1: 0, x2: 36, y1: 4, y2: 4, stroke: colors.series[look % 7], "stroke-width": 2.5, "stroke-dasharray": dash?.length ? dash.join(" ") : null });
-  return h("span", { className: "entry" }, s("svg", { viewBox: "0 0 36 8", width: "2.25rem", height: "0.5rem", "aria-hidden": "true" }, line), name);
+function sample({ name, dash, ...line }, colors) {
+  const color = colorOf(line, colors);
+  const stroke = s("line", { x1: 0, x2: 36, y1: 4, y2: 4, stroke: color, "stroke-width": 2.5, "stroke-dasharray": dash?.length ? dash.join(" ") : null });
+  return h("span", { className: "entry" }, s("svg", { viewBox: "0 0 36 8", width: "2.25rem", height: "0.5rem", "aria-hidden": "true" }, stroke), name);
 }
 
 function drawStems(plot, names, colors) {
@@ -425,6 +474,7 @@ function drawNames(plot, names, colors, ratio) {
   ctx.fillStyle = colors.ink;
   ctx.textAlign = "center";
   const shown = names.filter(({ order }) => order >= plot.scales.x.min && order <= plot.scales.x.max);
-  const placed = placedNames(shown, { px: (order) => plot.valToPos(order, "x", true), py: (value) => plot.valToPos(value, "y", true), left: bbox.left, right: bbox.left + bbox.width, letter, widthOf: (label) => ctx.measureText(label).width });
+  const stems = plot.data.slice(1).flatMap((values, i) => plot.data[0].flatMap((order, j) => (values[j] === null || values[j] === undefined ? [] : [{ order, value: values[j], design: i }])));
+  const placed = placedNames(shown, { stems, mark: 2.6 * ratio, px: (order) => plot.valToPos(order, "x", true), py: (value) => plot.valToPos(value, "y", true), left: bbox.left, right: bbox.left + bbox.width, letter, widthOf: (label) => ctx.measureText(label).width });
   for (const { label, x, y } of placed) ctx.fillText(label, x, y);
 }

@@ -2,7 +2,7 @@
 
 import { extent, h, fixed, number } from "./dom.js";
 import { differences, told } from "./design.js";
-import { csvOf, save } from "./download.js";
+import { csvOf, fileOfDesign, save } from "./download.js";
 import { largest, largestStress } from "./headline.js";
 import { looks } from "./charts.js";
 
@@ -53,7 +53,7 @@ export class Compare {
     this.note = h("p", { className: "note" });
     const button = (name, id, work) => h("button", { type: "button", id, on: { click: work } }, name);
     place.append(this.table, this.note, h("div", { className: "buttons wrap" },
-      button("Compare methods", "methods", onMethods), button("Table as CSV", "table-csv", () => save("meshwright-designs.csv", "text/csv", designsCsv(this.designs)))));
+      button("Compare methods", "methods", onMethods), button("Table as CSV", "table-csv", () => save(fileOfDesign(this.designs[0].name, "designs.csv"), "text/csv", designsCsv(this.designs)))));
   }
 
   /** Shows `designs`, the live one first. */
@@ -76,7 +76,7 @@ export class Compare {
   /** The name of a design over its columns, and what can be done with a kept one. */
   #head(design, i, colors) {
     const swatch = h("span", { className: "swatch" });
-    swatch.style.borderColor = colors.series[design.look % 7];
+    swatch.style.borderColor = colors.series(design.look);
     const { curves, method } = design.results;
     const how = h("small", {}, `${method.replace(/_/g, " ")}${curves[0].statistics.partial ? ", partial" : ""}`);
     const span = { colSpan: curves.length, scope: curves.length > 1 ? "colgroup" : "col" };
@@ -94,7 +94,7 @@ export class Compare {
 
   /** A line for each quantity that any of the designs tells, the best of designs at one torque marked. */
   #quantities(designs) {
-    const columns = designs.flatMap(({ results }) => results.curves.map((curve) => ({ curve, results })));
+    const columns = designs.flatMap(({ results }, i) => results.curves.map((curve) => ({ curve, results, live: i === 0 })));
     const stressed = columns.some(({ curve }) => curve.stress);
     const alongFaces = columns.some(({ curve }) => curve.face);
     return QUANTITIES.filter(([name]) => (stressed || !STRESSES.includes(name)) && (alongFaces || name !== "K_Hβ")).map(([name, unit, read, print, less]) => {
@@ -102,7 +102,7 @@ export class Compare {
       const cells = columns.map(({ curve: { output_torque_n_m: torque } }, i) => {
         const rivals = values.filter((value, k) => value !== undefined && columns[k].curve.output_torque_n_m === torque);
         const best = values[i] !== undefined && isBest(values[i], rivals, less);
-        return h("td", { className: best ? "best" : "" }, values[i] === undefined ? "–" : print(values[i]), best ? h("span", { className: "visually-hidden" }, " best") : null);
+        return h("td", { className: [best ? "best" : "", columns[i].live ? "live" : ""].join(" ").trim() }, values[i] === undefined ? "–" : print(values[i]), best ? h("span", { className: "visually-hidden" }, " best") : null);
       });
       return h("tr", {}, h("th", { scope: "row" }, name, unit ? h("small", {}, ` ${unit}`) : null), ...cells);
     });

@@ -5,6 +5,9 @@ const MOST_CHANGES = 200;
 /** What follows in one field within so many milliseconds is one change. */
 const ONE_CHANGE = 1500;
 
+/** The angle that diameters and the center distance go with. */
+export const HELIX = "/pair/helix_angle_deg";
+
 /** The parts of a JSON pointer. */
 export function parts(pointer) {
   return pointer.split("/").slice(1).map((part) => part.replace(/~1/g, "/").replace(/~0/g, "~"));
@@ -37,7 +40,7 @@ export function same(one, other) {
 
 /**
  * The submission that is worked on and the designs kept beside it. Its listeners are told what changed it: `start`, `open`, `form`, `mend`, `drag` under
- * a hand, `snap` when a hand lets go of what cannot be, `undo`, or `kept` where only the kept designs changed.
+ * a hand, `snap` when a hand lets go of what cannot be, `undo`, or `kept` or `confirm` where only the kept designs changed, or what was typed for which angle.
  */
 export class Design {
   #listeners = [];
@@ -50,6 +53,8 @@ export class Design {
   constructor() {
     this.submission = null;
     this.kept = [];
+    /** Pointers of the fields that somebody has typed, each with the helix angle that it was typed for. */
+    this.typed = {};
     this.by = "start";
     /** How often the submission has changed. */
     this.changes = 0;
@@ -77,7 +82,7 @@ export class Design {
 
   /** Takes another submission as a whole. */
   replace(submission, by) {
-    this.#change({ submission: structuredClone(submission) }, by, null);
+    this.#change({ submission: structuredClone(submission), typed: {} }, by, null);
   }
 
   get(pointer) {
@@ -88,14 +93,21 @@ export class Design {
     this.setAll({ [pointer]: value }, by);
   }
 
-  /** Several fields at once. */
-  setAll(values, by) {
+  /** Several fields at once; of those that go with what is typed `typed` names those that were. */
+  setAll(values, by, typed = Object.keys(values)) {
     let next = this.submission;
     for (const [pointer, value] of Object.entries(values)) next = withValue(next, pointer, value);
     if (same(next, this.submission)) return;
+    const others = Object.entries(this.typed).filter(([pointer]) => !(pointer in values));
+    const now = by === "form" ? typed.map((pointer) => [pointer, at(next, HELIX) ?? 0]) : [];
     // What is typed is one change until it rests; each press of a button is one by itself.
     const key = by === "mend" ? null : Object.keys(values).join();
-    this.#change({ submission: next }, by, this.#hand ?? key);
+    this.#change({ submission: next, typed: Object.fromEntries([...others, ...now]) }, by, this.#hand ?? key);
+  }
+
+  /** What was typed at `pointer` is meant for the helix angle as it is. */
+  confirm(pointer) {
+    this.#change({ typed: { ...this.typed, [pointer]: this.get(HELIX) ?? 0 } }, "confirm", null);
   }
 
   /** Goes back to what could be computed, as part of the change that led away from it. */
@@ -112,11 +124,18 @@ export class Design {
     this.#change({ kept }, "kept", null);
   }
 
-  /** Designs that were kept before the page was opened: they were there all along. */
-  restore(kept) {
-    if (!kept.length) return;
-    for (const state of [this, ...this.#past, ...this.#future]) state.kept = [...kept, ...state.kept];
-    this.#tell("kept");
+  /** What is worked on and the way back from it, to be remembered. */
+  get state() {
+    return { ...this.#state(), past: this.#past, future: this.#future };
+  }
+
+  /** Begins with what was remembered: `kept` designs, and the way back where it leads from `submission`, which is told as what the page starts with. */
+  restore(submission, { kept, typed, past, future, ...known }) {
+    this.kept = kept;
+    if (!same(known.submission, submission)) return this.replace(submission, "start");
+    Object.assign(this, { submission, typed });
+    [this.#past, this.#future] = [past, future];
+    return this.#tell("start");
   }
 
   get canUndo() {
@@ -145,7 +164,7 @@ export class Design {
   }
 
   #state() {
-    return { submission: this.submission, kept: this.kept };
+    return { submission: this.submission, kept: this.kept, typed: this.typed };
   }
 
   #change(next, by, key) {
@@ -161,7 +180,7 @@ export class Design {
 
   #tell(by) {
     this.by = by;
-    if (by !== "kept") this.changes += 1;
+    if (!["kept", "confirm"].includes(by)) this.changes += 1;
     for (const listener of this.#listeners) listener(by);
   }
 }

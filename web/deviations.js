@@ -2,6 +2,7 @@
 
 import { post, ProblemError } from "./api.js";
 import { fixed, h, number } from "./dom.js";
+import { given, numeric } from "./inputs.js";
 
 /** What a column of measured teeth may be called, and the field that it is. */
 const COLUMNS = [
@@ -64,7 +65,7 @@ export function deviations(member, design) {
   const pointer = `/pair/${member}/tooth_deviations`;
   const id = `deviations-${member}`;
   const number_ = (name, value, more) => h("input", { type: "number", id: `${id}-${name}`, value, ...more });
-  const [quality, seed, capability] = [number_("class", 6, { min: 1, max: 11, step: 1 }), number_("seed", 1, { min: 0, step: 1 }), number_("capability", 1, { min: 0.1, max: 10, step: "any" })];
+  const [quality, seed, capability] = [number_("class", 6, { min: 1, max: 11, step: 1 }), number_("seed", 1, { min: 0, step: 1 }), numeric({ id: `${id}-capability`, value: 1 })];
   const out = h("p", { className: "note", role: "status" });
   const kind = h("select", { id: `${id}-kind` }, h("option", { value: "pitch_single_um" }, "single pitch"), h("option", { value: "pitch_cumulative_um" }, "cumulative pitch"), h("option", { value: "profile_slope_um" }, "profile slope"));
   const text = h("textarea", { id: `${id}-text`, rows: 3, spellcheck: false, placeholder: "one number a tooth, in µm; or columns with names" });
@@ -72,7 +73,7 @@ export function deviations(member, design) {
 
   async function draw() {
     try {
-      const drawn = await post("v1/draw-deviations", { gear: gear(), iso_1328_class: Number(quality.value), capability: Number(capability.value), seed: Number(seed.value) });
+      const drawn = await post("v1/draw-deviations", { gear: gear(), iso_1328_class: Number(quality.value), capability: given(capability), seed: Number(seed.value) });
       design.set(pointer, drawn.tooth_deviations, "mend");
       const um = drawn.tolerances_um;
       out.textContent = `Class ${quality.value}: f_pT ${fixed(um.single_pitch, 1)}, F_pT ${fixed(um.total_pitch, 1)}, f_HαT ${fixed(um.profile_slope, 1)}, F_rT ${fixed(um.runout, 1)} µm. These teeth: F_p ${fixed(drawn.total_pitch_deviation_um, 1)} µm${drawn.total_pitch_deviation_um > um.total_pitch ? ", more than the class allows" : ""}.`;

@@ -1,5 +1,6 @@
 // What has an extent along the axis: which fields need three dimensions, and the steps into the third one and back.
 
+import { HELIX } from "./design.js";
 import { number } from "./dom.js";
 
 /** The method that a pair gets with its first extent along the axis, and the one that it goes back to. */
@@ -26,30 +27,63 @@ export const kindOfTeeth = (angle) => (angle ? "helical" : "straight");
 const secant = (angle) => 1 / Math.cos(((angle ?? 0) * Math.PI) / 180);
 const isGiven = (value) => value !== undefined && value !== null && value !== 0 && !(Array.isArray(value) && value.length === 0);
 
-/** The changes that another helix angle than `before` brings with it, and what is said of them: diameters of the same normal module grow, and the gears move apart. */
-export function helix(design, angle, before = design.get("/pair/helix_angle_deg")) {
-  const changes = { "/pair/helix_angle_deg": angle || undefined };
+/** Lengths that go with the helix angle: how much by for each unit that its secant grows, and what each is called. */
+function withHelix(design) {
+  const sizes = MEMBERS.map((member) => design.get(`/pair/${member}/module_mm`) * design.get(`/pair/${member}/tooth_count`));
+  const tips = MEMBERS.map((member, i) => [`/pair/${member}/tip_diameter_mm`, sizes[i], `Tip diameter of the ${member} gear`]);
+  const lengths = [["/pair/center_distance_mm", 0.5 * (sizes[0] + sizes[1]), "Center distance"], ...tips];
+  return lengths.filter(([pointer, by]) => typeof design.get(pointer) === "number" && Number.isFinite(by)).map(([pointer, by, words]) => ({ pointer, by, words, typed: pointer in design.typed }));
+}
+
+const moved = (value, by) => Number((value + by).toFixed(4));
+
+/** The changes that another helix angle than `before` brings with it, and what is said of them: diameters of the same normal module grow, and the gears move apart. What somebody has typed stays. */
+export function helix(design, angle, before = design.get(HELIX)) {
+  const changes = { [HELIX]: angle || undefined };
   const told = [];
   const wider = secant(angle) - secant(before);
-  const grows = (pointer, by, words) => {
-    const value = design.get(pointer);
-    if (typeof value !== "number" || !Number.isFinite(by) || Math.abs(by) < 1e-9) return;
-    changes[pointer] = Number((value + by).toFixed(4));
+  for (const { pointer, by, words, typed } of withHelix(design)) {
+    if (typed || Math.abs(by * wider) < 1e-9) continue;
+    changes[pointer] = moved(design.get(pointer), by * wider);
     told.push(`${words} ${number(changes[pointer], 7)} mm`);
-  };
-  const sizes = MEMBERS.map((member) => design.get(`/pair/${member}/module_mm`) * design.get(`/pair/${member}/tooth_count`));
-  grows("/pair/center_distance_mm", 0.5 * (sizes[0] + sizes[1]) * wider, "Center distance");
-  MEMBERS.forEach((member, i) => grows(`/pair/${member}/tip_diameter_mm`, sizes[i] * wider, `Tip diameter of the ${member} gear`));
+  }
   if (!angle || isSolid(design.get("/method"))) return { changes, told };
   const solid = intoSolid(design);
   return { changes: { ...changes, ...solid.changes }, told: [...told, ...solid.told] };
+}
+
+/** What typed lengths would be that were meant for another helix angle, where that suits the teeth better: `{ pointer, value, angle }`. */
+export function offers(design) {
+  const angle = design.get(HELIX) ?? 0;
+  if (!(Math.abs(angle) < 60)) return [];
+  const wider = (pointer) => secant(angle) - secant(design.typed[pointer]);
+  return withHelix(design).filter(({ pointer, typed, by }) => typed && Math.abs(by * wider(pointer)) > 1e-4).flatMap(({ pointer, by }) => {
+    const [value, usual] = [design.get(pointer), usualLength(design, pointer, angle)];
+    const other = moved(value, by * wider(pointer));
+    return Math.abs(other - usual) < Math.abs(value - usual) ? [{ pointer, value: other, angle: design.typed[pointer] }] : [];
+  });
+}
+
+/** The center distance without backlash, or the tip diameter of teeth of their usual height. */
+function usualLength(design, pointer, angle) {
+  const member = /^\/pair\/(driving|driven)\//.exec(pointer)?.[1];
+  const of = (gear, name, usual) => design.get(`/pair/${gear}/${name}`) ?? usual;
+  const normal = (of("driving", "pressure_angle_deg", 20) * Math.PI) / 180;
+  if (member) return of(member, "module_mm", 1) * (of(member, "tooth_count", 0) * secant(angle) + 2 * (1 + of(member, "profile_shift", 0)));
+  const teeth = MEMBERS.reduce((sum, gear) => sum + of(gear, "tooth_count", 0), 0);
+  const shifts = MEMBERS.reduce((sum, gear) => sum + of(gear, "profile_shift", 0), 0);
+  const transverse = Math.atan(Math.tan(normal) * secant(angle));
+  const involute = Math.tan(transverse) - transverse + (2 * shifts * Math.tan(normal)) / teeth;
+  let working = transverse;
+  for (let i = 0; i < 20; i += 1) working = Math.max(0.01, working - (Math.tan(working) - working - involute) / Math.tan(working) ** 2);
+  return (0.5 * of("driving", "module_mm", 1) * teeth * secant(angle) * Math.cos(transverse)) / Math.cos(working);
 }
 
 /** A pair of straight teeth gets a helix, or a helical one gets straight teeth, and its plane method back where nothing else needs the third dimension. */
 export function teeth(design, kind) {
   if (kind === "helical") return helix(design, USUAL_HELIX);
   const { changes, told } = helix(design, 0);
-  const others = pointersNeeding(design).filter((pointer) => pointer !== "/pair/helix_angle_deg");
+  const others = pointersNeeding(design).filter((pointer) => pointer !== HELIX);
   const back = isSolid(design.get("/method")) && others.length === 0 ? intoPlane(design) : { changes: {}, told: [] };
   return { changes: { ...back.changes, ...changes }, told: [...told, ...back.told] };
 }
@@ -66,7 +100,7 @@ export function intoSolid(design) {
 /** The changes that compute the pair in the plane: what has an extent along the axis goes. */
 export function intoPlane(design) {
   const left = pointersNeeding(design);
-  const straight = left.includes("/pair/helix_angle_deg") ? helix(design, 0) : { changes: {}, told: [] };
+  const straight = left.includes(HELIX) ? helix(design, 0) : { changes: {}, told: [] };
   const { face_order: order, face_slices: slices, ...resolution } = design.get("/resolution") ?? {};
   const finer = order === undefined && slices === undefined ? {} : { "/resolution": Object.keys(resolution).length ? resolution : undefined };
   const changes = { ...Object.fromEntries(left.map((pointer) => [pointer, undefined])), ...straight.changes, "/method": PLANE, "/face_load": undefined, ...finer };
@@ -80,5 +114,5 @@ export const needsSolid = (design) => pointersNeeding(design).length > 0;
 /** The fields of the design that plane methods refuse. */
 function pointersNeeding(design) {
   const ofGear = (member) => ["lead_modifications", "blank/hub", "blank/web/offset_mm", "tooth_deviations/lead_slope_um"].map((name) => `/pair/${member}/${name}`);
-  return ["/pair/helix_angle_deg", "/pair/axial_offset_mm", "/pair/misalignment_um", ...MEMBERS.flatMap(ofGear)].filter((pointer) => isGiven(design.get(pointer)));
+  return [HELIX, "/pair/axial_offset_mm", "/pair/misalignment_um", ...MEMBERS.flatMap(ofGear)].filter((pointer) => isGiven(design.get(pointer)));
 }

@@ -66,8 +66,27 @@ export function timeOf(milliseconds) {
   return milliseconds < 5_400_000 ? `${Math.round(milliseconds / 60_000)} min` : `${fixed(milliseconds / 3_600_000, 1)} h`;
 }
 
-/** How long the rest of `total` takes, in words that go on from others, once a few of them have been `done` since `begun`. */
-export const timeLeft = (begun, done, total) => (done > 2 && done < total ? `, about ${timeOf(((performance.now() - begun) * (total - done)) / done)} more` : "");
+/**
+ * Says how long the rest takes, in words that go on from others, of how much is done of a total; `expected` milliseconds were thought to be needed before anything was known. The pace
+ * is that of the last tenth that has been done: what is made once, as a gear is for all of its positions, says nothing of what follows.
+ */
+export function remaining(expected = null, now = () => performance.now()) {
+  const begun = now();
+  const seen = [{ at: begun, done: 0 }];
+  return (done, total) => {
+    const at = now();
+    const elapsed = at - begun;
+    const from = seen.findLast((each) => done - each.done >= Math.max(3, done / 10)) ?? seen[0];
+    seen.push({ at, done });
+    if (done >= total) return "";
+    const linear = done > from.done ? ((at - from.at) * (total - done)) / (done - from.done) : null;
+    if (expected === null) return done > 2 && linear !== null ? `, about ${timeOf(linear)} more` : "";
+    // What was thought counts until as much has been done, or as much time has passed.
+    const known = linear === null ? 0 : Math.min(1, Math.max(done / total, elapsed / expected));
+    const left = known * (linear ?? 0) + (1 - known) * (expected - elapsed);
+    return left > 0 ? `, about ${timeOf(left)} more` : ", longer than was thought";
+  };
+}
 
 /** Calls `work` with the last arguments, `wait` milliseconds after the last call. */
 export function debounced(wait, work) {

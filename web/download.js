@@ -2,6 +2,12 @@
 
 import { h } from "./dom.js";
 
+/** The name of a file of the design or study that is called `name`: what file systems do not take is left out. */
+export function fileOfDesign(name, rest) {
+  const plain = name.replace(/×/g, "x").replace(/°/g, "deg").replace(/[^\p{Alphabetic}\p{Number}.]+/gu, "-").replace(/^[-.]+|[-.]+$/g, "").slice(0, 80);
+  return `meshwright-${plain ? `${plain}-` : ""}${rest}`;
+}
+
 /** Gives the visitor a file. */
 export function save(name, type, content) {
   const address = URL.createObjectURL(content instanceof Blob ? content : new Blob([content], { type }));

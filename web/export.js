@@ -3,7 +3,7 @@
 import { ProblemError, solved } from "./api.js";
 import { looks } from "./charts.js";
 import { designsCsv } from "./compare.js";
-import { csv, drawingOf, ordersCsv, save } from "./download.js";
+import { csv, drawingOf, fileOfDesign, ordersCsv, save } from "./download.js";
 import { h } from "./dom.js";
 import { fileOf, pictureOf, stacked } from "./figure.js";
 import { filesOf, saveFile } from "./files.js";
@@ -16,14 +16,14 @@ const LANGUAGES = { curl: "curl", python: "Python", typescript: "TypeScript" };
 export function exporting(place, { current, designs, drawing, charts, position, sheet }) {
   const state = h("p", { className: "note", role: "status" });
   const kinds = {
-    json: ["Submission and results, JSON", (live) => save("meshwright.json", "application/json", JSON.stringify({ submission: live.submission, results: live.results }, null, 1))],
-    csv: ["Curves, CSV", (live) => save("meshwright.csv", "text/csv", csv(live.results))],
-    orders: ["Orders, CSV", (live) => save("meshwright-orders.csv", "text/csv", ordersCsv(live.results))],
-    designs: ["Designs, CSV", () => save("meshwright-designs.csv", "text/csv", designsCsv(designs()))],
-    svg: ["Curves, SVG", () => save("meshwright-curves.svg", "image/svg+xml", fileOf(curves()))],
-    png: ["Curves, PNG", async () => save("meshwright-curves.png", "image/png", await pictureOf(curves()))],
-    pair: ["Drawing, SVG", () => save("meshwright-pair.svg", "image/svg+xml", fileOf(inLight(() => drawingOf(drawing.element))))],
-    page: ["Report page, SVG", (live) => save("meshwright-report.svg", "image/svg+xml", fileOf(sheet(live)))],
+    json: ["Submission and results, JSON", (live) => save(called(live, "results.json"), "application/json", JSON.stringify({ submission: live.asked, results: live.results }, null, 1))],
+    csv: ["Curves, CSV", (live) => save(called(live, "curves.csv"), "text/csv", csv(live.results))],
+    orders: ["Orders, CSV", (live) => save(called(live, "orders.csv"), "text/csv", ordersCsv(live.results))],
+    designs: ["Designs, CSV", (live) => save(called(live, "designs.csv"), "text/csv", designsCsv(designs()))],
+    svg: ["Curves, SVG", (live) => save(called(live, "curves.svg"), "image/svg+xml", fileOf(curves()))],
+    png: ["Curves, PNG", async (live) => save(called(live, "curves.png"), "image/png", await pictureOf(curves()))],
+    pair: ["Drawing, SVG", (live) => save(called(live, "pair.svg"), "image/svg+xml", fileOf(inLight(() => drawingOf(drawing.element))))],
+    page: ["Report page, SVG", (live) => save(called(live, "report.svg"), "image/svg+xml", fileOf(sheet(live)))],
   };
   const buttons = Object.entries(kinds).map(([kind, [name, work]]) => h("button", { type: "button", data: { download: kind }, on: { click: () => run(work) } }, name));
   const ofJob = h("div", { className: "buttons wrap" });
@@ -35,6 +35,7 @@ export function exporting(place, { current, designs, drawing, charts, position, 
     h("div", { className: "buttons wrap" }, ...buttons), h("h3", {}, "Files that a job makes"), ofJob, state,
     h("h3", {}, "This as a program"), h("div", { className: "line" }, h("label", { htmlFor: language.id }, "Language"), language, copy), code);
 
+  const called = ({ name }, rest) => fileOfDesign(name, rest);
   const curves = () => inLight(() => stacked(charts.figures(), looks().panel));
 
   async function run(work) {
@@ -54,19 +55,19 @@ export function exporting(place, { current, designs, drawing, charts, position, 
 
   async function fileOfJob(live, file) {
     state.textContent = "A job computes it.";
-    const job = await solved(live.submission);
-    await saveFile(job.id, file, "meshwright", file === "fields.vtu" ? `?mesh_position=${position().toFixed(4)}` : "");
+    const job = await solved(live.asked);
+    await saveFile(job.id, file, called(live, ""), file === "fields.vtu" ? `?mesh_position=${position().toFixed(4)}` : "");
     state.textContent = "";
   }
 
   async function show() {
     const live = await current();
-    const files = live ? filesOf(live.submission) : [];
+    const files = live ? filesOf(live.asked) : [];
     // The same buttons stay, with whoever stands on one.
     if (files.map(({ name }) => name).join() !== [...ofJob.children].map((each) => each.dataset.download).join()) {
       ofJob.replaceChildren(...files.map(({ name, title }) => h("button", { type: "button", data: { download: name }, on: { click: () => run((live) => fileOfJob(live, name)) } }, title)));
     }
-    if (live) code.textContent = snippets(live.submission, new URL(".", document.baseURI).href)[language.value];
+    if (live) code.textContent = snippets(live.asked, new URL(".", document.baseURI).href)[language.value];
   }
 
   return { refresh: show };

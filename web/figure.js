@@ -36,7 +36,7 @@ export function figure({ title, x, y, cells = [], lines = [], points = [], stems
   let [left, right] = xRange ?? range([...points.map((each) => each.x), ...lines.flatMap((line) => line.x), ...stems.flatMap((each) => each.x), ...cells.flatMap((each) => [each.x, each.x + each.width])], points.length ? 0.08 : 0);
   const ys = [...points.map((each) => each.y), ...lines.flatMap((line) => line.y.filter((value, i) => value !== null && line.x[i] >= left && line.x[i] <= right)), ...stems.flatMap((each) => [0, ...each.y]), ...cells.flatMap((each) => [each.y, each.y + each.height])];
   let [low, high] = yRange ?? range(ys, cells.length ? 0 : 0.08);
-  if (stems.length) [left, low] = [0, 0];
+  if (stems.length) [left, low] = [0, yRange ? low : 0];
   const px = (value) => frame.left + ((value - left) / (right - left || 1)) * (width - frame.left - frame.right);
   const py = (value) => height - frame.bottom - ((value - low) / (high - low)) * (height - frame.top - frame.bottom);
   const ink = colors ? { fill: colors.ink, "font-family": FONT, "font-size": LETTER } : {};
@@ -60,9 +60,9 @@ export function figure({ title, x, y, cells = [], lines = [], points = [], stems
   for (const each of lines) svg.append(s("path", { d: pathOf(each, px, py, [left, right]), fill: "none", class: each.parted ? "parted-line" : each.color ? undefined : "line", stroke: each.color, "stroke-width": each.width ?? 1.5, "stroke-dasharray": each.dash?.length ? each.dash.join(" ") : null }));
   stems.forEach((each, k) => each.x.forEach((place, i) => {
     if (place < left || place > right) return;
-    svg.append(s("line", { x1: px(place) + 2 * k, x2: px(place) + 2 * k, y1: py(0), y2: py(each.y[i]), stroke: each.color, "stroke-width": 1.5 }));
+    svg.append(s("line", { x1: px(place) + 2 * k, x2: px(place) + 2 * k, y1: py(low), y2: py(each.y[i]), stroke: each.color, "stroke-width": 1.5 }));
   }));
-  for (const { label: name, x: at, y: level } of placedNames(names, { px, py, left: frame.left, right: width - frame.right, letter: LETTER, widthOf: (text) => 6.6 * text.length })) svg.append(words(name, { ...ink, x: at, y: level, "text-anchor": "middle" }));
+  for (const { label: name, x: at, y: level } of placedNames(names, { stems: stems.flatMap((each) => each.x.map((order, i) => ({ order, value: each.y[i] }))), px, py, left: frame.left, right: width - frame.right, letter: LETTER, widthOf: (text) => 6.6 * text.length })) svg.append(words(name, { ...ink, x: at, y: level, "text-anchor": "middle" }));
   if (scale) svg.append(scaleAt(scale, width - frame.right, 8, ink));
   // Those that stand out are over the others.
   for (const point of [...points].sort((a, b) => Number(a.strong ?? false) - Number(b.strong ?? false))) {

@@ -20,8 +20,8 @@ const FILES = [
 /** Names and titles of the files of a job of `submission`. */
 export const filesOf = (submission) => FILES.filter(([, , asks]) => !asks || asks(submission)).map(([name, title]) => ({ name, title }));
 
-/** Saves the file `name` of the job `id`, with `prefix` before its name, as it is asked for by `query`. */
+/** Saves the file `name` of the job `id`, with `prefix` before its name, which ends with a hyphen, as it is asked for by `query`. */
 export async function saveFile(id, name, prefix, query = "") {
   const place = name === "submission.rexs" ? name : `results${name === "results.json" ? "" : `/${name}`}`;
-  save(`${prefix}-${name}`, "", await (await request(`v1/jobs/${id}/${place}${query}`)).blob());
+  save(`${prefix}${name}`, "", await (await request(`v1/jobs/${id}/${place}${query}`)).blob());
 }

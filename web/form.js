@@ -1,11 +1,11 @@
 // The form of a submission, made from the schema: every field with its unit, bounds, default and words.
 
 import { Beginnings } from "./beginnings.js";
-import { at } from "./design.js";
-import { helix, intoPlane, intoSolid, isSolid, kindOfTeeth, needsThird, teeth } from "./dimensions.js";
+import { at, HELIX } from "./design.js";
+import { helix, intoPlane, intoSolid, isSolid, kindOfTeeth, needsThird, offers, teeth } from "./dimensions.js";
 import { deviations } from "./deviations.js";
 import { h, number, unit } from "./dom.js";
-import { parsed, read, stepped, write } from "./inputs.js";
+import { numeric, parsed, read, stepped, unreadable, write } from "./inputs.js";
 import { help, kindOf, resolve, saidDefault, schemaAt } from "./schema.js";
 
 /** Fields that a designer looks for first; they stand above the others of their object. */
@@ -19,11 +19,11 @@ const MULTIPLES = { addendum_mm: 1, dedendum_mm: 1.25, rack_tip_radius_mm: 0.38 
 
 const MEMBERS = ["driving", "driven"];
 
-/** The angle that diameters and the center distance go with. */
-const HELIX = "/pair/helix_angle_deg";
-
+/** The thickness of teeth, as drawings say it. */
+const THICKNESSES = ["tooth_thickness_deviation_um", "tooth_thickness_deviation_normal_um", "span_measurement", "ball_measurement"];
 /** Fields that stand in place of each other: one that gets a value takes those of the others away. */
 const INSTEAD = {
+  ...Object.fromEntries(THICKNESSES.map((name) => [name, THICKNESSES.filter((other) => other !== name)])),
   radius_mm: ["slot"], slot: ["radius_mm"], at_deg: ["count", "phase_deg"], count: ["at_deg"], phase_deg: ["at_deg"],
   tip_diameter_mm: ["addendum_mm"], addendum_mm: ["tip_diameter_mm"], tip_rounding_mm: ["tip_chamfer_mm"], tip_chamfer_mm: ["tip_rounding_mm"],
 };
@@ -184,7 +184,8 @@ export class Form {
       : h("button", { type: "button", className: "mend", on: { click: () => this.design.set(error.pointer, error.nearest, "mend") } }, `Use ${number(error.nearest, 8)} ${unit(schema["x-unit"] ?? schema.items?.["x-unit"])}`.trim());
     element.classList.add("wrong");
     const id = `error-${pointer}-${element.querySelectorAll(":scope > .field-error").length}`;
-    element.append(h("p", { className: "field-error", id }, this.inWords(error.detail), " ", mend));
+    const typed = this.design.get(error.pointer);
+    element.append(h("p", { className: "field-error", id }, error.code === "wrong_type" && typeof typed === "string" ? unreadable(typed) : this.inWords(error.detail), " ", mend));
     const input = element.querySelector(":scope > .row > input, :scope > .row > select, :scope > .row > textarea");
     input?.setAttribute("aria-invalid", "true");
     input?.setAttribute("aria-describedby", [input.getAttribute("aria-describedby") ?? described, id].filter(Boolean).join(" "));
@@ -247,15 +248,21 @@ export class Form {
     return h("div", { className: "field choice" }, h("div", { className: "row" }, h("label", { htmlFor: id, title: "Helical teeth are computed in three dimensions; the module and the pressure angle are those of the normal section then" }, "Teeth"), this.kindOfTeeth));
   }
 
-  /** Fields that the method does not know are marked. */
+  /** Fields that the method does not know are marked, and what was typed for another helix angle is offered anew. */
   #showDimensions() {
     this.kindOfTeeth.value = kindOfTeeth(this.design.get(HELIX));
     this.place.dataset.dimensions = isSolid(this.design.get("/method")) ? "3" : "2";
+    for (const old of this.place.querySelectorAll(".field-offer")) old.remove();
+    for (const { pointer, value, angle } of offers(this.design)) {
+      const words = `Typed for a helix angle of ${number(angle)}°; ${number(value, 7)} mm has the same teeth at ${number(this.design.get(HELIX) ?? 0)}°. `;
+      const button = (name, work) => h("button", { type: "button", className: "mend", on: { click: work } }, name);
+      this.#nearest(pointer)?.element.append(h("p", { className: "field-offer", role: "status" }, words, button(`Use ${number(value, 7)} mm`, () => this.design.set(pointer, value, "mend")), " ", button("Keep what was typed", () => this.design.confirm(pointer))));
+    }
   }
 
   /** Makes changes that belong together, and says what they are. */
   #follow({ changes, told }, by) {
-    this.design.setAll(changes, by);
+    this.design.setAll(changes, by, [HELIX]);
     this.#remember("driving");
     if (told.length) this.notify(`${told.join(". ")}.`);
   }
@@ -334,9 +341,19 @@ export class Form {
       const { changes, told } = intoSolid(this.design);
       return this.#follow({ changes: { ...changes, [pointer]: value }, told: told.slice(1) }, "mend");
     }
+    this.design.setAll({ [pointer]: value, ...further, ...(value === undefined ? {} : this.#displaced(pointer)) }, "form");
+  }
+
+  /** Takes values by their pointers, as a warning offers them. */
+  take(changes) {
+    this.design.setAll({ ...changes, ...Object.assign({}, ...Object.keys(changes).map((pointer) => this.#displaced(pointer))) }, "mend");
+  }
+
+  /** What goes where a field gets a value: those that it stands in place of. */
+  #displaced(pointer) {
     const holder = pointer.slice(0, pointer.lastIndexOf("/") + 1);
-    const others = value === undefined ? [] : (INSTEAD[pointer.slice(holder.length)] ?? []).filter((name) => this.design.get(holder + name) !== undefined);
-    this.design.setAll({ [pointer]: value, ...further, ...Object.fromEntries(others.map((name) => [holder + name, undefined])) }, "form");
+    const others = (INSTEAD[pointer.slice(holder.length)] ?? []).filter((name) => this.design.get(holder + name) !== undefined);
+    return Object.fromEntries(others.map((name) => [holder + name, undefined]));
   }
 
   #remember(member) {
@@ -370,7 +387,7 @@ export class Form {
         told.add(words);
       }
     }
-    this.design.setAll(changes, by);
+    this.design.setAll(changes, by, members.map((member) => `/pair/${member}/${name}`));
     for (const member of members) this.#remember(member);
     if (told.size) this.notify(`${[...told].join(", ")}.`);
   }
@@ -408,13 +425,10 @@ export class Form {
     }
     if (kind.kind === "flag") return h("input", { id, type: "checkbox", on: { change: (event) => put(event.target.checked) } });
     if (kind.kind === "json") return h("textarea", { id, rows: 2, spellcheck: false, on: { change: (event) => put(parsed(event.target.value)) } });
-    const type = kind.kind === "number" ? "number" : "text";
-    const input = h("input", { id, type, spellcheck: false, on: { input: (event) => put(read(event.target, kind)) } });
-    if (kind.kind === "number") {
-      input.step = kind.whole ? 1 : "any";
-      input.inputMode = "decimal";
-      input.addEventListener("keydown", (event) => this.#step(event, pointer, kind));
-    }
+    const properties = { id, spellcheck: false, on: { input: (event) => put(read(event.target, kind)) } };
+    if (kind.kind !== "number") return h("input", { type: "text", ...properties });
+    const input = numeric(properties);
+    input.addEventListener("keydown", (event) => this.#step(event, pointer, kind));
     return input;
   }
 

@@ -18,7 +18,8 @@ export const OF_GEARS = [
   ["Active root diameter", "d_Nf", "mm", (it) => fixed(it.active_root_diameter_mm, 3)],
   ["Root form diameter", "d_Ff", "mm", (it) => fixed(it.form_diameter_mm ?? twice(it.form_radius_mm), 3)],
   ["Root diameter", "d_f", "mm", (it) => fixed(twice(it.root_radius_mm), 3)],
-  ["Tip thickness", "s_a", "mm", (it) => fixed(it.tip_thickness_mm, 3)],
+  ["Tip thickness", "s_an", "mm", (it) => fixed(it.tip_thickness_mm, 3)],
+  ["Tip clearance", "c", "mm", (it) => fixed(it.tip_clearance_mm, 3)],
   ["Specific sliding at A", "ζ_A", "", (it) => fixed(it.specific_sliding_a, 3)],
   ["Specific sliding at E", "ζ_E", "", (it) => fixed(it.specific_sliding_e, 3)],
   ["Relief starts at diameter", "", "mm", (it) => (it.relief_start_radius_mm === undefined ? "–" : fixed(twice(it.relief_start_radius_mm), 3))],
@@ -44,6 +45,7 @@ export const OF_PAIRS = [
   ["Transverse pressure angle", "α_t", "°", (it) => fixed(it.transverse_pressure_angle_deg, 4)],
   ["Base pitch", "p_b", "mm", (it) => fixed(it.base_pitch_mm, 4)],
   ["Normal backlash", "j_bn", "mm", (it) => fixed(it.backlash_mm, 4)],
+  ["Transverse backlash", "j_wt", "mm", (it) => fixed(it.backlash_transverse_mm, 4)],
   ["Least normal backlash", "", "mm", (it) => fixed(it.least_backlash_mm, 4)],
   ["Common face width", "", "mm", (it) => number(it.contact_width_mm, 6)],
   ["True period", "", "mesh periods", (it) => String(it.period_mesh_periods)],
@@ -52,8 +54,8 @@ export const OF_PAIRS = [
 /** Every row of the report: `[name, symbol, unit, driving, driven]`, the pair's with one value. */
 export function rowsOf({ results, submission }) {
   const { pair } = results;
-  const gears = OF_GEARS.map(([name, symbol, unit, read]) => [name, symbol, unit, ...["driving", "driven"].map((member) => read(pair[member], submission.pair[member]))]);
-  // What only helical pairs have is left out of the others.
+  const gears = OF_GEARS.map(([name, symbol, unit, read]) => [name, symbol, unit, ...["driving", "driven"].map((member) => read(pair[member], submission.pair[member]))]).filter(([, , , ...values]) => values.some((value) => value !== "–"));
+  // What only some gears or pairs have is left out of the others.
   const both = OF_PAIRS.map(([name, symbol, unit, read]) => [name, symbol, unit, read(pair, submission.pair)]).filter(([, , , value]) => value !== "–");
   return { gears, both };
 }

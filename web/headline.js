@@ -66,12 +66,13 @@ export class Headline {
   /** Shows the answers of `curve`, beside those of another design, if there is one: `{ name, curve }`. */
   show(curve, other = null, draft = false) {
     for (const answer of ANSWERS) {
-      const { tile, value, change } = this.tiles.get(answer.id);
+      const { tile, value, change, about } = this.tiles.get(answer.id);
       const [now, before] = [answer.of(curve), other && answer.of(other.curve)];
       if (answer.some) tile.hidden = now === null;
       value.textContent = now === null ? "–" : answer.print(now);
       const where = now === null ? undefined : answer.where?.(curve);
       value.title = where ? placed(where) : "";
+      about.textContent = where ? `${answer.about} It stands ${placed(where)}.` : answer.about;
       value.classList.toggle("draft", draft);
       const known = typeof now === "number" && typeof before === "number";
       change.textContent = known ? changeOf(now, before) : "";

@@ -3,6 +3,7 @@
 import { follow, hasEnded, json, post, ProblemError, request } from "./api.js";
 import { differences, nameOf, told } from "./design.js";
 import { debounced, h, number } from "./dom.js";
+import { fileOfDesign } from "./download.js";
 import { filesOf, saveFile } from "./files.js";
 import { read } from "./inputs.js";
 
@@ -19,22 +20,26 @@ const DOCUMENTS = 200;
 const FIELDS = 4;
 const REST = 300;
 
-/** The jobs in `place`; `form` names fields, and the results of a finished one are opened by `onOpen`. */
-export function jobs(place, design, form, onOpen) {
-  const out = h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Jobs" });
+/** The jobs and studies in `place`; `form` names fields, the results of a finished job are opened by `onOpen`, and a study that is given by its id and document by `onStudy`. */
+export function jobs(place, design, form, onOpen, onStudy) {
+  const out = h("div", { className: "scroll", id: "jobs-list", tabIndex: 0, role: "region", ariaLabel: "Jobs" });
   const state = h("p", { className: "note", role: "status" });
   const tags = h("input", { type: "text", id: "jobs-tags", maxLength: 200, spellcheck: false, on: { change: () => design.set("/tags", read(tags, { kind: "texts" }), "mend") } });
   const submit = h("button", { type: "button", className: "primary", on: { click: () => act(() => post("v1/jobs", design.submission)) } }, "Submit this design as a job");
   const ofStudies = h("input", { type: "checkbox", id: "jobs-of-studies", on: { change: () => refresh() } });
   const look = h("button", { type: "button", on: { click: () => refresh() } }, "Look again");
   const older = h("button", { type: "button", hidden: true, on: { click: () => more() } }, "Older jobs");
+  const studies = h("div", { className: "scroll", id: "studies", tabIndex: 0, role: "region", ariaLabel: "Sweeps, studies, searches and populations" });
+  const olderStudies = h("button", { type: "button", hidden: true, on: { click: () => moreStudies() } }, "Older ones");
   place.replaceChildren(h("p", { className: "note" }, "A job is kept: its results can be fetched and linked to for weeks. What the page shows while you change numbers is not. A design that is too large to follow the hand is submitted by itself when the hand rests."),
-    h("div", { className: "line" }, submit, h("label", { htmlFor: tags.id }, "with the tags"), tags), h("div", { className: "line" }, look, h("label", {}, ofStudies, " those of studies too")), state, out, older);
+    h("div", { className: "line" }, submit, h("label", { htmlFor: tags.id }, "with the tags"), tags), h("div", { className: "line" }, look, h("label", {}, ofStudies, " those of studies too")), state, out, older, h("h3", {}, "Sweeps, studies, searches and populations"), studies, olderStudies);
   const rows = new Map();
   const followed = new Map();
   const documents = new Map();
   let listed = [];
   let next = null;
+  let listedStudies = [];
+  let nextStudies = null;
   /** The design as it is, with every default filled in as the documents of jobs are; null where it is none. */
   let live = null;
   let telling = 0;
@@ -95,7 +100,28 @@ export function jobs(place, design, form, onOpen) {
     tags.value = (design.get("/tags") ?? []).join(", ");
     telling += 1;
     [listed, next] = [[], null];
-    await more();
+    [listedStudies, nextStudies] = [[], null];
+    await Promise.all([more(), moreStudies()]);
+  }
+
+  /** The next page of the list of studies, each with the way back to it. */
+  async function moreStudies() {
+    await attempt(async () => {
+      const page = await json(`v1/studies?limit=${SHOWN}${nextStudies ? `&cursor=${encodeURIComponent(nextStudies)}` : ""}`);
+      listedStudies = [...listedStudies, ...page.items];
+      nextStudies = page.next;
+      olderStudies.hidden = !nextStudies;
+      const head = h("tr", {}, ...["Submitted", "What", "State", "Actions"].map((name) => h("th", { scope: "col" }, name)));
+      studies.replaceChildren(listedStudies.length ? h("table", {}, h("thead", {}, head), h("tbody", {}, ...listedStudies.map(studyRow))) : h("p", { className: "note" }, "There are none yet."));
+    });
+  }
+
+  function studyRow({ id, name, status, done, total, submitted_at: at }) {
+    const what = name ?? `study ${id.slice(-6)}`;
+    const button = (words, work) => h("button", { type: "button", ariaLabel: `${words} ${what}`, on: { click: () => attempt(work) } }, words);
+    const buttons = [button("Go to it", async () => onStudy(id, await json(`v1/studies/${id}/document`)))];
+    if (!hasEnded(status)) buttons.push(button("Cancel", async () => { await request(`v1/studies/${id}/cancel`, { method: "POST" }); await refresh(); }));
+    return h("tr", {}, h("th", { scope: "row" }, new Date(at).toLocaleString()), h("td", { className: "of-design" }, what), h("td", {}, `${status}, ${done} of ${total}`), h("td", { className: "actions" }, ...buttons));
   }
 
   /** The next page of the list. */
@@ -144,7 +170,7 @@ export function jobs(place, design, form, onOpen) {
     const address = `v1/jobs/${job.id}`;
     const button = (name, work) => h("button", { type: "button", on: { click: () => act(work) }, ariaLabel: `${name} ${job.id.slice(-6)}` }, name);
     // A file changes no job: the rows stay as they are under the pointer.
-    const file = (words, name) => h("button", { type: "button", ariaLabel: `${words} ${job.id.slice(-6)}`, on: { click: () => attempt(() => saveFile(job.id, name, job.id)) } }, words);
+    const file = (words, name) => h("button", { type: "button", ariaLabel: `${words} ${job.id.slice(-6)}`, on: { click: () => attempt(() => saveFile(job.id, name, fileOfDesign(documents.has(job.id) ? nameOf(documents.get(job.id)) : "", `${job.id.slice(-6)}-`))) } }, words);
     const open = async () => onOpen((await json(address)).submission, job.status === "successful" ? await json(`${address}/results`) : null);
     // What else there is depends on what was asked for.
     const more = h("button", { type: "button", ariaLabel: `More files of ${job.id.slice(-6)}`, on: { click: () => attempt(async () => {

@@ -1,29 +1,56 @@
-// The kept designs of this tab, over a reload: what they were asked for is remembered, and computed again.
+// What this tab works on, over a reload: the kept designs with their results, and the way back from every change.
 
-import { patiently, ProblemError } from "./api.js";
-import { resultsOf } from "./preview.js";
+const NAME = "meshwright";
+const TABS = "tabs";
+/** What a tab is called in the store; a tab keeps its name over a reload. */
+const PLACE = "meshwright-tab";
+/** Tabs that nobody has worked in for so long are forgotten, in milliseconds. */
+const LONG = 14 * 24 * 3600_000;
 
-const PLACE = "meshwright-kept";
+const tab = (() => {
+  const known = sessionStorage.getItem(PLACE) ?? crypto.getRandomValues(new Uint32Array(3)).join("-");
+  sessionStorage.setItem(PLACE, known);
+  return known;
+})();
 
-export function remember(kept) {
+const done = (request) => new Promise((resolve, reject) => {
+  request.onsuccess = () => resolve(request.result);
+  request.onerror = () => reject(request.error);
+});
+
+let opened = null;
+
+async function store(mode) {
+  if (!opened) {
+    const request = indexedDB.open(NAME, 1);
+    request.onupgradeneeded = () => request.result.createObjectStore(TABS);
+    opened = done(request);
+  }
+  return (await opened).transaction(TABS, mode).objectStore(TABS);
+}
+
+/** Remembers what is worked on, `state`, which has results of designs by reference: they are stored once. */
+export async function remember(state) {
   try {
-    sessionStorage.setItem(PLACE, JSON.stringify(kept.map(({ name, submission, look, hidden }) => ({ name, submission, look, hidden }))));
+    await done((await store("readwrite")).put({ ...state, at: Date.now() }, tab));
   } catch {
-    // No room, or not allowed: they last as long as the page.
+    // No room, or not allowed: it lasts as long as the page.
   }
 }
 
-/** The designs that were kept, with their results, which are asked for once the page is `ready`; those that this service refuses are left out. */
-export async function remembered(ready) {
-  const all = JSON.parse(sessionStorage.getItem(PLACE) ?? "[]");
-  const found = [];
-  await ready;
-  for (const each of all) {
-    try {
-      found.push({ ...each, results: await patiently(() => resultsOf(each.submission)), teeth: each.submission.pair.driven.tooth_count });
-    } catch (error) {
-      if (!(error instanceof ProblemError)) throw error;
-    }
+/** What was remembered; null where nothing was. */
+export async function remembered() {
+  try {
+    const all = await store("readwrite");
+    const known = await done(all.get(tab));
+    const cursor = all.openCursor();
+    cursor.onsuccess = () => {
+      if (!cursor.result) return;
+      if (Date.now() - cursor.result.value.at > LONG) cursor.result.delete();
+      cursor.result.continue();
+    };
+    return known ?? null;
+  } catch {
+    return null;
   }
-  return found;
 }

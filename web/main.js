@@ -2,13 +2,13 @@
 
 import { hasKey, json, onKeyNeeded, patiently, post, ProblemError, setKey } from "./api.js";
 import { Brush } from "./brush.js";
-import { byId, debounced, fixed, h, number, timeLeft } from "./dom.js";
+import { byId, debounced, fixed, h, number, remaining, timeOf } from "./dom.js";
 import { Charts } from "./charts.js";
 import { Compare } from "./compare.js";
 import { isSolid, needsSolid } from "./dimensions.js";
 import { Design, fromFragment, nameOf, same, toFragment } from "./design.js";
 import { Deformation } from "./deformed.js";
-import { save } from "./download.js";
+import { fileOfDesign, save } from "./download.js";
 import { Drawing, indexAt } from "./drawing.js";
 import { exporting } from "./export.js";
 import { cured, wordsOfCure } from "./face.js";
@@ -20,14 +20,14 @@ import { jobs } from "./jobs.js";
 import { remember, remembered } from "./kept.js";
 import { Pattern } from "./pattern.js";
 import { population } from "./population.js";
-import { Follower, resultsOf } from "./preview.js";
+import { alike, Follower, resultsOf } from "./preview.js";
 import { RunUp } from "./runup.js";
 import { bare, openapi, usualAt } from "./schema.js";
 import { stresses } from "./series.js";
 import { sheetOf } from "./sheet.js";
 import { copied } from "./snippets.js";
 import { study } from "./study.js";
-import { sweep } from "./sweep.js";
+import { isSweep, sweep } from "./sweep.js";
 
 const FIRST_EXAMPLE = "test-case-2";
 const NEW_PAIR = "new pair";
@@ -35,7 +35,9 @@ const METHODS = ["flexible", "decomposition", "projected_decomposition", "load_d
 const THEME = "meshwright-theme";
 /** What is wrong while somebody types is told so many milliseconds after the last key. */
 const HALF_TYPED = 500;
-/** So long a notice is shown, in milliseconds. */
+/** Numbers of another design than the one in the form are gray after so many milliseconds, and what was wrong with another one is told no more. */
+const OTHER = 300;
+/** So long a notice is shown, in milliseconds, once it offers no way back. */
 const NOTICE = 12_000;
 /** A mesh period takes so long when the gears turn by themselves, in milliseconds. */
 const PERIOD = 2000;
@@ -55,8 +57,9 @@ let problem = null;
 let computed = null;
 let position = 0;
 let against = null;
-/** The kept designs as they are remembered. */
-let keptAs = design.kept;
+/** When each design that was worked on was left for another one. */
+const left = new WeakMap();
+let worked = null;
 let form = null;
 let panels = {};
 let tab = "curves";
@@ -67,8 +70,8 @@ const charts = new Charts(byId("charts"), { onPosition: (to) => turn(to), onRang
 const pattern = new Pattern(byId("pattern"), { live: current });
 const headline = new Headline(byId("headline"));
 const geometry = new Geometry(byId("geometry"), { onPrint: print, onPicture: picture });
-const compare = new Compare(byId("compare"), { onKept: changeKept, onOpen: ({ submission, results }) => open(submission, results), onMethods: compareMethods, named: (pointer) => form?.named(pointer) ?? pointer, usual: (submission, pointer) => (form ? usualAt(form.api, submission, pointer) : undefined) });
-const follower = new Follower({ onResults, onOutline, onProblem, onBusy, onProgress });
+const compare = new Compare(byId("compare"), { onKept: changeKept, onOpen: ({ submission, results, asked }) => open(submission, results, asked), onMethods: compareMethods, named: (pointer) => form?.named(pointer) ?? pointer, usual: (submission, pointer) => (form ? usualAt(form.api, submission, pointer) : undefined) });
+const follower = new Follower({ onResults, onOutline, onProblem, onValid, onExpect, onBusy, onProgress });
 
 const deformation = new Deformation({
   drawing, button: byId("deformed"), note: byId("deformed-note"), position: () => position,
@@ -108,6 +111,43 @@ async function current() {
   return live && !problem && same(live.submission, design.submission) ? live : null;
 }
 
+/** Says of everything on the page whether it is of the design in the form: numbers of another one are gray, and what was wrong with another one is told no more. */
+function look() {
+  clearTimeout(look.timer);
+  const waits = (one, isIts) => (one && !isIts(one.submission) ? Math.max(0, OTHER - (performance.now() - (left.get(one.submission) ?? performance.now()))) : null);
+  const isLike = (submission) => alike(submission, design.submission);
+  const [other, unsettled, wrong] = [waits(shown, isLike), waits(live, isLike), waits(problem, (submission) => submission === design.submission)];
+  document.body.classList.toggle("other", other === 0);
+  document.body.classList.toggle("unsettled", unsettled === 0);
+  if (wrong === 0) {
+    problem = null;
+    showProblem();
+  }
+  const next = [other, unsettled, wrong].filter((wait) => wait > 0);
+  if (next.length) look.timer = setTimeout(look, Math.min(...next));
+}
+
+/** Nothing is wrong with the design. */
+function onValid(submission) {
+  if (submission !== design.submission || !problem) return;
+  problem = null;
+  showProblem();
+}
+
+/** How long the design takes that is computed now, `{ seconds, since, rests }`, told as a clock where it is more than a moment. */
+function onExpect(expected) {
+  clearTimeout(onExpect.timer);
+  if (!expected || expected.seconds < 2 * OTHER / 1000) return;
+  const whole = timeOf(1000 * expected.seconds);
+  const tick = () => {
+    if (!byId("progress").hidden) return;
+    const over = 1000 * expected.seconds - (performance.now() - expected.since);
+    byId("state").textContent = expected.rests ? `It takes about ${whole}: computed when you rest, or at once with Enter.` : over > 0 ? `Computing, about ${timeOf(over)} more` : `Computing, longer than the ${whole} that were expected`;
+    onExpect.timer = setTimeout(tick, 1000);
+  };
+  onExpect.timer = setTimeout(tick, expected.rests ? 0 : Math.max(0, OTHER - (performance.now() - expected.since)));
+}
+
 /** Where the curves and the gears stand. */
 function turn(to) {
   const period = shown?.results.pair.period_mesh_periods ?? 1;
@@ -132,10 +172,10 @@ function showReadout() {
   byId("readout").textContent = `Transmission error ${fixed(curve.transmission_error_um[i], 3)} µm, stiffness ${fixed(curve.mesh_stiffness_tangent_n_per_m[i] * 1e-6, 1)} N/µm, ${pairs} ${pairs === 1 ? "pair" : "pairs"} in contact, ${pressure === null ? "a tip corner carries" : `${fixed(pressure, 0)} MPa`}.${stresses(curve).map(({ name, values }, j) => `${j ? "," : " Stress in MPa:"} ${fixed(values[i], 1)} at a ${name.replace(",", " of the")}`).join("")}${curve.stress ? "." : ""}`;
 }
 
-function onResults(results, submission, { took, since, draft }) {
+function onResults(results, submission, { took, since, draft, asked }) {
   problem = null;
   computed = submission;
-  shown = { name: nameOf(submission), results, submission, teeth: submission.pair.driven.tooth_count, look: 0 };
+  shown = { name: nameOf(submission), results, submission, asked, teeth: submission.pair.driven.tooth_count, look: 0 };
   if (!draft) live = shown;
   byId("position").max = results.pair.period_mesh_periods;
   drawing.setCurve(results.curves[0]);
@@ -143,11 +183,14 @@ function onResults(results, submission, { took, since, draft }) {
   space?.setCurve(results.curves[0]);
   showDesigns(draft);
   showProblem();
+  clearTimeout(onExpect.timer);
   byId("state").textContent = `${results.curves[0].mesh_position.length} positions ${took === null ? "as computed before" : took < 2000 ? `in ${fixed(took, 0)} ms` : `in ${fixed(took / 1000, 1)} s`}${results.curves.length > 1 ? `; answers at ${number(results.curves[0].output_torque_n_m)} N m` : ""}${draft ? ", a draft under the hand" : ""}`;
+  byId("projected").hidden = draft || asked.method === submission.method;
   // A draft has few positions of its own accord.
   showWarnings(draft ? results.warnings.filter(({ code }) => code !== "few_positions") : results.warnings);
   if (!draft) showCure(results.curves[0]);
   turn(position);
+  look();
   // For those who measure: the curve of a change is on the screen.
   requestAnimationFrame(() => document.dispatchEvent(new CustomEvent("drawn", { detail: { submission, draft, milliseconds: performance.now() - since } })));
 }
@@ -168,7 +211,9 @@ function showWarnings(warnings) {
   button.textContent = `${warnings.length} ${warnings.length === 1 ? "warning" : "warnings"}`;
   const guide = (path) => (path ? [" ", h("a", { href: path.replace(/^\//, "") }, "The guide says why")] : []);
   const solid = (code) => (code === "web_outside_plane_model" ? [" ", h("button", { type: "button", on: { click: () => form?.compute(true) } }, "Compute it in three dimensions")] : []);
-  byId("warnings").replaceChildren(...warnings.map(({ code, detail, guide: path }) => h("li", {}, form?.inWords(detail) ?? detail, ...guide(path), ...solid(code))));
+  // What would mend it, by the pointers of the fields.
+  const change = (changes = {}) => (Object.keys(changes).length ? [" ", h("button", { type: "button", on: { click: () => form?.take(changes) } }, `Use ${Object.entries(changes).map(([pointer, value]) => `${form?.named(pointer) ?? pointer} ${number(value, 7)}`).join(", ")}`)] : []);
+  byId("warnings").replaceChildren(...warnings.map(({ code, detail, guide: path, changes }) => h("li", {}, form?.inWords(detail) ?? detail, ...guide(path), ...solid(code), ...change(changes))));
   if (!warnings.length) showWarned(false);
 }
 
@@ -179,10 +224,10 @@ function showWarned(open) {
 
 function onProblem(found, submission) {
   problem = { ...found, submission };
-  document.body.classList.toggle("stale", Boolean(shown));
+  look();
   // What is half typed is no mistake: it is told once the hand rests, unless something else has come.
   clearTimeout(onProblem.timer);
-  if (design.by !== "form") return showProblem();
+  if (design.by !== "form" || !byId("problem").hidden) return showProblem();
   onProblem.timer = setTimeout(() => { if (problem?.submission === submission) showProblem(); }, HALF_TYPED);
 }
 
@@ -195,20 +240,19 @@ function onBusy(busy) {
 function onProgress(job) {
   byId("progress").hidden = !job;
   byId("stop").hidden = !job;
-  document.body.classList.toggle("behind", Boolean(job));
   if (!job) return;
   byId("progress").value = job.progress_percent ?? 0;
   byId("stop").onclick = job.cancel;
-  const { progress_percent: done = 0, elapsed, status, away } = job;
-  const left = timeLeft(performance.now() - elapsed, done, 100);
-  byId("state").textContent = `${away ? "The service does not answer; a job goes on" : status === "accepted" ? "A job waits for its turn" : `A job: ${done} %${left}`}.${shown ? " Shown is the design before." : ""}`;
+  const { id, progress_percent: done = 0, begun, expected, status, away } = job;
+  if (onProgress.id !== id) onProgress.left = remaining(expected, () => performance.now() - begun);
+  onProgress.id = id;
+  byId("state").textContent = away ? "The service does not answer; a job goes on." : status === "accepted" ? "A job waits for its turn." : done < 100 ? `A job: ${done} %${onProgress.left(done, 100)}.` : "A job: every position is solved, and the results are put together.";
 }
 
 /** The last good curve stays; what is wrong stands above it and at its field. */
 function showProblem() {
   const errors = problem?.errors ?? [];
   const place = byId("problem");
-  document.body.classList.toggle("stale", Boolean(problem) && Boolean(shown));
   if (!problem && place.hidden) return;
   form?.showErrors(errors);
   drawing.refreshHoles(errors.map(({ pointer }) => pointer));
@@ -274,21 +318,27 @@ async function address() {
 }
 
 const carry = debounced(250, address);
+const keepState = debounced(250, () => remember(design.state));
 
 design.onChange((by) => {
   // The way back that a notice offers is from the change that it tells of.
+  if (byId("notice").querySelector(".undo")) fade();
   byId("notice").querySelector(".undo")?.remove();
   byId("undo").disabled = !design.canUndo;
   byId("redo").disabled = !design.canRedo;
-  if (design.kept !== keptAs) remember((keptAs = design.kept));
+  keepState();
   if (by === "kept") return shown && showDesigns();
+  if (by === "confirm") return form?.refresh();
   // For those who test: the address carries this change once its state has the number.
   document.body.dataset.changes = design.changes;
   if (by === "undo" && shown && same(shown.submission, design.submission) && !problem) showDesigns();
   deformation.off();
   form?.refresh();
   drawing.refreshHoles();
-  follower.follow(design.submission, by === "drag" && shown ? shown.results.pair.period_mesh_periods : null);
+  if (worked !== design.submission) left.set(worked ?? {}, performance.now());
+  left.delete((worked = design.submission));
+  look();
+  follower.follow(design.submission, by, by === "drag" && shown ? shown.results.pair.period_mesh_periods : null);
   carry();
 });
 
@@ -307,14 +357,27 @@ function notify(text, undoable = true) {
   const place = byId("notice");
   place.replaceChildren(text, " ", ...(undoable ? [h("button", { type: "button", className: "undo", on: { click: () => { design.undo(); place.hidden = true; } } }, "Undo")] : []), h("button", { type: "button", ariaLabel: "Close the notice", on: { click: () => { place.hidden = true; } } }, "×"));
   place.hidden = false;
-  clearTimeout(notify.timer);
-  notify.timer = setTimeout(() => { place.hidden = true; }, NOTICE);
+  if (undoable) clearTimeout(fade.timer);
+  else fade();
+}
+
+/** What a notice tells of stays until something else has been changed, and a while longer. */
+function fade() {
+  clearTimeout(fade.timer);
+  fade.timer = setTimeout(() => { byId("notice").hidden = true; }, NOTICE);
 }
 
 /** Takes a design whose results are known, so that they are shown and not computed again. */
-function open(submission, results) {
-  if (results) follower.know(submission, results);
+function open(submission, results, asked = submission) {
+  if (results) follower.know(submission, results, asked);
   design.replace(submission, "open");
+}
+
+/** Goes to the panel of a study that was asked for before. */
+function resume(id, study) {
+  const name = study.population ? "population" : isSweep(study) ? "sweep" : "study";
+  byId(`tab-${name}`).click();
+  panels[name].resume(id, study);
 }
 
 /** Takes the design of a job or a study, where every default is filled in: without them, so that it is compared with others by what somebody has chosen. */
@@ -330,7 +393,7 @@ async function openFilled(submission, results) {
 
 function keep(entry) {
   const taken = design.kept.map(({ look }) => look);
-  const look = [1, 2, 3, 4, 5, 6].find((each) => !taken.includes(each)) ?? 1 + (design.kept.length % 6);
+  const look = Array.from({ length: taken.length + 1 }, (_, i) => i + 1).find((each) => !taken.includes(each));
   const names = design.kept.map(({ name }) => name);
   const name = [entry.name, ...Array.from({ length: 99 }, (_, i) => `${entry.name} (${i + 2})`)].find((each) => !names.includes(each));
   design.keep([...design.kept, { ...entry, name, look }]);
@@ -374,11 +437,16 @@ async function print() {
   window.print();
 }
 
+// However somebody prints, a report comes of it: of the design, or where that is not computed yet of the one before, under its name.
+addEventListener("beforeprint", () => {
+  if (live && form) byId("sheet").replaceChildren(sheet(live));
+});
+
 async function picture(kind) {
   const page = await report();
   if (!page) return;
-  if (kind === "svg") save("meshwright-report.svg", "image/svg+xml", fileOf(page));
-  else save("meshwright-report.png", "image/png", await pictureOf(page));
+  if (kind === "svg") save(fileOfDesign(live.name, "report.svg"), "image/svg+xml", fileOf(page));
+  else save(fileOfDesign(live.name, "report.png"), "image/png", await pictureOf(page));
 }
 
 async function share() {
@@ -397,6 +465,8 @@ function setUpButtons() {
     else notify("This design cannot be computed, so it is not kept.", false);
   });
   byId("share").addEventListener("click", share);
+  byId("whole").addEventListener("click", () => follower.whole(design.submission));
+  byId("form").addEventListener("keydown", (event) => { if (event.key === "Enter") follower.hurry(); });
   byId("undo").addEventListener("click", () => design.undo());
   byId("redo").addEventListener("click", () => design.redo());
   byId("open-file").addEventListener("change", async (event) => {
@@ -427,6 +497,10 @@ function setUpButtons() {
   addEventListener("keydown", (event) => {
     if (!(event.ctrlKey || event.metaKey) || event.altKey || event.target.closest("textarea, dialog")) return;
     const key = event.key.toLowerCase();
+    if (key === "p" && live && form) {
+      event.preventDefault();
+      return void print();
+    }
     const work = key === "z" ? (event.shiftKey ? "redo" : "undo") : key === "y" ? "redo" : null;
     if (!work) return;
     event.preventDefault();
@@ -479,7 +553,7 @@ function setUpKey() {
     if (event.submitter?.value !== "use") return;
     setKey(byId("key").value);
     byId("key").value = "";
-    if (design.submission) follower.follow(design.submission);
+    if (design.submission) follower.follow(design.submission, "open");
   });
 }
 
@@ -584,15 +658,16 @@ async function begin() {
   setUpKey();
   const lay = setUpTabs();
   const fetched = (work) => patiently(work, onProblem);
-  const [given, { items: examples }] = await Promise.all([fromFragment(location.hash), fetched(() => json("v1/examples"))]);
+  const [given, before, { items: examples }] = await Promise.all([fromFragment(location.hash), remembered(), fetched(() => json("v1/examples"))]);
   if (!given) unreadable();
   setUpStart(examples, given);
-  design.replace(given ?? examples.find(({ name }) => name === FIRST_EXAMPLE).submission, "start");
+  const first = given ?? examples.find(({ name }) => name === FIRST_EXAMPLE).submission;
+  if (before) design.restore(first, before);
+  else design.replace(first, "start");
   const [api, limits] = await fetched(() => Promise.all([openapi(), json("v1/limits")]));
   form = new Form(byId("form"), api, design, { notify, limits, results: () => shown?.results });
   lay();
   showProblem();
-  const positions = () => live?.results.curves[0].mesh_position.length ?? 200;
   const runUp = new RunUp(byId("run-up"), {
     designs: () => (live ? besideKept(live) : []),
     ask: () => form.begin("/dynamics"),
@@ -602,10 +677,10 @@ async function begin() {
   });
   panels = {
     "run-up": runUp,
-    sweep: sweep(byId("sweep"), design, limits, positions),
+    sweep: sweep(byId("sweep"), design),
     study: study(byId("study"), design, form, openFilled),
     population: population(byId("population"), design, form, limits, openFilled),
-    jobs: jobs(byId("jobs"), design, form, openFilled),
+    jobs: jobs(byId("jobs"), design, form, openFilled, resume),
     export: exporting(byId("export"), { current, designs: () => besideKept(live), drawing, charts, position: () => position, sheet }),
   };
   addEventListener("hashchange", async () => {
@@ -613,7 +688,6 @@ async function begin() {
     if (!other) return unreadable();
     if (!same(other, design.submission)) design.replace(other, "open");
   });
-  design.restore(await remembered(follower.settled()));
 }
 
 begin().catch((error) => {

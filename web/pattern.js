@@ -1,8 +1,8 @@
 // Where the flanks carry, and how much: the largest pressure of the period over face and diameter. A job tells it, so it is asked for by a press.
 
-import { json, ProblemError, solved } from "./api.js";
+import { json, patiently, post, ProblemError, solved } from "./api.js";
 import { same } from "./design.js";
-import { fixed, h, number, s } from "./dom.js";
+import { fixed, h, number, s, timeOf } from "./dom.js";
 import { cssOf, scaleOf } from "./face.js";
 import { figure } from "./figure.js";
 
@@ -35,20 +35,32 @@ export class Pattern {
 
   async #ask() {
     this.button.hidden = true;
-    this.state.textContent = "A job computes it.";
     const live = await this.live();
+    let tick = null;
     try {
       if (!live) throw new ProblemError({ detail: "This design cannot be computed." });
       this.#shown = live.submission;
-      const job = await solved(live.submission);
+      const mine = () => this.#shown === live.submission;
+      // Every position is solved again, by the whole method.
+      const { estimate } = await post("v1/validate", { ...live.asked, method: "three_dimensional" });
+      const begun = performance.now();
+      const clock = () => {
+        const left = 1000 * estimate.seconds - (performance.now() - begun);
+        if (mine()) this.state.textContent = `A job computes it at every position${left > 0 ? `, about ${timeOf(left)} more` : `, longer than the ${timeOf(1000 * estimate.seconds)} that were expected`}.`;
+      };
+      clock();
+      tick = setInterval(clock, 1000);
+      const job = await solved(live.asked);
       const [{ output_torque_n_m: torque }] = live.results.curves;
-      const pattern = await json(`v1/jobs/${job.id}/results/contact-pattern.json?torque=${torque}`);
-      if (this.#shown === live.submission) this.#draw(pattern);
+      const pattern = await patiently(() => json(`v1/jobs/${job.id}/results/contact-pattern.json?torque=${torque}`));
+      if (mine()) this.#draw(pattern);
     } catch (error) {
       if (!(error instanceof ProblemError)) throw error;
       if (live && this.#shown !== live.submission) return;
       this.button.hidden = false;
       this.state.textContent = error.problem.errors?.[0]?.detail ?? error.message;
+    } finally {
+      clearInterval(tick);
     }
   }
 

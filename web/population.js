@@ -2,8 +2,9 @@
 
 import { json, lines, post, ProblemError } from "./api.js";
 import { apart, at, nameOf } from "./design.js";
-import { debounced, h, s, fixed, number, timeLeft, timeOf } from "./dom.js";
+import { debounced, h, s, fixed, number, timeOf } from "./dom.js";
 import { figure } from "./figure.js";
+import { allGiven, given, numeric } from "./inputs.js";
 import { offer } from "./offer.js";
 import { Question } from "./question.js";
 
@@ -31,6 +32,9 @@ const REST = 400;
 /** What most often cannot be computed is looked for among so many members. */
 const LOOKED_AT = 500;
 
+/** What the members have of their own, whatever the design gives. */
+const NOT_ASKED = ["/output_torques_n_m", "/resolution", "/pair/driving/tooth_deviations", "/pair/driven/tooth_deviations"];
+
 const CLASSES = Array.from({ length: 11 }, (_, i) => i + 1);
 
 /** The fields that are offered first, with what they usually vary by. */
@@ -42,7 +46,7 @@ export function population(place, design, form, limits, onOpen) {
   const torques = h("input", { type: "text", id: "population-torques", spellcheck: false, on: { input: () => { torques.dataset.typed = "yes"; } } });
   const classes = ["driving", "driven"].map((gear) => h("select", { id: `population-${gear}` }, h("option", { value: "" }, "as designed"), ...CLASSES.map((each) => h("option", { value: each, selected: each === 6 }, `class ${each}`))));
   const laws = FIRST.map((_, i) => law(i, design, form));
-  const question = new Question(design, { id: "population", words: "Draw them", inWords: (detail) => form.inWords(detail) });
+  const question = new Question(design, { id: "population", words: "Draw them", inWords: (detail) => form.inWords(detail), ignored: NOT_ASKED });
   const ahead = h("p", { className: "note" });
   const quantity = h("select", { id: "population-quantity", on: { change: () => last && draw() } }, ...Object.entries(QUANTITIES).map(([name, [words, unit]]) => h("option", { value: name }, `${words} in ${unit}`)));
   const torque = h("select", { id: "population-torque", on: { change: () => last && draw() } });
@@ -50,7 +54,7 @@ export function population(place, design, form, limits, onOpen) {
   const missing = h("p", { className: "outdated", role: "status", hidden: true });
   const out = h("div", { className: "out" });
   place.replaceChildren(
-    h("p", { className: "note" }, "Every member has teeth of its own, drawn within the class of ISO 1328-1 in place of those that the design may give, and fields that vary by a law. ", h("a", { href: "guides/how-good-will-they-be" }, "How good will they be?")),
+    h("p", { className: "note" }, "Every member has teeth of its own, made by the class of ISO 1328-1 in place of those that the design may give, and fields that vary by a law. How many are beyond the total pitch tolerance F_pT of their class, or were rejected by its inspection, stands with what was found. ", h("a", { href: "guides/how-good-will-they-be" }, "How good will they be?")),
     h("form", { on: { submit: (event) => { event.preventDefault(); start(); }, input: () => foresee() } },
       h("div", { className: "line" }, h("label", { htmlFor: size.id }, "Members"), size, ...classes.flatMap((each, i) => [h("label", { htmlFor: each.id }, `teeth of the ${["driving", "driven"][i]} gear`), each])),
       ...laws.map((each) => each.element),
@@ -77,9 +81,9 @@ export function population(place, design, form, limits, onOpen) {
   /** Says what the members will take: one whose teeth all differ repeats only when every tooth has met every other. */
   const foresee = debounced(REST, async () => {
     if (place.hidden) return;
-    const { base, population: { size: count, accuracy } } = asked();
-    for (const member of Object.keys(accuracy ?? {})) base.pair[member].tooth_deviations = { pitch_cumulative_um: Array.from({ length: base.pair[member].tooth_count }, (_, i) => Number(i === 1)) };
     try {
+      const { base, population: { size: count, accuracy } } = asked();
+      for (const member of Object.keys(accuracy ?? {})) base.pair[member].tooth_deviations = { pitch_cumulative_um: Array.from({ length: base.pair[member].tooth_count }, (_, i) => Number(i === 1)) };
       const { estimate: { seconds, positions } } = await post("v1/validate", { ...base, output_torques_n_m: base.output_torques_n_m.slice(0, 1) });
       const most = Math.floor(limits.positions / positions);
       suggestTorques(most);
@@ -95,7 +99,7 @@ export function population(place, design, form, limits, onOpen) {
 
   function asked() {
     const base = structuredClone(apart(design.submission).curves);
-    base.output_torques_n_m = torques.value.split(/[\s,;]+/).filter(Boolean).map(Number);
+    base.output_torques_n_m = allGiven(torques);
     base.resolution = { ...base.resolution, positions_per_mesh_period: Math.min(POSITIONS, base.resolution?.positions_per_mesh_period ?? POSITIONS) };
     // The span of the drawing is not that of teeth that all differ.
     delete base.resolution.span_mesh_periods;
@@ -109,16 +113,28 @@ export function population(place, design, form, limits, onOpen) {
     return { base, keep: "statistics", name: `${nameOf(design.submission)} as made`, population: { size: Number(size.value), vary, accuracy: Object.keys(accuracy).length ? accuracy : null } };
   }
 
-  function start() {
+  const how = {
+    part: "/results/population", pause: PAUSE, show,
+    // Those that cannot be built are known at once, and tell nothing of the time that the others take.
+    progress: (done, total, left) => `${done} of ${total} members${last ? left(done - last.results.failed, total - last.results.failed) : ""}`,
+    ended: ({ done, size: all, status }) => `${done} of ${all} members, ${status}`,
+  };
+
+  function clear() {
     [last, refusals] = [null, null];
     missing.hidden = true;
     out.replaceChildren();
-    return question.study(asked(), {
-      part: "/results/population", pause: PAUSE, show,
-      // Those that cannot be built are known at once, and tell nothing of the time that the others take.
-      progress: (done, total, begun) => `${done} of ${total} members${last ? timeLeft(begun, done - last.results.failed, total - last.results.failed) : ""}`,
-      ended: ({ done, size: all, status }) => `${done} of ${all} members, ${status}`,
-    });
+  }
+
+  function start() {
+    clear();
+    return question.study(asked, how);
+  }
+
+  /** Shows a population that was asked for before. */
+  function resume(id, { base }) {
+    clear();
+    return question.resume(id, base, how);
   }
 
   /** Says how many members are none, and why most of these. */
@@ -164,12 +180,13 @@ export function population(place, design, form, limits, onOpen) {
     const told = (value) => (value === null ? "?" : fixed(value * factor, 3));
     const at95 = `95 of 100 pairs stay below ${told(p95.value)} ${unit} ${p95.low === null || p95.high === null ? "(too few members to say how surely)" : `(with 95 % confidence between ${told(p95.low)} and ${told(p95.high)})`}; half are below ${told(percentile(one, 50).value)}.`;
     const beyond = Object.entries(results.beyond_total_pitch_tolerance).filter(([, share]) => share !== null).map(([gear, share]) => `${fixed(100 * share, 1)} % of the ${gear} gears are beyond F_pT of their class.`);
+    const rejected = Object.entries(results.rejected_by_inspection ?? {}).filter(([, share]) => share !== null).map(([gear, share]) => `${fixed(100 * share, 1)} % of the ${gear} gears made were rejected by the inspection.`);
     const member = (name, number) => h("button", { type: "button", on: { click: () => open(address, number) } }, `Open the ${name} member`);
     const pictures = [
       figure({ lines: [outlineOf(one.histogram, factor)], x: `${words} in ${unit}`, y: "members", title: `Histogram of the ${words}` }),
       ...(all.length > 1 ? [figure({ lines: [[95, "5 4"], [50, null], [5, "2 3"]].map(([percent, dash]) => ({ name: `${percent} % are below`, color: "currentColor", dash: dash?.split(" "), x: all.map((each) => each.output_torque_n_m), y: all.map((each) => percentile(each, percent).value * factor) })), x: "output torque in N m", y: `${words} in ${unit}`, title: `Percentiles of the ${words} over the torque` })] : []),
     ];
-    out.replaceChildren(h("p", {}, at95, " ", beyond.join(" ")), ...pictures, influencesOf(one), h("div", { className: "buttons" }, member("median", one.members.median), member("smallest", one.members.smallest), member("largest", one.members.largest)));
+    out.replaceChildren(h("p", {}, at95, " ", [...beyond, ...rejected].join(" ")), ...pictures, influencesOf(one), h("div", { className: "buttons" }, member("median", one.members.median), member("smallest", one.members.smallest), member("largest", one.members.largest)));
   }
 
   /** What makes the variance, as bars with their limits. */
@@ -192,7 +209,7 @@ export function population(place, design, form, limits, onOpen) {
   }
 
   suggest();
-  return { refresh: suggest };
+  return { refresh: suggest, resume };
 }
 
 /** The outline of a histogram's bars. */
@@ -206,7 +223,7 @@ function law(index, design, form) {
   const id = `law-${index}`;
   const field = h("select", { id, on: { change: () => { spread.value = suggested(); } } });
   const kind = h("select", { id: `${id}-kind`, ariaLabel: "Law" }, h("option", { value: "normal" }, "normal, standard deviation"), h("option", { value: "uniform" }, "uniform, plus or minus"), h("option", { value: "triangular" }, "triangular, plus or minus"));
-  const spread = h("input", { type: "number", id: `${id}-spread`, min: 0, step: "any", ariaLabel: "Spread" });
+  const spread = numeric({ id: `${id}-spread`, ariaLabel: "Spread" });
   const element = h("div", { className: "line" }, h("label", { htmlFor: id }, index ? "and" : "Vary"), field, h("label", { htmlFor: kind.id }, "by"), kind, spread);
   const valueOf = () => at(design.submission, field.value);
   const suggested = () => {
@@ -216,7 +233,7 @@ function law(index, design, form) {
   };
 
   function read() {
-    const [value, by] = [valueOf(), Number(spread.value)];
+    const [value, by] = [valueOf(), given(spread)];
     if (!field.value || typeof value !== "number" || !(by > 0)) return [];
     const path = field.value;
     if (kind.value === "normal") return [{ path, kind: "normal", mean: value, standard_deviation: by, low: value - 3 * by, high: value + 3 * by }];

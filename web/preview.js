@@ -8,13 +8,20 @@ export const USUAL_POSITIONS = 40;
 /** A draft has about so many positions, and at least so many in a mesh period. */
 const DRAFT_POSITIONS = 60;
 const LEAST_POSITIONS = 10;
-/** A hand that rests for so long, in milliseconds, gets all positions; one that rests for longer a job, where a preview has too many. */
+/** A hand that rests for so long, in milliseconds, gets all positions; one that types, or a job, waits for longer. */
 const REST = 150;
 const LONG_REST = 700;
-/** What takes longer by the estimate of the service, in seconds, is computed by a job at once, which says how far it is. */
+/** What takes longer by the estimate of the service, in seconds, is not computed at every key, and along faces by the projected method first. */
+const SHORT = 1;
+/** What takes longer, in seconds, is computed by a job at once, which says how far it is. */
 const LONG = 4;
-/** Under a hand pairs are projected along their faces: what a hole changes there costs one web. */
-const UNDER_A_HAND = "three_dimensional_projected";
+/** Pairs along their faces, and their method that solves one mesh period and projects what holes change in the others. */
+const WHOLE = "three_dimensional";
+const PROJECTED = "three_dimensional_projected";
+/** The projected method stands for the whole one where it takes at most this part of its time. */
+const SAVES = 0.5;
+/** A measured time over the estimated one, which further estimates are multiplied by, lies between these. */
+const [LEAST_PACE, MOST_PACE] = [0.5, 5];
 /** A page that is not seen has no frames; it goes on after so many milliseconds. */
 const UNSEEN = 50;
 /** So many designs are not computed again when they come back. */
@@ -22,6 +29,9 @@ const KNOWN = 12;
 
 /** What decides the results of a submission: all of it but its tags. */
 const untagged = (submission) => JSON.stringify({ ...submission, tags: undefined });
+
+/** Whether two submissions have the same results. */
+export const alike = (one, other) => one === other || untagged(one) === untagged(other);
 
 /** The results of `submission` at once. */
 export async function preview(submission, signal) {
@@ -44,36 +54,59 @@ export async function resultsOf(submission, options = {}) {
 const isTooLarge = (error) => error instanceof ProblemError && ["too_large", "time_limit"].includes(error.problem.code);
 
 /**
- * Follows a design. While one preview is computed newer designs wait, and only the newest of them is asked for, so that results
- * come in order and a drag shows every result that can be had. Under the hand these are drafts; as soon as it rests it gets the curve
- * itself, by a job where a preview has too many positions.
+ * Follows a design. Under a hand one draft is computed at a time and newer designs wait, only the newest of them to be asked for, so that drafts come in order and a drag shows
+ * every one that can be had; as soon as the hand rests it gets the curve itself. What else is computed is stopped as soon as there is a newer design. What takes long is computed
+ * when the hand rests, or at [`hurry`].
  */
 export class Follower {
   #running = false;
   #drawn = "";
   #next = null;
-  /** Ends what a newer design need not wait for: a hand's rest, and the curve that follows it. */
-  #interrupt = null;
+  /** What is computed now, as it was given to [`follow`], and whether it is a draft under the hand. */
+  #now = null;
+  /** Ends what a newer design overtakes. */
+  #interrupt = new AbortController();
+  /** Ends a rest. */
+  #hurry = null;
   #settled = Promise.resolve();
+  /** Results by what decides them: `{ results, asked }`, where `asked` is the submission that they are of, which may have the projected method. */
   #known = new Map();
+  /** Designs that are wanted by the whole method. */
+  #whole = new Set();
+  /** How much longer than its estimate the last computation took. */
+  #pace = 1;
   /** Asks again for what could not be answered. */
   #again = null;
 
-  constructor({ onResults, onOutline, onProblem, onBusy, onProgress }) {
-    Object.assign(this, { onResults, onOutline, onProblem, onBusy, onProgress });
+  /** `onValid` is told that nothing is wrong with a design, and `onExpect` how long the design takes, `{ seconds, since, rests }`, or null once that is over. */
+  constructor({ onResults, onOutline, onProblem, onValid, onExpect, onBusy, onProgress }) {
+    Object.assign(this, { onResults, onOutline, onProblem, onValid, onExpect, onBusy, onProgress });
   }
 
-  /** Takes the newest design; `period` is that of its last results, in mesh periods, while a hand changes it. */
-  follow(submission, period = null) {
+  /** Takes the newest design and what changed it; `period` is that of its last results, in mesh periods, while a hand changes it. */
+  follow(submission, by, period = null) {
     clearTimeout(this.#again);
-    this.#next = { submission, period, since: performance.now() };
-    this.#interrupt?.abort();
+    const now = { submission, by, period, since: performance.now() };
+    this.#next = now;
+    if (period === null || !this.#now?.drafting) this.#interrupt.abort();
     if (!this.#running) this.#settled = this.#run();
   }
 
-  /** The results of a submission that has been computed elsewhere. */
-  know(submission, results) {
-    this.#known.set(untagged(submission), results);
+  /** Computes at once what waits for the hand to rest. */
+  hurry() {
+    this.#hurry?.();
+  }
+
+  /** Computes a design by its own method, where the projected one stands for it. */
+  whole(submission) {
+    this.#whole.add(untagged(submission));
+    this.#known.delete(untagged(submission));
+    this.follow(submission, "mend");
+  }
+
+  /** The results of a submission that has been computed elsewhere; of `asked`, where that is not the submission itself. */
+  know(submission, results, asked = submission) {
+    this.#known.set(untagged(submission), { results, asked });
     if (this.#known.size > KNOWN) this.#known.delete(this.#known.keys().next().value);
   }
 
@@ -87,15 +120,19 @@ export class Follower {
     this.onBusy(true);
     try {
       while (this.#next) {
-        const { submission, period, since } = this.#next;
+        const now = (this.#now = this.#next);
         this.#next = null;
-        const draft = period === null ? null : draftOf(submission, period);
-        const [, computed] = await Promise.all([this.#outline(submission), this.#results({ submission, asked: draft ?? submission, since })]);
+        this.#interrupt = new AbortController();
+        const draft = now.period === null ? null : draftOf(now.submission, now.period);
+        now.drafting = draft !== null;
+        const [, told] = await Promise.all([this.#outline(now.submission), draft ? this.#ask(now, draft) : this.#compute(now)]);
+        now.drafting = false;
         // With the next frame comes where the hand is now, and the curve that has just come is painted before the engine wants the cores.
         await frame();
-        if (this.#next || computed === "refused") continue;
-        if (draft) await this.#settle(submission);
-        else if (computed === "too large") await this.#long(submission, since);
+        if (this.#next || !draft || told === "refused") continue;
+        this.#interrupt = new AbortController();
+        await this.#rest(REST);
+        if (!this.#next) await this.#compute({ ...now, since: performance.now() });
       }
     } finally {
       this.#running = false;
@@ -103,21 +140,58 @@ export class Follower {
     }
   }
 
-  /** Waits for the hand to rest, and gives it the curve itself. */
-  async #settle(submission) {
-    this.#interrupt = new AbortController();
+  /** Computes a design itself: by a preview, or by a job where that takes long or a preview has too many positions. */
+  async #compute(now) {
+    const { submission, since } = now;
     const { signal } = this.#interrupt;
-    await rest(signal, REST);
-    const since = performance.now();
-    const computed = signal.aborted ? "" : await this.#results({ submission, asked: submission, since, signal });
-    this.#interrupt = null;
-    if (computed === "too large" && !this.#next) await this.#long(submission, since);
+    const known = this.#known.get(untagged(submission));
+    if (known) return this.#show(known, submission, { took: null, since, draft: false });
+    try {
+      const plan = await this.#plan(now, signal);
+      if (signal.aborted) return;
+      const { asked, seconds } = plan;
+      this.onValid(submission);
+      const expected = this.#pace * seconds;
+      const rests = now.by === "form" && expected > SHORT;
+      this.onExpect({ seconds: expected, since: performance.now(), rests });
+      if (rests) {
+        await this.#rest(LONG_REST - (performance.now() - since));
+        if (signal.aborted) return;
+        this.onExpect({ seconds: expected, since: performance.now(), rests: false });
+      }
+      const begun = performance.now();
+      const told = seconds > LONG ? "too large" : await this.#ask(now, asked);
+      if (told === "too large") await this.#long(now, plan);
+      else if (told === "shown") this.#learn(performance.now() - begun, seconds);
+    } catch (error) {
+      if (error instanceof ProblemError) this.#refused(error, submission);
+      else if (error.name !== "AbortError") throw error;
+    } finally {
+      this.onExpect(null);
+    }
   }
 
-  /** A job computes what has too many positions for a preview, unless the design changes meanwhile. */
-  async #long(submission, since) {
-    this.#interrupt = new AbortController();
-    const { signal } = this.#interrupt;
+  /** Remembers how many milliseconds a computation took that had to take so many seconds. */
+  #learn(took, seconds) {
+    this.#pace = Math.min(MOST_PACE, Math.max(LEAST_PACE, took / 1000 / seconds));
+  }
+
+  /** What is asked for to compute a design, and how long it takes by the estimate of the service. Throws what is wrong with it. */
+  async #plan({ submission, by }, signal) {
+    const secondsOf = async (asked) => (await post("v1/validate", asked, { signal })).estimate.seconds;
+    const seconds = await secondsOf(submission);
+    // A design that comes whole, by a link or a file, is computed as it says where nobody has to wait for it.
+    const most = ["start", "open"].includes(by) ? LONG : SHORT;
+    if (submission.method !== WHOLE || seconds <= most || this.#whole.has(untagged(submission))) return { asked: submission, seconds };
+    const asked = { ...submission, method: PROJECTED };
+    const projected = await secondsOf(asked).catch(() => Infinity);
+    return projected <= SAVES * seconds ? { asked, seconds: projected } : { asked: submission, seconds };
+  }
+
+  /** A job computes what takes long, unless the design changes meanwhile. */
+  async #long({ submission, since }, { asked, seconds }) {
+    const interrupt = this.#interrupt;
+    const { signal } = interrupt;
     const begun = performance.now();
     let job = null;
     // What it has waited for others tells nothing of how long it takes.
@@ -125,23 +199,33 @@ export class Follower {
     const told = (event, data) => {
       if (event === "status") job = data;
       if (job?.status !== "accepted") computed ??= performance.now();
-      this.onProgress({ ...job, ...data, away: event === "away", elapsed: performance.now() - (computed ?? performance.now()), cancel: () => this.#interrupt?.abort() });
+      this.onProgress({ ...job, ...data, away: event === "away", begun: computed ?? performance.now(), expected: 1000 * this.#pace * seconds, cancel: () => interrupt.abort() });
     };
     try {
-      await rest(signal, LONG_REST);
+      await this.#rest(LONG_REST - (performance.now() - since));
       if (signal.aborted) return;
-      const done = await solved(submission, { told, signal });
+      const done = await solved(asked, { told, signal });
       const results = await json(`v1/jobs/${done.id}/results`, { signal });
-      this.#show(results, submission, { took: performance.now() - begun, since, draft: false });
+      if (computed && !done.links.same_as) this.#learn(performance.now() - computed, seconds);
+      this.#show({ results, asked }, submission, { took: performance.now() - begun, since, draft: false });
     } catch (error) {
       if (error instanceof ProblemError) this.#refused(error, submission);
       else if (error.name !== "AbortError") throw error;
       if (job && !hasEnded(job.status)) request(`v1/jobs/${job.id}/cancel`, { method: "POST" }).catch(() => {});
       if (signal.aborted && !this.#next) this.onProblem({ code: "cancelled", title: "The job was cancelled", detail: "Nothing was computed for this design.", errors: [] }, submission);
     } finally {
-      this.#interrupt = null;
       this.onProgress(null);
     }
+  }
+
+  /** Waits for so many milliseconds, for somebody in a hurry, or for a newer design. */
+  #rest(milliseconds) {
+    const { signal } = this.#interrupt;
+    return new Promise((resolve) => {
+      const timer = setTimeout(resolve, signal.aborted ? 0 : milliseconds);
+      this.#hurry = () => { clearTimeout(timer); resolve(); };
+      signal.addEventListener("abort", this.#hurry);
+    });
   }
 
   /** Holes are drawn from the design itself: an outline is asked for where something else has changed. */
@@ -157,15 +241,12 @@ export class Follower {
     }
   }
 
-  /** What became of it: `shown`, `refused`, `too large` for a preview, or `left` for a newer one. */
-  async #results({ submission, asked, since, signal }) {
+  /** Asks for a preview: what became of it, `shown`, `refused`, `too large` for a preview, or `left` for a newer one. */
+  async #ask({ submission, since }, asked) {
     const begun = performance.now();
-    const draft = asked !== submission;
     try {
-      const known = this.#known.get(untagged(submission));
-      if (!draft && !known && (await isLong(submission, signal))) return "too large";
-      const results = (!draft && known) || (await preview(asked, signal));
-      this.#show(results, submission, { took: results === known ? null : performance.now() - begun, since, draft });
+      const results = await preview(asked, this.#interrupt.signal);
+      this.#show({ results, asked }, submission, { took: performance.now() - begun, since, draft: this.#now.drafting });
       return "shown";
     } catch (error) {
       if (error.name === "AbortError") return "left";
@@ -173,7 +254,7 @@ export class Follower {
       if (isTooLarge(error)) return "too large";
       if (error.problem.code === "preview_superseded") return "left";
       // What cannot be projected may be computed as it is asked for.
-      if (asked.method !== submission.method) return this.#results({ submission, asked: { ...asked, method: submission.method }, since, signal });
+      if (asked.method !== submission.method) return this.#ask({ submission, since }, { ...asked, method: submission.method });
       this.#refused(error, submission);
       return "refused";
     }
@@ -182,12 +263,12 @@ export class Follower {
   /** Says why there are no results. What goes away by itself is waited for, unless the design changes meanwhile. */
   #refused(error, submission) {
     this.onProblem(error.problem, submission);
-    if (isPassing(error)) this.#again = setTimeout(() => this.follow(submission), error.after);
+    if (isPassing(error)) this.#again = setTimeout(() => this.follow(submission, "open"), error.after);
   }
 
-  #show(results, submission, how) {
-    if (!how.draft) this.know(submission, results);
-    this.onResults(results, submission, how);
+  #show({ results, asked }, submission, how) {
+    if (!how.draft) this.know(submission, results, asked);
+    this.onResults(results, submission, { ...how, asked });
   }
 }
 
@@ -201,21 +282,9 @@ function draftOf(submission, period) {
   const parts = [1, 2, 4].filter((part) => all % part === 0 && all / part >= LEAST_POSITIONS);
   const part = parts.find((each) => (all / each) * periods <= DRAFT_POSITIONS) ?? parts.at(-1) ?? 1;
   const { force_table: table, dynamics, ...asked } = submission;
-  if (isSolid(submission.method)) asked.method = UNDER_A_HAND;
+  if (isSolid(submission.method)) asked.method = PROJECTED;
   if (asked.method === submission.method && part === 1 && grid === "coarse" && !table && !dynamics) return null;
   return { ...asked, resolution: { ...submission.resolution, positions_per_mesh_period: all / part, grid: "coarse" } };
-}
-
-/** Whether the service says that a pair in three dimensions takes long. */
-async function isLong(submission, signal) {
-  if (!isSolid(submission.method)) return false;
-  try {
-    return (await post("v1/validate", submission, { signal })).estimate.seconds > LONG;
-  } catch (error) {
-    // The preview of the same submission tells why.
-    if (!(error instanceof ProblemError)) throw error;
-    return false;
-  }
 }
 
 /** The next frame, or a while where nobody looks and none comes. */
@@ -223,12 +292,5 @@ function frame() {
   return new Promise((resolve) => {
     requestAnimationFrame(resolve);
     setTimeout(resolve, UNSEEN);
-  });
-}
-
-function rest(signal, milliseconds) {
-  return new Promise((resolve) => {
-    const timer = setTimeout(resolve, milliseconds);
-    signal.addEventListener("abort", () => { clearTimeout(timer); resolve(); });
   });
 }

@@ -1,7 +1,7 @@
 // What the panels share that ask for many designs: one question at a time, how far it is, why it was refused, and of which design its answer is.
 
 import { follow, hasEnded, json, post, ProblemError, request } from "./api.js";
-import { h } from "./dom.js";
+import { h, remaining } from "./dom.js";
 import { outdated } from "./outdated.js";
 
 export class Question {
@@ -24,10 +24,10 @@ export class Question {
     this.state.replaceChildren(...details.map((detail) => h("span", { className: "field-error" }, this.inWords(detail), " ")));
   }
 
-  /** Does `work`, which is given what tells how to cancel it; nothing else is asked meanwhile, and a refusal is told. */
-  async ask(work) {
+  /** Does `work` on a design, which is given what tells how to cancel it; nothing else is asked meanwhile, and a refusal is told. */
+  async ask(work, submission = undefined) {
     this.run.disabled = true;
-    this.of.renew();
+    this.of.renew(submission);
     try {
       await work((cancel) => {
         this.#cancel = cancel;
@@ -43,28 +43,34 @@ export class Question {
   }
 
   /**
-   * Asks for the study `asked` and shows it as its events tell of it: `show` is given what `part` of it tells, once in `pause` milliseconds at most, and its
-   * address; `progress` says how far it is of `done`, `total` and when it began, `ended` how it ended.
+   * Asks for the study that `asked` gives and shows it as its events tell of it: `show` is given what `part` of it tells, once in `pause` milliseconds at most, and its
+   * address; `progress` says how far it is of `done` and `total`, and `ended` how it ended.
    */
-  study(asked, { part = "", pause, progress, show, ended }) {
-    return this.ask(async (cancelling) => {
-      const made = await post("v1/studies", asked);
-      const address = `v1/studies/${made.id}`;
-      cancelling(() => request(`${address}/cancel`, { method: "POST" }).catch(() => {}));
-      const begun = performance.now();
-      let [shown, whole] = [begun, false];
-      const told = (event, { done, total }) => {
-        if (event === "away") this.say("The service does not answer; it is asked again until it does.");
-        if (total) this.say(progress(done, total, begun));
-        if (performance.now() - shown < pause) return;
-        shown = performance.now();
-        json(address + part).then((found) => whole || show(found, address), () => {});
-      };
-      if (!hasEnded(made.status)) await follow(address, told);
-      const found = await json(address + part);
-      whole = true;
-      show(found, address);
-      this.say(ended(found));
-    });
+  study(asked, how) {
+    return this.ask(async (cancelling) => this.#watch(await post("v1/studies", asked()), how, cancelling));
+  }
+
+  /** Goes back to a study that was asked for before, of the design `base`. */
+  resume(id, base, how) {
+    return this.ask(async (cancelling) => this.#watch(await json(`v1/studies/${id}`), how, cancelling), base);
+  }
+
+  async #watch(made, { part = "", pause, progress, show, ended }, cancelling) {
+    const address = `v1/studies/${made.id}`;
+    if (!hasEnded(made.status)) cancelling(() => request(`${address}/cancel`, { method: "POST" }).catch(() => {}));
+    const left = remaining();
+    let [shown, whole] = [performance.now(), false];
+    const told = (event, { done, total }) => {
+      if (event === "away") this.say("The service does not answer; it is asked again until it does.");
+      if (total) this.say(progress(done, total, left));
+      if (performance.now() - shown < pause) return;
+      shown = performance.now();
+      json(address + part).then((found) => whole || show(found, address), () => {});
+    };
+    if (!hasEnded(made.status)) await follow(address, told);
+    const found = await json(address + part);
+    whole = true;
+    show(found, address);
+    this.say(ended(found));
   }
 }

@@ -1,6 +1,7 @@
 // The motion of the gears over speed: both branches beside those of kept designs, a waterfall of orders with their resonances named, and one speed that is
 // looked at, turned and heard.
 
+import { looks } from "./charts.js";
 import { debounced, fixed, h, number, s } from "./dom.js";
 import { figure, ticks } from "./figure.js";
 import { motionAt } from "./motion.js";
@@ -134,12 +135,13 @@ export class RunUp {
     const width = Math.max(300, this.place.clientWidth / scale - 8);
     const torque = this.#curve.output_torque_n_m;
     const seen = designs.filter(({ hidden }) => !hidden);
+    const { series } = looks();
     const lines = seen.flatMap((each) => {
       // Kept designs may have been computed at other torques; the nearest stands beside this one.
       const curves = each.results.curves.filter(({ dynamics }) => dynamics);
       if (!curves.length) return [];
       const curve = curves.reduce((best, other) => (Math.abs(other.output_torque_n_m - torque) < Math.abs(best.output_torque_n_m - torque) ? other : best));
-      const color = `var(--series-${((each.look ?? 0) % 7) + 1})`;
+      const color = series(each.look ?? 0);
       const name = curve.output_torque_n_m === torque ? each.name : `${each.name}, ${number(curve.output_torque_n_m)} N m`;
       return Object.keys(BRANCHES).filter((way) => curve.dynamics[way]).flatMap((way) => {
         const branch = curve.dynamics[way];

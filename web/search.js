@@ -2,8 +2,9 @@
 
 import { json, ProblemError, request } from "./api.js";
 import { apart, at, nameOf } from "./design.js";
-import { h, fixed, number, timeLeft } from "./dom.js";
+import { h, fixed, number } from "./dom.js";
 import { figure } from "./figure.js";
+import { given, numeric } from "./inputs.js";
 import { offer } from "./offer.js";
 import { preview } from "./preview.js";
 import { Question } from "./question.js";
@@ -73,22 +74,35 @@ export function search(place, design, form, onOpen) {
     return { base: stressed ? { ...curves, stress: true } : curves, name: `${nameOf(design.submission)}, searched`, search: { variables: variables.flatMap((each) => each.read()), minimize, subject_to, evaluations: Number(evaluations.value) } };
   }
 
-  function start() {
+  const how = (about) => ({
+    pause: PAUSE, show: (study, address) => show(study.search, address, about()),
+    progress: (done, total, left) => `${done} of at most ${total} designs${left(done, total)}`,
+    ended: (study) => study.problem?.detail ?? `${study.search.evaluations} designs looked at, ${study.status}`,
+  });
+
+  function clear() {
     ({ further } = apart(design.submission));
     out.replaceChildren();
     beside.replaceChildren();
     drawn = null;
-    const about = asked();
-    return question.study(about, {
-      pause: PAUSE, show: (study, address) => show(study.search, address, about),
-      progress: (done, total, begun) => `${done} of at most ${total} designs${timeLeft(begun, done, total)}`,
-      ended: (study) => study.problem?.detail ?? `${study.search.evaluations} designs looked at, ${study.status}`,
-    });
+  }
+
+  function start() {
+    clear();
+    let about = null;
+    return question.study(() => (about = asked()), how(() => about));
+  }
+
+  /** Shows a search that was asked for before. */
+  function resume(id, about) {
+    clear();
+    return question.resume(id, about.base, how(() => about));
   }
 
   function show(found, address, about) {
-    const parts = about.search.minimize.map(({ quantity }) => QUANTITIES[quantity]);
-    const held = about.search.subject_to.map(({ quantity }) => QUANTITIES[quantity]);
+    // A search that another client has asked for may have other quantities.
+    const called = ({ quantity }) => QUANTITIES[quantity] ?? [String(quantity), ""];
+    const [parts, held] = [about.search.minimize, about.search.subject_to ?? []].map((asked) => asked.map(called));
     const told = (values, names) => names.map(([words, unit], i) => `${words} ${values?.[i] === null || values?.[i] === undefined ? "?" : number(values[i], 4)} ${unit}`.trim()).join(", ");
     const { best, front, confirmed, generations } = found;
     if (!best) return out.replaceChildren();
@@ -145,16 +159,16 @@ export function search(place, design, form, onOpen) {
 
   const refresh = () => variables.forEach((each) => each.refresh());
   refresh();
-  return { refresh };
+  return { refresh, resume };
 }
 
 /** A quantity and the bound that it has to keep. */
 function condition(end, index) {
   const bounded = quantities(`search-bounded${end}`, "What has to hold", index ? "nothing else" : "nothing");
   const side = h("select", { id: `search-side${end}`, ariaLabel: "Side of the bound" }, h("option", { value: "at_least" }, "at least"), h("option", { value: "at_most" }, "at most"));
-  const bound = h("input", { type: "number", id: `search-bound${end}`, step: "any", ariaLabel: "Bound" });
+  const bound = numeric({ id: `search-bound${end}`, ariaLabel: "Bound" });
   const element = h("div", { className: "line" }, h("label", { htmlFor: bounded.id }, index ? "and" : "with"), bounded, side, bound);
-  const read = () => (bounded.value && bound.value ? [{ quantity: bounded.value, [side.value]: Number(bound.value) }] : []);
+  const read = () => (bounded.value && bound.value ? [{ quantity: bounded.value, [side.value]: given(bound) }] : []);
   return { element, read };
 }
 
@@ -163,7 +177,7 @@ function variable(index, design, form) {
   const id = `variable-${index}`;
   // Until somebody chooses one the field is one that the design has, whichever design that is.
   const field = h("select", { id, on: { change: () => { field.dataset.chosen = "yes"; suggest(); } } });
-  const [low, high, step] = ["low", "high", "step"].map((name) => h("input", { type: "number", id: `${id}-${name}`, step: "any", ariaLabel: `${{ low: "Smallest", high: "Largest", step: "Step of the" }[name]} value of variable ${index + 1}` }));
+  const [low, high, step] = ["low", "high", "step"].map((name) => numeric({ id: `${id}-${name}`, ariaLabel: `${{ low: "Smallest", high: "Largest", step: "Step of the" }[name]} value of variable ${index + 1}` }));
   const element = h("div", { className: "line" }, h("label", { htmlFor: id }, index ? "and" : "Choose"), field, h("label", { htmlFor: low.id }, "from"), low, h("label", { htmlFor: high.id }, "to"), high, h("label", { htmlFor: step.id }, "in steps of"), step);
 
   function suggest() {
@@ -175,7 +189,7 @@ function variable(index, design, form) {
     [low.value, high.value, step.value] = [round(ends[0]), round(ends[1]), known?.kind.whole ? 1 : ""];
   }
 
-  const read = () => (field.value && low.value !== "" && high.value !== "" ? [{ path: field.value, low: Number(low.value), high: Number(high.value), step: step.value === "" ? null : Number(step.value) }] : []);
+  const read = () => (field.value && low.value !== "" && high.value !== "" ? [{ path: field.value, low: given(low), high: given(high), step: given(step) ?? null }] : []);
 
   /** Only fields that have a number in this design can be searched. */
   function refresh() {

@@ -12,10 +12,10 @@ const micro = (values) => values.map((value) => value * 1e-6);
 export const PANELS = [
   { id: "ste", title: "Transmission error", unit: "µm", of: (curve) => curve.transmission_error_um },
   { id: "stiffness", title: "Mesh stiffness, tangent", unit: "N/µm", of: (curve) => micro(curve.mesh_stiffness_tangent_n_per_m) },
-  { id: "share", title: "Load share", unit: "%", ofLive: shares, note: "a line for each pair of teeth" },
+  { id: "share", title: "Load share", unit: "%", ofLive: shares, note: "a line for each pair of teeth", whole: largestShare },
   { id: "pressure", title: "Peak contact pressure", unit: "MPa", of: (curve) => curve.peak_contact_pressure_mpa, gaps: "No line where a sharp tip corner carries: the pressure has no limit there. More tip relief avoids it.", none: "No line: a sharp tip corner carries at every position, and the pressure has no limit there. A rounding of the tip edges or more tip relief gives it one." },
-  { id: "face", title: "Load along the face", unit: "N/mm", along: "z" },
-  { id: "stress", title: "Largest stress", unit: "MPa", ofLive: stresses },
+  { id: "face", title: "Load along the face", unit: "N/mm", along: "z", rare: true },
+  { id: "stress", title: "Largest stress", unit: "MPa", ofLive: stresses, rare: true },
 ];
 
 /** Pairs so far apart are never in contact together, and share a look. */
@@ -32,6 +32,11 @@ function shares(curve) {
     // Where nothing is carried there is no line, but a curve begins and ends at zero.
     return { name: `pair ${look + 1}`, open: true, values: carried.map((value, i) => (value > 0 || carried[i - 1] > 0 || carried[i + 1] > 0 ? Math.max(value, 0) : null)) };
   });
+}
+
+/** The share of the pair that carries most, at each position: what can be seen of a long period. */
+function largestShare(curve) {
+  return [{ name: "the pair that carries most", values: curve.mesh_position.map((_, i) => 100 * Math.max(...curve.load_shares.map(({ share }) => share[i]))) }];
 }
 
 /** The stresses of the live curve, where they were asked for: at the roots of both gears, and at their holes. */
@@ -58,11 +63,11 @@ function repeated(line, longest, partial) {
   return { ...line, x: x.slice(0, count), values: values.slice(0, count), span: longest, open: line.open || !whole };
 }
 
-/** The lines of a panel: `{ name, look, dash, x, values, span, open }`. Designs have looks, torques have dashes; where there is one torque designs have both. */
-export function linesOf(panel, designs) {
+/** The lines of a panel: `{ name, look, dash, x, values, span, open }`. Designs have looks, torques have dashes; where there is one torque designs have both. Lines of parts of the live design have a `part` in place of a look. Where they are `crowded` pairs of teeth are no lines. */
+export function linesOf(panel, designs, crowded = false) {
   if (panel.ofLive) {
     const curve = designs[0].results.curves[0];
-    return panel.ofLive(curve).map((each, i) => ({ ...each, look: i, dash: DASHES[i % DASHES.length], x: curve.mesh_position, span: spanOf(curve) }));
+    return (crowded && panel.whole ? panel.whole : panel.ofLive)(curve).map((each, i) => ({ ...each, part: i, dash: DASHES[i % DASHES.length], x: curve.mesh_position, span: spanOf(curve) }));
   }
   const several = designs.some(({ results }) => results.curves.length > 1);
   const longest = Math.max(...designs.flatMap(({ results }) => results.curves.map(spanOf)));
@@ -85,16 +90,26 @@ export function namesOf(spectra, last) {
   return [...names.values()];
 }
 
-/** The names of orders where there is room for them, the tallest first and those of holes and mesh before all, none over another: `{ label, x, y, width }`, centered over their lines. */
-export function placedNames(names, { px, py, left, right, letter, widthOf }) {
+/**
+ * The names of orders where there is room for them, the tallest first and those of holes and mesh before all: none over another, nor over one of the `stems` `{ order, value }`, of
+ * which a mark stands on top; a name rises above the stems and names beside it. `{ label, x, y }`, centered over their lines.
+ */
+export function placedNames(names, { stems = [], mark = 0, px, py, left, right, top = 0, letter, widthOf }) {
   const taken = [];
   const rank = ({ label }) => (/^H_(N\d?|Z\d?)$/.test(label) ? 0 : 1);
+  const marks = stems.map(({ order, value }) => [px(order), py(value)]);
   return [...names].sort((a, b) => rank(a) - rank(b) || b.value - a.value).flatMap(({ label, order, value }) => {
     const width = widthOf(label);
     const x = Math.min(Math.max(px(order), left + width / 2), right - width / 2);
-    const y = py(value) - 0.5 * letter;
-    const box = [x - width / 2 - 2, y - letter, x + width / 2 + 2, y + 2];
-    if (taken.some((other) => box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3])) return [];
+    // Stems reach from their mark to the foot: above the highest of those below the name there is room.
+    const beside = marks.filter(([at]) => Math.abs(at - x) < width / 2 + 2 + mark).map(([, level]) => level);
+    let y = Math.min(py(value), ...beside) - 0.5 * letter - mark;
+    const boxAt = (level) => [x - width / 2 - 2, level - letter, x + width / 2 + 2, level + 2];
+    const under = (box) => taken.find((other) => box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3]);
+    // Above another name, but no farther from its line than two of them.
+    for (let i = 0; i < 2; i += 1) y = (under(boxAt(y))?.[1] ?? y + 2) - 2;
+    const box = boxAt(y);
+    if (box[1] < top || under(box)) return [];
     taken.push(box);
     return [{ label, x, y }];
   });

@@ -2,10 +2,11 @@
 // that chooses the values itself.
 
 import { json, request } from "./api.js";
-import { h, fixed, number, timeLeft } from "./dom.js";
+import { h, fixed, number } from "./dom.js";
 import { at, nameOf, withValue } from "./design.js";
-import { save } from "./download.js";
+import { fileOfDesign, save } from "./download.js";
 import { figure } from "./figure.js";
+import { allGiven, given, numeric } from "./inputs.js";
 import { offer } from "./offer.js";
 import { Question } from "./question.js";
 import { usualAt } from "./schema.js";
@@ -39,7 +40,7 @@ export function study(place, design, form, onOpen) {
   const axes = [axis(0, design, form), axis(1, design, form)];
   const constant = h("input", { type: "checkbox", id: "study-mass" });
   const gear = h("select", { id: "study-gear", ariaLabel: "Gear of the same mass" }, h("option", { value: "driven" }, "driven"), h("option", { value: "driving" }, "driving"));
-  const removed = h("input", { type: "number", id: "study-removed", value: 25, min: 0.01, max: 99, step: "any", ariaLabel: "Mass removed in percent" });
+  const removed = numeric({ id: "study-removed", value: 25, ariaLabel: "Mass removed in percent" });
   const question = new Question(design, { id: "study", words: "Run the study", inWords: (detail) => form.inWords(detail) });
   const [across, up] = ["mass", "p_p"].map((chosen, i) => h("select", { id: `study-${i ? "up" : "across"}`, on: { change: () => last && draw(last) } }, ...Object.entries(QUANTITIES).map(([name, [words, unit]]) => h("option", { value: name, selected: name === chosen }, `${words} in ${unit}`))));
   const picture = h("div", {});
@@ -50,21 +51,39 @@ export function study(place, design, form, onOpen) {
     ...axes.map((each) => each.element),
     h("div", { className: "line" }, constant, h("label", { htmlFor: "study-mass" }, "Same mass: holes remove"), removed, h("span", { className: "unit" }, "% of the"), gear, h("span", {}, "blank, all equally wide")),
     h("div", { className: "line" }, question.run, question.cancel));
-  place.replaceChildren(h("p", { className: "note" }, "Every combination of these values is computed from the design; values are separated by commas. “Best” is a design that no other beats: none is at least as good in mass, peak-to-peak and mean stiffness, and better in one."), formOf, question.state, question.of.element, picker, picture, out, h("details", { id: "search" }, h("summary", {}, "Let a search choose the values"), searched));
+  place.replaceChildren(h("p", { className: "note" }, "Every combination of these values is computed from the design; values stand apart by spaces. “Best” is a design that no other beats: none is at least as good in mass, peak-to-peak and mean stiffness, and better in one."), formOf, question.state, question.of.element, picker, picture, out, h("details", { id: "search" }, h("summary", {}, "Let a search choose the values"), searched));
   const seeker = search(searched, design, form, onOpen);
   let last = null;
 
-  function start() {
+  const how = {
+    part: "/results", pause: PAUSE, show,
+    progress: (done, total, left) => `${done} of ${total} designs${left(done, total)}`,
+    ended: ({ done, total, status }) => `${done} of ${total} designs, ${status}`,
+  };
+
+  function clear() {
     last = null;
     picture.replaceChildren();
     out.replaceChildren();
-    const asked = { base: base(), axes: axes.flatMap((each) => each.read()), name: nameOf(design.submission) };
-    if (constant.checked) asked.constant_mass = { gear: gear.value, mass_removed_percent: Number(removed.value) };
-    return question.study(asked, {
-      part: "/results", pause: PAUSE, show,
-      progress: (done, total, begun) => `${done} of ${total} designs${timeLeft(begun, done, total)}`,
-      ended: ({ done, total, status }) => `${done} of ${total} designs, ${status}`,
-    });
+  }
+
+  function start() {
+    clear();
+    return question.study(() => {
+      const asked = { base: base(), axes: axes.flatMap((each) => each.read()), name: nameOf(design.submission) };
+      if (constant.checked) asked.constant_mass = { gear: gear.value, mass_removed_percent: given(removed) };
+      return asked;
+    }, how);
+  }
+
+  /** Shows a study, or the search, that was asked for before. */
+  function resume(id, asked) {
+    if (asked.search) {
+      place.querySelector("#search").open = true;
+      return seeker.resume(id, asked);
+    }
+    clear();
+    return question.resume(id, asked.base, how);
   }
 
   /** The design, with holes or a web to begin with where an axis changes what it lacks. */
@@ -78,7 +97,7 @@ export function study(place, design, form, onOpen) {
   function show(results, address) {
     last = results;
     draw(results);
-    const csv = h("button", { type: "button", on: { click: async () => save("study.csv", "text/csv", await (await request(`${address}/results/table.csv`)).blob()) } }, "Table as CSV");
+    const csv = h("button", { type: "button", on: { click: async () => save(fileOfDesign(results.name ?? "", "study.csv"), "text/csv", await (await request(`${address}/results/table.csv`)).blob()) } }, "Table as CSV");
     out.replaceChildren(h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Designs of the study" }, tableOf(results.rows)), h("div", { className: "buttons" }, csv));
   }
 
@@ -118,7 +137,7 @@ export function study(place, design, form, onOpen) {
     onOpen(job.submission, null);
   }
 
-  return { refresh: () => [...axes, seeker].forEach((each) => each.refresh()) };
+  return { refresh: () => [...axes, seeker].forEach((each) => each.refresh()), resume };
 }
 
 /** Values over a field that is chosen from all that the form has. */
@@ -141,8 +160,10 @@ function axis(index, design, form) {
     return [0.9, 1, 1.1].map((part) => (known?.kind.whole ? Math.round(part * value) : Number((part * value).toPrecision(3)))).join(", ");
   }
 
-  const valueOf = (word) => (word === "true" ? true : word === "false" ? false : word === "null" ? null : Number.isNaN(Number(word)) ? word : Number(word));
-  const read = () => (field.value && values.value.trim() ? [pathOf(field.value, [...new Set(values.value.split(/[\s,;]+/).filter(Boolean))].map(valueOf))] : []);
+  const WORDS = { true: true, false: false, null: null };
+  const isWord = () => ["choice", "flag"].includes(form.fields().find(({ pointer }) => pointer === field.value)?.kind.kind);
+  const listed = () => (isWord() ? values.value.split(/[\s,;]+/).filter(Boolean).map((word) => (word in WORDS ? WORDS[word] : word)) : allGiven(values));
+  const read = () => (field.value && values.value.trim() ? [pathOf(field.value, [...new Set(listed())])] : []);
 
   /** A field within a list is changed by its place; the torque as the list that it is. */
   function pathOf(path, list) {

@@ -11,7 +11,7 @@ use bytes::Buf;
 use flate2::Compression;
 use flate2::read::GzDecoder;
 use futures_util::stream;
-use meshwright_engine::analysis;
+use meshwright_engine::analysis::{self, Case, Method};
 use meshwright_engine::gear::Member;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -26,6 +26,7 @@ use super::memory::Held;
 use super::packing::{packed, takes_gzip};
 use super::parameters::{IfNoneMatch, JobId, Parameters, invalid};
 use super::problem::{internal, of_missing_results};
+use crate::compute::PreviewError;
 use crate::jobs::Job;
 use crate::wire::solve::{Inside, inside, section};
 use crate::wire::{Code, LoadedEdges, Problem, SOLVER_VERSION, Submission, memory_of};
@@ -33,6 +34,9 @@ use crate::wire::{Code, LoadedEdges, Problem, SOLVER_VERSION, Submission, memory
 /// How long it may take, in times of a preview, and at most: nobody drags what is looked at here, and volumes of both gears take seconds.
 const PREVIEWS_LONG: u32 = 4;
 const LONGEST: Duration = Duration::from_secs(60);
+
+/// What takes the job longer by its estimate may take so many times of that here: all of its positions are solved again.
+const ESTIMATES_LONG: f64 = 4.0;
 
 /// What volumes of both gears take until they are written, in bytes for each tooth, and what their file has at most, packed.
 const VOLUME_BYTES: [u64; 2] = [4 << 20, 1 << 20];
@@ -58,7 +62,7 @@ pub(super) struct FieldParameters {
 /// A VTK unstructured grid that ParaView, PyVista and meshio read: at points `displacement_um` of each gear against its hub, `stress_mpa`
 /// and `von_mises_mpa`, in cells `gear` (0 driving, 1 driven); points in mm, the driving axis at the origin, the driven one on the x axis. Of a plane
 /// method plates with `thickness_mm`, by the flexible method; of `three_dimensional` and its projection volumes, by `three_dimensional`, with z from
-/// the middle of the common face. It is computed while the request waits, and bounded as previews are, but for four times their time.
+/// the middle of the common face. It is computed while the request waits, and bounded as previews are, but for four times their time, or that of the job by its estimate.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/fields.vtu", tag = "Results", operation_id = "get_fields",
     params(FieldParameters, IfNoneMatch),
@@ -96,7 +100,7 @@ pub(super) async fn vtu(
 /// What a drawing of the deformed pair needs of `fields.vtu`: where the gears end, how far each node there moves against the hub of its
 /// gear, and its von Mises stress; and the transmission error, by which the driven gear is to be turned back for the flanks to touch. Of
 /// gears that are seen along their faces it is a section through the middle of the common face, and of a part that ends before it, its end. It is
-/// computed by the method that `fields.vtu` has, while the request waits, and bounded as previews are, but for four times their time.
+/// computed by the method that `fields.vtu` has, while the request waits, and bounded as previews are, but for four times their time, or that of the job by its estimate.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/edges.json", tag = "Results", operation_id = "get_edges",
     params(FieldParameters, IfNoneMatch),
@@ -255,6 +259,17 @@ impl Done {
             false => [0, 0],
         };
         let memory = memory_of(&submission) + made.div_ceil(1_000_000);
+        let case = submission.case();
+        // What is shown along faces is solved by the whole method, whichever the job had.
+        let whole = Case {
+            method: case
+                .faces
+                .as_ref()
+                .map_or(case.method, |_| Method::ThreeDimensional),
+            ..case.clone()
+        };
+        let seconds = analysis::estimate(&whole, None).seconds;
+        let again = Duration::try_from_secs_f64(ESTIMATES_LONG * seconds).unwrap_or(LONGEST);
         let made = async {
             let held = app.bodies.for_answer(client.name(), sent).await?;
             let library = app.library.clone();
@@ -267,10 +282,11 @@ impl Done {
                     Ok(document.into())
                 }
             };
-            let most = app.previews.rules().time_limit * PREVIEWS_LONG;
-            let within = (memory, most.min(LONGEST));
-            let made = app.previews.work(client.name(), None, within, work);
-            let document = made.await?.answer;
+            let most = (app.previews.rules().time_limit * PREVIEWS_LONG).min(LONGEST);
+            let made = app
+                .previews
+                .work(client.name(), None, (memory, most.max(again)), work);
+            let document = made.await.map_err(of_look)?.answer;
             let body = match has_grids {
                 true => packed_or_plain(held.hold(document), request),
                 false => document.into_response(),
@@ -295,6 +311,20 @@ impl Done {
             headers.insert("results-solver-version", version);
         }
         Ok(response)
+    }
+}
+
+/// Why a job that was computed once more shows nothing: no job has more time for it.
+fn of_look(error: PreviewError) -> Problem {
+    match error {
+        PreviewError::TimeLimit(limit) => Problem::new(
+            Code::TimeLimit,
+            format!(
+                "It was stopped after {} s, the most that it may take. One torque takes less than all of them.",
+                limit.as_secs()
+            ),
+        ),
+        other => other.into(),
     }
 }
 

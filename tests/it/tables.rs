@@ -1,9 +1,11 @@
 //! Parts of the results as tables.
 
+use std::sync::Arc;
+
 use reqwest::StatusCode;
 use serde_json::Value;
 
-use crate::bench::{Asked, Bench, Said, problem, submission};
+use crate::bench::{Asked, Bench, Said, problem, results, submission};
 use crate::stores;
 
 #[tokio::test]
@@ -298,6 +300,22 @@ async fn the_contact_pattern_of_a_pair_along_its_faces_comes_as_numbers_and_as_a
                 .contains("three_dimensional")
         );
     }
+}
+
+#[tokio::test]
+async fn a_contact_pattern_takes_as_long_as_its_job_however_short_previews_are() {
+    let bench = Bench::start(
+        |config| config.preview_time_limit_seconds = 0,
+        Arc::new(|_, _| Ok(results())),
+    )
+    .await;
+    let path = bench.submit(&helical()).await;
+    bench.ended(&path).await;
+    let answer = bench
+        .get(&format!("{path}/results/contact-pattern.json"))
+        .answer()
+        .await;
+    assert_eq!(answer.status(), StatusCode::OK);
 }
 
 #[tokio::test]

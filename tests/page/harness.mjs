@@ -1,6 +1,7 @@
 // A browser, and steps in pages of their own; what every step needs to look at the page.
 
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { AxeBuilder } from "@axe-core/playwright";
 import { chromium } from "playwright-core";
 
@@ -18,6 +19,7 @@ export async function step(name, service, work, options = {}, others = []) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 1000 }, acceptDownloads: true, ...options });
   context.setDefaultTimeout(PATIENCE);
   const page = await context.newPage();
+  if (process.env.WEB) await fromDisk(page, service);
   const faults = [];
   page.on("console", (message) => {
     // The browser itself logs a refusal and a service that is away; the page shows both.
@@ -38,6 +40,15 @@ export async function step(name, service, work, options = {}, others = []) {
     console.log(`page: FAILED: ${name}\n${error.stack}\n${faults.join("\n")}\nThe page says: ${said.filter(Boolean).join(" | ")}`);
   }
   await context.close();
+}
+
+/** The page as it lies in the folder WEB, not as it is in the program: what is being changed needs no build. */
+async function fromDisk(page, { url }) {
+  const types = { html: "text/html", js: "text/javascript", css: "text/css", svg: "image/svg+xml" };
+  await page.route((address) => address.href.startsWith(`${url}web/`) || (address.origin + address.pathname === url), async (route) => {
+    const name = new URL(route.request().url()).pathname.replace(/^\/(web\/)?/, "") || "index.html";
+    await route.fulfill({ body: readFileSync(`${process.env.WEB}/${name}`), contentType: `${types[name.split(".").pop()]}; charset=utf-8` });
+  });
 }
 
 /** Ends the browser and tells how it went. */

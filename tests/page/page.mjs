@@ -7,6 +7,7 @@ import { benchSteps } from "./bench.mjs";
 import { answer, axe, changed, changing, designOf, drag, downloaded, end, field, holeAt, linkOf, named, open, step, tab } from "./harness.mjs";
 import { hourSteps } from "./hour.mjs";
 import { start } from "./service.mjs";
+import { shownSteps } from "./shown.mjs";
 import { solidSteps } from "./solid.mjs";
 
 const DRAGS = 200;
@@ -253,7 +254,7 @@ await step("a job is submitted, followed and opened", service, async (page) => {
   await page.locator("#jobs button.primary").click();
   const { submitted_at: at } = await (await submitted).json();
   const time = await page.evaluate((text) => new Date(text).toLocaleString(), at);
-  const row = page.locator("#jobs tbody tr", { hasText: time }).filter({ hasText: "successful" }).first();
+  const row = page.locator("#jobs-list tbody tr", { hasText: time }).filter({ hasText: "successful" }).first();
   await row.waitFor();
   const file = (name) => downloaded(page, () => row.locator("button", { hasText: name }).first().click());
   assert.match((await file("CSV")).name, /ste\.csv$/);
@@ -338,6 +339,7 @@ await step("200 drags are followed in order", service, async (page) => {
 
 await benchSteps(service);
 await solidSteps(service);
+await shownSteps(service);
 await hourSteps(service);
 
 const locked = await start();
@@ -353,7 +355,7 @@ await step("a key is asked for, and used", locked, async (page) => {
   // Streams of events carry the key too.
   await tab(page, "jobs");
   await page.locator("#jobs button.primary").click();
-  await page.locator("#jobs tbody tr", { hasText: "successful" }).first().waitFor();
+  await page.locator("#jobs-list tbody tr", { hasText: "successful" }).first().waitFor();
 });
 await locked.stop();
 
