@@ -40,6 +40,8 @@ pub struct WarningDocument {
 pub enum WarningCode {
     /// The teeth fit without any backlash; only the loaded flanks are solved.
     ZeroBacklash,
+    /// Undercut ends a flank before the mate's tip does: the path of contact is shorter.
+    UndercutShortensPath,
     /// The material around the holes is thinner than one module.
     ThinLigament,
     /// A web or its rim is thinner than a plane model can stand for.
@@ -115,6 +117,18 @@ impl WarningDocument {
                 None,
                 None,
                 "The nominal backlash is zero; only the loaded flanks are solved.".to_owned(),
+            ),
+            Warning::UndercutShortensPath {
+                member,
+                roll_length,
+            } => (
+                Code::UndercutShortensPath,
+                Some(member),
+                Some((to_mm(roll_length), "mm")),
+                format!(
+                    "The rack undercuts the teeth of the {member} gear: their flanks begin above where the tips of the other gear would touch them first, and the unloaded path of contact loses {} mm of roll. The corner at which they begin carries under load; more profile shift avoids it.",
+                    plain(significant(to_mm(roll_length), 3))
+                ),
             ),
             Warning::ThinLigament { member, ligament } => (
                 Code::ThinLigament,

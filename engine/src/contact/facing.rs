@@ -2,7 +2,7 @@
 
 use super::meeting::{Meeting, Probe};
 use super::placement::{FlankPlace, Placement, Sight};
-use crate::gear::{GearPair, Member, PairDeviations};
+use crate::gear::{GearPair, Member, PairDeviations, SpurGear};
 use crate::root_finding::bisect;
 
 /// Places besides kinks between which the gap of flanks that are not convex is looked at.
@@ -61,7 +61,9 @@ pub struct Facing {
     pub hollows: Vec<Hollow>,
     /// Rising places within the range at which either flank has a kink.
     pub kinks: Vec<f64>,
-    /// Whether the nominal contact lies past the seat's tip, off the path of contact.
+    /// Those of them at which a flank ends in the corner of its undercut.
+    pub corners: Vec<f64>,
+    /// Whether the nominal contact lies past the seat's tip, off the path of contact, and it is not the corner of an undercut flank that touches.
     pub off_path: bool,
 }
 
@@ -119,7 +121,9 @@ impl Facing {
 
     /// About how much memory it takes beside itself, in bytes.
     pub(super) fn bytes(&self) -> usize {
-        size_of_val(self.hollows.as_slice()) + size_of_val(self.kinks.as_slice())
+        size_of_val(self.hollows.as_slice())
+            + size_of_val(self.kinks.as_slice())
+            + size_of_val(self.corners.as_slice())
     }
 
     /// The δ at which the flanks touch first.
@@ -178,16 +182,19 @@ impl<'a> View<'a> {
         let s_1 = gears.roll_length_of(phase);
         let [nominal, _] = self.on_both(s_1, gears.line_of_action() - s_1);
         let range = self.range()?;
-        let kinks = self.kinks(&range);
+        let (kinks, corners) = (self.kinks(&range), self.corners(&range));
         let places = self.hollow_places(&range, &kinks).into_iter();
         let mut hollows: Vec<Hollow> = places.filter_map(|arc| self.hollow(arc, &range)).collect();
         hollows.sort_by(|a, b| a.touch.total_cmp(&b.touch));
-        (!hollows.is_empty()).then_some(Facing {
+        let first = hollows.first()?.arc;
+        Some(Facing {
             seat: self.seat,
             range,
+            off_path: nominal > gears.gear(self.seat).tip_form_roll_length()
+                && !corners.contains(&first),
             hollows,
             kinks,
-            off_path: nominal > gears.gear(self.seat).tip_form_roll_length(),
+            corners,
         })
     }
 
@@ -228,18 +235,19 @@ impl<'a> View<'a> {
             .map_or(f64::NEG_INFINITY, |point| point.sight.roll_length)
     }
 
-    /// The part of the seat's flank that sees the other flank between its form circle and its tip.
+    /// The part of the seat's flank that sees the other flank between its form circle, or somewhat below the corner of its undercut, and its tip.
     pub(super) fn range(&self) -> Option<FlankRange> {
         let (gear, mate) = (
             self.gears().gear(self.seat),
             self.gears().gear(self.seat.other()),
         );
         // The face of a chamfer is far from the other flank; its edge is the corner that touches.
-        let (low, high) = gear.flank_arcs();
+        let (_, high) = gear.flank_arcs();
+        let low = gear.flank().arc_length(gear.lowest_roll_length());
         let high = gear
             .chamfer_edge()
             .map_or(high, |s| gear.flank().arc_length(s));
-        let form = mate.form_roll_length();
+        let form = mate.lowest_roll_length();
         let tip = mate.chamfer_edge().unwrap_or(mate.tip_roll_length());
         let (mut from, mut to) = ((low, RangeEnd::Fillet), (high, RangeEnd::Tip));
         if self.seen_from(high) > tip || self.seen_from(low) < form {
@@ -266,17 +274,31 @@ impl<'a> View<'a> {
 
     /// The rising places within `range` at which either flank has a kink.
     fn kinks(&self, range: &FlankRange) -> Vec<f64> {
+        self.places_of(SpurGear::kinks, range)
+    }
+
+    /// The rising places within `range` at which either flank has the corner of its undercut.
+    fn corners(&self, range: &FlankRange) -> Vec<f64> {
+        let corner = |gear: &SpurGear| {
+            let corner = gear.is_undercut().then(|| gear.form_roll_length());
+            corner.into_iter().collect()
+        };
+        self.places_of(corner, range)
+    }
+
+    /// The rising places within `range` of the roll lengths `of` either gear.
+    fn places_of(&self, of: impl Fn(&SpurGear) -> Vec<f64>, range: &FlankRange) -> Vec<f64> {
         let [gear, mate] = [self.seat, self.seat.other()].map(|member| self.gears().gear(member));
-        let own = gear.kinks().into_iter();
+        let own = of(gear).into_iter();
         let own = own.map(|s| gear.flank().arc_length(s));
-        let seen = mate.kinks().into_iter();
-        let mut kinks: Vec<f64> = own
+        let seen = of(mate).into_iter();
+        let mut places: Vec<f64> = own
             .chain(seen.filter_map(|s| self.arc_that_sees(s)))
             .filter(|arc| range.from < *arc && *arc < range.to)
             .collect();
-        kinks.sort_by(f64::total_cmp);
-        kinks.dedup();
-        kinks
+        places.sort_by(f64::total_cmp);
+        places.dedup();
+        places
     }
 
     /// The arc that sees the roll length `wanted` of the other flank.
@@ -397,7 +419,7 @@ impl<'a> View<'a> {
 mod tests {
     use super::*;
     use crate::gear::spur::tests::paper_gear;
-    use crate::gear::{ModificationData, ReliefData, ReliefShape, ReliefStart, SpurGear};
+    use crate::gear::{ModificationData, ReliefData, ReliefShape, ReliefStart};
 
     fn pair(relief: Option<ReliefShape>) -> GearPair {
         let mut data = paper_gear(50);
