@@ -293,7 +293,7 @@ impl<'a> View<'a> {
         let own = own.map(|s| gear.flank().arc_length(s));
         let seen = of(mate).into_iter();
         let mut places: Vec<f64> = own
-            .chain(seen.filter_map(|s| self.arc_that_sees(s)))
+            .chain(seen.filter_map(|s| self.arc_that_sees(s, range)))
             .filter(|arc| range.from < *arc && *arc < range.to)
             .collect();
         places.sort_by(f64::total_cmp);
@@ -301,13 +301,19 @@ impl<'a> View<'a> {
         places
     }
 
-    /// The arc that sees the roll length `wanted` of the other flank.
-    fn arc_that_sees(&self, wanted: f64) -> Option<f64> {
+    /// The arc that sees the roll length `wanted` of the other flank, within `range` where that is undercut.
+    fn arc_that_sees(&self, wanted: f64, range: &FlankRange) -> Option<f64> {
         const STEPS: u32 = 12;
         let (gear, mate) = (
             self.gears().gear(self.seat),
             self.gears().gear(self.seat.other()),
         );
+        // The corner of an undercut flank touches far off the line of action, and beside it the mate passes the base circle.
+        if mate.is_undercut() {
+            let sees = |arc: f64| self.seen_from(arc) >= wanted;
+            let within = sees(range.from) && !sees(range.to);
+            return within.then(|| bisect(range.from, range.to, sees));
+        }
         // Flanks that touch share the line of action.
         let opposite = self.gears().line_of_action() - wanted;
         let mut arc = gear.flank().arc_length(opposite.max(0.0));
@@ -499,6 +505,61 @@ mod tests {
             });
             let count = faces.count();
             assert!(count > 5 && count < 200, "{count}");
+        }
+    }
+
+    /// 10 and 80 teeth of module 1 at their reference distance: the pinion's flank begins at a radius of 4.7256 mm.
+    fn undercut_pair() -> GearPair {
+        let gear = |tooth_count| {
+            let mut data = paper_gear(tooth_count);
+            data.rack = crate::gear::Rack {
+                module: 1e-3,
+                addendum: 1e-3,
+                dedendum: 1.25e-3,
+                tip_radius: 0.38e-3,
+                ..data.rack
+            };
+            data.blank.bore_radius = 0.15e-3 * f64::from(tooth_count);
+            data.face_width = 5e-3;
+            SpurGear::new(data).expect("can be made")
+        };
+        GearPair::new(gear(10), gear(80), 45e-3).expect("meshes")
+    }
+
+    #[test]
+    fn before_the_shortened_path_of_contact_the_corner_of_an_undercut_flank_is_nearest() {
+        // Gaps in µm between the outlines of both teeth, sampled at 4000 points by a program of its own, where they would nominally touch at a
+        // roll length in mm of the pinion; the flank begins at 0.507 mm.
+        let pair = undercut_pair();
+        for (s, gap) in [
+            (-0.6, 3.768),
+            (-0.4, 3.767),
+            (-0.21, 3.096),
+            (-0.06, 2.310),
+            (0.2, 0.878),
+        ] {
+            let phase = (s * 1e-3 - pair.pitch_roll_length()) / pair.base_pitch();
+            let facing = Facing::drawn(&pair, phase).expect("they face each other");
+            let first = &facing.hollows[0];
+            assert!(
+                (first.touch * 1e6 - gap).abs() < 0.01 * gap,
+                "{s}: {}",
+                first.touch
+            );
+            assert!(
+                facing.corners.contains(&first.arc) && !facing.off_path,
+                "{s}"
+            );
+            // The mate leans over the corner on both sides.
+            assert!(first.openings.iter().all(|angle| *angle > 0.01), "{s}");
+        }
+        // On the path that is left flanks touch as ever.
+        let (s_a, s_e) = pair.path_of_contact();
+        for part in [0.05, 0.4, 0.95] {
+            let s = s_a + part * (s_e - s_a);
+            let phase = (s - pair.pitch_roll_length()) / pair.base_pitch();
+            let touch = Facing::drawn(&pair, phase).expect("they touch").touch();
+            assert!(touch.abs() < 1e-14, "{s}: {touch}");
         }
     }
 
