@@ -94,6 +94,8 @@ impl PairDocument {
             gear.to_solid(&format!("/pair/{member}"), self.helix(member))
         })?;
         let sections = [driving.section().clone(), driven.section().clone()];
+        let gears = [driving, driven];
+        let overlap_ratio = SolidPair::overlap_of(&gears, from_mm(self.axial_offset_mm));
         let askew = self.misalignment_um.as_ref();
         let alignment = Alignment {
             axial_offset: from_mm(self.axial_offset_mm),
@@ -101,14 +103,16 @@ impl PairDocument {
             out_of_plane: askew.map_or(0.0, |askew| from_um(askew.out_of_plane_um)),
         };
         let pair = SolidPair::new(
-            [driving, driven],
+            gears,
             [self.driving.leads(), self.driven.leads()],
             from_mm(self.center_distance_mm),
             alignment,
         );
         let told = match pair {
             Ok(pair) => return Some(pair),
-            Err(SolidPairError::Section(error)) => self.told(&sections[0], &sections[1], &error),
+            Err(SolidPairError::Section(error)) => {
+                self.told([&sections[0], &sections[1]], overlap_ratio, &error)
+            }
             Err(SolidPairError::FacesDoNotOverlap {
                 axial_offset,
                 nearest,
@@ -162,7 +166,9 @@ impl PairDocument {
         })?;
         let (one, other) = (driving.clone(), driven.clone());
         let pair = GearPair::new(one, other, from_mm(self.center_distance_mm));
-        errors.report(pair.map_err(|error| self.told(&driving, &driven, &error)))
+        errors.report(pair.map_err(|error| {
+            self.told([&driving, &driven], 0.0, &error)
+        }))
     }
 
     /// Both gears, if they can be made and could mesh; what prevents that is reported to `errors`.
@@ -188,15 +194,16 @@ impl PairDocument {
 
     fn told(
         &self,
-        driving: &SpurGear,
-        driven: &SpurGear,
+        [driving, driven]: [&SpurGear; 2],
+        overlap_ratio: f64,
         error: &GearPairError,
     ) -> Option<FieldError> {
         let mm = |value: f64| plain(to_mm(value));
         let a = plain(self.center_distance_mm);
         let is_backlash = matches!(error, GearPairError::NegativeBacklash { .. });
         let nearest = |bound: f64, side: Side| {
-            nearest_distance(driving, driven, to_mm(bound), side, is_backlash)
+            let ends = (to_mm(bound), side);
+            nearest_distance([driving, driven], overlap_ratio, ends, is_backlash)
         };
         let (code, detail, nearest) = match *error {
             GearPairError::ModuleMismatch { .. } | GearPairError::PressureAngleMismatch { .. } => {
@@ -218,7 +225,8 @@ impl PairDocument {
             } => (
                 Code::ContactRatioBelowOne,
                 format!(
-                    "At the center distance {a} mm the contact ratio is {}",
+                    "At the center distance {a} mm the {}contact ratio is {}",
+                    if overlap_ratio > 0.0 { "total " } else { "" },
                     plain(contact_ratio)
                 ),
                 nearest(largest, Side::AtMost),
@@ -375,13 +383,12 @@ fn deviates(gear: &SpurGear) -> bool {
     !gear.deviations().is_none()
 }
 
-/// The first center distance in mm, from `bound` inward in units of the fifth digit, at which the gears mesh; where it is the `backlash` that decides, in
+/// The first center distance in mm, from the bound inward in units of the fifth digit, at which the gears mesh; where it is the `backlash` that decides, in
 /// units of a tenth of a micrometer, which is less than printed digits leave open.
 fn nearest_distance(
-    driving: &SpurGear,
-    driven: &SpurGear,
-    bound: f64,
-    side: Side,
+    gears: [&SpurGear; 2],
+    overlap_ratio: f64,
+    (bound, side): (f64, Side),
     backlash: bool,
 ) -> Option<f64> {
     const MOST_STEPS: u32 = 3;
@@ -392,7 +399,11 @@ fn nearest_distance(
             rounded_inward(bound, side, steps)
         }
     };
+    let meshes = |distance: f64| {
+        let [driving, driven] = gears.map(SpurGear::clone);
+        GearPair::overlapping(driving, driven, from_mm(distance), overlap_ratio).is_ok()
+    };
     (0..MOST_STEPS)
         .map(rounded)
-        .find(|&distance| GearPair::new(driving.clone(), driven.clone(), from_mm(distance)).is_ok())
+        .find(|&distance| meshes(distance))
 }

@@ -65,7 +65,7 @@ codes! {
     Interference "interference" 422 "A tip enters a fillet"
         "The tips of one gear reach below the involute flank of the other, into its fillet or root, where the motion would not be conjugate. nearest is the smallest center distance, rounded up, that avoids it; a shorter addendum helps as well."
     Undercut "undercut" 422 "The flank is undercut"
-        "The generating rack cuts into the involute near the base circle. nearest is the smallest profile shift coefficient, rounded up, that avoids it; more teeth or a larger pressure angle help as well."
+        "The generating rack cuts so far into the teeth near the base circle that next to nothing of them is left. Less undercut is computed. nearest is the smallest profile shift coefficient, rounded up, that avoids all of it; more teeth or a larger pressure angle help as well."
     PointedTip "pointed-tip" 422 "The teeth are pointed"
         "The two flanks of a tooth meet, or leave less than 0.05 modules between them, at the tip circle. nearest is the largest addendum, rounded down, that leaves enough; less profile shift helps as well."
     ModuleMismatch "module-mismatch" 422 "The modules differ"

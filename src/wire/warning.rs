@@ -49,6 +49,8 @@ pub enum WarningCode {
     PrintedDigits,
     /// The tips of a gear nearly touch the root circle of the other one.
     SmallTipClearance,
+    /// Undercut ends a flank before the mate's tip does: the path of contact is shorter.
+    UndercutShortensPath,
     /// The material around the holes is thinner than one module.
     ThinLigament,
     /// A web or its rim is thinner than a plane model can stand for.
@@ -162,6 +164,18 @@ impl WarningDocument {
                     format!("{told} {advice}"),
                 )
             }
+            Warning::UndercutShortensPath {
+                member,
+                roll_length,
+            } => (
+                Code::UndercutShortensPath,
+                Some(member),
+                Some((to_mm(roll_length), "mm")),
+                format!(
+                    "The rack undercuts the teeth of the {member} gear: their flanks begin above where the tips of the other gear would touch them first, and the unloaded path of contact loses {} mm of roll. The corner at which they begin carries under load; more profile shift avoids it.",
+                    plain(significant(to_mm(roll_length), 3))
+                ),
+            ),
             Warning::ThinLigament { member, ligament } => (
                 Code::ThinLigament,
                 Some(member),

@@ -54,6 +54,13 @@ pub enum Warning {
         /// themselves leave no more.
         shortened: Option<(f64, [f64; 2])>,
     },
+    /// The rack undercuts the flanks of a gear so far that its mate's tips pass below them: the path of contact is shorter.
+    UndercutShortensPath {
+        /// The gear that is undercut.
+        member: Member,
+        /// The roll length that is lost, in meters.
+        roll_length: f64,
+    },
     /// Material around the holes thinner than one module.
     ThinLigament {
         /// The gear.
@@ -146,6 +153,13 @@ pub fn warnings(case: &Case) -> Vec<Warning> {
     for member in Member::BOTH {
         let gear = pair.gear(member);
         warnings.extend(small_tip_clearance(pair, member));
+        let roll_length = pair.lost_to_undercut(member);
+        if roll_length > 0.0 {
+            warnings.push(Warning::UndercutShortensPath {
+                member,
+                roll_length,
+            });
+        }
         if let Some(ligament) = gear
             .least_ligament()
             .filter(|&ligament| ligament < gear.data().rack.module)

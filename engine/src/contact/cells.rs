@@ -168,7 +168,7 @@ pub struct MeshContact {
     pub driving_load: f64,
     /// The pairs that came near, by n.
     pub pairs: Vec<PairContact>,
-    /// The largest pressure in Pa; `None` where a sharp tip corner carries, at which it has no limit.
+    /// The largest pressure in Pa; `None` where a sharp corner carries, at which it has no limit.
     pub peak_pressure: Option<f64>,
     /// Where that is; `None` without one, and without load.
     pub peak_place: Option<PeakPlace>,
@@ -397,7 +397,8 @@ impl<'a> ContactCells<'a> {
                 let ended = patch.ended_by(active);
                 let at_corner = ended
                     .iter()
-                    .any(|end| matches!(end, RangeEnd::Tip | RangeEnd::MateTip));
+                    .any(|end| matches!(end, RangeEnd::Tip | RangeEnd::MateTip))
+                    || patch.presses_corner(active);
                 let cells = patch.cells.iter().zip(forces).enumerate();
                 peak_pressure = peak_pressure.filter(|_| !at_corner).map(|peak| {
                     cells.fold(peak, |peak, (i, (cell, p))| {

@@ -106,8 +106,8 @@ impl FlankTable {
     /// The point at roll length `s`, pressed along `direction` (against the outward normal, against the way to the tip).
     pub fn point(&self, s: f64, direction: [f64; 2]) -> FlankPoint {
         let arc = self.flank.arc_length(s);
-        // A broken edge goes on beyond the last node, where nothing presses.
-        let known = arc.min(self.arcs[self.arcs.len() - 1]);
+        // A broken edge goes on beyond the last node, where nothing presses, and below the first one an undercut flank turns into its fillet.
+        let known = arc.clamp(self.arcs[0], self.arcs[self.arcs.len() - 1]);
         let (first, weights) = stencil(&self.arcs, known);
         FlankPoint {
             first,

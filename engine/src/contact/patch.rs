@@ -61,6 +61,8 @@ pub struct Patch {
     pub(super) ends_along: Vec<[f64; 2]>,
     /// What ends the flanks where the first and the last cell reach so far.
     pub ends: [Option<RangeEnd>; 2],
+    /// Where a flank has the corner of its undercut, by arc length on the seat's involute.
+    corners: Vec<f64>,
     /// How each gear gives way near the contact.
     pub near_fields: [NearField; 2],
     /// Whether the nominal contact lies past the seat's tip, off the path of contact.
@@ -142,6 +144,7 @@ impl Patch {
                 (chains[chains.len() - 1].last() >= Some(&facing.range.to))
                     .then_some(facing.range.ends[1]),
             ],
+            corners: facing.corners.clone(),
             near_fields: Member::BOTH.map(|member| {
                 let s = facing.hollows[0].roll_lengths[member.index()];
                 NearField::new(gears.gear(member), s, width)
@@ -261,6 +264,7 @@ impl Patch {
     pub(super) fn bytes(&self) -> usize {
         size_of_val(self.cells.as_slice())
             + size_of_val(self.ends_along.as_slice())
+            + size_of_val(self.corners.as_slice())
             + self.probes.bytes()
             + size_of_val(self.more.as_slice())
     }
@@ -325,6 +329,17 @@ impl Patch {
         let high = (i + 1..active.len()).find(|&k| !joins(k - 1, k));
         let cells = &self.cells[low..high.unwrap_or(active.len())];
         0.5 * cells.iter().map(|cell| cell.width).sum::<f64>()
+    }
+
+    /// Whether a cell of the `active` ones lies at the corner of an undercut flank.
+    pub(super) fn presses_corner(&self, active: &[bool]) -> bool {
+        let cells = self.cells.iter().zip(active);
+        let mut carrying = cells.filter(|(_, active)| **active);
+        carrying.any(|(cell, _)| {
+            let [from, to] = [0, 1].map(|end| self.ends_along[cell.stretch + end][0]);
+            let mut corners = self.corners.iter();
+            corners.any(|corner| (from..=to).contains(corner))
+        })
     }
 
     /// What ends the contact of the `active` cells where it reaches an end of the flanks.

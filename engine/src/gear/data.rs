@@ -63,8 +63,8 @@ pub enum GearError {
         /// The largest that fits.
         largest: f64,
     },
-    /// The rack cuts into the involute.
-    #[error("the flank is undercut at profile shift {profile_shift}; {smallest} avoids it")]
+    /// The rack cuts so far into the flanks that next to nothing of the tooth is left between them.
+    #[error("undercut leaves no tooth at profile shift {profile_shift}; {smallest} avoids it")]
     Undercut {
         /// The profile shift coefficient asked for.
         profile_shift: f64,

@@ -1,7 +1,9 @@
 //! Two spur gears in engagement.
 
 use super::involute::involute_function;
-use super::{GearError, Member, PairDeviations, SpurGear, ToothDeviations, gcd, teeth_on};
+use super::{
+    GearError, Member, PairDeviations, SpurGear, ToothDeviations, Vector, gcd, radial, teeth_on,
+};
 use crate::root_finding::bisect;
 
 /// Why two gears cannot mesh. Lengths are in meters.
@@ -37,10 +39,10 @@ pub enum GearPairError {
     },
     /// Between one pair of teeth and the next nothing carries the load.
     #[error(
-        "the contact ratio {contact_ratio} is below one; a center distance of at most {largest} m"
+        "the total contact ratio {contact_ratio} is below one; a center distance of at most {largest} m"
     )]
     ContactRatioBelowOne {
-        /// The contact ratio at the distance asked for.
+        /// The contact ratio at the distance asked for, with the overlap along the faces.
         contact_ratio: f64,
         /// The largest center distance at which it is one.
         largest: f64,
@@ -86,8 +88,9 @@ pub enum DeviationsError {
 
 /// Two spur gears at a center distance, the first driving the second.
 ///
-/// A value of this type can mesh: the contact ratio is at least one, the backlash is not negative and no tip enters a
-/// fillet. Where the last printed digits ([`super::printed`]) leave too little room for the other flanks, they are moved back. Lengths are in meters, angles in radians.
+/// A value of this type can mesh: the contact ratio, with the overlap along the faces, is at least one, the backlash is not negative and no tip enters a
+/// fillet. Where the last printed digits ([`super::printed`]) leave too little room for the other flanks, they are moved back. Lengths are in meters,
+/// angles in radians.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GearPair {
     driving: SpurGear,
@@ -111,6 +114,21 @@ impl GearPair {
         driven: SpurGear,
         center_distance: f64,
     ) -> Result<Self, GearPairError> {
+        Self::overlapping(driving, driven, center_distance, 0.0)
+    }
+
+    /// As [`GearPair::new`], of the transverse sections of gears whose teeth overlap along their faces by `overlap_ratio`: both contact ratios together
+    /// have to be at least one.
+    ///
+    /// # Errors
+    ///
+    /// As [`GearPair::new`].
+    pub fn overlapping(
+        driving: SpurGear,
+        driven: SpurGear,
+        center_distance: f64,
+        overlap_ratio: f64,
+    ) -> Result<Self, GearPairError> {
         let (rack_1, rack_2) = (&driving.data().rack, &driven.data().rack);
         if rack_1.module != rack_2.module {
             return Err(GearPairError::ModuleMismatch {
@@ -125,7 +143,7 @@ impl GearPair {
             });
         }
         let mut pair = Self::placed(driving, driven, center_distance);
-        pair.moved_back = pair.check()?;
+        pair.moved_back = pair.check(overlap_ratio)?;
         Ok(pair)
     }
 
@@ -191,11 +209,11 @@ impl GearPair {
     }
 
     /// By how much the other flanks have to be moved back, of gears that can mesh.
-    fn check(&self) -> Result<f64, GearPairError> {
+    fn check(&self, overlap_ratio: f64) -> Result<f64, GearPairError> {
         let tip_radii = self.driving.tip_radius() + self.driven.tip_radius();
         let center_distance = self.center_distance;
         if center_distance >= tip_radii {
-            let largest = self.largest_center_distance();
+            let largest = self.largest_center_distance(overlap_ratio);
             return Err(GearPairError::TeethDoNotReach {
                 center_distance,
                 tip_radii,
@@ -210,22 +228,67 @@ impl GearPair {
                 return Err(GearPairError::Interference { member, smallest });
             }
         }
-        let contact_ratio = self.contact_ratio();
+        let contact_ratio = self.contact_ratio() + overlap_ratio;
         if contact_ratio < 1.0 {
             return Err(GearPairError::ContactRatioBelowOne {
                 contact_ratio,
-                largest: self.largest_center_distance(),
+                largest: self.largest_center_distance(overlap_ratio),
             });
         }
         Ok(moved_back)
     }
 
-    /// Whether the other gear's tips stay on the flank of `member` and clear of its root.
+    /// Whether the other gear's tips stay on the flank of `member`, or in what its undercut leaves free, and clear of its root.
     fn clears(&self, member: Member) -> bool {
         let (gear, other) = (self.gear(member), self.gear(member.other()));
-        let lowest = self.line_of_action() - other.tip_form_roll_length();
-        lowest >= gear.form_roll_length()
+        let on_flank = self.lowest_roll_length(member) >= gear.form_roll_length();
+        (on_flank || gear.is_undercut() && self.passes_fillet(member))
             && self.center_distance - other.tip_radius() > gear.root_radius()
+    }
+
+    /// Whether the edges of the other gear's tips pass the undercut fillet of `member` without touching it.
+    fn passes_fillet(&self, member: Member) -> bool {
+        /// Places of the tip on its way through the space.
+        const PLACES: u32 = 200;
+        /// What rounding may take off the distance, in modules.
+        const ROUNDING: f64 = 1e-6;
+        let (gear, other) = (self.gear(member), self.gear(member.other()));
+        let (fillet, a) = (gear.fillet(), self.center_distance);
+        let (r_root, r_form) = (gear.root_radius(), gear.form_radius());
+        let s_tip = other.tip_form_roll_length();
+        let edge = other.flank().radius(s_tip);
+        // The tip stands at r_a e(θ) of its center; below the form circle of this gear while cos θ is more than this.
+        let cosine = (a * a + edge * edge - r_form * r_form) / (2.0 * a * edge);
+        let widest = cosine.clamp(-1.0, 1.0).acos();
+        // Seen along the line of centers both gears turn against each other, and flanks touch at s_1 + s_2 = a sin α_w.
+        let own = other.flank().half_angle(edge);
+        let alpha = self.working_pressure_angle;
+        (0..=PLACES).all(|i| {
+            let theta = widest * (2.0 * f64::from(i) / f64::from(PLACES) - 1.0);
+            // The centerline of the other tooth, and by it where its flank touches, and the centerline of the tooth here.
+            let centerline = theta - own;
+            let s_2 = (centerline + alpha + other.flank().base_half_angle()) * other.base_radius();
+            let s_1 = self.line_of_action - s_2;
+            let tooth = s_1 / gear.base_radius() - alpha - gear.flank().base_half_angle();
+            let point = Vector::new(a, 0.0) - edge * radial(theta);
+            let (r, angle) = (point.norm(), point.y.atan2(point.x) - tooth);
+            if r <= r_root || r >= r_form {
+                return true;
+            }
+            let wall = fillet.point(fillet.gamma_at(r));
+            r * (angle - wall.y.atan2(wall.x)) >= -ROUNDING * gear.data().rack.module
+        })
+    }
+
+    /// The roll length of `member` at which the tip of the other gear meets the line of action: negative beyond the base circle.
+    fn lowest_roll_length(&self, member: Member) -> f64 {
+        self.line_of_action() - self.gear(member.other()).tip_form_roll_length()
+    }
+
+    /// How much shorter the undercut of `member` makes the path of contact, a roll length.
+    pub fn lost_to_undercut(&self, member: Member) -> f64 {
+        let lost = self.gear(member).form_roll_length() - self.lowest_roll_length(member);
+        lost.max(0.0)
     }
 
     /// The same gears at another distance, whether they can mesh there or not.
@@ -233,11 +296,13 @@ impl GearPair {
         Self::placed(self.driving.clone(), self.driven.clone(), center_distance)
     }
 
-    /// The center distance at which the contact ratio falls to one; it falls as the distance grows.
-    fn largest_center_distance(&self) -> f64 {
+    /// The center distance at which the contact ratio, with the overlap, falls to one; it falls as the distance grows.
+    fn largest_center_distance(&self, overlap_ratio: f64) -> f64 {
         let low = self.driving.base_radius() + self.driven.base_radius();
         let high = self.driving.tip_radius() + self.driven.tip_radius();
-        bisect(low, high, |a| self.at(a).contact_ratio() >= 1.0)
+        bisect(low, high, |a| {
+            self.at(a).contact_ratio() + overlap_ratio >= 1.0
+        })
     }
 
     /// The smallest center distance in (`low`, `high`) from which `holds` holds.
@@ -299,11 +364,15 @@ impl GearPair {
         self.pitch_roll_length() + periods * self.base_pitch()
     }
 
-    /// The roll lengths on the driving gear at the ends A and E of the path of contact.
+    /// The roll lengths on the driving gear at the ends A and E of the path of contact: where the tips meet the line of action, or where undercut ends a
+    /// flank before that.
     pub fn path_of_contact(&self) -> (f64, f64) {
+        let forms = Member::BOTH.map(|member| self.gear(member).form_roll_length());
         (
-            self.line_of_action() - self.driven.tip_form_roll_length(),
-            self.driving.tip_form_roll_length(),
+            self.lowest_roll_length(Member::Driving).max(forms[0]),
+            self.driving
+                .tip_form_roll_length()
+                .min(self.line_of_action() - forms[1]),
         )
     }
 
@@ -328,10 +397,11 @@ impl GearPair {
         })
     }
 
-    /// The lowest radius of `member` that the mate's tip reaches: where its active profile begins.
+    /// The lowest radius of `member` that the mate's tip reaches on its flank: where its active profile begins.
     pub fn active_root_radius(&self, member: Member) -> f64 {
-        let lowest = self.line_of_action() - self.gear(member.other()).tip_form_roll_length();
-        self.gear(member).flank().radius(lowest)
+        let gear = self.gear(member);
+        let lowest = self.lowest_roll_length(member).max(gear.form_roll_length());
+        gear.flank().radius(lowest)
     }
 
     /// The tip clearance of `member`: from its tip to the root circle of the other gear, negative where it would cut into it.
@@ -518,6 +588,52 @@ mod tests {
             near(pair.backlash() * 1e3, backlash, 6e-6);
         }
     }
+
+    /// Two gears by the ISO 53 rack with this `tip_radius`, in modules.
+    fn of_module(teeth: [u32; 2], module: f64, tip_radius: f64, a: f64) -> Result<GearPair, GearPairError> {
+        let [one, other] = teeth.map(|tooth_count| {
+            let mut data = paper_gear(tooth_count);
+            data.rack = crate::gear::Rack {
+                module,
+                addendum: module,
+                dedendum: 1.25 * module,
+                tip_radius: tip_radius * module,
+                ..data.rack
+            };
+            data.blank.bore_radius = module;
+            SpurGear::new(data).expect("can be made")
+        });
+        GearPair::new(one, other, a)
+    }
+
+    #[test]
+    fn undercut_shortens_the_path_of_contact_only_where_the_mates_tips_pass_below_the_flank() {
+        // The contact ratio, and the roll length lost in mm: by the swept rounding of the rack, from public examples of gears.
+        for (teeth, module, tip_radius, a, ratio, lost) in [
+            ([17, 43], 1.0, 0.38, 30.0, 1.6211, 0.0),
+            ([16, 64], 0.396_875, 0.38, 15.875, 1.6452, 0.0017),
+            ([10, 80], 1.0, 0.38, 45.0, 1.0927, (1.598 - 1.0927) * PI_COS_20),
+            ([17, 22], 4.0, 0.25, 78.0, 1.5477, 0.0),
+        ] {
+            let pair = of_module(teeth, module * 1e-3, tip_radius, a * 1e-3).expect("meshes");
+            let found = pair.contact_ratio();
+            assert!((found - ratio).abs() < 6e-5, "{teeth:?}: {found}");
+            let shorter = pair.lost_to_undercut(Member::Driving) * 1e3;
+            // The ratio without the undercut is printed to three decimals.
+            assert!((shorter - lost).abs() < (1.5e-3 * lost).max(6e-5), "{shorter}");
+            assert_eq!(pair.lost_to_undercut(Member::Driven), 0.0);
+        }
+        let pair = of_module([17, 43], 1e-3, 0.38, 30e-3).expect("meshes");
+        let begins = pair.path_of_contact().0;
+        assert!((begins - 0.36e-3).abs() < 5e-6, "contact begins above the base circle");
+        assert!(matches!(
+            of_module([10, 80], 1e-3, 0.38, 45.8e-3),
+            Err(GearPairError::ContactRatioBelowOne { .. })
+        ));
+    }
+
+    /// The base pitch of module 1 at 20 degrees.
+    const PI_COS_20: f64 = 2.952_131;
 
     #[test]
     fn flanks_slide_at_both_ends_of_the_path_as_velocities_say() {

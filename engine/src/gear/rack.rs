@@ -2,7 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::{Vector, radial, tangential};
+use super::{Involute, Vector, radial, tangential};
+use crate::root_finding::bisect;
 
 /// The basic rack of a gear (ISO 53), with lengths in meters.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,7 +49,8 @@ impl Rack {
 /// reference circle.
 ///
 /// The parameter γ is the angle of the contact normal to the reference circle's tangent: it runs from α, where the
-/// fillet meets the involute at the form radius, to π/2, where it meets the root circle.
+/// fillet meets the involute at the form radius, to π/2, where it meets the root circle. Where the rack undercuts the
+/// flank it begins at a larger γ, at which it cuts the involute.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Trochoid {
     reference_radius: f64,
@@ -59,7 +61,8 @@ pub struct Trochoid {
     tip_radius: f64,
     /// σ: how much longer the rack is in this section than in the one in which its rounding is round.
     stretch: f64,
-    pressure_angle: f64,
+    /// Where it begins.
+    start: f64,
 }
 
 impl Trochoid {
@@ -78,13 +81,35 @@ impl Trochoid {
             center_depth: normal.dedendum - normal.tip_radius - shift,
             tip_radius: normal.tip_radius,
             stretch,
-            pressure_angle: rack.pressure_angle,
+            start: rack.pressure_angle,
         }
+    }
+
+    /// The same fillet where it undercuts `flank`: it begins where it cuts the involute.
+    ///
+    /// The rack's straight flank goes past the base circle, and what it sweeps there folds back on the involute. The fillet goes down from the end of that
+    /// fold, outside of the involute, through it and on through the base circle.
+    pub(super) fn cutting(self, flank: &Involute) -> Self {
+        let outside = |gamma: f64| {
+            let point = self.point(gamma);
+            point.y.atan2(point.x) >= flank.half_angle(point.norm())
+        };
+        let base = self.gamma_at(flank.base_radius());
+        Self {
+            start: bisect(self.start, base, outside),
+            ..self
+        }
+    }
+
+    /// The γ at which it comes down to `radius`.
+    pub(super) fn gamma_at(&self, radius: f64) -> f64 {
+        let (from, to) = self.ends();
+        bisect(from, to, |gamma| self.point(gamma).norm() >= radius)
     }
 
     /// The values of γ at the involute and at the root circle.
     pub fn ends(&self) -> (f64, f64) {
-        (self.pressure_angle, FRAC_PI_2)
+        (self.start, FRAC_PI_2)
     }
 
     /// The point of the fillet at γ = `gamma`.
@@ -168,9 +193,19 @@ mod tests {
             dedendum: 2.5e-3,
             tip_radius: 0.6e-3,
         };
-        for (z, x) in [(30_u32, 0.0), (40, 0.95), (40, 1.2)] {
+        // The last two are undercut: above the corner of the flank the sweep touches nothing of the involute.
+        for (z, x) in [(30_u32, 0.0), (40, 0.95), (40, 1.2), (10, 0.0), (13, -0.1)] {
             let (shift, r) = (x * rack.module, rack.module * f64::from(z) / 2.0);
-            let fillet = Trochoid::new(&rack, &rack, z, shift, 0.0);
+            let mut fillet = Trochoid::new(&rack, &rack, z, shift, 0.0);
+            let alpha = rack.pressure_angle;
+            let psi_b = PI / (2.0 * f64::from(z))
+                + 2.0 * x * alpha.tan() / f64::from(z)
+                + involute_function(alpha);
+            let flank = Involute::new(r * alpha.cos(), psi_b);
+            let is_undercut = r * alpha.sin().powi(2) < rack.straight_depth() - shift;
+            if is_undercut {
+                fillet = fillet.cutting(&flank);
+            }
             let (start, end) = fillet.ends();
             let boundary: Vec<(f64, f64)> = (0..=2000)
                 .map(|i| fillet.point(start + (end - start) * f64::from(i) / 2000.0))
@@ -190,6 +225,9 @@ mod tests {
                     let point = (r - depth) * radial(phi) - beside * tangential(phi);
                     let (radius, theta) = (point.norm(), point.y.atan2(point.x));
                     let after = boundary.partition_point(|known| known.0 > radius);
+                    if after == 0 && is_undercut {
+                        nearest = nearest.min(radius * (theta - flank.half_angle(radius)));
+                    }
                     if after == 0 || after == boundary.len() {
                         continue;
                     }

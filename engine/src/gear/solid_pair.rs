@@ -94,6 +94,15 @@ pub struct SolidPair {
     common: [f64; 2],
 }
 
+/// Where the faces of `gears` overlap, from the middle of the driving one; the driven one stands `offset` from it.
+fn common_face(gears: &[SolidGear; 2], offset: f64) -> [f64; 2] {
+    let [b_1, b_2] = gears.each_ref().map(SolidGear::face_width);
+    [
+        (-0.5 * b_1).max(offset - 0.5 * b_2),
+        (0.5 * b_1).min(offset + 0.5 * b_2),
+    ]
+}
+
 impl SolidPair {
     /// The same pair with teeth that do not deviate.
     pub fn as_drawn(&self) -> Self {
@@ -120,7 +129,10 @@ impl SolidPair {
             return Err(SolidPairError::HelixMismatch { driving, driven });
         }
         let [one, other] = gears.each_ref().map(|gear| gear.section().clone());
-        let section = GearPair::new(one, other, center_distance)?;
+        let offset = alignment.axial_offset;
+        let common = common_face(&gears, offset);
+        let overlap_ratio = Self::overlap_of(&gears, offset);
+        let section = GearPair::overlapping(one, other, center_distance, overlap_ratio)?;
         for member in Member::BOTH {
             let width = gears[member.index()].face_width();
             for (i, lead) in leads[member.index()].iter().enumerate() {
@@ -129,11 +141,6 @@ impl SolidPair {
             }
         }
         let [b_1, b_2] = gears.each_ref().map(SolidGear::face_width);
-        let offset = alignment.axial_offset;
-        let common = [
-            (-0.5 * b_1).max(offset - 0.5 * b_2),
-            (0.5 * b_1).min(offset + 0.5 * b_2),
-        ];
         let least = LEAST_OVERLAP * b_1.min(b_2);
         // Rounding of an offset that was typed for the least is the least.
         let enough = common[1] - common[0] >= least * (1.0 - 1e-9);
@@ -152,6 +159,14 @@ impl SolidPair {
         };
         pair.check_winding()?;
         Ok(pair)
+    }
+
+    /// The overlap ratio ε_β of `gears` whose faces stand `axial_offset` from each other; 0 where they do not overlap.
+    pub fn overlap_of(gears: &[SolidGear; 2], axial_offset: f64) -> f64 {
+        let section = gears[0].section();
+        let common = common_face(gears, axial_offset);
+        let width = (common[1] - common[0]).max(0.0);
+        width * gears[0].twist().abs() * section.base_radius() / section.base_pitch()
     }
 
     fn check_winding(&self) -> Result<(), SolidPairError> {

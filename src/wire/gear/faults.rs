@@ -97,7 +97,7 @@ impl GearDocument {
                 Field::of("", Self::profile_shift),
                 Code::Undercut,
                 format!(
-                    "{} teeth are undercut at profile shift {}; it takes at least {}.",
+                    "{} teeth at profile shift {} are undercut until hardly anything is left of them; a profile shift of {} avoids it.",
                     self.tooth_count,
                     plain(profile_shift),
                     plain(smallest)

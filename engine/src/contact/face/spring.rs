@@ -320,7 +320,7 @@ impl Cells {
             RangeEnd::Tip => self.sharp[seat.index()],
             RangeEnd::MateTip => self.sharp[seat.other().index()],
             _ => false,
-        });
+        }) || patch.presses_corner(&solution.active);
         let cells = patch.cells.iter().zip(&solution.forces);
         let largest = cells
             .clone()

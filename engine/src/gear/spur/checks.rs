@@ -34,8 +34,8 @@ impl SpurGear {
 
     pub(super) fn check_tooth(&self) -> Result<(), GearError> {
         let rack = &self.data.rack;
-        let (r, sin) = (self.reference_radius(), rack.pressure_angle.sin());
-        if self.form_roll_length_signed() < 0.0 {
+        if self.is_undercut && self.neck() < LEAST_TIP_THICKNESS * rack.module {
+            let (r, sin) = (self.reference_radius(), rack.pressure_angle.sin());
             let smallest = (self.normal_rack.straight_depth() - r * sin * sin) / rack.module;
             return Err(GearError::Undercut {
                 profile_shift: self.data.profile_shift,
@@ -57,6 +57,14 @@ impl SpurGear {
             });
         }
         Ok(())
+    }
+
+    /// The thickness of the tooth where its fillets come nearest to each other.
+    fn neck(&self) -> f64 {
+        const PLACES: u32 = 64;
+        let (from, to) = self.fillet.ends();
+        let at = |i: u32| self.fillet.point(from + (to - from) * f64::from(i) / f64::from(PLACES));
+        2.0 * (0..=PLACES).map(|i| at(i).y).fold(f64::INFINITY, f64::min)
     }
 
     pub(super) fn check_blank(&self) -> Result<(), GearError> {

@@ -16,16 +16,13 @@ impl SpurGear {
         })
     }
 
-    /// The material removed from every loaded flank at the roll length `s`, modifications and the broken edge: the flank is turned back by
-    /// this length on the base circle there, so that it belongs to the actual radius, and a tip corner stays on the tip circle.
+    /// The material removed from every loaded flank at the roll length `s`, modifications, the broken edge and undercut: the flank is turned
+    /// back by this length on the base circle there, so that it belongs to the actual radius, and a tip corner stays on the tip circle.
     pub fn removed(&self, s: f64) -> f64 {
-        let edge = self
-            .broken_edge
-            .map_or(0.0, |edge| edge.depth_and_slope(&self.flank, s).0);
-        self.modified(s) + edge
+        self.modified(s) + self.ends_depth_and_slope(s).0
     }
 
-    /// The part of [`SpurGear::removed`] that is meant by modifications, without the broken edge.
+    /// The part of [`SpurGear::removed`] that is meant by modifications, without the broken edge and undercut.
     pub(in crate::gear) fn modified(&self, s: f64) -> f64 {
         let depths = self
             .modifications
@@ -40,7 +37,7 @@ impl SpurGear {
             .modifications
             .iter()
             .map(|each| each.slope(&self.flank, s));
-        modified.sum::<f64>() + self.edge_slope(s)
+        modified.sum::<f64>() + self.ends_depth_and_slope(s).1
     }
 
     /// By how much the normal of the flank is inclined at the roll length `s`, as [`SpurGear::removed_slope`]: a kink of a modification is rounded
@@ -52,7 +49,7 @@ impl SpurGear {
         } else {
             (self.modified(s + half) - self.modified(s - half)) / (2.0 * half)
         };
-        modified + self.edge_slope(s)
+        modified + self.ends_depth_and_slope(s).1
     }
 
     /// [`SpurGear::removed`] and [`SpurGear::inclination`] at once; where nothing is removed that costs nothing.
@@ -72,22 +69,61 @@ impl SpurGear {
     pub(super) fn untouched_roll_lengths(&self) -> [f64; 2] {
         let half = ROUNDED * self.data.rack.module;
         let below_edge = self.broken_edge.map_or(f64::INFINITY, |edge| edge.from);
+        let above_undercut = if self.is_undercut {
+            self.form_roll_length
+        } else {
+            0.0
+        };
         let each = self.modifications.iter();
         let [from, to] = each
             .map(|each| each.untouched(&self.flank))
-            .fold([0.0, below_edge], |[from, to], [low, high]| {
+            .fold([above_undercut, below_edge], |[from, to], [low, high]| {
                 [from.max(low), to.min(high)]
             });
         [from + half, to - half]
     }
 
-    fn edge_slope(&self, s: f64) -> f64 {
+    /// What the ends of the flank are turned back by, the broken edge at its tip and the undercut at its root, and the slope of that by the roll
+    /// length `s`.
+    fn ends_depth_and_slope(&self, s: f64) -> (f64, f64) {
+        if self.is_undercut && s < self.form_roll_length {
+            return self.undercut_depth_and_slope(s);
+        }
         self.broken_edge
-            .map_or(0.0, |edge| edge.depth_and_slope(&self.flank, s).1)
+            .map_or((0.0, 0.0), |edge| edge.depth_and_slope(&self.flank, s))
     }
 
-    /// The roll lengths, rising, at which the flank has a kink: the starts of reliefs, the entries of tables, and where a rounding begins,
-    /// which bends a hundred times as sharply; so may a short parabolic relief.
+    /// How far the involute is turned back at the radius of its roll length `s` to lie on the fillet that undercuts it, as a length on the base
+    /// circle, and the slope of that by `s`.
+    fn undercut_depth_and_slope(&self, s: f64) -> (f64, f64) {
+        const STEP: f64 = 1e-6;
+        let (r_b, r) = (self.flank.base_radius(), self.flank.radius(s));
+        let gamma = self.fillet.gamma_at(r);
+        let polar = |gamma: f64| {
+            let point = self.fillet.point(gamma);
+            (point.norm(), point.y.atan2(point.x))
+        };
+        let (before, here, after) = (polar(gamma - STEP), polar(gamma), polar(gamma + STEP));
+        let change = (after.1 - before.1) / (after.0 - before.0);
+        let depth = r_b * (self.flank.half_angle(r) - here.1);
+        // As of a broken edge.
+        let slope = -s / r * (s / r + r_b * change);
+        (depth.max(0.0), slope)
+    }
+
+    /// The roll length down to which the flank is followed as it is cut: the form circle, or below the corner of an undercut flank nearly the base circle.
+    pub fn lowest_roll_length(&self) -> f64 {
+        // A roll length of a tenth is a hundredth of the height above the base circle.
+        const NEARLY: f64 = 0.1;
+        if self.is_undercut {
+            NEARLY * self.form_roll_length
+        } else {
+            self.form_roll_length
+        }
+    }
+
+    /// The roll lengths, rising, at which the flank has a kink: the corner of undercut, the starts of reliefs, the entries of tables, and where a
+    /// rounding begins, which bends a hundred times as sharply; so may a short parabolic relief.
     pub fn kinks(&self) -> Vec<f64> {
         let rounded = matches!(self.data.tip_edge, TipEdge::Rounded(_));
         let rounding = rounded.then(|| self.tip_form_roll_length());
@@ -95,6 +131,7 @@ impl SpurGear {
         let mut kinks: Vec<f64> = modifications
             .flat_map(|each| each.kinks(&self.flank))
             .chain(rounding)
+            .chain(self.is_undercut.then_some(self.form_roll_length))
             .filter(|s| (self.form_roll_length()..self.tip_roll_length()).contains(s))
             .collect();
         kinks.sort_by(f64::total_cmp);
@@ -108,9 +145,9 @@ impl SpurGear {
         chamfered.then(|| self.tip_form_roll_length())
     }
 
-    /// Whether the modifications only ever bend the flank away from its mate.
+    /// Whether the flank, down to its fillet, is an involute whose modifications only ever bend it away from its mate.
     pub fn is_convex(&self) -> bool {
-        self.modifications.iter().all(Modification::is_convex)
+        !self.is_undercut && self.modifications.iter().all(Modification::is_convex)
     }
 
     /// How the teeth deviate from each other.

@@ -14,7 +14,7 @@ use super::{
     TipEdge, ToothDeviations, Vector,
 };
 
-/// A spur gear that can be made: neither undercut nor pointed, with its holes inside its blank.
+/// A spur gear that can be made: not pointed, with its holes inside its blank.
 ///
 /// Lengths are in meters, angles in radians.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +23,11 @@ pub struct SpurGear {
     /// The rack as it is across its own teeth: round at its tips. Of a spur gear that of the drawing.
     normal_rack: Rack,
     flank: Involute,
+    fillet: Trochoid,
+    /// Where the flank ends and the fillet begins.
+    form_roll_length: f64,
+    /// Whether the rack undercuts the flank, so that the fillet begins at a corner.
+    is_undercut: bool,
     broken_edge: Option<BrokenEdge>,
     modifications: Vec<Modification>,
     /// Roll lengths between which the flank is as the rack cuts it.
@@ -50,10 +55,31 @@ impl SpurGear {
             + 2.0 * data.profile_shift * alpha.tan() / z
             + involute_function(alpha)
             + data.thickness_deviation / (2.0 * r);
+        let shift = data.profile_shift * rack.module;
+        let flank = Involute::new(r * alpha.cos(), psi_b);
+        let whole = Trochoid::new(
+            rack,
+            &normal_rack,
+            data.tooth_count,
+            shift,
+            data.thickness_deviation,
+        );
+        let end_of_rack = r * alpha.sin() - (normal_rack.straight_depth() - shift) / alpha.sin();
+        let is_undercut = end_of_rack < 0.0;
+        let (fillet, form_roll_length) = if is_undercut {
+            let fillet = whole.cutting(&flank);
+            let corner = fillet.point(fillet.ends().0);
+            (fillet, flank.roll_length(corner.norm()))
+        } else {
+            (whole, end_of_rack)
+        };
         let mut gear = Self {
             data,
             normal_rack,
-            flank: Involute::new(r * alpha.cos(), psi_b),
+            flank,
+            fillet,
+            form_roll_length,
+            is_undercut,
             broken_edge: None,
             modifications: Vec::new(),
             untouched: [0.0, f64::INFINITY],
@@ -228,13 +254,12 @@ impl SpurGear {
 
     /// The fillet of tooth 0 on its loaded side.
     pub fn fillet(&self) -> Trochoid {
-        Trochoid::new(
-            &self.data.rack,
-            &self.normal_rack,
-            self.data.tooth_count,
-            self.profile_shift_length(),
-            self.data.thickness_deviation,
-        )
+        self.fillet
+    }
+
+    /// Whether the rack undercuts the flank: it ends in a corner, at which the fillet cuts the involute.
+    pub fn is_undercut(&self) -> bool {
+        self.is_undercut
     }
 
     /// The flank from the form circle to the tip circle, by arc length from the base circle.
@@ -277,7 +302,7 @@ impl SpurGear {
 
     /// The roll length at which the generated flank ends and the fillet begins.
     pub fn form_roll_length(&self) -> f64 {
-        self.form_roll_length_signed().max(0.0)
+        self.form_roll_length
     }
 
     /// The form radius: where the flank ends and the fillet begins.
@@ -342,12 +367,6 @@ impl SpurGear {
     pub(in crate::gear) fn profile_shift_length(&self) -> f64 {
         self.data.profile_shift * self.data.rack.module
     }
-
-    fn form_roll_length_signed(&self) -> f64 {
-        let sin = self.data.rack.pressure_angle.sin();
-        self.reference_radius() * sin
-            - (self.normal_rack.straight_depth() - self.profile_shift_length()) / sin
-    }
 }
 
 #[cfg(test)]
@@ -396,28 +415,63 @@ pub(crate) mod tests {
         assert!((gear.form_radius() - 48.313_546_606_970_83e-3).abs() < 1e-12);
     }
 
+    fn of_module(tooth_count: u32, profile_shift: f64) -> GearData {
+        let mut data = paper_gear(tooth_count);
+        data.rack = Rack {
+            module: 1e-3,
+            addendum: 1e-3,
+            dedendum: 1.25e-3,
+            tip_radius: 0.38e-3,
+            ..data.rack
+        };
+        data.profile_shift = profile_shift;
+        data.blank.bore_radius = 0.5e-3;
+        data
+    }
+
     #[test]
-    fn undercut_begins_below_the_textbook_tooth_count_and_the_named_shift_cures_it() {
+    fn undercut_begins_below_the_textbook_tooth_count_and_at_the_base_circle() {
         // z_min = 2 h_Ff/(m sin² α) = 17.1 for the ISO rack with rounding 0.38 m, whose straight depth is one module.
-        assert!(
-            SpurGear::new(paper_gear(18)).is_err(),
-            "a bore of 15 mm leaves no rim"
-        );
-        let small = |z, x| {
-            let mut data = paper_gear(z);
-            data.blank.bore_radius = 5e-3;
-            data.profile_shift = x;
-            SpurGear::new(data)
+        let gear = |z, x| SpurGear::new(of_module(z, x)).expect("can be made");
+        assert!(!gear(18, 0.0).is_undercut() && gear(17, 0.0).is_undercut());
+        // 17 sin²(20 deg)/2 = 0.994308, and the rack's straight depth is 0.999968.
+        assert!(gear(17, 0.00565).is_undercut() && !gear(17, 0.00567).is_undercut());
+        // The rack's flank ends 0.01654 mm beyond the base circle. A small fold of an envelope cuts itself half as far before it.
+        let barely = gear(17, 0.0);
+        assert!((barely.form_roll_length() - 0.008_27e-3).abs() < 1e-7);
+    }
+
+    #[test]
+    fn an_undercut_flank_ends_where_the_swept_rounding_of_the_rack_cuts_the_involute() {
+        // 10 teeth of module 1, by a polygon of the swept rack: a radius of 4.7256 mm.
+        let gear = SpurGear::new(of_module(10, 0.0)).expect("can be made");
+        assert!((gear.form_radius() - 4.7256e-3).abs() < 1e-7);
+        let corner = gear.fillet().point(gear.fillet().ends().0);
+        assert!((corner - gear.flank().point(gear.form_roll_length())).norm() < 1e-15);
+        // Just below the corner the flank as it is cut is the fillet, which falls away from the involute.
+        for part in [0.2, 0.5, 0.9] {
+            let s = part * gear.form_roll_length();
+            let depth = gear.removed(s);
+            let (r, t) = (gear.flank().radius(s), gear.flank().base_radius());
+            let on_fillet = gear.flank().half_angle(r) - depth / t;
+            let point = gear.fillet().point(gear.fillet().gamma_at(r));
+            assert!(depth > 0.0 && (point - r * crate::gear::radial(on_fillet)).norm() < 1e-12);
+            let step = 1e-9;
+            let slope = (gear.removed(s + step) - gear.removed(s - step)) / (2.0 * step);
+            assert!((gear.removed_slope(s) - slope).abs() < 1e-5 * slope.abs());
+        }
+    }
+
+    #[test]
+    fn a_tooth_of_which_undercut_leaves_nothing_is_refused_and_the_named_shift_cures_it() {
+        let mut data = of_module(5, -0.6);
+        data.rack.addendum = 1.7e-3;
+        let Err(GearError::Undercut { smallest, .. }) = SpurGear::new(data.clone()) else {
+            panic!("the fillets meet")
         };
-        assert!(small(18, 0.0).is_ok());
-        let Err(GearError::Undercut { smallest, .. }) = small(12, 0.0) else {
-            panic!("12 teeth are undercut")
-        };
-        assert!(small(12, smallest + 1e-9).is_ok());
-        assert!(matches!(
-            small(12, smallest - 1e-6),
-            Err(GearError::Undercut { .. })
-        ));
+        data.profile_shift = smallest + 1e-9;
+        data.rack.addendum = 0.5e-3;
+        assert!(SpurGear::new(data).is_ok_and(|gear| !gear.is_undercut()));
     }
 
     #[test]
