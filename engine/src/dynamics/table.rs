@@ -1,8 +1,8 @@
 //! The force between two gears over position and approach, and the energy behind it.
 
-/// How loads rise from one row of a table to the next: as this power, so that rows are dense where loads are light: a line contact is soft there, and pairs
-/// of teeth come to carry one after the other.
-const RISE: f64 = 3.0;
+/// How loads rise from one row of a table to the next: at the place x of 0 to 1 the part of the largest load is 3 y/(1 + 2 y) with y = x to this power. Rows are
+/// close where loads are light, since a line contact is soft there and pairs of teeth come to carry one after the other, and even where they are not.
+const RISE: f64 = 3.5;
 
 /// The least rise of δ from row to row in m, less than an atom.
 const APART: f64 = 1e-14;
@@ -38,7 +38,7 @@ impl Ladder {
     pub fn loads(&self) -> Vec<f64> {
         let last = (self.count - 1) as f64;
         (0..self.count)
-            .map(|j| self.largest * (j as f64 / last).powf(RISE))
+            .map(|j| self.largest * part_at(j as f64 / last))
             .collect()
     }
 }
@@ -258,15 +258,16 @@ impl ForceTable {
 
     /// The table with `by_position` times as many positions and `by_load` times as many stretches between loads, of four at least.
     pub fn refined(&self, by_position: usize, by_load: usize) -> Self {
+        let largest = self.loads[self.loads.len() - 1];
         let between = self.loads.windows(2).flat_map(|ends| {
-            let [from, to] = [ends[0], ends[1]].map(rise);
+            let [from, to] = [ends[0], ends[1]].map(|load| place_of(load / largest));
             (1..=by_load).map(move |j| {
                 let part = j as f64 / by_load as f64;
                 // The end as it stands, to the last digit.
                 if j == by_load {
                     ends[1]
                 } else {
-                    (from + part * (to - from)).powf(RISE)
+                    largest * part_at(from + part * (to - from))
                 }
             })
         });
@@ -299,13 +300,16 @@ impl ForceTable {
 
     /// `delta` at its positions under `loads`.
     fn along_loads(&self, delta: &[Vec<f64>], loads: &[f64]) -> Vec<Vec<f64>> {
+        let largest = self.loads[self.loads.len() - 1];
         let row = |&load: &f64| {
             let first = self.row_below(|j| self.loads[j] <= load);
             let [from, to] = [first, first + 1].map(|j| self.loads[j]);
             if load == to {
                 return delta[first + 1].clone();
             }
-            let part = (rise(load) - rise(from)) / (rise(to) - rise(from));
+            let [place, first_place, last_place] =
+                [load, from, to].map(|load| place_of(load / largest));
+            let part = (place - first_place) / (last_place - first_place);
             let at = |i: usize| between_open(&self.loads, |j| delta[j][i], (first, part), load);
             (0..self.positions()).map(at).collect()
         };
@@ -330,9 +334,15 @@ impl ForceTable {
     }
 }
 
-/// The place of a load between others, which rises evenly from row to row of a [`Ladder`].
-fn rise(load: f64) -> f64 {
-    load.powf(1.0 / RISE)
+/// The part of the largest load at a place between the first row of a [`Ladder`], 0, and its last, 1.
+fn part_at(place: f64) -> f64 {
+    let y = place.powf(RISE);
+    3.0 * y / (1.0 + 2.0 * y)
+}
+
+/// The place at which that part stands.
+fn place_of(part: f64) -> f64 {
+    (part / (3.0 - 2.0 * part)).powf(1.0 / RISE)
 }
 
 /// From this ratio on of how fast its compliance falls to how fast those beside it do, a stretch has a kink.
